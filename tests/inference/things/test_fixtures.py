@@ -9,7 +9,7 @@ import pytest
 
 from acts import Act, Plan, read
 from acts.checking import checked
-from motion import Duet, formats
+from motion import SMPL22, Duet, formats
 from motion.metrics.sentences.joints import Motion
 from motion.things import Thing
 from webdemo.inference.requests import Result
@@ -79,6 +79,27 @@ def test_hands_reach_what_they_use():
     knobs = body.mesh.vertices[body.mesh.vertices[:, 2] > 0.17]
     front = (knobs @ body.rotations[0].T + body.places[0])[:, 2]
     assert front.min() == pytest.approx(0.6, abs=0.12), "palms are 0.6 m ahead"
+
+
+def stepping(metres: float) -> np.ndarray:
+    """Somebody who reaches for a hi-fi, after a foot was so far ahead of them."""
+    people = apart()
+    people[0, : HALF // 2, [SMPL22.index("left_ankle"), SMPL22.index("left_foot")], 2] += metres
+    return people
+
+
+def front_of(body: Thing) -> float:
+    low = body.mesh.vertices[body.mesh.vertices[:, 1] < 0.7]
+    return float((low @ body.rotations[0].T + body.places[0])[:, 2].min())
+
+
+def test_a_foot_that_steps_ahead_does_not_step_into_the_hi_fi():
+    sentence = "A turns the hi-fi on."
+    (near,), (back,) = (made(sentence, stepping(metres))[0]["hi-fi"] for metres in (0.0, 0.7))
+    toe = stepping(0.7)[0, :, SMPL22.index("left_foot"), 2].max()
+    assert front_of(near) < toe < front_of(back) < toe + 0.15
+    (far,) = made(sentence, stepping(1.6))[0]["hi-fi"]
+    assert front_of(far) == pytest.approx(front_of(near)), "it stays within reach"
 
 
 def test_nothing_stands_there_for_what_is_wished_or_denied_or_is_no_fixture():

@@ -396,10 +396,13 @@ class _Stage:
 
 
 def _away(alone: tuple[str, str], moves: Sequence[Move]) -> tuple[str, str]:
-    """The sentences of each, of which one who goes to a thing walks away: the network knows no things."""
+    """The sentences of each, of which one who goes to a thing only walks away, as the network knows no things.
+
+    Their hands are given; of a reach the network would make one to the other, and not turn round.
+    """
     gone = {move.person for move in moves if move.way is Way.THING}
     a, b = (
-        f"One person walks away and{words.removeprefix('One person')}" if words and who in gone else words
+        "One person turns around and walks away." if words and who in gone else words
         for who, words in zip("ab", alone, strict=True)
     )
     return a, b

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motion import SMPL22
 from motion.easing import smoothstep
 from motion.things import FIXTURES, Thing, room, shape
 
@@ -25,6 +26,11 @@ BY = 1.0
 """Metres from where a fixture is used beyond which somebody is elsewhere."""
 THERE = 0.3
 """Metres from where somebody stays within which they have come to it."""
+BACK = 0.45
+"""Metres by which a fixture is moved back, at most, from where hands would reach it best."""
+FOOT = 0.08
+"""Metres around a joint of a leg that are its own."""
+LEGS = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("knee", "ankle", "foot")]
 TAKES = 1.1
 """Seconds in which a part opens or closes."""
 _HALF = room.CURTAIN / 2 + 0.01
@@ -165,7 +171,23 @@ def _spot(hands: Hands, use: Use, who: int) -> tuple[Array, Array]:
     depth = float(shape(BODIES.get(use.kind, use.kind)).vertices[:, 2].max())
     out = float(np.clip(_reach(hands, who)[part].max(), NEAR, FAR))
     pelvis = hands.joint(who, "pelvis")[part].mean(axis=0) * [1, 0, 1]
-    return pelvis + (out + depth) * ahead, -ahead
+    place = pelvis + (out + depth) * ahead
+    return place + _clear(hands, use.kind, place, -ahead) * ahead, -ahead
+
+
+def _clear(hands: Hands, kind: str, place: Array, ahead: Array) -> float:
+    """The metres by which a fixture at a place moves back so that nobody steps into it; 0 where that does not help."""
+    if kind == "door frame":  # people go through it
+        return 0.0
+    vertices = shape(BODIES.get(kind, kind)).vertices
+    low, high = vertices.min(axis=0) - FOOT, vertices.max(axis=0) + FOOT
+    across = np.cross([0.0, 1.0, 0.0], ahead)
+    legs = hands.positions[:, :, LEGS].reshape(-1, 3) - place
+    own = np.stack([legs @ across, legs[:, 1], legs @ ahead], axis=1)
+    beside = (own[:, [0, 1]] >= low[[0, 1]]).all(axis=1) & (own[:, [0, 1]] <= high[[0, 1]]).all(axis=1)
+    deep = own[beside & (own[:, 2] >= low[2]), 2]
+    needed = float(np.max(high[2] - deep, initial=0.0))
+    return needed if needed <= BACK else 0.0
 
 
 def _done(hands: Hands, use: Use, who: int, fixture: Fixture) -> None:
