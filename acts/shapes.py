@@ -123,6 +123,7 @@ class Gesture(_Shape):
         "belly",
         "head",
         "mouth",
+        "fans",
         "behind",
         "crossed",
         "flaps",

@@ -99,6 +99,7 @@ def at_nose(
         (at_nose(rubs=0.04), None), (at_nose(higher=0.12), None), (at_nose(aside=0.075), None),
         (at_nose(guard=True), None),
         (gesture(Hand.EARS), LOUD), (gesture(Hand.EYES), BRIGHT), (rubbing(), COLD), (fanning(), HOT),
+        (gesture(Hand.FANS), HOT),
         (fanning(rate=0.7, wide=0.24), None),
         (rubbing(speed=0.1), None), (bent({}, 60), None), (gesture(Hand.WAVES), None), (gesture(Hand.HIGH), None),
         (gesture(Hand.CROSSED), None), (gesture(Hand.AHEAD), None), (gesture(Hand.CLAPS), None),

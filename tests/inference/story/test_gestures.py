@@ -77,4 +77,5 @@ def test_hands_are_where_the_gesture_has_them(side: str) -> None:
         and (offered[:, 1] > 0.1).all()
     )
     assert np.sign(way(Hand.LINKED)[0, 0]) == out
+    assert 0.15 < np.ptp(way(Hand.FANS)[:, 0]) < 0.25 and (way(Hand.FANS)[:, 1] < head[1]).all()
     assert np.ptp(way(Hand.WAVES)[:, 0]) > 0.2 and np.ptp(way(Hand.UP), axis=0).max() == 0

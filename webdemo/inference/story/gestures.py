@@ -44,6 +44,7 @@ class Hand(Enum):
     BELLY = "on the belly"
     HEAD = "on the back of the head"
     MOUTH = "before the mouth"
+    FANS = "fans the neck"
     BEHIND = "behind the back"
     CROSSED = "folded before the chest"
     FLAPS = "flaps like a wing"
@@ -71,7 +72,7 @@ OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS, Hand.EARS, Hand.EYES, Hand.PHOTO, 
 _AT_BODY = {
     Hand.HIPS: (0.21, 0.1, 0.0), Hand.CHEST: (0.02, 0.36, 0.2), Hand.BELLY: (0.04, 0.14, 0.2),
     Hand.HEAD: (0.12, 0.66, -0.05), Hand.MOUTH: (0.04, 0.54, 0.2), Hand.BEHIND: (0.04, 0.02, -0.18),
-    Hand.CROSSED: (-0.13, 0.27, 0.15), Hand.SHAKES: (0.28, 0.08, 0.12),
+    Hand.FANS: (0.12, 0.42, 0.22), Hand.CROSSED: (-0.13, 0.27, 0.15), Hand.SHAKES: (0.28, 0.08, 0.12),
 }  # fmt: skip
 """Metres from the pelvis to the left wrist of hands that are held at one's own body."""
 STOOD = (
@@ -93,6 +94,8 @@ _CLAP_RATE = 2.0
 """Claps a second."""
 _WAVE_RATE = 1.6
 """Strokes a second of a wave."""
+_FAN = (2.0, 0.1)
+"""Strokes a second of a hand that fans, and the metres that it goes to either side."""
 
 
 def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
@@ -169,4 +172,6 @@ def _beside(hand: Hand, out: float, seconds: Array, shoulder: Array) -> Array:
             offset[:] = _AT_BODY[hand] * np.array([out, 1.0, 1.0]) - shoulder
             if hand is Hand.SHAKES:
                 offset[:, 1] += 0.05 * np.sin(turn * 3.0)
+            elif hand is Hand.FANS:
+                offset[:, 0] += _FAN[1] * np.sin(turn * _FAN[0])
     return offset
