@@ -189,6 +189,25 @@ def test_what_is_taken_was_held_by_the_other():
 
 
 # ---- flight ----------------------------------------------------------------------------------------------
+def test_a_ball_that_is_rolled_leaves_the_lowest_hand_and_rolls_over_the_floor_to_the_other():
+    people = standing()
+    low = np.tile([0.1, 0.9, 0.3], (FRAMES, 1))
+    low[30:50, 1] = 0.2
+    put_hand(people[0], "right", low)
+    rolls, sentence = said("A rolls a ball to B.", "bowl", patient="b")
+    (ball,) = made(people, rolls, sentence=sentence)
+    radius = ball.mesh.size[1] / 2
+    assert np.ptp(ball.places[:20, 1]) < 0.05 and ball.places[20, 1] > 0.8, "it is in the hand"
+    assert ball.places[55:, 1] == pytest.approx(radius, abs=0.005)
+    x, _, z = ball.places[-1]
+    assert 0.2 < np.hypot(x, z - GAP) < 0.4, "at b's feet"
+    way = np.linalg.norm(np.diff(ball.places[55:, [0, 2]], axis=0), axis=1)
+    turned = np.arccos(
+        np.clip((np.einsum("tij,tij->t", ball.rotations[56:], ball.rotations[55:-1]) - 1) / 2, -1, 1)
+    )
+    assert turned == pytest.approx(way / radius, abs=0.02), "it does not slide"
+
+
 def test_a_throw_is_a_parabola_from_hand_to_hand():
     people = standing()
     people[1, :, :, 2] += 2.0

@@ -13,7 +13,7 @@ from motion.things import Mesh, Thing, shape
 
 from .holding import Hands, Track, frame_of, held, level, smoothed, takes_both_hands, unit, yaw_of
 from .timing import WITHIN, lowest, meeting, release
-from .tracks import BLEND, Course, at_rest, put, thrown
+from .tracks import BLEND, Course, at_rest, put, rolled, thrown
 from .uses import Use
 
 Array = NDArray[np.floating]
@@ -22,6 +22,8 @@ SPEED = 5.5
 """Metres a second of a throw, along the floor."""
 SHORTEST, LONGEST = 0.4, 1.1
 """Seconds of a flight."""
+BEFORE_FEET = 0.3
+"""Metres from a pelvis at which a thing that was rolled there comes to rest."""
 TABLE = 0.74
 """Height of a table in metres, where the hand does not say it."""
 TABLES = (0.45, 1.0)
@@ -85,7 +87,7 @@ class ThingCourse:
             return meeting(hands, giver, use.start, use.stop).sides[0]
         if use.does in ("throws", "catches"):
             return self._release(who, use).sides[0]
-        if use.does == "puts":
+        if use.does in ("puts", "rolls"):
             return lowest(hands, who, use.start, use.stop).sides[0]
         return hands.better_side(who, use.start, use.stop, use.side)
 
@@ -260,6 +262,24 @@ class ThingCourse:
         self.holder = None
         self._hold_from(frame)
         self._say(use, frame)
+
+    def _rolls(self, use: Use) -> None:
+        """Let go where the hand is lowest, it rolls over the floor to the other's feet, or three metres ahead."""
+        who, hands = use.agents[0], self.hands
+        self._taken_up(use, who)
+        if self.holder != who:
+            return
+        frame = lowest(hands, who, use.start, use.stop, self.side).frame
+        goal = self.course.places[frame] + 3.0 * hands.ahead[who, frame]
+        if use.other is not None:
+            other = hands.joint(use.other, "pelvis")[
+                min(frame + round(LONGEST * hands.fps), hands.frames - 1)
+            ]
+            goal = other - BEFORE_FEET * level(other - self.course.places[frame])
+        rolled(self.course, frame, goal, float(self.surface.size[1]) / 2)
+        self.holder = None
+        self._hold_from(frame)
+        self._say(use, frame, **({} if use.other is None else {"to": "ab"[use.other]}))
 
     def _catches(self, use: Use) -> None:
         who = use.agents[0]

@@ -14,6 +14,8 @@ from .holding import Track, frame_of
 Array = NDArray[np.floating]
 
 GRAVITY = 9.81
+ROLLS = 2.5
+"""Metres a second with which a thing that is rolled sets off."""
 BLEND = 0.13
 """Seconds on either side of a moment over which a thing goes from one hand to another."""
 _LIES = ("book", "phone", "flower", "sword", "stick", "ring", "guitar", "umbrella", "cigarette")
@@ -70,6 +72,23 @@ def thrown(course: Course, start: int, stop: int, goal: Array) -> None:
     course.places[start : start + len(now)] = way
     course.places[start + len(now) :] = way[-1]
     course.rotations[start + len(now) :] = course.rotations[start + len(now) - 1]
+
+
+def rolled(course: Course, start: int, goal: Array, radius: float) -> None:
+    """Lets a round thing down where it is at a frame, and roll from there over the floor to below ``goal`` (3,)."""
+    begin, count = course.places[start].copy(), len(course.places)
+    way = (np.asarray(goal) - begin) * [1, 0, 1]
+    length = float(np.linalg.norm(way))
+    ahead = way / max(length, 1e-9)
+    now = (np.arange(start, count) - start) / course.fps
+    share = np.clip(now * ROLLS / (2 * max(length, 0.1)), 0.0, 1.0)
+    along = length * (1 - (1 - share) ** 2)  # it slows down evenly
+    drop = np.maximum(begin[1] - radius - GRAVITY / 2 * now**2, 0.0)
+    course.places[start:] = begin * [1, 0, 1] + along[:, None] * ahead
+    course.places[start:, 1] = radius + drop
+    axis = np.cross([0.0, 1.0, 0.0], ahead)
+    spin = Rotation.from_rotvec(axis * (along / radius)[:, None]).as_matrix()
+    course.rotations[start:] = spin @ course.rotations[start]
 
 
 def at_rest(kind: str, mesh: Mesh, place: Array, ahead: Array, frames: int) -> Track:
