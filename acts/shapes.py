@@ -218,6 +218,7 @@ class Limb(_Shape):
         "on tiptoe",
         "crosses legs",
         "leans",
+        "is dipped",
         "twists",
         "sways",
         "moves head",

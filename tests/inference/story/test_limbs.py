@@ -42,6 +42,16 @@ def test_the_foot_that_is_not_raised_stays(does: str) -> None:
     assert np.ptp(motion(does, side="left")[:, left, 1]) > 0.02
 
 
+def test_the_one_who_is_dipped_leans_far_back_in_the_others_hands() -> None:
+    stage = staged((Act(id="1", act="dip", agents=("a",), patient="b"),))
+    assert stage.contact is not None and stage.contact.person == "a" and "a" not in stage.limbs
+    (limb,) = stage.limbs["b"]
+    found = limbed([limb], np.zeros(2), 0.0, SECONDS, 5.0)
+    neck, pelvis = found[75, SMPL22.index("neck")], found[75, 0]
+    back = np.degrees(np.arctan2(pelvis[2] - neck[2], neck[1] - pelvis[1]))
+    assert 25 < back < 60
+
+
 def names() -> list[str]:
     return [n for n, e in lexicon().entries.items() if e.rule and {s.do for s in e.stage} == {"limb"}]
 

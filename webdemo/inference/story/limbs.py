@@ -213,6 +213,13 @@ def _leaning(limb: Limb, held: Array, since: Array) -> Turns:
     return {joint: about(0, sign * held) for joint in ("spine1", "spine2")}
 
 
+def _dipped(limb: Limb, held: Array, since: Array) -> Turns:
+    """A trunk that goes far back over bent knees, of a person whom another holds."""
+    legs = {"hip": -0.15, "knee": 0.5, "ankle": -0.3}
+    bent = {f"{side}_{name}": about(0, a * held) for side in ("left", "right") for name, a in legs.items()}
+    return bent | {joint: about(0, -0.26 * held) for joint in ("spine1", "spine2", "spine3")}
+
+
 def _twisted(limb: Limb, held: Array, since: Array) -> Turns:
     turned = (
         _aside(limb) * held if limb.direction or limb.side != "both" else _swing(since, held, limb.times, 2.2)
@@ -262,6 +269,7 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "on tiptoe": _tiptoes,
     "crosses legs": _crossed_legs,
     "leans": _leaning,
+    "is dipped": _dipped,
     "twists": _twisted,
     "sways": _swaying,
     "moves head": _head,
