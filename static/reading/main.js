@@ -36,7 +36,10 @@ class View {
     this.note = "";
     this.checks = null;
     this.editor = new Editor(root, this);
-    this.length = new Length(this.find(".pdr-length"), root.closest(".pd-lab")?.querySelector("#seconds"));
+    const lab = root.closest(".pd-lab");
+    this.length = new Length(
+      this.find(".pdr-length"), lab?.querySelector("#seconds"), root.closest(".pd-ask")?.querySelector("textarea"),
+    );
     this.paths = editable ? new Paths(root, () => this.hold()) : null;
     for (const kind of ["pointerover", "focusin"]) root.addEventListener(kind, (event) => this.point(event.target));
     for (const kind of ["pointerleave", "focusout"]) root.addEventListener(kind, () => this.point(null));
@@ -202,7 +205,7 @@ class View {
     this.find(".pdr-said").replaceChildren(...(plan ? this.sentence(plan) : []));
     this.find(".pdr-unread").replaceChildren(...(plan ? plan.unread.map((part, i) => this.unread(part, i)) : []));
     this.find(".pdr-plan").hidden = !plan?.acts.length;
-    this.length.draw(plan ? this.shown.seconds : null);
+    this.length.draw(plan ? this.shown.seconds : null, current ? this.asking.text : null);
     this.find(".pdr-beats").replaceChildren(...(plan ? this.shown.beats.map((beat) => this.beat(beat)) : []));
     const notes = plan ? plan.notes.filter((note) => !plan.unread.some((part) => part.why === note)) : [];
     const warnings = [error, this.note].filter(Boolean);

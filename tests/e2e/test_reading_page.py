@@ -37,11 +37,15 @@ def test_words_are_underlined_and_chips_stand_on_two_lanes(page: Page) -> None:
     assert reading.locator(".pdr-words").last.evaluate(lines) == ["solid", "dashed"], (
         "people are told apart by their lines, not by colour alone"
     )
-    length = reading.locator(".pdr-length")
+    length, seconds = reading.locator(".pdr-length"), page.locator("#seconds input[type=number]")
+    expect(seconds).to_have_value("7")
+    expect(length).to_be_hidden()
+    seconds.fill("5")
+    seconds.blur()
     expect(length).to_contain_text("This takes about 7 s, and the motion lasts 5 s.")
     length.get_by_role("button", name="Make it 7 s").click()
     expect(length).to_be_hidden()
-    expect(page.locator("#seconds input[type=number]")).to_have_value("7")
+    expect(seconds).to_have_value("7")
     prompt.fill(HOSTILE)
     expect(reading.locator(".pdr-chip.pdr-b")).to_contain_text("waves", timeout=SLOW)
     expect(reading.locator(".pdr-said")).to_have_text(HOSTILE)
@@ -49,6 +53,20 @@ def test_words_are_underlined_and_chips_stand_on_two_lanes(page: Page) -> None:
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     prompt.fill("")
     expect(reading).to_be_hidden()
+
+
+def test_the_length_follows_a_typed_sentence_until_it_is_set(page: Page) -> None:
+    prompt, seconds = page.locator("#prompt textarea"), page.locator("#seconds input[type=number]")
+    page.wait_for_function("document.querySelector('#reading .pdr')?.view")
+    prompt.fill("A bows to B. Then they hug.")
+    expect(seconds).to_have_value("7", timeout=SLOW)
+    prompt.fill("They hug.")
+    expect(seconds).to_have_value("5", timeout=SLOW)
+    seconds.fill("3")
+    seconds.blur()
+    prompt.fill("A bows to B. Then they hug.")
+    expect(page.locator("#reading .pdr-length")).to_contain_text("the motion lasts 3 s", timeout=SLOW)
+    expect(seconds).to_have_value("3")
 
 
 def test_a_story_is_read_as_well(page: Page) -> None:

@@ -1,12 +1,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { advice } from "../../../static/reading/length.js";
+import { advice, Length } from "../../../static/reading/length.js";
 
 test("acts that fit need no advice", () => {
   assert.equal(advice(5, 5, 10), null);
   assert.equal(advice(3, 5, 10), null);
-  assert.equal(advice(12, 10, 10), null);
 });
 
 test("acts that need more than the motion has say how much", () => {
@@ -20,4 +19,45 @@ test("acts that need more than a motion can have send people to the tab Scene", 
   const found = advice(14, 5, 10);
   assert.equal(found.seconds, 10);
   assert.match(found.text, /tab Scene/);
+  assert.equal(advice(14, 10, 10).seconds, null, "it can be no longer");
+});
+
+/** A field of seconds at 5 of at most 10, and a prompt, both as a page has them. */
+function page() {
+  const heard = {};
+  const number = { value: "5", dispatchEvent: () => heard.field?.() };
+  const field = {
+    querySelector: (selector) => (selector.includes("range") ? { max: "10" } : number),
+    addEventListener: (kind, listener) => (heard.field = listener),
+  };
+  const prompt = { addEventListener: (kind, listener) => (heard.prompt = listener) };
+  const host = { addEventListener() {}, querySelector: () => ({}) };
+  const type = (value) => heard.prompt({ isTrusted: true, target: { value } });
+  return { length: new Length(host, field, prompt), number, host, type };
+}
+
+test("a typed sentence lengthens the motion, and a shorter one gives the usual length back", () => {
+  const { length, number, host, type } = page();
+  type("long");
+  length.draw(7.5, "long");
+  assert.equal(number.value, "7.5");
+  assert.equal(host.hidden, true);
+  type("endless");
+  length.draw(40, "endless");
+  assert.equal(number.value, "10");
+  assert.equal(host.hidden, false, "it does not fit");
+  type("short");
+  length.draw(2, "short");
+  assert.equal(number.value, "5");
+});
+
+test("a length that somebody or an example has set stays", () => {
+  const { length, number, host, type } = page();
+  length.draw(7, "an example's");
+  assert.equal(number.value, "5", "nobody typed it");
+  number.value = "3";
+  type("long");
+  length.draw(7, "long");
+  assert.equal(number.value, "3");
+  assert.equal(host.hidden, false);
 });
