@@ -231,7 +231,7 @@ class CompactInterGen(DuetSpace):
         taken = {
             name: tensor for name, tensor in taken.items() if not name.startswith(("touch_reader.", "fast."))
         }
-        for name in {name for name in taken if name.startswith("denoiser.plan_embed.")} & set(own):
+        if (name := "denoiser.plan_adapter.read.weight") in taken and name in own:
             taken[name] = self._columns_of(taken[name], trained.config.plan_columns)
         if any(name not in own or own[name].shape != tensor.shape for name, tensor in taken.items()):
             raise InputError(
@@ -240,12 +240,13 @@ class CompactInterGen(DuetSpace):
         self.load_state_dict(own | taken)
 
     def _columns_of(self, weight: Tensor, columns: Sequence[str]) -> Tensor:
-        """The weights (d, columns) that read another network's track of a plan, for the track of this one."""
-        grown = weight.new_zeros(len(weight), len(self.config.plan_columns))
+        """The weights (…, 2·columns) that read both people's tracks of another network, for the tracks of this one."""
+        of_each = weight.unflatten(1, (2, len(columns)))
+        grown = of_each.new_zeros(len(weight), 2, len(self.config.plan_columns))
         for i, column in enumerate(self.config.plan_columns):
             if column in columns:
-                grown[:, i] = weight[:, columns.index(column)]
-        return grown
+                grown[..., i] = of_each[..., columns.index(column)]
+        return grown.flatten(1)
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from torch import Tensor, nn
 from models.layers import TimestepEmbedding
 
 from .network import Block, InterGenConfig, InterGenDenoiser, attend, padding
+from .plan_adapter import PlanAdapter
 
 GUIDANCE_UNITS = 100.0
 """A guidance scale times this has the sinusoids of a timestep: scales of 1 to 10 cover 100 to 1000."""
@@ -80,27 +81,6 @@ class WordBlock(Block):
         return attended + self.ffn(attended, emb)
 
 
-class PlanEmbedding(nn.Module):
-    """The plan of acts, added to each person's tokens and, as a whole, to AdaLN; nothing at the start of training.
-
-    Args:
-        features: numbers a person and token.
-        latent_dim: d.
-    """
-
-    def __init__(self, features: int, latent_dim: int) -> None:
-        super().__init__()
-        self.features = features
-        self.now = nn.Linear(features, latent_dim, bias=False)
-        self.whole = nn.Linear(features, latent_dim, bias=False)
-        nn.init.zeros_(self.now.weight)
-        nn.init.zeros_(self.whole.weight)
-
-    def forward(self, plan: Tensor) -> tuple[Tensor, Tensor]:
-        """plan (2, B, T, features) → what is added to tokens (2, B, T, d), and to AdaLN (2, B, d)."""
-        return self.now(plan), self.whole(plan.amax(2))
-
-
 class WordDenoiser(InterGenDenoiser):
     """The grown denoiser.
 
@@ -131,7 +111,7 @@ class WordDenoiser(InterGenDenoiser):
         self.known_embed = nn.Linear(known_features, d, bias=False)
         nn.init.zeros_(self.person_text.weight)
         nn.init.zeros_(self.known_embed.weight)
-        self.plan_embed = PlanEmbedding(plan_features, d) if plan_features else None
+        self.plan_adapter = PlanAdapter(plan_features, d, config.num_layers) if plan_features else None
         self.traits = traits
         self.embed_guidance = TimestepEmbedding(d) if guidance_input else None
         if self.embed_guidance is not None:
@@ -169,25 +149,26 @@ class WordDenoiser(InterGenDenoiser):
         h = self.embed_motion(x.view(b, length, 2, -1).permute(2, 0, 1, 3))
         if known is not None:
             h = h + self.known_embed(known.view(b, length, 2, -1).permute(2, 0, 1, 3))
-        if self.plan_embed is not None and plan is not None:
-            now, whole = self.plan_embed(plan.view(b, length, 2, -1).permute(2, 0, 1, 3))
-            h, emb = h + now, emb + whole
+        added: list[Tensor] = []
+        if self.plan_adapter is not None and plan is not None:
+            added, whole = self.plan_adapter(plan.view(b, length, 2, -1).permute(2, 0, 1, 3))
+            emb = emb + whole
         text, real = self.text_of_each(cond)
         keep, keep_other = padding(mask)
-        for block in cast(list[WordBlock], self.blocks):
-            h = block.read(h, emb, keep, keep_other, text, real)
+        for i, block in enumerate(cast(list[WordBlock], self.blocks)):
+            h = block.read(h + added[i] if added else h, emb, keep, keep_other, text, real)
         return self.out(h).permute(1, 2, 0, 3).reshape(b, length, -1)
 
     @property
     def plan_features(self) -> int:
         """Numbers a person and token by which it sees plans; 0 where it reads none."""
-        return 0 if self.plan_embed is None else self.plan_embed.features
+        return 0 if self.plan_adapter is None else self.plan_adapter.features
 
     @property
     def varying(self) -> dict[str, tuple[int, ...]]:
         """See :class:`models.compiled.Compilable`."""
         more: dict[str, tuple[int, ...]] = {"cond": (0, 2), "known": (0, 1)}
-        if self.plan_embed is not None:
+        if self.plan_adapter is not None:
             more["plan"] = (0, 1)
         return super().varying | more | ({} if self.embed_guidance is None else {"guidance": (0,)})
 
@@ -205,8 +186,8 @@ class WordDenoiser(InterGenDenoiser):
         if known is None:
             known = x.new_zeros(*x.shape[:2], 2 * self.known_embed.in_features)
         inputs = (*super().filled(x, t, cond, mask), known)
-        if self.plan_embed is not None:
-            none = x.new_zeros(*x.shape[:2], 2 * self.plan_embed.features)
+        if self.plan_adapter is not None:
+            none = x.new_zeros(*x.shape[:2], 2 * self.plan_adapter.features)
             inputs = (*inputs, none if plan is None else plan)
         return inputs if self.embed_guidance is None or guidance is None else (*inputs, guidance)
 
@@ -219,8 +200,8 @@ class WordDenoiser(InterGenDenoiser):
         known = torch.randn(2, x.shape[1], 2 * self.known_embed.in_features, generator=draw)
         known[1, 3:] = 0
         inputs: tuple[Tensor, ...] = (x, t, cond, mask, known)
-        if self.plan_embed is not None:
-            inputs = (*inputs, torch.rand(2, x.shape[1], 2 * self.plan_embed.features, generator=draw))
+        if self.plan_adapter is not None:
+            inputs = (*inputs, torch.rand(2, x.shape[1], 2 * self.plan_adapter.features, generator=draw))
         return inputs if self.embed_guidance is None else (*inputs, torch.tensor([3.5, 1.5]))
 
     def embed(self, t: Tensor, cond: Tensor) -> Tensor:

@@ -35,6 +35,7 @@ from training.prepare import Scenes, load
 from training.trainers.given import known_parts
 from training.trainers.held import Held
 from training.trainers.intergen_data import Batch, Data, Settings, seeded
+from training.trainers.plan_acts import MOSTLY_PLANS
 from training.trainers.traits import TRAITS
 
 
@@ -122,10 +123,14 @@ class Trainer(Loop):
                 self.model.grow_from(load_folder(init)[0])
             else:
                 checkpoint.restore_part(init, "ema", self.model)
+        if settings.only_plan:
+            for name, weight in self.model.named_parameters():
+                weight.requires_grad_(name.startswith("denoiser.plan_adapter."))
         self.ema = build(settings, self.data).to(device).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
         self.reader = self.data.reader.to(device)
-        self.optimizer = adamw([*self.model.parameters(), *self.reader.parameters()], settings)
+        trained = [*self.model.parameters(), *self.reader.parameters()]
+        self.optimizer = adamw([weight for weight in trained if weight.requires_grad], settings)
         self.restore(asdict(settings))
         self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
 
@@ -257,6 +262,8 @@ def main(argv: list[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> None:
     settings = chosen(options, Settings)
+    if settings.only_plan:
+        settings = replace(settings, told=MOSTLY_PLANS)
     trainer = Trainer(
         load(options.scenes),
         settings,

@@ -52,6 +52,8 @@ class Settings:
         is given, which is how a scene is made longer.
     plans: a network with ``words`` reads the plan of acts that a scene's label gives, see
         :mod:`training.trainers.plan_acts`.
+    only_plan: trains nothing but what reads the plan, see :class:`models.intergen.plan_adapter.PlanAdapter`; the rest
+        stays as the run begins with.
     told: how often it is told words, a plan or both.
     given: how often each kind of part of the motion is given.
     """
@@ -77,6 +79,7 @@ class Settings:
     words: bool = True
     continued: float = 0.2
     plans: bool = False
+    only_plan: bool = False
     told: PlanShares = field(default_factory=PlanShares)
     given: Shares = field(default_factory=Shares)
     weights: LossWeights = field(
@@ -95,6 +98,10 @@ class Settings:
         for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "cond_dim", "batch", "warmup"):
             if getattr(self, name) < 1:
                 raise InputError(f"{name} is {getattr(self, name)}: give 1 or more.")
+        if self.only_plan and not self.plans:
+            raise InputError(
+                "Only what reads plans is to be trained, and it reads none: give --plans as well."
+            )
         if self.latent_dim % self.num_heads:
             raise InputError(
                 f"latent_dim {self.latent_dim} cannot be shared by {self.num_heads} heads: give a multiple."

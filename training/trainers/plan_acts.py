@@ -44,6 +44,10 @@ class PlanShares:
     side: float = 0.3
 
 
+MOSTLY_PLANS = PlanShares(words=0.05, plan=0.35)
+"""What is told where only what reads the plan is trained: words alone teach it little."""
+
+
 @dataclass(frozen=True)
 class LabelledAct:
     """An act of a label, and whether it is a transition."""

@@ -86,8 +86,9 @@ def test_a_grown_network_gives_what_it_gave_whatever_the_plan(networks: Any) -> 
 def test_the_plan_moves_both_people_and_is_guided(networks: Any) -> None:
     _, grown = networks
     denoiser: WordDenoiser = grown.denoiser
-    assert denoiser.plan_embed is not None
-    torch.nn.init.normal_(denoiser.plan_embed.now.weight, std=0.3)
+    assert denoiser.plan_adapter is not None
+    for layer in denoiser.plan_adapter.added:
+        torch.nn.init.normal_(layer.weight, std=0.3)
     plan = PlanTrack(WORDS, LAYOUT)([TimedAct("push", (0,), 8, 30, patient=1)], 6)[None]
     x, t, cond = inputs(grown)
     told = denoiser(x, t, cond, plan=plan.expand(2, -1, -1))
@@ -110,14 +111,27 @@ def test_weights_grow_into_a_larger_vocabulary_by_the_names_of_the_columns() -> 
     grown = CompactInterGen(
         CompactConfig(**SIZES, plan_words=("do hug", "do push", "do wave"), traits=("energy",))
     )
-    for weight in (known.denoiser.plan_embed.now.weight, known.denoiser.plan_embed.whole.weight):
-        torch.nn.init.normal_(weight)
+    torch.nn.init.normal_(known.denoiser.plan_adapter.whole.weight)
     grown.grow_from(known)
     plan = [TimedAct("push", (0,), 0, 30, patient=1)]
     told = [
-        model.denoiser.plan_embed(model.plan_track(plan, 6).view(1, 6, 2, -1)) for model in (known, grown)
+        model.denoiser.plan_adapter(model.plan_track(plan, 6).view(1, 6, 2, -1).permute(2, 0, 1, 3))[1]
+        for model in (known, grown)
     ]
+    assert told[0].any()
     torch.testing.assert_close(told[0], told[1])
+
+
+def test_a_motion_without_a_plan_is_left_alone_beside_one_that_has_one(networks: Any) -> None:
+    _, grown = networks
+    adapter = grown.denoiser.plan_adapter
+    for parameter in adapter.parameters():
+        torch.nn.init.normal_(parameter)
+    plan = PlanTrack(WORDS, LAYOUT)([TimedAct("push", (0,), 8, 30, patient=1)], 6)
+    people = torch.stack([plan, torch.zeros_like(plan)]).unflatten(-1, (2, -1)).permute(2, 0, 1, 3)
+    added, whole = adapter(people)
+    for found in (*added, whole):
+        assert found[:, 0].any() and not found[:, 1].any()
 
 
 def test_traits_stand_in_columns_of_their_own_for_all_times() -> None:

@@ -10,6 +10,7 @@ import pytest
 import torch
 
 from models.intergen.plan_track import PACE, TimedAct
+from motion import InputError
 from tests.training.trainers.runs import SETTINGS, begin, prepared, take
 from training import prepare
 from training.corpus.cues import Beat, label
@@ -113,9 +114,24 @@ def test_words_plan_or_both_are_told_as_often_as_the_shares_say(scenes: Path, tm
 
 def test_a_run_with_plans_learns_to_read_them_and_is_resumed(scenes: Path, tmp_path: Path) -> None:
     trainer = take(begin(scenes, tmp_path, PLANS), 3)
-    embed = trainer.model.denoiser.plan_embed
-    assert embed.now.weight.any() and embed.whole.weight.any()
+    adapter = trainer.model.denoiser.plan_adapter
+    assert adapter.added[0].weight.any() and adapter.whole.weight.any()
     resumed = begin(scenes, tmp_path, PLANS)
     assert resumed.step == 3 and resumed.model.config.plan_words == trainer.data.plan_words
     with_none = begin(scenes, tmp_path / "none", replace(PLANS, plans=False))
-    assert with_none.model.denoiser.plan_embed is None and with_none.data.batch(0).plan.shape[-1] == 0
+    assert with_none.model.denoiser.plan_adapter is None and with_none.data.batch(0).plan.shape[-1] == 0
+
+
+def test_only_what_reads_the_plan_is_trained_if_asked(scenes: Path, tmp_path: Path) -> None:
+    settings = replace(PLANS, only_plan=True)
+    trainer = begin(scenes, tmp_path, settings)
+    torch.nn.init.normal_(trainer.model.denoiser.out.linear.weight)  # a trained network's is not zero
+    begun = {name: value.clone() for name, value in trainer.model.state_dict().items()}
+    trained = take(trainer, 3).model.state_dict()
+    changed = {name for name, value in trained.items() if not value.equal(begun[name])}
+    assert changed and all(name.startswith("denoiser.plan_adapter.") for name in changed)
+    resumed = begin(scenes, tmp_path, settings)
+    assert resumed.step == 3
+    assert all(value.equal(trained[name]) for name, value in resumed.model.state_dict().items())
+    with pytest.raises(InputError, match="give --plans"):
+        replace(PLANS, only_plan=True, plans=False)
