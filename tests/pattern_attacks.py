@@ -2,13 +2,17 @@
 
 A pattern is slow where a part of it can match the same text in many ways. So each part that repeats, and each
 beginning of the pattern, is repeated up to the longest text that the pattern may see, and ends with what cannot match.
+
+Run as a program, it takes a pattern as Python writes it and the longest text, and prints what :func:`slow` finds.
 """
 
 from __future__ import annotations
 
+import ast
 import functools
 import re
 import signal
+import sys
 import time
 from collections.abc import Iterator, Sequence
 from re import _parser as parser  # type: ignore[attr-defined]
@@ -172,3 +176,7 @@ def _is_in(char: str, items: Sequence[Any]) -> bool:
             inside = bool(re.match(letter.get(kind_of, "."), char))
             found |= inside != ("NOT" in str(value))
     return found != negated
+
+
+if __name__ == "__main__":
+    print(slow(re.compile(ast.literal_eval(sys.argv[1])), int(sys.argv[2])) or "")
