@@ -57,6 +57,7 @@ class Entry(BaseModel):
             even where they name none.
         hand: the shape of the fingers while it is done (:mod:`motion.hands`); "" where none is special.
         mutual: done together even where one is named first: "he hugs her" has both arms around.
+        near: metres between the two people, where one comes up to the other for it.
         answers: done because of what the other does, and so after it, such as ducking or catching.
         reads, ignores: sentences that have the act and that do not.
         group: the file that it stands in.
@@ -77,6 +78,7 @@ class Entry(BaseModel):
     thing: Does = ""
     hand: Literal["", "flat", "fist", "point", "grasp", "clasp", "thumbs up", "pinch"] = ""
     mutual: bool = False
+    near: Annotated[float, Field(ge=0.3, le=1.5)] = 0.75
     answers: bool = False
     shown: bool = True
     reads: Annotated[tuple[Sentence, ...], Field(min_length=1)]

@@ -22,6 +22,7 @@ import torch
 from torch import Tensor
 
 from models.motion_tokens import FEATURES, TokenLayout, feature_rows, foot_contacts, pack, unpack
+from models.turning import Turning
 
 FLOOR = (0, 2)
 """Columns of a row that hold the pelvis' place on the floor: x and z."""
@@ -153,6 +154,7 @@ class Hold:
         columns = rows.transpose(2, 3).reshape(-1, frames)
         masks = known.mask.transpose(2, 3).reshape(-1, frames)
         self._masks, self._wanted, self._basis = _alike(masks), columns, basis
+        self._turning = Turning(known.rows, known.mask, layout, mean, std)
         self._whole: Tensor | None = None
         if any(mask.all() for _, mask in self._masks):
             control = torch.stack([layout.fit(self.tokens) @ person for person in known.rows.flatten(0, 1)])
@@ -193,11 +195,13 @@ class Hold:
     def bend(self, x: Tensor) -> Tensor:
         """As :meth:`__call__`, with a move that has little curvature and dies out over about half a second.
 
+        Who is held by the hips is turned there as a whole.
+
         Where a network's motion does not arrive at what is known, the least move of the control points leaves a
         jolt beside it. This one spreads the difference in place and speed (Witkin and Popović 1995, "Motion
         Warping"). It is for predictions of x0; what the network is given is held as in training.
         """
-        return self._write(x, self._bends)
+        return self._write(self._turning(x), self._bends)
 
     def _write(self, x: Tensor, groups: list[Group]) -> Tensor:
         control = unpack(x, self.layout)  # (B, 2, K, 70)

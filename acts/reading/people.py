@@ -44,6 +44,8 @@ class Cast:
         self._known: dict[str, _Known] = {}
         self._pair = _Known()
         """What words for both say about each: "two men"."""
+        self._lettered = False
+        """Somebody is called A or B, so that there is another for "they" to mean, too."""
         self.last = ""
         self.focus = ""
         """The subject of what the two did together, of whom a pronoun goes on: "A hugs B. He waves."."""
@@ -106,6 +108,7 @@ class Cast:
         if text in ("another", "else", "someone", "somebody"):
             return self._new(lemma, token)
         if text in (A_NAME.lower(), B_NAME.lower()) and token.text in (A_NAME, B_NAME):
+            self._lettered = True
             return self._as("a" if token.text == A_NAME else "b", "person")
         if self._is_unlike_pair(token):
             self.third.append(token)
@@ -257,7 +260,8 @@ class Cast:
     def _they(self, text: str, subject: str) -> str:
         if len(subject) == 1 and text in ("them", "us"):
             return self._other(subject)
-        if text == "they" and set(self._known) == {"a"} and self._is_anyone("a"):
+        alone = set(self._known) == {"a"} and not self._lettered
+        if text == "they" and alone and self._is_anyone("a"):
             return self._as("a", "they")
         return "ab"
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from motion import SMPL22
 from webdemo.inference import Engine
 from webdemo.inference.engine import WEIGHTS
-from webdemo.inference.pipelines.scene_contacts import meeting
+from webdemo.inference.pipelines.scene_contacts import coming, meeting
 from webdemo.inference.story.contacts import Contact, Region
 from webdemo.inference.story.floor import Standing
 from webdemo.inference.story.moves import Move
+from webdemo.inference.story.told import Told
 from webdemo.inference.story.ways import Way
 
 from .test_planned_scenes import made
@@ -267,3 +270,35 @@ def test_who_is_pulled_up_has_their_hand_held_while_they_are_down(engine: Engine
     gap = nearest(found, 1, ["right_wrist"], ["right_wrist"])
     low = found[0, :, 0, 1] < 0.7
     assert gap[low].min() < 0.15 and low[0] and not low[-1]
+
+
+@pytest.mark.parametrize(
+    ("prompt", "near"),
+    [("Then person B hugs person A.", 0.4), ("Then they hug.", 0.4), ("Then they shake hands.", 0.75)],
+)
+def test_who_is_far_away_comes_up_first_and_both_face_each_other(
+    engine: Engine, prompt: str, near: float
+) -> None:
+    found = made(engine, f"Person A walks away. {prompt}", seconds=8.0)
+    gap = np.linalg.norm((found[1] - found[0])[:, 0, [0, 2]], axis=-1)
+    assert gap[115] > 2.0 and gap[-1] == pytest.approx(near, abs=0.1)
+    for who in (0, 1):
+        for side in ("hip", "shoulder"):
+            across = (
+                found[who, -1, SMPL22.index(f"left_{side}")] - found[who, -1, SMPL22.index(f"right_{side}")]
+            )
+            assert np.cross(across, [0.0, 1.0, 0.0]) @ (found[1 - who, -1, 0] - found[who, -1, 0]) > 0
+
+
+def test_nobody_comes_up_who_is_there_or_has_a_way_of_their_own() -> None:
+    reaching = Told(reaching={"b": 0.4})
+    far = Standing(np.array([[0.0, 0.0], [0.0, 2.5]]), np.array([np.pi, np.pi]))
+    near = Standing(np.array([[0.0, 0.0], [0.0, 1.0]]), np.array([np.pi, np.pi]))
+    assert [(m.person, m.way) for m in coming(reaching, far, ())] == [("b", Way.TO), ("a", Way.FACE)]
+    assert [(m.person, m.way) for m in coming(reaching, far, (0,))] == [("b", Way.TO)], (
+        "who lies does not turn"
+    )
+    assert coming(reaching, near, ()) == ()
+    own = (Move("a", Way.AWAY),)
+    assert coming(replace(reaching, moves=own), far, ()) == own
+    assert coming(Told(), far, ()) == ()

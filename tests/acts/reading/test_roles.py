@@ -38,6 +38,11 @@ def test_no_said_with_a_hand_is_a_gesture() -> None:
     assert last("He says no with his hand.").part_of == "a"
 
 
+def test_they_after_a_letter_are_both_and_after_somebody_are_one() -> None:
+    assert told("A walks away. Then they shake hands.")[1] == ("shake-hands", "ab", None)
+    assert told("Someone walks in. They sit down.")[1] == ("sit-down", "a", None)
+
+
 def test_a_sofa_that_is_carried_is_it() -> None:
     assert last("They carry a sofa and put it down.").thing == "sofa"
 

@@ -31,6 +31,7 @@ SEVERAL = [
     ("They walk up to each other, shake hands and part again.", ["walk-up shake-hands", "part"]),
     ("They bow, fight and bow again.", ["bow", "fight", "bow"]),
     ("He picks her up and spins her around. They bow.", ["lift-up twirl", "bow"]),
+    ("A looks at the window. Then they hug.", ["look-at-thing", "hug"]),
     ("A sits on the chair until B taps A, then A gets up.", ["sit-down pat", "stand-up"]),
 ]
 

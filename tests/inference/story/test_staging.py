@@ -189,7 +189,7 @@ def test_every_entry_can_be_staged() -> None:
         act = Act(id="1", act=name, agents=("a",), patient="b", part="shoulder")
         found = staged((act,))
         if {shape.do for shape in entry.stage} & {"go", "posture", "jump", "bow", "touch", "gesture"}:
-            assert found != Told(alone=found.alone, on_feet=found.on_feet, touches=found.touches), name
+            assert found != Told(alone=found.alone, on_feet=found.on_feet, reaching=found.reaching), name
 
 
 def test_struck_people_answer_in_the_beat() -> None:

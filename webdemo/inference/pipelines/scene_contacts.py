@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,16 +12,20 @@ from motion import SMPL22
 from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
 from webdemo.inference.story.contacts import LOWEST, Contact, beside, kneels, middle, reach, touched, touching
-from webdemo.inference.story.floor import Standing
+from webdemo.inference.story.curves import direction
+from webdemo.inference.story.floor import ABEAM, Standing
 from webdemo.inference.story.holds import Hold, joined, raised
 from webdemo.inference.story.moves import Move
 from webdemo.inference.story.poses import LOWER, TRUNK, bending, upright
+from webdemo.inference.story.told import Told
 from webdemo.inference.story.ways import Way
 
 from .scene_stretch import Course, Stretch
 
 Array = NDArray[np.floating]
 
+FAR_APART = 1.8
+"""Metres between two people from which one comes up who does something within the other's reach."""
 REACHES = 12
 """Frames in which a hand is brought to the place that it touches."""
 HELD = 1.6
@@ -85,6 +89,29 @@ def meeting(
     if 1 - giver not in posed and not touch.fells and (not waits or waits[0].way in (Way.TURN, Way.FACE)):
         waits = [Move(other, Way.AVERTED if touch.behind else Way.STAY), *waits]
     return touch, (*comes, *waits)
+
+
+def coming(told: Told, stand: Standing, down: Collection[int]) -> tuple[Move, ...]:
+    """The moves of a beat; who does something within the other's reach comes up to them first, if they are far apart.
+
+    The other turns to them, and both stay there. Their arms are left to the network.
+
+    Args:
+        told: of the beat.
+        stand: where the people are when it begins.
+        down: those who are not on their feet.
+    """
+    found = told.moves
+    if found or told.contact or told.placed or told.strike or not told.reaching or stand.gap() < FAR_APART:
+        return found
+    comes = sorted(who for who in told.reaching if "ab".index(who) not in down)
+    turned = [
+        who
+        for i, who in enumerate("ab")
+        if i not in down and direction(float(stand.headings[i])) @ stand.towards(i) < ABEAM
+    ]
+    waits = [Move(who, Way.FACE) for who in turned if who not in comes]
+    return (*(Move(who, Way.TO, until=True, near=told.reaching[who]) for who in comes), *waits)
 
 
 def towards_touched(

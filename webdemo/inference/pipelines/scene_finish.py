@@ -35,7 +35,7 @@ def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
     rests, touches = np.stack([free, free]), np.zeros_like(free)
     for beat, told in enumerate(request.told if request.planned else ()):
         start, stop = request.edges[beat], request.edges[beat + 1]
-        if told.touches:
+        if told.reaching:
             touches[start:stop] = free[start:stop]
         for who in told.frozen:
             rests["ab".index(who), start:stop] = 0.0

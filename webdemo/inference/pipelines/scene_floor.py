@@ -28,7 +28,7 @@ from webdemo.inference.story.told import Told
 from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
 
-from .scene_contacts import given_contact, given_hold, given_twirl, meeting, towards_touched
+from .scene_contacts import coming, given_contact, given_hold, given_twirl, meeting, towards_touched
 from .scene_hands import hands, known_hands
 from .scene_lifts import Carrying
 from .scene_paths import given_gait, path_of
@@ -75,7 +75,7 @@ def planned(
 
 def _parts(request: SceneRequest, window: Window, scene: Array, placement: Placement) -> list[Part]:
     told = request.told[window.beat]
-    found, still = told.moves, told.idle
+    still = told.idle
     start, stop = request.edges[window.beat], request.edges[window.beat + 1]
     if not start and (request.paths or request.poses):
         return []
@@ -84,6 +84,7 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
     before = scene[:, max(start - 4, 0) : start]
     stand = _stand(before) if start else _beginning(request)
     lifted = told.lift
+    found = coming(told, stand, _down(scene, start)) if start else told.moves
     room = _room(request, window, scene, stand, still, found)
     stand = room.stand
     beat = Stretch(window, placement, stand, start, stop)
@@ -296,7 +297,7 @@ def _beginning(request: SceneRequest) -> Standing:
     if any(gesture.hand is Hand.OFFERS for gesture in first.gestures.values()):
         return starting((), request.beats[0].length)
     lies = any(listed[0] == Change(Posture.LIES, already=True) for listed in first.changes.values())
-    near = lies or first.touches
+    near = lies or first.reaching
     touch = first.contact
     if touch is not None and touch.behind and not goes(first.moves):
         averted = Move("b" if touch.person == "a" else "a", Way.AVERTED)
@@ -315,7 +316,7 @@ def _apart(request: SceneRequest, window: Window, placement: Placement) -> list[
             if (
                 not any(move.way in (Way.TO, Way.AWAY) for move in found)
                 or window.part
-                or request.told[0].touches
+                or request.told[0].reaching
             ):
                 return []
             return _given_places(starting(found, beat.length), window, placement)

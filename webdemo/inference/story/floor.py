@@ -166,7 +166,7 @@ def _moved(
     match move.way:
         case Way.STAY | Way.BACKS | Way.AVERTED:
             track.halt(standing.speeds[who])
-            watched = any(way in theirs for way in (Way.TURN, Way.FACE, Way.BEHIND))
+            watched = any(way in theirs for way in (Way.TURN, Way.FACE, Way.BEHIND, Way.AWAY))
             track.stay(
                 None if seconds >= track.left() else seconds, facing=watched or move.way is not Way.STAY
             )

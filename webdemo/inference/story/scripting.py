@@ -9,6 +9,7 @@ from typing import Any
 from acts import Act, Plan, read
 from acts.captions import sentence
 from acts.lexicon import Entry, Lexicon, lexicon
+from acts.things import is_fixture
 from motion import InputError
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.limits import MAX_PROMPT
@@ -194,9 +195,9 @@ def _goes_on(before: Sequence[Sequence[Act]], group: Sequence[Act]) -> bool:
 def _stands_by(act: Act) -> bool:
     """True for an act that only says where somebody is: "stands behind him and cuts his hair"."""
     entry = lexicon().entries.get(act.act)
-    return (
-        entry is not None and bool(entry.stage) and {shape.do for shape in entry.stage} <= {"stay", "place"}
-    )
+    if entry is None or not entry.stage or is_fixture(act.thing):  # before a window something is done
+        return False
+    return {shape.do for shape in entry.stage} <= {"stay", "place"}
 
 
 def _same_beat(before: Sequence[Act], group: Sequence[Act], known: Lexicon, text: str) -> bool:

@@ -129,7 +129,7 @@ class _Stage:
                 )
             ),
             keeps_place=self.setting.backs or self.setting.beside,
-            touches=any(is_near(act, e) for act, e in self.done),
+            reaching={who: e.near for act, e in self.done if is_near(act, e) for who in act.agents},
             alone=_away(of_each(self.acts, self.known), moves),
         )  # fmt: skip
 

@@ -47,7 +47,7 @@ class Told:
         on_feet: those who do what needs legs.
         placed: where both are when the story begins with this beat.
         keeps_place: they are side by side or back to back, and stay so.
-        touches: one touches the other in some way.
+        reaching: those who do something within the other's reach, and the metres between the two for it.
         alone: a sentence on what a does and one on what b does; "" for who has none of their own.
     """
 
@@ -70,7 +70,7 @@ class Told:
     on_feet: frozenset[str] = frozenset()
     placed: Standing | None = None
     keeps_place: bool = False
-    touches: bool = False
+    reaching: Mapping[str, float] = field(default_factory=dict)
     alone: tuple[str, str] = ("", "")
 
     @property
