@@ -297,7 +297,7 @@ def _beginning(request: SceneRequest) -> Standing:
     if any(gesture.hand is Hand.OFFERS for gesture in first.gestures.values()):
         return starting((), request.beats[0].length)
     lies = any(listed[0] == Change(Posture.LIES, already=True) for listed in first.changes.values())
-    near = lies or first.reaching
+    near = lies or bool(first.reaching)
     touch = first.contact
     if touch is not None and touch.behind and not goes(first.moves):
         averted = Move("b" if touch.person == "a" else "a", Way.AVERTED)

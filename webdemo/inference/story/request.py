@@ -338,7 +338,7 @@ def _staying(paths: Sequence[FloorPath], beats: Sequence[Beat]) -> tuple[FloorPa
 
 def _leads(told: Told, person: str) -> bool:
     """True if a person of a beat goes somewhere, or has to do with the other's body."""
-    return person in told.going or told.reaching or told.joined or bool(told.contact or told.strike)
+    return person in told.going or told.joined or bool(told.contact or told.strike or told.reaching)
 
 
 def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, ...]:
