@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from motion.cleaning import ANKLE_HEIGHT, TOE_HEIGHT
 from motion.transforms import facing
+from motion.vectors import wrapped
 
 from .bodies import Capsules, capsules, segment_segment_distance, sideless
 
@@ -23,8 +24,12 @@ DEEP = 0.02
 """Metres that a limb may be in the other's body: soft tissue gives way as far as that."""
 SLOW = 1.0
 """Hertz below which people's arms have most of their energy (Hogan and Sternad 2007 hold jerk to be set by tempo)."""
+TWISTED = 60.0
+"""Degrees between shoulders and hips beyond which a spine hardly turns."""
 _TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
 _ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
+_HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
+_SHOULDERS = (SMPL22.index("left_shoulder"), SMPL22.index("right_shoulder"))
 _WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
 _ARMS = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("elbow", "wrist")]
 _LIMBS = ("elbow", "wrist", "knee", "ankle", "foot")
@@ -40,6 +45,7 @@ class Naturalness:
         fastest: the fastest joint at any frame, m/s.
         mirror_gap: mean distance between one wrist and the mirror image of the other, cm.
         slow_arms: share of the energy of elbows and wrists beside the pelvis under 1 Hz, 0 to 1.
+        twisted: share of frames in which shoulders and hips are turned apart by more than 60°, 0 to 1.
         deep: share of frames with a limb of theirs deeper than 2 cm in the other's body, 0 to 1; NaN if alone.
     """
 
@@ -48,6 +54,7 @@ class Naturalness:
     fastest: float
     mirror_gap: float
     slow_arms: float
+    twisted: float
     deep: float = float("nan")
 
 
@@ -65,6 +72,7 @@ def naturalness(positions: Array, fps: float, other: Array | None = None) -> Nat
         fastest=float(joint_speeds(positions, fps).max()),
         mirror_gap=mirror_gap(positions),
         slow_arms=slow_arms(positions, fps),
+        twisted=float((trunk_twist(positions) > TWISTED).mean()),
         deep=float("nan") if other is None else float((limb_depth(positions, other) > DEEP).mean()),
     )
 
@@ -113,6 +121,13 @@ def slow_arms(positions: Array, fps: float) -> float:
     power = (np.abs(np.fft.rfft(velocity, axis=0)) ** 2).sum(axis=(1, 2))
     slow = np.fft.rfftfreq(len(velocity), 1 / fps) < SLOW
     return float(power[slow].sum() / max(power.sum(), 1e-12))
+
+
+def trunk_twist(positions: Array) -> Array:
+    """(T,) degrees between the line of the shoulders and that of the hips, as seen from above."""
+    hips, shoulders = (positions[:, left] - positions[:, right] for left, right in (_HIPS, _SHOULDERS))
+    turned = np.arctan2(hips[:, 2], hips[:, 0]) - np.arctan2(shoulders[:, 2], shoulders[:, 0])
+    return np.asarray(np.degrees(np.abs(wrapped(turned))))
 
 
 def limb_depth(person: Array, other: Array) -> Array:

@@ -30,9 +30,12 @@ MEASURES: Mapping[str, tuple[str, str, float]] = {
     "fastest": ("fastest joint, m/s (recorded: 99.9th percentile)", "{:.1f}", math.nan),
     "mirror_gap": ("gap of the hands' mirror images, cm", "{:.0f}", 20.0),
     "slow_arms": ("energy of the arms under 1 Hz", "{:.0%}", 0.5),
+    "twisted": ("frames with the trunk twisted by more than 60°", "{:.1%}", math.nan),
     "deep": ("frames with a limb deeper than 2 cm", "{:.1%}", 0.01),
 }
 """Label, format and goal of each measure. That of the fastest joint is what was recorded."""
+_RARE = ("twisted", "deep")
+"""Measures of what should hardly happen, of which means are taken."""
 _SHORTEST = 30
 """Frames of a recording that is measured."""
 
@@ -132,7 +135,7 @@ def _median(measure: str, people: Iterable[Naturalness]) -> float:
     values = values[np.isfinite(values)]
     if not len(values):
         return math.nan
-    return float(values.mean() if measure == "deep" else np.median(values))
+    return float(values.mean() if measure in _RARE else np.median(values))
 
 
 def measured_folder(folder: Path, listed: Iterable[str]) -> dict[str, dict[str, float]]:

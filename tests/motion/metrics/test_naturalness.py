@@ -46,6 +46,18 @@ def test_slow_arms_have_their_energy_under_one_hertz(hertz: float, slow: bool) -
     assert (naturalness(motion, FPS).slow_arms > 0.5) == slow
 
 
+@pytest.mark.parametrize(("angle", "share"), [(0.8, 0.0), (1.3, 0.5), (-2.5, 0.5)])
+def test_a_trunk_that_is_twisted_against_the_hips_is_seen(angle: float, share: float) -> None:
+    motion = turn(stands(), 2.0)
+    trunk = [
+        i
+        for i, name in enumerate(SMPL22.joint_names)
+        if not any(p in name for p in ("hip", "knee", "ankle", "foot"))
+    ]
+    motion[30:, trunk] = turn(motion[30:], angle)[:, trunk]
+    assert naturalness(motion, FPS).twisted == pytest.approx(share)
+
+
 def test_a_jolt_and_a_fast_joint_are_seen() -> None:
     motion = stands()
     motion[30, SMPL22.index("left_elbow"), 0] += 0.3
