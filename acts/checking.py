@@ -129,11 +129,11 @@ def _too_early(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Map
     mine = _seen(act, known)
     told = [(other, _seen(other, known)) for other in earlier if other.polarity == "done"]
     for other, theirs in told:
-        if (
-            theirs
-            and mine
-            and not any(check(f"then({_over(x, motion)}, {y})", motion) for x in theirs for y in mine)
-        ):
+        if _follows(act, other, known):
+            theirs = [f"begins({mask})" for mask in theirs]
+        else:
+            theirs = [_over(mask, motion) for mask in theirs]
+        if theirs and mine and not any(check(f"then({x}, {y})", motion) for x in theirs for y in mine):
             return f"comes before “{before[other.id].words}”"
     same = [other for other, _ in told if (other.act, other.agents) == (act.act, act.agents)]
     if same and mine:  # done again: as many times as it is said
@@ -160,6 +160,12 @@ def _chain(act: Act, plan: Plan) -> list[str]:
             found.append(name)
             left += after[name]
     return found
+
+
+def _follows(act: Act, other: Act, known: Lexicon) -> bool:
+    """True for an act that goes after who does the other one, and so begins before that ends: "runs, and she follows"."""
+    after = any(shape.do == "go" and shape.way == "after" for shape in known.entries[act.act].stage)
+    return after and set(act.agents).isdisjoint(other.agents)
 
 
 def _seen(act: Act, known: Lexicon) -> list[str]:

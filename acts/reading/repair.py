@@ -163,6 +163,7 @@ def _ends_phrase(token: Token) -> bool:
         following is None
         or following.pos_ in ("PUNCT", "ADP", "ADV", "PRON", "DET", "SCONJ", "CCONJ", "PART", "NUM")
         or following.tag_ in ("VBG", "PRP$")
+        or following.text in (A_NAME, B_NAME)
     )
 
 

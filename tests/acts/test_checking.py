@@ -191,6 +191,23 @@ def test_an_act_after_another_must_come_later() -> None:
     assert "before" in verdicts[1].measure
 
 
+def test_who_follows_begins_before_the_other_has_gone() -> None:
+    goes, follows = (
+        told("walk-away", 1, "b", patient="a"),
+        told("chase", 2, order=(Relation(kind="after", act="1"),)),
+    )
+    motion = duet(gap=1.0)
+    away = np.linspace(0, 4.8, motion.positions.shape[1]).clip(max=4)
+    motion.positions[1] = motion.positions[1, :1] * [-1, 1, 1] + away[:, None, None] * [0, 0, 1]
+    motion.positions[0, :, :, 2] += (away - away[motion.positions.shape[1] // 4]).clip(0)[:, None]
+    assert [v.done for v in checked(plan(goes, follows), motion)] == [True, True]
+    waves, after = told("raise-arm", 1, "b"), told("chase", 2, order=(Relation(kind="after", act="1"),))
+    late = apply(
+        motion, put("left_wrist", (0.2, 0.9, 0.0), who=1), frames=slice(motion.positions.shape[1] - 40, None)
+    )
+    assert [v.done for v in checked(plan(waves, after), late)] == [True, False], "a wave is over first"
+
+
 def test_before_is_after_the_other_way_round() -> None:
     leg, arm = told("raise-leg", 1, order=(Relation(kind="before", act="2"),)), told("raise-arm", 2)
     assert [v.done for v in checked(plan(leg, arm), arm_then_leg())] == [True, False]

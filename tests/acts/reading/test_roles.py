@@ -43,6 +43,11 @@ def test_they_after_a_letter_are_both_and_after_somebody_are_one() -> None:
     assert told("Someone walks in. They sit down.")[1] == ("sit-down", "a", None)
 
 
+def test_a_word_right_before_a_name_is_a_verb() -> None:
+    assert told("A walks around the chair and taps B on the shoulder.")[1] == ("pat", "a", "b")
+    assert told("A drops the book and kicks B.")[1] == ("kick", "a", "b")
+
+
 def test_a_sofa_that_is_carried_is_it() -> None:
     assert last("They carry a sofa and put it down.").thing == "sofa"
 
