@@ -30,7 +30,7 @@ MEASURES: Mapping[str, tuple[str, str, float]] = {
     "fastest": ("fastest joint, m/s (recorded: 99.9th percentile)", "{:.1f}", math.nan),
     "mirror_gap": ("gap of the hands' mirror images, cm", "{:.0f}", 20.0),
     "slow_arms": ("energy of the arms under 1 Hz", "{:.0%}", 0.5),
-    "twisted": ("frames with the trunk twisted by more than 60°", "{:.1%}", math.nan),
+    "twisted": ("frames with the trunk twisted by more than 60°", "{:.1%}", 0.001),
     "deep": ("frames with a limb deeper than 2 cm", "{:.1%}", 0.01),
 }
 """Label, format and goal of each measure. That of the fastest joint is what was recorded."""
