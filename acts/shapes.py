@@ -224,6 +224,7 @@ class Limb(_Shape):
         "moves head",
         "rolls head",
         "nods",
+        "shakes",
     ]
     side: Literal["left", "right", "both"] = "right"
     direction: Literal["", "up", "down", "forward", "back", "out", "left", "right"] = ""

@@ -35,8 +35,8 @@ class Speller:
         return noun in self._deeds
 
     def knows(self, word: str) -> bool:
-        """True for a form of a verb, of the lexicon or of WordNet."""
-        return word in self.forms or is_verb_form(word)
+        """True for a form of a verb, of the lexicon or of WordNet, and for a noun of what somebody does."""
+        return word in self.forms or is_verb_form(word) or self.is_deed(word.removesuffix("s"))
 
     def mended(self, word: str) -> str | None:
         """The verb's form that a word without meaning is nearest to, within one letter or two; None to leave it."""

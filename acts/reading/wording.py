@@ -160,6 +160,7 @@ class _Preparation:
 
     def __init__(self, text: str, speller: Speller) -> None:
         self._text, self._mended, self._is_verb = text, speller.mended, speller.is_form
+        self._is_deed = speller.is_deed
         self._words = vocabulary()
         self._tokens = _without_request(_without_speech(list(_tokens(text))))
         self._letters = names([word for word, _, _ in self._tokens], self._is_verb)
@@ -321,7 +322,8 @@ class _Preparation:
         if lower == "goodbye" and self._lower(i - 1).startswith(("hug", "kiss", "embrac")):
             return "fondly"  # the parser takes the two for a compound
         joined = lower.replace("-", "")
-        if joined != lower and self._is_verb(joined):  # "high-five"
+        if joined != lower and (self._is_verb(joined) or self._is_deed(joined.removesuffix("s"))):
+            # "high-five" and "push-ups"
             return joined
         return lower if word.isupper() and len(word) > 1 else word
 

@@ -48,6 +48,15 @@ def test_a_word_right_before_a_name_is_a_verb() -> None:
     assert told("A drops the book and kicks B.")[1] == ("kick", "a", "b")
 
 
+@pytest.mark.parametrize(
+    ("text", "act", "times"),
+    [("B does push-ups beside him.", "push-ups", None), ("He does ten sit-ups.", "sit-ups", 10)],
+)
+def test_a_deed_with_a_hyphen_is_one_word(text: str, act: str, times: int | None) -> None:
+    plan = read(text)
+    assert [(found.act, found.times) for found in plan.acts] == [(act, times)] and not plan.unread
+
+
 def test_a_sofa_that_is_carried_is_it() -> None:
     assert last("They carry a sofa and put it down.").thing == "sofa"
 

@@ -253,6 +253,14 @@ def _nodding(limb: Limb, held: Array, since: Array) -> Turns:
     return {joint: about(0, 0.28 * pulse) for joint in ("neck", "head")}
 
 
+def _shaking(limb: Limb, held: Array, since: Array) -> Turns:
+    """A trunk that shakes, as of somebody who laughs or shivers."""
+    quick = _swing(since, held, limb.times, 0.45)
+    return {joint: about(0, 0.05 * quick + 0.04 * held) for joint in ("spine1", "spine2", "spine3")} | {
+        "neck": about(0, 0.08 * quick)
+    }
+
+
 MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "raises leg": _raised_leg,
     "raises knee": lambda limb, held, since: _leg(limb, 1.45 * held, 1.7 * held),
@@ -275,6 +283,7 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "moves head": _head,
     "rolls head": _rolled_head,
     "nods": _nodding,
+    "shakes": _shaking,
 }
 """The movements: rotations (N, 3, 3) of joints, of how far each is held (N,) and of the seconds since it began (N,)."""
 WITH_ARMS = frozenset(("reaches down",))
