@@ -8,7 +8,8 @@ A frame is a subject, the lemmas of its verb, and what must stand beside it:
   family;
 - a preposition before a slot or a noun: ``on {b.part}``, ``to {b}``, ``on floor|ground``; with ``from? {b}`` it may
   also be the object;
-- any other word: a particle, an adverb, a complement, or the object's noun: ``sit down``, ``shake hand``.
+- any other word: a particle, an adverb, a complement, or the object's noun: ``sit down``, ``shake hand``; of a part of
+  the body in the plural, both: ``put arms around {b}``.
 
 ``w|v`` are alternatives and ``w?`` may be missing. A frame fits an event if all of its elements are there; other
 arguments count against it, and an object that no element asks for rules it out.
@@ -378,7 +379,8 @@ def _is_noun(element: _Element, ref: Ref, agents: str) -> bool:
     """True if a noun is one of an element's; "combs hair" is about one's own, and not "combs her hair" of another."""
     others = ref.kind == "part" and len(agents) == 1 and ref.who not in ("", "ab", agents)
     particle = ref.kind == "part" and element.words & _PARTICLES  # "turns his back" is not "turns back"
-    return ref.lemma in element.words and not others and not particle
+    plural = ref.side == "both" and f"{ref.lemma}s" in element.words
+    return (plural or ref.lemma in element.words) and not others and not particle
 
 
 def other_of(who: str) -> str:
