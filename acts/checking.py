@@ -163,7 +163,7 @@ def _chain(act: Act, plan: Plan) -> list[str]:
 
 
 def _follows(act: Act, other: Act, known: Lexicon) -> bool:
-    """True for an act that goes after who does the other one, and so begins before that ends: "runs, and she follows"."""
+    """True for an act that goes after who does the other one, and begins before that ends: "runs, and she follows"."""
     after = any(shape.do == "go" and shape.way == "after" for shape in known.entries[act.act].stage)
     return after and set(act.agents).isdisjoint(other.agents)
 
