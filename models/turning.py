@@ -1,7 +1,7 @@
 """Turns the bodies of a prediction to the headings at which they are held.
 
 A held heading is a linear equation on the places of both hips. Meeting it by the least move would turn the pelvis and
-leave trunk and feet as they were. So the whole body is turned about its pelvis first, by an angle that changes smoothly
+leave trunk and feet as they were. So the whole body is turned about its pelvis first, by an angle that changes linearly
 from one held frame to the next.
 """
 
@@ -17,7 +17,6 @@ from torch import Tensor
 
 from models.motion_tokens import NUM_JOINTS, TokenLayout, pack, unpack
 from motion import SMPL22
-from motion.easing import minimum_jerk
 
 DIES_OUT = 30
 """Frames from a held heading to where a body faces as it was predicted, unless another frame says how it faces."""
@@ -87,12 +86,8 @@ class Turning:
         first, last = turned.frames[0] - DIES_OUT, turned.frames[-1] + DIES_OUT
         frames = np.concatenate([[first], turned.frames, [last]])
         knots = self.layout.frames_per_knot * (np.arange(body.shape[1]) - 1)
-        after = np.searchsorted(frames, knots, side="right").clip(1, len(frames) - 1)
-        gap = frames[after] - frames[after - 1]
-        share = minimum_jerk((knots - frames[after - 1]) / gap)
-        apart = np.pad(apart, ((0, 0), (1, 1)))
-        found = apart[:, after - 1] + share * (apart[:, after] - apart[:, after - 1])
-        return torch.from_numpy(found).to(body)
+        found = [np.interp(knots, frames, np.pad(each, 1)) for each in apart]
+        return torch.from_numpy(np.stack(found)).to(body)
 
 
 def _turned(row: int, values: Tensor, known: Tensor) -> Turned | None:
