@@ -20,7 +20,8 @@ def touching(shared_page: Page) -> Page:
     page.keyboard.press("Escape")
     page.fill("#prompt textarea", "A bows")
     page.evaluate(
-        "() => { const { player } = window.__pasdedeux; player.directing.endTouching(); player.clock.seek(0); player.refresh(); }"
+        """() => { const { player } = window.__pasdedeux;
+        player.directing.endTouching(); player.clock.seek(0); player.refresh(); }"""
     )
     page.click(TOOL)
     until(page, f"document.querySelector('{DOTS}')?.style.transform && window.__pasdedeux.loops === 0")
