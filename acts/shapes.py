@@ -131,6 +131,8 @@ class Gesture(_Shape):
         "swings",
         "shakes",
         "around",
+        "works",
+        "rubs",
     ]
     sides: Literal["left", "right", "both"] = "right"
 
@@ -225,6 +227,8 @@ class Limb(_Shape):
         "rolls head",
         "nods",
         "shakes",
+        "shrugs",
+        "marches",
     ]
     side: Literal["left", "right", "both"] = "right"
     direction: Literal["", "up", "down", "forward", "back", "out", "left", "right"] = ""

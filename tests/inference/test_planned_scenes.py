@@ -210,3 +210,27 @@ def test_a_look_at_a_window_is_judged_where_the_window_is_made(engine: Engine) -
         and row["done"] is not None
         and row["measure"].startswith("looks at it for ")
     )
+
+
+@pytest.mark.parametrize(
+    ("prompt", "joint", "least"),
+    [
+        ("He stamps his foot.", "right_foot", 0.1),
+        ("She stands on tiptoe.", "left_ankle", 0.12),
+        ("He marches on the spot.", "left_foot", 0.15),
+    ],
+)
+def test_clean_up_leaves_a_foot_that_is_raised_or_a_heel(
+    engine: Engine, prompt: str, joint: str, least: float
+) -> None:
+    motion = made(engine, prompt)
+    assert motion[0, :, SMPL22.index(joint), 1].max() > least
+    bones = np.array(SMPL22.bones)
+    lengths = np.linalg.norm(motion[:, :, bones[:, 0]] - motion[:, :, bones[:, 1]], axis=-1)
+    assert np.ptp(lengths, axis=1).max() < 0.01, "an arm that is free goes with the shoulder"
+
+
+def test_a_head_that_is_tilted_stays_so_and_is_not_turned_to_the_other(engine: Engine) -> None:
+    motion = made(engine, "She tilts her head.")
+    neck, head = (motion[0, :, SMPL22.index(name)] for name in ("neck", "head"))
+    assert np.abs((head - neck)[45:90, 0]).min() > 0.02

@@ -18,6 +18,7 @@ from models.intergen.plan_track import TimedAct
 from models.known import Hold, Known
 from motion import SMPL22, Duet, InputError
 from motion.easing import minimum_jerk
+from motion.kinematics import project_to_skeleton
 
 from .actor import FPS
 from .joining import PASSING, joined, passing
@@ -60,6 +61,9 @@ class Directed(Scene):
                     held = np.isin(np.arange(len(people[person])), at)
                     people[person] = passing(people[person], at[alone], wanted[alone], held)
                 people[person] = with_given(people[person], at, wanted)
+            for part in self.parts:
+                if isinstance(part, KnownFrames) and part.person == person and 0 in part.joints:
+                    people[person] = with_joints(people[person], part)
         return super().duet(np.stack(people), lambda person: person)
 
 
@@ -90,6 +94,22 @@ def with_given(positions: Array, frames: Array, given: Array) -> Array:
     moved = positions + place[:, None, None] * apart[nearest] + lead[:, None, None] * speed
     moved[frames] = given
     return moved
+
+
+def with_joints(positions: Array, part: KnownFrames) -> Array:
+    """Positions (T, 22, 3) with the joints of a part as they are given, see :func:`with_given`.
+
+    Those that are free, such as an arm, are moved with the given joint that they hang on. Bones keep their lengths.
+    """
+    order = np.argsort(part.frames)
+    whole = with_given(positions, np.asarray(part.frames)[order], np.asarray(part.positions)[order])
+    moved = positions.copy()
+    for joint, parent in enumerate(SMPL22.parents):
+        held = joint in part.joints
+        moved[:, joint] = (
+            whole[:, joint] if held else positions[:, joint] + moved[:, parent] - positions[:, parent]
+        )
+    return np.asarray(project_to_skeleton(moved)[0])
 
 
 def directed(

@@ -37,7 +37,7 @@ def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
         start, stop = request.edges[beat], request.edges[beat + 1]
         if told.reaching:
             touches[start:stop] = free[start:stop]
-        for who in told.frozen:
+        for who in (*told.frozen, *told.limbs):  # a head that is tilted is not turned to the other
             rests["ab".index(who), start:stop] = 0.0
     result = alive(palms_met(result, touches), FPS, seed, rests).astype(np.float32)
     result[:, free <= 0] = scene[:, free <= 0]

@@ -51,6 +51,8 @@ class Hand(Enum):
     CIRCLES = "goes round in circles"
     SWINGS = "swings to and fro"
     SHAKES = "is shaken out"
+    WORKS = "works before the body"
+    RUBS = "rubs the other hand"
     AROUND = "around the back of the other, who is beside"
 
 
@@ -67,12 +69,13 @@ class Gesture:
     sides: tuple[str, ...]
 
 
-OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
+OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS, Hand.RUBS)
 """Gestures of both hands."""
 _AT_BODY = {
     Hand.HIPS: (0.21, 0.1, 0.0), Hand.CHEST: (0.02, 0.36, 0.2), Hand.BELLY: (0.04, 0.14, 0.2),
     Hand.HEAD: (0.12, 0.66, -0.05), Hand.MOUTH: (0.04, 0.54, 0.2), Hand.BEHIND: (0.04, 0.02, -0.18),
     Hand.FANS: (0.12, 0.42, 0.22), Hand.CROSSED: (-0.13, 0.27, 0.15), Hand.SHAKES: (0.28, 0.08, 0.12),
+    Hand.WORKS: (0.1, 0.14, 0.36), Hand.RUBS: (0.05, 0.24, 0.26),
 }  # fmt: skip
 """Metres from the pelvis to the left wrist of hands that are held at one's own body."""
 STOOD = (
@@ -135,7 +138,7 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
         case Hand.OFFERS:
             offset[:] = [-0.06 * out, -0.2, 0.38]
         case Hand.AHEAD:
-            offset[:] = [0.02 * out, 0.0, 0.45]
+            offset[:] = [0.02 * out, -0.05, 0.45]
         case Hand.WAVES:
             offset[:] = [0.16 * out, 0.26, 0.18]
             offset[:, 0] += 0.14 * np.sin(2 * np.pi * _WAVE_RATE * np.asarray(seconds))
@@ -172,6 +175,11 @@ def _beside(hand: Hand, out: float, seconds: Array, shoulder: Array) -> Array:
             offset[:] = _AT_BODY[hand] * np.array([out, 1.0, 1.0]) - shoulder
             if hand is Hand.SHAKES:
                 offset[:, 1] += 0.05 * np.sin(turn * 3.0)
+            elif hand is Hand.WORKS:
+                offset[:, 0] += 0.06 * np.cos(turn * 0.9)
+                offset[:, 2] += 0.06 * np.sin(turn * 0.9)
+            elif hand is Hand.RUBS:
+                offset[:, 1] += 0.04 * out * np.sin(turn * 1.6)
             elif hand is Hand.FANS:
                 offset[:, 0] += _FAN[1] * np.sin(turn * _FAN[0])
     return offset

@@ -261,6 +261,22 @@ def _shaking(limb: Limb, held: Array, since: Array) -> Turns:
     }
 
 
+def _shrugging(limb: Limb, held: Array, since: Array) -> Turns:
+    """Shoulders that go up and down."""
+    pulse = _pulses(since, held, limb.times or 1, 1.4)
+    return {f"{side}_collar": about(2, sign * 0.4 * pulse) for side, sign in (("left", 1.0), ("right", -1.0))}
+
+
+def _marching(limb: Limb, held: Array, since: Array) -> Turns:
+    """One knee after the other."""
+    swing = _swing(since, held, limb.times, 1.1)
+    found: Turns = {}
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        up = np.maximum(sign * swing, 0.0)
+        found |= {f"{side}_hip": about(0, -1.0 * up), f"{side}_knee": about(0, 1.4 * up)}
+    return found
+
+
 MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "raises leg": _raised_leg,
     "raises knee": lambda limb, held, since: _leg(limb, 1.45 * held, 1.7 * held),
@@ -284,6 +300,8 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "rolls head": _rolled_head,
     "nods": _nodding,
     "shakes": _shaking,
+    "shrugs": _shrugging,
+    "marches": _marching,
 }
 """The movements: rotations (N, 3, 3) of joints, of how far each is held (N,) and of the seconds since it began (N,)."""
 WITH_ARMS = frozenset(("reaches down",))
