@@ -99,7 +99,7 @@ def test_manifests_of_before_have_no_plan() -> None:
 
 def test_a_held_pose_is_written_once_and_numbers_are_kept_to_a_hundredth_of_a_millimetre() -> None:
     pose = np.random.default_rng(0).normal(size=(22, 3))
-    held = KnownFrames(1, [0, 3, 6, 9], np.stack([pose, pose, 2 * pose, pose]), [0, 4, 5])
+    held = KnownFrames(1, [0, 3, 6, 9], np.stack([pose, pose, 2 * pose, pose]), [0, 4, 5], kept=True)
     path = KnownPath(0, [2, 5], np.array([[0.123456, 1.0], [2.0, -3.0]]), np.array([7.0, 6.5]), turned=True)
     plan = WindowPlan((0.1, 0.2, 0.3), (held, path), ("One person waves.", ""))
     written = plan.to_dict()
@@ -107,7 +107,7 @@ def test_a_held_pose_is_written_once_and_numbers_are_kept_to_a_hundredth_of_a_mi
     again = WindowPlan.from_dict(json.loads(json.dumps(written)))
     assert again.to_dict() == written and again.place == plan.place
     first, second = again.parts
-    assert isinstance(first, KnownFrames) and isinstance(second, KnownPath)
+    assert isinstance(first, KnownFrames) and isinstance(second, KnownPath) and first.kept
     np.testing.assert_allclose(first.positions[3][[0, 4, 5]], pose[[0, 4, 5]], atol=0.51e-5)
     assert second.places[0, 0] == 0.12346 and second.headings is not None and second.turned
 

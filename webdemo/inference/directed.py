@@ -62,7 +62,7 @@ class Directed(Scene):
                     people[person] = passing(people[person], at[alone], wanted[alone], held)
                 people[person] = with_given(people[person], at, wanted)
             for part in self.parts:
-                if isinstance(part, KnownFrames) and part.person == person and 0 in part.joints:
+                if isinstance(part, KnownFrames) and part.person == person and part.kept:
                     people[person] = with_joints(people[person], part)
         return super().duet(np.stack(people), lambda person: person)
 

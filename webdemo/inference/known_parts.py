@@ -24,12 +24,14 @@ class KnownFrames:
         positions: (N, 22, 3) metres.
         joints: those that are given; () for all. All but the pelvis are given relative to it. Where only some are
             given, the network is held to them, and the finished motion comes close to them.
+        kept: the finished motion has these joints as they are given: a foot that stamps is not planted again.
     """
 
     person: int
     frames: Sequence[int]
     positions: Array
     joints: Sequence[int] = ()
+    kept: bool = False
 
 
 @dataclass(frozen=True, eq=False)

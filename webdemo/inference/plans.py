@@ -145,7 +145,8 @@ def _encoded(part: Part) -> dict[str, Any]:
         positions = positions - positions[:, :1]
     chosen = positions[:, joints] if joints else positions
     rows, which = _unique(_units(pose) for pose in chosen)
-    return plain | {"joints": joints, "poses": rows, "which": which}
+    kept = {"kept": True} if part.kept else {}
+    return plain | {"joints": joints, "poses": rows, "which": which} | kept
 
 
 def _decoded(part: Mapping[str, Any]) -> Part:
@@ -167,7 +168,7 @@ def _decoded(part: Mapping[str, Any]) -> Part:
     poses = np.zeros((len(rows), SMPL22.num_joints, 3))
     for pose, row in zip(poses, rows, strict=True):
         pose[known] = _metres(row, (len(known), 3))
-    return KnownFrames(person, frames, poses[which], joints)
+    return KnownFrames(person, frames, poses[which], joints, part.get("kept") is True)
 
 
 def _unique(rows: Iterable[list[int]]) -> tuple[list[list[int]], list[int]]:

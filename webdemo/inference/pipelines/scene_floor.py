@@ -348,7 +348,7 @@ def _limbed(limbs: Sequence[Limb], person: int, beat: Stretch) -> list[Part]:
     angle, seconds = float(beat.stand.headings[person]), beat.frames / FPS
     poses = limbed(limbs, _halted(person, beat), angle, frames / FPS, seconds)
     free = () if any(limb.does in WITH_ARMS for limb in limbs) else HANDS
-    return [beat.given(person, frames, poses, _all_but(free))]
+    return [replace(beat.given(person, frames, poses, _all_but(free)), kept=True)]
 
 
 def _halted(person: int, beat: Stretch) -> Array:

@@ -75,7 +75,7 @@ _AT_BODY = {
     Hand.HIPS: (0.21, 0.1, 0.0), Hand.CHEST: (0.02, 0.36, 0.2), Hand.BELLY: (0.04, 0.14, 0.2),
     Hand.HEAD: (0.12, 0.66, -0.05), Hand.MOUTH: (0.04, 0.54, 0.2), Hand.BEHIND: (0.04, 0.02, -0.18),
     Hand.FANS: (0.12, 0.42, 0.22), Hand.CROSSED: (-0.13, 0.27, 0.15), Hand.SHAKES: (0.28, 0.08, 0.12),
-    Hand.WORKS: (0.1, 0.14, 0.36), Hand.RUBS: (0.05, 0.24, 0.26),
+    Hand.WORKS: (0.1, 0.16, 0.28), Hand.RUBS: (0.05, 0.24, 0.26),
 }  # fmt: skip
 """Metres from the pelvis to the left wrist of hands that are held at one's own body."""
 STOOD = (
