@@ -1,4 +1,4 @@
-"""Which acts of the lexicon are made: each entry's first sentence as the lab makes it, judged by the entry's own rule.
+"""The acts of the lexicon that are made: each entry's first sentence as the lab makes it, judged by its own rule.
 
 ``python -m training.evaluate.acts_made`` prints those that are not made. The sentences stand in the lexicon beside the
 shapes that make them, so the share says what the lab can do, and nothing about sentences of strangers.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -21,7 +21,7 @@ SECONDS = (4.0, 8.0)
 
 @dataclass(frozen=True)
 class Made:
-    """What came of an act's sentence.
+    """The verdict on an act's sentence.
 
     Attributes:
         act: its name in the lexicon.
@@ -39,7 +39,7 @@ class Made:
 def made(
     run: Callable[[GenerateRequest], Result], *, steps: int = 8, seed: int = 1, only: Collection[str] = ()
 ) -> Iterator[Made]:
-    """What comes of each act that is shown and has a rule.
+    """The verdict on each act that is shown and has a rule.
 
     Args:
         run: makes a motion.
@@ -60,7 +60,7 @@ def made(
         yield Made(name, words, verdict["done"], verdict["measure"])
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Prints the acts that are not made, and how many are."""
     from webdemo.inference.engine import Engine
 
@@ -68,7 +68,7 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=8)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, help="JSON file for all acts")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     engine = Engine()
 
     def run(request: GenerateRequest) -> Result:
