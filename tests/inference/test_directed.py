@@ -9,7 +9,7 @@ from motion import SMPL22, Duet, InputError
 from motion.transforms import heading_matrix
 from webdemo.inference import Engine, GenerateRequest
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.directed import FADE, Directed, directed, with_given
+from webdemo.inference.directed import FADE, Directed, directed, with_given, with_joints
 from webdemo.inference.known_parts import KnownFrames, KnownPath, Part
 from webdemo.inference.timer import StageTimer
 
@@ -140,3 +140,16 @@ def test_a_difference_in_speed_fades_without_a_jolt() -> None:
 def test_nonsense_is_refused_in_one_sentence(engine: Engine, parts: list[Part], says: str) -> None:
     with pytest.raises(InputError, match=says):
         directed(engine.pipeline("intergen").model, FRAMES, parts)
+
+
+def test_joints_that_are_kept_are_met_smoothly_and_bones_stay_as_long() -> None:
+    rest = SMPL22.rest_positions() + np.array([0.0, 0.95, 0.0])
+    made = np.repeat(rest[None], 90, axis=0)
+    frames = np.arange(30, 70, 3)
+    poses = np.repeat(rest[None], len(frames), axis=0)
+    poses[..., 0] += 0.05 + 0.1 * np.sin((frames - 30) / 8)[:, None]
+    joints = [j for j in range(22) if j not in (18, 19, 20, 21)]
+    found = with_joints(made, KnownFrames(0, frames.tolist(), poses, joints, kept=True))
+    assert np.abs(found[frames] - poses).max() < 1e-3, "the arms go with the shoulders"
+    assert np.abs(np.diff(found[31:69], n=3, axis=0)).max() < 0.004, "also between the given frames"
+    assert np.abs(found[:15] - made[:15]).max() < 1e-3

@@ -101,8 +101,7 @@ def with_joints(positions: Array, part: KnownFrames) -> Array:
 
     Those that are free, such as an arm, are moved with the given joint that they hang on. Bones keep their lengths.
     """
-    order = np.argsort(part.frames)
-    whole = with_given(positions, np.asarray(part.frames)[order], np.asarray(part.positions)[order])
+    whole = with_given(positions, *_every_frame(np.asarray(part.frames), np.asarray(part.positions)))
     moved = positions.copy()
     for joint, parent in enumerate(SMPL22.parents):
         held = joint in part.joints
@@ -110,6 +109,20 @@ def with_joints(positions: Array, part: KnownFrames) -> Array:
             whole[:, joint] if held else positions[:, joint] + moved[:, parent] - positions[:, parent]
         )
     return np.asarray(project_to_skeleton(moved)[0])
+
+
+def _every_frame(frames: Array, poses: Array) -> tuple[Array, Array]:
+    """Frames (N,) in order and their poses (N, 22, 3), with those between them along cubic Hermite splines."""
+    if len(frames) < 2:
+        return frames, poses
+    slopes = np.gradient(poses, frames, axis=0)
+    time = np.arange(frames[0], frames[-1] + 1)
+    i = (np.searchsorted(frames, time, side="right") - 1).clip(max=len(frames) - 2)
+    gap = (frames[i + 1] - frames[i])[:, None, None]
+    s = (time - frames[i])[:, None, None] / gap
+    ahead = s * s * (3 - 2 * s)
+    bends = s * (1 - s) * gap * ((1 - s) * slopes[i] - s * slopes[i + 1])
+    return time, (1 - ahead) * poses[i] + ahead * poses[i + 1] + bends
 
 
 def directed(
