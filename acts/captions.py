@@ -218,7 +218,10 @@ def _phrase(act: Act, entry: Entry | None) -> str:
     verb = _VERB.search(caption)
     other = verb is None or verb[1] != name[0] or caption.startswith("{b}")
     no_limb = "{limb}" in caption and not act.part
-    if no_limb or (other and "{limb}" not in caption and "{part}" not in caption):
+    shown = (
+        bool(act.thing) and "thing" in name and "{thing}" not in caption
+    )  # "opens window": the network knows doors
+    if no_limb or shown or (other and "{limb}" not in caption and "{part}" not in caption):
         verbs = {verb for frame in entry.frames for verb in Frame.parse(frame).verbs} | {"be"}
         if name[0] in verbs and not verbs.intersection(name[1:]):
             return named

@@ -53,6 +53,7 @@ def test_third_persons_of_verbs() -> None:
         ({"act": "be-twirled", "patient": "b"}, "is twirled"),
         ({"act": "lift-spin", "patient": "b"}, "picks up and spins around"),
         ({"act": "put-down-thing", "thing": "cup"}, "puts down cup"),
+        ({"act": "open-thing", "thing": "window"}, "opens window"),  # not the caption's door
         ({"act": "hug", "agents": ("a", "b")}, "hug"),
         ({"act": "hug", "patient": "b", "modality": "tried"}, "tries to hug"),
         ({"act": "wave", "polarity": "not", "side": "left"}, "does not wave left"),
