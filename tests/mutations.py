@@ -6,6 +6,7 @@ is 1 if a fault survives. What all tests need is imported once; each fault then 
 
 from __future__ import annotations
 
+import gc
 import importlib
 import multiprocessing
 import os
@@ -95,6 +96,7 @@ def run(copy: Path, tests: Sequence[str]) -> int:
 def _run(copy: Path, tests: Sequence[str]) -> None:
     import pytest
 
+    gc.freeze()  # the parent's objects wait for threads that are not in this process
     os.chdir(copy)
     os.environ["PYTHONPATH"] = str(copy)
     sys.path[:] = [str(copy), *(path for path in sys.path if path not in ("", str(ROOT)))]

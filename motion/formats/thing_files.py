@@ -205,7 +205,7 @@ def _local(file: GlbFile, node: dict[str, Any]) -> Array:
 # ---- the surface -----------------------------------------------------------------------------------------
 def _fitted(vertices: Array, faces: NDArray, colours: NDArray, label: str) -> Mesh:
     """A surface in metres about its middle, coarse enough to be drawn."""
-    if vertices.ndim != 2 or faces.ndim != 2 or not len(vertices) or not len(faces):
+    if vertices.shape[1:] != (3,) or faces.shape[1:] != (3,) or not len(vertices) or not len(faces):
         raise InputError(f"{label} has no triangles: export its surface as triangles.")
     if len(faces) > MOST_TRIANGLES or faces.min() < 0 or faces.max() >= len(vertices):
         raise InputError(f"{label} has too many triangles, or corners that are not there: export it again.")
