@@ -316,7 +316,7 @@ def test_the_time_of_a_run_begins_when_it_runs(monkeypatch: pytest.MonkeyPatch) 
     people.ask("eve", request("second"))
     now = 599.0
     gate.open.release()
-    wait_for(lambda: ("second",) in gate.order)
+    wait_for(lambda: ("second",) in gate.order and "first" in people.ends)
     assert isinstance(people.ends["first"], Result)
     now = 599.0 + 600.0  # the second has waited as long as it may run
     people.ask("ada", request("third"))
