@@ -218,10 +218,9 @@ def _phrase(act: Act, entry: Entry | None) -> str:
     verb = _VERB.search(caption)
     other = verb is None or verb[1] != name[0] or caption.startswith("{b}")
     no_limb = "{limb}" in caption and not act.part
-    shown = (
-        bool(act.thing) and "thing" in name and "{thing}" not in caption
-    )  # "opens window": the network knows doors
-    if no_limb or shown or (other and "{limb}" not in caption and "{part}" not in caption):
+    # "opens window", where the caption has a door, which the network knows
+    named_thing = bool(act.thing) and "thing" in name and "{thing}" not in caption
+    if no_limb or named_thing or (other and "{limb}" not in caption and "{part}" not in caption):
         verbs = {verb for frame in entry.frames for verb in Frame.parse(frame).verbs} | {"be"}
         if name[0] in verbs and not verbs.intersection(name[1:]):
             return named

@@ -10,7 +10,8 @@ from acts.frames import Event, Ref
 from acts.plan import FROM_BEHIND
 
 from . import wordnet
-from .people import Cast, reference, states_of
+from .people import Cast, states_of
+from .references import reference
 from .syntax import is_adverb
 from .vocabulary import is_act, vocabulary
 

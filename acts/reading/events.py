@@ -13,7 +13,8 @@ from . import wordnet
 from .absolute import Absolute, absolutes
 from .arguments import Arguments
 from .clauses import MARKS, NOUNMARKS, ClauseTree
-from .people import A_NAME, B_NAME, Cast, reference
+from .people import A_NAME, B_NAME, Cast
+from .references import reference
 from .subjects import Subjects, ends_before
 from .syntax import is_ongoing, seems
 from .vocabulary import vocabulary

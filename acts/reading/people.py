@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from acts.frames import Ref
 from acts.plan import Person
-from acts.things import is_fixture
 
 from . import wordnet
 from .syntax import IN_PLACE, is_likeness
@@ -22,7 +21,17 @@ A_NAME, B_NAME = "Adam", "Beth"
 
 _FIRST, _SECOND = frozenset(("first", "former")), frozenset(("second", "latter"))
 _THEY = frozenset(("they", "them", "themselves", "we", "us", "ourselves"))
-_HE = {"he": "m", "him": "m", "his": "m", "himself": "m", "she": "f", "her": "f", "hers": "f", "herself": "f"}
+PRONOUN_SEX = {
+    "he": "m",
+    "him": "m",
+    "his": "m",
+    "himself": "m",
+    "she": "f",
+    "her": "f",
+    "hers": "f",
+    "herself": "f",
+}
+"""The sex that a pronoun tells."""
 _NOMINATIVE = frozenset(("i", "he", "she", "they", "we"))
 _ANYONE = frozenset(("someone", "somebody", "anyone", "anybody", "person"))
 _ARTICLES = frozenset(("a", "an", "the", "his", "her", "their"))
@@ -85,8 +94,8 @@ class Cast:
         """
         lemma, text = token.lemma_.lower(), token.lower_
         children = {child.lower_ for child in token.children}
-        if text in _HE:
-            return self._pronoun(_HE[text], subject)
+        if text in PRONOUN_SEX:
+            return self._pronoun(PRONOUN_SEX[text], subject)
         if text in ("i", "me", "myself", "you", "yourself"):
             return self._named("i" if text in ("i", "me", "myself") else "you")
         if text in _THEY:
@@ -166,7 +175,9 @@ class Cast:
         """True for a noun that is a person where it acts: "the model poses", "the base lies on her back"."""
         if len(self._known) == 2 or self._words.part(token.lemma_.lower()):
             return False
-        own = (t for t in token.head.subtree if t.tag_ == "PRP$" and t.lower_ in _HE and t.i > token.i)
+        own = (
+            t for t in token.head.subtree if t.tag_ == "PRP$" and t.lower_ in PRONOUN_SEX and t.i > token.i
+        )
         bodily = any(self._words.part(t.head.lemma_.lower()) for t in own)
         return wordnet.may_be_person(token.lemma_.lower()) or (bodily and not self._known)
 
@@ -285,7 +296,7 @@ class Cast:
             if child.dep_ == "poss" or child.tag_ == "PRP$":
                 text = child.lower_
                 if text in ("his", "her"):
-                    return self._possessive(_HE[text], subject)
+                    return self._possessive(PRONOUN_SEX[text], subject)
                 if text in ("their", "our"):
                     return "ab" if len(subject) == 2 else ""
                 if text == "your" and not self._has("you"):  # of an order: whoever is addressed
@@ -332,48 +343,6 @@ class Cast:
         )  # "they dance, her head …"
 
 
-def reference(token: Token, cast: Cast, subject: str) -> Ref:
-    """The reference of a noun or pronoun; see :class:`acts.frames.Ref`."""
-    first, last = token.idx, token.idx + len(token.text)
-    lemma = token.lemma_.lower()
-    children = {child.lower_ for child in token.children}
-    if token.lower_.endswith(("self", "selves")):
-        return Ref("self", subject, lemma, first=first, last=last)
-    if token.lower_ in ("other", "another") and children & {"each", "one"}:
-        return Ref("each", "ab", "other", first=first, last=last)
-    if token.lower_ == "them" and cast.things is not None and len(subject) == 1:
-        return replace(cast.things, first=first, last=last)  # "drops her keys, and he picks them up"
-    if token.lower_ == "it" and cast.thing is not None:
-        said_of = cast.thing_of if cast.thing_of != subject and len(cast.thing_of) == 1 else ""
-        hers = bool(cast.thing_sex) and cast.thing_sex == cast.sex(
-            subject
-        )  # "kisses her hand; she withdraws it"
-        owner = cast.thing.who or (said_of if cast.thing.kind == "part" and not hers else "")
-        return replace(cast.thing, who=owner, first=first, last=last)  # "extends a hand, and she shakes it"
-    ref = _reference(token, cast, subject)
-    cast.seen[token.i] = ref
-    if ref.kind == "person":
-        cast.note_states(token, ref.who)
-    _note_thing(token, ref, cast, subject)
-    return ref
-
-
-def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
-    """Notes what "it" and "them" mean from here on."""
-    light = token.head.lemma_.lower() in vocabulary().verbs["light"]  # "does two jumps"
-    if ref.kind == "thing" and token.tag_ == "NNS" and token.dep_ == "dobj" and not light:
-        cast.things = ref
-    beside = (
-        token.dep_ == "pobj" and cast.thing is not None and (ref.kind, cast.thing.kind) == ("part", "thing")
-    )
-    if beside:  # "throws the ball over her shoulder, and he catches it"
-        return
-    goal = ref.kind == "thing" and cast.thing is None and is_fixture(ref.lemma)  # "at the door, and opens it"
-    if ref.kind in ("part", "thing") and token.tag_ in ("NN", "NNP") and (goal or not ref.place):
-        cast.thing, cast.thing_of = ref, subject
-        cast.thing_sex = next((sex for c in token.children if (sex := _HE.get(c.lower_))), "")
-
-
 def begins_clause(pronoun: Token) -> bool:
     """True for a subject that the parser joined to the object before: "hugs Beth and he waves"."""
     joined = pronoun.dep_ == "conj" and pronoun.head.dep_ in ("dobj", "dative", "pobj")
@@ -391,40 +360,3 @@ def states_of(noun: Token) -> Iterator[tuple[Token, str]]:
             own = not words.part(place.lemma_.lower()) or any(c.tag_ == "PRP$" for c in place.children)
             if place.dep_ == "pobj" and own and (verb := words.state(phrase.lower_, place.lemma_.lower())):
                 yield phrase, verb
-
-
-def _reference(token: Token, cast: Cast, subject: str) -> Ref:
-    words = vocabulary()
-    first, last = token.idx, token.idx + len(token.text)
-    lemma = token.lemma_.lower()
-    family = words.part(lemma)
-    if family and not (token.ent_type_ or token.pos_ == "PROPN"):
-        owner = cast.owner(token, subject)
-        side = next(
-            (child.lower_ for child in token.children if child.lower_ in ("left", "right", "both")), ""
-        )
-        if not side and token.tag_ == "NNS" and family in ("hand", "arm", "foot", "leg", "knee", "shoulder"):
-            side = "both"
-        lemma = "back" if lemma == "spine" else lemma
-        bare = all(c.dep_ != "poss" and c.tag_ != "PRP$" for c in token.children)
-        definite = any(c.lower_ == "the" for c in token.children)
-        return Ref(
-            "part", owner, lemma, family, side, bare=bare, definite=definite, first=first, last=last
-        )  # fmt: skip
-    thirds = len(cast.third)
-    who = cast.person(token, subject)
-    if who:
-        conjuncts = [
-            c for c in token.conjuncts if c.i > token.i and c.dep_ == "conj" and not begins_clause(c)
-        ]
-        if len(who) == 1 and any(cast.person(c, who) not in (None, who) for c in conjuncts):
-            return Ref("person", "ab", lemma, first=first, last=last)
-        return Ref("person", who, lemma, first=first, last=last)
-    if len(cast.third) > thirds:
-        return Ref("third", "", lemma, first=first, last=last)
-    owner = cast.owner(token, subject) if any(c.dep_ == "poss" for c in token.children) else ""
-    owner = "ab" if owner == "each" else owner
-    bare = token.tag_ == "NN" and all(
-        c.dep_ not in ("det", "poss", "nummod", "predet") for c in token.children
-    )
-    return Ref("thing", owner, lemma, place=lemma in words.places, bare=bare, first=first, last=last)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from acts.frames import Event, Ref
 
 from .clauses import ClauseTree, is_finite
-from .people import Cast, begins_clause, reference
+from .people import Cast, begins_clause
+from .references import reference
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:

@@ -322,8 +322,8 @@ class _Preparation:
         if lower == "goodbye" and self._lower(i - 1).startswith(("hug", "kiss", "embrac")):
             return "fondly"  # the parser takes the two for a compound
         joined = lower.replace("-", "")
-        if joined != lower and (self._is_verb(joined) or self._is_deed(joined.removesuffix("s"))):
-            # "high-five" and "push-ups"
+        known = self._is_verb(joined) or self._is_deed(joined.removesuffix("s"))
+        if joined != lower and known:  # "high-five", "push-ups"
             return joined
         return lower if word.isupper() and len(word) > 1 else word
 

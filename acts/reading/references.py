@@ -1,0 +1,94 @@
+"""References: what the nouns and pronouns of a text stand for, beside the people parts of bodies and things."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from acts.frames import Ref
+from acts.things import is_fixture
+
+from .people import PRONOUN_SEX, Cast, begins_clause
+from .vocabulary import vocabulary
+
+if TYPE_CHECKING:
+    from spacy.tokens import Token
+
+
+def reference(token: Token, cast: Cast, subject: str) -> Ref:
+    """The reference of a noun or pronoun; see :class:`acts.frames.Ref`."""
+    first, last = token.idx, token.idx + len(token.text)
+    lemma = token.lemma_.lower()
+    children = {child.lower_ for child in token.children}
+    if token.lower_.endswith(("self", "selves")):
+        return Ref("self", subject, lemma, first=first, last=last)
+    if token.lower_ in ("other", "another") and children & {"each", "one"}:
+        return Ref("each", "ab", "other", first=first, last=last)
+    if token.lower_ == "them" and cast.things is not None and len(subject) == 1:
+        return replace(cast.things, first=first, last=last)  # "drops her keys, and he picks them up"
+    if token.lower_ == "it" and cast.thing is not None:
+        said_of = cast.thing_of if cast.thing_of != subject and len(cast.thing_of) == 1 else ""
+        hers = bool(cast.thing_sex) and cast.thing_sex == cast.sex(
+            subject
+        )  # "kisses her hand; she withdraws it"
+        owner = cast.thing.who or (said_of if cast.thing.kind == "part" and not hers else "")
+        return replace(cast.thing, who=owner, first=first, last=last)  # "extends a hand, and she shakes it"
+    ref = _reference(token, cast, subject)
+    cast.seen[token.i] = ref
+    if ref.kind == "person":
+        cast.note_states(token, ref.who)
+    _note_thing(token, ref, cast, subject)
+    return ref
+
+
+def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
+    """Notes what "it" and "them" mean from here on."""
+    light = token.head.lemma_.lower() in vocabulary().verbs["light"]  # "does two jumps"
+    if ref.kind == "thing" and token.tag_ == "NNS" and token.dep_ == "dobj" and not light:
+        cast.things = ref
+    beside = (
+        token.dep_ == "pobj" and cast.thing is not None and (ref.kind, cast.thing.kind) == ("part", "thing")
+    )
+    if beside:  # "throws the ball over her shoulder, and he catches it"
+        return
+    goal = ref.kind == "thing" and cast.thing is None and is_fixture(ref.lemma)  # "at the door, and opens it"
+    if ref.kind in ("part", "thing") and token.tag_ in ("NN", "NNP") and (goal or not ref.place):
+        cast.thing, cast.thing_of = ref, subject
+        cast.thing_sex = next((sex for c in token.children if (sex := PRONOUN_SEX.get(c.lower_))), "")
+
+
+def _reference(token: Token, cast: Cast, subject: str) -> Ref:
+    words = vocabulary()
+    first, last = token.idx, token.idx + len(token.text)
+    lemma = token.lemma_.lower()
+    family = words.part(lemma)
+    if family and not (token.ent_type_ or token.pos_ == "PROPN"):
+        owner = cast.owner(token, subject)
+        side = next(
+            (child.lower_ for child in token.children if child.lower_ in ("left", "right", "both")), ""
+        )
+        if not side and token.tag_ == "NNS" and family in ("hand", "arm", "foot", "leg", "knee", "shoulder"):
+            side = "both"
+        lemma = "back" if lemma == "spine" else lemma
+        bare = all(c.dep_ != "poss" and c.tag_ != "PRP$" for c in token.children)
+        definite = any(c.lower_ == "the" for c in token.children)
+        return Ref(
+            "part", owner, lemma, family, side, bare=bare, definite=definite, first=first, last=last
+        )  # fmt: skip
+    thirds = len(cast.third)
+    who = cast.person(token, subject)
+    if who:
+        conjuncts = [
+            c for c in token.conjuncts if c.i > token.i and c.dep_ == "conj" and not begins_clause(c)
+        ]
+        if len(who) == 1 and any(cast.person(c, who) not in (None, who) for c in conjuncts):
+            return Ref("person", "ab", lemma, first=first, last=last)
+        return Ref("person", who, lemma, first=first, last=last)
+    if len(cast.third) > thirds:
+        return Ref("third", "", lemma, first=first, last=last)
+    owner = cast.owner(token, subject) if any(c.dep_ == "poss" for c in token.children) else ""
+    owner = "ab" if owner == "each" else owner
+    bare = token.tag_ == "NN" and all(
+        c.dep_ not in ("det", "poss", "nummod", "predet") for c in token.children
+    )
+    return Ref("thing", owner, lemma, place=lemma in words.places, bare=bare, first=first, last=last)
