@@ -7,7 +7,6 @@ from one held frame to the next.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +16,7 @@ from torch import Tensor
 
 from models.motion_tokens import NUM_JOINTS, TokenLayout, pack, unpack
 from motion import SMPL22
+from motion.vectors import wrapped
 
 DIES_OUT = 30
 """Frames from a held heading to where a body faces as it was predicted, unless another frame says how it faces."""
@@ -32,8 +32,8 @@ class Turned(NamedTuple):
 
     Attributes:
         row: the person, of the motions' people in a row (B·2).
-        frames: (N,) in order, at which it is known how they face.
-        across: (N,) angles of the line between the hips as given; NaN where the whole trunk is given.
+        frames: (N,) in order, at which it is known how they face, also those whose whole pose is given.
+        across: (N,) angles of the line between the hips as given.
     """
 
     row: int
@@ -81,8 +81,7 @@ class Turning:
         """(copies, K) radians by which control points (copies, K, 70) are turned."""
         at = self.basis[torch.from_numpy(turned.frames)]
         across = _across((at @ body[..., _HIPS]).double().numpy())
-        apart = np.where(np.isnan(turned.across), 0.0, turned.across - across)
-        apart = np.unwrap((apart + math.pi) % (2 * math.pi) - math.pi)
+        apart = np.unwrap(wrapped(turned.across - across))
         first, last = turned.frames[0] - DIES_OUT, turned.frames[-1] + DIES_OUT
         frames = np.concatenate([[first], turned.frames, [last]])
         knots = self.layout.frames_per_knot * (np.arange(body.shape[1]) - 1)
@@ -92,12 +91,11 @@ class Turning:
 
 def _turned(row: int, values: Tensor, known: Tensor) -> Turned | None:
     """The held headings of a person with rows (T, 70); None where none is held."""
-    trunk, hips = known[:, _TRUNK], known[:, _HIPS].all(-1)
-    if not (hips & ~trunk).any():
+    hips = known[:, _HIPS].all(-1)
+    if not (hips & ~known[:, _TRUNK]).any():
         return None
-    frames = (hips | trunk).nonzero()[:, 0].numpy()
-    across = _across(values[frames][:, _HIPS].double().numpy())
-    return Turned(row, frames, np.where(trunk.numpy()[frames], np.nan, across))
+    frames = hips.nonzero()[:, 0].numpy()
+    return Turned(row, frames, _across(values[frames][:, _HIPS].double().numpy()))
 
 
 def _across(hips: NDArray[np.floating]) -> NDArray[np.floating]:
