@@ -143,6 +143,7 @@ export class Controls {
     press("ghosts", show.ghosts);
     press("pose", Boolean(posing));
     press("draw", Boolean(directing.drawing?.on));
+    press("touch", Boolean(directing.touching));
     press("fullscreen", document.fullscreenElement === root || root.classList.contains("pdd-full"));
     for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === framing.preset));
     this.showPart(sample, frame);

@@ -332,6 +332,7 @@ export class Player {
     });
     futures.place(clock.shown, orbit.view().matrix);
     this.posing?.place(this.panes[0].spots);
+    this.directing.touching?.place(this.panes[0].spots);
     if (pose) drawing?.place(orbit.view());
     if (pose) this.hover.show();
     this.controls.show(this);

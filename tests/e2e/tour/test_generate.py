@@ -17,11 +17,20 @@ EXCUSED_HERE = ("^Generate / reading / ",)
 """Chips are named after what was measured, which changes with each result; test_reading_page uses them."""
 
 
+def touched(page: Page, tour: Tour) -> None:
+    """Takes up the hand of the stage and presses the first dot."""
+    page.click("#player [data-act=touch]")
+    page.keyboard.press("Enter")
+    tour.settle(page)
+
+
 def test_generate(page: Page, tour: Tour, character: Path) -> None:
     open_all(page)
     page.fill("#prompt textarea", "They bow.")
     number(page, "seconds", 2)
     made(page, tour)
+    twice(lambda: touched(page, tour))
+    page.fill("#prompt textarea", "They bow.")
     number(page, "seconds", 10)
     number(page, "samples", 4)
     number(page, "steps", 100)
