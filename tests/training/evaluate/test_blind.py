@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,13 @@ from PIL import Image
 from motion import Duet, InputError
 from motion.metrics.sentences import load_sentences
 from motion.metrics.sentences.kept import Motions
+from motion.transforms import turn
+from training.corpus.duets import Take
 from training.evaluate import blind
+from training.evaluate.blind import recorded
+from training.evaluate.blind.__main__ import main
+from training.evaluate.blind.pages import aligned, pair_page
+from webdemo.inference.requests import GenerateRequest, Result
 
 SENTENCES = load_sentences()[:3]
 
@@ -48,6 +55,68 @@ def test_pairs_hide_their_names_and_the_key_tells_them(folders: tuple[Path, Path
         assert np.abs(upper - lower).mean() > 0.1, entry  # two motions, not one twice
 
 
+def test_every_sentence_comes_once_before_one_comes_twice(
+    tmp_path: Path, folders: tuple[Path, Path, Path]
+) -> None:
+    old, new, _ = folders
+    for seed in range(4):
+        blind.make(old, new, tmp_path / f"{seed}", count=3, seed=seed)
+        key = json.loads((tmp_path / f"{seed}" / "key.json").read_text())
+        assert len({entry["sentence"] for entry in key.values()}) == 3
+
+
+def test_a_page_shows_bodies_from_the_same_side_wherever_the_motion_lies() -> None:
+    from .puppets import play
+
+    pair = Duet.from_positions(play("", 2), fps=30.0)
+    moved = Duet.from_positions(turn(pair.positions, 2.0) + np.array([3.0, 0.0, 1.0]), fps=30.0)
+    assert np.allclose(aligned(pair).positions, aligned(moved).positions, atol=1e-5)
+    way = aligned(moved).positions[1, 0, 0] - aligned(moved).positions[0, 0, 0]
+    assert way[2] > 0.3 and abs(way[0]) < 1e-6
+    page = np.asarray(pair_page("1  Words", [pair, moved]), dtype=float)
+    half = len(page) // 2 + 15
+    assert np.abs(page[60:half] - page[60 + len(page) - half : len(page)]).mean() < 0.5
+    blue = (page[..., 2] > 150) & (page[..., 0] < 80)
+    assert blue.mean() > 0.003  # a shirt, not the lines of a skeleton
+
+
+def test_recorded_duets_stand_beside_the_labs_motions_of_their_length(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from .puppets import play
+
+    dance = play("", 10)
+    dance[..., 0] += 0.5 * np.sin(np.arange(dance.shape[1]) / 4)[:, None]
+    takes = [Take("cmu-salsa/01", dance), Take("cmu-handshake/18_01", play("", 2))]
+    monkeypatch.setattr(recorded, "read_takes", lambda _: takes)
+    made = []
+
+    class Engine:
+        def run(self, request: GenerateRequest) -> Iterator[Result]:
+            made.append(request)
+            longer = play("a up 0 2 both", request.seconds + 0.5)
+            yield Result(duets=(Duet.from_positions(longer, fps=30.0),), manifest={})
+
+    monkeypatch.setattr(recorded, "Engine", Engine)
+    found = recorded.recorded_duets(tmp_path, 5, np.random.default_rng(0))
+    assert [duet.family for duet in found] == ["handshake", "salsa", "salsa"]
+    assert all(120 <= duet.people.shape[1] <= 180 for duet in found[1:])
+    assert main(["recorded", "--data", str(tmp_path), "--out", str(tmp_path / "out"), "--count", "5"]) == 0
+    key = json.loads((tmp_path / "out" / "key.json").read_text())
+    assert all({entry["1"], entry["2"]} == {"new", "recorded"} for entry in key.values())
+    assert {request.prompt for request in made} == {"Two people dance salsa.", "Two people shake hands."}
+    blind.choose(tmp_path / "out", [f"{n}={'1' if e['1'] == 'recorded' else '2'}" for n, e in key.items()])
+    result = blind.reveal(tmp_path / "out")
+    assert (result["new"], result["recorded"]) == (0, 3)
+    assert blind.verdict(result).startswith("The new model's motion was chosen in 0 % (0/3")
+
+
+def test_a_folder_without_duets_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="holds no duets"):
+        recorded.make_recorded(tmp_path, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
 def test_choices_come_first_are_final_and_count(folders: tuple[Path, Path, Path]) -> None:
     old, new, out = folders
     blind.make(old, new, out, seed=1)
@@ -79,12 +148,12 @@ def test_the_command_goes_through_the_steps(
 ) -> None:
     old, new, out = folders
     arguments = ["--old", str(old), "--new", str(new), "--out", str(out), "--count", "2"]
-    assert blind.main(["make", *arguments]) == 0
-    assert blind.main(["make", *arguments]) == 2
+    assert main(["make", *arguments]) == 0
+    assert main(["make", *arguments]) == 2
     assert "already holds pairs" in capsys.readouterr().err
-    assert blind.main(["reveal", str(out)]) == 2
-    assert blind.main(["choose", str(out), "1=1", "2=2"]) == 0
-    assert blind.main(["reveal", str(out)]) == 0
+    assert main(["reveal", str(out)]) == 2
+    assert main(["choose", str(out), "1=1", "2=2"]) == 0
+    assert main(["reveal", str(out)]) == 0
     assert "chosen in" in capsys.readouterr().out
     assert len(json.loads((out / "result.json").read_text())["pairs"]) == 2
 
