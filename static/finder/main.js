@@ -1,6 +1,6 @@
 // The page's search: Ctrl K opens a dialog, arrows choose, Enter goes there. webdemo/ui/components/finder.py has its data.
 
-import { placesOf, search } from "./finder.js";
+import { placesOf, search, switchesOf } from "./finder.js";
 import { say, translate } from "../texts.js";
 
 const PATIENCE = 8000; // ms until what was chosen must be on the page
@@ -39,8 +39,9 @@ async function reach(folds, target) {
 }
 
 /** Opens the tab and the folded parts around a control, brings it into view and puts the focus on it. */
-async function goTo({ tab, folds, target }) {
+async function goTo({ tab, folds, target, element }) {
   await openTab(tab);
+  element?.focus();
   if (!target) return;
   const end = performance.now() + PATIENCE;
   for (;;) {
@@ -62,6 +63,13 @@ async function write(sentence) {
   prompt.focus();
 }
 
+/** The switches of the player that is seen, if one is. */
+function switchesInView() {
+  const player = [...document.querySelectorAll(".pdd")].find((each) => each.offsetParent && each.dataset.state !== "empty");
+  const tab = document.querySelector(".pd-tabs [role=tab][aria-selected=true]");
+  return player && tab ? switchesOf(player, tab.textContent.trim()) : [];
+}
+
 class Finder {
   constructor(root, ask) {
     this.ask = ask;
@@ -70,6 +78,7 @@ class Finder {
     this.list = root.querySelector("[role=listbox]");
     this.entries = [];
     this.places = placesOf(window.gradio_config);
+    this.switches = [];
     root.querySelector(".pdq-open").addEventListener("click", () => this.open());
     root.querySelector(".pdq-open kbd").textContent = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘ K" : say("finder.keys");
     this.field.addEventListener("input", () => this.show());
@@ -89,6 +98,7 @@ class Finder {
   }
 
   open() {
+    this.switches = switchesInView();
     this.ask(); // runs change, and acts are read when they are first wanted
     this.field.value = "";
     this.dialog.showModal();
@@ -107,7 +117,8 @@ class Finder {
   }
 
   show() {
-    this.found = search(this.entries.length ? this.entries : this.places, this.field.value);
+    const entries = this.entries.length ? this.entries : this.places;
+    this.found = search([...entries, ...this.switches], this.field.value);
     this.at = 0;
     this.list.replaceChildren(...this.found.map((entry, index) => {
       const row = make("li", "pdq-row", "");

@@ -121,7 +121,7 @@ export class Controls {
   }
 
   /** Brings everything to what is true of the player now. */
-  show({ clock, directing, framing, orbit, posing, sample, show }) {
+  show({ clock, directing, filming, framing, orbit, posing, sample, show }) {
     const { root } = this;
     const frame = clock.shown;
     const range = this.find(".pdd-range");
@@ -141,6 +141,7 @@ export class Controls {
     press("trails", show.trails);
     this.find("[data-act=figure]").dataset.figure = show.character ? "character" : show.bodies ? (show.skeletons ? "both" : "body") : "skeleton";
     press("ghosts", show.ghosts);
+    press("film", filming.on);
     press("pose", Boolean(posing));
     press("draw", Boolean(directing.drawing?.on));
     press("touch", Boolean(directing.touching));

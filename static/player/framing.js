@@ -40,7 +40,8 @@ export class Framing {
       used: times.flatMap((frame) => pane.sample.things.beside(pane.poseAt(frame), skeleton.pelvis)),
       box: this.boxes[index] ?? this.boxes[0],
     }));
-    return fit(pairs, skeleton, view ?? orbit.glide?.to ?? orbit);
+    const { yaw, elevation } = view ?? orbit.glide?.to ?? orbit;
+    return fit(pairs, skeleton, { yaw: yaw + orbit.drift.yaw, elevation });
   }
 
   /** Measures the room for people in each view, in pixels: what names, captions and tools leave of it. */

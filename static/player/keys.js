@@ -20,7 +20,7 @@ export function actionFor(event) {
     case "[": return ["sample", -1];
     case "]": return ["sample", 1];
   }
-  const letters = { f: "follow", t: "trails", g: "ghosts", l: "loop", p: "picture", s: "figure", e: "pose", d: "draw", h: "touch" };
+  const letters = { f: "follow", t: "trails", g: "ghosts", l: "loop", p: "picture", s: "figure", e: "pose", d: "draw", h: "touch", c: "film" };
   const action = letters[event.key.toLowerCase()];
   if (action) return [action];
   const camera = CAMERAS[Number(event.key) - 1];

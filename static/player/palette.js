@@ -4,6 +4,8 @@
 
 import COLOURS from "./colours.js";
 
+const REACH = 18; // metres from the camera's target after which the floor is as dim as it gets
+
 export const mix = (a, b, t) => [0, 1, 2].map((i) => a[i] + t * (b[i] - a[i]));
 export const smooth = (t) => t * t * (3 - 2 * t);
 const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16) / 255);
@@ -14,10 +16,10 @@ const greyer = (zones) => each(zones, (color) => {
   return mix(color, [grey, grey, grey].map((v) => 0.75 * v + 0.14), 0.72);
 });
 
-function theme({ shade, lamps, bodies, people, given, curve, ...plain }) {
+function theme({ shade, lamps, bodies, people, given, curve, film, ...plain }) {
   const worn = bodies.map((zones) => each(zones, hex));
   return {
-    ...each(plain, hex), shade, lamps, curve,
+    ...each(plain, hex), shade, lamps, curve, film, reach: REACH,
     bodies: worn, givenBodies: worn.map(greyer),
     people: people.map(limbs), given: given.map(limbs),
   };
@@ -29,7 +31,7 @@ export const THEMES = each(COLOURS, theme);
 export const FUTURES = ["#1f9d72", "#b13fc9", "#c2a40a"].map(hex);
 
 /** The floor at a distance in metres from the camera's target: it grows dimmer towards the horizon. */
-export const floorAt = (theme, metres) => mix(theme.floor, theme.far, smooth(Math.min(metres / 18, 1)));
+export const floorAt = (theme, metres) => mix(theme.floor, theme.far, smooth(Math.min(metres / theme.reach, 1)));
 
 /** The sky at an angle in radians above the horizon. */
 export const skyAt = (theme, angle) => mix(theme.horizon, theme.sky, smooth(Math.min(angle / 0.55, 1)));

@@ -7,6 +7,7 @@ import { Clothes } from "./clothes.js";
 import { Controls } from "./controls.js";
 import { decode } from "./decode.js";
 import { Directing } from "./directing.js";
+import { Filming } from "./filming.js";
 import { Framing } from "./framing.js";
 import { Futures } from "./futures.js";
 import * as live from "./live.js";
@@ -35,6 +36,7 @@ export class Player {
     this.show = { trails: false, ghosts: false, ...figureAtFirst(), character: false };
     this.clothes = new Clothes(this);
     this.framing = new Framing(this);
+    this.filming = new Filming(this);
     this.panes = [];
     this.addPane();
     this.grid = new Grid(this.find(".pdd-grid"), this.panes[0]);
@@ -72,7 +74,7 @@ export class Player {
   }
 
   get theme() {
-    return THEMES[this.themeName];
+    return this.filming.seen(THEMES[this.themeName]);
   }
 
   get sample() {
@@ -122,6 +124,7 @@ export class Player {
     this.futures.load(this.data);
     this.select(0);
     this.clothes.change();
+    this.filming.load(Boolean(payload.rounds));
     if (!goesOn) this.framing.reset();
     if (this.sample.live) this.clock.pause();
     else if (!goesOn && !(payload.rounds && reducedMotion())) this.clock.play();
@@ -241,6 +244,7 @@ export class Player {
   /** A hand has turned the view: it is no longer that of a preset. */
   turned() {
     this.framing.preset = null;
+    this.filming.leave();
     this.wake();
   }
 
@@ -248,6 +252,7 @@ export class Player {
     if (name === this.themeName) return;
     this.themeName = name;
     this.root.dataset.theme = name;
+    this.filming.dress();
     for (const pane of this.panes) pane.scene?.setBackground(this.theme.background);
     this.strip.load(this.sample, this.theme.curve);
     this.refresh();
@@ -293,6 +298,7 @@ export class Player {
     const before = this.clock.frame;
     this.clock.advance(now);
     const pose = this.data && this.everybody(this.clock.shown);
+    this.filming.step(seconds);
     const wanted = pose && this.framing.wanted();
     if (this.clock.frame < before) {
       this.orbit.cut(wanted); // the loop begins anew
@@ -300,7 +306,7 @@ export class Player {
       if (this.data.rounds && this.rounds >= this.data.rounds) this.clock.pause();
     }
     this.orbit.step(now, seconds, wanted);
-    const moving = this.clock.playing || !this.orbit.settled(wanted);
+    const moving = this.clock.playing || !this.filming.settled || !this.orbit.settled(wanted);
     if (moving && this.sparing && now - this.painted < LIVE_PAUSE) return this.wake();
     this.painted = now;
     if (moving || this.dirty) {

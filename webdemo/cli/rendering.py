@@ -39,6 +39,10 @@ def add_render(commands: Any) -> None:
     parser.add_argument("--size", default="1280x720", help="film: width and height in pixels")
     parser.add_argument("--trails", action="store_true", help="film: lines behind hands and pelvis")
     parser.add_argument(
+        "--film-look", action="store_true",
+        help="film: a camera that moves slowly about the people, a floor that fades into the sky, darker edges",
+    )  # fmt: skip
+    parser.add_argument(
         "--still-camera", action="store_true", help="film: the camera does not follow the people"
     )
     parser.add_argument(
@@ -67,6 +71,7 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
         trails=options.trails and suffix in film.SUFFIXES,
         names=suffix in film.SUFFIXES,
         theme=options.theme,
+        film=options.film_look and suffix in film.SUFFIXES,
         body=character_body(read_character(options.character)) if options.character else None,
     )
     if suffix in film.SUFFIXES:

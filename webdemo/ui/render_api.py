@@ -15,6 +15,7 @@ from webdemo.ui.components.film import LONGEST
 from webdemo.ui.text.words import error_line
 from webdemo.view.camera import VIEWS
 from webdemo.view.film import FPS, SIZE, write_film
+from webdemo.view.film import SUFFIXES as FILMS
 from webdemo.view.mesh import SUFFIXES as MESHES
 from webdemo.view.mesh import frame_at, write_mesh
 from webdemo.view.plotly_figure import SUFFIX as FIGURE
@@ -59,6 +60,7 @@ class RenderEndpoint:
                 gr.Textbox("", label=WHICH),
                 gr.Number(0, label=RATE),
                 gr.Number(0, label="second of the motion that a mesh shows"),
+                gr.Checkbox(False, label="film look: a slow camera and a distance that fades, in a film"),
             ]
             gr.Button().click(
                 self.render, inputs=inputs, outputs=gr.File(label="the film, sheet, figure or mesh"), api_name="render",
@@ -68,6 +70,7 @@ class RenderEndpoint:
     def render(
         self, motion: str, kind: str, look: str, theme: str, view: str, trails: bool, fps: float, width: float,
         height: float, character: str | None = None, animation: str = "", file_fps: float = 0.0, second: float = 0.0,
+        film_look: bool = False,
     ) -> str:  # fmt: skip
         """A film, a contact sheet, a plotly figure or a mesh of a motion file. An error is one sentence."""
         folder = self.page.shelf.folder()
@@ -86,7 +89,10 @@ class RenderEndpoint:
                 body = character_body(read_character(Path(character))) if character else None
             name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
             out = folder / f"{file_name(name, {})}{suffix}"
-            style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS, body=body)
+            style = Style(
+                look=look, theme=theme, trails=trails, film=bool(film_look) and suffix in FILMS,
+                names=suffix not in SHEETS, body=body,
+            )  # fmt: skip
             if suffix in SHEETS:
                 return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
             if suffix == FIGURE:

@@ -25,6 +25,7 @@ from motion.errors import InputError
 from motion.formats.files import replacing
 
 from .camera import cameras
+from .filming import darken_edges, moving_cameras
 from .parcel import Job, packed, unpacked
 from .stage import Pane, Picture, Stage, Style, paste, words
 
@@ -90,7 +91,8 @@ def write_film(
     rate = min(fps, _GIF_FPS) if suffix == ".gif" else fps
     seconds = max(pane.motion.seconds for pane in panes)
     times = np.arange(max(1, round(seconds * rate))) / rate
-    views = cameras(
+    placed = moving_cameras if style.film else cameras
+    views = placed(
         [pane.motion for pane in panes],
         size=_cell(size, len(panes)),
         times=times,
@@ -149,6 +151,8 @@ def _draw(job: Job) -> Iterator[Picture]:
     ]
     for seconds, shown in zip(job.times, zip(*stages, strict=True), strict=True):
         whole = _joined(job, shown)
+        if job.style.film:
+            darken_edges(whole, job.style.colours.vignette)
         _caption(job, whole, float(seconds))
         yield _planes(whole) if job.planar else whole
 

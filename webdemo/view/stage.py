@@ -22,6 +22,7 @@ from motion.skeleton import SMPL22
 from motion.things.thing import Thing
 
 from .camera import Camera, sampled
+from .filming import hazy
 from .light import Shadow, lit, shaded
 from .theme import THEMES, Colour, Theme, mix
 from .things import drawn_things, hands_of, shadow_spots
@@ -68,6 +69,7 @@ class Style:
         trails: whether pelvis and wrists leave a line of their last second.
         names: whether roles stand above the heads.
         theme: "light" or "dark".
+        film: whether pictures have the film look, see :mod:`webdemo.view.filming`.
         body: worn by everybody, such as one of :func:`motion.character.character_body`; a body each by default.
 
     Raises:
@@ -78,6 +80,7 @@ class Style:
     trails: bool = False
     names: bool = True
     theme: str = "light"
+    film: bool = False
     body: Body | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -88,8 +91,8 @@ class Style:
 
     @property
     def colours(self) -> Theme:
-        """The colours of its theme."""
-        return THEMES[self.theme]
+        """The colours of its theme, in haze for the film look."""
+        return hazy(THEMES[self.theme]) if self.film else THEMES[self.theme]
 
     def worn(self, motion: Clip | Duet, *, small: bool) -> tuple[Body, ...]:
         """The body of each person; ``small`` gives a third of the triangles where there is a choice."""
@@ -320,7 +323,7 @@ def _ground(camera: Camera, theme: Theme, shadow: Shadow) -> NDArray[np.uint32]:
         # Metres from what the camera looks at, along X and Z.
         east = reach * (rows[first:, :1] + x * right[0]) + np.float32(camera.eye[0] - camera.target[0])
         south = reach * (rows[first:, 2:] + x * right[2]) + np.float32(camera.eye[2] - camera.target[2])
-        t = np.minimum(np.sqrt(east * east + south * south) / np.float32(18), np.float32(1))
+        t = np.minimum(np.sqrt(east * east + south * south) / np.float32(theme.reach), np.float32(1))
         floor = _ramp(theme.floor, theme.far)[_levels(smoothstep(t))]
         dark, hidden = shadow.at(east + np.float32(camera.target[0]), south + np.float32(camera.target[2]))
         plain = floor.ravel()[hidden].view(np.uint8).reshape(-1, 4)

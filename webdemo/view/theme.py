@@ -10,6 +10,9 @@ from motion.colours import Colour, rgb, themes
 
 Worn = Mapping[str, Colour]
 
+_REACH = 18.0
+"""Metres from the camera's target after which the floor is as dim as it gets."""
+
 
 @dataclass(frozen=True)
 class Lamps:
@@ -30,11 +33,13 @@ class Theme:
         sky, horizon: of the sky high up and right above the floor.
         floor, far: of the floor at the camera's target and in the distance.
         grid, grid_strong: of the lines on it.
+        reach: metres from the camera's target after which the floor is as in the distance.
         shade: what full shadow multiplies the floor by.
         ghost, ink: of a pale figure, and of captions.
         lamps: the light on bodies.
         bodies, given_bodies: by zone, a's and b's; greyer while a motion is given.
         people, given: middle, left and right limbs of skeletons, a's and b's.
+        film_reach, vignette: of the film look: its ``reach``, and how dark the corners are.
     """
 
     sky: Colour
@@ -50,6 +55,9 @@ class Theme:
     bodies: tuple[Worn, Worn]
     people: tuple[tuple[Colour, Colour, Colour], ...]
     given: tuple[tuple[Colour, Colour, Colour], ...]
+    reach: float
+    film_reach: float
+    vignette: float
 
     @property
     def given_bodies(self) -> tuple[Worn, Worn]:
@@ -87,6 +95,9 @@ def _theme(stored: Mapping[str, Any]) -> Theme:
         bodies=(a, b),
         people=_limbs(stored["people"]),
         given=_limbs(stored["given"]),
+        reach=_REACH,
+        film_reach=stored["film"]["reach"],
+        vignette=stored["film"]["vignette"],
     )
 
 
