@@ -107,7 +107,10 @@ class Arguments:
             elif (
                 child.dep_ in _MODIFIERS
                 or (child.pos_ == "INTJ" and child.i > token.i)
-                or (child.dep_ in ("xcomp", "ccomp", "advcl") and child.pos_ == "ADJ")
+                or (
+                    child.dep_ in ("xcomp", "ccomp", "advcl")
+                    and (child.pos_ == "ADJ" or is_adverb(child.lower_))
+                )
             ):
                 self._modifier(child, event)
             else:
@@ -158,6 +161,8 @@ class Arguments:
                 self._preposition(child, who, event)
             elif child.dep_ == "nummod" or child.lower_ in self._words.numbers:
                 self._count(child, token, event)
+            elif child.dep_ == "prt":  # "helps him up off the floor"
+                self._modifier(child, event)
             elif child.lower_ == "no" and child.dep_ == "det":
                 event.denied = not event.denied
         if token.tag_ in ("WDT", "WP"):  # "the letter, which he reads"
@@ -303,7 +308,11 @@ class Arguments:
             event.side = text
         if all(child.lower_ != "forth" for child in token.children):  # "back and forth" is no way back
             self._direction(text, event)
-        adverb = token.dep_ == "advmod" or (token.dep_ == "conj" and token.head.dep_ == "advmod")
+        adverb = (
+            token.dep_ == "advmod"
+            or (token.dep_ == "conj" and token.head.dep_ == "advmod")
+            or is_adverb(text)
+        )
         if adverb and (text.endswith("ly") or text in self._words.speeds):
             event.adverbs.append(text)
         for child in token.children:

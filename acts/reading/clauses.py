@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from acts.frames import Event
 
 from .arguments import is_kept
+from .syntax import is_adverb
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ class ClauseTree:
         return self._clauses[token.i]
 
     def _has_verb(self, token: Token) -> bool:
-        if token.i in self._held:
+        if token.i in self._held or is_adverb(token.lower_):
             return False
         if token.dep_ == "amod" and token.tag_ not in ("VBP", "VBZ"):  # "the sleeping baby"
             return (
@@ -92,8 +93,9 @@ class ClauseTree:
                 and self.lemma(token) in self._verbs
                 and self._words.is_person(token.head.lemma_.lower())
             )
-        if token.dep_ != "ROOT" and any(c.lower_ == "where" and c.dep_ == "advmod" for c in token.children):
-            return False  # "to where she came from" is a place
+        event = token.dep_ == "relcl" and token.head.lemma_.lower() not in self._words.places
+        if token.dep_ != "ROOT" and not event and any(c.lower_ == "where" for c in token.children):
+            return False  # "to where she came from" is a place, and "a tango where he dips her" none
         if is_kept(token):
             return False
         if token.dep_ == "acomp" and token.head.lemma_ in ("remain", "stay") and token.tag_ == "VBN":

@@ -18,6 +18,7 @@ from .references import reference
 from .subjects import Subjects, ends_before
 from .syntax import is_ongoing, seems
 from .vocabulary import vocabulary
+from .voice import give_roles, goes_on, is_passive, is_suffered, other_person
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
@@ -120,6 +121,9 @@ class Reader:
             elif found.verb == "hold" or found.state.lower_ in self._words.directions:
                 event.words.append(found.state.lower_)
                 event.direction = self._words.directions.get(found.state.lower_)
+            else:
+                for phrase in (c for c in found.state.children if c.dep_ == "prep"):
+                    self._arguments.place(phrase, who, event)
             self._joints.append((event, found.preposition, "with", clause.i if clause is not None else None))
             self.events.append(event)
 
@@ -134,7 +138,7 @@ class Reader:
         if before.pos_ in ("NOUN", "PROPN") and found.state.lower_ == "behind":
             return self.cast.seen.get(before.i, subject)  # "cuffs the thief, hands behind his back"
         if subject is not None and subject.lemma == "partner" and found.part.idx < subject.first:
-            return _other_person(subject)  # "left knee up, partner mirrors it"
+            return other_person(subject)  # "left knee up, partner mirrors it"
         return subject
 
     @staticmethod
@@ -189,24 +193,14 @@ class Reader:
         event.ongoing = is_ongoing(token, lemma)
         self._polarity(token, head, event)
         agent = self._arguments.fill(token, event)
-        passive = any(child.dep_ in ("nsubjpass", "auxpass", "agent") for child in token.children)
-        above = self._event_of(token.head) if self._goes_on_passive(token) else None
-        if above is not None:  # "is dipped by him and then spun out"
-            agent = agent or above.subject
-        if (passive and token.tag_ == "VBN") or above is not None:
-            agent = agent or (_other_person(subject) if subject is not None else None)
-            if (
-                agent is None and subject is not None and subject.kind in ("thing", "part")
-            ):  # "is held out to her"
-                of = [
-                    *(ref for _, ref in event.prepositions if ref.kind == "person"),
-                    Ref("person", subject.who),
-                ]
-                agent = _other_person(of[0])
-            if event.object is not None and event.dative is None:  # "she is given a book"
-                event.dative, event.subject = subject, agent
-            else:
-                event.object, event.subject = subject, agent
+        above = self._event_of(token.head) if goes_on(token) else None
+        suffered = is_suffered(token, event, self._known)
+        kind = "main-after" if suffered and kind == "while" else kind
+        if above is not None or suffered or is_passive(token):
+            agent = agent or (
+                above.subject if above is not None else None
+            )  # "is dipped by him and then spun out"
+            give_roles(token, event, agent)
         if event.object is None and event.dative is not None:
             event.object, event.dative = event.dative, None
         self._arguments.light(event)
@@ -244,15 +238,6 @@ class Reader:
         if part.who:
             return Ref("person", part.who, first=part.first, last=part.last)
         return self._subjects.found(head)
-
-    @staticmethod
-    def _goes_on_passive(token: Token) -> bool:
-        """True for a participle that shares the auxiliary of a passive before it."""
-        if token.dep_ != "conj" or any(child.dep_ in ("nsubj", "auxpass", "aux") for child in token.children):
-            return False
-        being = next((child for child in token.head.children if child.dep_ == "auxpass"), None)
-        present = being is not None and being.tag_ in ("VBZ", "VBP")
-        return being is not None and (token.tag_ == "VBN" or (present and token.tag_ == "VBD"))
 
     def _gapped(self, token: Token) -> None:
         """Adds the clause whose verb is left out: "A waves with the right hand and B with the left"."""
@@ -396,7 +381,8 @@ class Reader:
         if token.dep_ in ("acl", "relcl"):
             return ("while" if token.tag_ == "VBG" else "with"), above.i
         if token.dep_ in ("xcomp", "ccomp"):
-            return "comp", above.i
+            told = any(c.lower_ == "who" and c.dep_ == "nsubj" for c in token.children)  # "…, who limps"
+            return "while" if told else "comp", above.i
         return "conj", above.i
 
     def _then_before(self, token: Token) -> bool:
@@ -410,8 +396,3 @@ def _goes_on(clause: Token) -> bool:
     noun = clause.head
     back = any(c.dep_ == "dobj" and c.lower_ in ("him", "her", "them") for c in clause.children)
     return back or any(t.text == "," for t in clause.doc[noun.i : clause.i])
-
-
-def _other_person(ref: Ref) -> Ref | None:
-    other = {"a": "b", "b": "a"}.get(ref.who)
-    return Ref("person", other) if ref.kind == "person" and other else None

@@ -18,7 +18,7 @@ LEAST_SCORE = -1.0
 """What a frame must score to be taken at all: more beside it than in it is another sentence."""
 _SYNONYM = 0.8
 """What each step through WordNet costs."""
-_FARTHEST = 2.0
+_FARTHEST = 1.0
 """Steps through WordNet, at most: ranks of the two verbs' senses and levels up."""
 
 Found = tuple[str, Frame, Match]
@@ -77,7 +77,8 @@ class Matcher:
 
     def _alike(self, event: Event) -> Iterator[tuple[float, Found]]:
         lemma, event = _phrasal(event)
-        for sense, cost in wordnet.meanings(lemma):
+        near = ((sense, cost) for sense, cost in wordnet.meanings(lemma) if cost <= _FARTHEST)
+        for sense, cost in near:
             for name in self._named.get(sense, ()):
                 entry = self._known.entries[name]
                 for text in entry.frames:

@@ -6,13 +6,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from .repair import others
 from .run_on import breaks
 from .spelling import Speller
 from .syntax import parse
 from .wording import Text
 
 if TYPE_CHECKING:
-    from spacy.tokens import Doc
+    from spacy.tokens import Doc, Token
 
 _MOST = 8
 """Parses of one text, at most."""
@@ -37,12 +38,27 @@ class Parse:
     cost: float = 0.0
 
     def changed(self, changes: Mapping[int, tuple[str, str]], cost: float = 0.0) -> Parse:
-        """The parse with safe verbs in the place of others; the new words may be longer, but are as many."""
-        numbers = {token.i: changes[token.idx] for token in self.doc if token.idx in changes}
-        text = self.text.replaced({at: word for at, (word, _) in changes.items()})
+        """The parse with safe verbs in the place of others; the new words may be longer, but are as many.
+
+        A verb within a word, as "counter" in "counter-clockwise", stays.
+        """
+        whole = [t for t in self.doc if t.idx in changes and self.text.word(t.idx) == t.text]
+        safe = {token.idx: changes[token.idx][0] for token in whole}
+        lemmas = {token.i: changes[token.idx][1] for token in whole}
+        text = self.text.replaced(safe)
         doc = parse(text.parsed)
-        lemmas = {i: lemma for i, (word, lemma) in numbers.items() if i < len(doc) and doc[i].text == word}
+        if missed := [self.doc[i].idx for i in lemmas if not _is_verb(doc[i])]:
+            for instead in zip(*(others(safe[at]) for at in missed), strict=False):
+                other = self.text.replaced(safe | dict(zip(missed, instead, strict=True)))
+                again = parse(other.parsed)
+                if all(_is_verb(again[i]) for i in lemmas):
+                    text, doc = other, again
+                    break
         return Parse(text, doc, {**self.lemmas, **lemmas}, cost)
+
+
+def _is_verb(token: Token) -> bool:
+    return token.pos_ == "VERB" and token.dep_ != "aux"
 
 
 def parses(written: Text, speller: Speller) -> Iterator[Parse]:

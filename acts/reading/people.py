@@ -128,7 +128,7 @@ class Cast:
         if token.tag_ == "NNP" and token.pos_ == "PROPN" and not self._words.is_place(lemma) and not small:
             return self._named(text)
         acts = acts and token.dep_ != "poss"
-        acting = self._is_acting_animal(token, lemma)
+        acting = self._is_acting_animal(token, lemma) or _is_who(token)
         acting = acting or (acts and bool(children & _ARTICLES) and self._is_acting(token))
         if not (self._words.is_person(lemma) or self._has(lemma) or acting) or token.pos_ in (
             "ADV",
@@ -301,6 +301,9 @@ class Cast:
                     return "ab" if len(subject) == 2 else ""
                 if text == "your" and not self._has("you"):  # of an order: whoever is addressed
                     return "ab" if len(subject) == 2 else subject
+                if text == "whose":
+                    clause = next((t for t in token.ancestors if t.dep_ == "relcl"), None)
+                    return (self.person(clause.head, "") or "") if clause is not None else ""
                 if text in ("my", "your"):
                     return self._named("i" if text == "my" else "you") or ""
                 if text == "its" and len(subject) == 1:
@@ -341,6 +344,12 @@ class Cast:
         return owner or (
             self._pronoun(sex, "") if subject == "ab" and not told else ""
         )  # "they dance, her head …"
+
+
+def _is_who(noun: Token) -> bool:
+    """True for a noun of which a clause with "who" goes on: "the model, who poses"."""
+    clauses = (c for c in noun.children if c.dep_ == "relcl" and wordnet.may_be_person(noun.lemma_.lower()))
+    return any(c.lower_ == "who" for clause in clauses for c in clause.children)
 
 
 def begins_clause(pronoun: Token) -> bool:

@@ -262,7 +262,12 @@ class _Planner:
         return True
 
     def _completed(self, number: int, event: Event) -> Iterator[Event]:
-        """The event with the object that a coordinated one has: "he reads and tears up the letter"."""
+        """The event with what other words say of it, as the object of "he reads and tears up the letter"."""
+        if event.subject is not None and event.subject.kind == "part" and event.object is None:
+            above = self._events[event.beside].subject if event.beside is not None else None
+            whose = event.subject.who or (above.who if above is not None and above.kind == "person" else "")
+            if len(whose) == 1:  # "an arm hooked around his waist": who hooks it there
+                yield replace(event, subject=Ref("person", whose), object=event.subject, state=True)
         if event.object is not None and _is_implied(
             event.subject
         ):  # "is frozen" needs nobody who freezes him

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
 
 _SAFE = {
-    "s": ("admires", "arrives"),
-    "ing": ("admiring", "arriving"),
-    "ed": ("admired", "arrived"),
-    "": ("admire", "arrive"),
+    "s": ("admires", "arrives", "jumps"),
+    "ing": ("admiring", "arriving", "jumping"),
+    "ed": ("admired", "arrived", "jumped"),
+    "": ("admire", "arrive", "jump"),
 }
-"""Forms of a verb with and of one without an object that the parser takes for nothing else."""
+"""Forms of a verb with and of two without an object that the parser hardly takes for anything else."""
 _SAFE_WITH_VERB = {"s": "starts", "ing": "starting", "ed": "started", "": "start"}
 """The same before another verb: "mimes drinking"."""
 _SUBJECTS = frozenset(
@@ -32,6 +32,13 @@ _CROWDS = frozenset(("audience", "crowd", "public", "class", "team", "band", "or
 _JOINS = frozenset(("and", "then", "but", ",", ";", "or"))
 _TAGS = {"VBZ": "s", "VBD": "ed", "VBP": "", "VB": ""}
 """Endings of finite verbs by their tags."""
+
+
+def others(safe: str) -> tuple[str, ...]:
+    """The other safe verbs in the same form, for where the parser takes one for something else after all."""
+    return next(
+        (tuple(word for word in verbs if word != safe) for verbs in _SAFE.values() if safe in verbs), ()
+    )
 
 
 def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[str, str]]:
@@ -247,7 +254,10 @@ def _after_person(token: Token, ending: str) -> bool:
     if before.pos_ == "PRON" and not one:
         return before.lower_ in _SUBJECTS
     the_two = before.lower_ == "two" and before.i > 0 and before.nbor(-1).lower_ in ("the", "these", "those")
-    many = before.tag_ in ("NNS", "NNPS") or before.lower_ in ("both", "people") or the_two
+    counted = any(c.dep_ == "nummod" and c.lower_ != "one" for c in before.children) or (
+        before.i > 0 and before.nbor(-1).lower_ in ("two", "both", "2")
+    )
+    many = before.tag_ in ("NNS", "NNPS") or before.lower_ in ("both", "people") or the_two or counted
     if ending != "s" and not many and not one:
         return False
     if ending == "s" and many and before.lower_ not in ("second", "first"):

@@ -117,8 +117,10 @@ class Subjects:
         moving = (c for aux in token.children if aux.dep_ == "aux" for c in aux.children)
         for child in (*token.children, *moving):
             if child.dep_ in ("nsubj", "nsubjpass", "csubj", "expl"):
-                if child.tag_ in ("WP", "WDT") and token.dep_ == "relcl":
-                    found = self._antecedent(token)
+                if child.tag_ in ("WP", "WDT") and (token.dep_ == "relcl" or child.lower_ == "who"):
+                    found = self._antecedent(token) if token.dep_ == "relcl" else None
+                    if child.lower_ == "who" and (found is None or found.kind == "thing"):
+                        found = self._person_before(child) or found
                     if child.lower_ == "who" and found is not None and found.kind == "part" and found.who:
                         return Ref("person", found.who)  # "holds the ankle of the patient, who lies"
                     return found
@@ -143,6 +145,11 @@ class Subjects:
             ):  # "…, both freeze"
                 return Ref("person", "ab", child.lower_, first=child.idx, last=child.idx + len(child.text))
         return None
+
+    def _person_before(self, who: Token) -> Ref | None:
+        """The person named last before "who", where the clause hangs on something else."""
+        refs = (self._cast.seen.get(i) for i in range(who.i - 1, who.sent.start - 1, -1))
+        return next((ref for ref in refs if ref is not None and ref.kind == "person"), None)
 
     def _is_someone(self, noun: Token) -> bool:
         """True for one person to whom something is done, but not for "your partner", whom both have."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 import bisect
 import re
 from collections.abc import Collection, Iterator, Mapping
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from .absolute import stands_absolutely
@@ -113,6 +114,10 @@ class Text:
         """The number of the word that begins at this offset of what is parsed."""
         return bisect.bisect_right(self._starts, at) - 1
 
+    def word(self, at: int) -> str:
+        """The word at this offset of what is parsed."""
+        return self._pieces[self.number(at)][0]
+
     def ended(self) -> Text | None:
         """The same text with the full stop that it lacks, without which the parser errs more; None if it has one."""
         if not self._pieces or not self._pieces[-1][0][-1].isalnum():
@@ -166,6 +171,11 @@ class _Preparation:
         self._letters = names([word for word, _, _ in self._tokens], self._is_verb)
         self._ellipsis = Ellipsis(lambda i: self._letters.get(i, self._lower(i)).lower(), speller)
         self._pieces: list[tuple[str, int, int]] = []
+        self._leads = ("the", "follow") in pairwise(word.lower() for word, _, _ in self._tokens)
+
+    def _names_dancer(self, i: int) -> bool:
+        """True for "lead" and "follow" as people: "the follow", "Lead dips the follow"."""
+        return self._lower(i - 1) in ("the", "a") or self._lower(i + 1).endswith("s")
 
     def text(self) -> Text:
         """The prepared text."""
@@ -207,7 +217,8 @@ class _Preparation:
         if self._lower(i) == "back" and (owned or turned):
             self._pieces.append(("spine", *self._tokens[i][1:]))  # the noun, and no adverb
             return 1
-        if self._lower(i) == "the" and self._lower(i + 1) == "two" and self._is_verb(self._lower(i + 2)):
+        pointed = self._lower(i) in ("the", "these", "those") and self._lower(i + 1) == "two"
+        if pointed and self._is_verb(self._lower(i + 2)):
             self._pieces.append(
                 ("they", self._tokens[i][1], self._tokens[i + 1][2])
             )  # "the two circle round"
@@ -304,6 +315,8 @@ class _Preparation:
             return "them"  # which owns nothing
         if lower in self._words.shorthand:
             return self._words.shorthand[lower]
+        if self._leads and lower in ("lead", "follow") and self._names_dancer(i):
+            return f"{lower}er"
         if lower.endswith("s") and following.isalpha() and self._owns(i, lower[:-1]):
             return f"{self._words.shorthand.get(lower[:-1], word[:-1])}'s"  # "her brothers back"
         if (
@@ -317,7 +330,8 @@ class _Preparation:
             return f"{lower}wards"  # "turn left": no past of "leave"
         if word.islower() and word.isalpha() and len(word) > 3 and (right := self._mended(lower)) is not None:
             return right
-        if lower == "round" and self._is_verb(self._lower(i - 1)) and following in _DETERMINERS:
+        verbal = any(self._is_verb(self._lower(i - k)) for k in (1, 2))
+        if lower == "round" and verbal and following in _DETERMINERS:
             return "around"  # the parser takes it for a verb
         if lower == "goodbye" and self._lower(i - 1).startswith(("hug", "kiss", "embrac")):
             return "fondly"  # the parser takes the two for a compound

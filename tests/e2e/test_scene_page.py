@@ -177,6 +177,11 @@ def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any)
         assert np.abs(np.array(pose["positions"]) - wanted).max() < 1e-4
         return pose["seconds"] == seconds and abs(seen - seconds) < 0.01
 
+    def comes_back(seconds: float) -> bool:
+        """The deleted pose is there again, once the page has answered."""
+        page.wait_for_selector(".pds-pin")
+        return pinned(seconds)
+
     assert pinned(dragged)
     undo.click()
     assert pinned(2.0) and redo.is_enabled()
@@ -213,4 +218,4 @@ def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any)
     page.keyboard.press("Delete")
     assert story(page)["poses"] == []
     undo.click()
-    assert pinned(2.0667)
+    assert comes_back(2.0667)
