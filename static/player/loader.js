@@ -13,7 +13,7 @@ function load(key, make) {
   return once.get(key);
 }
 
-/** The plotly.js that ships in the plotly Python package. */
+/** plotly.js with its 3D charts alone, see static/plotly. */
 export function loadPlotly(url) {
   return load(url, () =>
     window.Plotly?.newPlot ? Promise.resolve(window.Plotly) : new Promise((resolve, reject) => {

@@ -59,7 +59,7 @@ def test_a_closed_tab_says_what_to_do_when_it_opens(player_in_page):
 
 def test_the_empty_state_does_not_wait_for_the_3d_view(open_page, player_url):
     def without_plotly(page):
-        page.route("**/plotly.min.js", lambda route: None)  # never answered
+        page.route("**/plotly-gl3d.min.js", lambda route: None)  # never answered
 
     page = open_page(player_url, before=without_plotly)
     page.wait_for_selector(".pdd-empty-text:visible:has-text('press Generate')")
@@ -118,7 +118,7 @@ def test_falls_back_to_restyle(player_in_page):
             response = route.fetch()
             route.fulfill(response=response, body=response.text().replace("scatterPlot", "somethingElse"))
 
-        page.route("**/plotly.min.js", answer)
+        page.route("**/plotly-gl3d.min.js", answer)
 
     page = player_in_page(before=rename)
     assert hook(page, "mode") == "restyle"

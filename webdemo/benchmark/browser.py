@@ -116,7 +116,9 @@ def measure_browser() -> dict[str, Any]:
             figures["browser_cores_paused"] = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
             figures["browser_cores_waiting"] = _wait_for_a_long_run(page, browser)
             page.wait_for_timeout(1000 * (GIVE_BACK_EVERY + 2))
-            return figures | _memory(server)
+            figures |= _memory(server)
+            page.close()  # a server waits for pages that listen before it ends
+            return figures
 
 
 @contextlib.contextmanager
@@ -270,6 +272,7 @@ def _wait_for_a_long_run(page: Any, browser: Any) -> float:
         raise InputError(
             "The run ended before the waiting page was measured: this machine is too fast for it."
         )
+    stop.click()  # to its end it would take a minute or more on two cores
     page.locator("button#generate:enabled").wait_for(timeout=1000 * LONGEST_RUN)
     return share
 

@@ -8,11 +8,9 @@ template, it travels as data and the browser sets it as text.
 from __future__ import annotations
 
 import uuid
-from pathlib import Path
 from typing import Any, ClassVar
 
 import gradio as gr
-import plotly
 
 from motion.body import Body
 from motion.character import packed_body
@@ -23,11 +21,12 @@ from .part import STATIC, Part, on_load
 
 PLAYER_FOLDER = STATIC / "player"
 BODIES_FOLDER = PLAYER_FOLDER.parent / "bodies"
-PLOTLY_JS = Path(plotly.__file__).resolve().parent / "package_data" / "plotly.min.js"
+PLOTLY_JS = STATIC / "plotly" / "plotly-gl3d.min.js"
+"""plotly.js with its 3D charts alone: a third of what the whole of it weighs."""
 EMPTY_TEXT = "player.empty"
 """Key of the text that says what there is to do, and on a second line what comes of it."""
 
-# Only these become reachable over the network: the player's files, its bodies, plotly's single script and the texts.
+# Only these become reachable over the network: the player's files, its bodies, plotly.js and the texts.
 gr.set_static_paths([BODIES_FOLDER, PLOTLY_JS, TEXTS_JS, TEXTS_FOLDER])
 
 _MOUNT = (
