@@ -38,7 +38,7 @@ export class Filming {
   constructor(player) {
     this.player = player;
     this.on = false;
-    this.chosen = null; // what the visitor wants; until they say so, the motion that is there at first has it
+    this.chosen = null; // what the visitor wants; until they say so, what is there before their first motion has it
     this.weight = 0; // of the camera's move
   }
 
@@ -48,7 +48,7 @@ export class Filming {
     this.set(this.chosen);
   }
 
-  /** Another motion; `greets` says whether it is the one that is there before anything is asked. */
+  /** Another motion, or none; `greets` says whether it is what is there before anything is asked. */
   load(greets) {
     this.set(this.chosen ?? greets);
     this.step(0);

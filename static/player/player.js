@@ -58,6 +58,7 @@ export class Player {
     this.Plotly = Plotly;
     await this.panes[0].open(this.theme.background, Plotly);
     this.scene = this.panes[0].scene;
+    if (!this.data) this.filming.load(true);
     this.listen();
     this.wake();
     this.clothes.change();
@@ -108,6 +109,7 @@ export class Player {
       this.focus = null;
       this.grid.load(null);
       this.panes[0].load(null);
+      this.filming.load(true);
       this.refresh();
       return;
     }

@@ -51,9 +51,11 @@ def test_a_hand_on_the_camera_ends_it_where_it_is(player) -> None:
     assert page.evaluate(side) == pytest.approx(seen, abs=0.01)
 
 
-def test_the_motion_that_is_there_at_first_has_it(player) -> None:
-    page = player("arrival")
-    until(page, "window.__pasdedeux.player.filming.on")
+def test_what_is_there_at_first_has_it(player) -> None:
+    page = player(None)
+    assert page.locator(".pdd[data-state=empty].pdd-film").count(), "nor is the empty stage plain"
+    press(page, "arrival")
+    until(page, "window.__pasdedeux.frame > 0 && window.__pasdedeux.player.filming.on")
     press(page, "load")
     until(page, "window.__pasdedeux.player.data?.samples[0].frames === 150")
     assert not page.evaluate("window.__pasdedeux.player.filming.on")
