@@ -88,7 +88,7 @@ class Matcher:
         senses = wordnet.senses(lemma)[:2]
         for rank, own in enumerate(senses):
             bodily = wordnet.kind(own) in wordnet.BODILY
-            if "_" in lemma and not bodily:  # "bows out"
+            if not bodily and ("_" in lemma or rank):  # "bows out", "looks", which may also mean "appears"
                 continue
             for sense, level in [(own, 0), *((up, 1) for up in wordnet.above(own) if bodily)]:
                 for verb, other in self._verbs.get(sense, ()):

@@ -127,19 +127,9 @@ class Cast:
         small = token.text.islower() and not self._words.is_usual_person(lemma) and not acts
         if token.tag_ == "NNP" and token.pos_ == "PROPN" and not self._words.is_place(lemma) and not small:
             return self._named(text)
-        acts = acts and token.dep_ != "poss"
-        acting = self._is_acting_animal(token, lemma) or _is_who(token)
-        acting = acting or (acts and bool(children & _ARTICLES) and self._is_acting(token))
-        if not (self._words.is_person(lemma) or self._has(lemma) or acting) or token.pos_ in (
-            "ADV",
-            "VERB",
-            "ADP",
-        ):
+        if not self._is_somebody(token, lemma, children):
             return None
-        named = (
-            token.tag_ == "NNS" and token.text.istitle() and lemma == text and lemma not in self._words.both
-        )
-        if (token.tag_ in ("NNS", "NNPS") and not named) or children & {"two", "both"}:
+        if self._is_plural(token, lemma) or children & {"two", "both"}:
             return self._many(token, children)
         who = self._noun(token, lemma, children, subject)
         if who in self._known:
@@ -170,6 +160,35 @@ class Cast:
         if own and "'s" not in children:
             return self._as(own, lemma) if not subject else self._new(lemma, token)
         return self._new(lemma, token)
+
+    def _is_somebody(self, token: Token, lemma: str, children: set[str]) -> bool:
+        """True for a noun that names a person, by itself or by what it does here."""
+        if token.pos_ in ("ADV", "VERB", "ADP"):
+            return False
+        acts = token.dep_ in ("nsubj", "nsubjpass") and bool(children & _ARTICLES)
+        known = self._words.is_person(lemma) or bool(self._has(lemma)) or self._is_many(token)
+        return (
+            known
+            or self._is_acting_animal(token, lemma)
+            or _is_who(token)
+            or (acts and self._is_acting(token))
+        )
+
+    def _is_plural(self, token: Token, lemma: str) -> bool:
+        """True for the plural of a noun, and not for a name like one: "Chris"."""
+        text = token.lower_
+        named = (
+            token.tag_ == "NNS" and token.text.istitle() and lemma == text and lemma not in self._words.both
+        )
+        return (token.tag_ in ("NNS", "NNPS") and not named) or self._is_many(token)
+
+    def _is_many(self, token: Token) -> bool:
+        """True for a plural that the parser does not know as one: "ninjas"."""
+        lemma = token.lemma_.lower()
+        one = lemma.removesuffix("s")
+        return (
+            one != lemma == token.lower_ and not self._words.is_person(lemma) and self._words.is_person(one)
+        )
 
     def _is_acting(self, token: Token) -> bool:
         """True for a noun that is a person where it acts: "the model poses", "the base lies on her back"."""

@@ -76,7 +76,11 @@ class Subjects:
         if (named := self._named_before(token)) is not None:
             return named
         if token.dep_ in ("relcl", "acl") or token.dep_ == "amod":
-            return self._antecedent(token)
+            found = self._antecedent(token)
+            handles = token.tag_ == "VBG" and any(c.dep_ == "dobj" for c in token.children)
+            if found is None or found.kind != "part" or not handles or head is None:
+                return found
+            return self.of(head, self._tree.head(head))  # "they bump heads picking up a pencil"
         if head is not None and self._is_order(token):
             return Ref("person", "ab", first=token.idx, last=token.idx)
         if head is not None:
