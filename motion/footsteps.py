@@ -7,6 +7,7 @@ the other swings. Lengths and times of the steps follow the speed, as people's d
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,6 +36,8 @@ _PERIOD = (0.36, 0.75)
 _SWING = 0.8
 _LENGTH = (0.2, 0.3)
 """Metres of a step at rest, and what it grows by with each metre a second (recorded walks: 0.5 to 0.65 m at 1.2)."""
+_LONGEST, _QUICKEST = 0.65, 0.22
+"""Metres of a step at most, and seconds at least, where a body surges ahead."""
 _RISE = 0.06
 """Metres by which an ankle rises in its swing."""
 _TOE, _ANKLE = 0.02, 0.09
@@ -118,7 +121,9 @@ def _steps(feet: Array, pelvis: Array, start: int, stop: int, fps: float) -> lis
     speed = scipy.ndimage.gaussian_filter1d(_speed(pelvis, fps), 0.2 * fps, mode="nearest")[start:stop]
     period = np.clip((_LENGTH[0] + _LENGTH[1] * speed) / np.maximum(speed, 0.1), *_PERIOD)
     phase = np.concatenate([[0.0], np.cumsum(1 / (period * fps))])
-    count = max(2, round(float(phase[-1])))
+    way = float(np.linalg.norm((pelvis[stop - 1] - pelvis[start])[[0, 2]]))
+    most = max(2, int((stop - start) / (_QUICKEST * fps)))
+    count = min(max(2, round(float(phase[-1])), math.ceil(way / _LONGEST) + 1), most)
     at = np.interp(np.arange(0, count + 1) * phase[-1] / count, phase, np.arange(len(phase)))
     ahead = pelvis[stop - 1] - pelvis[start]
     first = int(np.argmin([feet[start, side, 1] @ ahead for side in (0, 1)]))  # the foot that is behind
