@@ -130,6 +130,8 @@ def stands_absolutely(lower: Callable[[int], str], has_verb: Callable[[int], boo
     placed = (
         after in PREPOSITIONS - {"of", "to", "with"} and behind.isalpha() and after not in words.directions
     )
+    if placed and at == i and lower(i).endswith("s"):  # "hands over a parcel" is an act
+        placed = any(words.part(lower(k).removesuffix("s")) for k in range(at + 2, at + 5))
     return (
         held
         or ((after in words.directions or after in _STATES) and ends)

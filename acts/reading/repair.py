@@ -249,8 +249,8 @@ def _after_person(token: Token, ending: str) -> bool:
         return False
     numbered = before.lower_ in ("first", "second", "former", "latter") and token.dep_ not in ("dobj", "pobj")
     one = before.lower_ in ("one", "other", "both") or before.text in (A_NAME, B_NAME) or numbered
-    if before.lower_ in ("one", "other") and ending == "":
-        return False  # "one knee"
+    if ending == "" and (before.lower_ in ("one", "other") or token.pos_ == "ADP"):
+        return False  # "one knee", "follows A down the street"
     if before.pos_ == "PRON" and not one:
         return before.lower_ in _SUBJECTS
     the_two = before.lower_ == "two" and before.i > 0 and before.nbor(-1).lower_ in ("the", "these", "those")
