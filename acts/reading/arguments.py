@@ -73,12 +73,7 @@ class Arguments:
             elif child.dep_ in ("dobj", "obj") and child.lower_ in self._words.directions and bare:
                 self._modifier(child, event)
             elif child.dep_ in ("dobj", "obj") and self._is_measure(child, event):  # "walk a few steps"
-                lasts = self._words.seconds.get(child.lemma_.lower())
-                event.words += [] if lasts else [child.lemma_.lower()]
-                event.seconds = self._amount(child) * lasts if lasts else event.seconds
-                for number in child.children:
-                    self._count(number, child, event)
-                    self._direction(number.lower_, event)
+                self._measured(child, who, event)
             elif child.dep_ in ("dobj", "obj") or (
                 child.dep_ == "appos" and child.pos_ == "NOUN" and token.pos_ == "VERB"
             ):
@@ -118,6 +113,17 @@ class Arguments:
             self.seen.add(child.i)
         self._their_back(token, event)
         return agent
+
+    def _measured(self, noun: Token, who: str, event: Event) -> None:
+        """Takes up a length or a time that stands as an object: "walk a few steps to the left"."""
+        lasts = self._words.seconds.get(noun.lemma_.lower())
+        event.words += [] if lasts else [noun.lemma_.lower()]
+        event.seconds = self._amount(noun) * lasts if lasts else event.seconds
+        for child in noun.children:
+            self._count(child, noun, event)
+            self._direction(child.lower_, event)
+            if child.dep_ == "prep":
+                self._preposition(child, who, event)
 
     @staticmethod
     def _their_back(token: Token, event: Event) -> None:

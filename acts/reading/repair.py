@@ -59,6 +59,7 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
         if form is not None and (
             (_is_other(token) and (_after_person(token, form[1]) or _opens(token, form[1])))
             or _coordinated(token, form[1], last, found)
+            or _is_ordered(token, form[1])
             or _is_kept(token, form[1])
         ):
             found[token.idx] = (_safe(token, form[1]), form[0])
@@ -115,11 +116,26 @@ def _verbless(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> Iterator[Token]
             for token in sentence
             if token.i > sentence.start + 1
             and token.pos_ in ("NOUN", "PROPN")
-            and forms.get(token.lower_, ("", ""))[1] in ("s", "ed")
-            and token.nbor(-1).pos_ in ("NOUN", "PROPN", "PRON")
+            and _is_told(token, forms.get(token.lower_, ("", ""))[1])
             and _ends_phrase(token)
         ]
         yield from known[-1:]
+
+
+def _is_told(token: Token, ending: str) -> bool:
+    """True for a form of a verb behind its subject: "the man in the hat waves", "couple slow dancing"."""
+    if ending == "ing":
+        people = (t.lemma_.lower() for t in token.sent if t.i < token.i)
+        return token.tag_ == "NN" and any(
+            vocabulary().is_person(noun) or noun in vocabulary().both for noun in people
+        )
+    return ending in ("s", "ed") and token.nbor(-1).pos_ in ("NOUN", "PROPN", "PRON")
+
+
+def _is_ordered(token: Token, ending: str) -> bool:
+    """True for "link" in ", link elbows", which is tagged as a verb and yet stands as a part of the noun."""
+    begins = token.is_sent_start or token.nbor(-1).text in (",", ";")
+    return ending == "" and begins and token.tag_ in ("VB", "VBP") and token.dep_ == "compound"
 
 
 def _is_kept(token: Token, ending: str) -> bool:
