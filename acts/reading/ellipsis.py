@@ -151,12 +151,9 @@ class Ellipsis:
         return before in _ENDS | _CLAUSES
 
     def is_object(self, i: int) -> bool:
-        """True for the "her" of "the friend behind her catches it" and "dips her low", which owns nothing."""
-        following, behind = self._lower(i + 1), self._lower(i + 2)
-        verb = self._lower(i - 1) in PREPOSITIONS and self._ending(following) == "s"
-        way = vocabulary().directions.get(following) not in (None, "left", "right", "back")
-        ends = not behind.isalpha() or behind in PREPOSITIONS or behind in ("and", "then", "while", "as")
-        return self._lower(i) == "her" and ((verb and behind in _OBJECTS) or (way and ends))
+        """True for the "her" of "the friend behind her catches it", which owns no catches."""
+        verb = self._lower(i - 1) in PREPOSITIONS and self._ending(self._lower(i + 1)) == "s"
+        return self._lower(i) == "her" and verb and self._lower(i + 2) in _OBJECTS
 
     def has_verb(self, i: int) -> bool:
         """True if a verb, or another clause, stands between a word and the next mark."""

@@ -11,6 +11,8 @@ from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from acts.frames import PREPOSITIONS
+
 from .absolute import stands_absolutely
 from .ellipsis import Ellipsis
 from .letters import names
@@ -173,6 +175,15 @@ class _Preparation:
         self._pieces: list[tuple[str, int, int]] = []
         self._leads = ("the", "follow") in pairwise(word.lower() for word, _, _ in self._tokens)
 
+    def _is_noun(self, i: int) -> bool:
+        """True for a word that another may stand before as an adjective: "her high heels"."""
+        word = self._lower(i)
+        return (
+            word.isalpha()
+            and word not in PREPOSITIONS
+            and word not in ("and", "then", "while", "as", "until")
+        )
+
     def _names_dancer(self, i: int) -> bool:
         """True for "lead" and "follow" as people: "the follow", "Lead dips the follow"."""
         return self._lower(i - 1) in ("the", "a") or self._lower(i + 1).endswith("s")
@@ -315,6 +326,8 @@ class _Preparation:
             return "them"  # which owns nothing
         if lower in self._words.shorthand:
             return self._words.shorthand[lower]
+        if lower in ("low", "high") and self._lower(i - 1) == "her" and not self._is_noun(i + 1):
+            return self._words.directions[lower]  # "dips her low", who owns no lows
         if self._leads and lower in ("lead", "follow") and self._names_dancer(i):
             return f"{lower}er"
         if lower.endswith("s") and following.isalpha() and self._owns(i, lower[:-1]):
