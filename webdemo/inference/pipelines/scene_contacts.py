@@ -26,6 +26,8 @@ Array = NDArray[np.floating]
 
 FAR_APART = 1.8
 """Metres between two people from which one comes up who does something within the other's reach."""
+_TOGETHER = 0.2
+"""Metres more than in a hold at which two who begin in it stand."""
 REACHES = 12
 """Frames in which a hand is brought to the place that it touches."""
 HELD = 1.6
@@ -196,7 +198,9 @@ def _reaching(touch: Contact, target: Array, own: Course, frame: int, back: floa
 def given_hold(kind: Hold, stretch: Stretch) -> list[KnownFrames]:
     """The trunks and hands of two people in a hold, as the network is given them."""
     courses = [stretch.course(person) for person in (0, 1)]
-    at = stretch.shown(np.arange(REACHES, stretch.frames, 3))
+    apart = float(np.linalg.norm(np.subtract(*stretch.stand.places)))
+    begun = stretch.start == 0 and apart < kind.value + _TOGETHER  # a story that begins in the hold
+    at = stretch.shown(np.arange(0 if begun else REACHES, stretch.frames, 3))
     if not len(at):
         return []
     wrists = joined(kind, np.stack([course.places[at] for course in courses]))

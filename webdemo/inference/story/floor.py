@@ -18,6 +18,7 @@ from motion.vectors import wrapped
 from webdemo.inference.actor import FPS
 
 from .curves import direction, eased, smoothed
+from .holds import Hold
 from .moves import Move
 from .track import EASE, MOST, Track
 from .ways import Way
@@ -26,6 +27,10 @@ Array = NDArray[np.floating]
 
 EVERY = 30
 """Frames between two given places."""
+_DENSE = 5
+"""Frames from one place to the next that are given to a couple who dance in hold."""
+_BASIC, _BAR, _TOGETHER = 0.16, 2.0, 0.8
+"""Metres and seconds of a basic step to and fro, and seconds in which the two come together before it."""
 CLOSE = 0.9
 """Metres from each other at which people who walk up to each other are left to the network."""
 NEAR_BY = 0.6
@@ -306,6 +311,19 @@ def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, 
     track.walk(line, seconds)
 
 
+def _danced(seconds: Array, angles: Array, sign: float) -> Array:
+    """(N, 2) metres by which a couple in hold steps to and fro, along the line between them, as they turn.
+
+    Args:
+        seconds: (N,) since they came together.
+        angles: (N,) radians of one of them about the middle.
+        sign: 1 for a and -1 for b, who go the same way.
+    """
+    ahead = sign * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+    beats = np.clip(seconds - _TOGETHER, 0, None)[:, None]
+    return np.clip(beats / 0.6, 0, 1) * _BASIC * np.sin(2 * math.pi * beats / _BAR) * ahead
+
+
 def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> None:
     """The way of one of two who turn around the middle between them; in hold they face each other."""
     middle = standing.places.mean(axis=0)
@@ -317,6 +335,9 @@ def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> No
     angles, radii = start + turned, radius + (move.near / 2 - radius) * nearer
     line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
     stop = min(track.frame + len(line), len(track.places))
+    if move.way is Way.HOLD and move.near == Hold.CLOSED.value:
+        line = line + _danced(time * seconds, angles, np.sign(out @ (standing.places[0] - middle)) or 1.0)
+        track.dense.update(range(track.frame, stop, _DENSE))
     track.places[track.frame : stop] = line[: stop - track.frame]
     if move.way is Way.HOLD:
         track.headings[track.frame : stop] = angles[: stop - track.frame] + math.pi
@@ -371,6 +392,7 @@ def _sampled(who: int, track: Track, standing: Standing | None) -> Way2D | None:
         return None
     wanted = {
         *known[known % EVERY == EVERY - 1].tolist(),
+        *(track.dense & set(known.tolist())),
         int(known[-1]),
         *([0] if standing is not None else []),
     }

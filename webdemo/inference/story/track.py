@@ -36,6 +36,7 @@ class Track:
         headings: (T,) radians; NaN where they may face anywhere.
         frame: the first frame that is not laid out yet.
         going: (2,) unit direction of a walk side by side that they are on; zero if there was none.
+        dense: frames whose places are given beside those of every way.
     """
 
     place: Array
@@ -44,6 +45,7 @@ class Track:
     headings: Array
     frame: int = 0
     going: Array = field(default_factory=lambda: np.zeros(2))
+    dense: set[int] = field(default_factory=set)
 
     def walk(self, line: Array, seconds: float, *, heading: float | None = None) -> None:
         """Walks along points (N, 2) within some seconds; faces where it goes, or where ``heading`` says."""
