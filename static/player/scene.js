@@ -9,6 +9,7 @@
 // beside bodies are drawn a little nearer to the eye instead, over bodies that stay solid.
 
 import { css } from "./palette.js";
+import { simplify } from "./shaders.js";
 
 const HALF = 60; // metres; a box this wide around the origin makes scene units metres and clips nothing
 const KINDS = {
@@ -94,7 +95,7 @@ export class Scene {
     gl.camera.tick = () => this.tick(gl.camera);
     this.skipPicking(gl);
     this.mode = "fast";
-    for (const name of this.names) if (KINDS[name] === "mesh") plain(this.objects[name]);
+    for (const name of this.names) if (KINDS[name] === "mesh") simplify(this.objects[name], gl.gl, name === "ground" ? "shaded" : "plain");
     rest(gl);
   }
 
@@ -288,21 +289,6 @@ export class Scene {
     this.Plotly.purge(this.host);
     this.objects = null;
   }
-}
-
-/**
- * Draws a mesh's triangles as they are coloured: the shader of its edges does just that, where that of its triangles
- * computes highlights for every pixel, which takes software four times as long.
- */
-function plain(mesh) {
-  const [shader, unused] = [mesh.lineShader, mesh.triShader];
-  mesh.triShader = {
-    bind: () => shader.bind(),
-    set uniforms(values) {
-      shader.uniforms = { ...values, opacity: 1 };
-    },
-    dispose: () => unused.dispose(),
-  };
 }
 
 /**

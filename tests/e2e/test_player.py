@@ -215,6 +215,14 @@ def test_trails_and_onion_skin_are_drawn(player):
     assert changed(ghosts, trails) > 100
 
 
+def test_meshes_are_drawn_by_shaders_of_our_own(player):
+    page = player()
+    meshes = "Object.values(window.__pasdedeux.player.scene.objects).filter((each) => each.triShader)"
+    shaders = f"{meshes}.map((each) => each.triShader.simple)"
+    assert page.evaluate(shaders) == [True] * 5, "the ground, two bodies, things and futures"
+    assert page.evaluate("window.__pasdedeux.player.scene.gl.gl.getError()") == 0
+
+
 def test_several_samples_share_the_clock(player):
     page = player("several")
     pause(page)
