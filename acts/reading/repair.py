@@ -133,9 +133,12 @@ def _is_told(token: Token, ending: str) -> bool:
 
 
 def _is_ordered(token: Token, ending: str) -> bool:
-    """True for "link" in ", link elbows", which is tagged as a verb and yet stands as a part of the noun."""
+    """True for "swing" in ", swing arms, …", which stands as a part of the noun."""
     begins = token.is_sent_start or token.nbor(-1).text in (",", ";")
-    return ending == "" and begins and token.tag_ in ("VB", "VBP") and token.dep_ == "compound"
+    if ending != "" or not begins or token.dep_ != "compound":
+        return False
+    parts = token.head.tag_ == "NNS" and bool(vocabulary().part(token.head.lemma_.lower()))
+    return parts or token.tag_ in ("VB", "VBP")
 
 
 def _is_kept(token: Token, ending: str) -> bool:
