@@ -16,7 +16,7 @@ Array = NDArray[np.floating]
 class Hold(Enum):
     """A hold, and the metres between the pelvises of those who are in it."""
 
-    CLOSED = 0.5
+    CLOSED = 0.6
     RING = 0.85
     PALMS = 0.95
 
@@ -64,7 +64,7 @@ def joined(kind: Hold, places: Array) -> Array:
     hands = middle + 0.42 * left + 1.3 * up
     return np.stack(
         [
-            [hands - 0.03 * ahead, b - 0.2 * left + 1.2 * up],  # a's right hand on b's back
-            [a - 0.17 * left + 1.42 * up + 0.1 * ahead, hands + 0.03 * ahead],  # b's left on a's shoulder
+            [hands - 0.03 * ahead, b - 0.2 * left + 1.06 * up],  # a's right hand on b's back
+            [a - 0.17 * left + 1.46 * up + 0.1 * ahead, hands + 0.03 * ahead],  # b's left on a's shoulder
         ]
     )
