@@ -31,7 +31,10 @@ def told(text: str) -> list[tuple[str, str, str | None]]:
         ("Lead dips the follow.", [("dip", "a", "b")]),
         ("He walks up to her, hands over a parcel and leaves.",
          [("walk-up", "a", "b"), ("hand-over", "a", "b"), ("walk-away", "a", "b")]),
-        ("hold hands, swing arms, walk", [("hold-hands", "ab", None), ("swing-arms", "ab", None), ("walk-together", "ab", None)]),
+        (
+            "hold hands, swing arms, walk",
+            [("hold-hands", "ab", None), ("swing-arms", "ab", None), ("walk-together", "ab", None)],
+        ),
         ("couple slow dancing", [("waltz", "ab", None)]),
         ("Spin her out, and dip her low.", [("twirl", "a", "b"), ("dip", "a", "b")]),
         ("One grabs the other by the wrist and drags her a few steps to the left.",
