@@ -103,8 +103,8 @@ def _rows(text: str, start: int, markers: int, rate: float, label: str) -> Array
         if not line.strip():
             continue
         check_duration(len(rows) + 1, rate, label)
-        cells = _cells(line)[:width]
-        rows.append([_value(cell, label, number) for cell in cells[2:]] + [np.nan] * (width - len(cells)))
+        values = [_value(cell, label, number) for cell in _cells(line)[2:width]]
+        rows.append(values + [np.nan] * (3 * markers - len(values)))
     if not rows:
         raise InputError(f"{label} holds no frames: export it again.")
     return np.array(rows).reshape(len(rows), markers, 3)

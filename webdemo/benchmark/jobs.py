@@ -96,6 +96,7 @@ def _sheet(dice: random.Random, steps: int) -> Job:
         "",
         0,
         0,
+        False,
     )
     return Job(SHEET, data, {}, 1.0)
 

@@ -156,6 +156,16 @@ def test_wrong_trc_files_are_one_sentence(text: str, says: str) -> None:
         formats.read(text.encode(), name="x.trc")
 
 
+@pytest.mark.parametrize("row", ["11", "11\t0.3333", "11\t0.3333\t1.0"])
+def test_a_row_of_a_trc_that_breaks_off_is_a_frame_without_markers(row: str) -> None:
+    lines = WHOLE.split("\n")
+    lines[15] = row
+    clip = formats.read("\n".join(lines).encode(), name="x.trc")
+    assert (
+        isinstance(clip, Clip) and len(clip.positions) == len(lines) - 6 and np.isfinite(clip.positions).all()
+    )
+
+
 @pytest.mark.parametrize(
     ("data", "says"),
     [

@@ -17,7 +17,7 @@ from webdemo.ui.text.texts import ENGLISH, TEXTS_FOLDER, english, languages, say
 ROOT = Path(__file__).resolve().parents[3]
 PYTHON = sorted((ROOT / "webdemo").rglob("*.py"))
 MODULES = [
-    path for path in sorted((ROOT / "static").rglob("*.js")) if "mediapipe" not in path.parts
+    path for path in sorted((ROOT / "static").rglob("*.js")) if not {"mediapipe", "plotly"} & set(path.parts)
 ]  # what others wrote says nothing to visitors
 MARKUP = sorted((ROOT / "static").rglob("*.html"))
 KEY = re.compile(r"[a-z]+\.[a-z0-9_]+")
