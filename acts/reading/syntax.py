@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from motion import InputError
 
+from . import wordnet
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -135,5 +136,7 @@ def is_word(text: str) -> bool:
 
 
 def is_adverb(text: str) -> bool:
-    """True for the adverb of an adjective that the parser has met: "tiredly", "happily"."""
-    return len(text) > 4 and text.endswith("ly") and (is_word(text[:-2]) or is_word(f"{text[:-3]}y"))
+    """True for the adverb of an adjective that the parser has met: "tiredly", "happily", but not "reply"."""
+    if len(text) < 5 or not text.endswith("ly") or wordnet.is_verb(text):
+        return False
+    return is_word(text[:-2]) or is_word(f"{text[:-3]}y")

@@ -15,6 +15,7 @@ def told(text: str) -> list[tuple[str, str, str | None]]:
         # an adverb that the parser takes for a verb, and a safe verb that it takes for an auxiliary
         ("The waiter bows stiffly and pours wine for the lady.", [("bow", "a", None), ("pour-for", "a", "b")]),
         ("These two shake hands.", [("shake-hands", "ab", None)]),
+        ("They both reply with a nod.", [("nod", "ab", None)]),
         # "who" that hangs on something else than its person
         ("The girl skips beside her grandfather, who shuffles along.", [("skip", "a", "b"), ("strut", "b", None)]),
         ("She takes a picture of the model, who bows.", [("photo", "a", "b"), ("bow", "b", None)]),

@@ -26,7 +26,7 @@ Array = NDArray[np.floating]
 
 FAR_APART = 1.8
 """Metres between two people from which one comes up who does something within the other's reach."""
-_TOGETHER = 0.2
+_NEARLY = 0.2
 """Metres more than in a hold at which two who begin in it stand."""
 REACHES = 12
 """Frames in which a hand is brought to the place that it touches."""
@@ -199,7 +199,7 @@ def given_hold(kind: Hold, stretch: Stretch) -> list[KnownFrames]:
     """The trunks and hands of two people in a hold, as the network is given them."""
     courses = [stretch.course(person) for person in (0, 1)]
     apart = float(np.linalg.norm(np.subtract(*stretch.stand.places)))
-    begun = stretch.start == 0 and apart < kind.value + _TOGETHER  # a story that begins in the hold
+    begun = stretch.start == 0 and apart < kind.value + _NEARLY  # a story that begins in the hold
     at = stretch.shown(np.arange(0 if begun else REACHES, stretch.frames, 3))
     if not len(at):
         return []

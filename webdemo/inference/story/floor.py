@@ -29,8 +29,10 @@ EVERY = 30
 """Frames between two given places."""
 _DENSE = 5
 """Frames from one place to the next that are given to a couple who dance in hold."""
-_BASIC, _BAR, _TOGETHER = 0.16, 2.0, 0.8
-"""Metres and seconds of a basic step to and fro, and seconds in which the two come together before it."""
+_BASIC, _BAR = 0.16, 2.0
+"""Metres and seconds of a couple's basic step to and fro."""
+_TOGETHER, _GROWS = 0.8, 0.6
+"""Seconds in which the two come together before it, and in which it grows to its length."""
 CLOSE = 0.9
 """Metres from each other at which people who walk up to each other are left to the network."""
 NEAR_BY = 0.6
@@ -315,13 +317,13 @@ def _danced(seconds: Array, angles: Array, sign: float) -> Array:
     """(N, 2) metres by which a couple in hold steps to and fro, along the line between them, as they turn.
 
     Args:
-        seconds: (N,) since they came together.
+        seconds: (N,) since the beat began.
         angles: (N,) radians of one of them about the middle.
         sign: 1 for a and -1 for b, who go the same way.
     """
     ahead = sign * np.stack([np.sin(angles), np.cos(angles)], axis=1)
-    beats = np.clip(seconds - _TOGETHER, 0, None)[:, None]
-    return np.clip(beats / 0.6, 0, 1) * _BASIC * np.sin(2 * math.pi * beats / _BAR) * ahead
+    danced = np.clip(seconds - _TOGETHER, 0, None)[:, None]
+    return np.clip(danced / _GROWS, 0, 1) * _BASIC * np.sin(2 * math.pi * danced / _BAR) * ahead
 
 
 def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> None:
