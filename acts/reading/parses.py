@@ -10,7 +10,7 @@ from .repair import others
 from .run_on import breaks
 from .spelling import Speller
 from .syntax import parse
-from .wording import Text
+from .text import Text
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token

@@ -23,8 +23,9 @@ from .parses import parses
 from .relations import related
 from .repeats import repeated
 from .spelling import Speller
+from .text import Text
 from .vocabulary import vocabulary
-from .wording import Text, prepared
+from .wording import prepared
 
 MOST_CHARACTERS = 2000
 """Characters of a text that is read at once."""

@@ -18,7 +18,7 @@ from motion.vectors import wrapped
 from webdemo.inference.actor import FPS
 
 from .curves import direction, eased, smoothed
-from .holds import Hold
+from .holds import Hold, danced
 from .moves import Move
 from .track import EASE, MOST, Track
 from .ways import Way
@@ -29,10 +29,6 @@ EVERY = 30
 """Frames between two given places."""
 _DENSE = 5
 """Frames from one place to the next that are given to a couple who dance in hold."""
-_BASIC, _BAR = 0.16, 2.0
-"""Metres and seconds of a couple's basic step to and fro."""
-_TOGETHER, _GROWS = 0.8, 0.6
-"""Seconds in which the two come together before it, and in which it grows to its length."""
 CLOSE = 0.9
 """Metres from each other at which people who walk up to each other are left to the network."""
 NEAR_BY = 0.6
@@ -313,19 +309,6 @@ def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, 
     track.walk(line, seconds)
 
 
-def _danced(seconds: Array, angles: Array, sign: float) -> Array:
-    """(N, 2) metres by which a couple in hold steps to and fro, along the line between them, as they turn.
-
-    Args:
-        seconds: (N,) since the beat began.
-        angles: (N,) radians of one of them about the middle.
-        sign: 1 for a and -1 for b, who go the same way.
-    """
-    ahead = sign * np.stack([np.sin(angles), np.cos(angles)], axis=1)
-    danced = np.clip(seconds - _TOGETHER, 0, None)[:, None]
-    return np.clip(danced / _GROWS, 0, 1) * _BASIC * np.sin(2 * math.pi * danced / _BAR) * ahead
-
-
 def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> None:
     """The way of one of two who turn around the middle between them; in hold they face each other."""
     middle = standing.places.mean(axis=0)
@@ -338,7 +321,7 @@ def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> No
     line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
     stop = min(track.frame + len(line), len(track.places))
     if move.way is Way.HOLD and move.near == Hold.CLOSED.value:
-        line = line + _danced(time * seconds, angles, np.sign(out @ (standing.places[0] - middle)) or 1.0)
+        line = line + danced(time * seconds, angles, np.sign(out @ (standing.places[0] - middle)) or 1.0)
         track.dense.update(range(track.frame, stop, _DENSE))
     track.places[track.frame : stop] = line[: stop - track.frame]
     if move.way is Way.HOLD:

@@ -35,6 +35,10 @@ TWIRL = 0.42
 """Metres between the pelvises of two of whom one turns under the other's arm."""
 _OVER = 1.88
 """Height in metres of the hands over the person who turns under them."""
+_BASIC, _BAR = 0.16, 2.0
+"""Metres and seconds of a couple's basic step to and fro."""
+_TOGETHER, _GROWS = 0.8, 0.6
+"""Seconds in which the two come together before it, and in which it grows to its length."""
 
 
 def raised(places: Array) -> Array:
@@ -68,3 +72,16 @@ def joined(kind: Hold, places: Array) -> Array:
             [a - 0.17 * left + 1.46 * up + 0.1 * ahead, hands + 0.03 * ahead],  # b's left on a's shoulder
         ]
     )
+
+
+def danced(seconds: Array, angles: Array, sign: float) -> Array:
+    """(N, 2) metres by which a couple in hold steps to and fro, along the line between them, as they turn.
+
+    Args:
+        seconds: (N,) since the beat began.
+        angles: (N,) radians of one of them about the middle.
+        sign: 1 for a and -1 for b, who go the same way.
+    """
+    ahead = sign * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+    since = np.clip(seconds - _TOGETHER, 0, None)[:, None]
+    return np.clip(since / _GROWS, 0, 1) * _BASIC * np.sin(2 * np.pi * since / _BAR) * ahead

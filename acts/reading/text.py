@@ -1,0 +1,88 @@
+"""A text in pieces: as it was written and as it is parsed, with the offsets of one in the other."""
+
+from __future__ import annotations
+
+import bisect
+import re
+from collections.abc import Collection, Iterator, Mapping
+
+from .vocabulary import vocabulary
+
+_TOKEN = re.compile(r"[Pp][12]\b|[^\W\d_]+(?:['’-][^\W\d_]+)*|\d+(?:[.,]\d+)?|[^\w\s]|_")
+_QUOTES = {"’": "'", "‘": "'", "`": "'", "“": '"', "”": '"', "–": "-", "—": "-"}
+
+
+class Text:
+    """A text and the form in which it is parsed.
+
+    Attributes:
+        original: as it was written.
+        parsed: as the parser gets it.
+    """
+
+    def __init__(self, original: str, pieces: list[tuple[str, int, int]]) -> None:
+        self.original = original
+        self._pieces = pieces
+        self._starts: list[int] = []
+        words = ""
+        for word, _, _ in pieces:
+            words += " " if words else ""
+            self._starts.append(len(words))
+            words += word
+        self.parsed = words
+
+    def replaced(self, words: Mapping[int, str]) -> Text:
+        """The same text, parsed with other words in the place of those that begin at these offsets."""
+        pieces = [
+            (words.get(at, word), start, stop)
+            for at, (word, start, stop) in zip(self._starts, self._pieces, strict=True)
+        ]
+        return Text(self.original, pieces)
+
+    def broken(self, numbers: Collection[int]) -> Text:
+        """The same text with a stop before the words of these numbers."""
+        pieces: list[tuple[str, int, int]] = []
+        for i, piece in enumerate(self._pieces):
+            stop = "," if piece[0] == "and" else ";"
+            pieces += [(stop, piece[1], piece[1]), piece] if i in numbers else [piece]
+        return Text(self.original, pieces)
+
+    def number(self, at: int) -> int:
+        """The number of the word that begins at this offset of what is parsed."""
+        return bisect.bisect_right(self._starts, at) - 1
+
+    def word(self, at: int) -> str:
+        """The word at this offset of what is parsed."""
+        return self._pieces[self.number(at)][0]
+
+    def ended(self) -> Text | None:
+        """The same text with the full stop that it lacks, without which the parser errs more; None if it has one."""
+        if not self._pieces or not self._pieces[-1][0][-1].isalnum():
+            return None
+        end = len(self.original)
+        return Text(self.original, [*self._pieces, (".", end, end)])
+
+    def formations(self, start: int, stop: int) -> Iterator[str]:
+        """The ways to stand or move together, as "side by side", that a stretch of the original names."""
+        known = vocabulary().formations
+        for _, first, last in self._pieces:
+            if start <= first and last <= stop and (name := known.get(_words_of(self.original[first:last]))):
+                yield name
+
+    def span(self, first: int, last: int) -> tuple[int, int]:
+        """The offsets in the original of a stretch of what was parsed."""
+        i = max(bisect.bisect_right(self._starts, first) - 1, 0)
+        j = max(bisect.bisect_left(self._starts, last) - 1, i)
+        while j + 1 < len(self._pieces) and self._pieces[j][2] <= self._pieces[i][1]:
+            j += 1  # a verb that was supplied stands for the word behind it
+        return self._pieces[i][1], self._pieces[j][2]
+
+
+def _words_of(text: str) -> tuple[str, ...]:
+    return tuple(word.lower() for word, _, _ in tokens(text))
+
+
+def tokens(text: str) -> Iterator[tuple[str, int, int]]:
+    """The words, numbers and marks of a text, with plain quotes, and their offsets in it."""
+    for match in _TOKEN.finditer(text):
+        yield "".join(_QUOTES.get(c, c) for c in match[0]), match.start(), match.end()
