@@ -29,6 +29,11 @@ export class Length {
     host.addEventListener("click", (event) => event.target.closest("button") && this.set(this.seconds));
   }
 
+  /** A run begins: a length that comes after it is only advised, so that the settings stay those of the run. */
+  leave() {
+    this.typed = null;
+  }
+
   /** Shows what acts need that take so many seconds, null where nothing is known of them, or lengthens the motion. */
   draw(needed, text = null) {
     this.needed = needed;

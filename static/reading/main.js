@@ -59,6 +59,7 @@ class View {
   /** A run begins: what is read and edited makes room for its result. */
   leave() {
     this.fold(true);
+    this.length.leave();
     const { activeElement } = document;
     if (!this.editor.open) return;
     this.editor.close();

@@ -36,6 +36,18 @@ function page() {
   return { length: new Length(host, field, prompt), number, host, type };
 }
 
+test("a length that comes after the run of its sentence has begun is only advised", () => {
+  const { length, number, host, type } = page();
+  type("long");
+  length.leave();
+  length.draw(7.5, "long");
+  assert.equal(number.value, "5");
+  assert.equal(host.hidden, false);
+  type("longer");
+  length.draw(8, "longer");
+  assert.equal(number.value, "8", "until something else is typed");
+});
+
 test("a typed sentence lengthens the motion, and a shorter one gives the usual length back", () => {
   const { length, number, host, type } = page();
   type("long");
