@@ -79,6 +79,31 @@ class WindowPlan:
         )
 
 
+@dataclass(frozen=True)
+class BeatFinish:
+    """What the finish of a scene is told of a beat.
+
+    Attributes:
+        reaching: whether palms meet what they reach for.
+        still: who ("", "a", "b" or "ab") does not look about or shift their weight.
+    """
+
+    reaching: bool = False
+    still: str = ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """As JSON."""
+        return {"reaching": self.reaching, "still": self.still}
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> BeatFinish:
+        """What :meth:`to_dict` gave; raises InputError for anything else."""
+        reaching, still = values.get("reaching"), values.get("still")
+        if not isinstance(reaching, bool) or still not in ("", "a", "b", "ab"):
+            raise InputError(_WRONG.format("the finish of a beat is none"))
+        return cls(reaching, still)
+
+
 @dataclass(frozen=True, eq=False)
 class KeptPlan:
     """The plan of a result.
@@ -89,12 +114,14 @@ class KeptPlan:
         alone: where there are no windows, as in :class:`WindowPlan`.
         windows: of all samples, one sample after another.
         notes: what was said of the plan.
+        finishes: of a scene's beats; () where a version kept none, and in a scene that is made as it is.
     """
 
     beats: tuple[Mapping[str, Any], ...] = ()
     alone: tuple[str, str] = ("", "")
     windows: tuple[WindowPlan, ...] = ()
     notes: tuple[str, ...] = ()
+    finishes: tuple[BeatFinish, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """As JSON."""
@@ -103,6 +130,7 @@ class KeptPlan:
             "alone": list(self.alone),
             "windows": [window.to_dict() for window in self.windows],
             "notes": list(self.notes),
+            "finishes": [each.to_dict() for each in self.finishes],
         }
 
     @classmethod
@@ -122,6 +150,10 @@ class KeptPlan:
             _pair(values.get("alone")),
             tuple(WindowPlan.from_dict(window) for window in _list(values.get("windows"), MOST_WINDOWS)),
             tuple(_text(note) for note in _list(values.get("notes"), 20)),
+            tuple(
+                BeatFinish.from_dict(_mapping(each))
+                for each in _list(values.get("finishes") or [], MOST_WINDOWS)
+            ),
         )
 
 

@@ -33,7 +33,7 @@ from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.timer import StageTimer
 from webdemo.inference.traits import traits_of
 
-from .scene_finish import finished
+from .scene_finish import finished, finishes
 from .scene_floor import plan_note
 from .scene_setting import Setting
 from .two_person import Passes, TwoPersonPipeline
@@ -152,9 +152,10 @@ class SceneMaker:
             duets.append(_duet(request, scene, sample))
         said += _distance_note(duets, request)
         yield timer.progress("finish")
+        plan = KeptPlan(windows=tuple(made_plans), notes=tuple(planning), finishes=finishes(request))
         yield Result(
             duets=tuple(duets),
-            manifest={"plan": KeptPlan(windows=tuple(made_plans), notes=tuple(planning)).to_dict()},
+            manifest={"plan": plan.to_dict()},
             readouts=tuple(compare(None, duet) for duet in duets),
             timings={**timer.stages, "total": round(timer.elapsed, 4)},
             notes=tuple(dict.fromkeys(said)),

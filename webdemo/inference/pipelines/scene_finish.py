@@ -11,6 +11,7 @@ from motion.embraces import embraced
 from motion.idling import alive
 from motion.palms import palms_met
 from webdemo.inference.actor import FPS
+from webdemo.inference.plans import BeatFinish
 from webdemo.inference.story.request import SceneRequest
 
 Array = NDArray[np.floating]
@@ -33,15 +34,26 @@ def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
     free = _made(request, scene.shape[1])
     result = arms_apart(embraced(scene, free), np.stack([free, free]))
     rests, touches = np.stack([free, free]), np.zeros_like(free)
-    for beat, told in enumerate(request.told if request.planned else ()):
+    for beat, finish in enumerate(finishes(request)):
         start, stop = request.edges[beat], request.edges[beat + 1]
-        if told.reaching:
+        if finish.reaching:
             touches[start:stop] = free[start:stop]
-        for who in (*told.frozen, *told.limbs):  # a head that is tilted is not turned to the other
+        for who in finish.still:
             rests["ab".index(who), start:stop] = 0.0
     result = alive(palms_met(result, touches), FPS, seed, rests).astype(np.float32)
     result[:, free <= 0] = scene[:, free <= 0]
     return result
+
+
+def finishes(request: SceneRequest) -> tuple[BeatFinish, ...]:
+    """What the finish is told of each beat: as it was kept, or else as the words say."""
+    if request.plan is not None and request.plan.finishes:
+        return request.plan.finishes[: len(request.beats)]
+    return tuple(
+        # a head that is tilted is not turned to the other
+        BeatFinish(bool(told.reaching), "".join(sorted({*told.frozen, *told.limbs})))
+        for told in (request.told if request.planned else ())
+    )
 
 
 def _made(request: SceneRequest, frames: int) -> Array:
