@@ -27,6 +27,8 @@ BEATS = [
     ("He drops to one knee and proposes, and she nods.", ["kneel propose", "nod"]),
     ("A pushes B over, B falls down, then A helps B up.", ["push-over fall-down", "help-up"]),
     ("A sits on a chair while B stands behind and cuts A's hair.", ["sit-down stand-behind groom"]),
+    ("A bends down and ties B's shoe.", ["bend-down groom"]),
+    ("A bends down and pats B's head.", ["bend-down", "pat"]),
 ]
 
 
@@ -91,3 +93,12 @@ def test_who_turns_round_at_a_tap_was_tapped_from_behind() -> None:
 def test_who_jumps_on_the_others_back_runs_up_from_behind() -> None:
     placed = staged(read("A runs up and jumps onto B's back.").acts).placed
     assert placed is not None and placed.places[0, 1] < placed.places[1, 1] - 1.0
+
+
+def test_who_bends_down_to_a_shoe_kneels_down_to_it_at_once() -> None:
+    (beat,) = beats_of(read("A bends down and ties B's shoe."))
+    told = staged(beat.acts)
+    assert told.contact is not None and not told.contact.late
+    assert not told.changes, "a bow on the spot comes before the shoe"
+    (alone,) = beats_of(read("A bends down."))
+    assert [change.posture.value for change in staged(alone.acts).changes["a"]] == ["bends down"]

@@ -5,6 +5,9 @@ from __future__ import annotations
 from acts import shapes
 from acts.lexicon import Entry
 from acts.plan import Act
+from acts.reading.vocabulary import vocabulary
+
+from .contacts import LOW, Region
 
 _NEAR = frozenset(("touch", "fight", "dance", "care"))
 """Groups of the lexicon whose acts two people do within each other's reach."""
@@ -12,6 +15,12 @@ _HANDED = frozenset(("things", "handling", "daily"))
 """Groups whose acts with the other person pass something from hand to hand."""
 _JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
 """Shapes that take the other along."""
+_REGIONS = {
+    "head": Region.HEAD, "shoulder": Region.SHOULDER, "back": Region.BACK, "chest": Region.CHEST,
+    "waist": Region.CHEST, "arm": Region.ARM, "hand": Region.HAND, "leg": Region.LEG, "knee": Region.LEG,
+    "foot": Region.FOOT,
+}  # fmt: skip
+"""Families of parts of the body and the region of each."""
 
 
 def is_attempt(act: Act, entry: Entry) -> bool:
@@ -52,3 +61,15 @@ def reaches(act: Act, entry: Entry) -> bool:
     if entry.mutual or any(shape.who != "agent" or shape.do in _JOINS for shape in entry.stage):
         return True
     return act.patient is not None and all(shape.do in ("place", "stay") for shape in entry.stage)
+
+
+def region_of(act: Act, shape: shapes.Touch) -> Region | None:
+    """The part of the other's body that an act touches; None for a part that no hand is led to."""
+    named = vocabulary().part(act.part or "") or (act.part or "")
+    family = named if act.part_of == act.patient and named in _REGIONS else shape.part or named
+    return Region.WAIST if family == "waist" and shape.behind else _REGIONS.get(family or "shoulder")
+
+
+def reaches_low(act: Act, entry: Entry) -> bool:
+    """True for an act that touches the other's legs or feet."""
+    return any(isinstance(shape, shapes.Touch) and region_of(act, shape) in LOW for shape in entry.stage)

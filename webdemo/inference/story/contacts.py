@@ -81,6 +81,8 @@ _DOWN = 0.33
 """Metres that the hand of a person who kneels is below their shoulder."""
 _FLAT = 0.3
 """Metres between the heights of head and pelvis of a person who lies, at most."""
+LOW = frozenset((Region.LEG, Region.FOOT))
+"""What is kneeled down to, of somebody who stands."""
 LOWEST = 0.55
 """Height in metres of the lowest place that somebody on their feet reaches."""
 

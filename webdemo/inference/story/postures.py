@@ -23,6 +23,10 @@ class Posture(Enum):
     LIES = "lies"
 
 
+LOWERED = frozenset((Posture.KNEELS, Posture.CROUCHES, Posture.BENDS))
+"""Those by which somebody gets down to what is low."""
+
+
 @dataclass(frozen=True)
 class Change:
     """A posture that one person takes up in a beat, or in which it finds them.

@@ -14,7 +14,9 @@ from motion import InputError
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.limits import MAX_PROMPT
 
+from .act_kinds import reaches_low
 from .beats import MOST_BEATS, Beat
+from .postures import LOWERED
 from .staging import staged
 from .told import Told
 
@@ -29,6 +31,7 @@ _AT_ONCE = 1200
 _MOST_SENTENCES = 30
 """Sentences that are read together, at most: a plan holds sixty acts."""
 _THEN = frozenset(("then", "next", "afterwards", "finally"))
+_LOWERED = frozenset(posture.value for posture in LOWERED)
 _ENDS = re.compile(r"(?<=[.!?;])\s+")
 
 
@@ -238,6 +241,8 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry, text: str) -> boo
         return True  # who passes the other comes up to them on the way
     if ("lift" in does and "lift" in then) or _posture(does) == _posture(then) != "":
         return same  # "drops to one knee and proposes"
+    if same and _posture(does) in _LOWERED and reaches_low(later, after):
+        return True  # "bends down and ties his shoe"
     if not same:
         down = "posture" in does and not act.already
         helped = "touch" in then or _is_caught(then.get("posture"))

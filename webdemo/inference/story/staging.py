@@ -14,18 +14,17 @@ from acts import shapes
 from acts.captions import of_each
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import FROM_BEHIND, Act, beats
-from acts.reading.vocabulary import vocabulary
 from acts.things import is_fixture
 
-from .act_kinds import is_after, is_attempt, is_deep, is_near, only_stays, reaches, walks
+from .act_kinds import is_after, is_attempt, is_deep, is_near, only_stays, reaches, region_of, walks
 from .beginnings import Setting, standing
-from .contacts import Contact, Region
+from .contacts import LOW, Contact, Region
 from .gestures import OF_BOTH, SIDES, STOOD, Gesture, Hand
 from .holds import TWIRL, Hold
 from .lifts import Carry, Lift
 from .limbs import Limb
 from .moves import Move, fastest, finished, goes, lifted_moves, struck_moves
-from .postures import Change, Posture
+from .postures import LOWERED, Change, Posture
 from .strikes import Bout, Strike
 from .told import Told
 from .ways import Way
@@ -35,12 +34,6 @@ _WAYS = {
     "after": Way.AFTER, "back": Way.BACK, "aside": Way.ASIDE, "ahead": Way.AHEAD, "to and fro": Way.PACE,
 }  # fmt: skip
 _TURNS = {"around": Way.TURN, "to": Way.FACE, "away": Way.TURN}
-_REGIONS = {
-    "head": Region.HEAD, "shoulder": Region.SHOULDER, "back": Region.BACK, "chest": Region.CHEST,
-    "waist": Region.CHEST, "arm": Region.ARM, "hand": Region.HAND, "leg": Region.LEG, "knee": Region.LEG,
-    "foot": Region.FOOT,
-}  # fmt: skip
-"""Families of parts of the body and the region of each."""
 PULLED = 0.8
 """Metres from where somebody stands up at which the one stands who pulls them up."""
 _JUMPS = 3
@@ -264,10 +257,7 @@ class _Stage:
     def _touch(self, act: Act, shape: shapes.Touch) -> None:
         if self.contact is not None:
             return
-        giver = act.agents[0]
-        named = vocabulary().part(act.part or "") or (act.part or "")
-        family = named if act.part_of == act.patient and named in _REGIONS else shape.part or named
-        region = Region.WAIST if family == "waist" and shape.behind else _REGIONS.get(family or "shoulder")
+        giver, region = act.agents[0], region_of(act, shape)
         if region is None:
             return
         hands = act.side if act.side and shape.hands in ("left", "right") else shape.hands
@@ -285,6 +275,13 @@ class _Stage:
 
     def _agree(self) -> None:
         """Settles what two shapes ask of one body: a low person keeps their trunk, a lifted one is turned round."""
+        touch = self.contact
+        lowered = (
+            {change.posture for change in self.changes.get(touch.person, ())} if touch is not None else set()
+        )
+        if touch is not None and lowered and lowered <= LOWERED and touch.region in LOW:
+            del self.changes[touch.person]  # they kneel down to what they touch
+            self.contact = replace(touch, late=False)
         low = {who for who, listed in self.changes.items() if listed[-1].posture is not Posture.STANDS}
         self.limbs = {who: limbs for who, limbs in self.limbs.items() if who not in low}
         comes = next((move.person for move in self.moves if move.way is Way.TO), "")
@@ -293,10 +290,7 @@ class _Stage:
         turns = any(move.way in (Way.TURN, Way.FACE) for move in self.moves)
         if self.lift is not None and (self.twirls or turns):
             self.lift, self.twirls = replace(self.lift, spins=self.lift.carry is not Carry.BACK), ""
-        for (
-            who,
-            listed,
-        ) in self.changes.items():  # "gets up" from where they are, and from a seat if nothing says
+        for who, listed in self.changes.items():  # gets up from where they are, from a seat if nothing says
             self.changes[who] = (listed[0], *(c for c in listed[1:] if not c.already))
         self.changes = {
             who: tuple(
