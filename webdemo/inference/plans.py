@@ -81,7 +81,7 @@ class WindowPlan:
 
 @dataclass(frozen=True)
 class BeatFinish:
-    """What the finish of a scene is told of a beat.
+    """The finish of a beat of a scene.
 
     Attributes:
         reaching: whether palms meet what they reach for.
@@ -97,7 +97,7 @@ class BeatFinish:
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> BeatFinish:
-        """What :meth:`to_dict` gave; raises InputError for anything else."""
+        """A finish from :meth:`to_dict`; raises InputError for anything else."""
         reaching, still = values.get("reaching"), values.get("still")
         if not isinstance(reaching, bool) or still not in ("", "a", "b", "ab"):
             raise InputError(_WRONG.format("the finish of a beat is none"))

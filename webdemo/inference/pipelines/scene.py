@@ -126,8 +126,7 @@ class SceneMaker:
                 f"The kept plan is of {len(kept.windows)} windows, and this scene has {len(listed) * request.samples}: "
                 "leave the plan out, so that the words are read."
             )
-        steps = request.steps * len(listed) * request.samples
-        done, duets = 0, []
+        steps, done, duets = request.steps * len(listed) * request.samples, 0, []
         made_plans: list[WindowPlan] = []
         planning = kept.notes if kept else (*notes, *plan_note(request, cancel.raise_if_cancelled))
         said = [*planning, *_notes(request)]
@@ -151,8 +150,8 @@ class SceneMaker:
                 _close(request, scene)
             duets.append(_duet(request, scene, sample))
         said += _distance_note(duets, request)
-        yield timer.progress("finish")
         plan = KeptPlan(windows=tuple(made_plans), notes=tuple(planning), finishes=finishes(request))
+        yield timer.progress("finish")
         yield Result(
             duets=tuple(duets),
             manifest={"plan": plan.to_dict()},

@@ -46,7 +46,7 @@ def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
 
 
 def finishes(request: SceneRequest) -> tuple[BeatFinish, ...]:
-    """What the finish is told of each beat: as it was kept, or else as the words say."""
+    """The finish of each beat: as it was kept, or else as the words say."""
     if request.plan is not None and request.plan.finishes:
         return request.plan.finishes[: len(request.beats)]
     return tuple(
