@@ -11,6 +11,8 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
+from acts.plan import other_of
+
 from .frames import Frame
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import Act, Plan
@@ -177,7 +179,7 @@ def of_each(acts: Sequence[Act], known: Lexicon) -> tuple[str, str]:
     found: dict[str, list[str]] = {"a": [], "b": []}
     for act in done:
         who = act.agents[0]
-        own, other = _NAMES[who], _NAMES["b" if who == "a" else "a"]
+        own, other = _NAMES[who], _NAMES[other_of(who)]
         words = worded(act, caption_of(act, known.entries[act.act])).removeprefix(f"{own} ")
         words = words.replace(f"{own}'s", "their").replace(own, "them").replace(other, "the other person")
         found[who].append(words)

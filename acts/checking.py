@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+from acts.plan import other_of
 from motion import SMPL22, Duet
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import check, masks, measured
@@ -183,7 +184,7 @@ def _over(mask: str, motion: Motion) -> str:
 # ---- rules -----------------------------------------------------------------------------------------------
 def rules_of(act: Act, entry: Entry, who: str) -> list[str]:
     """The rules of an act with its own values in the place of their names, for one of its agents."""
-    whom = "b" if who == "a" else "a"
+    whom = other_of(who)
     named = act.part or ""
     part = named if named in BODY else vocabulary().part(named)
     part = part if part in BODY else "body"

@@ -21,6 +21,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from acts.plan import other_of
 from motion import InputError
 
 _PREPOSITIONS = (
@@ -381,11 +382,6 @@ def _is_noun(element: _Element, ref: Ref, agents: str) -> bool:
     particle = ref.kind == "part" and element.words & _PARTICLES  # "turns his back" is not "turns back"
     plural = ref.side == "both" and f"{ref.lemma}s" in element.words
     return (plural or ref.lemma in element.words) and not others and not particle
-
-
-def other_of(who: str) -> str:
-    """The other of two people; "" for both."""
-    return {"a": "b", "b": "a"}.get(who, "")
 
 
 def best(frames: Mapping[str, list[tuple[str, Frame]]], event: Event) -> tuple[str, Frame, Match] | None:

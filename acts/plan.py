@@ -24,6 +24,11 @@ FROM_BEHIND = "from behind"
 """Manner of an act that is done to the other from behind them."""
 
 
+def other_of(who: str | None) -> str:
+    """The other of two people; "" for both."""
+    return {"a": "b", "b": "a"}.get(who or "", "")
+
+
 class _Model(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 

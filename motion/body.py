@@ -64,6 +64,11 @@ class Body:
     fingers: Fingers | None = field(default=None, repr=False)
 
 
+def in_base64(values: NDArray, kind: str) -> str:
+    """Numbers as the text that :func:`load_body` and the browser read back, in a type such as "<u2"."""
+    return base64.b64encode(np.ascontiguousarray(values).astype(kind).tobytes()).decode("ascii")
+
+
 @lru_cache(maxsize=8)
 def load_body(name: str, *, small: bool = False) -> Body:
     """The body ``name``, one of :data:`motion.looks.LOOKS`; ``small`` gives about a third of the triangles.

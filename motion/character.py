@@ -8,13 +8,12 @@ such as fingers, move with the nearest one above them that it has.
 
 from __future__ import annotations
 
-import base64
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .body import Body, bone_rotations
+from .body import Body, bone_rotations, in_base64
 from .errors import InputError
 from .formats.glb_reader import Character
 from .kinematics import swing
@@ -240,13 +239,10 @@ def packed_body(body: Body) -> dict[str, Any]:
     low = body.vertices.min(axis=0)
     scale = np.maximum(np.ptp(body.vertices, axis=0), 1e-9) / (2**16 - 1)
 
-    def text(values: NDArray, kind: str) -> str:
-        return base64.b64encode(np.ascontiguousarray(values).astype(kind).tobytes()).decode("ascii")
-
     return {
         "zones": list(body.zones), "joint_names": list(SMPL22.joint_names), "rest": _REST.tolist(),
         "joints": body.joints.tolist(), "turns": body.turns.tolist(), "min": low.tolist(), "scale": scale.tolist(),
-        "vertices": text(np.rint((body.vertices - low) / scale), "<u2"), "faces": text(body.faces, "<u2"),
-        "face_zones": text(body.face_zones, "u1"), "sky": text(np.rint(255 * body.sky), "u1"),
-        "bones": text(body.bones, "u1"), "weights": text(np.rint(255 * body.weights), "u1"),
+        "vertices": in_base64(np.rint((body.vertices - low) / scale), "<u2"), "faces": in_base64(body.faces, "<u2"),
+        "face_zones": in_base64(body.face_zones, "u1"), "sky": in_base64(np.rint(255 * body.sky), "u1"),
+        "bones": in_base64(body.bones, "u1"), "weights": in_base64(np.rint(255 * body.weights), "u1"),
     }  # fmt: skip

@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .clip import Duet
 from .kinematics import fit_rotations
 from .skeleton import FEET
 from .transforms import canonicalize, heading, put_on_floor, turn
@@ -141,11 +140,6 @@ def encode_pair(a: Array, b: Array, rotations: tuple[Array | None, Array | None]
     return np.concatenate(
         [encode_person(canonical_a.positions, rotations[0]), encode_person(placed, rotations[1])], axis=-1
     )
-
-
-def encode_duet(duet: Duet) -> Array:
-    """(T − 1, 524) features of a duet of SMPL22 people."""
-    return encode_pair(duet.a.positions, duet.b.positions, (duet.a.rotations, duet.b.rotations))
 
 
 def decode_positions(features: Array, *, restore_last: bool = True) -> Array:

@@ -9,6 +9,7 @@ from functools import lru_cache
 
 from acts.frames import Event, Frame, Match, Ref, best
 from acts.lexicon import Lexicon
+from acts.plan import other_of
 
 from . import wordnet
 from .ellipsis import PERFORM
@@ -54,7 +55,7 @@ class Matcher:
         if event.lemma == PERFORM:  # a verb that does not do something with a thing
             forms += [replace(event, lemma=verb, noun=None) for verb in vocabulary().verbs["light"]]
         if event.noun is not None and event.noun.object is None and event.subject is not None:
-            other = {"a": "b", "b": "a"}.get(event.subject.who)
+            other = other_of(event.subject.who)
             whom = Ref("person", other) if other else Ref("each", "ab", "other")
             forms.append(replace(event.noun, object=whom))
         for form in forms:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from acts.frames import Ref
-from acts.plan import Person
+from acts.plan import Person, other_of
 
 from . import wordnet
 from .syntax import IN_PLACE, is_likeness
@@ -240,7 +240,7 @@ class Cast:
             ]
             free = next((who for who in bare if who != self.last), "")
             if not free and lemma in _ANYONE | {"another"}:
-                free = "b" if self.last == "a" else "a"
+                free = other_of(self.last) or "a"
         if not free:
             if token is not None:
                 self.third.append(token)
@@ -283,7 +283,7 @@ class Cast:
             who = subject  # "she draws him after her"
             self._known.setdefault(who, _Known()).sex = sex
         else:
-            who = ("b" if subject == "a" else "a") if subject else self.last or "a"
+            who = (other_of(subject) or "a") if subject else self.last or "a"
         self.last = who
         return who
 
@@ -346,7 +346,7 @@ class Cast:
 
     def _possessive(self, sex: str, subject: str) -> str:
         if len(subject) == 1:
-            other = "b" if subject == "a" else "a"
+            other = other_of(subject)
             if self._has("you") == subject or self._has("i") == subject:
                 return other
             own = self._known.get(subject, _Known()).sex

@@ -7,9 +7,9 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from acts.frames import Event, Frame, Match, Ref, other_of
+from acts.frames import Event, Frame, Match, Ref
 from acts.lexicon import Lexicon, lexicon
-from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread
+from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread, other_of
 from acts.shapes import Go
 from acts.things import is_fixture, kind_of
 from motion import InputError
@@ -310,7 +310,7 @@ class _Planner:
         """The other person, where a verb without an object follows what was done to them."""
         last, subject = next(reversed(self._acts), None), event.subject
         if event.lemma in vocabulary().verbs["sees"] and subject is not None:
-            return {"a": "b", "b": "a"}.get(subject.who)
+            return other_of(subject.who) or None
         if last is None or subject is None or subject.who != "".join(last.agents):
             return None
         bare = not event.particles and not event.prepositions and event.lemma in self._known.frames
@@ -363,7 +363,7 @@ class _Planner:
         side = event.side or next((side for side in (*own, *(ref.side for ref in parts))), None)
         patient = match.patient
         if self._known.entries[name].to == "other" and len(match.agents) == 1:
-            patient = patient or ("b" if match.agents == "a" else "a")
+            patient = patient or other_of(match.agents)
         owner = None
         if part is not None:
             whose = match.agents if frame.of_agent() else patient or match.agents

@@ -6,7 +6,7 @@ from typing import Any
 
 from acts.frames import Event
 from acts.lexicon import Lexicon
-from acts.plan import Act
+from acts.plan import Act, other_of
 
 from .vocabulary import vocabulary
 
@@ -38,7 +38,7 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
         return None
     if declines and (ref is not None or not (event.denied or event.lemma in verbs["not"])):
         return None
-    agents, other = tuple(subject.who), "b" if subject.who == "a" else "a"
+    agents, other = tuple(subject.who), other_of(subject.who) or "a"
     if len(last.agents) > 1 or (len(agents) > 1 and event.lemma != "do"):
         return None
     both = len(agents) > 1 or last.patient is None

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref, best
 from acts.lexicon import Lexicon
+from acts.plan import other_of
 
 from .vocabulary import vocabulary
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 def other_person(ref: Ref) -> Ref | None:
     """The other of the two; None for both and for what is no person."""
-    other = {"a": "b", "b": "a"}.get(ref.who)
+    other = other_of(ref.who)
     return Ref("person", other) if ref.kind == "person" and other else None
 
 

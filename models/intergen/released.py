@@ -24,7 +24,6 @@ from motion.representation import CONTACTS, NUM_FEATURES, POSITIONS, VELOCITIES,
 from .network import NETWORK, RELEASED_HEADS, InterGenDenoiser, from_released
 
 DENOISER, WHOLE = "model.decoder.net.", "model."
-GUIDANCE = 3.5
 HEAD_WIDTH = 128
 """Channels of a head in the released network; a narrower one made for a test has fewer heads."""
 

@@ -77,14 +77,6 @@ def to_curve(q: Tensor, length: Tensor, start: Tensor) -> Tensor:
     return start[..., None, :] + _integral(q.shape[-2]).to(q) @ speed_vector
 
 
-def geodesic_distance(p: Tensor, q: Tensor) -> Tensor:
-    """(…) length of the arc between two points of the sphere (eq. 2.4), in radians.
-
-    By the chord, 2 atan2(‖p − q‖, ‖p + q‖), which is exact where arccos loses its digits.
-    """
-    return 2 * torch.atan2(inner(p - q, p - q).sqrt(), inner(p + q, p + q).sqrt())
-
-
 def to_tangent(mean: Tensor, s: Tensor) -> Tensor:
     """The part of ``s`` (…, N, D) that is tangent to the sphere at ``mean``."""
     return s - inner(mean, s)[..., None, None] * mean

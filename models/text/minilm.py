@@ -20,7 +20,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.errors import as_tensors, count_layers, load_strictly, shape_of
+from models.errors import count_layers
 from models.mapped import mapped_tensors
 from motion.errors import InputError
 
@@ -228,19 +228,3 @@ class TextConditioner(nn.Module):
         query = self.query.expand(features.shape[0], 1, -1)
         tokens = torch.cat([query, self.project(features)], dim=1)
         return self.encoder(tokens, src_key_padding_mask=F.pad(~mask, (1, 0), value=False))
-
-    @classmethod
-    def from_weights(cls, weights: Mapping[str, Tensor], *, num_heads: int) -> TextConditioner:
-        """The conditioner whose state dict this is; eval mode. Raises WeightsError if it is not one."""
-        tensors, network = as_tensors(weights), "text conditioner"
-        latent_dim, token_width = shape_of(tensors, "project.weight", network=network)
-        config = TextConditionerConfig(
-            token_width=token_width,
-            latent_dim=latent_dim,
-            ff_size=shape_of(tensors, "encoder.layers.0.linear1.weight", network=network)[0],
-            num_layers=count_layers(tensors, "encoder.layers."),
-            num_heads=num_heads,
-        )
-        conditioner = cls(config)
-        load_strictly(conditioner, tensors, network=network)
-        return conditioner

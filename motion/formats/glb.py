@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.body import vertex_normals
 from motion.clip import Duet
@@ -27,7 +26,6 @@ from .skinned import ABOVE, JOINTS, Skinned, check_rest_pose, skinned
 if TYPE_CHECKING:
     import pygltflib
 
-Array = NDArray[np.floating]
 
 _CHILDREN = [[joint for joint, above in enumerate(ABOVE) if above == parent] for parent in range(len(JOINTS))]
 """The joints below each."""

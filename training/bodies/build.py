@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import base64
-
 import numpy as np
 import trimesh
 
+from motion.body import in_base64
 from motion.skeleton import SMPL22
 
 from .binding import bind
@@ -91,9 +90,6 @@ def stored(body: dict, look: Look) -> dict:
     shares = np.rint(255 * body["weights"]).astype(int)
     shares[:, 0] += 255 - shares.sum(axis=1)
 
-    def text(values: np.ndarray, kind: str) -> str:
-        return base64.b64encode(np.ascontiguousarray(values).astype(kind).tobytes()).decode()
-
     return {
         "zones": ["grey" if zone == "hair" and look.age == "old" else zone for zone in ZONES],
         "joint_names": list(SMPL22.joint_names),
@@ -102,11 +98,11 @@ def stored(body: dict, look: Look) -> dict:
         "turns": body["turns"].round(6).tolist(),
         "min": low.round(6).tolist(),
         "scale": scale.tolist(),
-        "vertices": text(np.rint((body["vertices"] - low) / scale), "<u2"),
-        "bones": text(body["bones"], "u1"),
-        "weights": text(shares, "u1"),
-        "sky": text(np.rint(255 * body["sky"]), "u1"),
-        "faces": text(body["faces"], "<u2"),
-        "face_zones": text(body["zones"], "u1"),
+        "vertices": in_base64(np.rint((body["vertices"] - low) / scale), "<u2"),
+        "bones": in_base64(body["bones"], "u1"),
+        "weights": in_base64(shares, "u1"),
+        "sky": in_base64(np.rint(255 * body["sky"]), "u1"),
+        "faces": in_base64(body["faces"], "<u2"),
+        "face_zones": in_base64(body["zones"], "u1"),
         "fingers": body["fingers"],
     }

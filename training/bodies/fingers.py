@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import base64
 import json
 from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from motion.body import in_base64
 from motion.hands import FINGERS, SIDES
 from motion.vectors import unit
 
@@ -65,9 +65,9 @@ def fingers(
         "flex": np.array(flex).reshape(-1, 3).round(5).tolist(),
         "close": np.array(close).reshape(-1).round(4).tolist(),
         "normals": np.array(normals).round(5).tolist(),
-        "vertices": _text(vertices, "<u2"),
-        "bones": _text(bones, "u1"),
-        "weights": _text(np.rint(255 * np.take_along_axis(weights, bones, axis=1)), "u1"),
+        "vertices": in_base64(vertices, "<u2"),
+        "bones": in_base64(bones, "u1"),
+        "weights": in_base64(np.rint(255 * np.take_along_axis(weights, bones, axis=1)), "u1"),
     }
 
 
@@ -102,7 +102,3 @@ def _finger_weights(mh: MakeHuman) -> np.ndarray:
                 for vertex, weight in pairs:
                     found[vertex, 15 * side + 3 * f + k] += weight
     return found / np.maximum(found.sum(axis=1, keepdims=True), 1.0)
-
-
-def _text(values: np.ndarray, kind: str) -> str:
-    return base64.b64encode(np.ascontiguousarray(values).astype(kind).tobytes()).decode()

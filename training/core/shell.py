@@ -7,13 +7,49 @@ import sys
 from collections.abc import Callable, Collection
 from dataclasses import fields
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from safetensors import SafetensorError
 
 from motion import InputError
 
 Settings = TypeVar("Settings")
+
+
+_FOLDER, _NEEDED = {"type": Path}, {"type": Path, "required": True}
+OPTIONS: dict[str, tuple[str, dict[str, Any]]] = {
+    "cache": ("--cache", _FOLDER | {"help": "folder of the fitted pairs; --data by default"}),
+    "cmu": ("--data", _NEEDED | {"help": "folder of skeleton.json, train and test"}),
+    "corpus": ("--corpus", _NEEDED | {"help": "what `python -m training.corpus` wrote"}),
+    "damping": ("--damping", {"type": float, "default": 0.7}),
+    "device": ("--device", {"help": "of torch: cuda where there is one, else cpu"}),
+    "guidance": ("--guidance", {"type": float, "default": 4.3}),
+    "out": ("--out", _NEEDED | {"help": "JSON file for all scores"}),
+    "pairs": ("--data", _NEEDED | {"help": "folder that holds sbu and k3hi"}),
+    "scenes": ("--scenes", _NEEDED | {"help": "file of `python -m training.prepare`"}),
+    "seed": ("--seed", {"type": int, "default": 0}),
+    "steps": ("--steps", {"type": int, "default": 25, "help": "DDIM steps (25)"}),
+    "table": ("--table", _FOLDER | {"help": "Markdown file for the table, which is printed too"}),
+    "threads": ("--threads", {"type": int, "help": "of torch on the CPU (as many as there are cores)"}),
+    "weights": ("--weights", _FOLDER | {"help": "folder of all weights"}),
+    "workers": ("--workers", {"type": int, "default": 0, "help": "processes that draw batches ahead (0)"}),
+}
+"""Options that several commands have."""
+
+
+def add_options(parser: argparse.ArgumentParser, *names: str) -> None:
+    """Adds some of :data:`OPTIONS`."""
+    for name in names:
+        flag, given = OPTIONS[name]
+        if name == "weights":
+            from webdemo.inference.methods import WEIGHTS
+
+            given = given | {"default": WEIGHTS}
+        if name == "device":
+            import torch
+
+            given = given | {"default": "cuda" if torch.cuda.is_available() else "cpu"}
+        parser.add_argument(flag, **given)
 
 
 def add_run_options(

@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 from motion import InputError
+from training.core.shell import add_options
 
 from .build import build, save
 from .compose import FPS
@@ -20,7 +21,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--data", type=Path, required=True, help="folder with the motion data sets")
     parser.add_argument("--out", type=Path, required=True, help="folder for motions.npy and index.json")
     parser.add_argument("--hours", type=float, default=5.0, help="hours of composed motion (5)")
-    parser.add_argument("--seed", type=int, default=0)
+    add_options(parser, "seed")
     parser.add_argument("--families", nargs="+", metavar="NAME", help="only these families")
     parser.add_argument("--cache", type=Path, help="folder that keeps the fitted pairs for the next build")
     options = parser.parse_args(arguments)

@@ -162,14 +162,6 @@ def join(first: Motion, second: Motion, *, blend: int = 12, turn: float = 0.0) -
     )
 
 
-def chain(*segments: Motion, blend: int = 12) -> Motion:
-    """Several motions of one person after one another."""
-    joined = segments[0]
-    for segment in segments[1:]:
-        joined = join(joined, segment, blend=blend)
-    return joined
-
-
 def steer(motion: Motion, extra: Array) -> Motion:
     """Bends the path: ``extra`` (T,) is how far, in radians, each frame is turned beyond the original."""
     matrices = heading_matrix(np.asarray(extra))
@@ -226,14 +218,6 @@ def look_at(motion: Motion, target: Array, *, amount: float = 0.8) -> Motion:
             np.swapaxes(parent, -1, -2) @ heading_matrix(angle * share) @ parent @ rotations[:, joint]
         )
     return replace(motion, rotations=rotations)
-
-
-def loop(motion: Motion, frames: int, *, blend: int = 20) -> Motion:
-    """A motion of at least ``frames`` frames made by playing this one again and again, cut to length."""
-    looped = motion
-    while len(looped) < frames:
-        looped = join(looped, motion, blend=blend)
-    return looped[:frames]
 
 
 def realise(motion: Motion) -> Array:

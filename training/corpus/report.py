@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from motion import SMPL22, Duet
 from motion.formats.files import replacing
 from motion.metrics import bone_drift, foot_skate, penetration
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.prepare import load_corpus
 from webdemo.view.contact_sheet import contact_sheet
 
@@ -238,7 +238,7 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description="Report what a corpus holds, with a picture of every family."
     )
-    parser.add_argument("--corpus", type=Path, required=True, help="what `python -m training.corpus` wrote")
+    add_options(parser, "corpus")
     parser.add_argument("--out", type=Path, required=True, help="folder for corpus.md and corpus/")
     options = parser.parse_args(argv)
     return exit_code(lambda: print(report(*load_corpus(options.corpus), options.out)))

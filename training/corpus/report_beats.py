@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from motion import Duet
 from motion.formats.files import replacing
 from motion.metrics import foot_skate, jerk, penetration
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.prepare import load_corpus
 from webdemo.view.contact_sheet import contact_sheet
 
@@ -171,7 +171,7 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description="Report the beats that a corpus holds, with a picture of each act."
     )
-    parser.add_argument("--corpus", type=Path, required=True, help="what `python -m training.corpus` wrote")
+    add_options(parser, "corpus")
     parser.add_argument(
         "--out", type=Path, required=True, help="folder for corpus-beats.md and corpus/beats/"
     )

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import argparse
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from motion.formats.files import replacing
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 
 from .cues import Label
 from .telling import Teller, texts
@@ -39,8 +38,7 @@ def retold(scene: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Write new captions for the scenes of a corpus.")
-    parser.add_argument("--corpus", type=Path, required=True, help="what `python -m training.corpus` wrote")
-    parser.add_argument("--seed", type=int, default=0)
+    add_options(parser, "corpus", "seed")
     options = parser.parse_args(argv)
     return exit_code(lambda: _run(options))
 

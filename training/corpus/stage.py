@@ -8,14 +8,12 @@ from typing import Any
 import numpy as np
 
 from motion.kinematics import forward_kinematics
-from motion.skeleton import SMPL22
 from motion.transforms import canonicalize, facing
 
 from .compose import FPS, Array, Motion, facing_at, join, look_at, place, realise, time_warp
 from .library import Library, Take, extend, feet_together
 from .scene import Scene
 
-HEAD = SMPL22.index("head")
 Rng = np.random.Generator
 
 

@@ -7,14 +7,14 @@ What it does tell is its own plan, so that reading it back (:func:`acts.read`) c
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from acts import Act, Plan, Relation
-from acts.plan import beats
+from acts.plan import other_of
 from motion.metrics.sentences import kept_out
 
 from .cues import STILL, Label, label
@@ -269,9 +269,8 @@ class _Writer:
 
 
 def _swapped(act: Act) -> Act:
-    other = {"a": "b", "b": "a"}
-    agents = tuple(other[who] for who in act.agents)
-    return act.model_copy(update={"agents": agents, "patient": other.get(act.patient or "")})
+    agents = tuple(map(other_of, act.agents))
+    return act.model_copy(update={"agents": agents, "patient": other_of(act.patient) or None})
 
 
 def finished(text: str) -> str:
@@ -279,32 +278,3 @@ def finished(text: str) -> str:
     text = re.sub(r"\s+", " ", text).strip().rstrip(".") + "."
     text = re.sub(r"([.!?] )([a-z])", lambda match: match[1] + match[2].upper(), text)
     return text[:1].upper() + text[1:]
-
-
-def agrees(read: Plan, told: Plan) -> bool:
-    """True if a plan that was read from a caption is the one that it tells.
-
-    The same acts by the same people, in the same order; patients, sides, parts and directions where both name them.
-    An act of one person that is done together by its nature ("he hugs her") may be read as both people's.
-    """
-    one, other = (list(_facts(plan)) for plan in (read, told))
-    return len(one) == len(other) and all(_alike(*pair) for pair in zip(one, other, strict=True))
-
-
-def _facts(plan: Plan) -> Iterator[tuple[int, Act]]:
-    for level, group in enumerate(beats(plan.acts)):
-        for act in sorted(group, key=lambda act: (act.act, act.agents)):
-            yield level, act
-
-
-def _alike(read: tuple[int, Act], told: tuple[int, Act]) -> bool:
-    (level, one), (wanted, other) = read, told
-    named = [(getattr(one, key), getattr(other, key)) for key in ("patient", "side", "direction")]
-    return (
-        level == wanted
-        and one.act == other.act
-        and set(one.agents) == set(other.agents)
-        and one.modality == other.modality
-        and all(a == b for a, b in named if a is not None and b is not None)
-        and (other.side is None or one.side is not None)
-    )

@@ -26,7 +26,7 @@ from models.text import MiniLM
 from motion import Duet, InputError
 from motion.formats.files import replacing
 from training.core import checkpoint
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.evaluate.extractor import load_extractor
 from training.evaluate.judge import retrieval
 from training.evaluate.judge.draw import Sampling, draw
@@ -200,16 +200,14 @@ def table(found: dict[str, dict[str, Any]]) -> str:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train and judge InterGen's ablations on prepared scenes.")
-    parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
+    add_options(parser, "scenes", "table", "device")
     parser.add_argument("--extractor", type=Path, required=True, help="file of training.evaluate.extractor")
     parser.add_argument("--out", type=Path, required=True, help="folder of the runs and scores")
-    parser.add_argument("--table", type=Path, help="Markdown file for the table, which is printed too")
     parser.add_argument("--variants", nargs="+", choices=VARIANTS, default=list(VARIANTS))
     parser.add_argument("--steps", type=int, default=2000, help="training steps of each (2000)")
     parser.add_argument("--prompts", type=int, default=200, help="test captions (200)")
     parser.add_argument("--repeats", type=int, default=2, help="of the measures by features (2)")
     parser.add_argument("--sampling-steps", type=int, default=25, help="DDIM steps (25)")
-    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     options = parser.parse_args(argv)
     return exit_code(lambda: _run(options))
 

@@ -21,8 +21,6 @@ from webdemo.inference.actor import at_30_fps
 from webdemo.view.camera import Camera
 from webdemo.view.stage import Pane, Stage, Style
 
-Array = NDArray[np.floating]
-
 SIZE = (1280, 720)
 FPS = 30
 

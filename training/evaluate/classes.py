@@ -21,7 +21,7 @@ from torch import Tensor, nn
 
 from motion import Duet, InputError
 from motion.metrics.generation import frechet_distance
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.corpus.cues import class_of
 from training.evaluate.extractor import Extractor, load_extractor
 from training.evaluate.judge.prompts import real_duet
@@ -31,7 +31,7 @@ from training.evaluate.prediction import put_into
 from training.prepare import Scenes, load
 from training.trainers.bigraphdiff import of_classes
 from webdemo.inference import GenerateRequest, Result
-from webdemo.inference.engine import WEIGHTS, Engine
+from webdemo.inference.engine import Engine
 from webdemo.inference.methods import method
 
 MODEL = "bigraphdiff"
@@ -213,11 +213,10 @@ def table(found: dict[str, Any], about: str) -> str:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Score two people from a class.")
-    parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
+    add_options(parser, "scenes", "weights")
     parser.add_argument(
         "--extractor", type=Path, required=True, help="of `python -m training.evaluate.extractor`"
     )
-    parser.add_argument("--weights", type=Path, default=WEIGHTS, help="folder of the models' folders")
     parser.add_argument("--samples", type=int, default=4, help="motions of each class")
     parser.add_argument("--steps", type=int, default=25, help="DDIM steps")
     parser.add_argument(

@@ -26,7 +26,7 @@ from models.text import TextConditioner, TextConditionerConfig, TokenFeatures
 from motion import InputError
 from motion.formats.files import replacing
 from training.core.precision import mixed_precision
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.prepare import Scenes, load
 from training.trainers.intergen_data import Data
 from training.trainers.intergen_data import Settings as DataSettings
@@ -172,12 +172,11 @@ def load_extractor(path: Path) -> Extractor:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train the feature extractor of the judge.")
-    parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
+    add_options(parser, "scenes", "device")
     parser.add_argument("--out", type=Path, required=True, help="the .safetensors file to write")
     parser.add_argument("--steps", type=int, default=Settings.steps)
     parser.add_argument("--batch", type=int, default=Settings.batch)
     parser.add_argument("--seed", type=int, default=Settings.seed)
-    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     options = parser.parse_args(argv)
     settings = Settings(steps=options.steps, batch=options.batch, seed=options.seed)
     return exit_code(

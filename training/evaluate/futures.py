@@ -16,12 +16,11 @@ from numpy.typing import NDArray
 from motion import Duet
 from motion.transforms import heading
 from motion.vectors import wrapped
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.corpus.pairs import load_pairs
 from training.corpus.scene import Scene
 from webdemo.inference import Engine, PredictRequest
 from webdemo.inference.actor import FPS
-from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.story import Beat, SceneRequest
 
 Array = NDArray[np.floating]
@@ -97,8 +96,7 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m training.evaluate.futures", description=__doc__)
     parser.add_argument("--data", type=Path, required=True, help="folder of the data sets sbu and k3hi")
     parser.add_argument("--cache", type=Path, help="folder that keeps what was read")
-    parser.add_argument("--weights", type=Path, default=WEIGHTS, help="folder of all weights")
-    parser.add_argument("--steps", type=int, default=25, help="DDIM steps (25)")
+    add_options(parser, "weights", "steps")
     options = parser.parse_args(argv)
 
     def job() -> None:

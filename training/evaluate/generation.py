@@ -20,6 +20,7 @@ from typing import Any
 
 from motion import Duet, InputError
 from motion.formats.files import replacing
+from training.core.shell import add_options
 from training.evaluate.judge import retrieval
 from training.evaluate.judge.prompts import choose, everyday, real_duet
 from training.evaluate.judge.reactions import WITH_WORDS, installed, of_the_reactor, react_to_all
@@ -135,15 +136,9 @@ def _generate(tasks: Sequence[Task], options: argparse.Namespace) -> tuple[dict[
 def main(argv: list[str] | None = None) -> None:
     """Runs the command."""
     parser = argparse.ArgumentParser(description="Judge a generator on captions of the test split.")
-    parser.add_argument("--scenes", type=Path, required=True, help="what training.prepare wrote")
-    parser.add_argument("--out", type=Path, required=True, help="JSON file for all verdicts")
-    parser.add_argument("--table", type=Path, help="Markdown file for the table, which is printed too")
+    add_options(parser, "scenes", "out", "table", "seed", "steps", "guidance", "damping")
     parser.add_argument("--weights", type=Path, default=WEIGHTS / "intergen", help="its folder")
     parser.add_argument("--prompts", type=int, default=200, help="how many captions (200)")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--steps", type=int, default=25, help="DDIM steps (25)")
-    parser.add_argument("--guidance", type=float, default=4.3)
-    parser.add_argument("--damping", type=float, default=0.7)
     parser.add_argument(
         "--minutes", type=float, default=0.0, help="draw no more after this time; 0: no limit"
     )

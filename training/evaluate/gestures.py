@@ -9,7 +9,7 @@ from pathlib import Path
 
 from models.agent.recogniser import load_folder
 from motion.formats.files import replacing
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.trainers.recogniser import Settings, answered, cut, scores
 from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.pipelines.agent import Eye
@@ -28,7 +28,7 @@ def table(by_gesture: Mapping[str, float], windows: Mapping[str, int]) -> str:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Score the virtual agent's recogniser on the test split.")
-    parser.add_argument("--corpus", type=Path, required=True, help="folder of `python -m training.corpus`")
+    add_options(parser, "corpus")
     parser.add_argument("--weights", type=Path, default=WEIGHTS / "agent", help="the recogniser's folder")
     parser.add_argument("--predictor", type=Path, default=WEIGHTS / "motion-mlp", help="a predictor's folder")
     parser.add_argument("--windows", type=int, default=8, help="looks at each scene (8)")

@@ -22,7 +22,7 @@ from models.known import Hold
 from models.motion_tokens import FEATURES
 from motion import InputError
 from training.core import checkpoint
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.prepare import Scenes, load
 from training.trainers.given import Shares, known_parts
 from training.trainers.intergen import condition, new_model
@@ -85,7 +85,7 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description="Compare networks by their errors on scenes of the test split."
     )
-    parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
+    add_options(parser, "scenes")
     parser.add_argument(
         "--cache", type=Path, required=True, help="folder that keeps the features of sentences"
     )

@@ -24,12 +24,11 @@ from motion.formats import read_pair
 from motion.metrics import foot_skate, pelvis_distance
 from motion.transforms import resample
 from motion.vectors import wrapped
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.corpus.duets import pairs_in
 from training.evaluate.futures import facings
 from training.evaluate.online import NEAR
 from webdemo.inference import Engine, ReactRequest, Result
-from webdemo.inference.methods import WEIGHTS
 
 Array = NDArray[np.floating]
 React = Callable[[Array], Array]
@@ -132,8 +131,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(prog="python -m training.evaluate.long_reactions", description=__doc__)
     parser.add_argument("--takes", type=Path, required=True, help="folder of NAME_a.bvh and NAME_b.bvh")
-    parser.add_argument("--weights", type=Path, default=WEIGHTS, help="folder that holds a folder a model")
-    parser.add_argument("--seed", type=int, default=0)
+    add_options(parser, "weights", "seed")
     options = parser.parse_args(argv)
     return exit_code(lambda: _run(options))
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from motion import Duet, InputError
 from motion.formats.files import replacing
 from motion.metrics import contact_events, foot_skate, pelvis_distance
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.corpus.pairs import load_pairs
 from training.evaluate.judge.reactions import LONGEST
 from training.evaluate.reactions import SHORTEST
@@ -151,7 +151,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m training.evaluate.online", description=__doc__)
     parser.add_argument("--corpus", type=Path, help="folder of `python -m training.corpus`")
     parser.add_argument("--data", type=Path, help="folder that holds sbu and k3hi")
-    parser.add_argument("--cache", type=Path, help="folder of the fitted pairs; --data by default")
+    add_options(parser, "cache")
     parser.add_argument(
         "--weights", type=Path, nargs="+", default=[WEIGHTS],
         help="folders that hold a folder regennet (models/weights)",

@@ -15,7 +15,7 @@ import torch
 from models.predictors import Predictor, load_predictor
 from motion import InputError
 from motion.formats.files import replacing
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.corpus import cmu
 from training.evaluate.prediction_scores import Predict, Scores, average, score, zero_velocity
 
@@ -120,7 +120,7 @@ def put_into(page: Path, table: str, *, name: str = "table") -> None:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Score predictors on CMU MoCap.")
-    parser.add_argument("--data", type=Path, required=True, help="folder of skeleton.json, train and test")
+    add_options(parser, "cmu")
     parser.add_argument("--predictor", type=Path, action="append", default=[], help="a predictor's folder")
     parser.add_argument("--table", type=Path, help="Markdown page that the table is put into")
     options = parser.parse_args(argv)

@@ -12,7 +12,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.corpus import cmu
 from training.evaluate.prediction import ZERO, Table, evaluate, put_into
 from training.evaluate.prediction_scores import average
@@ -92,7 +92,7 @@ def _line(name: str, scores: Any) -> str:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train and score variants of PredictiveMA-WGAN.")
-    parser.add_argument("--data", type=Path, required=True, help="folder of skeleton.json, train and test")
+    add_options(parser, "cmu")
     parser.add_argument("--out", type=Path, required=True, help="folder of the runs")
     parser.add_argument("--steps", type=int, default=1500, help="of each run")
     parser.add_argument("--only", nargs="+", choices=list(ROWS), default=list(ROWS), help="these rows")

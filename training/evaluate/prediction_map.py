@@ -20,7 +20,7 @@ from models.mawgan.losses import gram_distance
 from models.predictors import load_predictor
 from motion import InputError
 from motion.formats.files import replacing
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.corpus import cmu
 from training.evaluate.prediction import of_predictor
 from training.evaluate.tsne import embedded
@@ -83,7 +83,7 @@ def draw(places: Array, counts: Mapping[str, int], path: Path) -> None:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(prog="python -m training.evaluate.prediction_map", description=__doc__)
-    parser.add_argument("--data", type=Path, required=True, help="folder of skeleton.json, train and test")
+    add_options(parser, "cmu")
     parser.add_argument("--predictor", type=Path, default=Path("models/weights/mawgan-cmu"))
     parser.add_argument("--windows", type=int, default=80, help="of each action, at most")
     parser.add_argument("--out", type=Path, required=True, help=f"picture ({', '.join(SUFFIXES)})")

@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 
 from motion.cleaning import foot_contacts
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.evaluate.prediction import put_into
-from training.evaluate.prediction_scores import Array, steps
+from training.evaluate.prediction_scores import Array
 from training.trainers.prediction.windows import CorpusWindows
-from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.pipelines.predictor import PredictorPipeline
+from webdemo.inference.predict_request import mean_steps
 
 FPS = 30
 PAST, FUTURE = FPS, 4 * FPS
@@ -51,11 +51,11 @@ def measure(predict: Callable[[Array], Array], windows: Array) -> Quality:
     """Scores a method on windows (N, PAST + FUTURE, 22, 3) in metres."""
     past, truth = windows[:, :PAST], windows[:, PAST:]
     made = predict(past)
-    own, real = (steps(np.concatenate([past[:, -1:], x], axis=1)) for x in (made, truth))
+    own, real = (mean_steps(np.concatenate([past[:, -1:], x], axis=1)) for x in (made, truth))
     return Quality(
         1000 * np.linalg.norm(made - truth, axis=-1).mean((0, 2)),
         own.mean(0) / real.mean(0),
-        float(np.mean(own[:, 0] <= steps(past).max(axis=1) + 1e-6)),
+        float(np.mean(own[:, 0] <= mean_steps(past).max(axis=1) + 1e-6)),
         float(np.mean([glide(motion) for motion in made])),
     )
 
@@ -98,7 +98,7 @@ def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Score the page's predictions on the corpus' test split.")
     parser.add_argument("--data", type=Path, required=True, help="folder of the corpus")
-    parser.add_argument("--weights", type=Path, default=WEIGHTS, help="folder of the models' folders")
+    add_options(parser, "weights")
     parser.add_argument("--model", action="append", help="name of a model; motion-mlp by default")
     parser.add_argument("--windows", type=int, default=200, help="how many are drawn")
     parser.add_argument("--table", type=Path, help="Markdown page that the table is put into")

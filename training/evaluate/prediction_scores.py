@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from webdemo.inference.predict_request import mean_steps
+
 Array = NDArray[np.floating]
 Predict = Callable[[Array], Array]
 """(N, past, J, 3) metres → (N, future, J, 3)."""
@@ -36,11 +38,6 @@ class Scores:
     seam: float
 
 
-def steps(positions: Array) -> Array:
-    """(…, T, J, 3) → (…, T − 1) mean distance per joint from frame to frame."""
-    return np.linalg.norm(np.diff(positions, axis=-3), axis=-1).mean(-1)
-
-
 def score(predict: Predict, windows: Array, past: int, *, batch: int = 512) -> Scores:
     """Scores a method on windows (N, past + future, J, 3) in metres."""
     errors, squares, speeds, true_speeds, seams = [], [], [], [], []
@@ -52,9 +49,9 @@ def score(predict: Predict, windows: Array, past: int, *, batch: int = 512) -> S
         errors.append(distances.mean(-1))
         so_far = np.arange(1, distances.shape[1] + 1)
         squares.append(np.sqrt(np.square(distances).mean(-1).cumsum(-1) / so_far))
-        speeds.append(steps(np.concatenate([seen[:, -1:], made], axis=1)))
-        true_speeds.append(steps(part[:, past - 1 :]))
-        seams.append(speeds[-1][:, 0] <= steps(seen).max(axis=1) + 1e-6)
+        speeds.append(mean_steps(np.concatenate([seen[:, -1:], made], axis=1)))
+        true_speeds.append(mean_steps(part[:, past - 1 :]))
+        seams.append(speeds[-1][:, 0] <= mean_steps(seen).max(axis=1) + 1e-6)
     means = (1000 * np.concatenate(x).mean(0) for x in (errors, squares, speeds, true_speeds))
     return Scores(len(windows), *means, float(np.concatenate(seams).mean()))
 

@@ -29,7 +29,7 @@ from scipy.stats import t as student
 from motion import Duet, InputError
 from motion.formats.files import replacing
 from motion.metrics import summary
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.corpus.pairs import load_pairs
 from training.corpus.strict_pairs import strict_pairs
 from training.evaluate.baselines import Baseline, conditional_vae, nearest, plain_transformer
@@ -37,7 +37,6 @@ from training.evaluate.deep_gru import accuracy, deep_features, fit, frechet_dis
 from training.evaluate.judge.reactions import METHODS, installed, react
 from training.evaluate.paper_tables.clips import SENTENCES
 from webdemo.inference import Engine
-from webdemo.inference.methods import WEIGHTS
 
 Array = NDArray[np.floating]
 
@@ -230,13 +229,9 @@ def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     offered = METHODS | CLASS_TOLD
     parser = argparse.ArgumentParser(description="Judge reactions by a classifier of recorded ones.")
-    parser.add_argument("--data", type=Path, required=True, help="folder that holds sbu and k3hi")
-    parser.add_argument("--cache", type=Path, help="folder of the fitted pairs; --data by default")
-    parser.add_argument("--out", type=Path, required=True, help="JSON file for all scores")
-    parser.add_argument("--table", type=Path, help="Markdown file for the tables, which are printed too")
+    add_options(parser, "pairs", "cache", "out", "table", "weights")
     parser.add_argument("--datasets", nargs="+", choices=list(DATASETS), default=list(DATASETS))
     parser.add_argument("--methods", nargs="*", choices=list(offered), default=installed(offered))
-    parser.add_argument("--weights", type=Path, default=WEIGHTS, help="folder that holds a folder a model")
     parser.add_argument("--strict", action="store_true", help="the thesis' lists and classes, unfiltered")
     parser.add_argument("--seeds", type=int, default=3, help="classifiers, each with a seed of its own")
     parser.add_argument("--samples", type=int, default=3, help="reactions to every actor")

@@ -21,12 +21,11 @@ from torch import Tensor
 from models.agent.recogniser import OBSERVED, PREDICTED, sampled
 from motion.formats.files import replacing
 from motion.transforms import mirrored
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.corpus.sbu import CLASSES as SBU_CLASSES
 from training.corpus.strict_pairs import StrictPair, strict_pairs
 from training.evaluate.reactions import DATASETS, interval
 from training.trainers.recogniser import GESTURES, Settings, Trainer
-from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.pipelines.predict_frame import to_last_pose
 from webdemo.inference.pipelines.predictor import PredictorPipeline
 
@@ -134,12 +133,9 @@ def table(scores: dict[str, dict[str, list[float]]], counts: dict[str, int]) -> 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(prog="python -m training.evaluate.recognition", description=__doc__)
-    parser.add_argument("--data", type=Path, required=True, help="folder that holds sbu and k3hi")
-    parser.add_argument("--cache", type=Path, help="folder of the fitted pairs; --data by default")
-    parser.add_argument("--weights", type=Path, default=WEIGHTS, help="folder of all weights")
+    add_options(parser, "pairs", "cache", "weights", "out")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--steps", type=int, default=300, help="of each recogniser")
-    parser.add_argument("--out", type=Path, required=True, help="JSON file for all scores")
     options = parser.parse_args(argv)
 
     def job() -> None:

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import Duet, InputError
 from motion.formats.files import replacing
@@ -23,7 +22,7 @@ from motion.metrics import contact_precision_recall
 from motion.metrics.generation import r_precision
 from motion.metrics.sentences.scores import share
 from motion.transforms import canonicalize
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.corpus.families import load_families
 from training.evaluate.extractor import load_extractor
 from training.evaluate.judge.draw import Sampling, draw
@@ -34,7 +33,6 @@ from training.prepare import load
 from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.pipelines.intergen import InterGenPipeline
 
-Array = NDArray[np.floating]
 POOLS = 20
 """Drawings of the pools of retrieval, over which R-precision is averaged."""
 
@@ -139,16 +137,10 @@ def table(scores: dict[str, Any]) -> str:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(prog="python -m training.evaluate.roles", description=__doc__)
-    parser.add_argument("--scenes", type=Path, required=True, help="what training.prepare wrote")
+    add_options(parser, "scenes", "out", "table", "seed", "steps", "guidance", "damping")
     parser.add_argument("--extractor", type=Path, required=True, help="training.evaluate.extractor's file")
-    parser.add_argument("--out", type=Path, required=True, help="JSON file for all scores")
-    parser.add_argument("--table", type=Path, help="Markdown file for the tables, which are printed too")
     parser.add_argument("--weights", type=Path, default=WEIGHTS / "intergen", help="its folder")
     parser.add_argument("--prompts", type=int, default=192, help="how many captions (192)")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--steps", type=int, default=25, help="DDIM steps (25)")
-    parser.add_argument("--guidance", type=float, default=4.3)
-    parser.add_argument("--damping", type=float, default=0.7)
     options = parser.parse_args(argv)
     if options.prompts < POOL:
         parser.error(f"--prompts must be at least {POOL}, the size of a pool of retrieval.")

@@ -27,10 +27,9 @@ from motion.metrics.sentences.language import check
 from motion.metrics.sentences.scores import share
 from motion.skeleton import FEET
 from motion.transforms import heading
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from webdemo.inference import Engine, Result
 from webdemo.inference.actor import FPS
-from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneRequest
 from webdemo.inference.story.plan import windows
 from webdemo.inference.story.wishes import bent_wrong
@@ -331,9 +330,8 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m training.evaluate.scenes", description="Judge scenes beat by beat."
     )
-    parser.add_argument("--weights", type=Path, default=WEIGHTS, help="folder of all weights")
+    add_options(parser, "weights", "table")
     parser.add_argument("--out", type=Path, required=True, help="JSON file for all figures")
-    parser.add_argument("--table", type=Path, help="Markdown file for the table, which is printed too")
     parser.add_argument("--scenes", type=int, default=60, help="how many stories (60)")
     parser.add_argument("--parts", type=int, default=10, help="how many paths, spans, poses and loops (10)")
     parser.add_argument("--steps", type=int, default=50, help="DDIM steps (50)")

@@ -18,7 +18,7 @@ from motion import InputError
 from motion.formats.files import replacing
 from motion.metrics.sentences import load_sentences, read_sentences
 from motion.metrics.sentences.scores import score, table
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.evaluate.judge.draw import Sampling
 from training.evaluate.judge.kept_motions import draw_missing, motions_folder
 from training.evaluate.judge.listening import listening, said
@@ -77,14 +77,10 @@ def main(argv: list[str] | None = None) -> int:
     )
     parser.add_argument("--weights", type=Path, default=WEIGHTS / "intergen", help="its folder")
     parser.add_argument("--cache", type=Path, required=True, help="folder that keeps the motions")
-    parser.add_argument("--out", type=Path, required=True, help="JSON file for all verdicts")
-    parser.add_argument("--table", type=Path, help="Markdown file for the table, which is printed too")
+    add_options(parser, "out", "table", "steps", "guidance", "damping")
     parser.add_argument("--beside", type=Path, help="JSON file of another run, shown beside this one")
     parser.add_argument("--seeds", type=int, default=4, help="motions of each sentence (4)")
-    parser.add_argument("--steps", type=int, default=25, help="DDIM steps (25)")
     parser.add_argument("--fast", action="store_true", help="the weights' fast mode, in eight steps")
-    parser.add_argument("--guidance", type=float, default=4.3)
-    parser.add_argument("--damping", type=float, default=0.7)
     parser.add_argument(
         "--told", choices=("words", "plan", "both"), default="both", help="to a network that reads plans"
     )

@@ -30,7 +30,7 @@ from motion import InputError
 from training.core.ahead import moved
 from training.core.loop import Loop, adamw
 from training.core.precision import mixed_precision
-from training.core.shell import add_run_options, chosen, exit_code
+from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.corpus.cues import class_of
 from training.prepare import Scenes, load
 from training.trainers import intergen_data
@@ -213,9 +213,8 @@ class Trainer(Loop):
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train the compact BiGraphDiff on prepared scenes.")
-    parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
+    add_options(parser, "scenes", "device")
     parser.add_argument("--export", type=Path, help="also write the trained network to this folder")
-    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     add_run_options(parser, Settings, leave_out=("weights",))
     options = parser.parse_args(argv)
 

@@ -38,7 +38,7 @@ from motion import InputError
 from motion.skeleton import SBU15
 from motion.transforms import canonicalize, mirrored, turn
 from training.core.loop import Loop
-from training.core.shell import add_run_options, chosen, exit_code
+from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.corpus.pairs import load_pairs
 
 Array = NDArray[np.floating]
@@ -348,8 +348,7 @@ def _standing(pose: Array) -> Array:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train the compact InterFormer on SBU and K3HI.")
-    parser.add_argument("--data", type=Path, required=True, help="folder that holds sbu and k3hi")
-    parser.add_argument("--cache", type=Path, help="folder of the fitted pairs; --data by default")
+    add_options(parser, "pairs", "cache")
     parser.add_argument("--export", type=Path, help="after that, write the averaged weights to this folder")
     add_run_options(parser, Settings)
     options = parser.parse_args(argv)

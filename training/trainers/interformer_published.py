@@ -24,7 +24,7 @@ from models.interformer import InterFormer, InterFormerConfig, joint_distances, 
 from models.interformer.compact import JOINTS_15
 from motion import InputError
 from training.core.loop import Loop, adamw
-from training.core.shell import add_run_options, chosen, exit_code
+from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.corpus.strict_pairs import strict_pairs
 from training.trainers.interformer import Batch, collate, masked_mean, varied
 
@@ -155,8 +155,7 @@ def fifteen_joints(person: Array) -> Array:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(prog="python -m training.trainers.interformer_published")
-    parser.add_argument("--data", type=Path, required=True, help="folder that holds sbu and k3hi")
-    parser.add_argument("--cache", type=Path, help="folder of the fitted pairs; --data by default")
+    add_options(parser, "pairs", "cache")
     add_run_options(parser, Settings)
     options = parser.parse_args(argv)
 

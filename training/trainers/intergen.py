@@ -30,7 +30,7 @@ from training.core.ahead import drawn_ahead, moved
 from training.core.loop import Loop, adamw
 from training.core.precision import mixed_precision
 from training.core.samples import write_sheet
-from training.core.shell import add_run_options, chosen, exit_code
+from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
 from training.trainers.given import known_parts
 from training.trainers.held import Held
@@ -242,16 +242,13 @@ class Trainer(Loop):
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train the compact InterGen on prepared scenes.")
-    parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
+    add_options(parser, "scenes", "threads", "device", "workers")
     parser.add_argument(
         "--init", type=Path, help="begin with another run's last.safetensors, or a shipped folder"
     )
     parser.add_argument(
         "--sheets", type=float, default=20.0, help="minutes between contact sheets of samples; 0: none (20)"
     )
-    parser.add_argument("--threads", type=int, help="of torch on the CPU (as many as there are cores)")
-    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
-    parser.add_argument("--workers", type=int, default=0, help="processes that draw batches ahead (0)")
     parser.add_argument("--compile", action="store_true", help="compile the network (needs a C++ compiler)")
     add_run_options(parser, Settings, leave_out=("weights", "given", "told"))
     options = parser.parse_args(argv)

@@ -23,7 +23,7 @@ from models.known import Hold
 from motion import InputError
 from training.core import checkpoint
 from training.core.precision import mixed_precision
-from training.core.shell import add_run_options, chosen, exit_code
+from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
 from training.trainers.held import Held
 from training.trainers.intergen import Trainer, condition, new_model
@@ -198,10 +198,7 @@ def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Make a trained InterGen fast.")
     parser.add_argument("--run", type=Path, required=True, help="--out of the training of the network")
-    parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
-    parser.add_argument("--workers", type=int, default=0, help="processes that draw batches ahead (0)")
-    parser.add_argument("--threads", type=int, help="of torch on the CPU (as many as there are cores)")
-    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    add_options(parser, "scenes", "workers", "threads", "device")
     add_run_options(parser, FastSettings)
     options = parser.parse_args(argv)
     if options.threads:

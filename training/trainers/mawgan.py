@@ -38,7 +38,7 @@ from models.mawgan.srvf import exp_map, karcher_mean, log_map, to_srvf
 from models.predictors import load_predictor, save_predictor
 from motion import InputError
 from training.core.shell import exit_code
-from training.trainers.motion_mlp import add_options, liveliness, train
+from training.trainers.motion_mlp import add_predictor_options, liveliness, train
 from training.trainers.prediction.rollout import ADVANCE, check_own_pasts
 from training.trainers.prediction.trainer import PredictionTrainer
 
@@ -327,7 +327,7 @@ def moving(curves: Tensor) -> Tensor:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train PredictiveMA-WGAN.")
-    add_options(parser, Settings)
+    add_predictor_options(parser, Settings)
     parser.add_argument("--lean", action="store_true", help="settings that one CPU core trains in an hour")
     options = parser.parse_args(argv)
     if options.lean:  # explicit options still override

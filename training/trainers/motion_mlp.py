@@ -18,7 +18,7 @@ from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import load_predictor, save_predictor
 from motion import InputError
 from training.core.loop import adamw
-from training.core.shell import add_run_options, chosen, exit_code
+from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.trainers.prediction.rollout import ADVANCE, check_own_pasts
 from training.trainers.prediction.trainer import PredictionTrainer
 from training.trainers.prediction.windows import open_windows
@@ -178,16 +178,16 @@ class Trainer(PredictionTrainer):
         )  # fmt: skip
 
 
-def add_options(parser: argparse.ArgumentParser, settings: type) -> None:
+def add_predictor_options(parser: argparse.ArgumentParser, settings: type) -> None:
     """Options that every training of a predictor takes: data, folders, minutes and each setting."""
     parser.add_argument("--data", type=Path, required=True, help="folder of the data set")
     parser.add_argument("--export", type=Path, help="also write the trained predictor to this folder")
-    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    add_options(parser, "device")
     add_run_options(parser, settings)
 
 
 def train(trainer: type, settings: type, options: argparse.Namespace) -> None:
-    """Runs what :func:`add_options` understood."""
+    """Runs what :func:`add_predictor_options` understood."""
     asked = chosen(options, settings)
     ahead = getattr(asked, "ahead", asked.future)
     windows = open_windows(asked.windows, options.data, asked.past, ahead)
@@ -200,7 +200,7 @@ def train(trainer: type, settings: type, options: argparse.Namespace) -> None:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train the default predictor.")
-    add_options(parser, Settings)
+    add_predictor_options(parser, Settings)
     options = parser.parse_args(argv)
     return exit_code(lambda: train(Trainer, Settings, options))
 

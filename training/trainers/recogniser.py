@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 import torch
 import torch.nn.functional as F
-from numpy.typing import NDArray
 from torch import Tensor
 
 from models.agent.recogniser import FPS, OBSERVED, PREDICTED, Recogniser, RecogniserConfig, sampled
@@ -25,14 +24,12 @@ from models.weights_io import save_network
 from motion import InputError
 from motion.transforms import mirrored
 from training.core.loop import Loop, adamw
-from training.core.shell import add_run_options, chosen, exit_code
+from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.prepare import load_corpus
 from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.pipelines.agent import Eye
 from webdemo.inference.pipelines.predict_frame import to_last_pose
 from webdemo.inference.pipelines.predictor import PredictorPipeline
-
-Array = NDArray[np.floating]
 
 NOTHING = "nothing"
 GESTURES: dict[str, tuple[str, tuple[str, ...]]] = {
@@ -233,11 +230,10 @@ def answered(corpus: Path, eye: Eye, count: int, *, seed: int = 0) -> dict[str, 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train the virtual agent's recogniser.")
-    parser.add_argument("--corpus", type=Path, required=True, help="folder of `python -m training.corpus`")
+    add_options(parser, "corpus", "device")
     parser.add_argument("--predictor", type=Path, default=WEIGHTS / "motion-mlp", help="a predictor's folder")
     parser.add_argument("--export", type=Path, help="also write the trained network to this folder")
     parser.add_argument("--answered", type=int, default=300, help="test scenes on which the export decides")
-    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     add_run_options(parser, Settings)
     options = parser.parse_args(argv)
 

@@ -33,7 +33,7 @@ from motion import InputError
 from motion.skeleton import FEET
 from training.core.loop import Loop, adamw
 from training.core.precision import mixed_precision
-from training.core.shell import add_run_options, chosen, exit_code
+from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
 from training.trainers.intergen import draw_timesteps
 from training.trainers.intergen_data import seeded
@@ -343,15 +343,13 @@ class Trainer(Loop):
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train the compact ReGenNet on prepared scenes.")
-    parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
+    add_options(parser, "scenes", "threads", "device")
     parser.add_argument(
         "--words", type=Path, default=Path("models/weights/intergen"),
         help="a shipped InterGen, whose text conditioner is taken over",
     )  # fmt: skip
     parser.add_argument("--init", type=Path, help="begin with a shipped ReGenNet, its words and all")
     parser.add_argument("--export", type=Path, help="after that, write the averaged weights to this folder")
-    parser.add_argument("--threads", type=int, help="of torch on the CPU (as many as there are cores)")
-    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     add_run_options(parser, Settings)
     options = parser.parse_args(argv)
     if options.threads:

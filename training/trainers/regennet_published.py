@@ -29,7 +29,7 @@ from models.regennet.released import BODY
 from motion import SMPL22, InputError
 from motion.formats.files import replacing
 from training.core.loop import Loop, adamw
-from training.core.shell import add_run_options, chosen, exit_code
+from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.corpus.interx import Pairs, load_pairs
 from training.trainers.intergen_data import seeded
 
@@ -155,7 +155,7 @@ def main(argv: list[str] | None = None) -> int:
         "--motions", type=Path, required=True, help="file of `python -m training.corpus.interx`"
     )
     parser.add_argument("--export", type=Path, help="after that, write the averaged weights (.safetensors)")
-    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    add_options(parser, "device")
     add_run_options(parser, Settings)
     options = parser.parse_args(argv)
     if options.export and options.export.suffix != ".safetensors":

@@ -151,15 +151,11 @@ def serve(options: argparse.Namespace) -> dict[str, Any]:
 def clock(options: argparse.Namespace) -> dict[str, Any]:
     """Shows how far the clock has jumped, or trusts it from now on, at all processes of the lab."""
     from webdemo.server.audit import audit, audited_shell
-    from webdemo.server.settings import read_settings
+    from webdemo.server.settings import settings_of_history
     from webdemo.server.store.database import Database, sentences
     from webdemo.server.store.ledger import DAY, LabClock
 
-    settings = read_settings()
-    if not settings.database and not (settings.data / "history.db").is_file():
-        raise InputError(
-            f"There is no lab's history in {settings.data}: name its folder with PASDEDEUX_DATA."
-        )
+    settings = settings_of_history()
     database = Database(settings.database_url)
     try:
         with sentences():

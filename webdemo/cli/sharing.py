@@ -59,15 +59,11 @@ def _publishing() -> Iterator[Any]:
     """The public pages of the lab that the settings name."""
     from webdemo.server.audit import audited_shell
     from webdemo.server.lab import history_of, storage_of
-    from webdemo.server.settings import read_settings
+    from webdemo.server.settings import settings_of_history
     from webdemo.server.store.database import Database
     from webdemo.server.store.publishing import Publishing
 
-    settings = read_settings()
-    if not settings.database and not (settings.data / "history.db").is_file():
-        raise InputError(
-            f"There is no lab's history in {settings.data}: name its folder with PASDEDEUX_DATA."
-        )
+    settings = settings_of_history()
     database = Database(settings.database_url)
     try:
         history = history_of(settings, storage_of(settings, database), settings.node)

@@ -24,14 +24,10 @@ def add_study(commands: Any) -> None:
 def study(options: argparse.Namespace) -> dict[str, Any]:
     """Lists all studies of the data folder, or gives the result or the votes of one."""
     from webdemo.server.lab import studies_of
-    from webdemo.server.settings import read_settings
+    from webdemo.server.settings import settings_of_history
     from webdemo.server.store.database import Database
 
-    settings = read_settings()
-    if not settings.database and not (settings.data / "history.db").is_file():
-        raise InputError(
-            f"There is no lab's history in {settings.data}: name its folder with PASDEDEUX_DATA."
-        )
+    settings = settings_of_history()
     if options.action == "export" and options.out is None:
         raise InputError("Name the file to write: give --out FILE.csv.")
     if options.action != "list" and not options.study:

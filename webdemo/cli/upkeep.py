@@ -43,15 +43,11 @@ def add_upkeep(commands: Any) -> None:
 def database(options: argparse.Namespace) -> dict[str, Any]:
     """Shows the revision of the lab's database, brings it to the newest, or takes it back to an earlier one."""
     from webdemo.server.audit import audit, audited_shell
-    from webdemo.server.settings import read_settings
+    from webdemo.server.settings import settings_of_history
     from webdemo.server.store.database import engine_of, opening
     from webdemo.server.store.migrations import NEWEST, REVISIONS, downgrade, revision_of, upgrade
 
-    settings = read_settings()
-    if not settings.database and not (settings.data / "history.db").is_file():
-        raise InputError(
-            f"There is no lab's history in {settings.data}: name its folder with PASDEDEUX_DATA."
-        )
+    settings = settings_of_history()
     if options.action == "downgrade" and not options.revision:
         raise InputError(f"Name the revision to go back to, one of {', '.join(REVISIONS)}.")
     with opening():
@@ -74,11 +70,10 @@ def database(options: argparse.Namespace) -> dict[str, Any]:
 def backup(options: argparse.Namespace) -> dict[str, Any]:
     """Makes a backup of the lab that the settings name."""
     from webdemo.server.audit import audited_shell
-    from webdemo.server.settings import read_settings
+    from webdemo.server.settings import settings_of_history
     from webdemo.server.store.backup import back_up
 
-    settings = read_settings()
-    _check_history(settings)
+    settings = settings_of_history()
     if options.keep < 0:
         raise InputError("Give --keep 1 or more, or leave it out to keep all.")
     with _lab(settings) as lab, audited_shell(settings):
@@ -120,10 +115,3 @@ def _lab(settings: Settings) -> Iterator[Lab]:
             yield Lab(engine, settings.data, settings.users)
         finally:
             engine.dispose()
-
-
-def _check_history(settings: Settings) -> None:
-    if not settings.database and not (settings.data / "history.db").is_file():
-        raise InputError(
-            f"There is no lab's history in {settings.data}: name its folder with PASDEDEUX_DATA."
-        )

@@ -6,7 +6,6 @@ folder or what ``PASDEDEUX_SETTINGS`` names. ``python -m webdemo serve --print-s
 
 from __future__ import annotations
 
-import ipaddress
 import os
 import socket
 import tempfile
@@ -23,7 +22,7 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
-from acts.config import listed
+from acts.config import is_loopback, listed
 from motion import InputError
 from motion.cores import usable_cores
 
@@ -308,16 +307,6 @@ class Settings(BaseSettings):
         return plain
 
 
-def is_loopback(host: str) -> bool:
-    """True if an address or name is this machine's loopback."""
-    if host == "localhost":
-        return True
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
-
-
 def read_settings(**given: Any) -> Settings:
     """The settings in force; what is given here (and is not None) goes before environment and file.
 
@@ -346,6 +335,14 @@ def read_settings(**given: Any) -> Settings:
         raise InputError(f"The settings cannot be read ({error}): lists are written as JSON.") from None
     except ValueError as error:  # the file is not TOML
         raise InputError(f"The settings file {named or FILE} cannot be read: {error}.") from None
+
+
+def settings_of_history() -> Settings:
+    """The settings in force; raises InputError where they name no lab that has been started."""
+    settings = read_settings()
+    if not settings.database and not (settings.data / "history.db").is_file():
+        raise InputError(f"There is no lab's history in {settings.data}: name its folder with {PREFIX}DATA.")
+    return settings
 
 
 def _without_password(url: str) -> str:

@@ -22,7 +22,6 @@ FPS = 30.0
 """Frames a second at which every motion of a study is shown: a different rate would tell its origin."""
 PIECE_SECONDS = 0.2
 """Length of the pieces of a shuffled motion."""
-FIRST, SECOND = "first", "second"
 
 
 @dataclass(frozen=True)
@@ -56,7 +55,7 @@ class Pair:
         sets: the numbers of their sets; the same number twice for an attention check.
         motions: the numbers of the motions among all of the study.
         caption: the sentence of both; empty where they have different ones.
-        known: :data:`FIRST` or :data:`SECOND` for an attention check, whose right answer it is.
+        known: the first or the second of :data:`~.results.ANSWERS` for an attention check, whose right answer it is.
     """
 
     sets: tuple[int, int]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gradio.context import LocalContext
+from starlette.requests import Request
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,10 @@ def visitor() -> Visitor:
     """The visitor whose event is being answered in this thread."""
     event = LocalContext.request.get(None)
     request = getattr(event, "request", None)
-    if request is None:
-        return LOCAL
+    return LOCAL if request is None else visitor_of(request)
+
+
+def visitor_of(request: Request) -> Visitor:
+    """The person who sent a request, as the guard found them."""
     found = request.scope.get("state", {}).get("visitor")
     return found if isinstance(found, Visitor) else LOCAL

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from motion.clip import Clip, Duet
+from motion.clip import Clip, Duet, stacked_positions
 
 Array = NDArray[np.floating]
 
@@ -37,8 +37,7 @@ def contact_sheet(
         the side with person a on the left where a faces b along +Z. In the lower row, which stays in place,
         +Z points down the page and +X to the right. A small triangle shows where each person faces.
     """
-    people = motion.positions if isinstance(motion, Duet) else motion.positions[None]
-    people = people.astype(np.float64)
+    people = stacked_positions(motion).astype(np.float64)
     count = people.shape[1]
     chosen = np.unique(np.linspace(0, count - 1, min(frames, count)).round().astype(int))
     views = [_front(people), _top(people)]

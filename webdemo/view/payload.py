@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.clip import Clip, Duet
+from motion.body import in_base64
+from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
 from motion.hands import to_lists
 from motion.looks import UNSAID
@@ -55,7 +56,7 @@ def pack_positions(positions: Array) -> dict[str, Any]:
     scale = np.where(extent > 0, extent, 1.0) / _LEVELS
     levels = np.rint((positions - low) / scale).astype("<u2")
     return {
-        "data": base64.b64encode(levels.tobytes()).decode("ascii"),
+        "data": in_base64(levels, "<u2"),
         "min": low.tolist(),
         "scale": scale.tolist(),
         "shape": list(levels.shape),
@@ -123,7 +124,7 @@ def sample_payload(
             for c in curves
         ],
         "contacts": [{"start": c.start, "stop": c.stop, "kind": c.kind, "label": c.label} for c in contacts],
-        "ghost": None if ghost is None else pack_positions(_people(ghost)),
+        "ghost": None if ghost is None else pack_positions(stacked_positions(ghost)),
         "past_until": past_until,
     } | _things(motion)
 
@@ -142,11 +143,6 @@ def _things(motion: Duet | Clip) -> dict[str, Any]:
     if motion.looks != UNSAID:
         found["looks"] = list(motion.looks)
     return found
-
-
-def _people(motion: Duet | Clip) -> Array:
-    """(people, T, J, 3)."""
-    return motion.positions if isinstance(motion, Duet) else motion.positions[None]
 
 
 def build_payload(samples: Sequence[dict[str, Any]], *, skeleton: Any, title: str = "") -> Payload:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from motion.body import in_base64
 from motion.clip import Clip, Duet
 from motion.colours import hex_of
 from motion.hands import angles
@@ -83,15 +83,11 @@ def thing_payload(thing: Thing) -> dict[str, Any]:
         "name": thing.name,
         "stands": thing.kind in FIXTURES,
         "frames": frames,
-        "vertices": _text(mesh.vertices, "<f4"),
-        "faces": _text(mesh.faces, "<u2"),
-        "face_colours": _text(which, "u1"),
+        "vertices": in_base64(mesh.vertices, "<f4"),
+        "faces": in_base64(mesh.faces, "<u2"),
+        "face_colours": in_base64(which, "u1"),
         "palette": [hex_of(colour) for colour in palette.tolist()],
         "spots": mesh.spots().round(4).tolist(),
-        "places": _text(thing.places[:frames], "<f4"),
-        "turns": _text(np.rint(32767 * turns), "<i2"),
+        "places": in_base64(thing.places[:frames], "<f4"),
+        "turns": in_base64(np.rint(32767 * turns), "<i2"),
     }
-
-
-def _text(values: NDArray, kind: str) -> str:
-    return base64.b64encode(np.ascontiguousarray(values).astype(kind).tobytes()).decode("ascii")

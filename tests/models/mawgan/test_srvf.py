@@ -13,7 +13,6 @@ from torch import Tensor
 
 from models.mawgan.srvf import (
     exp_map,
-    geodesic_distance,
     inner,
     karcher_mean,
     log_map,
@@ -67,9 +66,9 @@ def test_exp_undoes_log(seed: int, size: tuple[int, int]) -> None:
     mean, q = point(seed, size), point(seed + 1, size)
     tangent = log_map(mean, q)
     assert abs(float(inner(mean, tangent))) < 1e-6
-    angle = float(geodesic_distance(mean, q))
+    angle = math.acos(float(inner(mean, q).clamp(-1, 1)))
     if angle < math.pi - 1e-3:  # the opposite point has no shortest way
-        assert float(norm(tangent)) == pytest.approx(angle, abs=1e-5)
+        assert float(norm(tangent)) == pytest.approx(angle, abs=1e-4)
         assert (exp_map(mean, tangent) - q).abs().max() < 1e-4
 
 
@@ -85,16 +84,6 @@ def test_log_undoes_exp(seed: int, size: tuple[int, int], angle: float) -> None:
     assert (log_map(mean, q) - s).abs().max() < 1e-4 * max(1.0, float(s.abs().max()))
 
 
-@given(SEEDS)
-def test_distance_is_a_metric(seed: int) -> None:
-    p, q, r = point(seed, (3, 12, 6))
-    assert float(geodesic_distance(p, p)) == 0
-    assert float(geodesic_distance(p, q)) == pytest.approx(float(geodesic_distance(q, p)))
-    sides = [float(geodesic_distance(*pair)) for pair in ((p, q), (q, r), (p, r))]
-    assert sides[2] <= sides[0] + sides[1] + 1e-9 and max(sides) <= math.pi
-    assert float(geodesic_distance(p, -p)) == pytest.approx(math.pi)
-
-
 @settings(max_examples=4)
 @given(SEEDS)
 def test_karcher_mean_is_least(seed: int) -> None:
@@ -104,7 +93,7 @@ def test_karcher_mean_is_least(seed: int) -> None:
     mean = karcher_mean(q, tolerance=1e-8)
 
     def spread(p: Tensor) -> float:
-        return float(geodesic_distance(p, q).square().sum())
+        return float(norm(log_map(p, q)).square().sum())
 
     assert float(norm(mean)) == pytest.approx(1, abs=1e-6)
     assert float(norm(log_map(mean, q).mean(0))) < 1e-6

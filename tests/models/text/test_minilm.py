@@ -7,7 +7,6 @@ import importlib.util
 import pytest
 import torch
 
-from models.errors import WeightsError
 from models.text import MiniLM, TextConditioner, TextConditionerConfig, TextEncoderError
 from models.text import minilm as text
 from tests.models.reference_arrays import assert_equal
@@ -112,14 +111,9 @@ def test_every_token_reaches_the_condition():
     assert torch.equal(features.grad.abs().sum(-1) > 0, mask)
 
 
-def test_the_conditioner_trains_and_reloads():
+def test_the_conditioner_trains():
     torch.manual_seed(0)
     conditioner = TextConditioner(SMALL)
     features, mask = random_tokens()
     conditioner(features, mask)[:, 0].sum().backward()
     assert all(p.grad is not None and torch.isfinite(p.grad).all() for p in conditioner.parameters())
-    again = TextConditioner.from_weights(conditioner.state_dict(), num_heads=2)
-    conditioner.eval()
-    assert torch.equal(again(features, mask), conditioner(features, mask))
-    with pytest.raises(WeightsError, match=r"project\.weight is missing"):
-        TextConditioner.from_weights({}, num_heads=2)

@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 from motion import SKELETONS, SMPL22, Clip, Duet, InputError, formats
 from motion.formats.smpl import PELVIS
 from motion.kinematics import forward_kinematics
-from motion.representation import decode_positions, encode_duet
+from motion.representation import decode_positions, encode_pair
 from motion.transforms import turn
 from tests.motion.bodies import marching
 
@@ -65,7 +65,7 @@ def test_npy_forms():
     assert isinstance(formats.read(_npy(A[None]), name="a.npy"), Clip)
     duet = formats.read(_npy(DUET.positions), name="a.npy", fps=25)
     assert isinstance(duet, Duet) and duet.fps == 25
-    features = encode_duet(DUET)
+    features = encode_pair(DUET.a.positions, DUET.b.positions)
     np.testing.assert_allclose(
         formats.read(_npy(features), name="a.npy").positions, decode_positions(features), atol=1e-6
     )

@@ -20,7 +20,6 @@ from .play import Play
 from .whole import WHOLE, part_of, perform, taken
 
 UPPER = (*ARMS["left"], *ARMS["right"])
-HEAD = SMPL22.index("head")
 
 
 def bow(play: Play, i: int) -> Done:
@@ -72,11 +71,6 @@ def look_around(play: Play, i: int) -> Done:
         person.hold(int(12 + 10 * abs(turn)), turn=turn)
     play.look(i, start, len(person), 0.0)
     return Done(start, len(person))
-
-
-def stand(play: Play, i: int) -> Done:
-    """Person i stands."""
-    return Done(len(play.people[i]), len(play.people[i]))
 
 
 # ---- acts that are laid over a person who stands ------------------------------------------------------------

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from motion import InputError
 from motion.formats.files import replacing
-from training.core.shell import exit_code
+from training.core.shell import add_options, exit_code
 from training.corpus.strict_pairs import StrictPair, strict_pairs
 from training.evaluate.reactions import interval
 
@@ -99,8 +99,7 @@ def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(prog="python -m training.evaluate.paper_tables", description=__doc__)
     parser.add_argument("table", choices=TABLES)
-    parser.add_argument("--data", type=Path, required=True, help="folder that holds sbu and k3hi")
-    parser.add_argument("--cache", type=Path, help="folder of the fitted pairs; --data by default")
+    add_options(parser, "pairs", "cache")
     parser.add_argument("--out", type=Path, required=True, help="folder of the trainings and scores")
     parser.add_argument("--rows", nargs="+", help="names of rows (all)")
     parser.add_argument("--steps", type=int, help="of each training (by table)")

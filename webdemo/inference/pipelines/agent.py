@@ -19,7 +19,6 @@ from pathlib import Path
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from torch import Tensor
 
 from models.agent.recogniser import OBSERVED, PREDICTED, load_folder, sampled
 from models.intergen.compact import DuetSpace
@@ -226,7 +225,7 @@ class AgentPipeline:
         clip, model = request.actor, self.answers.model
         placement = Placement.of(clip.cut(0, 1), "a")
         known = Known.nothing(_padded(model.layout, clip.num_frames))
-        known.add_person(0, _tensor(placement.to_network(clip.positions[:1])))
+        known.add_person(0, torch.tensor(placement.to_network(clip.positions[:1]), dtype=torch.float32))
         frames = range(clip.num_frames)
         places = torch.tensor([[0.0, MEDIAN_START_DISTANCE]]).expand(len(frames), -1)
         known.add_path(1, frames, places, torch.full((len(frames),), torch.pi))
@@ -242,7 +241,7 @@ class AgentPipeline:
         placement = Placement.of(clip.cut(0, seen), "a", request.prompt)
         known = Known.nothing(_padded(model.layout, clip.num_frames))
         for person, positions in enumerate((clip.positions[:seen], past)):
-            known.add_person(person, _tensor(placement.to_network(positions)))
+            known.add_person(person, torch.tensor(placement.to_network(positions), dtype=torch.float32))
         return Answering(
             clip.num_frames, _held(model, known), clip=clip, place=0, placement=placement, past=past
         )
@@ -255,7 +254,3 @@ def _padded(layout: TokenLayout, frames: int) -> int:
 
 def _held(model: DuetSpace, known: Known) -> Hold:
     return Hold(known, model.layout, model.mean, model.std)
-
-
-def _tensor(values: Array) -> Tensor:
-    return torch.from_numpy(np.ascontiguousarray(values)).float()

@@ -15,7 +15,6 @@ from pathlib import Path
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from torch import Tensor
 
 from models.interformer.compact import FPS as NETWORK_FPS
 from models.interformer.compact import JOINTS_15, load_folder
@@ -111,8 +110,8 @@ class InterFormerPipeline:
         while (begun := len(reaction) - 1) < total:
             window = slow[begun : begun + self.model.config.window]
             here = Placement.of(Clip(window, NETWORK_FPS, SMPL22), "a")
-            seen = _tensor(here.to_network(window)[:, list(JOINTS_15)])
-            first = _tensor(here.to_network(reaction[-1]))
+            seen = torch.tensor(here.to_network(window)[:, list(JOINTS_15)], dtype=torch.float32)
+            first = torch.tensor(here.to_network(reaction[-1]), dtype=torch.float32)
             actors = seen.expand(request.samples, -1, -1, -1)
             for pose in self.decoder.poses_after(actors, first, noise):
                 reaction.append(here.to_world(pose.astype(np.float64)))
@@ -126,7 +125,3 @@ def on_smpl22(joints: Array, frames: int) -> Array:
     fast = resample(joints, NETWORK_FPS, FPS)[:frames]
     fast = np.concatenate([fast, np.repeat(fast[-1:], frames - len(fast), axis=0)])
     return fit_skeleton(fast, _NAMES_15, fps=FPS, noise=_NOISE, scale=1.0, iterations=4).positions
-
-
-def _tensor(values: Array) -> Tensor:
-    return torch.from_numpy(np.ascontiguousarray(values)).float()

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from acts.plan import other_of
 from motion import SMPL22
 from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
@@ -300,7 +301,7 @@ def _beginning(request: SceneRequest) -> Standing:
     near = lies or bool(first.reaching)
     touch = first.contact
     if touch is not None and touch.behind and not goes(first.moves):
-        averted = Move("b" if touch.person == "a" else "a", Way.AVERTED)
+        averted = Move(other_of(touch.person), Way.AVERTED)
         return starting((averted,), request.beats[0].length, near=True)
     for beat, told in zip(request.beats, request.told, strict=True):
         if goes(told.moves):

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import Duet, stacked_positions
 from webdemo.inference.actor import FPS
@@ -25,8 +24,6 @@ from webdemo.inference.timer import StageTimer
 
 from .intergen import InterGenPipeline
 from .predictor import PredictorPipeline
-
-Array = NDArray[np.floating]
 
 FUTURES = 3
 """Futures of a request."""

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from acts.plan import other_of
+
 from .floor import ABREAST, BEHIND, CLOSE, LINKED, Standing
 from .holds import TWIRL
 from .lifts import Carry, Lift
@@ -17,8 +19,6 @@ from .postures import Posture
 from .strikes import Bout, Strike
 from .ways import Way
 
-KICK = 1.0
-"""Metres between two people one of whom kicks the other."""
 BACKS = 0.5
 """Metres between the pelvises of two people who stand or sit back to back."""
 BEHIND_BACK = 0.6
@@ -92,7 +92,7 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
                 np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0)
             )
     turned = next((m.person for m in moves if m.way in (Way.FACE, Way.AVERTED)), "")
-    turned = turned or next(("b" if m.person == "a" else "a" for m in moves if m.way is Way.BEHIND), "")
+    turned = turned or next((other_of(m.person) for m in moves if m.way is Way.BEHIND), "")
     ahead = -1.0 if turned == "a" else 1.0
     facing_b = 0.0 if turned else math.pi
     return Standing(np.array([[0.0, 0.0], [0.0, ahead * gap]]), np.array([0.0, facing_b]))

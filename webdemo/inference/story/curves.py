@@ -33,6 +33,11 @@ def filled(values: Array, known: Array, first: float) -> Array:
     return np.where(at >= 0, values[at.clip(0)], first)
 
 
+def bearing(line: Array) -> float:
+    """The heading in radians of a line (2,) over the floor, from +Z towards +X: what :func:`direction` takes."""
+    return math.atan2(line[0], line[1])
+
+
 def direction(heading: float) -> Array:
     """The unit vector (x, z) of a heading in radians from +Z towards +X."""
     return np.array([math.sin(heading), math.cos(heading)])

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from motion.vectors import wrapped
 from webdemo.inference.actor import FPS
 
-from .curves import direction, eased, smoothed
+from .curves import bearing, direction, eased, smoothed
 from .holds import Hold, danced
 from .moves import Move
 from .track import EASE, MOST, Track
@@ -182,8 +182,7 @@ def _moved(
             track.turn(2 * math.pi * move.turns)
             track.stay(facing=True, seconds=None if last else 0.2)
         case Way.FACE:
-            line = other - here
-            track.turn(wrapped(math.atan2(line[0], line[1]) - track.heading))
+            track.turn(wrapped(bearing(other - here) - track.heading))
             track.stay(facing=True, seconds=None if last else 0.2)
         case Way.BEHIND:
             _behind(
@@ -197,7 +196,7 @@ def _moved(
             far = min(move.metres, move.speed * seconds) if move.metres else min(BACKWARDS, 0.6 * seconds)
             step = -far * to if move.way is Way.BACK else SIDESTEP * np.array([to[1], -to[0]])
             taken = min(seconds, max(1.3, float(np.linalg.norm(step)) / move.speed + EASE))
-            track.walk(np.stack([here, here + step]), taken, heading=math.atan2(to[0], to[1]))
+            track.walk(np.stack([here, here + step]), taken, heading=bearing(to))
             track.stay(facing=True, seconds=None if last else 0.2)
         case Way.PAST:
             _past(move, track, other, to, seconds)
@@ -230,7 +229,7 @@ def _behind(move: Move, track: Track, other: Array, faces: float, seconds: float
     """A walk up to the other's back, round them where they stand in the way, that ends facing it."""
     near = move.near or NEAR_BY
     goal, out = other - near * direction(faces), track.place - other
-    start = math.atan2(out[0], out[1])
+    start = bearing(out)
     sweep = wrapped(faces + math.pi - start)
     line = [track.place, goal]
     if abs(sweep) > math.pi / 3:
@@ -252,7 +251,7 @@ def _away(
     room = _CHASED if followed else (FARTHEST - gap + max(0.0, move.speed - 1.1)) / (2 if both else 1)
     away = -to if not np.linalg.norm(track.going) else track.going
     way = min(max(seconds - 0.4, 0.5) * move.speed, max(room, 1.2))
-    facing = math.atan2(to[0], to[1]) if move.backwards else None
+    facing = bearing(to) if move.backwards else None
     taken = min(seconds, way / move.speed + EASE if move.speed > RUN else way / (0.8 * move.speed) + 2 * EASE)
     track.walk(np.stack([track.place, track.place + way * away]), taken, heading=facing)
 
@@ -268,7 +267,7 @@ def _past(move: Move, track: Track, other: Array, to: Array, seconds: float) -> 
     beyond = max(1.3, min(gap, seconds * move.speed - gap)) + move.metres
     aside = ASIDE * np.array([to[1], -to[0]])
     line = np.stack([here, here + 0.5 * gap * to + 0.7 * aside, other + aside, other + beyond * to + aside])
-    facing = math.atan2(-to[0], -to[1]) if move.backwards else None
+    facing = bearing(-to) if move.backwards else None
     track.walk(smoothed(line), min(seconds, (gap + beyond) / min(move.speed, MOST) + EASE), heading=facing)
 
 
@@ -298,7 +297,7 @@ def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, 
     """A walk around the other, or of both around the middle between them."""
     middle = standing.places.mean(axis=0) if both else other
     out = track.place - middle
-    start, radius = math.atan2(out[0], out[1]), float(np.linalg.norm(out))
+    start, radius = bearing(out), float(np.linalg.norm(out))
     wanted = 2 * math.pi * move.turns * (1.1 if move.turns >= 1 else 1.5)
     end_radius = max(radius, WIDE / 2 if both else WIDE)
     speed = max(move.speed, 1.3)
@@ -314,7 +313,7 @@ def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> No
     middle = standing.places.mean(axis=0)
     out = track.place - middle
     time = np.linspace(0, 1, max(round(seconds * FPS), 2))
-    start, radius = math.atan2(out[0], out[1]), float(np.linalg.norm(out))
+    start, radius = bearing(out), float(np.linalg.norm(out))
     nearer = np.clip(time * seconds / 1.2, 0, 1)
     turned = 2 * math.pi * move.turns * seconds * eased(time, min(0.5, 1.5 / seconds))
     angles, radii = start + turned, radius + (move.near / 2 - radius) * nearer

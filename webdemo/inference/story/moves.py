@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from acts.plan import other_of
+
 from .holds import Hold
 from .lifts import Carry, Lift
 from .strikes import Strike, turning
@@ -73,7 +75,7 @@ def struck_moves(found: Strike, dodge: Move | None, *, down: bool) -> tuple[Move
     near, first = found.bout.value, found.turns[0]
     if not found.answered:
         return tuple(Move(person, Way.SPAR, near=near, turns=turning(found.bout)) for person in "ab")
-    other = "b" if first == "a" else "a"
+    other = other_of(first)
     comes = Move(first, Way.TO, near=near)
     if dodge is not None:
         return comes, replace(dodge, late=True)
@@ -85,7 +87,7 @@ def lifted_moves(found: Lift, speed: float) -> tuple[Move, ...]:
     comes = found.comes or found.carrier
     made = [
         Move(comes, Way.TO, speed, near=found.carry.near),
-        Move("b" if comes == "a" else "a", Way.STAY),
+        Move(other_of(comes), Way.STAY),
     ]
     if found.spins:
         made.append(Move(found.carrier, Way.TURN, turns=1.0))
@@ -119,6 +121,6 @@ def _led_backwards(made: Sequence[Move]) -> list[Move]:
     if len(backs) != 1 or not any(move.way is Way.ALONG for move in made):
         return list(made)
     (leader,) = backs
-    follower = "b" if leader == "a" else "a"
+    follower = other_of(leader)
     near = Hold.RING.value
     return [Move(leader, Way.AWAY, 0.8, backwards=True, near=near), Move(follower, Way.AFTER, 0.8, near=near)]

@@ -13,7 +13,7 @@ from functools import lru_cache
 from acts import shapes
 from acts.captions import of_each
 from acts.lexicon import Lexicon, lexicon
-from acts.plan import FROM_BEHIND, Act, beats
+from acts.plan import FROM_BEHIND, Act, beats, other_of
 from acts.things import is_fixture
 
 from .act_kinds import is_after, is_attempt, is_deep, is_near, only_stays, reaches, region_of, walks
@@ -216,7 +216,7 @@ class _Stage:
         if shape.who == "both":
             return ("a", "b")
         if shape.who == "patient":
-            return (act.patient or _other(act.agents[0]),)
+            return (act.patient or other_of(act.agents[0]),)
         return act.agents
 
     def _go(self, act: Act, shape: shapes.Go, who: str) -> Move:
@@ -269,7 +269,7 @@ class _Stage:
         self.contact = Contact(giver, region, sides, times, late, behind, shape.fells)
         if shape.fells:
             fallen = Change(Posture.LIES, after=0.4)
-            self.changes[_other(giver)] = (*self.changes.get(_other(giver), ()), fallen)
+            self.changes[other_of(giver)] = (*self.changes.get(other_of(giver), ()), fallen)
 
     # ---- what follows from all of them ---------------------------------------------------------------
 
@@ -311,7 +311,7 @@ class _Stage:
             return Strike(bout, "ab")
         turns = "".join(dict.fromkeys("".join(each) for each, *_ in self.blows))
         turns = turns if len(self.blows) > 1 else turns * min(act.times or 1, 5)
-        hit = _other(people[0])
+        hit = other_of(people[0])
         answered = any(
             hit in other.agents and shape.do in ("posture", "go")
             for other, e in self.done
@@ -332,12 +332,12 @@ class _Stage:
         if self.lift is not None:
             return lifted_moves(self.lift, max((m.speed for m in self.moves if m.way is Way.TO), default=1.1))
         if self.twirls:
-            other = _other(self.twirls)
+            other = other_of(self.twirls)
             turned = Move(other, Way.FACE, late=True), Move(other, Way.TURN, turns=1.0)
             return Move(self.twirls, Way.TO, near=TWIRL), *turned
         low = set(self.changes) | set(self.leaps)
         if struck is not None:
-            other = _other(struck.turns[0])
+            other = other_of(struck.turns[0])
             own = next((m for m in self.moves if m.person == other and m.way in _DODGES), None)
             return struck_moves(struck, own, down=other in self.changes)
         told = [replace(move, linked=move.linked or self.linked) for move in fastest(self.moves)]
@@ -360,7 +360,7 @@ class _Stage:
         """The people who stand by: of whom nothing is told that happens, while the other does something alone."""
         found = set()
         for who in "ab":
-            other = _other(who)
+            other = other_of(who)
             own = [(act, e) for act, e in self.done if who in act.agents]
             theirs = [(act, e) for act, e in self.done if other in act.agents and who not in act.agents]
             denied = any(who in act.agents and not act.happens and not self._stays(act) for act in self.acts)
@@ -383,7 +383,7 @@ class _Stage:
         return frozenset(
             who
             for who, gesture in self.gestures.items()
-            if (gesture.hand in STOOD or each or _other(who) in self.changes)
+            if (gesture.hand in STOOD or each or other_of(who) in self.changes)
             and own[who] < 2
             and who not in gone
         )
@@ -400,7 +400,3 @@ def _away(alone: tuple[str, str], moves: Sequence[Move]) -> tuple[str, str]:
         for who, words in zip("ab", alone, strict=True)
     )
     return a, b
-
-
-def _other(who: str) -> str:
-    return "b" if who == "a" else "a"

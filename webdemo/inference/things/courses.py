@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.things import Mesh, Thing, shape
 
@@ -15,8 +14,6 @@ from .holding import Hands, Track, frame_of, held, level, smoothed, takes_both_h
 from .timing import WITHIN, lowest, meeting, release
 from .tracks import BLEND, Course, at_rest, put, rolled, thrown
 from .uses import Use
-
-Array = NDArray[np.floating]
 
 SPEED = 5.5
 """Metres a second of a throw, along the floor."""

@@ -19,8 +19,6 @@ PALM, DEEP = 0.085, 0.025
 """Metres from the wrist to the middle of the palm, along the fingers and out of the palm."""
 BEFORE_BODY = 0.17
 """Metres from the pelvis to the surface of the belly, and a little more."""
-TOGETHER = 0.75
-"""Metres between two palms, at most, that hold one thing."""
 _UP = np.array([0.0, 1.0, 0.0])
 _J = {name: index for index, name in enumerate(SMPL22.joint_names)}
 

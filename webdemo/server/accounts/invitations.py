@@ -15,7 +15,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from motion import InputError
 from webdemo.server.audit import audit
 from webdemo.server.http.cookies import set_cookie
-from webdemo.server.http.error_pages import invitation_card
+from webdemo.server.http.error_pages import invitation_card, never_kept
 from webdemo.server.http.networks import network_of
 from webdemo.server.http.refused import Refused
 from webdemo.server.settings import Settings
@@ -112,7 +112,7 @@ def invitation_routes(settings: Settings, sign_ins: SignIns, invitations: Invita
 
     def page(key: str, name: str, *, error: str = "", status: int = 200) -> HTMLResponse:
         body = invitation_card(action=f"{root}{PATH}{key}", name=name, error=error)
-        return HTMLResponse(body, status_code=status, headers={"Cache-Control": "no-store"})
+        return never_kept(body, status)
 
     @router.get(PATH + "{key}")
     def ask(key: str) -> Response:

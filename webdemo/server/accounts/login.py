@@ -14,7 +14,7 @@ from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Re
 from motion import InputError
 from webdemo.server.audit import audit
 from webdemo.server.http.cookies import set_cookie
-from webdemo.server.http.error_pages import sign_in_card
+from webdemo.server.http.error_pages import never_kept, sign_in_card
 from webdemo.server.http.networks import network_of
 from webdemo.server.http.refused import Refused
 from webdemo.server.settings import Settings
@@ -38,7 +38,7 @@ def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> A
 
     def page(wanted: str, *, name: str = "", error: str = "", status: int = 200) -> HTMLResponse:
         body = _card(settings, wanted, name, error)
-        return HTMLResponse(body, status_code=status, headers={"Cache-Control": "no-store"})
+        return never_kept(body, status)
 
     keep = partial(_keep, root)
 

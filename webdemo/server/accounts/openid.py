@@ -29,7 +29,7 @@ from webdemo.server.audit import audit
 from webdemo.server.http.cookies import set_cookie
 from webdemo.server.http.refused import Refused
 from webdemo.server.settings import Settings
-from webdemo.ui.visitor import Visitor
+from webdemo.ui.visitor import visitor_of
 
 from .proxy import NAME
 from .users import SignIns, Suspended
@@ -196,8 +196,7 @@ def _groups(claims: dict[str, Any]) -> set[str]:
 
 
 def _back(request: Request) -> str:
-    visitor: Visitor = request.scope["state"]["visitor"]
-    return f"{visitor.base}login/openid/back"
+    return f"{visitor_of(request).base}login/openid/back"
 
 
 def _kept(cookie: str) -> dict[str, str]:

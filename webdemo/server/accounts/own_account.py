@@ -9,11 +9,11 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from motion import InputError
 from webdemo.server.audit import audit
 from webdemo.server.http.cookies import set_cookie
-from webdemo.server.http.error_pages import account_card
+from webdemo.server.http.error_pages import account_card, never_kept
 from webdemo.server.http.networks import network_of
 from webdemo.server.http.refused import Refused
 from webdemo.server.settings import Settings
-from webdemo.ui.visitor import Visitor
+from webdemo.ui.visitor import visitor_of
 
 from .throttle import TooManyTries
 from .users import SignIns
@@ -31,7 +31,7 @@ def account_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) ->
 
     def page(request: Request, *, error: str = "", done: str = "", status: int = 200) -> HTMLResponse:
         body = account_card(home=f"{root}/", name=_account(request), error=error, done=done)
-        return HTMLResponse(body, status_code=status, headers={"Cache-Control": "no-store"})
+        return never_kept(body, status)
 
     @router.get("/account")
     def account(request: Request) -> Response:
@@ -79,7 +79,7 @@ def account_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) ->
 
 
 def _account(request: Request) -> str:
-    visitor: Visitor = request.scope["state"]["visitor"]
-    if not visitor.account:
+    account = visitor_of(request).account
+    if not account:
         raise Refused(503, NO_ACCOUNTS, "accounts")
-    return visitor.account
+    return account

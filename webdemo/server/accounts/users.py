@@ -11,9 +11,9 @@ import secrets
 import threading
 import time
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple
 
-from sqlalchemy import CursorResult, delete
+from sqlalchemy import delete
 
 from motion import InputError
 from motion.formats.files import replacing
@@ -270,9 +270,7 @@ class SignIns:
 
     def end_all(self, name: str) -> int:
         """Ends all sessions of an account; returns how many there were."""
-        with self.database.session.begin() as session:
-            ended = session.execute(delete(SignIn).where(SignIn.person == name))
-            return cast(CursorResult[Any], ended).rowcount
+        return People(self.database).sign_out(name)
 
     def end(self, token: str) -> None:
         """Signs a session out."""

@@ -9,10 +9,11 @@ import time
 from collections import OrderedDict
 from collections.abc import Mapping
 
+from acts.config import is_loopback
 from motion import InputError
 from webdemo.server.http.networks import network_of
 from webdemo.server.http.refused import Refused
-from webdemo.server.settings import Settings, is_loopback
+from webdemo.server.settings import Settings
 from webdemo.server.store.people import People
 from webdemo.ui.visitor import Visitor
 

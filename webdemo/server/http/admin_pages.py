@@ -10,16 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 from fastapi import APIRouter, Request
 from starlette.concurrency import run_in_threadpool
-from starlette.responses import HTMLResponse, RedirectResponse, Response
+from starlette.responses import RedirectResponse, Response
 
 from motion import InputError
 from webdemo.server.accounts.invitations import DAYS
 from webdemo.server.activity import Item, work_of
 from webdemo.server.admin import Administration, versions
 from webdemo.server.audit import audit, audited
+from webdemo.server.http.error_pages import never_kept
 from webdemo.server.logs import LAST_ERRORS
 from webdemo.server.store.people import ADMIN, MOST_ANNOUNCED
-from webdemo.ui.visitor import Visitor
+from webdemo.ui.visitor import visitor_of
 
 from .admin_html import page, table
 from .body_limits import Refused
@@ -48,7 +49,7 @@ def admin_routes(lab: Lab) -> APIRouter:
     def show(request: Request, done: str = "") -> Response:
         _check_admin(lab, request)
         body = _page(lab, _DONE.get(done, ""))
-        return HTMLResponse(body, headers={"Cache-Control": "no-store"})
+        return never_kept(body)
 
     @router.post("/admin")
     async def act(request: Request) -> Response:
@@ -62,8 +63,8 @@ def admin_routes(lab: Lab) -> APIRouter:
         done = given.get("act", "")
         try:
             if done == "invite":
-                said = await run_in_threadpool(_invite, lab, given, _base(request))
-                return HTMLResponse(_page(lab, said), headers={"Cache-Control": "no-store"})
+                said = await run_in_threadpool(_invite, lab, given, visitor_of(request).base)
+                return never_kept(_page(lab, said))
             await run_in_threadpool(_act, lab, done, given)
         except InputError as error:
             raise Refused(422, str(error), "admin") from None
@@ -74,7 +75,7 @@ def admin_routes(lab: Lab) -> APIRouter:
 
 def _check_admin(lab: Lab, request: Request) -> None:
     """Raises Refused for everybody but administrators."""
-    who: Visitor = request.scope["state"]["visitor"]
+    who = visitor_of(request)
     if not who.account or lab.people.of(who.account).role != ADMIN:
         audit("admin-page", ok=False)
         raise Refused(403, "This page is for administrators.", "admin")
@@ -116,11 +117,6 @@ def _invite(lab: Lab, given: Mapping[str, str], base: str) -> str:
     name = given.get("name", "").strip().lower()
     path = lab.administration.invite(name, megabytes=_megabytes(given.get("megabytes", "")))
     return f"Send {name} this link, which works once, within {DAYS:g} days: {base}{path.removeprefix('/')}"
-
-
-def _base(request: Request) -> str:
-    visitor: Visitor = request.scope["state"]["visitor"]
-    return visitor.base
 
 
 def _megabytes(text: str) -> float | None:

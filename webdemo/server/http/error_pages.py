@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import html
 
+from starlette.responses import HTMLResponse
+
 _PAGE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <link rel="icon" href="data:,"><title>Pas de Deux</title><style>
@@ -38,6 +40,15 @@ def card(body: str) -> str:
     return _PAGE.format(body=body)
 
 
+def never_kept(page: str, status: int = 200) -> HTMLResponse:
+    """A page that no browser keeps."""
+    return HTMLResponse(page, status_code=status, headers={"Cache-Control": "no-store"})
+
+
+def _alert(error: str) -> str:
+    return f'<p role="alert">{html.escape(error)}</p>' if error else ""
+
+
 def message_card(sentence: str, *, home: str, reference: str) -> str:
     """A page with one sentence, a link to the lab, and the request's id for a search in the log."""
     return card(
@@ -56,7 +67,7 @@ def account_card(*, home: str, name: str, error: str = "", done: str = "") -> st
         error: what went wrong.
         done: what was done.
     """
-    said = f'<p role="alert">{html.escape(error)}</p>' if error else ""
+    said = _alert(error)
     said += f'<p role="status">{html.escape(done)}</p>' if done else ""
     fields = "".join(
         f'<label>{label}<input name="{key}" type="password" autocomplete="{kind}" required></label>'
@@ -83,7 +94,7 @@ def invitation_card(*, action: str, name: str, error: str = "") -> str:
         name: of the account.
         error: what went wrong before.
     """
-    said = f'<p role="alert">{html.escape(error)}</p>' if error else ""
+    said = _alert(error)
     fields = "".join(
         f'<label>{label}<input name="{key}" type="password" autocomplete="new-password" required></label>'
         for label, key in (("Password", "new"), ("Password again", "again"))
@@ -108,7 +119,7 @@ def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "", e
         error: what went wrong then.
         elsewhere: address at which people sign in by another service; empty for none.
     """
-    alert = f'<p role="alert">{html.escape(error)}</p>' if error else ""
+    alert = _alert(error)
     why = (
         "to see the motion that you were sent"
         if wanted.startswith("/?run=")

@@ -19,12 +19,13 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from acts.config import is_loopback
 from motion import InputError
 from webdemo.server.accounts.proxy import admin_by_proxy, person_by_proxy
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, Bindings, Visitors, new_token
 from webdemo.server.audit import SENDER
 from webdemo.server.logs import REFERENCE
-from webdemo.server.settings import Settings, is_loopback, on_a_space
+from webdemo.server.settings import Settings, on_a_space
 from webdemo.server.store.database import is_full
 from webdemo.server.store.personal_files import PERSON
 from webdemo.ui.visitor import Visitor

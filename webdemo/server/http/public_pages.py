@@ -16,7 +16,7 @@ from motion import InputError
 from webdemo.server.settings import Settings
 from webdemo.server.store.publishing import Publishing
 from webdemo.ui.public_html import FILES, Place, embed_html, gallery_html, payload_of, player_html
-from webdemo.ui.visitor import Visitor
+from webdemo.ui.visitor import visitor_of
 from webdemo.view.payload import Payload
 
 from .refused import Refused
@@ -35,11 +35,11 @@ def public_routes(settings: Settings, publishing: Publishing) -> APIRouter:
 
     @router.get("/share/{key}")
     def share(key: str, request: Request) -> Response:
-        return pages.whole(key, _base(request))
+        return pages.whole(key, visitor_of(request).base)
 
     @router.get("/share/{key}/{place}")
     def share_one(key: str, place: str, request: Request) -> Response:
-        return pages.one(key, _number(place), _base(request))
+        return pages.one(key, _number(place), visitor_of(request).base)
 
     @router.get("/embed/{key}")
     def embed(key: str) -> Response:
@@ -125,11 +125,6 @@ class _Pages:
 
     def _place(self) -> Place:
         return Place(files=f"{self.root}/shown/")
-
-
-def _base(request: Request) -> str:
-    visitor: Visitor = request.scope["state"]["visitor"]
-    return visitor.base
 
 
 def _number(place: str) -> int:

@@ -13,15 +13,16 @@ from urllib.parse import quote
 import gradio as gr
 from fastapi import APIRouter, Request
 from starlette.concurrency import run_in_threadpool
-from starlette.responses import HTMLResponse, JSONResponse, Response
+from starlette.responses import JSONResponse, Response
 
 from motion import InputError
+from webdemo.server.http.error_pages import never_kept
 from webdemo.server.settings import Settings
 from webdemo.server.store.studies import Studies
 from webdemo.server.store.voting import Shown
 from webdemo.study import StudyResult
 from webdemo.ui.components.player import PLAYER_FOLDER, PLOTLY_JS
-from webdemo.ui.visitor import Visitor
+from webdemo.ui.visitor import visitor_of
 from webdemo.view.payload import Payload, build_payload, grid_sample, sample_payload
 
 from .refused import Refused
@@ -43,15 +44,15 @@ def study_routes(settings: Settings, studies: Studies) -> APIRouter:
     @router.get("/study/{key}")
     def page(key: str, request: Request) -> Response:
         try:
-            invitation = studies.invitation(key, _visitor(request).person)
+            invitation = studies.invitation(key, visitor_of(request).person)
         except InputError as error:
             raise Refused(404, str(error), "study") from None
-        return HTMLResponse(_page(root, key, invitation.question), headers={"Cache-Control": "no-store"})
+        return never_kept(_page(root, key, invitation.question))
 
     @router.post("/study/{key}/next")
     def following(key: str, request: Request) -> Response:
         try:
-            return _answered(_following(studies, key, _voter(request), _visitor(request).address))
+            return _answered(_following(studies, key, _voter(request), visitor_of(request).address))
         except InputError as error:
             raise Refused(422, str(error), "study") from None
 
@@ -61,7 +62,7 @@ def study_routes(settings: Settings, studies: Studies) -> APIRouter:
         ticket, pressed = _vote(await request.body())
         try:
             await run_in_threadpool(studies.vote, key, person, ticket, pressed)
-            answer = await run_in_threadpool(_following, studies, key, person, _visitor(request).address)
+            answer = await run_in_threadpool(_following, studies, key, person, visitor_of(request).address)
         except InputError as error:
             raise Refused(422, str(error), "study") from None
         return _answered(answer)
@@ -69,15 +70,11 @@ def study_routes(settings: Settings, studies: Studies) -> APIRouter:
     return router
 
 
-def _visitor(request: Request) -> Visitor:
-    return request.scope["state"]["visitor"]
-
-
 def _voter(request: Request) -> str:
     """The person who votes; raises Refused for one who cannot be told from others, or a program."""
     if not request.headers.get("origin"):  # the guard has compared it with the host
         raise Refused(403, _BY_SCRIPT, "study")
-    visitor = _visitor(request)
+    visitor = visitor_of(request)
     if not visitor.account and not visitor.person.startswith("visitor "):
         raise Refused(403, _NO_COOKIE, "study")
     return visitor.person

@@ -18,7 +18,7 @@ from starlette.responses import JSONResponse, Response
 from motion import SMPL22, Clip, InputError
 from motion.video.packed import camera_number
 from webdemo.inference.actor import FPS
-from webdemo.ui.visitor import LOCAL, Visitor
+from webdemo.ui.visitor import Visitor, visitor_of
 from webdemo.view.payload import player_payload
 
 from .messages import read_fields
@@ -33,7 +33,7 @@ def live_routes(streams: Streams) -> APIRouter:
 
     @router.post("/live")
     async def begin(request: Request) -> Response:
-        visitor, body = _visitor(request), await request.body()
+        visitor, body = visitor_of(request), await request.body()
         return await _answered(
             lambda: streams.opening(visitor.person, partial(_begin, streams, visitor, body))
         )
@@ -41,11 +41,11 @@ def live_routes(streams: Streams) -> APIRouter:
     @router.post("/live/{key}")
     async def frames(key: str, request: Request) -> Response:
         body = await request.body()
-        return await _answered(lambda: streams.answer(key, _visitor(request), body))
+        return await _answered(lambda: streams.answer(key, visitor_of(request), body))
 
     @router.delete("/live/{key}")
     async def end(key: str, request: Request) -> Response:
-        return await _answered(lambda: _end(streams, key, _visitor(request)))
+        return await _answered(lambda: _end(streams, key, visitor_of(request)))
 
     return router
 
@@ -67,11 +67,6 @@ async def _answered(job: Callable[[], dict[str, Any] | Future[dict[str, Any]]]) 
     except InputError as error:
         status, answer = 422, {"detail": str(error)}
     return JSONResponse(answer, status_code=status, headers={"Cache-Control": "no-store"})
-
-
-def _visitor(request: Request) -> Visitor:
-    found = request.scope.get("state", {}).get("visitor")
-    return found if isinstance(found, Visitor) else LOCAL
 
 
 def _begin(streams: Streams, visitor: Visitor, body: bytes) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from fastapi import HTTPException, Request
 from gradio.queueing import Event, EventQueue, Queue
 
 from webdemo.server.http.metrics import Figures
-from webdemo.ui.visitor import LOCAL, Visitor
+from webdemo.ui.visitor import visitor_of
 
 from .turns import Accounts
 
@@ -58,8 +58,8 @@ class FairEvents(Queue):
         Raises:
             HTTPException: 429 with a sentence, if the person or the address has too many unfinished ones.
         """
-        who = _visitor(request)
-        known = [_visitor(event.request) for event in self._unfinished()]
+        who = visitor_of(request)
+        known = [visitor_of(event.request) for event in self._unfinished()]
         mine = sum(other.person == who.person for other in known)
         near = sum(other.address == who.address for other in known) if who.address else 0
         if mine >= self.limits.person:
@@ -80,16 +80,16 @@ class FairEvents(Queue):
         now = time.monotonic()
         running = list(self._running())
         busy = Counter(
-            _visitor(event.request).person for event in running if not self._waits_elsewhere(event)
+            visitor_of(event.request).person for event in running if not self._waits_elsewhere(event)
         )
         spent: defaultdict[str, float] = defaultdict(float)
         for event, began in self._begun.items():
-            spent[_visitor(event.request).person] += now - began
+            spent[visitor_of(event.request).person] += now - began
         chosen: Event | None = None
         least: tuple[float, float] = (0.0, 0.0)
         for group in self.event_queue_per_concurrency_id.values():
             for event in self._able(group, running, busy):
-                person = _visitor(event.request).person
+                person = visitor_of(event.request).person
                 due = (self.accounts.served.get(person, 0.0) + spent[person], event.enqueue_time)
                 if chosen is None or due < least:
                     chosen, least = event, due
@@ -108,7 +108,7 @@ class FairEvents(Queue):
             await super().process_events(events, *rest, **more)
         finally:
             del self._begun[event]
-            self.accounts.charge(_visitor(event.request).person, time.monotonic() - began)
+            self.accounts.charge(visitor_of(event.request).person, time.monotonic() - began)
 
     # ---- parts -----------------------------------------------------------------------------------
 
@@ -123,7 +123,7 @@ class FairEvents(Queue):
         share = max(1, limit // 2)
         here = Counter(_source(event) for event in running if event.concurrency_id == group.concurrency_id)
         for event in group.queue:
-            if busy[_visitor(event.request).person] < AT_ONCE and here[_source(event)] < share:
+            if busy[visitor_of(event.request).person] < AT_ONCE and here[_source(event)] < share:
                 yield event
 
     def _waits_elsewhere(self, event: Event) -> bool:
@@ -139,13 +139,7 @@ class FairEvents(Queue):
             yield from group.queue
 
 
-def _visitor(request: Request) -> Visitor:
-    """The person who sent a request, as the guard found them."""
-    found = request.scope.get("state", {}).get("visitor")
-    return found if isinstance(found, Visitor) else LOCAL
-
-
 def _source(event: Event) -> str:
     """The account, or the address of a person without one."""
-    who = _visitor(event.request)
+    who = visitor_of(event.request)
     return who.address or who.person

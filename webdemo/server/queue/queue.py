@@ -5,7 +5,6 @@ Runs of one model group go to one worker; :mod:`webdemo.server.queue.turns` deci
 
 from __future__ import annotations
 
-import logging
 import queue
 import threading
 import time
@@ -21,8 +20,6 @@ from webdemo.ui.visitor import Visitor, visitor
 
 from .turns import Batcher, Job, QueueLimits, Turns
 from .wait_estimate import Line, Pace, units
-
-log = logging.getLogger(__name__)
 
 TICK = 0.5
 """Seconds between two updates of the place in the queue."""

@@ -11,7 +11,6 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import json
-import logging
 import os
 import shutil
 import time
@@ -29,8 +28,6 @@ from webdemo.server.audit import FOLDER as AUDIT
 from webdemo.server.audit import audit
 
 from .migrations import NEWEST, REVISIONS, migrate, revision_of, upgrade
-
-log = logging.getLogger(__name__)
 
 FORMAT = "pas-de-deux-backup-1"
 PREFIX = "pas-de-deux-"

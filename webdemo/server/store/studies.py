@@ -18,8 +18,8 @@ from motion.formats.files import replacing
 from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit
 from webdemo.study import Pair, StudyResult, matched_pairs, tally
-from webdemo.study.pairs import FIRST, as_shown, check_sources, shuffled
-from webdemo.study.results import write_votes
+from webdemo.study.pairs import as_shown, check_sources, shuffled
+from webdemo.study.results import FIRST, write_votes
 from webdemo.ui.studies import NewStudy, StudyEntry
 
 from .database import Ballot, Rater, Study, sentences

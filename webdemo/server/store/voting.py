@@ -18,8 +18,7 @@ from sqlalchemy.orm import Session
 
 from motion import Clip, Duet, InputError, formats
 from webdemo.study import Pair, StudyResult, Vote, tally
-from webdemo.study.pairs import FIRST
-from webdemo.study.results import ANSWERS, SECOND, SKIP, TIE
+from webdemo.study.results import ANSWERS, FIRST, SECOND, SKIP, TIE
 
 from .database import Ballot, Database, Rater, Study, sentences
 from .storage import Storage

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import logging
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -38,9 +37,6 @@ from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import error_line, link_line, seconds
 from webdemo.ui.visitor import visitor
 from webdemo.view.payload import Payload
-
-log = logging.getLogger(__name__)
-
 
 QUIET: dict[str, Any] = {"api_visibility": "private", "show_progress": "hidden", "show_progress_on": []}
 """Options of events that are the page's own: no endpoint, no spinner over what they change.

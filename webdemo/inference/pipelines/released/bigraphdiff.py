@@ -7,7 +7,6 @@ from collections.abc import Iterator
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor
 
 from models.bigraphdiff.released import JOINTS, load_released
@@ -30,8 +29,6 @@ from webdemo.inference.results import Progress, Result
 from webdemo.inference.timer import StageTimer
 
 from .common import digest
-
-Array = NDArray[np.floating]
 
 LINEAR_BETAS = (1e-4, 0.02)
 """First and last noise variance of the linear schedule, Ho et al. 2020, as in MotionDiffuse."""
