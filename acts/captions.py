@@ -26,7 +26,8 @@ _PLAIN = frozenset(("a", "an", "the", "their"))
 _BEFORE_PEOPLE = frozenset(("to", "with", "at", "of"))
 _LEAN = frozenset(("to", "with", "at", "of", "on", "by", "in", "past", "from", "around", "behind", "into"))
 _AHEAD = {"tried": "try to", "offered": "offer to", "pretended": "pretend to", "wished": "want to"}
-_TURNS = frozenset(("left", "right", "clockwise", "counterclockwise", "anticlockwise"))
+TURNS = frozenset(("left", "right", "clockwise", "counterclockwise", "anticlockwise"))
+"""Directions that are named beside any act."""
 
 
 def singular(verb: str) -> str:
@@ -204,7 +205,7 @@ def short(act: Act, entry: Entry | None) -> str:
     phrase = _phrase(act, entry)
     text = f"{ahead} {_VERB.sub(lambda m: m[1] if plain else singular(m[1]), phrase)}".strip()
     told: list[str | None] = [act.side] if act.side in ("left", "right") else []
-    told += [act.direction] if act.direction in _TURNS else []
+    told += [act.direction] if act.direction in TURNS else []
     told += [adverb for adverb in act.manner[:1] if adverb not in ("then", "finally")]
     text = " ".join([text, *dict.fromkeys(word for word in told if word and f" {word} " not in f" {text} ")])
     return f"{text} ×{act.times}" if act.times is not None and act.times > 1 else text

@@ -208,7 +208,7 @@ class View {
     this.find(".pdr-plan").hidden = !plan?.acts.length;
     this.length.draw(plan ? this.shown.seconds : null, current ? this.asking.text : null);
     this.find(".pdr-beats").replaceChildren(...(plan ? this.shown.beats.map((beat) => this.beat(beat)) : []));
-    const notes = plan ? plan.notes.filter((note) => !plan.unread.some((part) => part.why === note)) : [];
+    const notes = plan ? this.shown.notes.filter((note) => !this.shown.whys.includes(note)) : [];
     const warnings = [error, this.note].filter(Boolean);
     this.find(".pdr-notes").replaceChildren(
       ...warnings.map((warning) => node("p", "pdr-error", warning)), ...notes.map((note) => node("p", "", note)),
@@ -233,14 +233,14 @@ class View {
       made.classList.toggle("pdr-lost", piece.unread >= 0);
       made.dataset.acts = piece.acts.join(" ");
       const said = piece.acts.map((id) => this.said[id]).join(", ");
-      made.title = piece.who ? `${NAMES[piece.who]}: ${said}` : plan.unread[piece.unread].why;
+      made.title = piece.who ? `${NAMES[piece.who]}: ${said}` : this.shown.whys[piece.unread];
       return made;
     });
   }
 
   unread(part, number) {
     const row = node("li", "");
-    row.append(node("q", "pdr-lost", wordsOf(this.shown.plan.sentence, part.words)), ` ${part.why}`);
+    row.append(node("q", "pdr-lost", wordsOf(this.shown.plan.sentence, part.words)), ` ${this.shown.whys[number]}`);
     const near = part.nearest.filter((name) => this.shown.nearest[name]);
     if (near.length && this.editable) {
       const buttons = node("span", "pdr-near");

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from playwright.sync_api import Page, expect
 
-from .serving import SLOW
+from webdemo.inference.requests import GenerateRequest, Result
+from webdemo.inference.verdicts import judged, note
+
+from .serving import SLOW, ask, live, status
 
 TABS = ("Erzeugen", "Szene", "Reagieren", "Vorhersagen", "Verlauf")
 SEEN = {
@@ -62,3 +66,64 @@ def test_the_address_goes_before_the_language_of_the_browser(open_page, server) 
     expect(page.locator("#prompt textarea")).to_be_visible()
     expect(page.locator(".pdd-empty-text, .pdd-time").last).to_be_attached()
     assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
+
+
+ENGLISH = re.compile(r"\b(the|and|is|are|of|to|with|not|at|step|apart|done|walks?|hugs?|waves?)\b", re.I)
+"""Words that no German line has."""
+PROMPT = "They hug. Then the second person waves slowly. The zorb blorps."
+
+
+def _judging(run):
+    """The stub's runs with verdicts on what they show, as the engine gives them."""
+
+    def judging(request, cancel=None):
+        for event in run(request, cancel):
+            if isinstance(event, Result) and isinstance(request, GenerateRequest):
+                found = judged(request, event)
+                event = replace(found.result, notes=(note(found.rows),) if found.rows else ())
+            yield event
+
+    return judging
+
+
+def _german(text: str) -> str:
+    """A text, which must hold nothing English beside what a visitor wrote."""
+    seen = text.replace(PROMPT, "")
+    assert seen.strip(), "nothing is said"
+    assert not ENGLISH.findall(seen), seen
+    return seen
+
+
+def test_what_the_server_says_is_german(open_page, server, monkeypatch) -> None:
+    monkeypatch.setattr(server.engine, "run", _judging(server.engine.run))
+    page = open_page(f"{server.url}?lang=de", width=1280, height=900)
+    _ready(page)
+    ask(page, PROMPT)
+    _german(status(page, "done"))
+    missed = _german(status(page, "warning"))
+    assert "Nicht zu sehen: A und B umarmen sich" in missed
+    chips = page.locator("#reading .pdr-chip")
+    expect(chips).to_have_count(2)
+    assert "umarmen sich" in _german(chips.first.inner_text())
+    assert "winkt, langsam" in _german(chips.last.inner_text())
+    _german(page.locator("#reading .pdr-unread").inner_text().replace("zorb", "").replace("blorps", ""))
+    assert "Nicht zu sehen" in _german(page.locator("#player .pdd-told").text_content())
+    page.evaluate("document.querySelectorAll('#readouts details').forEach((each) => (each.open = true))")
+    figures = _german(page.locator("#readouts").inner_text())
+    assert "Die beiden sind im Mittel" in figures and "Fußrutschen" in figures and "Laden" not in figures
+    ask(page, " ")
+    assert "Die Eingabe ist leer" in _german(status(page, "error"))
+    for tab, button in (("Reagieren", "#react-generate"), ("Vorhersagen", "#predict-generate")):
+        _panel(page, tab).locator(button).click()
+        line = page.locator("[role=tabpanel]:visible .pd-error")
+        expect(line).to_be_visible(timeout=SLOW)
+        assert "Noch ist keine" in _german(line.inner_text())
+
+
+def test_the_same_page_is_english_for_the_others(open_page, server) -> None:
+    page = open_page(server.url)
+    live(page)
+    ask(page, PROMPT)
+    assert status(page, "done").startswith("Done in ")
+    expect(page.locator("#reading .pdr-chip").first).to_contain_text("hug")
+    expect(page.locator("#readouts")).to_contain_text("The two are")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from gradio.context import LocalContext
@@ -45,3 +46,12 @@ def visitor_of(request: Request) -> Visitor:
     """The person who sent a request, as the guard found them."""
     found = request.scope.get("state", {}).get("visitor")
     return found if isinstance(found, Visitor) else LOCAL
+
+
+def wanted_language() -> str:
+    """The language of the page whose event is being answered, such as "de": its address's or its browser's."""
+    request = getattr(LocalContext.request.get(None), "request", None)
+    if request is None:
+        return "en"
+    wanted = request.query_params.get("lang") or request.headers.get("accept-language") or ""
+    return re.split(r"[-_,;]", wanted.strip().lower(), maxsplit=1)[0] or "en"

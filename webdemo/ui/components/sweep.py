@@ -13,6 +13,7 @@ from motion.metrics import MEASURES
 from webdemo.inference.predict_request import PredictResult
 from webdemo.inference.requests import Result
 from webdemo.ui.text.panels import sides
+from webdemo.ui.text.said import said
 from webdemo.ui.text.words import number, text
 from webdemo.view.payload import Payload, build_payload, grid_sample
 
@@ -182,7 +183,7 @@ def grid_table(results: Mapping[str, Result]) -> str:
     if not measures:
         return ""
     heads = "".join(
-        f'<th scope="col" title="{text(m.meaning)}">{text(m.label)} <small>{text(m.unit)}</small></th>'
+        f'<th scope="col" title="{text(said(m.meaning))}">{text(said(m.label))} <small>{text(m.unit)}</small></th>'
         for m in measures
     )
     rows = ""
@@ -193,7 +194,7 @@ def grid_table(results: Mapping[str, Result]) -> str:
         rows += f'<tr><th scope="row">{text(name)}</th>{marked}</tr>'
     return (
         '<div class="pd-readouts"><div class="pd-table pd-grid-table"><table>'
-        "<caption>Read-outs of the grid, the best in green and the worst in red</caption>"
+        f"<caption>{said('Read-outs of the grid, the best in green and the worst in red')}</caption>"
         f"<thead><tr><td></td>{heads}</tr></thead><tbody>{rows}</tbody></table></div></div>"
     )
 

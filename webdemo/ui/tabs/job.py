@@ -334,11 +334,11 @@ class JobTab(SamplingTab, ABC):
     def _shown(self, result: Result, title: str) -> dict[str, Any]:
         spent = total(result)
         count = len(result.duets)
-        made = "Done" if count == 1 else f"{count} samples done"
+        time_spent = f" in {seconds(spent)}" if spent else ""
+        made = f"Done{time_spent}." if count == 1 else f"{count} samples done{time_spent}."
         return {
             "player": show(result_payload(result, title=title)),
-            "line": status(f"{made} in {seconds(spent)}." if spent else f"{made}.", tone="done")
-            + notes_lines(result),
+            "line": status(made, tone="done") + notes_lines(result),
             "under": gr.update(visible=True),
             "readouts": readout_panel(result),
             "record": Record(result, title),

@@ -305,8 +305,9 @@ class PredictTab(SweepTab):
 
     @staticmethod
     def _found_line(source: Source) -> str:
-        people = "two people" if len(source.people) > 1 else "one person"
-        sentence = f"{source.name}: {people}, {source.seconds:.1f} s."
+        length = f"{source.seconds:.1f} s."
+        alone, two = f"{source.name}: one person, {length}", f"{source.name}: two people, {length}"
+        sentence = two if len(source.people) > 1 else alone
         if source.seconds < PAST_SECONDS:
             return status(f"{sentence} Give {PAST_SECONDS:g} s or more.", tone="warning")
         if source.seconds > LONGEST:

@@ -15,14 +15,12 @@ from webdemo.ui.visitor import visitor
 log = logging.getLogger(__name__)
 
 _STAGES = {
-    "queue": "Waiting for another run to finish",
-    "load": "Loading the model",
-    "text": "Reading the prompt",
-    "finish": "Finishing the motion",
+    "queue": "Waiting for another run to finish …",
+    "load": "Loading the model …",
+    "text": "Reading the prompt …",
+    "finish": "Finishing the motion …",
 }
 
-_SAMPLING = {"step": "Denoising", "pass": "Predicting"}
-"""The word for the work that is counted in a unit."""
 _PACE_STEPS = 3
 """Steps after which the pace is known, or a tenth of them all."""
 _SHORT = 3.0
@@ -42,11 +40,20 @@ def progress_line(progress: Progress) -> str:
         soon = "" if left is None else f", about {_about(left)} until it starts"
         return f"Waiting in line: place {progress.step} of {progress.total}{soon} …"
     if progress.stage == "sample":
-        stage = _SAMPLING.get(progress.unit, "Generating")
-        line = f"{stage}: {progress.unit} {progress.step} of {progress.total}{_left(progress)}"
+        line = _sampling_line(progress)
     else:
-        line = f"{_STAGES.get(progress.stage, progress.stage.capitalize())} …"
+        line = _STAGES.get(progress.stage, f"{progress.stage.capitalize()} …")
     return f"{tries_line(progress)}{line}"
+
+
+def _sampling_line(progress: Progress) -> str:
+    """The work that is counted, by its unit."""
+    step, total, left = progress.step, progress.total, _left(progress)
+    if progress.unit == "step":
+        return f"Denoising: step {step} of {total}{left}"
+    if progress.unit == "pass":
+        return f"Predicting: pass {step} of {total}{left}"
+    return f"Generating: {progress.unit} {step} of {total}{left}"
 
 
 def tries_line(progress: Progress) -> str:
