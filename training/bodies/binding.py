@@ -62,6 +62,8 @@ def _trunk_map(
     neck, head = mh.joint(shape, "neck"), mh.joint(shape, "head")
     top = shape[mh.used("body"), 1].max()
     tall = 1.765 if look.sex == "male" else 1.735
+    if look.age == "child":  # whose head is large against the bones
+        tall = rest[J["head"], 1] + top - head[1]
     scale = 0.5 + 0.5 * tall / top
     at = [0.0, marks["left_hip"][1], marks["left_shoulder"][1], neck[1], head[1], top]
     to = [0.0, 0.892, rest[J["left_shoulder"], 1], rest[J["neck"], 1] + 0.008, rest[J["head"], 1], tall]

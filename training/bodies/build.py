@@ -9,7 +9,7 @@ from motion.body import in_base64
 from motion.skeleton import SMPL22
 
 from .binding import bind
-from .clothes import bun, dressed, eyes, shoes
+from .clothes import dressed, eyes, shoes, tied
 from .fingers import fingers
 from .makehuman import J, Look, MakeHuman
 from .reduction import ZONES, reduced, with_seams
@@ -62,7 +62,7 @@ def build(mh: MakeHuman, look: Look, count: int) -> dict:
     hidden = vertices[:, 1] < 0.05
     faces, zone = faces[~hidden[faces].all(axis=1)], zone[~hidden[faces].all(axis=1)]
     extra = [(*shod, "shoes"), (*eyes(mh, shape), None, "eyes")]
-    extra += [(*bun(joints), None, "hair")] if look.bun else []
+    extra += [(*tied(look.tail, joints), None, "hair")] if look.tail else []
     for points, cells, on_head, name in extra:
         if on_head is None:
             on_head = np.zeros((len(points), 22))
@@ -80,7 +80,20 @@ def build(mh: MakeHuman, look: Look, count: int) -> dict:
         "joints": joints, "turns": turns, "vertices": vertices, "faces": faces, "zones": zone, "sky": light,
         "bones": bones, "weights": share / share.sum(axis=1, keepdims=True),
     }  # fmt: skip
-    return made | {"fingers": fingers(mh, before, shape, made)}
+    return of_size(made | {"fingers": fingers(mh, before, shape, made)}, look.size)
+
+
+def of_size(body: dict, size: float) -> dict:
+    """A body whose lengths are a share of what they were."""
+    if size == 1.0:
+        return body
+    hands = body["fingers"]
+    joints = [[round(size * metres, 5) for metres in joint] for joint in hands["joints"]]
+    return body | {
+        "joints": size * body["joints"],
+        "vertices": size * body["vertices"],
+        "fingers": hands | {"joints": joints},
+    }
 
 
 def stored(body: dict, look: Look) -> dict:

@@ -13,6 +13,8 @@ from .makehuman import J, Look, MakeHuman
 
 WAIST = 0.985
 """Where the top ends, metres above the floor in the pose of binding."""
+FRINGE = 0.055
+"""Metres from the joint of a child's head to the hair over the forehead, of which an adult has less."""
 
 
 def seams(points: np.ndarray, weights: np.ndarray, joints: np.ndarray, look: Look) -> dict[str, np.ndarray]:
@@ -29,21 +31,21 @@ def seams(points: np.ndarray, weights: np.ndarray, joints: np.ndarray, look: Loo
         arm = np.where(on_arm, share * length - (points - start) @ (end - start) / length, arm)
         hand |= on_arm
     # The collar is a ring about the neck, lower in front.
-    ring = np.hypot(x, 1.15 * (z + 0.045)) - (0.078 if look.sex == "male" else 0.088)
+    ring = np.hypot(x, 1.15 * (z + 0.045)) - look.collar
     ring += 1.2 * np.maximum(0, 1.45 - y)
     neckline = np.minimum(ring, 1.515 - y - 0.75 * (z + 0.05))
     head = joints[J["head"]]
     back = (points - head) @ np.array([0, 0.62, -0.785])
     hairline = (
         back
-        - (0.062 if look.sex == "male" else 0.056)
+        - (FRINGE if look.age == "child" else 0.062 if look.sex == "male" else 0.056)
         + 0.10 * np.abs(x)
         - 0.35 * np.maximum(0, 0.03 - (y - head[1]))
     )
     return {
-        "cloth": np.where(hand, arm, np.minimum(neckline, y - 0.075)),
+        "cloth": np.where(hand, arm, np.minimum(neckline, y - look.hem)),
         "top": np.minimum(np.minimum(arm, neckline), np.where(hand, 9.0, y - WAIST)),
-        "trousers": np.where(hand, -9.0, np.minimum(WAIST - y, y - 0.075)),
+        "trousers": np.where(hand, -9.0, np.minimum(WAIST - y, y - look.hem)),
         "shoes": np.where(hand, -9.0, 0.075 - y),
         "hair": np.where(y > head[1] - 0.09, hairline, -0.2),
     }
@@ -111,7 +113,13 @@ def eyes(mh: MakeHuman, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate(parts), np.concatenate(faces)
 
 
-def bun(joints: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and faces of a bun at the back of the head."""
+def tied(kind: str, joints: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and faces of hair that is tied at the back of the head: a bun, or a pony tail at a child's."""
     ball = trimesh.creation.icosphere(2, 1.0)
-    return ball.vertices * [0.047, 0.043, 0.040] + joints[J["head"]] + [0, 0.085, -0.115], ball.faces
+    if kind == "bun":
+        return ball.vertices * [0.047, 0.043, 0.040] + joints[J["head"]] + [0, 0.085, -0.115], ball.faces
+    points = ball.vertices * [0.034, 0.095, 0.034]
+    points[:, [0, 2]] *= 1.0 + 2.2 * points[:, 1:2]  # it narrows downwards
+    tilt = np.radians(14.0)
+    across = np.array([[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)], [0, np.sin(tilt), np.cos(tilt)]])
+    return points @ across.T + joints[J["head"]] + [0, 0.045, -0.175], ball.faces

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from motion.looks import size_of
 from motion.skeleton import SMPL22
 
 J = {name: i for i, name in enumerate(SMPL22.joint_names)}
@@ -29,24 +30,32 @@ class Look:
 
     Attributes:
         sex: MakeHuman's target.
-        age: "young" or "old", MakeHuman's target.
+        age: "child", "young" or "old", MakeHuman's target.
         muscle: 0 average to 1 the most.
         sleeve: where sleeves end, 0 at the shoulder, 1 at the elbow, 2 at the wrist.
-        bun: whether hair is tied at the back of the head.
+        collar: metres from the middle of the neck to the collar.
+        tail: how hair is tied at the back of the head: "bun", "pony" or "" for not at all.
+        hem: where trousers end, metres above the floor at an adult's size.
+        size: of the bones, as a share of SMPL22's; the body is made at an adult's size and shrunk at last.
     """
 
     sex: str
     age: str
     muscle: float
     sleeve: float
-    bun: bool
+    collar: float
+    tail: str
+    hem: float = 0.075
+    size: float = 1.0
 
 
 LOOKS = {
-    "man": Look("male", "young", 0.35, 0.72, False),
-    "woman": Look("female", "young", 0.3, 1.78, True),
-    "old-man": Look("male", "old", 0.0, 1.78, False),
-    "old-woman": Look("female", "old", 0.0, 1.78, True),
+    "man": Look("male", "young", 0.35, 0.72, 0.078, ""),
+    "woman": Look("female", "young", 0.3, 1.78, 0.088, "bun"),
+    "old-man": Look("male", "old", 0.0, 1.78, 0.078, ""),
+    "old-woman": Look("female", "old", 0.0, 1.78, 0.088, "bun"),
+    "boy": Look("male", "child", 0.0, 0.6, 0.098, "", hem=0.43, size=size_of("boy")),
+    "girl": Look("female", "child", 0.0, 0.6, 0.102, "pony", hem=0.2, size=size_of("girl")),
 }
 
 
@@ -78,14 +87,14 @@ class MakeHuman:
         return offsets
 
     def shape(self, look: Look) -> np.ndarray:
-        """All vertices in metres, the soles at 0: no one people's features, an average weight."""
+        """All vertices in metres at an adult's size, the soles at 0: no one people's features, an average weight."""
         who, shape = f"{look.sex}-{look.age}", self.vertices.copy()
         for people in ("african", "asian", "caucasian"):
             shape += self.target(f"{people}-{who}") / 3
         for muscle, share in (("averagemuscle", 1 - look.muscle), ("maxmuscle", look.muscle)):
             shape += share * self.target(f"universal-{who}-{muscle}-averageweight")
         shape += 0.5 * self.target(f"proportions/{who}-averagemuscle-averageweight-idealproportions")
-        shape *= DECIMETRE
+        shape *= DECIMETRE / look.size
         shape[:, 1] -= shape[self.used("body"), 1].min()
         return shape
 
