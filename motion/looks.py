@@ -46,6 +46,13 @@ def size_of(look: str) -> float:
     return SIZES.get(look, 1.0)
 
 
+def grown_up(looks: tuple[str, str]) -> tuple[str, str]:
+    """The looks of the same two people as adults."""
+    adults = {"boy": "man", "girl": "woman"}
+    a, b = (adults.get(look, look) for look in looks)
+    return a, b
+
+
 def checked(looks: Any) -> tuple[str, str]:
     """Two names of :data:`LOOKS` from outside.
 

@@ -35,6 +35,8 @@ PRONOUN_SEX = {
 _NOMINATIVE = frozenset(("i", "he", "she", "they", "we"))
 _ANYONE = frozenset(("someone", "somebody", "anyone", "anybody", "person"))
 _ARTICLES = frozenset(("a", "an", "the", "his", "her", "their"))
+_OTHERS = frozenset(("conj", "poss", "appos"))
+"""What hangs on a noun and is somebody else: "a man and a girl", "the child's mother"."""
 _NOBODY = frozenset(("nobody", "noone", "none", "neither"))
 
 
@@ -223,7 +225,8 @@ class Cast:
         known.sex = known.sex or words.sex(lemma)
         known.age = known.age or words.age(lemma)
         if words.sex(lemma) or lemma in _ANYONE | {"couple", "people"}:
-            known.age = known.age or next((age for c in token.children if (age := words.age(c.lower_))), "")
+            beside = (c for c in token.children if c.dep_ not in _OTHERS)
+            known.age = known.age or next((age for c in beside if (age := words.age(c.lower_))), "")
 
     def _has(self, word: str) -> str:
         return next((who for who, known in self._known.items() if word in known.words), "")

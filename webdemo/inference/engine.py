@@ -32,6 +32,7 @@ from .partner import PARTNERS, LivePartner
 from .predict_request import PredictRequest
 from .requests import GenerateRequest, ReactRequest, SamplingRequest
 from .results import Progress, Result
+from .sized import as_given, enlarged
 from .story.request import SceneRequest
 from .things import furnished
 from .timer import StageTimer
@@ -109,7 +110,7 @@ class Engine:
         else:
             events = run_tries(
                 request,
-                lambda one: _with_things(pipeline.run(one, cancel, timer, **options), one),
+                lambda one: _with_things(pipeline.run(enlarged(one), cancel, timer, **options), one),
                 cancel,
                 timer,
             )
@@ -179,9 +180,11 @@ class Engine:
 
 
 def _with_things(events: Iterator[Progress | Result], request: Any) -> Iterator[Progress | Result]:
-    """The events of a run, whose result has the things of the request's words."""
+    """The events of a run, whose result has people at their own sizes and the things of the request's words."""
     for event in events:
-        yield furnished(event, list(plans_of(request))) if isinstance(event, Result) else event
+        if isinstance(event, Result):
+            event = furnished(as_given(event, request), list(plans_of(request)))
+        yield event
 
 
 def _take_threads(pipeline: Pipeline | None = None) -> None:

@@ -10,7 +10,8 @@ import numpy as np
 
 from acts import Plan
 from motion import SMPL22, Clip, Duet, InputError
-from motion.looks import looks_of
+from motion.looks import UNSAID, looks_of, size_of
+from motion.sizes import at_sizes
 from motion.things import FURNITURE, MOST_THINGS, Mesh, Thing
 
 from ..results import Result
@@ -51,6 +52,7 @@ def _furnished(
 ) -> tuple[Duet | Clip, list[dict[str, Any]]]:
     if not isinstance(duet, Duet) or duet.skeleton.joint_names != SMPL22.joint_names:
         return duet, []
+    duet = _dressed(duet, (plan for plan, *_ in plans))
     hands = Hands.of(duet)
     uses: list[Use] = []
     grips = list(grips_of_contact(hands))
@@ -67,7 +69,7 @@ def _furnished(
         rows.append({"kind": thing.kind, "name": thing.name, "events": course.events})
         rows += [{"kind": table.kind, "name": table.name, "events": []} for table in course.tables]
     grips += grips_of_things(courses, duet.num_frames)
-    duet = replace(duet, grips=fitting(grips, duet.num_frames), looks=_looks(plan for plan, *_ in plans))
+    duet = replace(duet, grips=fitting(grips, duet.num_frames))
     for use, people, thing in furniture(hands, uses):
         if any(_same(thing, other) for other in things):
             continue
@@ -92,12 +94,23 @@ def _furnished(
     return replace(duet, things=tuple(things), manifest=manifest), rows
 
 
-def _looks(plans: Iterable[Plan]) -> tuple[str, str]:
+def looks_in(plans: Iterable[Plan]) -> tuple[str, str]:
     """The looks of the two people, each as the first plan that says something about them has it."""
     people = [("", ""), ("", "")]
     for plan in plans:
         people = [(sex or p.sex, age or p.age) for (sex, age), p in zip(people, plan.people, strict=True)]
     return looks_of(people)
+
+
+def _dressed(duet: Duet, plans: Iterable[Plan]) -> Duet:
+    """Two people who look as their plans say, at the sizes of these looks; who looks somehow already, stays so."""
+    looks = looks_in(plans)
+    if duet.looks != UNSAID or looks == UNSAID:
+        return duet
+    a, b = (size_of(look) for look in looks)
+    if (a, b) != (1.0, 1.0):
+        duet = duet.with_positions(at_sizes(duet.positions, (a, b)))
+    return replace(duet, looks=looks)
 
 
 def _shaped(thing: Thing, own: Mesh) -> Thing:
