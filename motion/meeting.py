@@ -39,6 +39,8 @@ _CROWN = (0.08, 0.19)
 """Metres from the joint of an adult's head to the wrist of a hand upon it: towards that hand's shoulder, and up."""
 _REACH = 0.965
 """Share of an arm's length that a hand reaches."""
+_HANGS = 0.01
+"""Metres beside its line by which an arm counts as bent downwards and back: what is straight has no side."""
 _ROUNDS, _STOOPS = 2, 3
 _SHARES = 12
 """Rounds in which a place is sought that two hands reach."""
@@ -209,13 +211,13 @@ def _reaching(pair: Array, goals: list[list[tuple[Array, Array]]]) -> Array:
     """Two people whose hands go to their goals as far as arms reach; elbows stay on the side on which they were."""
     result = pair.copy()
     for person, hands in enumerate(goals):
+        forward = facing(pair[person])
         for arm, (goal, weight) in zip(ARMS, hands, strict=True):
             if not weight.any():
                 continue
             root, middle, end = (result[person, :, joint] for joint in arm)
-            to = end + weight * (goal - end)
-            to = end + weight * (_drawn_in(to, result[person], arm) - end) if weight.max() < 1 else to
-            pole = unit(middle - 0.5 * (root + end))
+            to = end + weight * (_drawn_in(goal, result[person], arm) - end)
+            pole = unit(middle - 0.5 * (root + end) + _HANGS * (np.array([0.0, -1.0, 0.0]) - forward))
             bent, met = solve_two_bones(root, middle, end, to, pole)
             result[person, :, arm[1]], result[person, :, arm[2]] = bent, met
     return result
@@ -258,9 +260,7 @@ def _looking(made: Array, pair: Array, leans: list[Array]) -> Array:
     result = pair.copy()
     for person in (0, 1):
         own, other = pair[person], pair[1 - person]
-        before, now = (
-            _elevation(p[1 - person, :, _HEAD] - p[person, :, _HEAD]) for p in (made, pair)
-        )
+        before, now = (_elevation(p[1 - person, :, _HEAD] - p[person, :, _HEAD]) for p in (made, pair))
         ahead = facing(own)
         towards = unit((other[:, _HEAD] - own[:, _HEAD]) * _FLAT)
         faces = smoothstep(np.sum(ahead * towards, axis=-1), *_SEES)
@@ -268,7 +268,9 @@ def _looking(made: Array, pair: Array, leans: list[Array]) -> Array:
         angle = scipy.ndimage.gaussian_filter1d(angle, _EASED, mode="nearest")
         right = np.cross(ahead, [0.0, 1.0, 0.0])
         turn = scipy.spatial.transform.Rotation.from_rotvec(angle[:, None] * right).as_matrix()
-        result[person, :, _HEAD] = own[:, _NECK] + np.einsum("tij,tj->ti", turn, own[:, _HEAD] - own[:, _NECK])
+        result[person, :, _HEAD] = own[:, _NECK] + np.einsum(
+            "tij,tj->ti", turn, own[:, _HEAD] - own[:, _NECK]
+        )
     return result
 
 

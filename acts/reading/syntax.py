@@ -126,7 +126,9 @@ def seems(token: Token) -> bool:
 def is_likeness(token: Token) -> bool:
     """True for a noun that only says what somebody is like: "walks like an old man", "like children"."""
     children = {child.lower_ for child in token.children}
-    bare = token.tag_ == "NNS" and all(child.dep_ not in ("det", "poss", "nummod") for child in token.children)
+    bare = token.tag_ == "NNS" and all(
+        child.dep_ not in ("det", "poss", "nummod") for child in token.children
+    )
     indefinite = bare or not children.isdisjoint(("a", "an"))
     return token.dep_ == "pobj" and token.head.lower_ == "like" and indefinite
 

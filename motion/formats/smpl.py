@@ -20,6 +20,8 @@ from numpy.typing import NDArray
 from motion.clip import Clip, Duet
 from motion.errors import InputError
 from motion.kinematics import fit_rotations, forward_kinematics
+from motion.looks import size_of
+from motion.sizes import of_adults
 from motion.skeleton import SMPL22
 
 from .arrays import frame_rate, no_rate, numbers
@@ -130,11 +132,16 @@ def _stands_along_z(positions: Array) -> bool:
 def write_smpl(duet: Duet, path: str | Path) -> list[Path]:
     """Writes AMASS' parameters, ``NAME_a.smpl.npz`` and ``NAME_b.smpl.npz``, in one Z-up world.
 
+    A child is written as an adult, on the way of an adult: the body of these files is one.
+
     Raises:
         InputError: for joints other than SMPL22's, or where a file cannot be written; no file is left.
     """
     path = Path(path)
     stem = path.name[: -len(SUFFIX)]
+    a, b = (size_of(look) for look in duet.looks)
+    if (a, b) != (1.0, 1.0) and duet.skeleton.joint_names == SMPL22.joint_names:
+        duet = duet.with_positions(of_adults(duet.positions, (a, b)))
     files = {
         path.with_name(f"{stem}_{letter}{SUFFIX}"): smpl_bytes(clip)
         for letter, clip in zip("ab", duet.people, strict=True)

@@ -17,6 +17,8 @@ import numpy as np
 
 from motion import SMPL22, Duet
 from motion.hands import Grip
+from motion.looks import size_of
+from motion.sizes import at_sizes
 from motion.things import Thing, shape
 from webdemo.ui.components.player import MotionPlayer, busy, player_payload, show
 from webdemo.view.payload import build_payload, sample_payload
@@ -104,6 +106,13 @@ def duet_with_things() -> Duet:
     return replace(duet, things=things, grips=grips, looks=("old-woman", "man"))
 
 
+def duet_with_a_child() -> Duet:
+    """The same two, of whom the second is a girl."""
+    duet = walking_duet()
+    small = at_sizes(duet.positions, (1.0, size_of("girl")))
+    return replace(duet.with_positions(small), looks=("woman", "girl"))
+
+
 def apart_duet(seconds: float = 4.0) -> Duet:
     """The same two on a long way: they come from ten metres apart and pass the place where they meet."""
     positions = walking_duet(seconds).positions.copy()
@@ -141,6 +150,7 @@ UPDATES: dict[str, Callable[[], dict[str, Any]]] = {
     "clear": lambda: show(None),
     "far": lambda: show(player_payload(apart_duet())),
     "things": lambda: show(player_payload(duet_with_things())),
+    "child": lambda: show(player_payload(duet_with_a_child())),
     "beside": lambda: show(side_by_side()),
     "arrival": lambda: show(ask_nobody()),
 }

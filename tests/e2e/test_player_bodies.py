@@ -37,15 +37,17 @@ def bones_drawn(page) -> bool:
     return page.evaluate("!window.__pasdedeux.player.scene.layers.get('bonesA').hidden")
 
 
-@pytest.mark.parametrize("width", [1280, 390])
-def test_bodies_stand_where_python_puts_them(player, width):
-    page = player(width=width)
+@pytest.mark.parametrize(("button", "width"), [("load", 1280), ("load", 390), ("child", 1280)])
+def test_bodies_stand_where_python_puts_them(player, button, width):
+    page = player(button, width=width)
     until(page, DRESSED)
     pause(page)
     page.locator(".pdd-range").fill("93")
     until(page, "window.__pasdedeux.frame === 93 && window.__pasdedeux.loops === 0")
-    duet = runpy.run_path(str(Path(__file__).with_name("harness.py")))["walking_duet"]()
-    for person, name in enumerate(UNSAID):
+    made = {"load": "walking_duet", "child": "duet_with_a_child"}[button]
+    duet = runpy.run_path(str(Path(__file__).with_name("harness.py")))[made]()
+    assert (duet.looks == UNSAID) == (button == "load")
+    for person, name in enumerate(duet.looks):
         body = load_body(name, small=width < 700)
         drawn = page.evaluate(f"[...window.__pasdedeux.player.panes[0].figures[{person}].vertices]")
         drawn = np.reshape(drawn, (-1, 3))[:, [1, 2, 0]]  # the scene's axes are z, x, y

@@ -8,10 +8,11 @@ from itertools import product
 import numpy as np
 import pytest
 
+from acts import read as read_words
 from motion import InputError
 from motion.clip import Duet
 from motion.formats import read, write
-from motion.looks import LOOKS, UNSAID, looks_of
+from motion.looks import LOOKS, UNSAID, grown_up, looks_of, size_of
 
 STILL = Duet.from_positions(np.random.default_rng(0).normal(size=(2, 4, 22, 3)), fps=30)
 
@@ -20,7 +21,8 @@ def test_people_look_as_the_words_say() -> None:
     assert looks_of([("", ""), ("", "")]) == UNSAID
     assert looks_of([("f", ""), ("m", "")]) == ("woman", "man")
     assert looks_of([("m", ""), ("m", "old")]) == ("man", "old-man")
-    assert looks_of([("f", ""), ("f", "child")]) == ("woman", "woman")
+    assert looks_of([("f", ""), ("f", "child")]) == ("woman", "girl")
+    assert looks_of([("", "child"), ("m", "old")]) == ("girl", "old-man")
 
 
 def test_who_is_not_named_can_be_told_from_the_other() -> None:
@@ -31,6 +33,27 @@ def test_who_is_not_named_can_be_told_from_the_other() -> None:
 def test_any_two_people_have_looks_that_ship() -> None:
     each = list(product(("", "m", "f"), ("", "old", "child")))
     assert {look for pair in product(each, each) for look in looks_of(pair)} == set(LOOKS)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "looks"),
+    [
+        ("A mother and her son hold hands and walk.", ("woman", "boy")),
+        ("A man and a girl give each other a high five.", ("man", "girl")),
+        ("The grandmother hugs her grandson.", ("old-woman", "boy")),
+        ("A man carries a toddler.", ("man", "girl")),
+        ("Two boys fight.", ("boy", "boy")),
+        ("The child's mother waves.", ("woman", "man")),
+        ("Two people dance like children.", UNSAID),
+    ],
+)
+def test_words_say_who_is_a_child(sentence: str, looks: tuple[str, str]) -> None:
+    assert looks_of([(person.sex, person.age) for person in read_words(sentence).people]) == looks
+
+
+def test_children_grow_up() -> None:
+    assert grown_up(("girl", "old-man")) == ("woman", "old-man")
+    assert [size_of(look) for look in ("man", "old-woman")] == [1.0, 1.0] and size_of("boy") < 0.8
 
 
 def test_a_file_keeps_the_looks(tmp_path) -> None:

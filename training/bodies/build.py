@@ -12,7 +12,7 @@ from .binding import bind
 from .clothes import dressed, eyes, shoes, tied
 from .fingers import fingers
 from .makehuman import J, Look, MakeHuman
-from .reduction import ZONES, reduced, with_seams
+from .reduction import HEADS, ZONES, reduced, with_seams
 
 
 def sky(vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray, rays: int = 192) -> np.ndarray:
@@ -54,10 +54,12 @@ def build(mh: MakeHuman, look: Look, count: int) -> dict:
     # The inside of mouth and nose is never seen.
     normals = trimesh.Trimesh(body, faces, process=False).vertex_normals
     open_ = sky(body, faces, normals, 48) > 0.16
+    if look.age == "child":  # whose armpits are narrow
+        open_ |= body[:, 1] < joints[J["neck"], 1]
     faces = faces[open_[faces].mean(axis=1) > 0.5]
     body = dressed(body, faces, weights, joints, look)
     shod = shoes(body, weights, count // 26)
-    vertices, faces, weights = reduced(body, faces, weights, joints, count)
+    vertices, faces, weights = reduced(body, faces, weights, joints, count, HEADS[look.age == "child"])
     vertices, weights, zone = with_seams(vertices, faces, weights, joints, look)
     hidden = vertices[:, 1] < 0.05
     faces, zone = faces[~hidden[faces].all(axis=1)], zone[~hidden[faces].all(axis=1)]

@@ -18,10 +18,14 @@ LARGEST_HOLE = 4
 """Triangles of a patch of skin between two pieces of clothing that is a fault of the seams."""
 
 
-def magnified(points: np.ndarray, joints: np.ndarray) -> np.ndarray:
+HEADS = ((0.16, 1.7), (0.13, 1.3))
+"""Metres about the middle of an adult's head and of a child's, which is large already, and how far it is blown up."""
+
+
+def magnified(points: np.ndarray, joints: np.ndarray, head: tuple[float, float]) -> np.ndarray:
     """Head and hands blown up, so that reducing the mesh leaves them more triangles."""
     out = points.copy()
-    for name, reach, factor in (("head", 0.16, 1.7), ("left_wrist", 0.17, 1.5), ("right_wrist", 0.17, 1.5)):
+    for name, reach, factor in (("head", *head), ("left_wrist", 0.17, 1.5), ("right_wrist", 0.17, 1.5)):
         centre = joints[J[name]] + ([0, 0.06, 0.02] if name == "head" else 0)
         offset = points - centre
         near = 1 - smoothstep(np.linalg.norm(offset, axis=1), reach, 1.6 * reach)
@@ -30,12 +34,17 @@ def magnified(points: np.ndarray, joints: np.ndarray) -> np.ndarray:
 
 
 def reduced(
-    vertices: np.ndarray, faces: np.ndarray, weights: np.ndarray, joints: np.ndarray, count: int
+    vertices: np.ndarray,
+    faces: np.ndarray,
+    weights: np.ndarray,
+    joints: np.ndarray,
+    count: int,
+    head: tuple[float, float],
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Vertices, faces and weights of a mesh of about ``count`` triangles on the same surface."""
     import fast_simplification
 
-    full = trimesh.Trimesh(magnified(vertices, joints), faces, process=False)
+    full = trimesh.Trimesh(magnified(vertices, joints, head), faces, process=False)
     points, small = fast_simplification.simplify(full.vertices, full.faces, target_count=count, agg=3)
     _, _, face = trimesh.proximity.closest_point(full, points)
     corners = full.triangles[face]

@@ -181,9 +181,10 @@ class Engine:
 
 def _with_things(events: Iterator[Progress | Result], request: Any) -> Iterator[Progress | Result]:
     """The events of a run, whose result has people at their own sizes and the things of the request's words."""
+    given = getattr(request, "motion", None) is not None
     for event in events:
         if isinstance(event, Result):
-            event = furnished(as_given(event, request), list(plans_of(request)))
+            event = furnished(as_given(event, request), list(plans_of(request)), given=given)
         yield event
 
 

@@ -361,5 +361,5 @@ def test_people_look_as_their_plans_say():
     second = read("An old man waves at a boy.")
     result = Result(duets=(duet,), manifest={}, readouts=(), timings={}, notes=())
     both = furnished(result, [(first, 0, 60, 0), (second, 60, None, 1)]).duets[0]
-    assert both.looks == ("old-woman", "man")
+    assert both.looks == ("old-woman", "boy")
     assert furnished(result, []).duets[0].looks == UNSAID

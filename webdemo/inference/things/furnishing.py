@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
 from acts import Plan
 from motion import SMPL22, Clip, Duet, InputError
-from motion.looks import UNSAID, looks_of, size_of
+from motion.looks import UNSAID, grown_up, looks_of, size_of
+from motion.metrics import compare
 from motion.sizes import at_sizes
 from motion.things import FURNITURE, MOST_THINGS, Mesh, Thing
 
@@ -26,19 +27,24 @@ Planned = tuple[Plan, int, int | None, int | None]
 """A plan, its first and last frame (None for the end), and the number of its beat."""
 
 
-def furnished(result: Result, plans: Sequence[Planned], own: Mesh | None = None) -> Result:
+def furnished(
+    result: Result, plans: Sequence[Planned], own: Mesh | None = None, *, given: bool = False
+) -> Result:
     """A result whose people look as their plans say, with the things of the acts, and hands that take shapes.
 
     Args:
         result: of two people on SMPL22; another is returned as it is.
         plans: of the request's words.
         own: the surface that the first thing has, in place of that of its kind.
+        given: a part of the motion was given, with adults: nobody is a child.
 
     Returns:
         the result, with ``things`` in the manifests where there are some, and with shapes of hands.
     """
     duets: list[Duet | Clip] = []
     lists: list[list[dict[str, Any]]] = []
+    looks = looks_in(plan for plan, *_ in plans)
+    result = _at_their_sizes(result, grown_up(looks) if given else looks)
     for duet in result.duets:
         made, rows = _furnished(duet, plans, lengths_of(result.manifest), own)
         duets.append(made)
@@ -52,7 +58,6 @@ def _furnished(
 ) -> tuple[Duet | Clip, list[dict[str, Any]]]:
     if not isinstance(duet, Duet) or duet.skeleton.joint_names != SMPL22.joint_names:
         return duet, []
-    duet = _dressed(duet, (plan for plan, *_ in plans))
     hands = Hands.of(duet)
     uses: list[Use] = []
     grips = list(grips_of_contact(hands))
@@ -102,15 +107,30 @@ def looks_in(plans: Iterable[Plan]) -> tuple[str, str]:
     return looks_of(people)
 
 
-def _dressed(duet: Duet, plans: Iterable[Plan]) -> Duet:
-    """Two people who look as their plans say, at the sizes of these looks; who looks somehow already, stays so."""
-    looks = looks_in(plans)
-    if duet.looks != UNSAID or looks == UNSAID:
-        return duet
+def _at_their_sizes(result: Result, looks: tuple[str, str]) -> Result:
+    """A result whose people look as their plans say, at the sizes of these looks; who looks somehow already, stays so.
+
+    Of people who are smaller than they were made only what is shown is measured.
+    """
+    if looks == UNSAID:
+        return result
+    duets, readouts = list(result.duets), list(result.readouts)
     a, b = (size_of(look) for look in looks)
-    if (a, b) != (1.0, 1.0):
-        duet = duet.with_positions(at_sizes(duet.positions, (a, b)))
-    return replace(duet, looks=looks)
+    for i, duet in enumerate(duets):
+        if not _is_made(duet):
+            continue
+        if (a, b) != (1.0, 1.0):
+            duet = duet.with_positions(at_sizes(duet.positions, (a, b)))
+            readouts[i : i + 1] = [compare(None, duet)]
+        duets[i] = replace(duet, looks=looks)
+    manifest = {**result.manifest, "looks": list(looks)}
+    return replace(result, duets=tuple(duets), readouts=tuple(readouts), manifest=manifest)
+
+
+def _is_made(duet: Duet | Clip) -> TypeGuard[Duet]:
+    """True for two people on SMPL22 whom nobody has dressed yet."""
+    on_bodies = duet.skeleton.joint_names == SMPL22.joint_names
+    return isinstance(duet, Duet) and on_bodies and duet.looks == UNSAID
 
 
 def _shaped(thing: Thing, own: Mesh) -> Thing:

@@ -27,7 +27,8 @@ def with_own_thing(result: Result, request: Any, file: Path) -> Result:
         InputError: if the file cannot be read, or the result has no two people on SMPL22.
     """
     mesh = read_thing(file)
-    made = furnished(result, list(plans_of(request)), mesh)
+    given = getattr(request, "motion", None) is not None
+    made = furnished(result, list(plans_of(request)), mesh, given=given)
     if "things" not in made.manifest:
         raise InputError("There are no two people here for whom a thing could be: leave the file out.")
     named = {"file": file.name[:100], "sha256": hashlib.sha256(file.read_bytes()).hexdigest()}

@@ -1,0 +1,96 @@
+"""Children in requests: made as adults, shown at their size, and gone on from as they were."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from motion import SMPL22, Duet
+from motion.looks import SIZES, UNSAID
+from motion.sizes import floor_scale
+from webdemo.inference import Engine, GenerateRequest, SceneRequest
+from webdemo.inference.paths import FloorPath, FloorPoint
+from webdemo.inference.sized import enlarged
+from webdemo.inference.story import Beat
+from webdemo.inference.story.wishes import Pose
+
+from .test_scenes import run
+
+QUICK: dict[str, Any] = {"steps": 3, "seed": 1}
+CHILD = SIZES["girl"]
+LEG = SMPL22.index("left_knee")
+
+
+def bones(duet: Duet) -> np.ndarray:
+    """Mean length of a thigh of each person, as a share of SMPL22's."""
+    thighs = duet.positions[:, :, LEG] - duet.positions[:, :, SMPL22.index("left_hip")]
+    return np.linalg.norm(thighs, axis=-1).mean(axis=1) / SMPL22.bone_lengths[LEG]
+
+
+def test_a_girl_of_the_words_is_made_at_her_size(engine: Engine) -> None:
+    result = run(engine, GenerateRequest(prompt="A man waves at a girl.", seconds=3.0, **QUICK))
+    (duet,) = result.duets
+    assert duet.looks == ("man", "girl")
+    np.testing.assert_allclose(bones(duet), (1.0, CHILD), atol=0.01)
+    assert result.manifest["looks"] == duet.manifest["looks"] == ["man", "girl"]
+    assert result.readouts[0]["before"] is None
+    again = run(engine, GenerateRequest(prompt="A man waves at a girl.", seconds=3.0, **QUICK))
+    np.testing.assert_array_equal(again.duets[0].positions, duet.positions)
+
+
+def test_words_of_adults_change_nothing(engine: Engine) -> None:
+    said = GenerateRequest(prompt="A man waves at a woman.", seconds=3.0, **QUICK)
+    assert enlarged(said) is said
+    np.testing.assert_allclose(bones(run(engine, said).duets[0]), (1.0, 1.0), atol=0.01)
+
+
+def test_a_path_on_the_floor_is_where_it_was_drawn(engine: Engine) -> None:
+    path = FloorPath("a", (FloorPoint(0.0, 0.0, 0.0), FloorPoint(1.2, 0.9, 3.0)))
+    request = GenerateRequest(prompt="A man walks. A girl waves.", seconds=4.0, paths=(path,), **QUICK)
+    longer = enlarged(request).paths[0].points[-1]
+    assert longer.x == pytest.approx(request.paths[0].points[-1].x / floor_scale((1.0, CHILD)))
+    points = request.paths[0].points
+    (duet,) = run(engine, request).duets
+    for point in (points[0], points[-1]):
+        at = duet.positions[0, min(round((point.seconds or 0.0) * 30), duet.num_frames - 1), 0]
+        np.testing.assert_allclose(at[[0, 2]], [point.x, point.z], atol=0.12)
+
+
+def test_a_scene_goes_on_from_a_girl_as_she_was(engine: Engine) -> None:
+    first = run(engine, GenerateRequest(prompt="A man waves at a girl.", seconds=3.0, **QUICK)).duets[0]
+    request = SceneRequest(beats=(Beat("They bow.", seconds=2.0),), motion=first, **QUICK)
+    (duet,) = run(engine, request).duets
+    assert duet.looks == ("man", "girl")
+    np.testing.assert_array_equal(duet.positions[:, : first.num_frames], first.positions)
+    np.testing.assert_allclose(bones(duet.cut(first.num_frames)), (1.0, CHILD), atol=0.01)
+    steps = np.linalg.norm(np.diff(duet.positions, axis=1), axis=-1).max(axis=(0, 2))
+    assert steps[first.num_frames - 1] < 0.1, (
+        "metres from the last frame that is kept to the first that is made"
+    )
+
+
+def test_people_of_a_given_motion_stay_who_they_are(engine: Engine) -> None:
+    """Words about a child do not shrink somebody who has been an adult so far."""
+    first = run(engine, GenerateRequest(prompt="Two people wave.", seconds=3.0, **QUICK)).duets[0]
+    assert first.looks == UNSAID
+    request = SceneRequest(beats=(Beat("A man hugs a girl.", seconds=2.0),), motion=first, **QUICK)
+    (duet,) = run(engine, request).duets
+    assert duet.looks == ("man", "woman")
+    np.testing.assert_array_equal(duet.positions[:, : first.num_frames], first.positions)
+
+
+def test_a_childs_pose_is_asked_for_as_an_adults() -> None:
+    rest = SMPL22.rest_positions()
+    rest = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0])
+    pose = Pose("b", 1.0, CHILD * rest + [0.5, 0.0, 0.0])
+    request = SceneRequest(beats=(Beat("A man waves at a girl.", seconds=3.0),), poses=(pose,), **QUICK)
+    (large,) = enlarged(request).poses
+    np.testing.assert_allclose(
+        large.positions, rest + np.array([0.5 / floor_scale((1.0, CHILD)), 0.0, 0.0]), atol=1e-3
+    )
+    same = replace(pose, positions=rest)
+    (kept,) = enlarged(replace(request, poses=(same,))).poses
+    np.testing.assert_allclose(kept.positions, rest, atol=1e-3)
