@@ -100,7 +100,7 @@ def met_again(made: Array, small: Array, sizes: tuple[float, float]) -> Array:
 
 
 class _Touches:
-    """What the hands of two adults touch of each other.
+    """Touches of two adults: the places of the other that their hands are at.
 
     Args:
         made: (2, T, 22, 3) both as adults.
@@ -156,7 +156,7 @@ class _Touches:
 
 
 class _Touch:
-    """What one hand touches of the other's body.
+    """The place of the other's body that one hand touches.
 
     Args:
         other: (T, 22, 3) the other as an adult.
