@@ -17,12 +17,12 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .arms import ARMS
 from .cleaning import solve_two_bones
 from .easing import minimum_jerk, smoothstep
 from .planted import HIPS, LEGS, UPPER, over_planted_feet
 from .skeleton import SMPL22
 from .smoothing import least_jerk
+from .touch.arms import ARMS
 from .transforms import facing
 
 Array = NDArray[np.floating]

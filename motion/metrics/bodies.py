@@ -99,7 +99,14 @@ def point_segment_distance(points: Array, starts: Array, ends: Array) -> Array:
 
 
 def segment_segment_distance(start_a: Array, end_a: Array, start_b: Array, end_b: Array) -> Array:
-    """Distance in metres between segments, each end (N, 3).
+    """Distance in metres between segments, each end (N, 3)."""
+    here, there = closest_points(start_a, end_a, start_b, end_b)
+    gap = here - there
+    return np.sqrt(np.einsum("ni,ni->n", gap, gap))
+
+
+def closest_points(start_a: Array, end_a: Array, start_b: Array, end_b: Array) -> tuple[Array, Array]:
+    """The points (N, 3) of two segments that are nearest to each other, each end (N, 3).
 
     Ericson, *Real-Time Collision Detection* (2005), section 5.1.9, for N pairs at once.
     """
@@ -115,5 +122,4 @@ def segment_segment_distance(start_a: Array, end_a: Array, start_b: Array, end_b
     t = (b * s + f) / e
     s = np.where(t < 0, np.clip(-c / a, 0, 1), np.where(t > 1, np.clip((b - c) / a, 0, 1), s))
     t = np.clip(t, 0.0, 1.0)
-    gap = between + s[:, None] * along_a - t[:, None] * along_b
-    return np.sqrt(np.einsum("ni,ni->n", gap, gap))
+    return start_a + s[:, None] * along_a, start_b + t[:, None] * along_b

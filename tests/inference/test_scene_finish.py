@@ -52,3 +52,25 @@ def test_palms_meet_in_the_beats_in_which_people_touch(monkeypatch: pytest.Monke
     beats = (Beat("They wave.", seconds=3.0), Beat("They high-five.", seconds=3.0))
     finished(SceneRequest(beats=beats), _still(), seed=1)
     assert not free[0][:90].any() and (free[0][90:] == 1).all()
+
+
+def test_hands_are_held_in_the_beats_in_which_the_words_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    held: list[np.ndarray] = []
+
+    def clasped(pair: np.ndarray, share: np.ndarray) -> np.ndarray:
+        held.append(share)
+        return pair
+
+    monkeypatch.setattr(scene_finish, "hands_clasped", clasped)
+    beats = (Beat("They wave.", seconds=3.0), Beat("They walk hand in hand.", seconds=3.0))
+    finished(SceneRequest(beats=beats), _still(), seed=1)
+    assert not held[0][:90].any() and (held[0][90:] == 1).all()
+
+
+def test_two_who_stand_in_each_other_are_moved_apart() -> None:
+    request = SceneRequest(beats=(Beat("They wait.", seconds=6.0),))
+    found = finished(request, _still(0.12), seed=1)
+    chests = np.linalg.norm(
+        found[0, :, SMPL22.index("spine3")] - found[1, :, SMPL22.index("spine3")], axis=-1
+    )
+    assert chests.min() > 0.17

@@ -86,22 +86,25 @@ class BeatFinish:
     Attributes:
         reaching: whether palms meet what they reach for.
         still: who ("", "a", "b" or "ab") does not look about or shift their weight.
+        held: whether the two hold each other by the hand.
     """
 
     reaching: bool = False
     still: str = ""
+    held: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """As JSON."""
-        return {"reaching": self.reaching, "still": self.still}
+        return {"reaching": self.reaching, "still": self.still, "held": self.held}
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> BeatFinish:
         """A finish from :meth:`to_dict`; raises InputError for anything else."""
-        reaching, still = values.get("reaching"), values.get("still")
-        if not isinstance(reaching, bool) or still not in ("", "a", "b", "ab"):
+        reaching, still, held = values.get("reaching"), values.get("still"), values.get("held", False)
+        flags = isinstance(reaching, bool) and isinstance(held, bool)
+        if not flags or still not in ("", "a", "b", "ab"):
             raise InputError(_WRONG.format("the finish of a beat is none"))
-        return cls(reaching, still)
+        return cls(reaching, still, held)
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +117,8 @@ class KeptPlan:
         alone: where there are no windows, as in :class:`WindowPlan`.
         windows: of all samples, one sample after another.
         notes: what was said of the plan.
-        finishes: of a scene's beats; () where a version kept none, and in a scene that is made as it is.
+        finishes: of a scene's beats, or of a sentence that is given as it is; () where a version kept none, and in what
+            is made without a plan.
     """
 
     beats: tuple[Mapping[str, Any], ...] = ()

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import torch
 from torch import Tensor
 
@@ -14,20 +15,20 @@ from models.intergen.compact import CaptionBank, CompactInterGen, load_captions,
 from models.intergen.plan_track import TimedAct
 from models.text import MiniLM
 from motion import Clip, Duet
-from motion.arms import arms_apart
-from motion.embraces import embraced
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.plans import KeptPlan
+from webdemo.inference.plans import BeatFinish, KeptPlan
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import Scene
 from webdemo.inference.story import understood
 from webdemo.inference.story.beats import Beat
 from webdemo.inference.story.request import SceneRequest, as_scene
+from webdemo.inference.story.scripting import told_by
 from webdemo.inference.timed import acts_of, timed
 from webdemo.inference.timer import StageTimer
 
 from .scene import SceneMaker
+from .scene_finish import finish_of, in_touch
 from .two_person import Conditioning, Passes, TwoPersonPipeline
 
 
@@ -68,7 +69,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         """A sentence, made as a scene where it has several beats or a plan."""
         split = as_scene(request, cancel.raise_if_cancelled)
         if split is None:
-            plan = request.plan or KeptPlan(alone=understood.of_each(request.prompt))
+            plan = request.plan or _plan(request)
             events = super().run(replace(request, plan=plan), cancel, timer, passes)
         else:
             plan = KeptPlan(beats=tuple(beat.to_dict() for beat in split.beats))
@@ -81,7 +82,8 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         for event in events:
             if isinstance(event, Result):
                 if split is None and request.cleanup:
-                    event = replace(event, duets=tuple(_apart(duet) for duet in event.duets))
+                    finish = plan.finishes[0] if plan.finishes else BeatFinish()
+                    event = replace(event, duets=tuple(_in_touch(duet, finish) for duet in event.duets))
                 own = plan.to_dict()
                 said = () if request.plan is not None else understood.notes(request.prompt)
                 kept = {**own, **event.manifest.get("plan", {}), "beats": own["beats"]}
@@ -134,6 +136,15 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         return Conditioning(condition, request.guidance, touch, self.notes(request.prompt, vector))
 
 
-def _apart(duet: Duet | Clip) -> Duet | Clip:
-    """A duet whose embraces are close and whose arms are not in the other's body."""
-    return duet.with_positions(arms_apart(embraced(duet.positions))) if isinstance(duet, Duet) else duet
+def _plan(request: GenerateRequest) -> KeptPlan:
+    """The plan of a sentence that is given to the network as it is."""
+    finishes = (finish_of(told_by(Beat(request.prompt))),) if request.planned else ()
+    return KeptPlan(alone=understood.of_each(request.prompt), finishes=finishes)
+
+
+def _in_touch(duet: Duet | Clip, finish: BeatFinish) -> Duet | Clip:
+    """A duet whose hands meet, and whose bodies are not in each other."""
+    if not isinstance(duet, Duet):
+        return duet
+    every = np.ones(duet.num_frames)
+    return duet.with_positions(in_touch(duet.positions, every, every * finish.reaching, every * finish.held))

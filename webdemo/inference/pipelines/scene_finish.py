@@ -5,14 +5,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.arms import arms_apart
 from motion.easing import smoothstep
-from motion.embraces import embraced
 from motion.idling import alive
-from motion.palms import palms_met
+from motion.touch.apart import bodies_apart
+from motion.touch.arms import arms_apart
+from motion.touch.clasped import hands_clasped
+from motion.touch.embraces import embraced
+from motion.touch.palms import palms_met
 from webdemo.inference.actor import FPS
 from webdemo.inference.plans import BeatFinish
+from webdemo.inference.story.gestures import Hand
 from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.story.told import Told
 
 Array = NDArray[np.floating]
 
@@ -32,15 +36,14 @@ def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
         (2, T, 22, 3) float32.
     """
     free = _made(request, scene.shape[1])
-    result = arms_apart(embraced(scene, free), np.stack([free, free]))
-    rests, touches = np.stack([free, free]), np.zeros_like(free)
+    rests, raised, held = np.stack([free, free]), np.zeros_like(free), np.zeros_like(free)
     for beat, finish in enumerate(finishes(request)):
-        start, stop = request.edges[beat], request.edges[beat + 1]
-        if finish.reaching:
-            touches[start:stop] = free[start:stop]
+        inside = slice(request.edges[beat], request.edges[beat + 1])
+        raised[inside] = free[inside] * finish.reaching
+        held[inside] = free[inside] * finish.held
         for who in finish.still:
-            rests["ab".index(who), start:stop] = 0.0
-    result = alive(palms_met(result, touches), FPS, seed, rests).astype(np.float32)
+            rests["ab".index(who), inside] = 0.0
+    result = alive(in_touch(scene, free, raised, held), FPS, seed, rests).astype(np.float32)
     result[:, free <= 0] = scene[:, free <= 0]
     return result
 
@@ -49,11 +52,29 @@ def finishes(request: SceneRequest) -> tuple[BeatFinish, ...]:
     """The finish of each beat: as it was kept, or else as the words say."""
     if request.plan is not None and request.plan.finishes:
         return request.plan.finishes[: len(request.beats)]
-    return tuple(
-        # a head that is tilted is not turned to the other
-        BeatFinish(bool(told.reaching), "".join(sorted({*told.frozen, *told.limbs})))
-        for told in (request.told if request.planned else ())
-    )
+    return tuple(finish_of(told) for told in (request.told if request.planned else ()))
+
+
+def finish_of(told: Told) -> BeatFinish:
+    """The finish that a beat's words ask for."""
+    around = any(gesture.hand is Hand.AROUND for gesture in told.gestures.values())
+    # a head that is tilted is not turned to the other
+    still = "".join(sorted({*told.frozen, *told.limbs}))
+    return BeatFinish(bool(told.reaching), still, told.linked and not around)
+
+
+def in_touch(scene: Array, free: Array, raised: Array, held: Array) -> Array:
+    """Two people (2, T, 22, 3) who embrace closely, whose hands meet, and whose bodies are not in each other.
+
+    Args:
+        scene: (2, T, 22, 3) metres.
+        free: (T,) how far a frame may be changed, 0 to 1.
+        raised: (T,) likewise, where hands that are raised against each other meet.
+        held: (T,) likewise, where hands are held.
+    """
+    result = bodies_apart(embraced(scene, free), FPS, free)
+    result = arms_apart(hands_clasped(result, held), np.stack([free, free]))
+    return palms_met(result, raised)
 
 
 def _made(request: SceneRequest, frames: int) -> Array:

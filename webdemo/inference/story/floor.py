@@ -35,7 +35,7 @@ NEAR_BY = 0.6
 """Metres from the other at which one who came up behind them stands."""
 ABREAST = 0.8
 """Metres between two people who walk side by side."""
-LINKED = 0.5
+LINKED = 0.6
 """Metres between two people who walk hand in hand or arm in arm."""
 BEHIND = 1.2
 """Metres by which one follows the other."""

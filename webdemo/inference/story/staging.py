@@ -113,7 +113,7 @@ class _Stage:
             gestures=self.gestures, contact=self.contact,
             hold=self.hold, by_both_hands=any(self._leads_by_both_hands(move) for move in moves),
             twirls=self.twirls, pulls=self.pulls, lift=self.lift, strike=struck, changes=self.changes, limbs=self.limbs,
-            leaps=self.leaps, bows=self.bows,
+            leaps=self.leaps, bows=self.bows, linked=self.linked or any(move.linked for move in moves),
             on_feet=frozenset(who for act, e in self.done if e.group in _LEGS for who in act.agents),
             placed=standing(
                 replace(

@@ -37,6 +37,7 @@ class Told:
         hold: in which both dance or spin.
         by_both_hands: one holds both of the other's hands.
         twirls: under whose raised arm the other turns; "" if nobody does.
+        linked: they hold each other by the hand.
         pulls: the one who pulls the other up by the hand; "" if nobody does.
         lift: of one by the other.
         strike: blows or throws.
@@ -61,6 +62,7 @@ class Told:
     by_both_hands: bool = False
     twirls: str = ""
     pulls: str = ""
+    linked: bool = False
     lift: Lift | None = None
     strike: Strike | None = None
     changes: Mapping[str, tuple[Change, ...]] = field(default_factory=dict)

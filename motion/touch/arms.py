@@ -13,9 +13,9 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .cleaning import solve_two_bones
-from .metrics.bodies import Capsules, capsules, sideless
-from .skeleton import SMPL22
+from motion.cleaning import solve_two_bones
+from motion.metrics.bodies import Capsules, capsules, sideless
+from motion.skeleton import SMPL22
 
 Array = NDArray[np.floating]
 
@@ -168,7 +168,8 @@ def _pushes(own: Array, other: Array, grips: Array) -> Array:
         depth = np.maximum(_RADII[:, None] + body.radii - soft - distance, 0.0)
         if not depth.any():
             continue
-        depth *= np.where(an_arm, 1 - grips[:, side, None], 1.0)[:, None]
+        held = grips[:, side, None, None] * np.array([lower for lower, _ in _SHARES])[:, None]
+        depth *= np.where(an_arm, 1 - held, 1.0)
         weights = depth * give
         total = weights.sum(axis=-1)
         way = np.einsum("npc,npci->npi", weights / np.maximum(distance, _AROUND), out)

@@ -5,7 +5,7 @@ Where both do so, the trunks lean to each other over feet that stay, each head b
 over the other's left shoulder, and each left arm below the other's right one; elbows bend outwards.
 A person who holds the other from behind comes close to their back and reaches around the waist; the other lays their
 arms upon these.
-:func:`motion.arms.arms_apart` then bends the arms around what is still in their way.
+:func:`motion.touch.arms.arms_apart` then bends the arms around what is still in their way.
 """
 
 from __future__ import annotations
@@ -14,11 +14,13 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
+from motion.planted import HIPS, LEGS, UPPER, over_planted_feet
+from motion.skeleton import SMPL22
+from motion.smoothing import eased_marks, without_flicker
+from motion.transforms import facing
+
 from .arms import ARMS, grips_of_hands
-from .planted import HIPS, LEGS, UPPER, over_planted_feet
-from .skeleton import SMPL22
-from .smoothing import eased_marks, without_flicker
-from .transforms import facing
+from .bending import across, bent_towards
 
 Array = NDArray[np.floating]
 Hands = tuple[tuple[float, float, float, float], ...]
@@ -39,8 +41,9 @@ _WAIST = ((0.1, 0.13, -0.17, 0.2), (0.12, 0.12, -0.14, 0.2))
 """As :data:`_HANDS`, of hands that are around the waist of somebody who faces the same way."""
 _UPON = ((0.21, 0.12, -0.12, 0.9), (0.23, 0.12, -0.09, 0.9))
 """As :data:`_HANDS`, of the hands that the person who is held lays upon them, from their own spine."""
-_STRAIGHT = 0.97
-"""Share of an arm's length that is used at most."""
+_OPEN, _OPENS = (-0.12, 0.36), 1.0
+"""Metres past the other's spine and beside it of a wrist whose arm is open, and its share of the height at which the
+hand will lie."""
 _SHARE = 0.55
 """Share of the way to the other that the pelvis goes; the rest is lean."""
 _ASIDE = 0.13
@@ -178,40 +181,26 @@ def _leaned(own: Array, ahead: Array) -> Array:
 
 
 def _wrapped(own: Array, spine: Array, way: Array, hands: Hands, weight: Array) -> Array:
-    """A person (T, 22, 3) whose hands lie on the trunk around a ``spine`` (T, 3) by ``weight`` (T,)."""
+    """A person (T, 22, 3) whose hands lie on the trunk around a ``spine`` (T, 3) by ``weight`` (T,).
+
+    On their way there and back the arms open to the sides, and go round the other instead of through them.
+    """
     result = own.copy()
     left, up = _left(way), np.array([0.0, 1.0, 0.0])
+    w = weight[:, None]
     for (shoulder, elbow, wrist), side, (past, beside, height, hang) in zip(
         ARMS, (1.0, -1.0), hands, strict=True
     ):
         goal = spine + past * way + beside * side * left + height * up
-        arm = own[:, shoulder], own[:, elbow], own[:, wrist]
-        bent, met = _bent(*arm, goal, side * left - hang * up)
-        bent, met = (at + weight[:, None] * (to - at) for at, to in ((arm[1], bent), (arm[2], met)))
-        result[:, elbow] = _on_bone(arm[0], bent, np.linalg.norm(arm[1] - arm[0], axis=-1, keepdims=True))
-        lower = np.linalg.norm(arm[2] - arm[1], axis=-1, keepdims=True)
-        result[:, wrist] = _on_bone(result[:, elbow], met, lower)
+        opened = spine + _OPEN[0] * way + _OPEN[1] * side * left + _OPENS * height * up
+        goal = (1 - w) ** 2 * own[:, wrist] + 2 * w * (1 - w) * opened + w**2 * goal
+        pole = side * left - hang * up
+        bends = across(own[:, elbow] - own[:, shoulder], own[:, wrist] - own[:, shoulder])
+        pole = (1 - w) ** 2 * bends + (1 - (1 - w) ** 2) * pole
+        moves = weight > 0
+        bent, met = bent_towards(own[:, shoulder], own[:, elbow], own[:, wrist], goal, pole)
+        result[moves, elbow], result[moves, wrist] = bent[moves], met[moves]
     return result
-
-
-def _bent(root: Array, middle: Array, end: Array, goal: Array, pole: Array) -> tuple[Array, Array]:
-    """The elbow and the wrist (T, 3) of an arm that reaches for a goal and bends towards a pole, however it bent."""
-    upper, lower = (
-        np.linalg.norm(tip - base, axis=-1, keepdims=True) for base, tip in ((root, middle), (middle, end))
-    )
-    reach = np.linalg.norm(goal - root, axis=-1, keepdims=True)
-    axis = (goal - root) / np.maximum(reach, 1e-9)
-    reach = np.clip(reach, np.abs(upper - lower) + 1e-3, _STRAIGHT * (upper + lower))
-    along = (reach**2 + upper**2 - lower**2) / (2 * reach)
-    out = pole - np.sum(pole * axis, axis=-1, keepdims=True) * axis
-    aside = np.sqrt(np.maximum(upper**2 - along**2, 0.0))
-    return _on_bone(root + along * axis, root + along * axis + out, aside), root + reach * axis
-
-
-def _on_bone(base: Array, towards: Array, length: Array) -> Array:
-    """(T, 3) the point ``length`` (T, 1) metres from a base on the way to another point."""
-    bone = towards - base
-    return np.asarray(base + bone * length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9))
 
 
 def _way(own: Array, other: Array) -> Array:

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
-from motion.embraces import CLOSE, embraced
-from motion.metrics.naturalness import jerk_percentile, limb_depth
+from motion.metrics.naturalness import DEEP, jerk_percentile, limb_depth
+from motion.touch.arms import arms_apart
+from motion.touch.embraces import CLOSE, embraced
 from motion.transforms import heading_matrix
 
 J = SMPL22.index
@@ -61,6 +62,15 @@ def test_feet_and_bones_stay_and_nothing_jolts() -> None:
     lengths = [np.linalg.norm(x[:, :, children] - x[:, :, parents], axis=-1) for x in (pair, found)]
     np.testing.assert_allclose(lengths[1], lengths[0], atol=0.02)
     assert jerk_percentile(found[0], 30) < jerk_percentile(pair[0], 30) + 40
+
+
+@pytest.mark.parametrize("gap", [0.45, 0.55, 0.65])
+def test_arms_go_round_the_other_on_their_way_there_and_back(gap: float) -> None:
+    pair = _pair(gap)
+    pair[1, :, :, 0] += 0.04
+    found = arms_apart(embraced(pair))
+    deep = [limb_depth(found[i], found[1 - i])[20:100] > DEEP for i in (0, 1)]
+    assert np.mean(deep) < 0.1
 
 
 def _lifted() -> np.ndarray:

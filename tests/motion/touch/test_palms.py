@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from motion import SMPL22
-from motion.palms import APART, PALM, palms_met
+from motion.touch.palms import APART, PALM, palms_met
 from motion.transforms import heading_matrix
 
 J = SMPL22.index

@@ -11,10 +11,11 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.cleaning import solve_two_bones
+from motion.skeleton import SMPL22
+from motion.smoothing import eased_marks, without_flicker
+
 from .arms import ARMS
-from .cleaning import solve_two_bones
-from .skeleton import SMPL22
-from .smoothing import eased_marks, without_flicker
 
 Array = NDArray[np.floating]
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
-from motion.arms import arms_apart
 from motion.metrics.naturalness import DEEP, jerk_percentile, limb_depth
+from motion.touch.arms import arms_apart
 from motion.transforms import heading_matrix
 
 J = SMPL22.index
@@ -99,3 +99,20 @@ def test_a_hand_that_is_held_leaves_the_trunk_all_the_same() -> None:
     pair[1, :, J("right_wrist")] = held + np.array([0.0, 0.0, 0.02])
     found = arms_apart(pair)
     assert np.abs(found[0, :, J("left_wrist")] - held).max() > 0.03
+
+
+def test_elbows_of_hands_that_hold_each_other_leave_each_other() -> None:
+    """Two side by side hold hands, and the elbow of one is in the other's arm."""
+    pair = _pair(3.0)
+    pair[1] = pair[0] + np.array([0.47, 0.0, 0.0])
+    hand = pair[0, 0, J("left_shoulder")] + np.array([0.04, -0.44, 0.1])
+    for person, side, out in ((0, "left", 0.02), (1, "right", -0.02)):
+        shoulder = pair[person, :, J(f"{side}_shoulder")]
+        pair[person, :, J(f"{side}_elbow")] = shoulder + np.array([out, -0.2, -0.14])
+        pair[person, :, J(f"{side}_wrist")] = hand + np.array([0.06 * person, 0.0, 0.0])
+    found = arms_apart(pair)
+    depth = [max(limb_depth(x[i], x[1 - i]).max() for i in (0, 1)) for x in (pair, found)]
+    assert depth[0] > 0.04
+    assert depth[1] < 0.6 * depth[0]
+    wrists = np.linalg.norm(found[0, :, J("left_wrist")] - found[1, :, J("right_wrist")], axis=-1)
+    assert wrists.max() < 0.1

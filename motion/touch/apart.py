@@ -1,0 +1,190 @@
+"""Bodies beside each other instead of in each other: two people who stand or walk too close.
+
+A network, and a plan that says where a pelvis is, know nothing of how wide a body is. Where two trunks, thighs or
+upper arms are in each other, both bodies move apart along the line between them, smoothly; where it is shanks or feet,
+the feet stand further apart. A foot that stands is set down elsewhere and stays there. Arms are left to
+:func:`motion.touch.arms.arms_apart`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import scipy  # its parts are loaded with their first use
+from numpy.typing import NDArray
+
+from motion.cleaning import foot_contacts, solve_two_bones
+from motion.easing import minimum_jerk
+from motion.metrics.bodies import capsules, closest_points, sideless
+from motion.planted import HIPS, LEGS, UPPER, over_planted_feet
+from motion.skeleton import SMPL22
+from motion.smoothing import eased_marks
+from motion.transforms import facing
+from motion.vectors import unit
+
+Array = NDArray[np.floating]
+
+SOFT = 0.012
+"""Metres that two bodies may be in each other: clothes and flesh give way as far as that."""
+_NEAR = 1.2
+"""Metres between two pelvises beyond which bodies do not touch."""
+_UPRIGHT, _ON_FLOOR = 0.7, 0.12
+"""Heights in metres of the pelvis at least, and of the lower toe at most, of a person on their feet."""
+_EASE = 12
+"""Frames beside those at which somebody is not on their feet over which bodies begin to be moved."""
+_ROUNDS = 4
+_MOST = 0.12
+"""Metres by which a person is moved at most."""
+_WIDE, _SMOOTH = 11, 5.0
+"""Frames over which the largest push counts, and over which pushes are spread (standard deviation)."""
+_LEVEL = 0.4
+"""Share of a push that goes over the floor, at least: bodies that lie over each other would go far."""
+_ROOT = 0.4
+"""Share of the upper arm that belongs to the body; the rest bends out of the way."""
+_FLAT = np.array([1.0, 0.0, 1.0])
+_ARM_PARTS, _LEG_PARTS = ("elbow", "wrist"), ("ankle", "foot")
+
+
+def bodies_apart(pair: Array, fps: float, free: Array | None = None) -> Array:
+    """Two people on their feet whose trunks and legs are not in each other.
+
+    Args:
+        pair: (2, T, 22, 3) metres on constant bones, floor at 0.
+        fps: frames a second.
+        free: (T,) how far a frame may be changed, 0 to 1; wholly by default.
+
+    Returns:
+        (2, T, 22, 3) on bones as long as before.
+    """
+    result = np.array(pair, dtype=np.float64)
+    near = np.linalg.norm((result[0] - result[1])[:, 0] * _FLAT, axis=-1) < _NEAR
+    share = _on_their_feet(result) * (1.0 if free is None else free)
+    if not (near & (share > 0)).any():
+        return result
+    way = _way(result)
+    bodies, feet = (np.zeros(result.shape[1]) for _ in range(2))
+    stands = [_stances(person, fps) for person in pair]
+    for _ in range(_ROUNDS):
+        pushes = _pushes(result, way, near)
+        if not any(push.any() for push in pushes):
+            break
+        bodies = np.minimum(bodies + share * _spread(pushes[0]), _MOST)
+        feet = np.minimum(feet + share * _spread(pushes[1]), _MOST)
+        result = np.stack(
+            [
+                _moved(pair[p], sign * bodies[:, None] * way, sign * feet[:, None] * way, stands[p])
+                for p, sign in ((0, -0.5), (1, 0.5))
+            ]
+        )
+    return result
+
+
+def _on_their_feet(pair: Array) -> Array:
+    """(T,) 1 where both are on their feet, easing to 0 where one is not."""
+    toes = pair[:, :, [leg[-1] for leg in LEGS], 1].min(axis=2)
+    down = ((pair[:, :, 0, 1] < _UPRIGHT) | (toes > _ON_FLOOR)).any(axis=0)
+    return np.asarray(1 - eased_marks(down, _EASE))
+
+
+def _way(pair: Array) -> Array:
+    """(T, 3) the level way from one pelvis to the other."""
+    line = scipy.ndimage.gaussian_filter1d((pair[1, :, 0] - pair[0, :, 0]) * _FLAT, _SMOOTH, axis=0)
+    return np.asarray(unit(line))
+
+
+def _spread(push: Array) -> Array:
+    """A push (T,) that begins before it is needed and ends after."""
+    return np.asarray(
+        scipy.ndimage.gaussian_filter1d(scipy.ndimage.maximum_filter1d(push, _WIDE), _SMOOTH, mode="nearest")
+    )
+
+
+def _pushes(pair: Array, way: Array, near: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """(T,) metres by which two bodies, and their feet, are to be further apart along a level way (T, 3)."""
+    at = np.flatnonzero(near)
+    found = np.zeros((2, len(way)))
+    starts, ends, radii, lower = _segments(pair[:, at])
+    shape = (len(at), len(radii), len(radii), 3)
+    one = (np.broadcast_to(each[0][:, :, None], shape).reshape(-1, 3) for each in (starts, ends))
+    other = (np.broadcast_to(each[1][:, None], shape).reshape(-1, 3) for each in (starts, ends))
+    here, there = closest_points(*one, *other)
+    line = (there - here).reshape(shape)
+    gap = np.linalg.norm(line, axis=-1)
+    depth = np.maximum(radii[:, None] + radii - SOFT - gap, 0.0)
+    along = np.abs(np.einsum("tabi,ti->tab", line, way[at])) / np.maximum(gap, 1e-6)
+    depth /= np.maximum(along, _LEVEL)
+    of_legs = lower[:, None] | lower
+    for kind, kept in enumerate((~of_legs, of_legs)):
+        found[kind, at] = np.where(kept, depth, 0.0).max(axis=(1, 2))
+    return found[0], found[1]
+
+
+def _segments(pair: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
+    """Middle lines from start to end (2, N, C, 3), radii (C,) and which are of shanks and feet (C,)."""
+    body = capsules(SMPL22)
+    parts = [sideless(SMPL22.joint_names[end]) for end in body.ends]
+    kept = np.array([part != "wrist" for part in parts])
+    starts, ends = pair[:, :, body.starts[kept]], pair[:, :, body.ends[kept]]
+    arm = np.array([part in _ARM_PARTS for part in parts])[kept]
+    ends = np.where(arm[:, None], starts + _ROOT * (ends - starts), ends)
+    lower = np.array([part in _LEG_PARTS for part in parts])[kept]
+    return starts, ends, body.radii[kept], lower
+
+
+def _stances(person: Array, fps: float) -> tuple[list[tuple[int, int]], ...]:
+    """(start, stop) of the stances of the left foot and of the right one."""
+    contacts = foot_contacts(person, fps)
+    found = []
+    for side in (0, 1):
+        stands = contacts[:, 2 * side : 2 * side + 2].any(axis=1)
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], stands.astype(np.int8), [0]])))
+        found.append(list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)))
+    return tuple(found)
+
+
+def _moved(person: Array, bodies: Array, feet: Array, stances: Sequence[Sequence[tuple[int, int]]]) -> Array:
+    """A person (T, 22, 3) whose body goes aside by (T, 3) metres, and whose feet by as much as they need to."""
+    if not (bodies.any() or feet.any()):
+        return np.array(person)
+    stood = np.array(person)
+    forward = facing(person)
+    for (hip, knee, ankle, toe), steps in zip(LEGS, stances, strict=True):
+        aside = _set_aside(bodies, feet, steps)
+        goes = np.abs(aside).max(axis=1) > 0
+        if not goes.any():
+            continue
+        goal = person[goes, ankle] + aside[goes]
+        stood[goes, knee], stood[goes, ankle] = solve_two_bones(
+            person[goes, hip], person[goes, knee], person[goes, ankle], goal, forward[goes]
+        )
+        stood[goes, toe] = stood[goes, ankle] + person[goes, toe] - person[goes, ankle]
+    result = np.array(stood)
+    result[:, [*UPPER, *HIPS]] += bodies[:, None]
+    return over_planted_feet(stood, result)
+
+
+def _set_aside(bodies: Array, feet: Array, stances: Sequence[tuple[int, int]]) -> Array:
+    """(T, 3) metres by which a foot goes aside: while it stands, always as many."""
+    known, values = [], []
+    for start, stop in stances:
+        value = _largest(feet[start:stop])
+        value = _largest(np.stack([value, bodies[start:stop].mean(axis=0)]))
+        known += [start, stop - 1]
+        values += [value, value]
+    if not known:
+        return np.array(bodies)
+    result = np.zeros_like(bodies)
+    result[: known[0]], result[known[-1] :] = values[0], values[-1]
+    for i in range(len(known) - 1):
+        first, last = known[i], known[i + 1]
+        share = minimum_jerk(np.arange(last - first + 1) / max(last - first, 1))[:, None]
+        result[first : last + 1] = values[i] + share * (values[i + 1] - values[i])
+    return result
+
+
+def _largest(vectors: Array) -> Array:
+    """The mean (3,) of the largest of some vectors (N, 3), each the heavier the larger it is."""
+    size = np.linalg.norm(vectors, axis=1)
+    weights = (size / max(float(size.max()), 1e-9)) ** 16
+    return np.asarray((weights[:, None] * vectors).sum(axis=0) / max(float(weights.sum()), 1e-9))
