@@ -58,10 +58,10 @@ def hands_clasped(pair: Array, held: Array) -> Array:
     at = np.flatnonzero(share)
     if not len(at):
         return result
-    middle = 0.5 * (pair[0, :, mine[-1]] + pair[1, :, theirs[-1]])
+    middle: Array = 0.5 * (pair[0, :, mine[-1]] + pair[1, :, theirs[-1]])
     middle = scipy.ndimage.gaussian_filter1d(middle, _SMOOTH, axis=0, mode="nearest")[at]
     middle = _within_reach(middle, [(pair[p, at], arm) for p, arm in enumerate((mine, theirs))])
-    ahead = _FLAT * (facing(pair[0]) + facing(pair[1])) / 2
+    ahead = 0.5 * _FLAT * (facing(pair[0]) + facing(pair[1]))
     way = unit((pair[1, at, _SPINE] - pair[0, at, _SPINE]) * _FLAT)
     for person, arm, side in ((0, mine, -1.0), (1, theirs, 1.0)):
         shoulder, elbow, wrist = (result[person, at, joint] for joint in arm)

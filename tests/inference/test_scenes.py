@@ -87,8 +87,8 @@ def test_parts_that_did_not_change_are_not_made_again(engine: Engine, story: Res
     # The finish of a scene looks a few frames ahead.
     np.testing.assert_allclose(positions(again)[:, :135], positions(story)[:, :135], atol=1e-5)
     other = run(engine, SceneRequest(beats=(BEATS[0], replace(BEATS[1], seed=8), BEATS[2]), **QUICK))
-    # arms give way smoothly, also to what comes next
-    np.testing.assert_allclose(positions(other)[:, :60], positions(story)[:, :60], atol=1e-3)
+    # arms and feet give way smoothly, also to what comes next
+    np.testing.assert_allclose(positions(other)[:, :60], positions(story)[:, :60], atol=1e-2)
     assert np.abs(positions(other)[:, 60:135] - positions(story)[:, 60:135]).max() > 0.01
 
 

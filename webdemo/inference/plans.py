@@ -101,10 +101,10 @@ class BeatFinish:
     def from_dict(cls, values: Mapping[str, Any]) -> BeatFinish:
         """A finish from :meth:`to_dict`; raises InputError for anything else."""
         reaching, still, held = values.get("reaching"), values.get("still"), values.get("held", False)
-        flags = isinstance(reaching, bool) and isinstance(held, bool)
-        if not flags or still not in ("", "a", "b", "ab"):
+        known = still in ("", "a", "b", "ab")
+        if not isinstance(reaching, bool) or not isinstance(held, bool) or not known:
             raise InputError(_WRONG.format("the finish of a beat is none"))
-        return cls(reaching, still, held)
+        return cls(reaching, str(still), held)
 
 
 @dataclass(frozen=True, eq=False)
