@@ -14,11 +14,11 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .arms import ARMS
 from .cleaning import solve_two_bones
 from .easing import smoothstep
 from .planted import HIPS, UPPER, over_planted_feet
 from .skeleton import SMPL22
+from .touch.arms import ARMS
 from .transforms import facing
 from .vectors import unit
 
