@@ -14,7 +14,7 @@ from motion.planted import LEGS
 from motion.sizes import at_sizes, bones_of, floor_scale, of_adults
 from motion.transforms import heading_matrix
 
-from .test_embraces import HUGS, SPINE, _pair
+from .touch.test_embraces import HUGS, SPINE, _pair
 
 FPS, CHILD = 30.0, SIZES["girl"]
 MIXED = (1.0, CHILD)
