@@ -116,6 +116,7 @@ class Gesture(_Shape):
         "ahead",
         "offers",
         "waves",
+        "beckons",
         "points",
         "spread",
         "hips",

@@ -120,10 +120,10 @@ def test_a_massage_is_given_from_behind(engine: Engine) -> None:
 def test_a_touch_of_the_back_or_from_behind_comes_from_there(engine: Engine, prompt: str) -> None:
     found = made(engine, prompt, seconds=8.0 if "Then" in prompt else 4.0)
     gap = nearest(found, 0, ["right_wrist"], ["left_shoulder", "right_shoulder", "spine3"])
-    at = int(gap.argmin())
-    across = found[1, at, SMPL22.index("left_hip")] - found[1, at, SMPL22.index("right_hip")]
-    assert gap[at] < 0.25
-    assert (found[0, at, 0] - found[1, at, 0]) @ np.cross(across, [0.0, 1.0, 0.0]) < 0
+    across = found[1, :, SMPL22.index("left_hip")] - found[1, :, SMPL22.index("right_hip")]
+    ahead = np.cross(across, [0.0, 1.0, 0.0])
+    behind = np.sum((found[0, :, 0] - found[1, :, 0]) * ahead, axis=1) < 0
+    assert gap[behind].min() < 0.25, "a hand may come near on the way round them as well"
 
 
 def test_a_person_who_comes_up_goes_to_the_side_that_is_touched() -> None:

@@ -131,12 +131,12 @@ def test_futures_share_the_past_and_differ(engine: Engine, story: Result) -> Non
 
 def test_paths_and_poses_are_met_in_every_window(engine: Engine, story: Result) -> None:
     points = tuple(FloorPoint(1 + 0.3 * t, 0.5 * t, float(t)) for t in range(6))
-    pose = Pose("b", 5.0, positions(story)[1, 20].astype(np.float64))
+    pose = Pose("b", 5.5, positions(story)[1, 20].astype(np.float64))
     result = run(engine, SceneRequest(beats=BEATS, paths=(FloorPath("a", points),), poses=(pose,), **QUICK))
     found = positions(result)
     places = found[0, [30 * t for t in range(6)], 0][:, [0, 2]]
     np.testing.assert_allclose(places, [(p.x, p.z) for p in points], atol=0.02)
-    np.testing.assert_allclose(found[1, 150], pose.positions, atol=1e-4)
+    np.testing.assert_allclose(found[1, 165], pose.positions, atol=1e-4)
 
 
 def test_a_heading_is_held(engine: Engine) -> None:

@@ -72,7 +72,7 @@ def test_who_would_like_to_touch_reaches_out_in_vain(name: str, hand: Hand) -> N
 def test_a_gesture_beside_the_posture_of_the_other_is_given() -> None:
     assert "b" in told("A kneels and B raises one arm.").gesturing
     assert "b" in told("While A kneels, B stands there and raises one arm.").gesturing
-    assert "b" not in told("B raises one arm.").gesturing, "which the network makes"
+    assert "b" in told("B raises one arm.").gesturing
 
 
 def test_who_glides_backwards_goes_backwards_and_may_lead_with_a_hand_raised() -> None:

@@ -30,7 +30,7 @@ from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
 
 from .scene_contacts import coming, given_contact, given_hold, given_twirl, meeting, towards_touched
-from .scene_hands import hands, known_hands
+from .scene_hands import hands
 from .scene_lifts import Carrying
 from .scene_paths import given_gait, path_of
 from .scene_postures import UPRIGHT, Pose, led, postures, still_down
@@ -42,7 +42,7 @@ from .scene_strikes import given_blows
 Array = NDArray[np.floating]
 
 
-POSED = 15
+POSED = 6
 """Frames between two poses of a bystander."""
 LIMBED = 3
 """Frames between two poses of a person who moves single limbs."""
@@ -138,10 +138,10 @@ def _on_their_ways(
         parts += given_twirl(beat)
     if (struck := told.strike) is not None and "ab".index(struck.turns[0]) in ways:
         parts += given_blows(struck, told, beat)
-    for person, (gesture, frames, wrists) in hands(told, found, posed, beat).items():
-        inside = np.isin(frames, beat.shown(frames))
-        if inside.any() and (told.lift is None or "ab"[person] == told.lift.carrier):
-            parts.append(known_hands(person, gesture, frames[inside], wrists[inside], beat))
+    before = scene[:, beat.start - 1].astype(np.float64) if beat.start else None
+    for arms in hands(told, found, posed, beat, before, request.seed):
+        if told.lift is None or "ab"[arms.person] == told.lift.carrier:
+            parts.append(arms)
     return parts
 
 

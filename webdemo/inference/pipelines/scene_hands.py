@@ -1,22 +1,24 @@
-"""The hands of people whose way or posture the words of a beat give, as the network is given them."""
+"""The arms of people whose way or posture the words of a beat give, as the network is given them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
-from motion.transforms import heading_matrix
+from motion.transforms import heading, heading_matrix
 from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
+from webdemo.inference.story.arm_course import arm, directions, hanging, hangs, rested
 from webdemo.inference.story.floor import Way2D
-from webdemo.inference.story.gestures import Gesture, Hand, wrist
+from webdemo.inference.story.gestures import AT_OTHER, SIDES, Gesture, Hand, wrist
 from webdemo.inference.story.moves import Move
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.ways import Way
 
+from .scene_postures import UPRIGHT
 from .scene_stretch import Frames, Stretch
 
 Array = NDArray[np.floating]
@@ -25,24 +27,33 @@ BEGINS = 15
 """Frames of a beat before a hand is given."""
 OFTEN = 4
 """Frames between two given places of a hand."""
+LATE = 0.4
+"""Seconds by which somebody begins a gesture later than they could, at most."""
+SHORT = 120
+"""Frames of a beat in which they begin sooner."""
+IN_TIME = (Hand.FLAPS, Hand.CIRCLES, Hand.SWINGS)
+"""Gestures that two people make in one time."""
 ARRIVED = 0.15
 """Metres from where a person stays, at most, at which their hands begin with a thing."""
 
 
 def hands(
-    told: Told, moves: Sequence[Move], posed: Mapping[int, Array], stretch: Stretch
-) -> dict[int, tuple[Gesture, Frames, Array]]:
-    """The gestures of those whose way or posture is given.
+    told: Told,
+    moves: Sequence[Move],
+    posed: Mapping[int, Array],
+    stretch: Stretch,
+    before: Array | None = None,
+    seed: int = 0,
+) -> Iterator[KnownFrames]:
+    """The gestures of those whose way or posture is given, and their other arm where they stand.
 
     Args:
         told: by the beat.
         moves: of the beat, where they were changed since.
         posed: a pose (22, 3) of those whose posture is given, by person.
         stretch: the beat.
-
-    Returns:
-        By person the gesture, the frames of the beat (N,) and the wrists' places beside the pelvis in the scene's
-        world, (N, sides, 3) metres.
+        before: (2, 22, 3) the people before the beat; None where it is the first.
+        seed: draws how late each of them is.
     """
     found = dict(told.gestures)
     if {move.way for move in moves if move.linked} == {Way.ALONG}:
@@ -50,23 +61,76 @@ def hands(
         for who, side in _inner(stretch.ways).items():
             if who in around or not around:
                 found[who] = Gesture(Hand.AROUND if around else Hand.LINKED, (side,))
-    courses = [stretch.course(person) for person in (0, 1)]
-    always = np.arange(BEGINS, stretch.frames, OFTEN)
     ways = {("ab".index(move.person), move.way) for move in moves}
-    made: dict[int, tuple[Gesture, Frames, Array]] = {}
     for person in (0, 1):
         gesture = found.get("ab"[person])
-        if gesture is None or not (person in stretch.ways or person in posed) or not len(always):
+        if gesture is None or not (person in stretch.ways or person in posed):
             continue  # the network makes the gesture
-        own, other = courses[person], courses[1 - person]
-        at = _there(own.places, always) if (person, Way.THING) in ways else always
-        turns = np.stack([heading_matrix(angle) for angle in own.headings[at]])
-        line = np.insert(other.places[at] - own.places[at], 1, 0.0, axis=1)
-        line /= np.linalg.norm(line, axis=1, keepdims=True).clip(min=1e-6)
-        towards = np.einsum("nji,nj->ni", turns, line)
-        wrists = np.stack([wrist(gesture, side, at / FPS, towards) for side in gesture.sides], axis=1)
-        made[person] = (gesture, at, np.einsum("nij,nsj->nsi", turns, wrists))
-    return made
+        begins = 0 if person in posed and person not in stretch.ways else BEGINS
+        at: Frames = np.arange(begins, stretch.frames, OFTEN)
+        if (person, Way.THING) in ways and len(at):
+            at = _there(stretch.course(person).places, at)
+        if not len(at):
+            continue
+        own = None if before is None else before[person]
+        free = person in posed and posed[person][0, 1] > UPRIGHT and person not in stretch.ways
+        both = free and not (told.contact or told.joined)
+        late = 0.0 if gesture.hand in IN_TIME else _late(seed, person) * min(1.0, stretch.frames / SHORT)
+        joints, places = _arms(gesture, person, at, stretch, own, both=both, late=late)
+        if len(shown := np.isin(at, stretch.shown(at)).nonzero()[0]):
+            yield _given(person, joints, at[shown], places[shown], stretch)
+
+
+def _arms(
+    gesture: Gesture,
+    person: int,
+    at: Frames,
+    stretch: Stretch,
+    before: Array | None,
+    *,
+    both: bool,
+    late: float,
+) -> tuple[list[int], Array]:
+    """Joints of a person's arms and their places (N, joints, 3) beside the pelvis in the scene's world.
+
+    Args:
+        gesture: the gesture.
+        person: 0 or 1.
+        at: (N,) frames of the beat.
+        stretch: the beat.
+        before: (22, 3) the person before the beat; None where it is the first.
+        both: an arm that does nothing is given as well, if it hangs.
+        late: seconds by which they are late.
+    """
+    own, other = stretch.course(person), stretch.course(1 - person)
+    turns = np.stack([heading_matrix(angle) for angle in own.headings[at]])
+    line = np.insert(other.places[at] - own.places[at], 1, 0.0, axis=1)
+    line /= np.linalg.norm(line, axis=1, keepdims=True).clip(min=1e-6)
+    towards = np.einsum("nji,nj->ni", turns, line)
+    joints, places = list[int](), list[Array]()
+    start = max(int(at[0]) - BEGINS, 0)
+    seconds, length = (at - start) / FPS - late, (stretch.frames - start) / FPS - late
+    for side in SIDES:
+        wrist_joint, elbow_joint = SMPL22.index(f"{side}_wrist"), SMPL22.index(f"{side}_elbow")
+        was = hanging(side)
+        if before is not None:
+            was = directions(before @ heading_matrix(float(heading(before[None])[0])), side)
+        if side in gesture.sides and gesture.hand in AT_OTHER:
+            joints.append(wrist_joint)
+            places.append(wrist(gesture, side, at / FPS, towards)[:, None])
+        elif side in gesture.sides:
+            joints += [elbow_joint, wrist_joint]
+            places.append(arm(gesture, side, seconds, length, towards, was))
+        elif both and hangs(was):
+            joints += [elbow_joint, wrist_joint]
+            places.append(rested(side, seconds, was))
+    return joints, np.einsum("nij,nsj->nsi", turns, np.concatenate(places, axis=1))
+
+
+def _late(seed: int, person: int) -> float:
+    """Seconds by which a person begins later than they could: two people who wave do not wave as one."""
+    later, *wait = np.random.default_rng(seed).uniform(0.0, 1.0, 3)
+    return LATE * (0.5 * float(wait[person]) + (0.5 if (later < 0.5) is (person == 0) else 0.0))
 
 
 def _there(places: Array, frames: Frames) -> Frames:
@@ -75,13 +139,12 @@ def _there(places: Array, frames: Frames) -> Frames:
     return frames[short < ARRIVED] if (short < ARRIVED).any() else frames[-1:]
 
 
-def known_hands(
-    person: int, gesture: Gesture, frames: Frames, wrists: Array, stretch: Stretch
+def _given(
+    person: int, joints: Sequence[int], frames: Frames, places: Array, stretch: Stretch
 ) -> KnownFrames:
-    """The wrists (N, sides, 3) of a person at some frames of a beat, as the network is given them."""
-    joints = [SMPL22.index(f"{side}_wrist") for side in gesture.sides]
+    """Joints (N, joints, 3) of a person at some frames of a beat, as the network is given them."""
     poses = np.zeros((len(frames), SMPL22.num_joints, 3))
-    poses[:, joints] = wrists
+    poses[:, list(joints)] = places
     return stretch.given(person, frames, poses, joints)
 
 

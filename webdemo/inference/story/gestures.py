@@ -1,8 +1,7 @@
 """Gestures of the hands: a raised hand, a wave, a pointing arm.
 
-The network makes a gesture where it also chooses the steps. Where the way or the posture is given, it has rarely seen
-the two together, so the wrist is given as well. It knows little of the gestures of :data:`STOOD`, so they are given
-also to people who only stand.
+The network has rarely seen a gesture together with a way or a posture that is given, and some not at all, so hands are
+given, also to people who only stand (:mod:`.arm_course` gives the arm).
 """
 
 from __future__ import annotations
@@ -36,6 +35,7 @@ class Hand(Enum):
     AHEAD = "stretched out in front"
     OFFERS = "holds out a hand"
     WAVES = "waves"
+    BECKONS = "beckons"
     POINTS = "points at the other"
     LINKED = "holds the other's hand"
     SPREAD = "stretched out to the side"
@@ -73,30 +73,29 @@ OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS, Hand.EARS, Hand.EYES, Hand.PHOTO, 
 """Gestures of both hands."""
 _AT_BODY = {
     Hand.HIPS: (0.21, 0.1, 0.0), Hand.CHEST: (0.02, 0.36, 0.2), Hand.BELLY: (0.04, 0.14, 0.2),
-    Hand.HEAD: (0.12, 0.66, -0.05), Hand.MOUTH: (0.04, 0.54, 0.2), Hand.BEHIND: (0.04, 0.02, -0.18),
-    Hand.FANS: (0.12, 0.42, 0.22), Hand.CROSSED: (-0.13, 0.27, 0.15), Hand.SHAKES: (0.28, 0.08, 0.12),
+    Hand.HEAD: (0.12, 0.66, -0.05), Hand.MOUTH: (0.07, 0.48, 0.17), Hand.BEHIND: (0.04, 0.02, -0.18),
+    Hand.FANS: (0.12, 0.42, 0.22), Hand.CROSSED: (-0.1, 0.24, 0.17), Hand.SHAKES: (0.28, 0.08, 0.12),
     Hand.WORKS: (0.1, 0.16, 0.28), Hand.RUBS: (0.05, 0.24, 0.26),
 }  # fmt: skip
 """Metres from the pelvis to the left wrist of hands that are held at one's own body."""
-STOOD = (
-    Hand.HIGH, Hand.CLAPS, Hand.SALUTES, Hand.POINTS, Hand.AHEAD, Hand.OFFERS, Hand.PHONE, Hand.EARS, Hand.EYES,
-    Hand.PHOTO, Hand.PRAYS, *_AT_BODY, Hand.SPREAD, Hand.FLAPS, Hand.CIRCLES, Hand.SWINGS,
-)  # fmt: skip
-"""Gestures that are given also to those who only stand."""
+AT_OTHER = (Hand.LINKED, Hand.AROUND)
+"""Gestures at the other's body."""
 _REACH = 0.47
 """Metres from the shoulder to the wrist of an arm that is nearly straight."""
 _BEYOND, _AT_BACK = 0.4, np.array([0.0, 0.32, -0.12])
 """Metres from the pelvis to the other beside, and up and back, of a hand around their back."""
 _CLAPPING = np.array([0.0, 0.28, 0.3])
 """Metres from the pelvis to where hands clap."""
-_EAR = np.array([0.13, 0.6, 0.1])
-"""Metres from the pelvis to the left wrist of a hand at the ear."""
+_EAR = np.array([0.2, 0.54, 0.06])
+"""Metres from the pelvis to the left wrist of a hand at the ear, whose palm is higher."""
 _EYE = np.array([0.08, 0.58, 0.18])
 """Metres from the pelvis to the left wrist of a hand before the eyes."""
 _CLAP_RATE = 2.0
 """Claps a second."""
-_WAVE_RATE = 1.6
-"""Strokes a second of a wave."""
+_WAVE = (1.2, 0.11)
+"""Strokes a second of a wave, and the metres that the hand goes to either side of a place beside the head."""
+_BECKON = (1.1, 0.08)
+"""Strokes a second of a hand that beckons, and the metres that it goes to and fro."""
 _FAN = (2.0, 0.1)
 """Strokes a second of a hand that fans, and the metres that it goes to either side."""
 
@@ -123,7 +122,7 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
         case Hand.UP:
             offset[:] = [0.1 * out, 0.32, 0.16]
         case Hand.SALUTES:
-            offset[:] = [0.06 * out, 0.26, 0.2]
+            offset[:] = [0.03 * out, 0.15, 0.15]  # the fingertips are at the temple, the elbow is out
         case Hand.CLAPS:
             offset = _CLAPPING - shoulder + np.zeros((len(seconds), 3))
             offset[:, 0] += out * (0.075 + 0.07 * (1 + np.cos(2 * np.pi * _CLAP_RATE * np.asarray(seconds))))
@@ -134,14 +133,18 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
             offset[:, 2] += 0.1 if gesture.hand is Hand.PHOTO else 0.0
         case Hand.PRAYS:
             offset = _CLAPPING - shoulder + np.zeros((len(seconds), 3))
-            offset[:] += [0.05 * out, 0.04, -0.04]
+            offset[:] += [0.04 * out, 0.08, -0.08]
         case Hand.OFFERS:
             offset[:] = [-0.06 * out, -0.2, 0.38]
         case Hand.AHEAD:
             offset[:] = [0.02 * out, -0.05, 0.45]
         case Hand.WAVES:
-            offset[:] = [0.16 * out, 0.26, 0.18]
-            offset[:, 0] += 0.14 * np.sin(2 * np.pi * _WAVE_RATE * np.asarray(seconds))
+            offset[:] = [0.2 * out, 0.18, 0.16]
+            offset[:, 0] += _WAVE[1] * np.sin(2 * np.pi * _WAVE[0] * np.asarray(seconds))
+        case Hand.BECKONS:
+            stroke = np.sin(2 * np.pi * _BECKON[0] * np.asarray(seconds))
+            offset[:] = [0.02 * out, -0.06, 0.3]
+            offset += _BECKON[1] * stroke[:, None] * [0.0, -0.6, 0.8]
         case Hand.POINTS:
             offset = _REACH * towards + np.array([0.0, -0.05, 0.0])
         case Hand.AROUND:
@@ -180,6 +183,8 @@ def _beside(hand: Hand, out: float, seconds: Array, shoulder: Array) -> Array:
                 offset[:, 2] += 0.06 * np.sin(turn * 0.9)
             elif hand is Hand.RUBS:
                 offset[:, 1] += 0.04 * out * np.sin(turn * 1.6)
+            elif hand is Hand.CROSSED:
+                offset[:, 1] -= 0.05 * out  # one forearm lies over the other
             elif hand is Hand.FANS:
                 offset[:, 0] += _FAN[1] * np.sin(turn * _FAN[0])
     return offset

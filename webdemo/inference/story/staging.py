@@ -19,7 +19,7 @@ from acts.things import is_fixture
 from .act_kinds import is_after, is_attempt, is_deep, is_near, only_stays, reaches, region_of, walks
 from .beginnings import Setting, standing
 from .contacts import LOW, Contact, Region
-from .gestures import OF_BOTH, SIDES, STOOD, Gesture, Hand
+from .gestures import AT_OTHER, OF_BOTH, SIDES, Gesture, Hand
 from .holds import TWIRL, Hold
 from .lifts import Carry, Lift
 from .limbs import Limb
@@ -378,14 +378,11 @@ class _Stage:
 
     def _gesturing(self, moves: Sequence[Move]) -> frozenset[str]:
         gone = {move.person for move in moves if move.way not in (Way.STAY, Way.BACKS)}
-        each = len(self.gestures) == 2 and not any(len(act.agents) == 2 for act, _ in self.done)
         own = {who: sum(who in act.agents and not only_stays(e) for act, e in self.done) for who in "ab"}
         return frozenset(
             who
             for who, gesture in self.gestures.items()
-            if (gesture.hand in STOOD or each or other_of(who) in self.changes)
-            and own[who] < 2
-            and who not in gone
+            if gesture.hand not in AT_OTHER and own[who] < 2 and who not in gone
         )
 
 
