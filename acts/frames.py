@@ -367,7 +367,7 @@ def _fills(element: _Element, ref: Ref, agents: str, event: Event) -> bool:
             return ref.kind == "thing"
         case "place":
             return ref.kind == "thing" and ref.place
-    if ref.kind != "part" or (element.family and ref.family not in element.family):
+    if ref.kind != "part" or (element.family and not element.family & {ref.family, ref.lemma}):
         return False
     if element.slot == "a.part":
         return ref.who in ("", agents) or (len(agents) == 1 and ref.who == "ab")

@@ -79,7 +79,9 @@ class Posture(_Shape):
     """A way to hold oneself from then on; ``already`` from the start, ``passing`` only for a moment, ``times`` over."""
 
     do: Literal["posture"] = "posture"
-    posture: Literal["stands", "sits", "kneels", "sits on the ground", "crouches", "bends down", "lies"]
+    posture: Literal[
+        "stands", "sits", "kneels", "sits on the ground", "crouches", "bends down", "lies", "on all fours"
+    ]
     already: bool = False
     passing: bool = False
     times: Annotated[int, Field(ge=1, le=5)] = 1

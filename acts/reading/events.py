@@ -18,7 +18,7 @@ from .references import reference
 from .subjects import Subjects, ends_before
 from .syntax import is_ongoing, seems
 from .vocabulary import vocabulary
-from .voice import give_roles, goes_on, is_passive, is_suffered, other_person
+from .voice import give_roles, goes_on, is_passive, is_suffered, other_person, state_of
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
@@ -196,7 +196,9 @@ class Reader:
         above = self._event_of(token.head) if goes_on(token) else None
         suffered = is_suffered(token, event, self._known)
         kind = "main-after" if suffered and kind == "while" else kind
-        if above is not None or suffered or is_passive(token):
+        state = None if agent is not None else state_of(token, event, self._known)
+        event = state or event
+        if state is None and (above is not None or suffered or is_passive(token)):
             agent = agent or (
                 above.subject if above is not None else None
             )  # "is dipped by him and then spun out"
@@ -295,6 +297,13 @@ class Reader:
             or "instead" in (token.head.head.lower_, *(c.lower_ for c in token.head.children))
         ):
             event.denied = True
+        above = token.head
+        if (
+            token.dep_ == "xcomp" and above.pos_ == "ADJ"
+        ):  # "too proud to cry", "unable to stop", "ready to box"
+            kinds = self._words.adjectives
+            event.denied |= above.lower_ in kinds["not"] or any(c.lower_ == "too" for c in above.children)
+            event.modality = "wished" if above.lower_ in kinds["wished"] else event.modality
         self._inherited(token, head, event)
 
     def _inherited(self, token: Token, head: Token | None, event: Event) -> None:

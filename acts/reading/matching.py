@@ -53,7 +53,7 @@ class Matcher:
         """The best act of an event and of what its noun stands for: with another empty verb, or done to the other."""
         forms = [event]
         if event.lemma == PERFORM:  # a verb that does not do something with a thing
-            forms += [replace(event, lemma=verb, noun=None) for verb in vocabulary().verbs["light"]]
+            forms += [replace(event, lemma=verb, noun=None) for verb in vocabulary().light]
         if event.noun is not None and event.noun.object is None and event.subject is not None:
             other = other_of(event.subject.who)
             whom = Ref("person", other) if other else Ref("each", "ab", "other")

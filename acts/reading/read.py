@@ -21,7 +21,7 @@ from .language import other_language, unknown
 from .matching import Found, matcher
 from .parses import parses
 from .relations import related
-from .repeats import repeated
+from .repeats import exchanged, repeated
 from .spelling import Speller
 from .text import Text
 from .vocabulary import vocabulary
@@ -35,6 +35,8 @@ _STANDS = frozenset(("stand", "stay", "remain", "pose", "rest", "meet"))
 """Verbs beside which a formation is all that is shown: "they stand back to back"."""
 _BEFORE = frozenset(("to", "toward", "towards", "for", "at", "by", "before", "near"))
 """Prepositions before what people go to, or stand at."""
+_CANON = "move canon"
+"""The formation of those who do something one after the other."""
 _SHARING = frozenset(("conj", "after", "with"))
 """Joints of clauses that may share an object."""
 
@@ -104,6 +106,8 @@ class _Planner:
         self._nonsense = list(unknown(reader.doc, Speller(known).knows))
         self._beside: dict[str, Relation] = {}
         """Relations of acts that stand beside a verb's own."""
+        self._in_turns: set[int] = set()
+        """Events of what is done in turn."""
         self._answers: set[str] = set()
         """Acts that repeat the one before."""
         self.cost = sum(1.0 for _ in reader.missed())
@@ -112,7 +116,7 @@ class _Planner:
     def plan(self) -> Plan:
         """The plan."""
         for number, event in enumerate(self._events):
-            if number in self._taken or len(self._acts) == MOST_ACTS:
+            if number in self._taken or len(self._acts) >= MOST_ACTS:
                 continue
             self._event(number, event)
         self._acts = related(
@@ -133,7 +137,7 @@ class _Planner:
             span = Span(start=0, stop=len(self._text))
             self._unread.append(Unread(words=span, why="Nothing in this text is something that people do."))
         return Plan(
-            sentence=self._text, people=people, things=tuple(things)[:20], acts=tuple(self._acts),
+            sentence=self._text, people=people, things=tuple(things)[:20], acts=tuple(self._acts[:MOST_ACTS]),
             unread=tuple(self._unread[:60]), notes=tuple(notes),
         )  # fmt: skip
 
@@ -168,8 +172,7 @@ class _Planner:
         if found is None:
             borrowed = (self._matcher.find(other) for other in self._completed(number, event))
             found = next((other for other in borrowed if other is not None), None)
-        start, stop = self._span(number).start, self._span(number).stop
-        formed = self._found(beside.formations(event, self._prepared.formations(start, stop)))
+        formed = self._found(beside.formations(event, self._formations(number)))
         vague = found is None or event.lemma in vocabulary().verbs["vague"] | vocabulary().verbs["begins"]
         if vague and not (found is not None and inner) and (noun := self._noun(event, found)) is not None:
             event, found = noun
@@ -243,15 +246,29 @@ class _Planner:
         self._beside[then.id] = Relation(kind="after", act=last.id)
 
     def _in_turn(self, number: int, event: Event) -> bool:
-        """Passes "take turns" on to the verb of what is done in turn; False for other verbs."""
-        turns = event.lemma == "take" and event.object is not None and event.object.lemma == "turn"
-        done = [other for other in self._events if other.beside == number and turns]
-        for other in done:
-            other.adverbs.append("in turn")
+        """Passes "take turns", which is parsed as "keep", on to what is done in turn; False for other verbs."""
+        turns = event.lemma == "keep" and _CANON in self._formations(number)
+        done = {i for i, other in enumerate(self._events) if other.beside == number and turns}
+        self._in_turns |= done
         return bool(done)
 
+    def _formations(self, number: int) -> list[str]:
+        """The ways to move together that the clause of an event names."""
+        span = self._span(number)
+        return [
+            *self._prepared.formations(span.start, span.stop),
+            *([_CANON] if number in self._in_turns else ()),
+        ]
+
     def _repeated(self, number: int, event: Event, has_inner: bool) -> bool:
-        """Adds the last act once more where the words say so."""
+        """Adds the last act once more where the words say so, or the last few with the roles exchanged."""
+        for act in exchanged(event, self._acts):
+            own, after = str(len(self._acts) + 1), Relation(kind="after", act=self._acts[-1].id)
+            self._acts.append(act.model_copy(update={"id": own, "words": self._span(number)}))
+            self._beside[own] = after
+            self._of[number] = own
+        if number in self._of:
+            return True
         last = next(reversed(self._acts), None)
         told = None if last is None else repeated(event, last, has_inner, self._known)
         if last is None or told is None:

@@ -70,7 +70,7 @@ def _reference(token: Token, cast: Cast, subject: str) -> Ref:
         if not side and token.tag_ == "NNS" and family in ("hand", "arm", "foot", "leg", "knee", "shoulder"):
             side = "both"
         lemma = "back" if lemma == "spine" else lemma
-        bare = all(c.dep_ != "poss" and c.tag_ != "PRP$" for c in token.children)
+        bare = all(c.dep_ != "poss" and c.tag_ != "PRP$" and c.lower_ != "of" for c in token.children)
         definite = any(c.lower_ == "the" for c in token.children)
         return Ref(
             "part", owner, lemma, family, side, bare=bare, definite=definite, first=first, last=last

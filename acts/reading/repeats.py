@@ -1,7 +1,8 @@
-"""Verbs that say that the last act is done once more, or that it is refused: "and B copies it", "he does too"."""
+"""Verbs by which acts are done once more, or refused: "and B copies it", "he does too", "they switch roles"."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from acts.frames import Event
@@ -11,6 +12,8 @@ from acts.plan import Act, other_of
 from .vocabulary import vocabulary
 
 _SAME = frozenset(("same", "it", "that", "this", "likewise", "so"))
+_EXCHANGES = frozenset(("switch", "swap", "change", "exchange", "trade", "reverse"))
+_OTHER = {"a": "b", "b": "a"}
 _MIRRORED = {"left": "right", "right": "left"}
 _MOVEMENTS = frozenset(("movement", "move", "gesture", "motion", "pose", "step", "action"))
 
@@ -53,3 +56,19 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
         "part_of": agents[0] if last.part_of in last.agents else last.part_of,
         "side": event.side or (_MIRRORED.get(last.side or "") if event.lemma == "mirror" else last.side),
     }
+
+
+def exchanged(event: Event, acts: Sequence[Act]) -> list[Act]:
+    """The last acts of one person each, done by the other, where an event says that roles are exchanged; or none."""
+    ref = event.object
+    if event.lemma not in _EXCHANGES or ref is None or ref.lemma != "role" or event.denied:
+        return []
+    first = len(acts)
+    while first and len(acts[first - 1].agents) == 1:
+        first -= 1
+    return [_exchanged(act) for act in acts[first:]]
+
+
+def _exchanged(act: Act) -> Act:
+    people = {"agents": tuple(_OTHER[who] for who in act.agents), "patient": _OTHER.get(act.patient or "")}
+    return act.model_copy(update={**people, "part_of": _OTHER.get(act.part_of or ""), "order": ()})

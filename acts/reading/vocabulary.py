@@ -10,7 +10,7 @@ from typing import Any
 
 from . import wordnet
 
-_FORMATION = "together"
+FORMATION = "together"
 """The adverb as which the parser gets a formation."""
 
 
@@ -43,12 +43,16 @@ class Vocabulary:
         self.likeness = {w: adverb for adverb, text in tables["likeness"].items() for w in text.split()}
         """How somebody moves who moves like one of these."""
         self.verbs = {kind: frozenset(text.split()) for kind, text in tables["verbs"].items()}
+        self.light: tuple[str, ...] = tuple(tables["verbs"]["light"].split())
+        """Verbs that mean what their object names, in the order in which they are tried."""
+        self.adjectives = {kind: frozenset(text.split()) for kind, text in tables["adjectives"].items()}
+        """Adjectives that say of what follows that it is not done, or only wished."""
         joined: dict[str, str] = dict(tables["phrases"])
         self.formations = {
             tuple(phrase.split()): name for name, listed in tables["formations"].items() for phrase in listed
         }
         """Ways to stand or move together, by the words that say them."""
-        joined |= {" ".join(words): _FORMATION for words in self.formations}
+        joined = {" ".join(words): FORMATION for words in self.formations} | joined
         self.phrases: dict[str, list[tuple[tuple[str, ...], str]]] = {}
         """What the parser takes apart and one word for it, the longest first, by the first word."""
         for phrase in sorted(joined, key=len, reverse=True):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref, best
@@ -42,6 +43,16 @@ def is_suffered(token: Token, event: Event, known: Lexicon) -> bool:
     if not alone or own or token.lower_ == "seated":
         return False
     return event.lemma in known.frames and best(known.frames, event) is None
+
+
+def state_of(token: Token, event: Event, known: Lexicon) -> Event | None:
+    """A passive that only says how somebody is, as an event of "be": "they are seated"; None for other verbs."""
+    if not is_passive(token) or any(child.dep_ == "agent" for child in token.children):
+        return None
+    state = replace(event, lemma="be", words=[*event.words, token.lower_], ongoing=True)
+    found = best(known.frames, state)
+    named = found is not None and any(token.lower_ in element.words for element in found[1].elements)
+    return state if named else None
 
 
 def give_roles(token: Token, event: Event, agent: Ref | None) -> None:

@@ -15,7 +15,7 @@ from .ellipsis import Ellipsis
 from .letters import names
 from .people import A_NAME, B_NAME
 from .text import Text, tokens
-from .vocabulary import vocabulary
+from .vocabulary import FORMATION, vocabulary
 
 if TYPE_CHECKING:
     from .spelling import Speller
@@ -46,6 +46,9 @@ _SUBJECTS = frozenset(
 )
 _TOWARDS = frozenset(("at", "to", "with", "by", "from", "behind", "past", "towards", "toward", "around"))
 """Prepositions of people, after which a noun without an article lacks one."""
+_STOPS = frozenset((".", ";", ":", "!", "?"))
+_HEADING = 4
+"""Words before a colon that say how what follows is done, at most."""
 _INTENSIFIED = frozenset(
     (
         "up",
@@ -69,6 +72,8 @@ _INTENSIFIED = frozenset(
 """Words before which "right" and "way" only make more of a direction."""
 _BEHIND_BACK = frozenset(("on", "to", "turned", "towards", "toward"))
 """Words behind "her back" after which it is a part of the body."""
+_LIES = ("lie", "lying", "lay", "fall", "fell", "land", "roll", "flat")
+"""How verbs begin of which "on her back" says how she lies herself."""
 _NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}
 """Letters and numbers behind "person" or "dancer", and whether they name the first."""
 
@@ -145,7 +150,8 @@ class _Preparation:
             self._pieces.append(("'s", self._tokens[i][1], self._tokens[i + 1][2]))
             return 2
         owned = self._lower(i - 1).endswith("'s") and self._lower(i - 1) not in ("he's", "she's", "it's")
-        turned = self._lower(i - 1) == "her" and self._lower(i + 1) in _BEHIND_BACK
+        laid = self._lower(i - 2) == "on" and self._lower(i - 3).startswith(_LIES)
+        turned = self._lower(i - 1) == "her" and (self._lower(i + 1) in _BEHIND_BACK or laid)
         if self._lower(i) == "back" and (owned or turned):
             self._pieces.append(("spine", *self._tokens[i][1:]))  # the noun, and no adverb
             return 1
@@ -198,6 +204,14 @@ class _Preparation:
     def _single(self, i: int) -> int:
         """One token; always 1."""
         word, start, stop = self._tokens[i]
+        if word == ":" and (mark := self._behind_label(i)) is not None:
+            self._pieces += [(mark, start, stop)] if mark else []
+            return 1
+        if word.lower().startswith("mid-") and self._is_verb(self._lower(i - 1)):  # "freezes mid-step"
+            return 1
+        own = self._lower(i + 1) in ("his", "her", "their") and self._words.part(self._lower(i + 2)[:-1])
+        if word == "with" and own and self._words.part(self._lower(i - 1)):
+            self._pieces.append((",", start, start))  # "on his back with his knees bent"
         if stands_absolutely(self._lower, self._ellipsis.has_verb, i):
             self._pieces.append(("with", start, start))
         if self._pieces and self._pieces[-1][2] == start and word.istitle() and i not in self._letters:
@@ -205,6 +219,20 @@ class _Preparation:
         self._pieces += self._supplied(i)
         self._pieces.append((self._letters.get(i) or self._worded(i, word), start, stop))
         return 1
+
+    def _behind_label(self, i: int) -> str | None:
+        """The mark that stands for a colon behind a label: none behind a name, as "A: waves"; None for other colons."""
+        first = i
+        while first and self._tokens[first - 1][0] not in _STOPS:
+            first -= 1
+        if i - first == 1 and first in self._letters:
+            return ""
+        told = (
+            i == first or self._ellipsis.has_verb(first) or any(k in self._letters for k in range(first, i))
+        )
+        if told or i - first > _HEADING:
+            return None
+        return "," if self._pieces[-1][0] == FORMATION else "."
 
     def _supplied(self, i: int) -> list[tuple[str, int, int]]:
         """The article that a bare noun of a person lacks."""
@@ -261,7 +289,7 @@ class _Preparation:
             )
             and not self._words.part(following)
         ):
-            return f"{lower}wards"  # "turn left": no past of "leave"
+            return f"to the {lower}"  # "turn left": no past of "leave"
         if word.islower() and word.isalpha() and len(word) > 3 and (right := self._mended(lower)) is not None:
             return right
         verbal = any(self._is_verb(self._lower(i - k)) for k in (1, 2))

@@ -20,7 +20,7 @@ def told(text: str) -> list[tuple[str, str, str | None]]:
         ("Both in a deep plie.", "Both are in a deep plie ."),
         (
             "She throws left, right, left.",
-            "She throws leftwards and throws rightwards and throws leftwards .",
+            "She throws to the left and throws to the right and throws to the left .",
         ),
         # no ellipsis: another clause, an act's own noun, a person
         ("A hug makes her happy.", "A hug makes her happy ."),

@@ -77,7 +77,7 @@ def _said(act: Act) -> str:
         ("A waves with the right hand and B with the left hand.", ["a wave b", "b wave a"]),
         ("B's punch is blocked by A.", ["a block b"]),
         ("She does not want to be hugged and pushes him.", ["b not hug a (wished)", "a push b"]),
-        ("A and B take turns to jump.", ["ab jump"]),
+        ("A and B take turns to jump.", ["a jump", "b jump"]),
         ("He hugs and kisses her.", ["a hug b", "a kiss b"]),
         ("She saunters past him.", ["a walk-past b"]),
         # how a part of the body is held beside an act

@@ -12,6 +12,7 @@ from motion import SMPL22
 from motion.transforms import heading
 from webdemo.inference.actor import FPS
 from webdemo.inference.story.floor import Standing
+from webdemo.inference.story.gaits import on_all_fours
 from webdemo.inference.story.poses import (
     FLAT,
     HANDS,
@@ -50,6 +51,8 @@ UPRIGHT = 0.8
 """Height in metres of the pelvis of people who stand."""
 LOW = 0.5
 """Metres of the head over the pelvis below which somebody lies or is bent."""
+_KNEELS = 0.3
+"""Height in metres of the pelvis above which the arms of somebody who is bent reach down to the floor."""
 _HEAD = SMPL22.index("head")
 LEAP = 36
 """Frames from the highest moment of a jump to that of the next."""
@@ -67,6 +70,7 @@ _MAKES: dict[Posture, Callable[[Array, float], Array]] = {
     Posture.CROUCHES: crouching,
     Posture.BENDS: stooping,
     Posture.LIES: lying,
+    Posture.ALL_FOURS: on_all_fours,
 }
 
 
@@ -151,7 +155,7 @@ def led(
             if first <= f < last and bool(pose[_HEAD, 1] - pose[0, 1] < LOW) is lies
         ]
         if inside:
-            stoops = arms and lies and inside[-1][1][0, 1] > LOW
+            stoops = arms and lies and inside[-1][1][0, 1] > _KNEELS
             given = (*joints, *HANDS) if stoops else joints
             yield given, [frame for frame, _ in inside], np.stack([pose for _, pose in inside])
 

@@ -46,6 +46,11 @@ def low_gait(gait: str, places: Array, headings: Array) -> Array:
     return poses
 
 
+def on_all_fours(place: Array, angle: float) -> Array:
+    """Somebody on hands and knees, the pelvis over a place (x, z) and the face to a heading: (22, 3) metres."""
+    return low_gait("crawls", np.asarray(place, dtype=float)[None], np.array([angle]))[0]
+
+
 def _crawls(phase: Array, headings: Array) -> Array:
     """Rotations (N, 22, 3, 3) on hands and knees; a hand and the knee of the other side move together."""
     turns = _on_knees(phase, headings, _LEVEL)

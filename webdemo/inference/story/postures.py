@@ -21,6 +21,7 @@ class Posture(Enum):
     CROUCHES = "crouches"
     BENDS = "bends down"
     LIES = "lies"
+    ALL_FOURS = "on all fours"
 
 
 LOWERED = frozenset((Posture.KNEELS, Posture.CROUCHES, Posture.BENDS))
