@@ -10,7 +10,7 @@ from .easing import smoothstep
 from .skeleton import SMPL22, Skeleton
 from .smoothing import REACH, frames_from, least_jerk, led
 from .transforms import facing
-from .vectors import unit
+from .vectors import runs, unit
 
 Array = NDArray[np.floating]
 
@@ -215,12 +215,12 @@ def _pins(
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Places (T, 3) of a joint that is still through each contact, and the frames (T,) at which it has to be there."""
     goal, fixed = np.array(joint), np.zeros(len(joint), dtype=bool)
-    runs: list[tuple[int, int]] = []
-    for start, stop in _runs(stands & ~held):
-        runs.extend(_split(joint, start, stop, blend))
-    for start, stop in runs:
+    kept: list[tuple[int, int]] = []
+    for start, stop in runs(stands & ~held):
+        kept.extend(_split(joint, start, stop, blend))
+    for start, stop in kept:
         goal[start:stop] = _goal(joint, start, stop, stands & held, heights)
-    for start, stop in _with_room_to_step(goal - joint, sorted([*runs, *_runs(held)]), held, stands & held):
+    for start, stop in _with_room_to_step(goal - joint, sorted([*kept, *runs(held)]), held, stands & held):
         fixed[start:stop] = True
     goal[~fixed] = joint[~fixed]
     return goal, fixed
@@ -240,36 +240,30 @@ def _goal(
 
 
 def _with_room_to_step(
-    shift: Array, runs: list[tuple[int, int]], held: NDArray[np.bool_], stood: NDArray[np.bool_]
+    shift: Array, contacts: list[tuple[int, int]], held: NDArray[np.bool_], stood: NDArray[np.bool_]
 ) -> list[tuple[int, int]]:
     """Shortens contacts that follow each other so closely that the correction between them would jump.
 
     Runs of ``held`` frames are left, a contact that goes on from where the joint ``stood`` in them, too; another one
     beside them may vanish.
     """
-    runs = list(runs)
-    for index in range(len(runs) - 1):
-        (start, stop), (next_start, next_stop) = runs[index : index + 2]
+    contacts = list(contacts)
+    for index in range(len(contacts) - 1):
+        (start, stop), (next_start, next_stop) = contacts[index : index + 2]
         change = shift[next_start] - shift[stop - 1]
         # Smoothstep is one and a half times as steep in its middle as on average.
         missing = int(np.ceil(1.5 * np.linalg.norm(change) / _MAX_STEP)) - (next_start - stop)
         if missing <= 0 or (next_start == stop and (stood[stop - 1] or stood[next_start])):
             continue
         if held[stop - 1]:
-            runs[index + 1] = (min(next_start + missing, next_stop), next_stop)
+            contacts[index + 1] = (min(next_start + missing, next_stop), next_stop)
         elif held[next_start]:
-            runs[index] = (start, max(stop - missing, start))
+            contacts[index] = (start, max(stop - missing, start))
         else:
             half = (missing + 1) // 2
-            runs[index] = (start, max(stop - half, start + 1))
-            runs[index + 1] = (min(next_start + half, next_stop - 1), next_stop)
-    return [(start, stop) for start, stop in runs if start < stop]
-
-
-def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """(start, stop) of each stretch of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
-    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+            contacts[index] = (start, max(stop - half, start + 1))
+            contacts[index + 1] = (min(next_start + half, next_stop - 1), next_stop)
+    return [(start, stop) for start, stop in contacts if start < stop]
 
 
 def _split(joint: Array, start: int, stop: int, blend: int) -> list[tuple[int, int]]:

@@ -18,6 +18,7 @@ from .cleaning import solve_two_bones
 from .easing import minimum_jerk
 from .skeleton import SMPL22, Skeleton
 from .transforms import facing
+from .vectors import runs
 
 Array = NDArray[np.floating]
 
@@ -104,9 +105,8 @@ def _glides(positions: Array, feet: Array, fps: float) -> list[tuple[int, int]]:
     gliding = scipy.ndimage.binary_closing(np.pad(gliding, len(closing)), closing)[
         len(closing) : -len(closing)
     ]
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], gliding.astype(np.int8), [0]])))
     found: list[tuple[int, int]] = []
-    for start, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+    for start, stop in runs(gliding):
         way = np.linalg.norm((positions[stop - 1, 0] - positions[start, 0])[[0, 2]])
         if stop - start < _SHORTEST * fps or way < _WAY or body[start:stop].mean() > _RUNS:
             continue

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from .cleaning import solve_two_bones
 from .easing import minimum_jerk, smoothstep
-from .planted import HIPS, LEGS, UPPER, over_planted_feet
-from .skeleton import SMPL22
+from .planted import HIPS, UPPER, over_planted_feet
+from .skeleton import LEGS, SMPL22
 from .smoothing import least_jerk
 from .touch.arms import ARMS
 from .transforms import facing

@@ -48,10 +48,8 @@ def fit_skeleton(
     positions: Array,
     joints: Layout | Skeleton | str | Sequence[str],
     *,
-    skeleton: Skeleton = SMPL22,
     weights: Array | None = None,
     fps: float = 30.0,
-    smoothness: float = 1.0,
     noise: float | None = None,
     scale: float | None = None,
     iterations: int = 8,
@@ -59,7 +57,7 @@ def fit_skeleton(
     """Fits a motion of constant bones to recorded joints of another layout.
 
     The person's own bone lengths are measured over the clip, the pose is fitted on them, and the pose is
-    put on ``skeleton``'s bones. Heights shrink or grow with the legs; the path over the floor is divided
+    put on SMPL22's bones. Heights shrink or grow with the legs; the path over the floor is divided
     by ``scale``, so give both people of a scene the same one.
 
     Args:
@@ -68,7 +66,6 @@ def fit_skeleton(
             SMPL22 joints.
         weights: trust in each joint, broadcast to (T, J, 3); 0 leaves a joint out, e.g. where it was lost.
         fps: frames a second of ``positions``.
-        smoothness: 1 expects accelerations of everyday motion; larger is smoother; 0 fits frames alone.
         noise: metres by which a coordinate is uncertain; by default estimated from how much bones stretch,
             which misses the errors of a tracker that keeps its bones rigid itself.
         scale: the factor that the floor path is divided by; by default this person's :func:`body_scale`.
@@ -79,7 +76,7 @@ def fit_skeleton(
     """
     layout = find_layout(joints)
     positions = np.asarray(positions, dtype=np.float64)
-    _check_fit(positions, layout, skeleton)
+    _check_fit(positions, layout)
     trust = np.broadcast_to(1.0 if weights is None else weights, positions.shape)[:, layout.columns]
     target = positions[:, layout.columns]
     trust = np.where(np.isfinite(target), trust, 0.0)
@@ -90,14 +87,14 @@ def fit_skeleton(
     trust = trust * _length_trust(target, layout, body, noise or stretch)[..., None]
     noise = max(noise or 0.0, stretch)
     rotations, root = _start(target, layout, body)
-    rotations, root = solve(rotations, root, target, trust, layout, body, noise, fps, smoothness, iterations)
+    rotations, root = solve(rotations, root, target, trust, layout, body, noise, fps, iterations)
     found = forward_kinematics(rotations, root, body)[:, layout.observed]
     error = float(np.median(np.linalg.norm(found - target, axis=-1)[trust.max(-1) > 0]))
 
-    legs = _leg_length(skeleton.offsets)
+    legs = _leg_length(SMPL22.offsets)
     size = _leg_length(body.offsets) / legs
     root = root / np.array([scale or size, size, scale or size])
-    return SkeletonFit(forward_kinematics(rotations, root, skeleton), rotations, error)
+    return SkeletonFit(forward_kinematics(rotations, root), rotations, error)
 
 
 def pose_bodies(
@@ -121,10 +118,8 @@ def pose_bodies(
     return rotations, root, body, _leg_length(body.offsets) / _leg_length(SMPL22.offsets)
 
 
-def _check_fit(positions: Array, layout: Layout, skeleton: Skeleton) -> None:
+def _check_fit(positions: Array, layout: Layout) -> None:
     """Raises InputError for what :func:`fit_skeleton` cannot fit."""
-    if skeleton.parents != SMPL22.parents:
-        raise InputError(f"A pose cannot be put on {skeleton.name}: give a skeleton with the tree of SMPL22.")
     if positions.ndim != 3 or positions.shape[1:] != (len(layout.joints), 3) or len(positions) == 0:
         raise InputError(
             f"Joints of shape {positions.shape} do not fit the layout {layout.name}: "

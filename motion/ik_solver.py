@@ -70,11 +70,10 @@ def solve(
     body: Skeleton,
     noise: float,
     fps: float,
-    smoothness: float,
     iterations: int,
 ) -> tuple[Array, Array]:
     """Gauss–Newton with a damping that grows when a step fails and shrinks when it succeeds."""
-    problem = _Problem(target, trust, layout, body, noise, fps, smoothness)
+    problem = _Problem(target, trust, layout, body, noise, fps)
     state = problem.evaluate(rotations, root)
     damping = 1e-3
     for _ in range(iterations):
@@ -122,7 +121,6 @@ class _Problem:
         body: Skeleton,
         noise: float,
         fps: float,
-        smoothness: float,
     ) -> None:
         self.target, self.seen, self.body = target, layout.observed, body
         self.weights = trust / noise**2
@@ -131,9 +129,9 @@ class _Problem:
         self.mean, self.soft, self.lower, self.upper = _pose_prior()
         frames = len(target)
         second = np.diff(np.eye(frames), n=2, axis=0) if frames > 2 else np.zeros((0, frames))
-        penalty = second.T @ second * smoothness * fps**4
+        penalty = second.T @ second * fps**4
         self.acceleration = [np.diagonal(penalty, -k).copy() for k in range(min(3, frames))]
-        self.speed = smoothness * (fps / _ROTATION_SPEED) ** 2 * 0.05
+        self.speed = (fps / _ROTATION_SPEED) ** 2 * 0.05
         self.ankles = [SMPL22.index(f"{side}_ankle") for side in ("left", "right")]
         self.toes = [SMPL22.index(f"{side}_foot") for side in ("left", "right")]
         self.level = self._level_weights() if not set(self.toes) & set(self.seen) else None

@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from .cleaning import solve_two_bones
 from .easing import smoothstep
 from .planted import HIPS, UPPER, over_planted_feet
-from .skeleton import SMPL22
-from .touch.arms import ARMS
+from .skeleton import ARMS, SMPL22
 from .transforms import facing
 from .vectors import unit
 

@@ -7,16 +7,11 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from .cleaning import solve_two_bones
-from .skeleton import SMPL22
+from .skeleton import LEGS, SMPL22
 from .transforms import facing
 
 Array = NDArray[np.floating]
 
-LEGS = tuple(
-    tuple(SMPL22.index(f"{side}_{joint}") for joint in ("hip", "knee", "ankle", "foot"))
-    for side in ("left", "right")
-)
-"""Hip, knee, ankle and toe of the left leg and of the right one."""
 HIPS = [0, *(leg[0] for leg in LEGS)]
 """The pelvis and both hips."""
 UPPER = [

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from .cleaning import solve_two_bones
 from .easing import smoothstep
 from .meeting import met_again
-from .planted import LEGS
-from .skeleton import SMPL22
+from .skeleton import LEGS, SMPL22
 from .smoothing import eased_marks, without_flicker
 from .transforms import facing
 

@@ -133,6 +133,14 @@ SMPL22 = _topology(
 """The 22 body joints of SMPL with the proportions of an average adult; what every network here speaks."""
 
 FEET = tuple(SMPL22.index(n) for n in ("left_ankle", "left_foot", "right_ankle", "right_foot"))
+ARMS = tuple(
+    tuple(SMPL22.index(f"{side}_{n}") for n in ("shoulder", "elbow", "wrist")) for side in ("left", "right")
+)
+"""Shoulder, elbow and wrist of the left arm and of the right one."""
+LEGS = tuple(
+    tuple(SMPL22.index(f"{side}_{n}") for n in ("hip", "knee", "ankle", "foot")) for side in ("left", "right")
+)
+"""Hip, knee, ankle and toe of the left leg and of the right one."""
 
 _SBU = [
     ("head", None),

@@ -1,4 +1,4 @@
-"""Vectors and angles."""
+"""Vectors, angles and stretches of frames."""
 
 from __future__ import annotations
 
@@ -27,3 +27,9 @@ def square_frame(up: Array, across: Array) -> Array:
 def wrapped(angle: Angle) -> Angle:
     """The same angle in [-π, π), radians."""
     return (angle + np.pi) % (2 * np.pi) - np.pi
+
+
+def runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """(start, stop) of each stretch of True in (T,)."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))

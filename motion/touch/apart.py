@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from motion.cleaning import foot_contacts, solve_two_bones
 from motion.easing import minimum_jerk
 from motion.metrics.bodies import capsules, closest_points, sideless
-from motion.planted import HIPS, LEGS, UPPER, over_planted_feet
-from motion.skeleton import SMPL22
+from motion.planted import HIPS, UPPER, over_planted_feet
+from motion.skeleton import LEGS, SMPL22
 from motion.smoothing import eased_marks
 from motion.transforms import facing
 from motion.vectors import unit

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from motion.cleaning import solve_two_bones
 from motion.metrics.bodies import Capsules, capsules, sideless
-from motion.skeleton import SMPL22
+from motion.skeleton import ARMS, SMPL22
+from motion.vectors import runs
 
 Array = NDArray[np.floating]
 
@@ -35,10 +36,6 @@ _GRIPS = (0.18, 0.28)
 """Metres between two wrists up to which the hands hold each other and stay, and from which they are free."""
 _AROUND = 1e-3
 """Metres from the middle line of a capsule below which a push has no direction of its own."""
-ARMS = tuple(
-    tuple(SMPL22.index(f"{side}_{joint}") for joint in ("shoulder", "elbow", "wrist"))
-    for side in ("left", "right")
-)
 _BENDS = np.array([arm[1:] for arm in ARMS])
 """(side, elbow and wrist) of the joints that are pushed."""
 _THIN = ("ankle", "foot")
@@ -80,8 +77,7 @@ def _stretches(marked: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """(first, last) of the stretches of marked frames, with room to ease in and out."""
     room = 3 * int(np.ceil(_SMOOTH)) + 4
     wide = scipy.ndimage.binary_dilation(marked, np.ones(2 * room + 1)) if marked.any() else marked
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], wide.astype(np.int8), [0]])))
-    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+    return runs(wide)
 
 
 def _resolved(pair: Array, share: Array) -> Array:

@@ -13,12 +13,11 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from motion.skeleton import SMPL22
+from motion.skeleton import ARMS, SMPL22
 from motion.smoothing import eased_marks, without_flicker
 from motion.transforms import facing
 from motion.vectors import unit
 
-from .arms import ARMS
 from .bending import across, bent_towards
 
 Array = NDArray[np.floating]

@@ -14,12 +14,12 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from motion.planted import HIPS, LEGS, UPPER, over_planted_feet
-from motion.skeleton import SMPL22
+from motion.planted import HIPS, UPPER, over_planted_feet
+from motion.skeleton import ARMS, LEGS, SMPL22
 from motion.smoothing import eased_marks, without_flicker
 from motion.transforms import facing
 
-from .arms import ARMS, grips_of_hands
+from .arms import grips_of_hands
 from .bending import across, bent_towards
 
 Array = NDArray[np.floating]

@@ -12,10 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.cleaning import solve_two_bones
-from motion.skeleton import SMPL22
+from motion.skeleton import ARMS, SMPL22
 from motion.smoothing import eased_marks, without_flicker
-
-from .arms import ARMS
 
 Array = NDArray[np.floating]
 

@@ -13,7 +13,7 @@ from motion import SMPL22, Duet
 from motion.metrics.quality import penetration
 from motion.skeleton import FEET
 from webdemo.inference import damping
-from webdemo.inference.damping import Beside, Damping, DampingWeights, asked_energy
+from webdemo.inference.damping import Beside, Damping, asked_energy
 
 HANDS = (("right_wrist", "right_wrist"),)
 
@@ -164,7 +164,7 @@ def test_hands_that_are_not_asked_for_stay_apart(model):
 
 def test_a_touch_out_of_reach_is_left_alone(model):
     positions = model.positions(standing(model, 2.0))[0]
-    assert asked_energy(positions, [HANDS], DampingWeights()).tolist() == [0.0]
+    assert asked_energy(positions, [HANDS]).tolist() == [0.0]
 
 
 def test_a_hand_inside_the_other_comes_out(model):

@@ -10,8 +10,8 @@ from motion.cleaning import foot_contacts, plant_feet
 from motion.footsteps import stepping
 from motion.ground import above_floor
 from motion.looks import SIZES
-from motion.planted import LEGS
 from motion.sizes import at_sizes, bones_of, floor_scale, of_adults
+from motion.skeleton import LEGS
 from motion.transforms import heading_matrix
 
 from .touch.test_embraces import HUGS, SPINE, _pair

@@ -14,12 +14,12 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
-from motion.skeleton import SMPL22
+from motion.skeleton import LEGS, SMPL22
 from motion.transforms import heading
 from motion.vectors import unit
 
 from .compose import ARMS, FPS, Array
-from .feet import LEGS, two_bone
+from .feet import two_bone
 
 UP = np.array([0.0, 1.0, 0.0])
 SPINE = tuple(SMPL22.index(name) for name in ("spine1", "spine2", "spine3"))

@@ -6,16 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
-from motion.skeleton import SMPL22
+from motion.skeleton import LEGS, SMPL22
 from motion.transforms import heading
+from motion.vectors import runs
 
 from .blending import Array, ease
 
 FPS = 30
-LEGS = tuple(
-    tuple(SMPL22.index(f"{side}_{joint}") for joint in ("hip", "knee", "ankle", "foot"))
-    for side in ("left", "right")
-)
 
 
 def planted(positions: Array, *, height: float = 0.055, speed: float = 0.3) -> NDArray[np.bool_]:
@@ -32,12 +29,6 @@ def planted(positions: Array, *, height: float = 0.055, speed: float = 0.3) -> N
                 if stop - start < 4 and start > 0 and stop < len(resting):
                     resting[start:stop, foot] = value
     return resting
-
-
-def runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """(start, stop) of every stretch of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
-    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def plant_feet(positions: Array, contacts: NDArray[np.bool_], *, stride: float = 0.18) -> Array:

@@ -12,11 +12,10 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.signal import find_peaks
 
 from motion.kinematics import forward_kinematics
-from motion.skeleton import SMPL22
+from motion.skeleton import LEGS, SMPL22
 from motion.vectors import wrapped
 
 from .compose import Motion, join, mirror, motion_from_positions, time_warp
-from .feet import LEGS
 from .scene import SourceClip
 
 OTHER = {"left": "right", "right": "left", "both": "both", None: None}

@@ -25,6 +25,8 @@ from training.prepare import Scenes
 Network = TypeVar("Network", CompactInterGen, CompactReGenNet)
 
 RARE = 8
+MOST, STEPS = 24_000, 3000
+"""Captions that a reader is fitted on and scored on, at most, and its steps of AdamW in batches of 256."""
 _SWAP = {"left": "right", "right": "left"}
 
 
@@ -68,14 +70,8 @@ def conditions(conditioner: nn.Module, captions: list[str], *, device: str = "cp
     return torch.cat(parts)[torch.tensor(order, device=device).argsort()]
 
 
-def with_touches(
-    model: Network, scenes: Scenes, *, most: int = 24_000, steps: int = 3000, seed: int = 0
-) -> tuple[Network, float]:
+def with_touches(model: Network, scenes: Scenes) -> tuple[Network, float]:
     """The same network with a fitted touch reader, and its accuracy on test captions.
-
-    Args:
-        most: captions that are used, drawn by ``seed``.
-        steps: of AdamW, batches of 256.
 
     Returns:
         the network (as it was, where no scene of the corpus touches) and the accuracy, nan without test
@@ -91,19 +87,19 @@ def with_touches(
     reader = result.eval().touch_reader
     assert reader is not None
 
-    generator = torch.Generator().manual_seed(seed)
+    generator = torch.Generator().manual_seed(0)
     found = examples(scenes.split("train"))
-    chosen = [found[i] for i in torch.randperm(len(found), generator=generator)[:most].tolist()]
+    chosen = [found[i] for i in torch.randperm(len(found), generator=generator)[:MOST].tolist()]
     inputs, labels = _tensors(result, chosen)
-    torch.manual_seed(seed)
+    torch.manual_seed(0)
     optimizer = torch.optim.AdamW(reader.parameters(), lr=2e-3, weight_decay=1e-2)
-    for _ in range(steps):
+    for _ in range(STEPS):
         rows = torch.randint(len(inputs), (256,), generator=generator)
         loss = F.cross_entropy(reader(inputs[rows]), labels[rows], label_smoothing=0.02)
         optimizer.zero_grad(set_to_none=True)
         loss.backward()
         optimizer.step()
-    unseen = examples(scenes.split("test"))[:most]
+    unseen = examples(scenes.split("test"))[:MOST]
     if not unseen:
         return result, float("nan")
     inputs, labels = _tensors(result, unseen)

@@ -10,6 +10,7 @@ from motion.cleaning import foot_contacts, open_limb, plant_feet, solve_two_bone
 from motion.footsteps import stepping
 from motion.ground import above_floor
 from motion.kinematics import project_to_skeleton
+from motion.skeleton import ARMS, LEGS
 from motion.smoothing import least_jerk
 from motion.swings import lift_swinging_feet
 from motion.transforms import facing
@@ -23,12 +24,6 @@ _SOFT = 0.04
 _LANDS = 0.5
 """Metres a second of a foot that lands or leaves, up to which it stands already, or still, at a hand-over of weight:
 0.4 leaves both toes gliding for two or three frames, 0.6 has walks jerk a fifth more."""
-_ARMS = [
-    tuple(SMPL22.index(f"{side}_{j}") for j in ("shoulder", "elbow", "wrist")) for side in ("left", "right")
-]
-_LEGS = [
-    tuple(SMPL22.index(f"{side}_{j}") for j in ("hip", "knee", "ankle", "foot")) for side in ("left", "right")
-]
 
 
 def clean_person(positions: Array, fps: float = 30.0) -> Array:
@@ -83,12 +78,12 @@ def _steady_bones(positions: Array) -> Array:
 def _limbs_back(result: Array, target: Array, *, soft: float = _SOFT) -> Array:
     """Positions (T, 22, 3) whose wrists and ankles are taken as near as they reach to where ``target`` has them."""
     forward = facing(result)
-    for shoulder, elbow, wrist in _ARMS:
+    for shoulder, elbow, wrist in ARMS:
         limb = result[:, shoulder], result[:, elbow], result[:, wrist]
         share = open_limb(*limb) if soft else 1.0
         goal = result[:, wrist] + share * (target[:, wrist] - result[:, wrist])
         result[:, elbow], result[:, wrist] = solve_two_bones(*limb, goal, _elbow_pole(forward), soft=soft)
-    for hip, knee, ankle, toe in _LEGS:
+    for hip, knee, ankle, toe in LEGS:
         foot = result[:, toe] - result[:, ankle]
         result[:, knee], result[:, ankle] = solve_two_bones(
             result[:, hip], result[:, knee], result[:, ankle], target[:, ankle], forward, soft=soft
@@ -100,11 +95,11 @@ def _limbs_back(result: Array, target: Array, *, soft: float = _SOFT) -> Array:
 def _steady_limbs(result: Array, seen: Array) -> Array:
     """Positions (T, 22, 3) whose elbows and knees go round their limbs smoothly, on the side where they were seen."""
     forward = facing(result)
-    for shoulder, elbow, wrist in _ARMS:
+    for shoulder, elbow, wrist in ARMS:
         guide = seen[:, elbow] - seen[:, shoulder] + result[:, shoulder]
         limb = result[:, shoulder], result[:, elbow], result[:, wrist]
         result[:, elbow] = steadied(*limb, guide, _elbow_pole(forward))
-    for hip, knee, ankle, _ in _LEGS:
+    for hip, knee, ankle, _ in LEGS:
         guide = seen[:, knee] - seen[:, hip] + result[:, hip]
         result[:, knee] = steadied(result[:, hip], result[:, knee], result[:, ankle], guide, forward)
     return result

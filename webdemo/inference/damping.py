@@ -12,12 +12,12 @@ joints are pulled together at the moment when they are nearest. With t̄ = 0 the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 import torch
 from torch import Tensor
 
+from models.diffusion import TRAIN_TIMESTEPS
 from models.intergen.compact import Touch
 from models.motion_tokens import foot_contacts
 from models.regennet.compact import CompactReGenNet
@@ -54,30 +54,33 @@ def _spheres() -> tuple[Tensor, Tensor]:
 _ENDS, _RADII = _spheres()
 
 
-@dataclass(frozen=True)
-class DampingWeights:
-    """λ of each term; lengths are in metres, times in frames at 30 a second.
+LAMBDAS = {
+    "bone": 1.0,
+    "foot": 20.0,
+    "floor": 1.0,
+    "smooth": 16.0,
+    "overlap": 1.0,
+    "contact": 0.5,
+    "facing": 0.02,
+}
+"""λ of each term of :func:`energy`; lengths are in metres, times in frames at 30 a second."""
+ASKED = 5.0
+"""λ of a touch that the sentence asks for."""
+TOUCH = 0.08
+"""Metres between two wrists in contact."""
+BODY = 0.13
+"""Metres from a wrist to the joint inside the part of the body that it touches."""
+NEARLY = 0.20
+"""Metres within which wrists are pulled together in any case."""
+REACH = 0.9
+"""Metres within which joints are pulled together if the sentence asks for a touch."""
+GRADIENT_STEPS = 2
+"""Gradient steps at each timestep."""
+STEP = 0.03
+"""Length of a gradient step, and the largest move of any number in it."""
 
-    touch: distance of two wrists in contact; nearly: wrists closer than this are pulled together in any case.
-    asked: λ of a touch that the sentence asks for; body: distance of a wrist from the joint inside the body part
-        that it touches; reach: joints closer than this are pulled together if the sentence asks for a touch.
-    """
 
-    bone: float = 1.0
-    foot: float = 20.0
-    floor: float = 1.0
-    smooth: float = 16.0
-    overlap: float = 1.0
-    contact: float = 0.5
-    facing: float = 0.02
-    touch: float = 0.08
-    nearly: float = 0.20
-    asked: float = 5.0
-    body: float = 0.13
-    reach: float = 0.9
-
-
-def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tensor:
+def energy(positions: Tensor, contacts: Tensor) -> Tensor:
     """The weighted sum of the regularisers, summed over frames.
 
     Args:
@@ -107,21 +110,14 @@ def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tens
     hands = torch.linalg.vector_norm(own[:, :, :, None] - other[:, :, None] + 1e-6, dim=-1)
     # Only the hands and moments of the smallest distance count; hands that pass farther away are left alone.
     nearest = hands.flatten(1).amin(1)[:, None, None, None]
-    due = (hands < nearest + 0.05) & (nearest < weights.nearly)
-    contact = ((hands - weights.touch).clamp_min(0).square() * due).sum((1, 2, 3))
+    due = (hands < nearest + 0.05) & (nearest < NEARLY)
+    contact = ((hands - TOUCH).clamp_min(0).square() * due).sum((1, 2, 3))
 
-    facing = _turned_away(a, b) + _turned_away(b, a)
-    terms = (bone, foot, floor, smooth, overlap, contact, facing)
-    factors = (
-        weights.bone,
-        weights.foot,
-        weights.floor,
-        weights.smooth,
-        weights.overlap,
-        weights.contact,
-        weights.facing,
-    )
-    return torch.stack([factor * term for factor, term in zip(factors, terms, strict=True)]).sum(0)
+    terms = {
+        "bone": bone, "foot": foot, "floor": floor, "smooth": smooth, "overlap": overlap,
+        "contact": contact, "facing": _turned_away(a, b) + _turned_away(b, a),
+    }  # fmt: skip
+    return torch.stack([LAMBDAS[name] * term for name, term in terms.items()]).sum(0)
 
 
 def _overlap(positions: Tensor) -> Tensor:
@@ -164,7 +160,7 @@ def _touching(positions: Tensor, ends: Tensor, radii: Tensor) -> tuple[Tensor, T
     return batch[at], frame[at], own, other
 
 
-def asked_energy(positions: Tensor, touches: Sequence[Touch], weights: DampingWeights) -> Tensor:
+def asked_energy(positions: Tensor, touches: Sequence[Touch]) -> Tensor:
     """(B,) energy in m² of the touches that the sentences ask for, at the moments of smallest distance.
 
     Args:
@@ -177,10 +173,10 @@ def asked_energy(positions: Tensor, touches: Sequence[Touch], weights: DampingWe
         for own, other in touch:
             gap = torch.linalg.vector_norm(a[:, SMPL22.index(own)] - b[:, SMPL22.index(other)] + 1e-6, dim=-1)
             limbs = ("wrist", "elbow")
-            apart = weights.touch if own.endswith(limbs) and other.endswith(limbs) else weights.body
-            due = (gap < gap.min() + 0.05) & (gap.min() < weights.reach)
+            apart = TOUCH if own.endswith(limbs) and other.endswith(limbs) else BODY
+            due = (gap < gap.min() + 0.05) & (gap.min() < REACH)
             total = total + ((gap - apart).clamp_min(0).square() * due).sum()
-        totals.append(weights.asked * total)
+        totals.append(ASKED * total)
     return torch.stack(totals)
 
 
@@ -243,11 +239,8 @@ class Damping:
         space: decodes positions from the network's space.
         threshold: t̄ as a fraction of T; 0 turns the damping off.
         frames: number of output frames; further frames of the last token are ignored.
-        timesteps: T.
-        gradient_steps: steps at each timestep.
         final_timestep: last timestep of sampling; it takes more steps, since no network pass follows.
         final_steps: gradient steps at that timestep.
-        step_size: of one gradient step; the largest move of any number is held to ``largest``.
         frozen: (tokens, F) true where a number is given and must not move.
         touches: the touches that the sentence of each motion asks for; none by default.
     """
@@ -258,23 +251,16 @@ class Damping:
         threshold: float,
         *,
         frames: int,
-        timesteps: int = 1000,
-        gradient_steps: int = 2,
         final_timestep: int = 0,
         final_steps: int = 20,
-        step_size: float = 0.03,
-        largest: float = 0.03,
         frozen: Tensor | None = None,
         touches: Sequence[Touch] = (),
-        weights: DampingWeights | None = None,
     ) -> None:
         self.space, self.frames = space, frames
-        self.last = threshold * timesteps
+        self.last = threshold * TRAIN_TIMESTEPS
         self.off = threshold == 0
-        self.gradient_steps, self.step_size, self.largest = gradient_steps, step_size, largest
         self.final_timestep, self.final_steps = final_timestep, final_steps
         self.frozen, self.touches = frozen, touches
-        self.weights = weights or DampingWeights()
 
     def due(self, timestep: int) -> bool:
         """True if anything is corrected at a timestep."""
@@ -295,9 +281,9 @@ def correct_together(predictions: Sequence[tuple[Damping, Tensor]], timestep: in
     """
     groups: dict[tuple[object, ...], list[int]] = {}
     for i, (damping, x0) in enumerate(predictions):
-        kind = (damping.space.positions, x0.shape[1:], damping.frames, damping.final_timestep,
-                damping.gradient_steps, damping.final_steps, damping.step_size, damping.largest,
-                damping.weights)  # fmt: skip
+        kind = (
+            damping.space.positions, x0.shape[1:], damping.frames, damping.final_timestep, damping.final_steps
+        )  # fmt: skip
         groups.setdefault(kind, []).append(i)
     corrected: dict[int, Tensor] = {}
     for group in groups.values():
@@ -316,17 +302,17 @@ def _descend(predictions: Sequence[tuple[Damping, Tensor]], timestep: int) -> Se
         free = torch.zeros(x0.shape[1:], dtype=torch.bool)
         frozen = torch.cat([(free if d.frozen is None else d.frozen).expand_as(x) for d, x in predictions])
     scale = first.space.scale
-    for _ in range(first.final_steps if timestep == first.final_timestep else first.gradient_steps):
+    for _ in range(first.final_steps if timestep == first.final_timestep else GRADIENT_STEPS):
         with torch.enable_grad():
             x = x0.detach().requires_grad_(True)
             positions, contacts = first.space.positions(x)
             positions, contacts = positions[:, :, : first.frames], contacts[:, :, : first.frames]
-            total = energy(positions, contacts, first.weights).sum()
+            total = energy(positions, contacts).sum()
             if any(touches):
-                total = total + asked_energy(positions, touches, first.weights).sum()
+                total = total + asked_energy(positions, touches).sum()
             (gradient,) = torch.autograd.grad(total, x)
         # The step is taken on control points in metres: d/dcontrol = d/dx / std.
-        move = (first.step_size * gradient / scale).clamp(-first.largest, first.largest)
+        move = (STEP * gradient / scale).clamp(-STEP, STEP)
         if frozen is not None:
             move = move.masked_fill(frozen, 0.0)
         x0 = x0.detach() - move / scale

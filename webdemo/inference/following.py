@@ -5,18 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22
 from motion.cleaning import solve_two_bones
+from motion.skeleton import LEGS
 from motion.transforms import facing
 
 from .cleanup import on_constant_bones
 
 Array = NDArray[np.floating]
 
-_LEGS = [
-    tuple(SMPL22.index(f"{side}_{part}") for part in ("hip", "knee", "ankle", "foot"))
-    for side in ("left", "right")
-]
 _STANDS, _LEAVES = 0.5, 0.35
 """Contact scores from which a foot stands, and below which it has left the floor."""
 _LOW = 0.1
@@ -50,7 +46,7 @@ class FollowingCleanup:
         """
         result = on_constant_bones(np.asarray(frame, dtype=np.float64)[None])[0]
         forward = facing(result)
-        for side, (hip, knee, ankle, toe) in enumerate(_LEGS):
+        for side, (hip, knee, ankle, toe) in enumerate(LEGS):
             foot = result[toe] - result[ankle]
             shift = self._correction(side, result[toe], float(contacts[2 * side : 2 * side + 2].max()))
             # Neither end of a foot goes below the floor.

@@ -42,9 +42,7 @@ FOLDER = "audit"
 """In the data folder; each process writes a file of its own there."""
 
 
-def audit(
-    act: str, *, ok: bool = True, person: str = "", address: str = "", **details: str | float | None
-) -> None:
+def audit(act: str, *, ok: bool = True, person: str = "", **details: str | float | None) -> None:
     """Writes one line.
 
     Args:
@@ -52,12 +50,11 @@ def audit(
             "admin-".
         ok: False where it was refused or failed.
         person: by default the person whose request or event this thread answers.
-        address: by default the one that the request came from.
         details: further plain values. Give :func:`fingerprint` in place of anything that opens a door.
     """
     someone, somewhere, reference = _sender()
     line = {
-        "act": act, "ok": ok, "person": person or someone, "address": address or somewhere, "request": reference,
+        "act": act, "ok": ok, "person": person or someone, "address": somewhere, "request": reference,
         **{k: v[:LONGEST] if isinstance(v, str) else v for k, v in details.items() if v is not None},
     }  # fmt: skip
     _lines.info("audit", extra={"audit": line})

@@ -32,7 +32,7 @@ SUFFIXES = (".png", ".svg", ".pdf")
 MOMENTS = (1, 24)
 WIDTHS = (200, 8000)
 WIDTH = 1600
-_COLUMNS = 8
+_COLUMNS, _IN_ROW = 8, 6
 _TALL = 1.15
 """Height of a picture over its width."""
 _VECTOR: dict[Any, Any] = {"svg.fonttype": "none", "pdf.fonttype": 42, "svg.hashsalt": "pas de deux"}
@@ -108,22 +108,18 @@ def write_grid_sheet(
     motions: Mapping[str, Clip | Duet],
     path: str | Path,
     *,
-    moments: int = 6,
-    width: int = WIDTH,
     title: str = "",
     style: Style | None = None,
-    view: str = "threequarter",
 ) -> Path:
     """Writes a row of moments for each of several motions, at the same times and from one side, as .png.
+
+    They are evenly spaced over the longest motion; a shorter one rests in its last frame.
 
     Args:
         motions: by the name that stands over each row.
         path: ends in .png.
-        moments: pictures in a row, evenly spaced over the longest motion; a shorter one rests in its last frame.
-        width: of the whole in pixels.
         title: stands above.
         style: how people are drawn.
-        view: one of :data:`~webdemo.view.camera.VIEWS`.
 
     Raises:
         InputError: for no motions, or what cannot be written; no file is left.
@@ -131,9 +127,9 @@ def write_grid_sheet(
     path, style = Path(path), style or Style(names=False)
     if not motions or path.suffix.lower() != ".png":
         raise InputError("A sheet of several motions ends in .png and holds one motion or more.")
-    tile = (width // moments, round(width / moments * _TALL))
-    times = np.linspace(0.0, max((m.num_frames - 1) / m.fps for m in motions.values()), moments)
-    ways = cameras(list(motions.values()), size=tile, times=times, view=view, follow=False)
+    tile = (WIDTH // _IN_ROW, round(WIDTH / _IN_ROW * _TALL))
+    times = np.linspace(0.0, max((m.num_frames - 1) / m.fps for m in motions.values()), _IN_ROW)
+    ways = cameras(list(motions.values()), size=tile, times=times, follow=False)
     rows = [
         _row(motion, name, style, times, own)
         for (name, motion), own in zip(motions.items(), ways, strict=True)

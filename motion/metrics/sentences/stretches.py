@@ -7,6 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.vectors import runs
+
 Mask = NDArray[np.bool_]
 
 PAUSE = 0.2
@@ -15,13 +17,12 @@ PAUSE = 0.2
 
 def stretches(mask: Mask, fps: float, *, pause: float = PAUSE) -> list[tuple[int, int]]:
     """(first frame, one past the last) of a mask's runs; runs less than ``pause`` seconds apart are one."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], np.asarray(mask, dtype=np.int8), [0]])))
     found: list[tuple[int, int]] = []
-    for start, stop in zip(edges[::2], edges[1::2], strict=True):
+    for start, stop in runs(np.asarray(mask)):
         if found and start - found[-1][1] < pause * fps:
-            found[-1] = (found[-1][0], int(stop))
+            found[-1] = (found[-1][0], stop)
         else:
-            found.append((int(start), int(stop)))
+            found.append((start, stop))
     return found
 
 

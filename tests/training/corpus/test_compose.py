@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motion.kinematics import forward_kinematics
-from motion.skeleton import SMPL22
+from motion.skeleton import LEGS, SMPL22
 from motion.transforms import facing, heading
 from training.corpus import __main__ as command
 from training.corpus import blending, build, checks, compose, feet, stage
@@ -200,7 +200,7 @@ def test_layer_waves_while_walking() -> None:
     both = compose.realise(compose.layer(base, over, start=20, joints=compose.ARMS["left"]))
     alone = compose.realise(base)
     assert both[50, J("left_wrist"), 1] > alone[50, J("left_wrist"), 1] + 0.5
-    legs = [joint for leg in feet.LEGS for joint in leg]
+    legs = [joint for leg in LEGS for joint in leg]
     np.testing.assert_allclose(both[:, legs], alone[:, legs], atol=1e-9)
 
 

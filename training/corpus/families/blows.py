@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from motion.kinematics import forward_kinematics
-from motion.skeleton import SMPL22
+from motion.skeleton import LEGS, SMPL22
 from motion.vectors import wrapped
 
 from ..compose import Motion
@@ -20,7 +20,7 @@ from ..contact import (
     shift_hips,
     towards,
 )
-from ..feet import LEGS, two_bone
+from ..feet import two_bone
 from ..library import Library, pick
 from ..scene import Scene
 from ..stage import Rng, act, beside, forward, pad, seconds, stride
@@ -93,7 +93,6 @@ def _strike(rng: Rng, library: Library, family: str) -> Scene:
     pb = nod(pb, give * rng.uniform(0.1, 0.3))
     named = take.side if rng.random() < 0.65 else None
     return conclude(
-        rng,
         library,
         family,
         meet,

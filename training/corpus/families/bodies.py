@@ -45,7 +45,7 @@ def hug(rng: Rng, library: Library) -> Scene:
             meet.b = pad(rng, library, meet.b, len(meet.a))
     over = pick(rng, ("left", "right"))
     a, b, touches = touch_hug(rng, *meet.bodies(gaze=(0.4, 0.4)), meet.start, meet.stop, over)
-    return conclude(rng, library, "hug", meet, a, b, touches=touches)
+    return conclude(library, "hug", meet, a, b, touches=touches)
 
 
 @register("pat-back", "pat:back", STILL, needs=("idle",), weight=1.5, contact=True)
@@ -54,7 +54,7 @@ def pat_back(rng: Rng, library: Library) -> Scene:
     side, named = chosen_side(rng)
     meet = _standing_beside(rng, library, side, (1.6, 2.6))
     a, b, touches = touch_pat_back(rng, *meet.bodies(gaze=(0.8, 0.5)), meet.start, meet.stop, side)
-    return conclude(rng, library, "pat-back", meet, a, b, touches=touches, side=side if named else None)
+    return conclude(library, "pat-back", meet, a, b, touches=touches, side=side if named else None)
 
 
 def _standing_beside(rng: Rng, library: Library, side: str, hold: tuple[float, float]) -> Encounter:
@@ -90,7 +90,7 @@ def arm_around(rng: Rng, library: Library) -> Scene:
     a, b = meet.bodies(gaze=(rng.uniform(0, 0.5), rng.uniform(0, 0.5)))
     a, b, touches = touch_arm_around(rng, a, b, meet.start, meet.stop, side)
     return conclude(
-        rng, library, "arm-around", meet, a, b, touches=touches, side=side if rng.random() < 0.6 else None
+        library, "arm-around", meet, a, b, touches=touches, side=side if rng.random() < 0.6 else None
     )
 
 
@@ -130,7 +130,7 @@ def push(rng: Rng, library: Library) -> Scene:
     a = reach(a, chest, weight, elbow=(0.8, -0.9, -0.2))
     meet.events["distance"] = "part"
     touches = [(f"{side}_wrist", "spine3", hit - 2, hit + 3) for side in ("left", "right")]
-    return conclude(rng, library, "push", meet, a, b, touches=touches)
+    return conclude(library, "push", meet, a, b, touches=touches)
 
 
 @register("whisper", "whisper", "listen", needs=("walk", "idle"), weight=1.3, contact=True)
@@ -139,7 +139,7 @@ def whisper(rng: Rng, library: Library) -> Scene:
     side, _ = chosen_side(rng)
     meet = _standing_beside(rng, library, side, (2.0, 3.5))
     a, b, _ = touch_whisper(rng, *meet.bodies(gaze=(0.9, 0.1)), meet.start, meet.stop, side)
-    return conclude(rng, library, "whisper", meet, a, b, touches=[])
+    return conclude(library, "whisper", meet, a, b, touches=[])
 
 
 @register("help-up", "help-up", "stand-up", needs=("walk", "idle"), weight=1.2, contact=True)
@@ -148,7 +148,7 @@ def help_up(rng: Rng, library: Library) -> Scene:
     meet = come_together(rng, library, rng.uniform(0.82, 0.95), (3.0, 4.0), leave=0.1)
     side, named = chosen_side(rng)
     a, b, touches = touch_help_up(rng, *meet.bodies(), meet.start, meet.stop, side)
-    return conclude(rng, library, "help-up", meet, a, b, touches=touches, side=side if named else None)
+    return conclude(library, "help-up", meet, a, b, touches=touches, side=side if named else None)
 
 
 @register(
@@ -190,6 +190,6 @@ def tap_turn(rng: Rng, library: Library) -> Scene:
     held = held + UP * pats(rng, frames, arrive, leave)[:, None]
     pa = reach(pa, {side: held}, weight, elbow=(0.6, -0.9, 0.0))
     return conclude(
-        rng, library, "tap-turn", meet, pa, pb,
+        library, "tap-turn", meet, pa, pb,
         touches=[(f"{side}_wrist", f"{side}_shoulder", arrive, turn_at)], side=side if named else None,
     )  # fmt: skip

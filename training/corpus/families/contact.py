@@ -23,7 +23,7 @@ def _together(name: str, rng: Rng, library: Library) -> Scene:
     side, named = chosen_side(rng)
     a, b, touches = touch.make(rng, *meet.bodies(), meet.start, meet.stop, side)
     named = named and name != "high-ten"
-    return conclude(rng, library, name, meet, a, b, touches=touches, side=side if named else None)
+    return conclude(library, name, meet, a, b, touches=touches, side=side if named else None)
 
 
 for _name, _weight, *_shows in (
@@ -52,7 +52,7 @@ def hold_hands(rng: Rng, library: Library) -> Scene:
         arrive, weight = 0, np.ones(len(a))
     a, b = joined_hands(a, b, (side, opposite(side)), rng.uniform(0.78, 0.86), 0.06, weight)
     touches = [(f"{side}_wrist", f"{opposite(side)}_wrist", arrive, meet.stop)]
-    return conclude(rng, library, "hold-hands", meet, a, b, touches=touches)
+    return conclude(library, "hold-hands", meet, a, b, touches=touches)
 
 
 @register("walk-hand-in-hand", "walk-hand-in-hand", needs=("walk",), weight=1.3, contact=True)
@@ -66,7 +66,7 @@ def walk_hand_in_hand(rng: Rng, library: Library) -> Scene:
     a, b = joined_hands(a, b, (side, opposite(side)), rng.uniform(0.78, 0.86), 0.05, weight)
     meet.events["distance"] = "keep"
     touches = [(f"{side}_wrist", f"{opposite(side)}_wrist", 0, len(a))]
-    return conclude(rng, library, "walk-hand-in-hand", meet, a, b, touches=touches)
+    return conclude(library, "walk-hand-in-hand", meet, a, b, touches=touches)
 
 
 @register("lead-by-hand", "lead", "follow", needs=("walk",), weight=1.3, contact=True)
@@ -81,4 +81,4 @@ def lead_by_hand(rng: Rng, library: Library) -> Scene:
     a, b = joined_hands(a, b, (side, taking), rng.uniform(0.85, 0.95), 0.0, weight)
     meet.events["distance"] = "keep"
     touches = [(f"{side}_wrist", f"{taking}_wrist", 0, len(a))]
-    return conclude(rng, library, "lead-by-hand", meet, a, b, touches=touches)
+    return conclude(library, "lead-by-hand", meet, a, b, touches=touches)

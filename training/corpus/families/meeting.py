@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -25,6 +25,9 @@ from training.corpus.stage import (
 )
 
 from .gestures import about
+
+STILL = (0.3, 1.0)
+"""Seconds of waiting before and after an encounter."""
 
 
 @dataclass(eq=False)
@@ -58,26 +61,24 @@ def come_together(
     *,
     near: float = 0.4,
     leave: float = 0.2,
-    still: tuple[float, float] = (0.3, 1.0),
 ) -> Encounter:
     """Two people face to face ``distance`` metres apart for ``hold`` seconds.
 
     Args:
         near: how often they stand there from the beginning; else one or both walk up.
         leave: how often one walks away afterwards.
-        still: seconds of waiting before and after.
     """
-    length, tail = seconds(rng, *hold), seconds(rng, *still) + 14
+    length, tail = seconds(rng, *hold), seconds(rng, *STILL) + 14
     slots: dict[str, Any] = {}
     events: dict[str, Any] = {"facing": True}
     if rng.random() < near:
-        start = seconds(rng, *still) + 4
+        start = seconds(rng, *STILL) + 4
         frames = start + length + tail
         a, b = library.idle(rng, frames), library.idle(rng, frames)
     else:
         style = manner(rng, library, "walk")
         steps = stride(rng, library, "walk", rng.uniform(0.9, 2.2), style=style).motion
-        wait = pick(rng, (0, 0, seconds(rng, *still)))
+        wait = pick(rng, (0, 0, seconds(rng, *STILL)))
         a, begins = act(rng, library, (wait, steps), tail=length + tail + 6)
         arrives = begins[0] + len(steps)
         both = rng.random() < 0.4
@@ -143,7 +144,6 @@ def abreast(rng: Rng, library: Library, ahead: float, left: float, frames: int) 
 
 
 def conclude(
-    rng: Rng,
     library: Library,
     family: str,
     encounter: Encounter,
@@ -152,14 +152,12 @@ def conclude(
     *,
     touches: Sequence[tuple[str, str, int, int]],
     side: str | None = None,
-    slots: Mapping[str, Any] | None = None,
 ) -> Scene:
     """The finished scene from two people who have touched.
 
     Args:
         touches: (joint of a, joint of b, first frame, last frame) of what touches.
         side: the side that the captions name, where they do.
-        slots: what else is said of it; see :attr:`training.corpus.scene.Scene.said`.
     """
     positions = canonicalize(np.stack([a, b]))
     positions[..., 1] -= np.percentile(positions[..., 1].min(axis=(0, 2)), 20)
@@ -173,7 +171,6 @@ def conclude(
         events["side"] = {"a": side}
     said = {
         **encounter.slots,
-        **(slots or {}),
         "side_a": side,
         "span": (encounter.start, min(encounter.stop, last + 1)),
     }

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 import torch
 
-from models.diffusion import TRAIN_TIMESTEPS, denoise, make_scheduler
+from models.diffusion import denoise, make_scheduler
 from models.intergen.compact import CompactInterGen
 from models.intergen.fast import PASSES
 from models.intergen.plan_track import TimedAct
@@ -106,7 +106,6 @@ def draw(
             model,
             sampling.damping,
             frames=frames,
-            timesteps=TRAIN_TIMESTEPS,
             final_timestep=int(scheduler.timesteps[-1]),
             touches=touches,
         )

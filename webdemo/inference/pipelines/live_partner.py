@@ -105,9 +105,7 @@ class ReactingPartner:
 
     Args:
         pipeline: the loaded ReGenNet.
-        prompt: what the two people do, or nothing.
         seed: of the noise.
-        guidance: scale of the classifier-free guidance on the prompt.
 
     Attributes:
         goal: where the partner turns and goes by itself, beside what the network has it do; None for nowhere.
@@ -118,18 +116,11 @@ class ReactingPartner:
     things: tuple[Thing, ...] = ()
     gaze: Gaze | None = None
 
-    def __init__(
-        self,
-        pipeline: ReGenNetPipeline,
-        *,
-        prompt: str = "",
-        seed: int = 0,
-        guidance: float = ReactRequest.guidance,
-    ) -> None:
-        self.pipeline, self.guidance, self.seed = pipeline, guidance, seed
+    def __init__(self, pipeline: ReGenNetPipeline, *, seed: int = 0) -> None:
+        self.pipeline, self.seed = pipeline, seed
         self.goal: Goal | None = None
         self._conditions: dict[str, Tensor] = {}
-        self.take_words(prompt)
+        self.take_words("")
         self._person: deque[Array] = deque(maxlen=REPLAY)
         self._shown: deque[Array] = deque(maxlen=REPLAY)
         self._segments = 0
@@ -175,7 +166,7 @@ class ReactingPartner:
         self._segments += 1
         return Segment(
             self.pipeline, self.condition, person=person, begin=begin, seed=self.seed + self._segments,
-            guidance=self.guidance,
+            guidance=ReactRequest.guidance,
         )  # fmt: skip
 
     def _renew(self, *, pushed: bool) -> None:

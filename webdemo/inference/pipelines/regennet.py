@@ -18,7 +18,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from models.diffusion import TRAIN_TIMESTEPS, make_scheduler, sample_steps
+from models.diffusion import make_scheduler, sample_steps
 from models.motion_tokens import FEATURES
 from models.regennet.compact import CompactReGenNet, load_folder
 from models.text import MiniLM
@@ -123,7 +123,6 @@ class ReGenNetPipeline:
             Beside(model, given),
             request.damping,
             frames=frames,
-            timesteps=TRAIN_TIMESTEPS,
             final_timestep=int(scheduler.timesteps[-1]),
             touches=model.touches(condition) if request.prompt.strip() else (),
         )

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from motion.cleaning import solve_two_bones
 from motion.easing import smoothstep
+from motion.skeleton import LEGS
 from motion.transforms import facing, heading, heading_matrix
 from motion.vectors import wrapped
 from webdemo.inference.actor import FPS
@@ -40,10 +41,6 @@ LIFT = 0.05
 FADE = 0.85
 """Factor by which what is left of a foot's distance decays each frame, when all steps are done."""
 _NECK, _HEAD = SMPL22.index("neck"), SMPL22.index("head")
-_LEGS = tuple(
-    tuple(SMPL22.index(f"{side}_{part}") for part in ("hip", "knee", "ankle", "foot"))
-    for side in ("left", "right")
-)
 _FLAT = np.array([1.0, 0.0, 1.0])
 
 
@@ -152,15 +149,15 @@ class Steps:
         if not moving and not self.busy:
             return pose
         pose = pose.copy()
-        goals = [(pose[ankle], pose[toe] - pose[ankle]) for _, _, ankle, toe in _LEGS]
+        goals = [(pose[ankle], pose[toe] - pose[ankle]) for _, _, ankle, toe in LEGS]
         for side, goal in enumerate(goals):
             if self._stands[side] is None:
                 self._stands[side] = goal
         self._begin_a_step([goal[0] for goal in goals], STEP_FROM if moving else REST_FROM)
         goals = [(place + ahead, foot) for place, foot in goals]
         feet = [self._foot(side, goals[side], moving=moving) for side in range(2)]
-        pose[:, 1] -= max(_too_high(pose, leg, place) for leg, (place, _) in zip(_LEGS, feet, strict=True))
-        for (hip, knee, ankle, toe), (place, foot) in zip(_LEGS, feet, strict=True):
+        pose[:, 1] -= max(_too_high(pose, leg, place) for leg, (place, _) in zip(LEGS, feet, strict=True))
+        for (hip, knee, ankle, toe), (place, foot) in zip(LEGS, feet, strict=True):
             pose[knee], pose[ankle] = solve_two_bones(pose[hip], pose[knee], pose[ankle], place, facing(pose))
             pose[toe] = pose[ankle] + foot
         return pose

@@ -14,7 +14,7 @@ from torch import Tensor
 
 from models.bigraphdiff.compact import CompactBiGraphDiff
 from models.compiled import compile_network
-from models.diffusion import TRAIN_TIMESTEPS, SamplerName, make_scheduler, sample_steps
+from models.diffusion import SamplerName, make_scheduler, sample_steps
 from models.diffusion.schedule import Spacing
 from models.intergen.compact import CompactInterGen, DuetSpace, Touch
 from models.intergen.plan_track import PlanTrack
@@ -202,7 +202,6 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             self.model,
             request.damping,
             frames=scene.frames,
-            timesteps=TRAIN_TIMESTEPS,
             final_timestep=int(scheduler.timesteps[-1]),
             frozen=None if given is None else given.frozen[0],
             touches=(conditioning.touch,) * request.samples,

@@ -124,15 +124,14 @@ def understood(text: str) -> Plan | None:
     return plan if plan.acts else None
 
 
-def beats_of(plan: Plan, known: Lexicon | None = None, *, own_words: bool = True) -> tuple[Beat, ...]:
+def beats_of(plan: Plan, *, own_words: bool = True) -> tuple[Beat, ...]:
     """The beats of a plan; an answer, such as a fall after a punch, shares the beat of what it answers.
 
     Args:
         plan: with or without a text.
-        known: the lexicon; ours by default.
         own_words: a beat keeps the sentences of the text that tell it; otherwise its words are its acts' captions.
     """
-    known = known or lexicon()
+    known = lexicon()
     found: list[list[list[Act]]] = []
     for group in plan.beats():
         if found and (_goes_on(found[-1], group) or _same_beat(found[-1][-1], group, known, plan.sentence)):
