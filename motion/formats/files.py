@@ -141,6 +141,12 @@ def replacing(path: Path) -> Iterator[Path]:
             temporary.unlink(missing_ok=True)
 
 
+def write_text(path: Path, text: str) -> None:
+    """Writes a whole file in UTF-8, or none; raises InputError as :func:`replacing` does."""
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
 def write_files(contents: Mapping[Path, bytes]) -> list[Path]:
     """Writes all files or none: each to a temporary one beside it first, then all take their places.
 

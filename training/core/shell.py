@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from collections.abc import Callable, Collection
 from dataclasses import fields
@@ -12,6 +13,7 @@ from typing import Any, TypeVar
 from safetensors import SafetensorError
 
 from motion import InputError
+from motion.formats.files import write_text
 
 Settings = TypeVar("Settings")
 
@@ -80,6 +82,14 @@ def chosen(options: argparse.Namespace, settings: type[Settings]) -> Settings:
     """The settings that :func:`add_run_options` understood; a field without a flag has its default."""
     names = (field.name for field in fields(settings))  # type: ignore[arg-type] # a dataclass, as documented
     return settings(**{name: getattr(options, name) for name in names if hasattr(options, name)})
+
+
+def write_scores(options: argparse.Namespace, scores: Any, shown: str) -> None:
+    """Writes scores to ``--out`` and their table to ``--table``, where that is given, and prints the table."""
+    write_text(options.out, json.dumps(scores, indent=1, ensure_ascii=False) + "\n")
+    if options.table:
+        write_text(options.table, shown)
+    print(shown)
 
 
 def exit_code(job: Callable[[], None]) -> int:

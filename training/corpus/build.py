@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from motion import InputError
-from motion.formats.files import replacing
+from motion.formats.files import replacing, write_text
 
 from .checks import fault
 from .compose import FPS
@@ -171,8 +171,7 @@ def save(scenes: Sequence[Scene], folder: Path) -> None:
         np.lib.format.write_array_header_1_0(file, header)
         for scene in scenes:
             file.write(np.ascontiguousarray(scene.positions.swapaxes(0, 1), dtype="<f4").tobytes())
-    with replacing(folder / "index.json") as temporary:
-        temporary.write_text(json.dumps(index, default=_plain))
+    write_text(folder / "index.json", json.dumps(index, default=_plain))
 
 
 def _plain(value: object) -> object:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22, Duet
-from motion.formats.files import replacing
+from motion.formats.files import replacing, write_text
 from motion.metrics import bone_drift, foot_skate, penetration
 from training.core.shell import add_options, exit_code
 from training.prepare import load_corpus
@@ -57,8 +57,7 @@ def report(motions: NDArray[np.floating], index: list[dict[str, Any]], out: Path
     pictures.mkdir(parents=True, exist_ok=True)
     rows = [_family(name, scenes, motions, pictures) for name, scenes in sorted(families.items())]
     text = "\n".join([*_head(rows, index), *_table(rows), "", *_acts_table(index), ""])
-    with replacing(out / "corpus.md") as temporary:
-        temporary.write_text(text)
+    write_text(out / "corpus.md", text)
     return text
 
 

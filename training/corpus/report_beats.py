@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import Duet
-from motion.formats.files import replacing
+from motion.formats.files import replacing, write_text
 from motion.metrics import foot_skate, jerk, penetration
 from training.core.shell import add_options, exit_code
 from training.prepare import load_corpus
@@ -59,8 +59,7 @@ def report(motions: NDArray[np.floating], index: list[dict[str, Any]], out: Path
             f"| {f'{np.median(gaps):.0f}' if gaps else '–'} | {link} |"
         )
     text = "\n".join([*_head(motions, index, scenes), *rows, ""])
-    with replacing(out / "corpus-beats.md") as temporary:
-        temporary.write_text(text)
+    write_text(out / "corpus-beats.md", text)
     return text
 
 

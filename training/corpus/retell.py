@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from training.core.shell import add_options, exit_code
 
 from .cues import Label
@@ -48,8 +48,7 @@ def _run(options: argparse.Namespace) -> None:
     scenes = json.loads(path.read_text())
     rng = np.random.default_rng(options.seed)
     scenes = [retold(scene, rng) for scene in scenes]
-    with replacing(path) as temporary:
-        temporary.write_text(json.dumps(scenes))
+    write_text(path, json.dumps(scenes))
     count = len({caption for scene in scenes for caption in scene["captions"]})
     print(f"{len(scenes)} scenes, {count} different captions")
 

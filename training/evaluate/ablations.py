@@ -24,7 +24,7 @@ from models.intergen.compact import CompactInterGen
 from models.layers import sinusoids
 from models.text import MiniLM
 from motion import Duet, InputError
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from training.core import checkpoint
 from training.core.shell import add_options, exit_code
 from training.evaluate.extractor import load_extractor
@@ -228,8 +228,7 @@ def _run(options: argparse.Namespace, small: Settings = SMALL) -> None:
             if trainer.step % 200 == 0:
                 print(f"{name}: step {trainer.step} of {settings.steps}", flush=True)
         scores = judge_variant(scenes, trainer.ema, options, encoder)
-        with replacing(path) as temporary:
-            temporary.write_text(json.dumps(scores, indent=1) + "\n")
+        write_text(path, json.dumps(scores, indent=1) + "\n")
     found = {}
     for name in VARIANTS:
         if (path := options.out / name / "scores.json").exists():
@@ -244,8 +243,7 @@ def _run(options: argparse.Namespace, small: Settings = SMALL) -> None:
         f"means of {options.repeats} repeats with 95 % intervals.\n\n{table(found)}"
     )
     if options.table:
-        with replacing(options.table) as temporary:
-            temporary.write_text(shown)
+        write_text(options.table, shown)
     print(shown)
 
 

@@ -11,7 +11,6 @@ come InterGen's measures, R-precision to multimodality (:mod:`training.evaluate.
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from collections.abc import Iterator, Sequence
@@ -19,8 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from motion import Duet, InputError
-from motion.formats.files import replacing
-from training.core.shell import add_options
+from training.core.shell import add_options, write_scores
 from training.evaluate.judge import retrieval
 from training.evaluate.judge.prompts import choose, everyday, real_duet
 from training.evaluate.judge.reactions import WITH_WORDS, installed, of_the_reactor, react_to_all
@@ -166,14 +164,9 @@ def main(argv: list[str] | None = None) -> None:
             shown += "\n" + reactions_table(scores["reactions"])
         if "features" in scores:
             shown += "\n" + retrieval.table(scores["features"])
-        with replacing(options.out) as temporary:
-            temporary.write_text(json.dumps(scores, indent=1, ensure_ascii=False) + "\n")
-        if options.table:
-            with replacing(options.table) as temporary:
-                temporary.write_text(shown)
+        write_scores(options, scores, shown)
     except InputError as error:
         parser.exit(2, f"{error}\n")
-    print(shown)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from models.agent.recogniser import load_folder
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from training.core.shell import add_options, exit_code
 from training.trainers.recogniser import Settings, answered, cut, scores
 from webdemo.inference.engine import WEIGHTS
@@ -51,8 +51,7 @@ def _run(options: argparse.Namespace) -> None:
     single = {name: found[name] for name in ("windows", "named", "among three", "balanced")}
     print(json.dumps({"single looks": single, "all looks": decided}))
     if options.out:
-        with replacing(options.out) as temporary:
-            temporary.write_text(json.dumps(found | {"looks": counts, "all looks": decided}))
+        write_text(options.out, json.dumps(found | {"looks": counts, "all looks": decided}))
 
 
 if __name__ == "__main__":

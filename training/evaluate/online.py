@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import Duet, InputError
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from motion.metrics import contact_events, foot_skate, pelvis_distance
 from training.core.shell import add_options, exit_code
 from training.corpus.pairs import load_pairs
@@ -171,8 +171,7 @@ def _run(options: argparse.Namespace) -> None:
         found[name] = figures
         print(f"| {name} | {' | '.join(f'{figures[key]:.2f}' for key in COLUMNS)} |", flush=True)
     if options.out:
-        with replacing(options.out) as temporary:
-            temporary.write_text(json.dumps(found, indent=1))
+        write_text(options.out, json.dumps(found, indent=1))
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ import torch
 
 from models.predictors import Predictor, load_predictor
 from motion import InputError
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from training.core.shell import add_options, exit_code
 from training.corpus import cmu
 from training.evaluate.prediction_scores import Predict, Scores, average, score, zero_velocity
@@ -113,8 +113,7 @@ def put_into(page: Path, table: str, *, name: str = "table") -> None:
     _, found, after = rest.partition(end)
     if not (mark and found):
         raise InputError(f"{page} lacks the lines {begin.strip()} and {end.strip()}: add them.")
-    with replacing(page) as temporary:
-        temporary.write_text(before + begin + "\n" + table + "\n" + end + after)
+    write_text(page, before + begin + "\n" + table + "\n" + end + after)
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from scipy.stats import t as student
 
 from motion import Duet, InputError
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from motion.metrics import summary
 from training.core.shell import add_options, exit_code
 from training.corpus.pairs import load_pairs
@@ -260,12 +260,10 @@ def _run(options: argparse.Namespace) -> None:
             "scores": score(train, test, made, seeds=options.seeds),
             "readouts": {method: readouts(test, people) for method, people in shown.items()},
         }
-        with replacing(options.out) as temporary:
-            temporary.write_text(json.dumps(scores, indent=1))
+        write_text(options.out, json.dumps(scores, indent=1))
     print(table(scores))
     if options.table:
-        with replacing(options.table) as temporary:
-            temporary.write_text(table(scores))
+        write_text(options.table, table(scores))
 
 
 def reacted(engine: Engine, pair: Reaction, classes: Sequence[str], seed: int, method: str) -> Array:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from models.agent.recogniser import OBSERVED, PREDICTED, sampled
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from motion.transforms import mirrored
 from training.core.shell import add_options, exit_code
 from training.corpus.sbu import CLASSES as SBU_CLASSES
@@ -147,8 +147,7 @@ def main(argv: list[str] | None = None) -> int:
         for name, complete in inputs(options.weights).items():
             scores[name] = score(train, test, complete, seeds=options.seeds, steps=options.steps)
             print(name, scores[name], flush=True)
-            with replacing(options.out) as temporary:
-                temporary.write_text(json.dumps(scores, indent=1))
+            write_text(options.out, json.dumps(scores, indent=1))
         print(table(scores, counts))
 
     return exit_code(job)

@@ -8,7 +8,6 @@ different parts. Touches by pair of body regions stand beside those of the recor
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,12 +16,11 @@ from typing import Any
 import numpy as np
 
 from motion import Duet, InputError
-from motion.formats.files import replacing
 from motion.metrics import contact_precision_recall
 from motion.metrics.generation import r_precision
 from motion.metrics.sentences.scores import share
 from motion.transforms import canonicalize
-from training.core.shell import add_options, exit_code
+from training.core.shell import add_options, exit_code, write_scores
 from training.corpus.families import load_families
 from training.evaluate.extractor import load_extractor
 from training.evaluate.judge.draw import Sampling, draw
@@ -147,13 +145,7 @@ def main(argv: list[str] | None = None) -> int:
 
     def job() -> None:
         scores = evaluate(options)
-        shown = table(scores)
-        with replacing(options.out) as temporary:
-            temporary.write_text(json.dumps(scores, indent=1, ensure_ascii=False) + "\n")
-        if options.table:
-            with replacing(options.table) as temporary:
-                temporary.write_text(shown)
-        print(shown)
+        write_scores(options, scores, table(scores))
 
     return exit_code(job)
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import itertools
-import json
 import random
 import sys
 import time
@@ -21,13 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22, Duet
-from motion.formats.files import replacing
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import check
 from motion.metrics.sentences.scores import share
 from motion.skeleton import FEET
 from motion.transforms import heading
-from training.core.shell import add_options, exit_code
+from training.core.shell import add_options, exit_code, write_scores
 from webdemo.inference import Engine, Result
 from webdemo.inference.actor import FPS
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneRequest
@@ -341,13 +339,7 @@ def main(argv: list[str] | None = None) -> int:
 
     def job() -> None:
         scores = evaluate(options)
-        shown = table(scores)
-        with replacing(options.out) as temporary:
-            temporary.write_text(json.dumps(scores, indent=1) + "\n")
-        if options.table:
-            with replacing(options.table) as temporary:
-                temporary.write_text(shown)
-        print(shown)
+        write_scores(options, scores, table(scores))
 
     return exit_code(job)
 

@@ -15,10 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from motion import InputError
-from motion.formats.files import replacing
 from motion.metrics.sentences import load_sentences, read_sentences
 from motion.metrics.sentences.scores import score, table
-from training.core.shell import add_options, exit_code
+from training.core.shell import add_options, exit_code, write_scores
 from training.evaluate.judge.draw import Sampling
 from training.evaluate.judge.kept_motions import draw_missing, motions_folder
 from training.evaluate.judge.listening import listening, said
@@ -97,13 +96,7 @@ def main(argv: list[str] | None = None) -> int:
     def job() -> None:
         beside = _read(options.beside) if options.beside else None
         scores = evaluate(options)
-        shown = table(scores, beside)
-        with replacing(options.out) as temporary:
-            temporary.write_text(json.dumps(scores, indent=1, ensure_ascii=False) + "\n")
-        if options.table:
-            with replacing(options.table) as temporary:
-                temporary.write_text(shown)
-        print(shown)
+        write_scores(options, scores, table(scores, beside))
 
     return exit_code(job)
 

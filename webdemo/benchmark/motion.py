@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from motion import Clip, Duet, InputError
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from motion.metrics.naturalness import Naturalness, joint_speeds, naturalness
 
 HERE = Path(__file__).parent
@@ -73,8 +73,7 @@ def run_motion(
     if unknown := [kind for kind in only if kind not in listed]:
         raise InputError(f"There is no kind of act {unknown[0]!r}: choose from {', '.join(listed)}.")
     if recorded is not None:
-        with replacing(RECORDED) as path:
-            path.write_text(json.dumps(measured_folder(recorded, listed), indent=1) + "\n", encoding="utf-8")
+        write_text(RECORDED, json.dumps(measured_folder(recorded, listed), indent=1) + "\n")
     real = json.loads(RECORDED.read_text(encoding="utf-8")) if RECORDED.is_file() else {}
     people: dict[str, tuple[list[Naturalness], list[Naturalness]]] = {}
     make = _maker(steps)

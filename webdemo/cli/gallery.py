@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from motion import Duet, InputError
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from webdemo.inference.acting import acted
 from webdemo.inference.requests import GenerateRequest
 
@@ -39,8 +39,7 @@ def gallery(options: argparse.Namespace) -> dict[str, Any]:
         ) from None
     made = [_made(*one, sheet=_sheet(options.sheets, i)) for i, one in enumerate(asked)]
     lines = ",\n".join(json.dumps(each, ensure_ascii=False) for each in made)
-    with replacing(options.file) as temporary:
-        temporary.write_text(f'{{"scenes": [\n{lines}\n]}}\n', encoding="utf-8")
+    write_text(options.file, f'{{"scenes": [\n{lines}\n]}}\n')
     return {"files": [str(options.file)], "scenes": len(made)}
 
 

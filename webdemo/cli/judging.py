@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from motion import Duet, InputError
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from motion.metrics.sentences import Sentence, load_sentences, read_sentences
 from motion.metrics.sentences.kept import Motions
 from motion.metrics.sentences.scores import ALL, score, table
@@ -95,8 +95,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
     )
     print(table(scores))
     if options.out is not None:
-        with replacing(options.out) as temporary:
-            temporary.write_text(json.dumps(scores, indent=1, ensure_ascii=False) + "\n")
+        write_text(options.out, json.dumps(scores, indent=1, ensure_ascii=False) + "\n")
     passed, count = scores["tags"][ALL]
     return {
         "model": found.name, "sentences": len(sentences), "motions": sum(map(len, duets)), "passed": passed,

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from motion.skeleton import Skeleton
 
 from .theme import THEMES, Colour, Theme
@@ -93,8 +93,7 @@ def write_figure(
         auto_play=False,
         config={"displaylogo": False, "responsive": True},
     )
-    with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+    write_text(path, text)
     return path
 
 

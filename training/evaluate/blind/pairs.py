@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from motion import Duet, InputError
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from motion.metrics.sentences import Sentence, load_sentences
 from motion.metrics.sentences.kept import Motions
 from motion.metrics.sentences.scores import share
@@ -196,8 +196,7 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def _write(path: Path, content: dict[str, Any]) -> None:
-    with replacing(path) as temporary:
-        temporary.write_text(json.dumps(content, indent=1) + "\n")
+    write_text(path, json.dumps(content, indent=1) + "\n")
 
 
 def save_result(folder: Path, found: dict[str, Any]) -> None:

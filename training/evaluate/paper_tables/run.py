@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import InputError
-from motion.formats.files import replacing
+from motion.formats.files import replacing, write_text
 from training.core.shell import add_options, exit_code
 from training.corpus.strict_pairs import StrictPair, strict_pairs
 from training.evaluate.reactions import interval
@@ -126,12 +126,10 @@ def _run(options: argparse.Namespace) -> None:
             print(f"{name}, seed {seed}: made", flush=True)
     found = scores(table, pairs, made, classifiers=options.classifiers, say=print)
     shown: dict[str, Any] = {"steps": steps, "seeds": options.seeds, "scores": found, "milliseconds": times}
-    with replacing(out / "scores.json") as temporary:
-        temporary.write_text(json.dumps(shown, indent=1) + "\n")
+    write_text(out / "scores.json", json.dumps(shown, indent=1) + "\n")
     page = (
         f"{table.title}. {table.about} Steps: {steps}; trainings of each network: {options.seeds}; "
         f"classifiers: {options.classifiers}.\n\n{markdown(table, found, times)}"
     )
-    with replacing(out / "table.md") as temporary:
-        temporary.write_text(page)
+    write_text(out / "table.md", page)
     print(page)

@@ -8,7 +8,7 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 
 Outline = dict[str, tuple[int, ...]]
 """Tensor name → shape."""
@@ -29,8 +29,7 @@ def outline_of(path: Path, network: str) -> Outline:
     with suppress(OSError):  # a folder that cannot be written costs the next start a second
         file = _cache(path)
         file.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(file) as temporary:
-            temporary.write_text(json.dumps(outline))
+        write_text(file, json.dumps(outline))
     return outline
 
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from sqlalchemy import delete
 
 from motion import InputError
-from motion.formats.files import replacing
+from motion.formats.files import write_text
 from webdemo.server.store.database import Database, SignIn
 from webdemo.server.store.people import People
 
@@ -133,8 +133,7 @@ class Users:
             f"{name}:{known.cost}:{_base64(known.salt)}:{_base64(known.digest)}"
             for name, known in sorted(entries.items())
         ]
-        with replacing(self.path) as temporary:
-            temporary.write_text(_HEADER + "".join(f"{line}\n" for line in lines), encoding="utf-8")
+        write_text(self.path, _HEADER + "".join(f"{line}\n" for line in lines))
         os.chmod(self.path, 0o600)
 
 
