@@ -6,6 +6,8 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
+from motion.vectors import runs
+
 from .skeleton import SMPL22, Skeleton
 from .smoothing import least_jerk
 from .transforms import facing
@@ -80,8 +82,7 @@ def _turned(ankle: Array, toe: Array, raised: Array, moved: NDArray[np.bool_]) -
 def _heights(toe: Array, hips: Array, upright: NDArray[np.bool_], forward: Array, fps: float) -> Array:
     """(T,) heights that a toe (T, 3) should have at least; none where it does not swing."""
     speed, found = _speed(toe, fps), np.full(len(toe), -np.inf)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], (speed > _FAST).astype(np.int8), [0]])))
-    for start, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+    for start, stop in runs(speed > _FAST):
         way = toe[stop - 1] - toe[start]
         way[1] = 0.0
         length = float(np.linalg.norm(way))

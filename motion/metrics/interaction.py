@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22, Clip, Duet, Skeleton
 from motion.transforms import facing
+from motion.vectors import runs
 
 from .bodies import Capsules, capsules, point_segment_distance, segment_segment_distance, sideless
 
@@ -201,9 +202,8 @@ def _stretches(
 
     Runs between which ``loosely`` holds throughout are joined too, however long that takes.
     """
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
     joined: list[tuple[int, int]] = []
-    for start, stop in edges.reshape(-1, 2).tolist():
+    for start, stop in runs(flags):
         last = joined[-1][1] if joined else 0
         held = loosely is not None and loosely[last:start].all()
         if joined and (held or start - last < _JOIN_GAP * fps):

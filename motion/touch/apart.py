@@ -21,7 +21,7 @@ from motion.planted import HIPS, UPPER, over_planted_feet
 from motion.skeleton import LEGS, SMPL22
 from motion.smoothing import eased_marks
 from motion.transforms import facing
-from motion.vectors import unit
+from motion.vectors import runs, unit
 
 Array = NDArray[np.floating]
 
@@ -135,12 +135,7 @@ def _segments(pair: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
 def _stances(person: Array, fps: float) -> tuple[list[tuple[int, int]], ...]:
     """(start, stop) of the stances of the left foot and of the right one."""
     contacts = foot_contacts(person, fps)
-    found = []
-    for side in (0, 1):
-        stands = contacts[:, 2 * side : 2 * side + 2].any(axis=1)
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], stands.astype(np.int8), [0]])))
-        found.append(list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)))
-    return tuple(found)
+    return tuple(runs(np.any(contacts[:, 2 * side : 2 * side + 2], axis=1)) for side in (0, 1))
 
 
 def _moved(person: Array, bodies: Array, feet: Array, stances: Sequence[Sequence[tuple[int, int]]]) -> Array:
