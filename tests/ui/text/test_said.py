@@ -106,7 +106,7 @@ def test_every_act_of_the_lexicon_has_a_line(language: str) -> None:
 
     lines, words = words_of(language, "acts"), sections_of(language, "words")
     entries = {name for path in OURS.glob("*.toml") for name in tomllib.loads(path.read_text())}
-    assert lines.keys() == entries
+    assert lines.keys() == entries, f"languages/{language}/acts.toml has a line for each act of acts/lexicon"
     for name, line in lines.items():
         _, both = line.split(" | ")
         assert "{b}" not in both, f"{name}: both do it, so that nobody is the other"
@@ -165,12 +165,21 @@ def test_parts_that_are_known_here_alone_are_found_first() -> None:
 
 
 @pytest.mark.parametrize(
-    "query, header, language",
-    [("", "", "en"), ("de", "fr", "de"), ("", "de-AT,de;q=0.9,en;q=0.8", "de"), ("", "en-GB", "en")],
+    "query, page, browser, language",
+    [
+        ("", "", "", "en"),
+        ("de", "", "fr", "de"),
+        ("", "http://lab/?run=1&lang=de", "en-US,en;q=0.9", "de"),
+        ("", "http://lab/", "de-AT,de;q=0.9,en;q=0.8", "de"),
+        ("", "http://[", "en-GB", "en"),
+        ("", "", ";;q=", "en"),
+    ],
 )
-def test_the_address_goes_before_the_browser(query: str, header: str, language: str) -> None:
+def test_the_address_goes_before_the_browser(query: str, page: str, browser: str, language: str) -> None:
     request = SimpleNamespace(
-        query_params={"lang": query} if query else {}, headers={"accept-language": header}, scope={}
+        query_params={"lang": query} if query else {},
+        headers={"accept-language": browser, "referer": page},
+        scope={},
     )
     token = LocalContext.request.set(SimpleNamespace(request=request))
     try:

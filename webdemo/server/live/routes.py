@@ -18,7 +18,8 @@ from starlette.responses import JSONResponse, Response
 from motion import SMPL22, Clip, InputError
 from motion.video.packed import camera_number
 from webdemo.inference.actor import FPS
-from webdemo.ui.visitor import Visitor, visitor_of
+from webdemo.ui.text.said import said
+from webdemo.ui.visitor import Visitor, language_of, visitor_of
 from webdemo.view.payload import player_payload
 
 from .messages import read_fields
@@ -35,22 +36,22 @@ def live_routes(streams: Streams) -> APIRouter:
     async def begin(request: Request) -> Response:
         visitor, body = visitor_of(request), await request.body()
         return await _answered(
-            lambda: streams.opening(visitor.person, partial(_begin, streams, visitor, body))
+            request, lambda: streams.opening(visitor.person, partial(_begin, streams, visitor, body))
         )
 
     @router.post("/live/{key}")
     async def frames(key: str, request: Request) -> Response:
         body = await request.body()
-        return await _answered(lambda: streams.answer(key, visitor_of(request), body))
+        return await _answered(request, lambda: streams.answer(key, visitor_of(request), body))
 
     @router.delete("/live/{key}")
     async def end(key: str, request: Request) -> Response:
-        return await _answered(lambda: _end(streams, key, visitor_of(request)))
+        return await _answered(request, lambda: _end(streams, key, visitor_of(request)))
 
     return router
 
 
-async def _answered(job: Callable[[], dict[str, Any] | Future[dict[str, Any]]]) -> Response:
+async def _answered(request: Request, job: Callable[[], dict[str, Any] | Future[dict[str, Any]]]) -> Response:
     """The answer to a message, once it is there; errors are sentences."""
     status, answer = 200, {}
     try:
@@ -66,7 +67,18 @@ async def _answered(job: Callable[[], dict[str, Any] | Future[dict[str, Any]]]) 
         status, answer = 409, {"detail": str(error)}
     except InputError as error:
         status, answer = 422, {"detail": str(error)}
-    return JSONResponse(answer, status_code=status, headers={"Cache-Control": "no-store"})
+    content = _said(answer, language_of(request))
+    return JSONResponse(content, status_code=status, headers={"Cache-Control": "no-store"})
+
+
+def _said(answer: dict[str, Any], language: str) -> dict[str, Any]:
+    """An answer whose sentences are in the language of its page."""
+    found: dict[str, Any] = {
+        name: said(answer[name], language=language) for name in ("detail", "hint") if name in answer
+    }
+    if belief := answer.get("belief"):
+        found["belief"] = {**belief, "text": said(belief["text"], language=language)}
+    return {**answer, **found}
 
 
 def _begin(streams: Streams, visitor: Visitor, body: bytes) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -112,39 +112,44 @@ class Translations:
         return text
 
 
-def said(text: str, phrases: Phrases | None = None) -> str:
+def said(text: str, phrases: Phrases | None = None, *, language: str | None = None) -> str:
     """A text of the server in the visitor's language.
 
     Args:
         text: in English, with the values already in it.
         phrases: parts of it that are known here alone, such as the acts of a plan.
+        language: by default that of the event that is being answered.
     """
-    known = translations_of(wanted_language())
+    known = _translations().get(language or wanted_language())
     return known.say(text, phrases or {}) if known else text
 
 
-@cache
-def translations_of(language: str) -> Translations | None:
-    """The translations of a language; None for English and for a language that has no folder."""
-    texts = words_of(language, "sentences")
-    return Translations.of(texts) if texts else None
-
-
-@cache
-def words_of(language: str, name: str) -> dict[str, str]:
+def words_of(language: str, name: str) -> Phrases:
     """A file of a language, without its sections; {} where there is none."""
     return {key: value for section in sections_of(language, name).values() for key, value in section.items()}
 
 
-@cache
-def sections_of(language: str, name: str) -> dict[str, dict[str, str]]:
-    """A file of a language; {} where there is none."""
-    if language not in known_languages():
-        return {}
-    return tomllib.loads((FOLDER / language / f"{name}.toml").read_text(encoding="utf-8"))
+def sections_of(language: str, name: str) -> Mapping[str, Phrases]:
+    """A file of a language by its sections; {} where there is none."""
+    return _files().get(language, {}).get(name, {})
 
 
-@cache
-def known_languages() -> tuple[str, ...]:
+def known_languages() -> Sequence[str]:
     """The languages other than English that have a folder."""
-    return tuple(sorted(path.name for path in FOLDER.iterdir() if path.is_dir()))
+    return tuple(_files())
+
+
+@cache
+def _files() -> dict[str, dict[str, dict[str, dict[str, str]]]]:
+    return {
+        folder.name: {
+            path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in folder.glob("*.toml")
+        }
+        for folder in sorted(FOLDER.iterdir())
+        if folder.is_dir()
+    }
+
+
+@cache
+def _translations() -> dict[str, Translations]:
+    return {language: Translations.of(words_of(language, "sentences")) for language in known_languages()}

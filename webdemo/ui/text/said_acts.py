@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 from acts import Act, Plan, lexicon, read
@@ -16,7 +17,7 @@ from motion import InputError
 from webdemo.inference.story.beats import Beat, acts_of
 from webdemo.ui.visitor import wanted_language
 
-from .said import said, sections_of, words_of
+from .said import Phrases, said, sections_of, words_of
 
 _SLOT = re.compile(r"\{(part|thing|b)(?::([\w-]+))?\}")
 _SIDES = (None, "left", "right", "both")
@@ -28,10 +29,16 @@ def said_act(act: Act) -> str:
     return _worded(act, "{act}") or short(act, lexicon().entries.get(act.act))
 
 
+@lru_cache(maxsize=8)
+def _lines(language: str) -> Phrases:
+    """The lines of all acts, by the names of their entries."""
+    return words_of(language, "acts")
+
+
 def _worded(act: Act, shape: str) -> str:
     """An act in another language, within a shape such as "A {act}"; "" where the language does not have it."""
     language = wanted_language()
-    line = words_of(language, "acts").get(act.act)
+    line = _lines(language).get(act.act)
     if line is None:
         return ""
     words = sections_of(language, "words")
@@ -44,7 +51,7 @@ def _worded(act: Act, shape: str) -> str:
     return f"{text} ×{act.times}" if act.times is not None and act.times > 1 else text
 
 
-def _filled(slot: re.Match[str], act: Act, words: Mapping[str, Mapping[str, str]]) -> str:
+def _filled(slot: re.Match[str], act: Act, words: Mapping[str, Phrases]) -> str:
     """The words in a slot of an act's line: the other person, a part of the body or a thing."""
     if slot[1] == "b":
         return (act.patient or ("b" if act.agents[0] == "a" else "a")).upper()
@@ -55,7 +62,7 @@ def _filled(slot: re.Match[str], act: Act, words: Mapping[str, Mapping[str, str]
     return forms[side] if side < len(forms) else forms[0]
 
 
-def _details(act: Act, slots: set[str], words: Mapping[str, Mapping[str, str]]) -> Iterator[str]:
+def _details(act: Act, slots: set[str], words: Mapping[str, Phrases]) -> Iterator[str]:
     """Details of an act beyond its line: nouns without their article, a side, a direction, a manner."""
     if act.part and "part" not in slots:
         yield words["parts"].get(act.part, act.part).split(" | ")[0].rpartition(" ")[2]
@@ -115,7 +122,7 @@ def _missed(listed: str) -> str:
 def _judged(manifest: Mapping[str, Any]) -> Iterator[tuple[Mapping[str, Any], Act]]:
     """The verdicts of a result with their acts; none in English, which needs no plan for them."""
     rows = manifest.get("checked") or ()
-    if not rows or not words_of(wanted_language(), "acts"):
+    if not rows or not _lines(wanted_language()):
         return
     for row, act in zip(rows, _acts(manifest.get("request") or {}), strict=False):
         if row.get("act") == act.act:
