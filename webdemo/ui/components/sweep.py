@@ -162,7 +162,7 @@ def grid_payload(grid: Grid, results: Sequence[Result], *, title: str = "") -> P
         {**_first_sample(result), "caption": name} for result, name in zip(results, grid.names, strict=True)
     ]
     whole_grid = grid_sample(cells, grid.columns, grid.rows)
-    return build_payload([whole_grid], skeleton=results[0].duets[0].skeleton, title=title)
+    return build_payload([whole_grid], skeleton=results[0].duets[0].skeleton, title=said(title))
 
 
 def _first_sample(result: Result) -> dict[str, Any]:
