@@ -6,10 +6,7 @@ from acts import lexicon, read
 from acts.reading.ellipsis import Ellipsis
 from acts.reading.spelling import Speller
 from acts.reading.wording import prepared
-
-
-def told(text: str) -> list[tuple[str, str, str | None]]:
-    return [(act.act, "".join(act.agents), act.patient) for act in read(text).acts]
+from tests.acts.reading.reading import told
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,7 @@ from __future__ import annotations
 import pytest
 
 from acts import Act, lexicon, read
-
-
-def told(text: str) -> list[tuple[str, str, str | None]]:
-    return [(act.act, "".join(act.agents), act.patient) for act in read(text).acts]
+from tests.acts.reading.reading import told
 
 
 def said(text: str) -> list[str]:

@@ -7,10 +7,7 @@ import pytest
 from acts import read
 from acts.reading.run_on import breaks
 from acts.reading.syntax import parse
-
-
-def told(text: str) -> list[tuple[str, str, str | None]]:
-    return [(act.act, "".join(act.agents), act.patient) for act in read(text).acts]
+from tests.acts.reading.reading import told
 
 
 @pytest.mark.parametrize(

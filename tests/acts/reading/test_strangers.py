@@ -4,10 +4,7 @@ import pytest
 
 from acts import Act, read
 from acts.plan import FROM_BEHIND
-
-
-def told(text: str) -> list[tuple[str, str, str | None]]:
-    return [(act.act, "".join(act.agents), act.patient) for act in read(text).acts]
+from tests.acts.reading.reading import told
 
 
 @pytest.mark.parametrize(

@@ -3,10 +3,7 @@
 import pytest
 
 from acts import read
-
-
-def told(text: str) -> list[tuple[str, str, str | None]]:
-    return [(act.act, "".join(act.agents), act.patient) for act in read(text).acts]
+from tests.acts.reading.reading import told
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import time
 from dataclasses import replace
 
@@ -17,6 +16,7 @@ from motion.formats.importing import AXES, ORDERS, UNITS, ImportChoices, import_
 from motion.formats.npz_things import arrays_of
 from motion.things import Thing, shape
 from tests.motion.bodies import marching
+from tests.motion.formats.arrays import npy, npz
 
 from .characters import glb_motion, glb_takes
 from .rigs import RIGS, bvh_text
@@ -31,35 +31,21 @@ POSITIONS, ROTATIONS = marching(6)
 SKELETONS_15 = POSITIONS[:, [15, 12, 6, 16, 18, 20, 17, 19, 21, 1, 4, 7, 2, 5, 8]]
 
 
-def saved(**arrays: np.ndarray) -> bytes:
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, **arrays)
-    return buffer.getvalue()
-
-
-def array_file(array: np.ndarray) -> bytes:
-    buffer = io.BytesIO()
-    np.save(buffer, array)
-    return buffer.getvalue()
-
-
 CUP = Thing.at_rest("cup", shape("cup"), np.zeros(3), 0.0, len(POSITIONS))
 BVH = bvh_text(ROTATIONS, POSITIONS[:, 0], RIGS["mixamo"], unit=100)
 VALID = {
-    "ours.npz": saved(positions=np.stack([POSITIONS, POSITIONS + 1]), fps=np.float64(30)),
-    "things.npz": saved(
-        positions=np.stack([POSITIONS, POSITIONS + 1]), fps=np.float64(30), **arrays_of([CUP])
-    ),
-    "crowd.npz": saved(positions=np.stack([POSITIONS, POSITIONS + 1, POSITIONS - 1])),
-    "amass.npz": saved(
+    "ours.npz": npz(positions=np.stack([POSITIONS, POSITIONS + 1]), fps=np.float64(30)),
+    "things.npz": npz(positions=np.stack([POSITIONS, POSITIONS + 1]), fps=np.float64(30), **arrays_of([CUP])),
+    "crowd.npz": npz(positions=np.stack([POSITIONS, POSITIONS + 1, POSITIONS - 1])),
+    "amass.npz": npz(
         poses=np.zeros((40, 156)),
         trans=np.zeros((40, 3)),
         mocap_framerate=np.float64(120),
         gender=np.array("x"),
     ),
-    "P1.npz": saved(**interx(POSITIONS)),
-    "interhuman.npy": array_file(interhuman(POSITIONS)),
-    "two.zip": zipped({"P1.npz": saved(**interx(POSITIONS)), "P2.npz": saved(**interx(POSITIONS + 1))}),
+    "P1.npz": npz(**interx(POSITIONS)),
+    "interhuman.npy": npy(interhuman(POSITIONS)),
+    "two.zip": zipped({"P1.npz": npz(**interx(POSITIONS)), "P2.npz": npz(**interx(POSITIONS + 1))}),
     "key-points.trc": trc_text(keypoints()).encode(),
     "markers.c3d": c3d_bytes(keypoints()),
     "walk.glb": glb_motion(ROTATIONS, POSITIONS[:, 0], unit=100.0),
@@ -70,8 +56,8 @@ VALID = {
         ["idle", "\u202ewalk\n\ud800", "x" * 5000, None, ["2"], "3"],
         skinned=False,
     ),
-    "22.npy": array_file(POSITIONS.astype(np.float32)),
-    "15.npy": array_file(SKELETONS_15),
+    "22.npy": npy(POSITIONS.astype(np.float32)),
+    "15.npy": npy(SKELETONS_15),
     "take.bvh": BVH.encode(),
     "take-16.bvh": BVH.encode("utf-16"),
     "take-latin.bvh": BVH.replace("mixamorig:Head", "Kopf_é").encode("latin-1"),

@@ -1,7 +1,5 @@
 """What was found in a file is reported, and what the user knows about it is believed."""
 
-import io
-
 import numpy as np
 import pytest
 
@@ -10,6 +8,7 @@ from motion.formats.importing import ImportChoices, import_motion
 from motion.kinematics import forward_kinematics
 from motion.retarget import to_smpl
 from tests.motion.bodies import marching
+from tests.motion.formats.arrays import npy
 
 from .rigs import RIGS, bvh_text
 
@@ -20,12 +19,6 @@ def standing(frames: int = 40) -> np.ndarray:
     root[:, 0] = 0.05 * np.sin(np.linspace(0, 6, frames))
     root[:, 1] = 0.9562
     return forward_kinematics(np.tile(np.eye(3), (frames, 22, 1, 1)), root).astype(np.float32)
-
-
-def npy(array: np.ndarray) -> bytes:
-    buffer = io.BytesIO()
-    np.save(buffer, array)
-    return buffer.getvalue()
 
 
 def test_arrays_are_reported_and_kept_bit_for_bit() -> None:

@@ -15,23 +15,12 @@ from motion.formats.importing import ImportChoices, import_motion
 from motion.formats.smpl import PELVIS, SHAPE_UNUSED
 from motion.kinematics import fit_rotations
 from tests.motion.bodies import marching
+from tests.motion.formats.arrays import npy, npz
 
 POSITIONS, ROTATIONS = marching(20)
 APART = POSITIONS + np.array([0.4, 0.0, 1.2])
 DUET = Duet.from_positions(np.stack([POSITIONS, APART]), fps=30)
 TO_Z_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
-
-
-def saved(**arrays: np.ndarray) -> bytes:
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, **arrays)
-    return buffer.getvalue()
-
-
-def array_file(array: np.ndarray) -> bytes:
-    buffer = io.BytesIO()
-    np.save(buffer, array)
-    return buffer.getvalue()
 
 
 def interx(positions: np.ndarray, *, z_up: bool = True, flat: bool = True) -> dict[str, np.ndarray]:
@@ -68,22 +57,22 @@ def zipped(parts: dict[str, bytes]) -> bytes:
 @pytest.mark.parametrize("z_up", [True, False])
 @pytest.mark.parametrize("flat", [True, False])
 def test_interx_stands_upright_where_it_was(z_up: bool, flat: bool) -> None:
-    clip = formats.read(saved(**interx(POSITIONS, z_up=z_up, flat=flat)), name="P1.npz")
+    clip = formats.read(npz(**interx(POSITIONS, z_up=z_up, flat=flat)), name="P1.npz")
     assert isinstance(clip, Clip) and clip.fps == 120
     np.testing.assert_allclose(clip.positions, POSITIONS, atol=1e-5)
 
 
 def test_interx_says_that_rate_and_bones_are_assumed() -> None:
-    found = import_motion(saved(**interx(POSITIONS)), name="P1.npz")
+    found = import_motion(npz(**interx(POSITIONS)), name="P1.npz")
     assert found.asks_rate and found.fps == 120
     assert any("120 frames a second are assumed" in note for note in found.notes)
     assert SHAPE_UNUSED.format("P1.npz") in found.notes
-    known = import_motion(saved(**interx(POSITIONS)), name="P1.npz", choices=ImportChoices(fps=60))
+    known = import_motion(npz(**interx(POSITIONS)), name="P1.npz", choices=ImportChoices(fps=60))
     assert not known.asks_rate and known.fps == 60 and len(known.notes) == 1
 
 
 def test_interhuman_is_read_by_its_body_joints() -> None:
-    found = import_motion(array_file(interhuman(POSITIONS)), name="12.npy")
+    found = import_motion(npy(interhuman(POSITIONS)), name="12.npy")
     assert found.asks_rate and found.fps == 30
     np.testing.assert_allclose(found.motion.positions, POSITIONS - [0, POSITIONS[..., 1].min(), 0], atol=1e-5)
 
@@ -106,14 +95,14 @@ def test_interhuman_is_read_by_its_body_joints() -> None:
 def test_wrong_parameters_are_one_sentence(arrays: dict[str, np.ndarray], says: str) -> None:
     whole = {"root_orient": np.zeros((4, 3)), "pose_body": np.zeros((4, 63)), "trans": np.zeros((4, 3))}
     with pytest.raises(InputError, match=says):
-        formats.read(saved(**(whole | arrays)), name="P1.npz")
+        formats.read(npz(**(whole | arrays)), name="P1.npz")
 
 
 def test_wrong_interhuman_is_one_sentence() -> None:
     with pytest.raises(InputError, match="492"):
-        formats.read(array_file(np.zeros((5, 491))), name="1.npy")
+        formats.read(npy(np.zeros((5, 491))), name="1.npy")
     with pytest.raises(InputError, match="NaN"):
-        formats.read(array_file(np.full((5, 492), np.nan)), name="1.npy")
+        formats.read(npy(np.full((5, 492), np.nan)), name="1.npy")
 
 
 # ---- two files ---------------------------------------------------------------------------------------
@@ -123,12 +112,12 @@ def pair_of(kind: str) -> tuple[dict[str, bytes], float]:
     lifted = 0.7  # metres above the floor: both people are shifted by the same
     if kind == "interhuman":
         a, b = (
-            array_file(interhuman(person + np.array([0, up, 0])))
+            npy(interhuman(person + np.array([0, up, 0])))
             for person, up in ((POSITIONS, lifted), (APART, 0.9))
         )
         return {"take/person1/3.npy": a, "take/person2/3.npy": b, "annots/3.txt": b"two people meet"}, 30
     a, b = (
-        saved(**interx(person + np.array([0, up, 0])))
+        npz(**interx(person + np.array([0, up, 0])))
         for person, up in ((POSITIONS, lifted), (APART[:15], 0.9))
     )
     return {"G001/P1.npz": a, "G001/P2.npz": b, "__MACOSX/G001/._P1.npz": b"x"}, 120
@@ -165,11 +154,11 @@ def test_the_page_reads_two_files_of_a_zip() -> None:
     ("parts", "says"),
     [
         ({"readme.md": b"x"}, "holds no motion files"),
-        ({f"P{n}.npz": saved(**interx(POSITIONS)) for n in (1, 2, 3)}, "holds 3 motion files"),
+        ({f"P{n}.npz": npz(**interx(POSITIONS)) for n in (1, 2, 3)}, "holds 3 motion files"),
         ({"P1.npz": b"x" * 100, "P2.npz": b"y"}, "P1.npz"),
         ({"a.zip": b"PK"}, "holds no motion files"),
         (
-            {"P1.npz": saved(positions=DUET.positions), "P2.npz": saved(positions=DUET.positions)},
+            {"P1.npz": npz(positions=DUET.positions), "P2.npz": npz(positions=DUET.positions)},
             "two people",
         ),
         ({f"{n}.md": b"" for n in range(201)}, "more than 200 parts"),

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tests.motion.formats.arrays import npy
 from tests.motion.formats.characters import packed, unpacked
 
 NUMBERS = (-1, 0, 1, 2**31, 2**63, -(2**31), 0.5, 1e308, float("nan"), float("inf"))
@@ -47,7 +48,7 @@ def changed_archive(data: bytes, dice: random.Random) -> bytes:
                 content[:start] + dice.randbytes(4) + content[start + dice.choice((0, 4, 400)) :],
             )
         case _:
-            members[place] = name, _saved(_changed_array(np.load(io.BytesIO(content)), dice))
+            members[place] = name, npy(_changed_array(np.load(io.BytesIO(content)), dice))
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", dice.choice((zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED))) as archive:
         for name, content in members:
@@ -65,12 +66,6 @@ def _changed_array(array: np.ndarray, dice: random.Random) -> np.ndarray:
     with np.errstate(over="ignore"):
         changed.flat[dice.randrange(changed.size)] = np.float32(dice.choice(NUMBERS))
     return changed
-
-
-def _saved(array: np.ndarray) -> bytes:
-    out = io.BytesIO()
-    np.save(out, array)
-    return out.getvalue()
 
 
 def changed_glb(data: bytes, dice: random.Random) -> bytes:

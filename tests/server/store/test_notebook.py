@@ -6,7 +6,7 @@ import io
 import json
 import time
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,25 +15,16 @@ import numpy as np
 import pytest
 
 from motion import InputError
-from tests.server.clients import DATABASES, database_url, drop_tables
+from tests.server.clients import taken_in
 from tests.server.lab import stub_module
 from webdemo.inference.plans import KeptPlan, WindowPlan
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.server.store import history as history_module
-from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
 from webdemo.ui.history import Kept, Search
 
 ME, OTHER = "user ada", "user eve"
 PLAN = KeptPlan(windows=(WindowPlan((1.0, 2.0, 0.5)),))
-
-
-@pytest.fixture(params=DATABASES)
-def notebook(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Notebook]:
-    database = Database(database_url(request.param, tmp_path))
-    yield Notebook(database, tmp_path / "motions", node="n")
-    drop_tables(database.engine)
-    database.close()
 
 
 def kept(notebook: Notebook, prompt: str = "Two people walk.", *, owner: str = ME, **fields: Any) -> str:
@@ -42,12 +33,6 @@ def kept(notebook: Notebook, prompt: str = "Two people walk.", *, owner: str = M
     *_, result = stub_module().StubEngine().run(request)
     notebook.finish(run, replace(result, manifest={**result.manifest, "plan": PLAN.to_dict()}))
     return run
-
-
-def taken_in(notebook: Notebook, owner: str, file: Path) -> int:
-    """The number of runs that were imported."""
-    *_, (_, total) = notebook.take_in(owner, file)
-    return total
 
 
 def found(notebook: Notebook, owner: str = ME, **wanted: Any) -> list[str]:

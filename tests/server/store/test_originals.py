@@ -4,31 +4,22 @@ from __future__ import annotations
 
 import json
 import zipfile
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from motion import InputError
-from tests.server.clients import DATABASES, database_url, drop_tables
+from tests.server.clients import taken_in
 from tests.server.lab import stub_module
 from webdemo.inference.requests import ReactRequest
 from webdemo.server.store import originals
-from webdemo.server.store.database import Database, Run
+from webdemo.server.store.database import Run
 from webdemo.server.store.notebook import Notebook
 from webdemo.ui.history import Kept, Original, Search, clean_name
 
 ME, OTHER = "user ada", "user eve"
 BYTES = b"HIERARCHY \xff\x00 as it was"
-
-
-@pytest.fixture(params=DATABASES)
-def notebook(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Notebook]:
-    database = Database(database_url(request.param, tmp_path))
-    yield Notebook(database, tmp_path / "motions", node="n")
-    drop_tables(database.engine)
-    database.close()
 
 
 def reaction(notebook: Notebook, original: Original | None, *, owner: str = ME) -> str:
@@ -46,11 +37,6 @@ def upload(tmp_path: Path) -> Original:
     path = tmp_path / "upload.bvh"
     path.write_bytes(BYTES)
     return Original(path, "My walk (2).bvh")
-
-
-def taken_in(notebook: Notebook, owner: str, file: Path) -> int:
-    *_, (_, total) = notebook.take_in(owner, file)
-    return total
 
 
 def size_of(notebook: Notebook, run: str) -> int:

@@ -24,11 +24,6 @@ SIZES = {"latent_dim": 32, "ff_size": 32, "num_layers": 2, "num_heads": 2, "cond
 CONFIG = InterGenConfig(input_features=20, role_embedding=True, **SIZES)
 
 
-@pytest.fixture(scope="module", autouse=True)
-def one_thread() -> None:
-    torch.set_num_threads(1)
-
-
 @pytest.mark.parametrize("network", [ConcatDenoiser, UnsharedDenoiser])
 def test_networks_see_the_other_person_but_no_padding(network: type[InterGenDenoiser]) -> None:
     torch.manual_seed(0)

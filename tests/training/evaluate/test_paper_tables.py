@@ -24,11 +24,6 @@ from training.trainers.bigraphdiff import Trainer as BiGraphDiff
 POSITIONS, _ = marching(50)
 
 
-@pytest.fixture(scope="module", autouse=True)
-def one_thread() -> None:
-    torch.set_num_threads(1)
-
-
 @pytest.fixture(scope="module")
 def pairs() -> list[StrictPair]:
     """Who is pushed goes back, who is kicked stays."""

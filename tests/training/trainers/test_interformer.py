@@ -18,11 +18,6 @@ from training.trainers.interformer import Settings, Trainer, collate, varied
 SETTINGS = Settings(joint_width=4, ff_size=16, batch=4, steps=6, warmup=2, rounds=2, hold=2, own_past=0.5)
 
 
-@pytest.fixture(scope="module", autouse=True)
-def one_thread() -> None:
-    torch.set_num_threads(1)
-
-
 @pytest.fixture(scope="module")
 def scenes() -> list[np.ndarray]:
     """Two people a metre apart; the one gives way as much as the other comes, each time at another speed."""

@@ -17,11 +17,6 @@ from training.trainers.intergen_data import LEAST, SENTENCES, balanced
 from training.trainers.reading import UNKNOWN
 
 
-@pytest.fixture(scope="module", autouse=True)
-def one_thread() -> None:
-    torch.set_num_threads(1)
-
-
 @pytest.fixture(scope="module")
 def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return prepared(tmp_path_factory.mktemp("made"))

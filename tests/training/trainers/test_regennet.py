@@ -28,11 +28,6 @@ SIZES = [
 ]
 
 
-@pytest.fixture(scope="module", autouse=True)
-def one_thread() -> None:
-    torch.set_num_threads(1)
-
-
 @pytest.fixture(scope="module")
 def scenes() -> Scenes:
     """Two people who sway, eight times."""

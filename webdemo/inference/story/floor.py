@@ -354,13 +354,8 @@ def _after(move: Move, track: Track, ahead: Track, start: Array, seconds: float)
     done, gone = np.zeros(frames), 0.0
     for i in range(frames):
         if i > _REACTS * FPS:
-            gone += float(
-                np.clip(
-                    along[i + 1] - (move.near or BEHIND) - gone,
-                    0.0,
-                    most * min(1.0, (i / FPS - _REACTS) / EASE),
-                )
-            )
+            free = along[i + 1] - (move.near or BEHIND) - gone
+            gone += float(np.clip(free, 0.0, most * min(1.0, (i / FPS - _REACTS) / EASE)))
         done[i] = gone
     if done[-1] > 0.25:
         at = np.stack([np.interp(done, along, line[:, axis]) for axis in (0, 1)], axis=1)
