@@ -7,7 +7,7 @@ needs is to know when two bodies would be inside each other.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +63,10 @@ class Capsules:
         """Those capsules for which ``kept`` (C,) is true."""
         chosen = np.asarray(kept, dtype=bool)
         return Capsules(self.starts[chosen], self.ends[chosen], self.radii[chosen], self.trunk[chosen])
+
+    def of_size(self, size: float) -> Capsules:
+        """The same around bones of another size, as a share of an adult's."""
+        return replace(self, radii=size * self.radii)
 
 
 def sideless(joint_name: str) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import Duet
+from motion.looks import size_of
 
 from .bodies import capsules, segment_segment_distance
 
@@ -106,9 +107,10 @@ def penetration(duet: Duet) -> Penetration:
     """Overlap of the two people's capsule bodies (see :func:`~motion.metrics.bodies.capsules`).
 
     The overlap of two capsules is the sum of their radii less the distance of their axes. Pairs whose
-    bounding spheres do not meet are left out before any distance is computed.
+    bounding spheres do not meet are left out before any distance is computed. A child's body is as thin as it is short.
     """
     body = capsules(duet.skeleton)
+    radii_a, radii_b = (body.of_size(size_of(look)).radii for look in duet.looks)
     a, b = duet.positions
     starts_a, ends_a, starts_b, ends_b = (
         a[:, body.starts],
@@ -116,8 +118,8 @@ def penetration(duet: Duet) -> Penetration:
         b[:, body.starts],
         b[:, body.ends],
     )
-    reach_a = np.linalg.norm(ends_a - starts_a, axis=-1) / 2 + body.radii
-    reach_b = np.linalg.norm(ends_b - starts_b, axis=-1) / 2 + body.radii
+    reach_a = np.linalg.norm(ends_a - starts_a, axis=-1) / 2 + radii_a
+    reach_b = np.linalg.norm(ends_b - starts_b, axis=-1) / 2 + radii_b
     # |m_a − m_b|² of all pairs as one matrix product; middles are taken from a nearby origin so that
     # float32 loses nothing.
     origin = 0.5 * (a[:, :1] + b[:, :1])
@@ -134,6 +136,6 @@ def penetration(duet: Duet) -> Penetration:
         distance = segment_segment_distance(
             starts_a[frame, i], ends_a[frame, i], starts_b[frame, j], ends_b[frame, j]
         )
-        np.maximum.at(depth, frame, body.radii[i] + body.radii[j] - distance)
+        np.maximum.at(depth, frame, radii_a[i] + radii_b[j] - distance)
     depth *= 100
     return Penetration(depth, float(depth.mean()), float(depth.max()))
