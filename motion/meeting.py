@@ -18,6 +18,7 @@ from .cleaning import solve_two_bones
 from .easing import smoothstep
 from .planted import HIPS, UPPER, over_planted_feet
 from .skeleton import ARMS, SMPL22
+from .touch.arms import arms_apart
 from .transforms import facing
 from .vectors import unit
 
@@ -95,7 +96,7 @@ def met_again(made: Array, small: Array, sizes: tuple[float, float]) -> Array:
     result = _looking(made, result, [lean if person == tall else 0 * lean for person in (0, 1)])
     for _ in range(_ROUNDS):
         result = _reaching(result, touch.goals(result))
-    return result
+    return arms_apart(result, sizes=sizes)
 
 
 class _Touches:

@@ -41,12 +41,13 @@ _BENDS = np.array([arm[1:] for arm in ARMS])
 _THIN = ("ankle", "foot")
 
 
-def arms_apart(pair: Array, free: Array | None = None) -> Array:
+def arms_apart(pair: Array, free: Array | None = None, sizes: tuple[float, float] = (1.0, 1.0)) -> Array:
     """Two people whose arms are not in each other's bodies, as far as two bones allow.
 
     Args:
         pair: (2, T, 22, 3) metres on constant bones.
         free: (2, T) how far what a person does may be changed, 0 to 1; wholly by default.
+        sizes: of both bodies, as shares of an adult's.
 
     Returns:
         (2, T, 22, 3) with other elbows and wrists.
@@ -56,19 +57,21 @@ def arms_apart(pair: Array, free: Array | None = None) -> Array:
     near = np.linalg.norm(result[0, :, 0] - result[1, :, 0], axis=-1) < _NEAR
     if not near.any():
         return result
-    for first, last in _stretches(_touching(result, near)):
+    for first, last in _stretches(_touching(result, near, sizes)):
         inside = slice(first, last)
-        result[:, inside] = _resolved(result[:, inside], share[:, inside])
+        result[:, inside] = _resolved(result[:, inside], share[:, inside], sizes)
     return result
 
 
-def _touching(pair: Array, near: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _touching(pair: Array, near: NDArray[np.bool_], sizes: tuple[float, float]) -> NDArray[np.bool_]:
     """(T,) frames at which an arm is in the other's body."""
     found = np.zeros(pair.shape[1], dtype=bool)
     at = np.flatnonzero(near)
     grips = grips_of_hands(pair[:, at])
     for person in (0, 1):
-        push = _pushes(pair[person][at], pair[1 - person][at], grips[person])
+        push = _pushes(
+            pair[person][at], pair[1 - person][at], grips[person], sizes[person], sizes[1 - person]
+        )
         found[at] |= np.abs(push).max(axis=(1, 2, 3)) > 0
     return found
 
@@ -80,11 +83,13 @@ def _stretches(marked: NDArray[np.bool_]) -> list[tuple[int, int]]:
     return runs(wide)
 
 
-def _resolved(pair: Array, share: Array) -> Array:
+def _resolved(pair: Array, share: Array, sizes: tuple[float, float]) -> Array:
     """Some frames (2, N, 22, 3) with their arms pushed out."""
     result, grips = pair.copy(), grips_of_hands(pair)
     for _ in range(_ROUNDS):
-        pushes = np.stack([_pushes(result[p], result[1 - p], grips[p]) for p in (0, 1)])
+        pushes = np.stack(
+            [_pushes(result[p], result[1 - p], grips[p], sizes[p], sizes[1 - p]) for p in (0, 1)]
+        )
         if not pushes.any():
             break
         moved = (result - pair)[:, :, _BENDS] + pushes
@@ -135,7 +140,7 @@ def _body() -> Capsules:
     return body.part([sideless(SMPL22.joint_names[end]) not in _THIN for end in body.ends])
 
 
-def _pushes(own: Array, other: Array, grips: Array) -> Array:
+def _pushes(own: Array, other: Array, grips: Array, own_size: float, other_size: float) -> Array:
     """(N, side, elbow and wrist, 3) metres that take the arms of ``own`` (N, 22, 3) out of ``other``.
 
     An arm that is in the other's arm goes half of the way: the other's goes the rest. Where its hand holds one of the
@@ -161,7 +166,7 @@ def _pushes(own: Array, other: Array, grips: Array) -> Array:
         along_it = np.clip(np.einsum("npci,nci->npc", between, along) / length2[:, None], 0, 1)
         out = between - along_it[..., None] * along[:, None]
         distance = np.sqrt(np.einsum("npci,npci->npc", out, out))
-        depth = np.maximum(_RADII[:, None] + body.radii - soft - distance, 0.0)
+        depth = np.maximum(own_size * _RADII[:, None] + other_size * body.radii - soft - distance, 0.0)
         if not depth.any():
             continue
         held = grips[:, side, None, None] * np.array([lower for lower, _ in _SHARES])[:, None]
