@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from .clip import Clip
 from .easing import smoothstep
 from .errors import InputError
+from .eyes import Eyes, eye_zones
 from .hands import NUMBERS, SHAPES, Fingers
 from .kinematics import swing
 from .looks import LOOKS
@@ -42,13 +43,14 @@ class Body:
         vertices: (V, 3) metres in the pose of binding, the soles at 0, facing +Z.
         faces: (F, 3) vertex indices, counter-clockwise seen from outside.
         face_zones: (F,) index into ``zones``.
-        zones: what there is: skin, top, trousers, shoes, hair (or grey), eyes.
+        zones: what there is: skin, top, trousers, shoes, hair (or grey), eyes (iris and pupil), whites (of the eyes).
         sky: (V,) ambient light that reaches each vertex, 0 to 1.
         joints: (22, 3) places of the joints in the pose of binding.
         turns: (22, 3, 3) rotation that takes each bone from the pose of binding to SMPL22's T-pose.
         bones: (V, 4) joints that move each vertex.
         weights: (V, 4) their shares, which sum to 1.
         fingers: how its hands take shapes; None where they are stiff, as those of an uploaded character.
+        eyes: how its eyes turn; None where they do not.
     """
 
     name: str
@@ -62,6 +64,7 @@ class Body:
     bones: NDArray[np.integer] = field(repr=False)
     weights: Array = field(repr=False)
     fingers: Fingers | None = field(default=None, repr=False)
+    eyes: Eyes | None = field(default=None, repr=False)
 
 
 def in_base64(values: NDArray, kind: str) -> str:
@@ -89,29 +92,34 @@ def load_body(name: str, *, small: bool = False) -> Body:
             return decoded(stored[key], kind, columns)
 
         vertices = np.array(stored["min"]) + np.array(stored["scale"]) * numbers("vertices", "<u2", 3)
+        faces, face_zones = numbers("faces", "<u2", 3).astype(np.int64), numbers("face_zones", "u1", 1)[:, 0]
+        zones = tuple(stored["zones"])
         return Body(
             name=name,
             vertices=vertices,
-            faces=numbers("faces", "<u2", 3).astype(np.int64),
-            face_zones=numbers("face_zones", "u1", 1)[:, 0],
-            zones=tuple(stored["zones"]),
+            faces=faces,
+            face_zones=face_zones,
+            zones=zones,
             sky=numbers("sky", "u1", 1)[:, 0] / 255,
             joints=np.array(stored["joints"]),
             turns=np.array(stored["turns"]),
             bones=numbers("bones", "u1", 4).astype(np.int64),
             weights=numbers("weights", "u1", 4) / 255,
             fingers=Fingers.from_stored(stored["fingers"], decoded),
+            eyes=Eyes.of(np.array(stored["eyes"]), vertices, faces[np.isin(face_zones, eye_zones(zones))]),
         )
     except (OSError, ValueError, KeyError) as error:
         raise InputError(f"The body {path.name} cannot be read ({error}): restore static/bodies.") from error
 
 
-def skin(body: Body, motion: Clip | Array, hands: Array | None = None) -> Array:
+def skin(body: Body, motion: Clip | Array, hands: Array | None = None, seen: Array | None = None) -> Array:
     """The body's surface in each frame.
 
     Args:
         motion: a clip on SMPL22, or positions (T, 22, 3) in metres.
         hands: (T, 2, 20) finger shapes as :func:`motion.hands.angles` gives them; relaxed by default.
+        seen: (T, 3) metres, the place that the eyes turn to as far as they do, such as the joint of the other's head;
+            they look ahead by default.
 
     Returns:
         (T, V, 3) float32 metres.
@@ -131,6 +139,11 @@ def skin(body: Body, motion: Clip | Array, hands: Array | None = None) -> Array:
         surface[:, vertex] += (body.weights[vertex, slot, None] * placed).astype(np.float32)
     if body.fingers is not None:
         _shape_hands(body, turned, surface, hands)
+    if body.eyes is not None and seen is not None:
+        head = turned[:, _J["head"]]
+        place = np.einsum("tji,tj->ti", head, seen - positions[:, _J["head"]]) + body.joints[_J["head"]]
+        shift = body.eyes.shift(body.vertices, place)
+        surface[:, body.eyes.vertices] += (shift @ np.swapaxes(head, -1, -2)).astype(np.float32)
     return surface
 
 

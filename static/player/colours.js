@@ -16,8 +16,8 @@ export default {
       "rim": [0.42, 0.48, 0.58], "shine": 0.05
     },
     "bodies": [
-      { "top": "#2f70de", "trousers": "#2b3c60", "shoes": "#23262e", "skin": "#d09a74", "hair": "#30241d", "grey": "#c6c2bc", "eyes": "#17120f" },
-      { "top": "#ea7d1d", "trousers": "#6a4630", "shoes": "#33231a", "skin": "#dfae8c", "hair": "#7b4a2a", "grey": "#d3cec7", "eyes": "#17120f" }
+      { "top": "#2f70de", "trousers": "#2b3c60", "shoes": "#23262e", "skin": "#d09a74", "hair": "#30241d", "grey": "#c6c2bc", "eyes": "#2a1c14", "whites": "#eeebe6" },
+      { "top": "#ea7d1d", "trousers": "#6a4630", "shoes": "#33231a", "skin": "#dfae8c", "hair": "#7b4a2a", "grey": "#d3cec7", "eyes": "#2a1c14", "whites": "#eeebe6" }
     ],
     "people": [["#2468d8", "#5c9cf5", "#17479e"], ["#e07a10", "#f7a944", "#b25606"]],
     "given": [["#7186ab", "#9fb2d2", "#566a8c"], ["#b09070", "#cdb498", "#8c7053"]],
@@ -35,8 +35,8 @@ export default {
       "rim": [0.85, 0.98, 1.2], "shine": 0.06
     },
     "bodies": [
-      { "top": "#4083f0", "trousers": "#3a4c74", "shoes": "#2c313c", "skin": "#d39d78", "hair": "#3a2c24", "grey": "#c6c2bc", "eyes": "#17120f" },
-      { "top": "#f58b2b", "trousers": "#7a523a", "shoes": "#42302a", "skin": "#e2b392", "hair": "#87532f", "grey": "#d3cec7", "eyes": "#17120f" }
+      { "top": "#4083f0", "trousers": "#3a4c74", "shoes": "#2c313c", "skin": "#d39d78", "hair": "#3a2c24", "grey": "#c6c2bc", "eyes": "#2a1c14", "whites": "#eeebe6" },
+      { "top": "#f58b2b", "trousers": "#7a523a", "shoes": "#42302a", "skin": "#e2b392", "hair": "#87532f", "grey": "#d3cec7", "eyes": "#2a1c14", "whites": "#eeebe6" }
     ],
     "people": [["#4f94f7", "#8fc0ff", "#2f6bd0"], ["#f2933a", "#ffc27a", "#c96a14"]],
     "given": [["#7f92b5", "#a9bad6", "#64769a"], ["#b59a7d", "#d0bba2", "#93795e"]],

@@ -84,7 +84,8 @@ export class Pane {
       const bodies = show.bodies && skeleton.wears ? this.dressed(pose.length) : [];
       if (bodies.length) this.figures = bodies;
       bodies.forEach((body, person) => {
-        body.pose(pose[person], shapesAt(this.sample.grips, person, clock.shown, this.sample.fps));
+        const hands = shapesAt(this.sample.grips, person, clock.shown, this.sample.fps);
+        body.pose(pose[person], hands, pose[1 - person]?.[skeleton.head]);
         body.shade((given ? theme.givenBodies : theme.bodies)[person], theme.lamps, lens, scene.scale, 1);
         scene.setTriangles(`body${"AB"[person]}`, { positions: body.positions, colors: body.colors });
       });

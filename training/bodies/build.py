@@ -63,7 +63,8 @@ def build(mh: MakeHuman, look: Look, count: int) -> dict:
     vertices, weights, zone = with_seams(vertices, faces, weights, joints, look)
     hidden = vertices[:, 1] < 0.05
     faces, zone = faces[~hidden[faces].all(axis=1)], zone[~hidden[faces].all(axis=1)]
-    extra = [(*shod, "shoes"), (*eyes(mh, shape), None, "eyes")]
+    balls, cells, white, middles = eyes(mh, shape)
+    extra = [(*shod, "shoes"), (balls, cells[~white], None, "eyes"), (balls, cells[white], None, "whites")]
     extra += [(*tied(look.tail, joints), None, "hair")] if look.tail else []
     for points, cells, on_head, name in extra:
         if on_head is None:
@@ -81,6 +82,7 @@ def build(mh: MakeHuman, look: Look, count: int) -> dict:
     made = {
         "joints": joints, "turns": turns, "vertices": vertices, "faces": faces, "zones": zone, "sky": light,
         "bones": bones, "weights": share / share.sum(axis=1, keepdims=True),
+        "eyes": middles,
     }  # fmt: skip
     return of_size(made | {"fingers": fingers(mh, before, shape, made)}, look.size)
 
@@ -94,6 +96,7 @@ def of_size(body: dict, size: float) -> dict:
     return body | {
         "joints": size * body["joints"],
         "vertices": size * body["vertices"],
+        "eyes": size * body["eyes"],
         "fingers": hands | {"joints": joints},
     }
 
@@ -119,5 +122,6 @@ def stored(body: dict, look: Look) -> dict:
         "sky": in_base64(np.rint(255 * body["sky"]), "u1"),
         "faces": in_base64(body["faces"], "<u2"),
         "face_zones": in_base64(body["zones"], "u1"),
+        "eyes": body["eyes"].round(5).tolist(),
         "fingers": body["fingers"],
     }

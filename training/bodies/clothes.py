@@ -13,6 +13,13 @@ from .makehuman import J, Look, MakeHuman
 
 WAIST = 0.985
 """Where the top ends, metres above the floor in the pose of binding."""
+EYE_AHEAD = 0.0017
+"""Metres by which eyes are before those of MakeHuman, whose lids the reduction closes a little."""
+EYE_CORNERS = 10
+"""Corners of the edge of an iris."""
+IRIS, SHOWN = np.radians([25.0, 72.0])
+"""Angles about an eye's axis up to which it is iris, larger than a person's so that it is seen, and up to which it is
+made."""
 FRINGE = 0.055
 """Metres from the joint of a child's head to the hair over the forehead, of which an adult has less."""
 
@@ -97,20 +104,38 @@ def shoes(body: np.ndarray, weights: np.ndarray, count: int) -> tuple[np.ndarray
     return np.concatenate(parts), np.concatenate(faces), np.concatenate(carried)
 
 
-def eyes(mh: MakeHuman, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The part of both eyeballs that shows, a little forward."""
-    parts, faces = [], []
+def eyes(mh: MakeHuman, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The part of both eyeballs that shows, a little forward, looking ahead.
+
+    Returns:
+        vertices, left eye first, faces, for each face whether it is of the white, and both middles (2, 3).
+    """
+    parts, faces, white, middles = [], [], [], []
+    around = 2 * np.pi * np.arange(EYE_CORNERS) / EYE_CORNERS
+    ring, after = np.arange(EYE_CORNERS), (np.arange(EYE_CORNERS) + 1) % EYE_CORNERS
     for side in ("l", "r"):
-        used = mh.used(f"helper-{side}-eye")
-        ball = vertices[used]
+        ball = vertices[mh.used(f"helper-{side}-eye")]
         centre, radius = ball.mean(axis=0), np.ptp(ball[:, 0]) / 2
-        cap = trimesh.creation.icosphere(1, radius)
-        turned = cap.vertices[:, [2, 1, 0]] * [-1, 1, 1]
-        keep = turned[cap.faces].mean(axis=1)[:, 2] > 0.45 * radius
-        index, packed = np.unique(cap.faces[keep], return_inverse=True)
-        faces.append(packed.reshape(-1, 3) + sum(map(len, parts)))
-        parts.append(turned[index] * [0.92, 0.92, 1.0] + centre + [0, 0, 0.0015])
-    return np.concatenate(parts), np.concatenate(faces)
+        rows = [np.array([[0.0, 0.0, 1.0]])]
+        rows += [
+            np.stack(
+                [np.cos(around) * np.sin(edge), np.sin(around) * np.sin(edge), np.cos(edge) + 0 * around],
+                axis=1,
+            )
+            for edge in (IRIS, SHOWN)
+        ]
+        first = sum(map(len, parts))
+        inner, outer = first + 1, first + 1 + EYE_CORNERS
+        cells = [
+            np.stack([first + 0 * ring, inner + ring, inner + after], axis=1),
+            np.stack([inner + ring, outer + ring, outer + after], axis=1),
+            np.stack([inner + ring, outer + after, inner + after], axis=1),
+        ]
+        faces += cells
+        white += [np.zeros(len(cells[0]), dtype=bool), np.ones(2 * EYE_CORNERS, dtype=bool)]
+        middles.append(centre + np.array([0, 0, EYE_AHEAD]))
+        parts.append(radius * np.concatenate(rows) * [0.92, 0.92, 1.0] + middles[-1])
+    return np.concatenate(parts), np.concatenate(faces), np.concatenate(white), np.array(middles)
 
 
 def tied(kind: str, joints: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,7 @@ from motion.easing import smoothstep
 from .clothes import seams
 from .makehuman import J, Look
 
-ZONES = ("skin", "top", "trousers", "shoes", "hair", "eyes")
+ZONES = ("skin", "top", "trousers", "shoes", "hair", "eyes", "whites")
 """The parts that the player colours; a face stores an index into them."""
 
 

@@ -12,7 +12,7 @@ from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
 from motion.formats.files import replacing
 
-from .stage import Style
+from .stage import Style, seen_by
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
@@ -46,7 +46,9 @@ def mesh(motion: Clip | Duet, frame: int, *, style: Style | None = None) -> list
         shades = np.array([(*zones.get(zone, zones["top"]), 1.0) for zone in body.zones])
         found.append(
             trimesh.Trimesh(
-                skin(body, people[person, frame][None])[0].astype(np.float64),
+                skin(body, people[person, frame][None], seen=seen_by(people[:, [frame]], person))[0].astype(
+                    np.float64
+                ),
                 body.faces,
                 vertex_colors=(255 * shades[_zone_of_vertices(body)]).round().astype(np.uint8),
                 process=False,

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from motion.body import Body
 from motion.clip import Clip, Duet
+from motion.eyes import Eyes
 from motion.hands import Fingers, Grip
 from motion.skeleton import Skeleton
 from motion.things.thing import Mesh, Thing
@@ -60,7 +61,7 @@ class Job:
 
 KINDS: dict[str, type] = {
     kind.__name__: kind
-    for kind in (Job, Pane, Style, Body, Clip, Duet, Mesh, Thing, Grip, Fingers, Skeleton, Camera)
+    for kind in (Job, Pane, Style, Body, Clip, Duet, Mesh, Thing, Grip, Eyes, Fingers, Skeleton, Camera)
 }
 """The classes that a parcel may hold, by name."""
 

@@ -23,7 +23,7 @@ from motion.things.thing import Mesh
 
 from .camera import Camera, cameras, project_shadow
 from .light import lit, shaded
-from .stage import Pane, Stage, Style, paste, side_of, words
+from .stage import Pane, Stage, Style, paste, seen_by, side_of, words
 from .things import drawn_things, hands_of
 
 Array = NDArray[np.floating]
@@ -265,7 +265,7 @@ def _draw_tile(
     solid = []
     for person, (body, points) in enumerate(zip(bodies, pose, strict=False)):
         hands = hands_of(motion, person, np.array([frame_number]))
-        surface = skin(body, points[None], hands)[0].astype(np.float64)
+        surface = skin(body, points[None], hands, seen_by(pose[:, None], person))[0].astype(np.float64)
         shades = shaded(body, surface, theme.bodies[person], theme.lamps, camera)
         solid.append((body.faces, surface, shades))
     for mesh, surface in seen_things:
