@@ -36,7 +36,7 @@ def test_every_body_has_two_eyes_of_iris_and_white(name: str, small: bool) -> No
 
 @pytest.mark.parametrize("name", LOOKS)
 def test_eyes_turn_to_what_is_seen(name: str) -> None:
-    ahead = irises(name, FACE + [0.0, 0.0, 3.0])
+    ahead = irises(name, FACE + np.array([0.0, 0.0, 3.0]))
     np.testing.assert_allclose(ahead, irises(name, None), atol=0.002)
     for way, axis, sign in (((1.0, 0.0, 2.0), 0, 1), ((-1.0, 0.0, 2.0), 0, -1), ((0.0, -1.0, 2.0), 1, -1)):
         moved = irises(name, FACE + np.array(way)) - ahead
@@ -45,12 +45,14 @@ def test_eyes_turn_to_what_is_seen(name: str) -> None:
 
 
 def test_eyes_do_not_turn_to_what_is_behind() -> None:
-    np.testing.assert_allclose(irises("girl", FACE + [0.5, 0.0, -1.0]), irises("girl", None), atol=1e-6)
+    np.testing.assert_allclose(
+        irises("girl", FACE + np.array([0.5, 0.0, -1.0])), irises("girl", None), atol=1e-6
+    )
 
 
 def test_only_eyes_move() -> None:
     body = load_body("woman")
     assert body.eyes is not None
-    moved = np.abs(skin(body, POSE, seen=FACE + [1.0, 0.0, 2.0]) - skin(body, POSE))[0].max(axis=1)
+    moved = np.abs(skin(body, POSE, seen=FACE + np.array([1.0, 0.0, 2.0])) - skin(body, POSE))[0].max(axis=1)
     assert set(np.flatnonzero(moved > 1e-6)) <= set(body.eyes.vertices.tolist())
     assert moved.max() > 0.002
