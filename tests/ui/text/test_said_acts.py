@@ -37,6 +37,8 @@ def _act(name: str, agents: str = "a", **fields: Any) -> Act:
         (_act("hand-over", thing="zorb"), "gibt B „zorb“"),
         (_act("kiss", part="cheek"), "küsst B, Wange"),
         (_act("wave", side="left"), "winkt, links"),
+        (_act("turn-around", side="left", direction="left"), "dreht sich um, nach links"),
+        (_act("lean", direction="forward", manner=("then",)), "neigt sich, nach vorn"),
         (_act("wave", polarity="not"), "nicht: winkt"),
         (_act("hug", modality="tried"), "versucht: umarmt B"),
         (_act("walk-up", "ab", direction="up"), "gehen aufeinander zu"),

@@ -24,6 +24,8 @@ _SENTENCE = re.compile(r"(?<=[.!?…]) (?=[A-Z“])")
 _WORD = re.compile(r"[A-Za-z]{2}")
 _QUOTED = re.compile(r"“[^“”]*”")
 _LISTS = ("; ", ", ")
+MOST_PIECES = 60
+"""Sentences or parts of a list, at most; a longer text stays English, so that none takes long."""
 _DEPTH = 6
 """Templates within values of templates, at most."""
 
@@ -102,12 +104,12 @@ class Translations:
                 return filled
             over_sentences = over_sentences or filled
         sentences = _SENTENCE.split(text)
-        if len(sentences) > 1 and (said := [inner(each) for each in sentences]) != sentences:
+        if 1 < len(sentences) <= MOST_PIECES and (said := [inner(each) for each in sentences]) != sentences:
             return " ".join(said)
         if over_sentences:
             return over_sentences
         for mark in _LISTS:
-            if len(pieces := text.split(mark)) > 1:
+            if 1 < len(pieces := text.split(mark)) <= MOST_PIECES:
                 return self.whole.get(mark, mark).join(map(inner, pieces))
         return text
 

@@ -68,12 +68,11 @@ def _details(act: Act, slots: set[str], words: Mapping[str, Phrases]) -> Iterato
         yield words["parts"].get(act.part, act.part).split(" | ")[0].rpartition(" ")[2]
     if act.thing and "thing" not in slots:
         yield words["things"].get(act.thing, act.thing).rpartition(" ")[2]
-    told = [
-        act.side if act.side != "both" and "part" not in slots else None,
-        act.direction if act.direction in TURNS or _takes_direction(act) else None,
-    ]
-    told += [adverb for adverb in act.manner[:1] if adverb not in _THEN]
-    yield from dict.fromkeys(words["ways"].get(word, word) for word in told if word)
+    if act.side and act.side not in ("both", act.direction) and "part" not in slots:
+        yield words["ways"][act.side]
+    if act.direction and (act.direction in TURNS or _takes_direction(act)):
+        yield words["directions"].get(act.direction, act.direction)
+    yield from (words["ways"].get(adverb, adverb) for adverb in act.manner[:1] if adverb not in _THEN)
 
 
 def _takes_direction(act: Act) -> bool:
