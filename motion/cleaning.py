@@ -207,11 +207,7 @@ def _foot_goals(
 
 
 def _pins(
-    joint: Array,
-    stands: NDArray[np.bool_],
-    blend: int,
-    heights: tuple[float, float],
-    held: NDArray[np.bool_],
+    joint: Array, stands: NDArray[np.bool_], blend: int, heights: tuple[float, float], held: NDArray[np.bool_]
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Places (T, 3) of a joint that is still through each contact, and the frames (T,) at which it has to be there."""
     goal, fixed = np.array(joint), np.zeros(len(joint), dtype=bool)

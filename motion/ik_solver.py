@@ -114,13 +114,7 @@ class _Problem:
     """The terms of the fit and their derivatives for increments exp(δ) R of each local rotation."""
 
     def __init__(
-        self,
-        target: Array,
-        trust: Array,
-        layout: Layout,
-        body: Skeleton,
-        noise: float,
-        fps: float,
+        self, target: Array, trust: Array, layout: Layout, body: Skeleton, noise: float, fps: float
     ) -> None:
         self.target, self.seen, self.body = target, layout.observed, body
         self.weights = trust / noise**2

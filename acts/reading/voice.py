@@ -62,10 +62,7 @@ def give_roles(token: Token, event: Event, agent: Ref | None) -> None:
         agent = agent or Ref("person", subject.who)  # "whose hands are clasped behind his head"
     agent = agent or (other_person(subject) if subject is not None else None)
     if agent is None and subject is not None and subject.kind in ("thing", "part"):  # "is held out to her"
-        of = [
-            *(ref for _, ref in event.prepositions if ref.kind == "person"),
-            Ref("person", subject.who),
-        ]
+        of = [*(ref for _, ref in event.prepositions if ref.kind == "person"), Ref("person", subject.who)]
         agent = other_person(of[0])
     if event.object is not None and event.dative is None:  # "she is given a book"
         event.dative, event.subject = subject, agent

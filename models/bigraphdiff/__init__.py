@@ -2,8 +2,4 @@
 
 from .network import BiGraphDiff, BiGraphDiffConfig, from_released
 
-__all__ = [
-    "BiGraphDiff",
-    "BiGraphDiffConfig",
-    "from_released",
-]
+__all__ = ["BiGraphDiff", "BiGraphDiffConfig", "from_released"]

@@ -2,10 +2,4 @@
 
 from .network import Block, InterGenConfig, InterGenDenoiser, from_checkpoint, from_released
 
-__all__ = [
-    "Block",
-    "InterGenConfig",
-    "InterGenDenoiser",
-    "from_checkpoint",
-    "from_released",
-]
+__all__ = ["Block", "InterGenConfig", "InterGenDenoiser", "from_checkpoint", "from_released"]

@@ -2,7 +2,4 @@
 
 from .network import MotionMLP, MotionMLPConfig
 
-__all__ = [
-    "MotionMLP",
-    "MotionMLPConfig",
-]
+__all__ = ["MotionMLP", "MotionMLPConfig"]

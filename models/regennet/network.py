@@ -168,12 +168,7 @@ class ReGenNet(nn.Module):
         return classifier_free(self, x, t, actor, action, cond=given, nothing=~given, scale=scale)
 
     def stream(
-        self,
-        *,
-        steps: int = 5,
-        batch: int = 1,
-        action: Tensor | None = None,
-        max_frames: int = 300,
+        self, *, steps: int = 5, batch: int = 1, action: Tensor | None = None, max_frames: int = 300
     ) -> ReactionStream:
         """Open a stream that reacts to an actor frame by frame; online networks only."""
         if not self.config.online:

@@ -2,10 +2,4 @@
 
 from .minilm import MiniLM, TextConditioner, TextConditionerConfig, TextEncoderError, TokenFeatures
 
-__all__ = [
-    "MiniLM",
-    "TextConditioner",
-    "TextConditionerConfig",
-    "TextEncoderError",
-    "TokenFeatures",
-]
+__all__ = ["MiniLM", "TextConditioner", "TextConditionerConfig", "TextEncoderError", "TokenFeatures"]

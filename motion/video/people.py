@@ -64,11 +64,7 @@ def _layout() -> Layout:
     return Layout("mediapipe", tuple(SMPL22.index(name) for name in names), offsets, variety=0.15)
 
 
-_SEEN_BODY = {
-    "left_hip": (0.09, -0.06, -0.01),
-    "head": (0.0, 0.15, 0.03),
-    "left_foot": (0.045, -0.065, 0.16),
-}
+_SEEN_BODY = {"left_hip": (0.09, -0.06, -0.01), "head": (0.0, 0.15, 0.03), "left_foot": (0.045, -0.065, 0.16)}
 """Metres from the parent."""
 LAYOUT = _layout()
 

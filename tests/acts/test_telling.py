@@ -25,10 +25,7 @@ def tell(sentence: str, missed: Collection[str] = ()) -> str:
             "A walks up to B and pats B on the right shoulder; B turns around.",
         ),
         ("Two friends hug.", "A and B hug each other."),
-        (
-            "She waves with the left hand and he bows twice.",
-            "A waves with the left hand; B bows twice.",
-        ),
+        ("She waves with the left hand and he bows twice.", "A waves with the left hand; B bows twice."),
         ("They carry a table across the room.", "A and B carry the table."),
         ("One person hands a flower to the other.", "A hands the flower to B."),
         ("One person jumps over the other, who crouches.", "B crouches and A jumps over B; B crouches."),

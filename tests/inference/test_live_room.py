@@ -8,16 +8,7 @@ import pytest
 from motion import SMPL22
 from motion.transforms import heading_matrix
 from motion.video.gaze import HIDDEN
-from webdemo.inference.complaints import (
-    BRIGHT,
-    COLD,
-    FRAMES,
-    HOT,
-    LOUD,
-    SMELLS,
-    Complaint,
-    complaint,
-)
+from webdemo.inference.complaints import BRIGHT, COLD, FRAMES, HOT, LOUD, SMELLS, Complaint, complaint
 from webdemo.inference.pipelines.agent import FIRST
 from webdemo.inference.pipelines.live_agent import BESIDE, LiveAgent
 from webdemo.inference.pipelines.live_room import PLACES, STANDS, USES

@@ -347,13 +347,7 @@ def _striking_side(people: Array, part: str, *, up: bool = False) -> str | None:
 
 def _save(path: Path, scenes: list[Scene], report: Report) -> None:
     meta = [
-        {
-            "family": s.family,
-            "said": s.said,
-            "sources": s.sources,
-            "split": s.split,
-            "events": s.events,
-        }
+        {"family": s.family, "said": s.said, "sources": s.sources, "split": s.split, "events": s.events}
         for s in scenes
     ]
     summary = {"kept": report.kept, "dropped": report.dropped, "errors": report.errors}

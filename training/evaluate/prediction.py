@@ -63,10 +63,7 @@ def markdown(found: Table) -> str:
     benchmark = [action for action in actions if action in cmu.ACTIONS]
     means = {name: average([scores[a] for a in benchmark]) for name, scores in found.items()}
     head = " | ".join(f"{h}" for h in cmu.HORIZONS)
-    lines = [
-        f"| action (windows) | method | {head} |",
-        "|---|---|" + "---:|" * len(cmu.HORIZONS),
-    ]
+    lines = [f"| action (windows) | method | {head} |", "|---|---|" + "---:|" * len(cmu.HORIZONS)]
     for action in actions:
         for i, (name, scores) in enumerate(found.items()):
             label = f"{action} ({scores[action].windows})" if i == 0 else ""

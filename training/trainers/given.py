@@ -145,11 +145,4 @@ def _joints(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
         mask[person, start:stop, 3 + 3 * joint : 6 + 3 * joint] = True
 
 
-_KINDS = {
-    "person": _person,
-    "past": _past,
-    "span": _span,
-    "poses": _poses,
-    "path": _path,
-    "joints": _joints,
-}
+_KINDS = {"person": _person, "past": _past, "span": _span, "poses": _poses, "path": _path, "joints": _joints}

@@ -135,13 +135,7 @@ class Trainer(Loop):
         self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
 
     def set_up(
-        self,
-        scenes: Scenes,
-        settings: Settings,
-        out: Path,
-        device: str,
-        cache: Path | None,
-        workers: int,
+        self, scenes: Scenes, settings: Settings, out: Path, device: str, cache: Path | None, workers: int
     ) -> None:
         """Prepares data, noise schedule and losses."""
         self.scenes, self.settings, self.out, self.device = scenes, settings, out, device

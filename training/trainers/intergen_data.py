@@ -26,14 +26,7 @@ from training.core.text_features import CaptionFeatures, CaptionTokens
 from training.corpus.grammar import mirror_caption
 from training.prepare import Scenes, normalizer, sentence_lists
 from training.trainers.given import Shares
-from training.trainers.plan_acts import (
-    PlanShares,
-    acts_of_label,
-    mirrored_act,
-    sides_named,
-    told,
-    vocabulary,
-)
+from training.trainers.plan_acts import PlanShares, acts_of_label, mirrored_act, sides_named, told, vocabulary
 from training.trainers.reading import UNKNOWN, CaptionReader
 from training.trainers.traits import TRAITS, traits
 from training.trainers.traits import UNKNOWN as TRAITS_UNKNOWN

@@ -238,10 +238,7 @@ def _follow_a_run(page: Any) -> dict[str, float]:
     page.locator("button#generate:enabled").wait_for(timeout=1000 * LONGEST_RUN)
     page.evaluate(_FOLLOW_RUN)
     try:
-        page.wait_for_function(
-            "window.__benchmark.motion !== null",
-            timeout=1000 * LONGEST_RUN,
-        )
+        page.wait_for_function("window.__benchmark.motion !== null", timeout=1000 * LONGEST_RUN)
     except TookTooLong:
         said = page.locator("#status").inner_text()
         raise InputError(f"No motion came on screen; the page says {said!r}: try again.") from None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from contextlib import closing
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -37,9 +38,7 @@ def add_admin(commands: Any) -> None:
         ),
     )
     parser.add_argument(
-        "name",
-        nargs="?",
-        help="of the account; with announce: the line (empty: none); with end: the id",
+        "name", nargs="?", help="of the account; with announce: the line (empty: none); with end: the id"
     )
     parser.add_argument(
         "--megabytes", type=float, help="with room and invite: the person's room; without it, everybody's"
@@ -66,31 +65,27 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
         raise InputError(
             "Give the id: `admin end ID`." if action == "end" else f"Name the account: `admin {action} NAME`."
         )
-    database = Database(settings.database_url)
-    try:
-        with sentences(), audited_shell(settings):
-            if action in ("jobs", "end", "health"):
-                return _activity(Activity(database), action, name)
-            acts = administration_of(settings, database, Users(settings.users) if settings.users else None)
-            if action == "list":
-                return {"people": [asdict(row) for row in acts.rows()], "announced": acts.people.announced()}
-            if action == "invite":
-                path = acts.invite(name, megabytes=options.megabytes, days=options.days)
-                return {"done": action, "name": name, "path": settings.root_path + path}
-            if action in ("make-admin", "end-admin"):
-                acts.set_role(name, admin=action == "make-admin")
-            elif action == "room":
-                acts.set_room(name, options.megabytes)
-            elif action in ("suspend", "let-in"):
-                acts.suspend(name, suspended=action == "suspend")
-            elif action == "sign-out":
-                acts.sign_out(name)
-            elif action == "delete":
-                acts.delete(name)
-            else:
-                acts.announce(name)
-    finally:
-        database.close()
+    with closing(Database(settings.database_url)) as database, sentences(), audited_shell(settings):
+        if action in ("jobs", "end", "health"):
+            return _activity(Activity(database), action, name)
+        acts = administration_of(settings, database, Users(settings.users) if settings.users else None)
+        if action == "list":
+            return {"people": [asdict(row) for row in acts.rows()], "announced": acts.people.announced()}
+        if action == "invite":
+            path = acts.invite(name, megabytes=options.megabytes, days=options.days)
+            return {"done": action, "name": name, "path": settings.root_path + path}
+        if action in ("make-admin", "end-admin"):
+            acts.set_role(name, admin=action == "make-admin")
+        elif action == "room":
+            acts.set_room(name, options.megabytes)
+        elif action in ("suspend", "let-in"):
+            acts.suspend(name, suspended=action == "suspend")
+        elif action == "sign-out":
+            acts.sign_out(name)
+        elif action == "delete":
+            acts.delete(name)
+        else:
+            acts.announce(name)
     return {"done": action, "name": name}
 
 

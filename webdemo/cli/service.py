@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -156,17 +157,13 @@ def clock(options: argparse.Namespace) -> dict[str, Any]:
     from webdemo.server.store.ledger import DAY, LabClock
 
     settings = settings_of_history()
-    database = Database(settings.database_url)
-    try:
-        with sentences():
-            lab = LabClock(database)
-            if options.action != "show":
-                with audited_shell(settings):
-                    lab.confirm(passed=options.action == "passed")
-                    audit("clock", action=options.action)
-            state = lab.state()
-    finally:
-        database.close()
+    with closing(Database(settings.database_url)) as database, sentences():
+        lab = LabClock(database)
+        if options.action != "show":
+            with audited_shell(settings):
+                lab.confirm(passed=options.action == "passed")
+                audit("clock", action=options.action)
+        state = lab.state()
     if state.jump:
         print(
             f"The clock has jumped by {state.jump / DAY:+.1f} days and was steady for {state.steady / 3600:.1f} hours "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -64,13 +64,10 @@ def _publishing() -> Iterator[Any]:
     from webdemo.server.store.publishing import Publishing
 
     settings = settings_of_history()
-    database = Database(settings.database_url)
-    try:
+    with closing(Database(settings.database_url)) as database:
         history = history_of(settings, storage_of(settings, database), settings.node)
         with audited_shell(settings):
             yield Publishing(history, days=settings.publish_days)
-    finally:
-        database.close()
 
 
 def _owner(options: argparse.Namespace) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -32,8 +33,7 @@ def study(options: argparse.Namespace) -> dict[str, Any]:
         raise InputError("Name the file to write: give --out FILE.csv.")
     if options.action != "list" and not options.study:
         raise InputError("Give the id of a study: see `study list`.")
-    database = Database(settings.database_url)
-    try:
+    with closing(Database(settings.database_url)) as database:
         studies = studies_of(settings, database)
         everybodys = studies.everybodys()
         if options.action == "list":
@@ -47,8 +47,6 @@ def study(options: argparse.Namespace) -> dict[str, Any]:
         if options.action == "export":
             return {"votes": studies.export(each.id, owner, options.out), "files": [str(options.out)]}
         return _about(owner, each) | studies.result(each.id, owner).to_dict()
-    finally:
-        database.close()
 
 
 def _about(owner: str, each: Any) -> dict[str, Any]:

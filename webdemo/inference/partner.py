@@ -17,10 +17,7 @@ from motion.video.gaze import Gaze
 
 Array = NDArray[np.floating]
 
-PARTNERS: Mapping[str, str] = {
-    "regennet": "ReGenNet, online",
-    "agent": "Virtual agent",
-}
+PARTNERS: Mapping[str, str] = {"regennet": "ReGenNet, online", "agent": "Virtual agent"}
 """Live partners by name, with their labels."""
 
 

@@ -14,10 +14,7 @@ from .verdicts import Judged, judged, note
 
 
 def run_tries(
-    request: Any,
-    run: Callable[[Any], Iterator[Progress | Result]],
-    cancel: CancelToken,
-    timer: StageTimer,
+    request: Any, run: Callable[[Any], Iterator[Progress | Result]], cancel: CancelToken, timer: StageTimer
 ) -> Iterator[Progress | Result]:
     """The progress of up to ``request.tries`` runs and the result of the first that does all that was said.
 

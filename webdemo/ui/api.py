@@ -25,12 +25,7 @@ from webdemo.inference.requests import (
     Result,
     SamplingRequest,
 )
-from webdemo.ui.components.exports import (
-    RIG,
-    Record,
-    write_files,
-    write_on_rig,
-)
+from webdemo.ui.components.exports import RIG, Record, write_files, write_on_rig
 from webdemo.ui.text.classes import class_method
 from webdemo.ui.text.words import error_line, progress_line
 

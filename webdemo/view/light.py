@@ -44,12 +44,7 @@ def shaded(body: Body, vertices: Array, worn: Worn, lamps: Lamps, camera: Camera
 
 
 def lit(
-    vertices: Array,
-    faces: NDArray[np.integer],
-    colours: Array,
-    opened: Array,
-    lamps: Lamps,
-    camera: Camera,
+    vertices: Array, faces: NDArray[np.integer], colours: Array, opened: Array, lamps: Lamps, camera: Camera
 ) -> Array:
     """Colours (F, 3, 3) of the corners of any surface's triangles, under lamps that move with the camera.
 

@@ -105,11 +105,7 @@ def write_sheet(
 
 
 def write_grid_sheet(
-    motions: Mapping[str, Clip | Duet],
-    path: str | Path,
-    *,
-    title: str = "",
-    style: Style | None = None,
+    motions: Mapping[str, Clip | Duet], path: str | Path, *, title: str = "", style: Style | None = None
 ) -> Path:
     """Writes a row of moments for each of several motions, at the same times and from one side, as .png.
 

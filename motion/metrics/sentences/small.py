@@ -54,10 +54,7 @@ def head_up(m: Motion, who: int, degrees: float = 8.0) -> Mask:
 def head_aside(m: Motion, who: int, degrees: float = 10.0) -> Mask:
     """The head leans to a side by ``degrees`` or more, against the trunk."""
     left = _left(m, who)
-    parts = (
-        m.joint(who, "head") - m.joint(who, "neck"),
-        m.joint(who, "neck") - m.joint(who, "pelvis"),
-    )
+    parts = (m.joint(who, "head") - m.joint(who, "neck"), m.joint(who, "neck") - m.joint(who, "pelvis"))
     angles = [np.degrees(np.arctan2(_flat(part, left), part[:, 1])) for part in parts]
     return np.abs(angles[0] - angles[1]) > degrees
 

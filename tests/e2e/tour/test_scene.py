@@ -7,16 +7,7 @@ import re
 import pytest
 from playwright.sync_api import Page
 
-from .hands import (
-    cancelled,
-    made,
-    number,
-    open_all,
-    pressed,
-    still,
-    twice,
-    visited,
-)
+from .hands import cancelled, made, number, open_all, pressed, still, twice, visited
 from .touring import Tour
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]

@@ -24,11 +24,7 @@ def test_those_beside_each_other_look_the_same_way(words: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "seat"),
-    [
-        ("They stand back to back.", None),
-        ("sitting on the floor back to back", grounded),
-    ],
+    ("words", "seat"), [("They stand back to back.", None), ("sitting on the floor back to back", grounded)]
 )
 def test_those_back_to_back_have_their_backs_near_each_other(words: str, seat: object) -> None:
     placed = beginning(words)

@@ -73,11 +73,7 @@ def test_words_send_people_where_they_say(sentence: str, found: str) -> None:
 
 @pytest.mark.parametrize(
     ("words", "metres"),
-    [
-        ("takes a step forward", 0.7),
-        ("takes two steps forward", 1.4),
-        ("takes a few steps forward", 2.1),
-    ],
+    [("takes a step forward", 0.7), ("takes two steps forward", 1.4), ("takes a few steps forward", 2.1)],
 )
 def test_steps_ahead_are_counted(words: str, metres: float) -> None:
     ahead, _ = moves(f"Person A {words}.")

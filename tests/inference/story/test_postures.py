@@ -90,14 +90,7 @@ def test_postures_last_until_the_person_gets_up() -> None:
     assert at_start(["He rises from his chair and bows."], 0)["a"] is SITS, "who gets up was down"
 
 
-@pytest.mark.parametrize(
-    "act",
-    [
-        "They dance.",
-        "They walk away.",
-        "Person A jumps.",
-    ],
-)
+@pytest.mark.parametrize("act", ["They dance.", "They walk away.", "Person A jumps."])
 def test_who_needs_their_legs_is_on_their_feet_again(act: str) -> None:
     assert at_start(["They sit down.", act, "They talk."], 1)["a"] is STANDS
     assert at_start(["They sit down.", act, "They talk."], 2)["a"] is STANDS

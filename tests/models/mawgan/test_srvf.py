@@ -11,16 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import Tensor
 
-from models.mawgan.srvf import (
-    exp_map,
-    inner,
-    karcher_mean,
-    log_map,
-    norm,
-    to_curve,
-    to_srvf,
-    to_tangent,
-)
+from models.mawgan.srvf import exp_map, inner, karcher_mean, log_map, norm, to_curve, to_srvf, to_tangent
 
 settings.register_profile("few", max_examples=20, deadline=None)
 settings.load_profile("few")

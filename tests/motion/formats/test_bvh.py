@@ -237,18 +237,12 @@ def test_our_own_joints_are_taken_as_they_are():
         ("HIERARCHY\nMOTION\nFrames: 1\nFrame Time: 0.03\n", "no ROOT"),
         ("HIERARCHY\nEnd Site\n{\n}\nMOTION\nFrames: 1\nFrame Time: 0.03\n1", "has no parent"),
         ("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n}\nMOTION\nFrames: 1\nFrame Time: 0.03\n1", "CHANNELS"),
-        (
-            "HIERARCHY\nROOT a\n{\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 0.03\n1",
-            "no size",
-        ),
+        ("HIERARCHY\nROOT a\n{\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 0.03\n1", "no size"),
         (
             "HIERARCHY\n" + "".join(f"ROOT j{i}\n{{\n" for i in range(5000)) + "}" * 5000 + "\nMOTION\n",
             "200 joints",
         ),
-        (
-            "HIERARCHY\n" + "".join(f"ROOT {i}\n{{\n}}\n" for i in range(7)) + "MOTION\n",
-            "7 people",
-        ),
+        ("HIERARCHY\n" + "".join(f"ROOT {i}\n{{\n}}\n" for i in range(7)) + "MOTION\n", "7 people"),
     ],
 )
 def test_wrong_files_are_refused_in_one_sentence(text, message):

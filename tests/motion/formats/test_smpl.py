@@ -157,10 +157,7 @@ def test_the_page_reads_two_files_of_a_zip() -> None:
         ({f"P{n}.npz": npz(**interx(POSITIONS)) for n in (1, 2, 3)}, "holds 3 motion files"),
         ({"P1.npz": b"x" * 100, "P2.npz": b"y"}, "P1.npz"),
         ({"a.zip": b"PK"}, "holds no motion files"),
-        (
-            {"P1.npz": npz(positions=DUET.positions), "P2.npz": npz(positions=DUET.positions)},
-            "two people",
-        ),
+        ({"P1.npz": npz(positions=DUET.positions), "P2.npz": npz(positions=DUET.positions)}, "two people"),
         ({f"{n}.md": b"" for n in range(201)}, "more than 200 parts"),
     ],
 )

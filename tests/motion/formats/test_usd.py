@@ -22,10 +22,7 @@ from tests.motion.bodies import marching
 A = marching(24)[0]
 B = turn(marching(24, seed=5)[0], np.pi) + np.array([0.3, 0, 1.5])
 DUET = Duet(
-    Clip(A, 30),
-    Clip(B.astype(np.float32), 30),
-    ("actor", "reactor"),
-    {"prompt": 'They "wave" \\ 😀\n'},
+    Clip(A, 30), Clip(B.astype(np.float32), 30), ("actor", "reactor"), {"prompt": 'They "wave" \\ 😀\n'}
 )
 
 

@@ -48,10 +48,7 @@ def each(part: str, place: tuple[float, float, float], base: str = "pelvis", who
     """Both joints of a part at a place, the left one's x as given and the right one's mirrored."""
     x, y, z = place
     bases = [base if base in SMPL22.joint_names else f"{side}_{base}" for side in ("left", "right")]
-    return [
-        put(f"left_{part}", (x, y, z), who, bases[0]),
-        put(f"right_{part}", (-x, y, z), who, bases[1]),
-    ]
+    return [put(f"left_{part}", (x, y, z), who, bases[0]), put(f"right_{part}", (-x, y, z), who, bases[1])]
 
 
 def tilt(degrees: float, towards: tuple[float, float]) -> Edit:

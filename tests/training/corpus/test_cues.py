@@ -76,10 +76,7 @@ def test_what_both_do_at_once_is_one_act_and_waiting_goes_on_beside() -> None:
     assert [(act.act, act.agents) for act in handshake] == [("shake-hands", ("a", "b"))]
     waits = label([Beat(("wave", STILL), 0, 30), Beat(("bow", STILL), 30, 60)], 60).plan.acts
     shown = [[(act.act, act.agents) for act in group] for group in groups(waits)]
-    assert shown == [
-        [("wave", ("a",)), (STILL, ("b",))],
-        [("bow", ("a",)), (STILL, ("b",))],
-    ]
+    assert shown == [[("wave", ("a",)), (STILL, ("b",))], [("bow", ("a",)), (STILL, ("b",))]]
 
 
 def test_the_class_is_what_happens_and_a_scene_without_a_label_is_refused() -> None:

@@ -15,14 +15,7 @@ from tests.training.trainers.runs import SETTINGS, begin, prepared, take
 from training import prepare
 from training.corpus.cues import Beat, label
 from training.trainers import plan_acts
-from training.trainers.plan_acts import (
-    PlanShares,
-    acts_of_label,
-    mirrored_act,
-    sides_named,
-    told,
-    vocabulary,
-)
+from training.trainers.plan_acts import PlanShares, acts_of_label, mirrored_act, sides_named, told, vocabulary
 from training.trainers.traits import TRAITS
 
 ALL = PlanShares(untimed=0, minor=0, side=0)

@@ -59,12 +59,7 @@ def refused(play: Play, i: int) -> None:
         return a, b, []
 
     play.effect(start, stop, effect, i=i)
-    play.note(
-        (offer, answer),
-        start,
-        i=i,
-        sides=(None if len(sides) > 1 else side, None),
-    )
+    play.note((offer, answer), start, i=i, sides=(None if len(sides) > 1 else side, None))
 
 
 def throw_catch(play: Play, i: int) -> None:

@@ -9,17 +9,7 @@ from motion.skeleton import LEGS, SMPL22
 from motion.vectors import wrapped
 
 from ..compose import Motion
-from ..contact import (
-    axes,
-    envelope,
-    impulse,
-    lean_to,
-    nod,
-    on_body,
-    reach_arm,
-    shift_hips,
-    towards,
-)
+from ..contact import axes, envelope, impulse, lean_to, nod, on_body, reach_arm, shift_hips, towards
 from ..feet import two_bone
 from ..library import Library, pick
 from ..scene import Scene

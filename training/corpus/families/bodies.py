@@ -6,18 +6,7 @@ import numpy as np
 
 from motion.skeleton import SMPL22
 
-from ..contact import (
-    UP,
-    axes,
-    envelope,
-    impulse,
-    lean_to,
-    nod,
-    on_body,
-    reach,
-    reach_arm,
-    towards,
-)
+from ..contact import UP, axes, envelope, impulse, lean_to, nod, on_body, reach, reach_arm, towards
 from ..cues import STILL
 from ..library import Library, pick
 from ..scene import Scene

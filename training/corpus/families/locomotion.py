@@ -247,13 +247,7 @@ def guide_follow(rng: Rng, library: Library) -> Scene:
     frames = min(len(a), len(b), 285)
     b = oppose(rng, a, b, rng.uniform(1.1, 1.6))
     return finish(
-        rng,
-        library,
-        "guide-follow",
-        a[:frames],
-        b[:frames],
-        slots={"manner_a": show.style},
-        most=285,
+        rng, library, "guide-follow", a[:frames], b[:frames], slots={"manner_a": show.style}, most=285
     )
 
 
@@ -334,13 +328,7 @@ def walk_past(rng: Rng, library: Library) -> Scene:
     shift = a.root[middle] - b.root[middle] + offset
     b = Motion(b.rotations, b.root + shift * np.array([1.0, 0.0, 1.0]), b.contacts, b.sources)
     return finish(
-        rng,
-        library,
-        "walk-past",
-        a,
-        b,
-        slots={"manner_a": style, "manner_b": second.style},
-        gaze=(0.5, 0.5),
+        rng, library, "walk-past", a, b, slots={"manner_a": style, "manner_b": second.style}, gaze=(0.5, 0.5)
     )
 
 

@@ -12,17 +12,7 @@ from motion.transforms import canonicalize
 from training.corpus.compose import Array, Motion, look_at, place, realise
 from training.corpus.library import Library, pick
 from training.corpus.scene import Scene
-from training.corpus.stage import (
-    Rng,
-    act,
-    beside,
-    forward,
-    manner,
-    oppose,
-    pad,
-    seconds,
-    stride,
-)
+from training.corpus.stage import Rng, act, beside, forward, manner, oppose, pad, seconds, stride
 
 from .gestures import about
 
@@ -169,11 +159,7 @@ def conclude(
     ]
     if side is not None:
         events["side"] = {"a": side}
-    said = {
-        **encounter.slots,
-        "side_a": side,
-        "span": (encounter.start, min(encounter.stop, last + 1)),
-    }
+    said = {**encounter.slots, "side_a": side, "span": (encounter.start, min(encounter.stop, last + 1))}
     return Scene(
         positions.astype(np.float32),
         family,

@@ -49,11 +49,9 @@ def ordered(rng: Rng, library: Library) -> Scene:
         if name in SIDED and take.side and rng.random() < 0.75:
             sides[person] = take.side
     events = {"order": list(names), "facing": True, "distance": "keep"} | ({"side": sides} if sides else {})
-    slots = {
-        "acts": _cues(*names),
-        "manner_a": first.style,
-        "manner_b": second.style,
-    } | {f"side_{person}": side for person, side in sides.items()}
+    slots = {"acts": _cues(*names), "manner_a": first.style, "manner_b": second.style} | {
+        f"side_{person}": side for person, side in sides.items()
+    }
     return finish(rng, library, "ordered", a, b, slots=slots, events=events, most=285)
 
 
@@ -144,11 +142,5 @@ def watch(rng: Rng, library: Library) -> Scene:
     first = gesture(rng, library, name, style=_style(rng, library, name))
     named = {"side_a": first.side} if name in SIDED and rng.random() < 0.7 else {"side_a": None}
     return pair(
-        rng,
-        library,
-        "watch",
-        first,
-        None,
-        distance=(1.0, 3.0),
-        slots={"acts": (*_cues(name), STILL)} | named,
+        rng, library, "watch", first, None, distance=(1.0, 3.0), slots={"acts": (*_cues(name), STILL)} | named
     )

@@ -53,11 +53,7 @@ SETTLES = 24
 
 
 def planned(
-    request: SceneRequest,
-    window: Window,
-    scene: Array,
-    placement: Placement,
-    taken: Collection[int] = (),
+    request: SceneRequest, window: Window, scene: Array, placement: Placement, taken: Collection[int] = ()
 ) -> list[Part]:
     """The places, poses and hands that the words of a window's beat ask for, in the network's frame.
 

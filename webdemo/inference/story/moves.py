@@ -85,10 +85,7 @@ def struck_moves(found: Strike, dodge: Move | None, *, down: bool) -> tuple[Move
 def lifted_moves(found: Lift, speed: float) -> tuple[Move, ...]:
     """The way to the other, at a speed, of the one who comes, and of one who picks them up and walks on or turns."""
     comes = found.comes or found.carrier
-    made = [
-        Move(comes, Way.TO, speed, near=found.carry.near),
-        Move(other_of(comes), Way.STAY),
-    ]
+    made = [Move(comes, Way.TO, speed, near=found.carry.near), Move(other_of(comes), Way.STAY)]
     if found.spins:
         made.append(Move(found.carrier, Way.TURN, turns=1.0))
     elif found.carry is not Carry.UP:

@@ -13,13 +13,7 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from webdemo.inference.requests import (
-    MAX_SEED,
-    Cancelled,
-    Progress,
-    Result,
-    SamplingRequest,
-)
+from webdemo.inference.requests import MAX_SEED, Cancelled, Progress, Result, SamplingRequest
 from webdemo.ui.components.actors import READ_WITH
 from webdemo.ui.components.compare import comparison_payload
 from webdemo.ui.components.exports import Record
@@ -102,11 +96,7 @@ class JobTab(SamplingTab, ABC):
 
     # ---- events ----------------------------------------------------------------------------------
 
-    def _wire_run(
-        self,
-        triggers: Sequence[Any],
-        record: gr.State | None,
-    ) -> None:
+    def _wire_run(self, triggers: Sequence[Any], record: gr.State | None) -> None:
         """Runs :meth:`start` with the values of ``controls``.
 
         ``record`` keeps the result, in a state of its own by default.

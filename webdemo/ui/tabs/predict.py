@@ -12,12 +12,7 @@ import gradio as gr
 
 from motion import Clip, Duet, InputError
 from webdemo.inference.methods import installed, label_of, method
-from webdemo.inference.predict_request import (
-    LONGEST,
-    PAST_SECONDS,
-    PredictRequest,
-    PredictResult,
-)
+from webdemo.inference.predict_request import LONGEST, PAST_SECONDS, PredictRequest, PredictResult
 from webdemo.inference.requests import Result
 from webdemo.ui.components.actors import Source, given_again, offered_animations, read_source, result_source
 from webdemo.ui.components.animations import animation_field, kept_animation

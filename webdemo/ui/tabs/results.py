@@ -304,10 +304,7 @@ class ResultsTab:
             off = gr.update(value=None, interactive=False)
             return (status(f"The motion is ready, but its files are not. {error_line(error)}", tone="error"),
                     *(off for _ in KINDS))  # fmt: skip
-        return (
-            line,
-            *(_offered(kind.key, found.get(kind.key)) for kind in KINDS),
-        )
+        return (line, *(_offered(kind.key, found.get(kind.key)) for kind in KINDS))
 
     def _on_rig(self, record: Record) -> tuple[Any, list[Path]]:
         """A change of the status line, and the partner on the uploaded rig; the others of its files do not need it."""

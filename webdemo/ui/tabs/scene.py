@@ -157,9 +157,7 @@ class SceneTab(SweepTab):
         self.line_up = StoryLine(elem_id=self._id("story"), elem_classes="pd-story")
         with gr.Column(elem_classes="pd-panel pd-parts", min_width=0):
             self.words = gr.Textbox(
-                label=say("scene.part"),
-                placeholder=say("scene.part_hint"),
-                elem_id=self._id("part-words"),
+                label=say("scene.part"), placeholder=say("scene.part_hint"), elem_id=self._id("part-words")
             )
             with gr.Row(elem_classes="pd-chips"):
                 self.remake = gr.Button(

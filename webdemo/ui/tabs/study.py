@@ -105,11 +105,7 @@ class StudyPanel:
             )  # fmt: skip
         with gr.Row(elem_classes="pd-pair"):
             self.sentence = gr.Checkbox(True, label=say("study.sentence"), elem_id="study-sentence")
-            self.reveal = gr.Checkbox(
-                False,
-                label=say("study.reveal"),
-                elem_id="study-reveal",
-            )
+            self.reveal = gr.Checkbox(False, label=say("study.reveal"), elem_id="study-reveal")
         self.make = gr.Button(say("study.make"), variant="primary", size="sm", elem_id="study-make")
 
     def _reading(self) -> None:

@@ -16,9 +16,7 @@ def upgrade() -> None:
         sa.Column("state", sa.Text, nullable=False),
     )
     op.create_table(
-        "endings",
-        sa.Column("id", sa.String, primary_key=True),
-        sa.Column("came", sa.Double, nullable=False),
+        "endings", sa.Column("id", sa.String, primary_key=True), sa.Column("came", sa.Double, nullable=False)
     )
 
 
