@@ -27,7 +27,7 @@ BEATS = [
     ("He drops to one knee and proposes, and she nods.", ["kneel propose", "nod"]),
     ("A pushes B over, B falls down, then A helps B up.", ["push-over fall-down", "help-up"]),
     ("A sits on a chair while B stands behind and cuts A's hair.", ["sit-down stand-behind groom"]),
-    ("A bends down and ties B's shoe.", ["bend-down groom"]),
+    ("A bends down and ties B's shoe.", ["bend-down tie-other-shoes"]),
     ("A bends down and pats B's head.", ["bend-down", "pat"]),
 ]
 

@@ -254,3 +254,19 @@ def test_who_opens_a_present_or_has_walked_goes_nowhere_else() -> None:
     way, use = (staged(beat.acts) for beat in beats_of(read("A goes to the window and opens it.")))
     assert [m.way for m in way.moves if m.person == "a"] == [Way.AWAY]
     assert [m.way for m in use.moves if m.person == "a"] == [Way.THING]
+
+
+@pytest.mark.parametrize(
+    "text", ["A ties B's shoes.", "A combs B's hair.", "A pats B's head.", "A lays a hand on B's shoulder."]
+)
+def test_who_lets_hands_be_laid_on_them_keeps_still(text: str) -> None:
+    assert told(text).idle == {"b"}
+    assert told(text.replace("A ", "A pushes B and ", 1)).idle == frozenset()
+
+
+def test_who_is_carried_was_picked_up_first_if_the_words_say_so() -> None:
+    picked, carried = told("A picks B up and carries her away."), told("A carries B away.")
+    assert picked.lift is not None and picked.lift.comes == "a", (
+        "somebody walks up and picks up who stands there"
+    )
+    assert carried.lift is not None and not carried.lift.comes

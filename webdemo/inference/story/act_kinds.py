@@ -13,6 +13,8 @@ _NEAR = frozenset(("touch", "fight", "dance", "care"))
 """Groups of the lexicon whose acts two people do within each other's reach."""
 _HANDED = frozenset(("things", "handling", "daily"))
 """Groups whose acts with the other person pass something from hand to hand."""
+_GENTLE = frozenset(("care", "touch"))
+"""Groups of acts that somebody lets be done to them."""
 _JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
 """Shapes that take the other along."""
 _REGIONS = {
@@ -61,6 +63,12 @@ def reaches(act: Act, entry: Entry) -> bool:
     if entry.mutual or any(shape.who != "agent" or shape.do in _JOINS for shape in entry.stage):
         return True
     return act.patient is not None and all(shape.do in ("place", "stay") for shape in entry.stage)
+
+
+def is_care(entry: Entry) -> bool:
+    """True for an act by the hands on the other, who keeps still meanwhile."""
+    touches = [shape for shape in entry.stage if isinstance(shape, shapes.Touch) and not shape.fells]
+    return entry.group in _GENTLE and not entry.mutual and 0 < len(touches) == len(entry.stage)
 
 
 def region_of(act: Act, shape: shapes.Touch) -> Region | None:

@@ -16,7 +16,7 @@ from acts.lexicon import Lexicon, lexicon
 from acts.plan import FROM_BEHIND, Act, beats, other_of
 from acts.things import is_fixture
 
-from .act_kinds import is_after, is_attempt, is_deep, is_near, only_stays, reaches, region_of, walks
+from .act_kinds import is_after, is_attempt, is_care, is_deep, is_near, only_stays, reaches, region_of, walks
 from .beginnings import Setting, standing
 from .contacts import LOW, Contact, Region
 from .gestures import AT_OTHER, OF_BOTH, SIDES, Gesture, Hand
@@ -179,7 +179,8 @@ class _Stage:
             case shapes.Link():
                 self.linked = True
             case shapes.Lift() if self.lift is None or self.lift.carry is Carry.UP:
-                self.lift = Lift(people[0], Carry[shape.carry.upper()], shape.spins)
+                comes = people[0] if self.lift is not None else ""  # to pick up whom they carry then
+                self.lift = Lift(people[0], Carry[shape.carry.upper()], shape.spins, comes)
             case shapes.Strike():
                 both = self.known.entries[act.act].mutual
                 self.blows.append((("a", "b") if both else people, shape, act))
@@ -365,7 +366,7 @@ class _Stage:
             theirs = [(act, e) for act, e in self.done if other in act.agents and who not in act.agents]
             denied = any(who in act.agents and not act.happens and not self._stays(act) for act in self.acts)
             waits = bool(own) and all(only_stays(e) for _, e in own)
-            touched = any(reaches(act, e) for act, e in theirs)
+            touched = any(reaches(act, e) and not is_care(e) for act, e in theirs)
             if touched or (own and not waits) or who in self.gestures or who in self.faces:
                 continue
             if waits or denied or any(not walks(e) for _, e in theirs):
