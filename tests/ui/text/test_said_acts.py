@@ -12,8 +12,11 @@ from motion import Duet
 from tests.ui.stub_engine import walking
 from webdemo.inference.requests import GenerateRequest, Result
 from webdemo.inference.verdicts import judged, note
+from webdemo.ui.components.notebook import settings
+from webdemo.ui.components.notebook import shown as notebook_shown
 from webdemo.ui.components.reading import checked, known_acts, reread
 from webdemo.ui.components.show import result_payload
+from webdemo.ui.history import Entry, Found
 from webdemo.ui.text.panels import notes_lines, readout_panel
 from webdemo.ui.text.said_acts import said_act
 
@@ -110,3 +113,12 @@ def test_the_marks_of_a_result_are_german(german: None, result: Result) -> None:
 def test_read_outs_are_english_without_a_page(result: Result) -> None:
     assert "Done" in result.notes[0] or "Not seen" in notes_lines(result)
     assert "All figures" in readout_panel(result)
+
+
+def test_a_study_compares_by_the_same_settings_in_every_language(german: None) -> None:
+    request = {"kind": "react", "model": "regennet", "seed": 3, "steps": 5}
+    entry = Entry(id="1", kind="react", title="Both wave.", state="done", request=request)
+    assert dict(settings(entry))["Seed"] == "3"
+    shown = notebook_shown(Found(entries=(entry,), total=1), empty="")["entries"][0]
+    assert ["Startwert", "3"] in shown["settings"]
+    assert "Startwert 3" in shown["facts"]

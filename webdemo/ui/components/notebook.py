@@ -106,7 +106,8 @@ def _card(entry: Entry) -> dict[str, Any]:
         "id": entry.id, "kind": entry.kind, "title": said(entry.title), "state": entry.state,
         "message": said(entry.message or ""),
         "favourite": entry.favourite, "links": entry.links, "tags": list(entry.tags), "note": entry.note,
-        "frame": entry.frame, "thumbnail": entry.thumbnail, "facts": facts(entry), "settings": settings(entry),
+        "frame": entry.frame, "thumbnail": entry.thumbnail, "facts": facts(entry),
+        "settings": [list(map(said, pair)) for pair in settings(entry)],
     }  # fmt: skip
 
 
@@ -137,7 +138,7 @@ def settings(entry: Entry) -> list[list[str]]:
             if isinstance(value, bool):
                 value = "on" if value else "off"
             found.append([name, f"{value:g}" if key != "seed" and not isinstance(value, str) else str(value)])
-    return [list(map(said, pair)) for pair in found if pair[1]]
+    return [pair for pair in found if pair[1]]
 
 
 def method_label(asked: Mapping[str, Any]) -> str:

@@ -18,6 +18,7 @@ from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Found, HistoryLike, Opened, Search
 from webdemo.ui.text.panels import status
+from webdemo.ui.text.said import said
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import cancelled_line, error_line, link_line, progress_line, text
 from webdemo.ui.visitor import Visitor, visitor
@@ -217,8 +218,10 @@ class HistoryTab:
                 wanted = request_of(opened)
             for made in self.page.runs.run(_session(request), wanted, alone=True):
                 if isinstance(made, Result):
-                    said = verdict(opened.result, made) if opened else "Run again: its result is in the list."
-                    line = status(said, tone="done")
+                    sentence = (
+                        verdict(opened.result, made) if opened else "Run again: its result is in the list."
+                    )
+                    line = status(sentence, tone="done")
                     break
                 last = made
                 yield status(progress_line(made), tone="busy")
@@ -333,8 +336,8 @@ def _signed_in(who: Visitor) -> str:
         return ""
     return (
         f'<form class="pd-status pd-account" method="post" action="{text(who.base)}logout">'
-        f"Signed in as {text(who.account)} ·\u2002<button>Sign out</button>"
-        f'\u2002<a href="{text(who.base)}account">Your account</a></form>'
+        f"{text(said(f'Signed in as {who.account}'))} ·\u2002<button>{said('Sign out')}</button>"
+        f'\u2002<a href="{text(who.base)}account">{said("Your account")}</a></form>'
     )
 
 

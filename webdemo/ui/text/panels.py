@@ -65,7 +65,7 @@ def model_state(state: str, error: str | None = None) -> str:
     words = {
         "loading": say("page.loading"),
         "ready": say("page.ready"),
-        "failed": text(error) if error else say("page.failed"),
+        "failed": text(said(error)) if error else say("page.failed"),
     }
     return f'<p class="pd-model pd-model-{text(state)}" role="status">{words[state]}</p>'
 
