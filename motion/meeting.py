@@ -47,6 +47,8 @@ _SHARES = 12
 _LEANS, _BENDS, _MOST_LEAN, _BACK = 2.2, 0.45, 1.0, 0.16
 """Radians of lean, and metres by which the hips sink, for a metre by which an arm is too short; radians at most; and
 metres that the hips go back for a radian."""
+_ON_FEET = (0.55, 0.75)
+"""Heights in metres of a pelvis up to which nobody stoops, and from which they do."""
 _LATE, _EASED = 10, 5.0
 """Frames to both sides over which the deepest stoop counts, and over which it is smoothed."""
 _CERTAIN, _SPARED = (0.5, 1.0), 0.03
@@ -87,7 +89,7 @@ def met_again(made: Array, small: Array, sizes: tuple[float, float]) -> Array:
     tall = int(np.argmax(sizes))
     result, lean = small.copy(), np.zeros(small.shape[1])
     for _ in range(_STOOPS):
-        more = _too_short(result, touch)
+        more = _too_short(result, touch) * smoothstep(made[tall, :, 0, 1], *_ON_FEET)
         if not more.any():
             break
         by = np.minimum(_LEANS * more, _MOST_LEAN - lean)

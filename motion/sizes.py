@@ -35,6 +35,8 @@ _STRAIGHT = 0.985
 """Share of a leg's length that a step uses."""
 _LIFTED = 0.12
 """Height in metres of the lower toe of a person who is carried, at the size at which the motion was made."""
+_HELD_UP = 0.75
+"""Height in metres of the pelvis of a person who is carried, at least: one who lies has their toes up, too."""
 _CARRIES = 0.9
 """Metres between the pelvises of a person who carries and the one carried, at most."""
 _SHORTEST, _RISES = 12, 10
@@ -101,7 +103,7 @@ def _stepping(own: Array, size: float, way: float, free: Array, now: float = 1.0
         aside = (own[:, toe] - pelvis[:, 0]) * FLAT
         stood = small[:, toe] + (way - size) * steps * aside
         goals.append(stood + small[:, ankle] - small[:, toe])
-    small[..., 1] -= _sunk(small, goals, _SINKS * size * now)[:, None]
+    small[..., 1] -= (upright * _sunk(small, goals, _SINKS * size * now))[:, None]
     return on_legs(small, goals, facing(own))
 
 
@@ -137,7 +139,7 @@ def on_legs(person: Array, ankles: list[Array], forward: Array) -> Array:
 
 def _lifted(own: Array, other: Array) -> Array:
     """(T,) how far a person is in the air beside the other, who stands: 0 to 1."""
-    up = own[:, _TOES, 1].min(axis=1) > _LIFTED
+    up = (own[:, _TOES, 1].min(axis=1) > _LIFTED) & (own[:, 0, 1] > _HELD_UP)
     stands = other[:, _TOES, 1].min(axis=1) <= _LIFTED
     near = np.linalg.norm((own[:, 0] - other[:, 0]) * FLAT, axis=-1) < _CARRIES
     return eased_marks(without_flicker(up & stands & near, _SHORTEST), _RISES)

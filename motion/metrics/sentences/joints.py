@@ -16,6 +16,8 @@ Array = NDArray[np.floating]
 
 _SMOOTH = 0.15
 """Seconds: standard deviation of the filter over root paths and headings, which takes out a step's sway."""
+_A_CHILD = 0.87
+"""Length of the thighs, as a share of an adult's, below which somebody is a child."""
 SIDES = ("left", "right")
 
 
@@ -117,6 +119,12 @@ class Motion:
         leg = np.linalg.norm(hip - knee, axis=-1) + np.linalg.norm(knee - ankle, axis=-1)
         standing = leg + np.linalg.norm(ankle - foot, axis=-1) * 0.4 + 0.09
         return self.positions[who, :, 0, 1] / standing.mean()
+
+    def size(self, who: int) -> float:
+        """Length of a child's thighs as a share of an adult's; 1 for everybody else."""
+        thighs = np.linalg.norm(self.pair(who, "hip") - self.pair(who, "knee"), axis=-1).mean()
+        size = float(thighs / SMPL22.bone_lengths[SMPL22.index("left_knee")])
+        return size if size < _A_CHILD else 1.0
 
     def lean(self, who: int) -> Array:
         """(T,) degrees by which the trunk leans out of the vertical."""

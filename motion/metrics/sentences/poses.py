@@ -137,9 +137,9 @@ def talks(m: Motion, who: int, over: float = 0.06) -> Mask:
 
 
 def _reach(m: Motion, who: int) -> Array:
-    """(2, T) metres by which the wrists are held out from the shoulders towards the other."""
+    """(2, T) metres by which the wrists are held out from the shoulders towards the other, at an adult's size."""
     arm = (m.pair(who, "wrist") - m.pair(who, "shoulder"))[..., [0, 2]]
-    return np.sum(arm * m.towards(who), axis=-1)
+    return np.sum(arm * m.towards(who), axis=-1) / m.size(who)
 
 
 @predicate

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from motion import SKELETONS, SMPL22, Duet
+from motion.looks import SIZES
 from motion.metrics import bone_drift, foot_skate, jerk, penetration
 from motion.metrics.bodies import capsules, point_segment_distance, segment_segment_distance
 
@@ -77,6 +80,16 @@ def test_penetration_grows_centimetre_by_centimetre() -> None:
     depth = penetration(duet(scene)).depth
     assert depth[0] > 0
     assert depth[1] - depth[0] == pytest.approx(2, abs=0.05)
+
+
+def test_a_child_is_as_thin_as_it_is_short() -> None:
+    """Two who are children beside each other overlap as much in proportion as two adults."""
+    scene = face_to_face(0.1)
+    adults = duet(scene)
+    children = replace(duet(SIZES["boy"] * scene), looks=("boy", "girl"))
+    assert penetration(children).deepest == pytest.approx(
+        SIZES["boy"] * penetration(adults).deepest, rel=1e-3
+    )
 
 
 def test_penetration_agrees_with_all_pairs() -> None:

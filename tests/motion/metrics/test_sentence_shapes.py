@@ -223,3 +223,16 @@ def test_a_count_is_exact_and_until_needs_an_event_that_ends_it() -> None:
     assert not until(motion, np.ones(FRAMES, dtype=bool), event), "it goes on"
     assert not until(motion, ~going, event), "it had not begun"
     assert not until(motion, going, ~event & False), "nothing ends it"
+
+
+def test_a_child_reaches_out_as_far_as_its_arm() -> None:
+    """A wrist that is 25 cm before the shoulder is held out by a child, and not by an adult."""
+    adult = duet(put("left_wrist", (0.2, 0.25, 0.25)))
+    child = Motion(adult.positions * np.array([[[[0.74]]], [[[1.0]]]]), FPS)
+    child.positions[0, :, index("left_wrist")] = child.positions[0, :, index("left_shoulder")] + [
+        0.0,
+        -0.2,
+        0.25,
+    ]
+    assert adult.size(0) == 1.0 and child.size(0) == pytest.approx(0.74)
+    assert not PREDICATES["reaches"](adult, 0).any() and PREDICATES["reaches"](child, 0).all()
