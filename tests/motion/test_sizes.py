@@ -168,8 +168,8 @@ def test_who_lies_with_their_toes_up_is_not_lifted() -> None:
     adult, child = (np.tile(standing(), (60, 1, 1)) for _ in range(2))
     on_back = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # the face and the toes up
     lying = standing() @ on_back.T
-    adult[:] = lying - lying[:, 1].min() * np.array([0.0, 1.0, 0.0])
-    child[..., 2] += 0.7
+    adult[:] = lying + (0.08 - lying[:, 1].min()) * np.array([0.0, 1.0, 0.0])
+    child[..., 2] += adult[0, 0, 2] + 0.6
     found = at_sizes(np.stack([adult, child]), MIXED)
     np.testing.assert_allclose(found[0, :, 0, 1], adult[:, 0, 1], atol=0.01)
 
