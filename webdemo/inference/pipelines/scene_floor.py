@@ -21,7 +21,7 @@ from webdemo.inference.story.holds import Hold
 from webdemo.inference.story.limbs import WITH_ARMS, Limb, limbed
 from webdemo.inference.story.moves import Move, goes
 from webdemo.inference.story.plan import Window
-from webdemo.inference.story.poses import ARMS, HANDS, standing, upright
+from webdemo.inference.story.poses import ARMS, HANDS, bowed, standing, upright
 from webdemo.inference.story.postures import Change, Posture
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.strikes import Bout
@@ -30,10 +30,10 @@ from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
 
 from .scene_contacts import coming, given_contact, given_hold, given_twirl, meeting, towards_touched
-from .scene_hands import hands
+from .scene_hands import hands, late_by
 from .scene_lifts import Carrying
 from .scene_paths import given_gait, path_of
-from .scene_postures import UPRIGHT, Pose, led, postures, still_down
+from .scene_postures import BOWED, DEEP, UPRIGHT, Pose, led, postures, still_down
 from .scene_pulls import given_pull
 from .scene_room import Room, roomy
 from .scene_stretch import Stretch
@@ -211,6 +211,10 @@ def _held(
             parts += _limbed(told.limbs[who], person, beat)
             posed[person] = upright(stand.places[person], float(stand.headings[person]))
             continue
+        if up and who in told.bows and _only_bows(told, who) and who not in gone:
+            parts.append(_bowed(person, told, beat, request.seed))
+            posed[person] = upright(stand.places[person], float(stand.headings[person]))
+            continue
         turned = last is None and _keeps_back(told, who)
         if up and (who in still or ((turned or who in told.gesturing) and who not in gone)):
             touched = told.contact is not None and told.contact.person != who and who not in told.gestures
@@ -229,6 +233,22 @@ def _held(
             for joints, frames, known in led(down, window.start, window.stop + tail, arms=not busy):
                 parts.append(beat.given(person, np.asarray(frames) - start, known, joints))
     return parts, posed
+
+
+def _only_bows(told: Told, who: str) -> bool:
+    """True for a person who bows and keeps their feet and hands out of other things."""
+    return not (who in told.changes or who in told.leaps or who in told.gestures or told.contact)
+
+
+def _bowed(person: int, told: Told, beat: Stretch, seed: int) -> Part:
+    """The body of a person who bows on the spot, as far as it falls into a window."""
+    times, deep = told.bows["ab"[person]]
+    frames = beat.shown(np.arange(SETTLES // 2 if beat.start else 0, beat.frames, LIMBED))
+    angle, seconds = float(beat.stand.headings[person]), (frames + beat.start) / FPS
+    stands = standing(_halted(person, beat), angle, seconds, seed=seed + person)
+    late, lean = late_by(seed, person), DEEP if deep else BOWED
+    poses = bowed(stands, angle, frames / FPS - late, beat.frames / FPS - late, times, lean)
+    return beat.given(person, frames, poses, _all_but(()))
 
 
 def _keeps_back(told: Told, who: str) -> bool:

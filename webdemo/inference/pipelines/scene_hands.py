@@ -75,7 +75,7 @@ def hands(
         own = None if before is None else before[person]
         free = person in posed and posed[person][0, 1] > UPRIGHT and person not in stretch.ways
         both = free and not (told.contact or told.joined)
-        late = 0.0 if gesture.hand in IN_TIME else _late(seed, person) * min(1.0, stretch.frames / SHORT)
+        late = 0.0 if gesture.hand in IN_TIME else late_by(seed, person) * min(1.0, stretch.frames / SHORT)
         joints, places = _arms(gesture, person, at, stretch, own, both=both, late=late)
         if len(shown := np.isin(at, stretch.shown(at)).nonzero()[0]):
             yield _given(person, joints, at[shown], places[shown], stretch)
@@ -127,7 +127,7 @@ def _arms(
     return joints, np.einsum("nij,nsj->nsi", turns, np.concatenate(places, axis=1))
 
 
-def _late(seed: int, person: int) -> float:
+def late_by(seed: int, person: int) -> float:
     """Seconds by which a person begins later than they could: two people who wave do not wave as one."""
     later, *wait = np.random.default_rng(seed).uniform(0.0, 1.0, 3)
     return LATE * (0.5 * float(wait[person]) + (0.5 if (later < 0.5) is (person == 0) else 0.0))

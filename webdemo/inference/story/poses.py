@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
+from motion.easing import minimum_jerk
 from motion.kinematics import forward_kinematics
 from motion.transforms import heading_matrix
 
@@ -119,6 +120,14 @@ STANDS: Mapping[str, float] = {
     "elbow": 0.3,
     "spine": 0.0,
 }
+BOW_BEGINS = 0.25
+"""Seconds of a beat before a bow, and after it."""
+BOW_TAKES = (1.2, 2.0)
+"""Seconds of a bow, at least and at most."""
+_BOW_DOWN, _BOW_UP = 0.42, 0.52
+"""Shares of a bow at which somebody is down, and from which they rise."""
+_WITH_TRUNK = {"left": 0.3, "right": 0.4}
+"""How far arms turn with a trunk that bows."""
 _FLIES: Mapping[str, float] = {
     "hip": -0.2,
     "knee": 0.4,
@@ -236,6 +245,37 @@ def bowing(place: Array, angle: float, lean: float = _BENT) -> Sequence[tuple[fl
     """A bow on the spot as poses (22, 3) in metres, with their seconds from its lowest moment."""
     low, up = bending(place, angle, lean), upright(place, angle)
     return ((-0.7, up), (-0.15, low), (0.15, low), (0.85, up))
+
+
+def bowed(
+    poses: Array, angle: float, seconds: Array, length: float, times: int = 1, lean: float = _BENT
+) -> Array:
+    """Standing poses (N, 22, 3) of a person who bows so many times, the arms hanging.
+
+    Trunk and head bend down and rise along minimum-jerk courses, slowly where there is time. The arms follow them
+    by a share, so that the hands slide along the thighs, one a little behind the other.
+
+    Args:
+        poses: of the person who stands.
+        angle: heading in radians.
+        seconds: (N,) moments of the beat.
+        length: seconds of the beat.
+        times: bows.
+        lean: radians of a bow.
+    """
+    each = float(np.clip((length - 2 * BOW_BEGINS) / times, *BOW_TAKES))
+    since = np.asarray(seconds, dtype=float) - BOW_BEGINS
+    phase = np.where((since >= 0) & (since < times * each), since % each, 0.0) / each
+    down, up = minimum_jerk(phase / _BOW_DOWN), minimum_jerk((phase - _BOW_UP) / (1 - _BOW_UP))
+    found = []
+    for pose, bent in zip(np.asarray(poses, dtype=float), lean * (down - up), strict=True):
+        made = leaning(pose, angle, float(bent))
+        for side, share in _WITH_TRUNK.items():
+            shoulder, *arm = (SMPL22.index(f"{side}_{name}") for name in ("shoulder", "elbow", "wrist"))
+            turn = heading_matrix(angle) @ about(0, share * float(bent)) @ heading_matrix(-angle)
+            made[arm] = made[shoulder] + (pose[arm] - pose[shoulder]) @ turn.T
+        found.append(made)
+    return np.stack(found)
 
 
 def _posed(angle: float, left: Mapping[str, float], right: Mapping[str, float] | None = None) -> Array:
