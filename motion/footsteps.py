@@ -8,6 +8,7 @@ the other swings. Lengths and times of the steps follow the speed, as people's d
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,20 +29,20 @@ _RUNS = 2.3
 """Metres a second of a body whose feet leave the floor: steps would be too long for it."""
 _GLIDES = 0.55
 """Share of the body's speed that both feet have at least where it glides."""
-_UPRIGHT, _ON_FLOOR = 0.7, 0.08
+UPRIGHT, ON_FLOOR = 0.7, 0.08
 """Heights in metres of the pelvis at least, and of the lower toe at most: people who run, jump or lie do not glide."""
 _GAP, _SHORTEST, _WAY = 0.2, 0.15, 0.1
 """Seconds between two glides that are one, seconds of the shortest, and metres of its way."""
 _PERIOD = (0.36, 0.75)
-"""Seconds of a step; in it a foot swings for the share :data:`_SWING`."""
-_SWING = 0.8
+"""Seconds of a step; in it a foot swings for the share :data:`SWING`."""
+SWING = 0.8
 _LENGTH = (0.2, 0.3)
 """Metres of a step at rest, and what it grows by with each metre a second (recorded walks: 0.5 to 0.65 m at 1.2)."""
 _LONGEST, _QUICKEST = 0.65, 0.22
 """Metres of a step at most, and seconds at least, where a body surges ahead."""
 _RISE = 0.06
 """Metres by which an ankle rises in its swing."""
-_TOE, _ANKLE = 0.02, 0.09
+TOE, ANKLE = 0.02, 0.09
 """Heights in metres of a foot that is set down, at most."""
 
 
@@ -66,16 +67,32 @@ def stepping(positions: Array, fps: float, *, skeleton: Skeleton = SMPL22) -> Ar
         (T, J, 3) with the bone lengths of the input; knees, ankles and toes moved.
     """
     result = np.array(positions, dtype=np.float64)
-    legs = [
+    if len(result) < 4:
+        return result
+    feet = feet_of(result, skeleton)
+    found = feet.copy()
+    for start, stop in _glides(result, feet, fps):
+        steps = _steps(feet, result[:, 0], start, stop, fps)
+        found[start:stop] = walked(feet, feet, steps, start, stop)[start:stop]
+    return with_feet(result, found, skeleton)
+
+
+def feet_of(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
+    """(T, 2 sides, ankle and toe, 3) the feet of a person (T, J, 3)."""
+    return np.stack([positions[:, leg[2:]] for leg in _legs(skeleton)], axis=1)
+
+
+def _legs(skeleton: Skeleton) -> list[list[int]]:
+    return [
         [skeleton.index(f"{side}_{part}") for part in ("hip", "knee", "ankle", "foot")]
         for side in ("left", "right")
     ]
-    if len(result) < 4:
-        return result
-    feet = np.stack([result[:, leg[2:]] for leg in legs], axis=1)  # (T, 2 sides, ankle and toe, 3)
-    found, forward = feet.copy(), facing(result, skeleton)
-    for start, stop in _glides(result, feet, fps):
-        found[start:stop] = _walked(feet, result[:, 0], start, stop, fps)[start:stop]
+
+
+def with_feet(positions: Array, found: Array, skeleton: Skeleton = SMPL22) -> Array:
+    """A person (T, J, 3) whose feet are as they were ``found`` (T, 2, 2, 3), as far as legs reach."""
+    result, forward = np.array(positions, dtype=np.float64), facing(positions, skeleton)
+    legs, feet = _legs(skeleton), feet_of(result, skeleton)
     moved = np.abs(found - feet).max(axis=(2, 3)) > 1e-6
     for side, (hip, knee, ankle, toe) in enumerate(legs):
         own = moved[:, side]
@@ -97,9 +114,9 @@ def _glides(positions: Array, feet: Array, fps: float) -> list[tuple[int, int]]:
     """(start, stop) of the stretches in which a body glides, long enough for two steps where there is room."""
     body = _speed(positions[:, 0], fps)
     slower = np.minimum(*(_speed(feet[:, side, 1], fps) for side in (0, 1)))
-    low = np.minimum(feet[:, 0, 1, 1], feet[:, 1, 1, 1]) < _ON_FLOOR
+    low = np.minimum(feet[:, 0, 1, 1], feet[:, 1, 1, 1]) < ON_FLOOR
     gliding = (
-        (body > _MOVES) & (slower > _GLIDES * body) & low & (positions[:, 0, 1] > _UPRIGHT) & (slower > 0.15)
+        (body > _MOVES) & (slower > _GLIDES * body) & low & (positions[:, 0, 1] > UPRIGHT) & (slower > 0.15)
     )
     closing = np.ones(2 * round(_GAP * fps / 2) + 1)
     gliding = scipy.ndimage.binary_closing(np.pad(gliding, len(closing)), closing)[
@@ -129,21 +146,20 @@ def _steps(feet: Array, pelvis: Array, start: int, stop: int, fps: float) -> lis
     first = int(np.argmin([feet[start, side, 1] @ ahead for side in (0, 1)]))  # the foot that is behind
     steps = []
     for i in range(count):
-        leaves, lands = start + at[i], start + at[i] + _SWING * (at[i + 1] - at[i])
+        leaves, lands = start + at[i], start + at[i] + SWING * (at[i + 1] - at[i])
         goal = stop - 1 if i >= count - 2 else min(lands + 0.5 * (at[i + 1] - at[i]), stop - 1)
         steps.append(Step((first + i) % 2, round(leaves), max(round(lands), round(leaves) + 2), round(goal)))
     return steps
 
 
-def _walked(feet: Array, pelvis: Array, start: int, stop: int, fps: float) -> Array:
-    """(T, 2, 2, 3) the feet with the steps of a stretch."""
+def walked(feet: Array, stances: Array, steps: Sequence[Step], start: int, stop: int) -> Array:
+    """The feet (T, 2, 2, 3) with the steps of a stretch, set down as in ``stances`` (T, 2, 2, 3)."""
     found = feet.copy()
     held = [_set_down(feet[start, side]) for side in (0, 1)]
-    steps = _steps(feet, pelvis, start, stop, fps)
     for side in (0, 1):
         found[start:stop, side] = held[side]
         for step in (step for step in steps if step.foot == side):
-            goal = _set_down(feet[step.goal, side])
+            goal = _set_down(stances[step.goal, side])
             lands = min(step.lands, stop - 1)
             share = (np.arange(step.leaves, lands + 1) - step.leaves) / max(lands - step.leaves, 1)
             eased = minimum_jerk(share)[:, None, None]
@@ -158,7 +174,7 @@ def _walked(feet: Array, pelvis: Array, start: int, stop: int, fps: float) -> Ar
 def _set_down(foot: Array) -> Array:
     """An ankle and a toe (2, 3) on the floor."""
     found = np.array(foot)
-    found[:, 1] = np.minimum(found[:, 1], [_ANKLE, _TOE])
+    found[:, 1] = np.minimum(found[:, 1], [ANKLE, TOE])
     return found
 
 

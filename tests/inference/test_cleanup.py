@@ -5,6 +5,7 @@ import pytest
 
 from motion import SMPL22
 from motion.metrics.naturalness import standing_foot
+from tests.motion.test_pivots import apart, turned
 from webdemo.inference import cleanup
 from webdemo.inference.cleanup import _elbow_pole, clean_person, on_constant_bones
 from webdemo.inference.following import FollowingCleanup
@@ -115,3 +116,8 @@ def walking() -> np.ndarray:
 
 def test_one_foot_stands_until_the_other_does() -> None:
     assert standing_foot(clean_person(walking()), 30.0) < 1.0
+
+
+def test_no_legs_are_crossed_by_a_turn() -> None:
+    before = turned(np.pi, later=60)
+    assert apart(before).min() < -0.05 and apart(clean_person(before)).min() > -0.02

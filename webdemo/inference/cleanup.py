@@ -10,6 +10,7 @@ from motion.cleaning import foot_contacts, open_limb, plant_feet, solve_two_bone
 from motion.footsteps import stepping
 from motion.ground import above_floor
 from motion.kinematics import project_to_skeleton
+from motion.pivots import pivoting
 from motion.skeleton import ARMS, LEGS
 from motion.smoothing import least_jerk
 from motion.swings import lift_swinging_feet
@@ -42,7 +43,7 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
     seen = _calmed(positions)
     bones, _ = project_to_skeleton(seen)
     result = above_floor(_steady_limbs(_limbs_back(_steady_bones(bones), seen), seen))
-    result = stepping(result, fps)
+    result = pivoting(stepping(result, fps), fps)
     swung = lift_swinging_feet(plant_feet(result, foot_contacts(result, fps)), fps)
     # a toe that is raised glides as it lands
     return plant_feet(swung, foot_contacts(swung, fps, speed=_LANDS))

@@ -384,13 +384,14 @@ def _sampled(who: int, track: Track, standing: Standing | None) -> Way2D | None:
 
 
 def _with_turns(frames: Sequence[int], headings: Array) -> list[int]:
-    """The frames, with more of them where somebody turns so far between two that they could turn the other way."""
+    """The frames, with more of them where somebody turns: a network that is free there turns them within a few."""
     found = list(frames)
     for first, last in itertools.pairwise([0, *frames]):
         turned = abs(headings[last] - headings[first])
-        if turned > math.pi + 0.1:  # false where either heading is free
-            parts = math.ceil(turned / STEP) + 1
-            found += np.linspace(first, last, parts).round().astype(int).tolist()
+        if turned > STEP:  # false where either heading is free
+            gone = np.abs(headings[first : last + 1] - headings[first])
+            each = turned / math.ceil(turned / STEP)
+            found += [first + int(np.argmax(gone >= share)) for share in np.arange(each, turned - 0.01, each)]
     return sorted(set(found))
 
 
