@@ -17,7 +17,7 @@ from .easing import minimum_jerk
 from .footsteps import ANKLE, ON_FLOOR, SWING, TOE, UPRIGHT, Step, feet_of, walked, with_feet
 from .skeleton import SMPL22, Skeleton
 from .transforms import facing
-from .vectors import wrapped
+from .vectors import runs, wrapped
 
 Array = NDArray[np.floating]
 
@@ -95,10 +95,9 @@ def _turns(positions: Array, feet: Array, forward: Array, fps: float) -> list[Tu
     at_rest = under & (off < _BEGINS)
     closing = np.ones(2 * round(_GAP * fps / 2) + 1)
     behind = scipy.ndimage.binary_closing(np.pad(behind, len(closing)), closing)[len(closing) : -len(closing)]
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], behind.astype(np.int8), [0]])))
     found: list[Turn] = []
     room, least, low = round(_LATER * fps), round(2 * _PIVOT_TIME * fps), 0
-    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+    for first, last in runs(behind):
         if first < low:
             continue
         before, after = np.flatnonzero(at_rest[low:first]), np.flatnonzero(under[last : last + room])
