@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import gradio as gr
 
-from motion import InputError
 from motion.formats.importing import AXES, ORDERS, UNITS
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.methods import methods
@@ -21,53 +19,33 @@ from webdemo.ui.components.actors import (
     Source,
     given_again,
     offered_animations,
-    read_source,
-    result_source,
 )
 from webdemo.ui.components.animations import kept_animation
-from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
-from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
-from webdemo.ui.text.examples import example_clips
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line, text
 
 from .job import QUIET, Updates
-from .sweeps import SweepTab
+from .source import SourceTab
 
 _DETECTED = say("actor.detect")
 _SHORTEST = 0.1
 """Seconds: the least that the trim's sliders differ in."""
 
 
-class ActorTab(SweepTab):
-    """The part of the React tab that chooses who is given.
+class ActorTab(SourceTab):
+    """The part of the React tab that chooses who is given; see :class:`SourceTab`."""
 
-    Args:
-        page: what the tabs share.
-        examples: (name, file) of the example actors; those that are shipped by default.
-    """
-
-    source: gr.State
-    given: gr.Textbox
-    file: gr.File
-    camera: CameraPanel
-    chips: list[gr.Button]
     take: dict[str, gr.Button]
     trim: gr.Column
-    animation: gr.Dropdown
     reading: gr.Accordion
     person: gr.Radio
     begin: gr.Slider
     end: gr.Slider
     keep: gr.Checkbox
-
-    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
-        super().__init__(page)
-        self.examples = example_clips() if examples is None else examples
 
     def _import_choices(self) -> None:
         """The line on how the file was read, and its settings."""
@@ -131,14 +109,8 @@ class ActorTab(SweepTab):
             self.source, self.given, self.line, self.player, self.trim, self.person, self.begin, self.end,
             self.found,
         ]  # fmt: skip
-        load: dict[str, Any] = {
-            "outputs": changed,
-            "concurrency_limit": 2,
-            "concurrency_id": "react-read",
-            **QUIET,
-        }
-        self.file.upload(self.upload, inputs=self.file, **load).then(None, **self.compare)
-        self.camera.submit(self.read_film, inputs=self.camera, **load).then(None, **self.compare)
+        takes = {button: partial(self.take_result, person) for person, button in self.take.items()}
+        load = self._wire_source(changed, takes)
         known = [self.up, self.unit, self.fps, self.order]
         self.file.upload(lambda: (AUTO, AUTO, None, AUTO), outputs=known, queue=False, **QUIET)
         choices = [*known, self.animation]
@@ -150,40 +122,19 @@ class ActorTab(SweepTab):
             self.read_again, inputs=[self.source, *choices], trigger_mode="always_last",
             **{**load, "outputs": [*changed, *choices]},
         ).then(None, **self.compare)  # fmt: skip
-        for button, (name, path) in zip(self.chips, self.examples, strict=True):
-            read = partial(self.load, partial(read_source, path, name))
-            button.click(read, **load).then(None, **self.compare)
-        for person, button in self.take.items():
-            taking = button.click(partial(self.take_result, person), inputs=self.record, **load)
-            taking.then(None, **self.compare)
-        others = [self.camera.submit, *(button.click for button in (*self.chips, *self.take.values()))]
-        gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
         self.source.change(
             lambda source: gr.update(visible=source is not None and len(source.people) == 2, value=False),
             inputs=self.source, outputs=self.keep, queue=False, **QUIET,
         )  # fmt: skip
         self.source.change(
-            offered_animations, inputs=self.source, outputs=self.animation, queue=False, **QUIET
-        )
-        self.source.change(
             lambda source: gr.update(open=True) if source is not None and source.asks_rate else gr.skip(),
             inputs=self.source, outputs=self.reading, queue=False, **QUIET,
         )  # fmt: skip
-        self.file.clear(self.forget, outputs=changed, queue=False, **QUIET)
         trim = [self.source, self.person, self.begin, self.end]
         gr.on(
             [self.person.input, self.begin.release, self.end.release],
             self.preview, inputs=trim, outputs=[self.line, self.player], trigger_mode="always_last", **QUIET,
         )  # fmt: skip
-
-    def upload(self, path: str | None) -> Iterator[Updates]:
-        """Reads an uploaded file and shows its actor; one that cannot be read leaves no actor."""
-        if path is not None:
-            yield from self.load(partial(read_source, path), fresh=True)
-
-    def read_film(self, landmarks: str | None) -> Iterator[Updates]:
-        """Makes the people of a film the actors."""
-        yield from self.load(partial(film_source, landmarks))
 
     def read_again(
         self, source: Source | None, up: str, unit: str, fps: float | None, order: str = AUTO,
@@ -192,57 +143,29 @@ class ActorTab(SweepTab):
         """Reads the source's file anew with what the visitor knows of it, or takes that back where it cannot."""
         if source is None or source.path is None:
             return
-        path, name, asked = source.path, source.name, (up, unit, fps, order, animation)
-        for updates in self.load(lambda: read_source(path, name, asked)):
-            failed = updates[0] == gr.skip() and "pd-error" in updates[2]
-            back = (*source.read_with[:4], offered_animations(source)) if failed else (gr.skip(),) * 5
-            yield *updates, *back
+        back = (*source.read_with[:4], offered_animations(source))
+        yield from self.again(source, (up, unit, fps, order, animation), back)
 
     def take_result(self, person: str, record: Record | None) -> Iterator[Updates]:
         """Makes a person of the session's last result the actor."""
+        yield from self.of_result(person, record)
 
-        def read() -> Source:
-            if record is None:
-                raise InputError("There is no result yet: generate one first.")
-            return result_source(record.result, record.prompt, person)
+    def payload(self, source: Source) -> dict[str, Any]:
+        """The chosen person, from the beginning to where they are used at most."""
+        return source.preview(source.chosen, 0.0, source.end)
 
-        yield from self.load(read)
-
-    def load(self, read: Callable[[], Source], *, fresh: bool = False) -> Iterator[Updates]:
-        """Updates of source, its key, line, player, trim, person, start, end and found while an actor is read.
-
-        Where it is ``fresh`` and cannot be read, an earlier actor is forgotten.
-        """
-        rest = (gr.skip(),) * 5
-        same = (gr.skip(),) * 2
-        yield *same, status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *rest
-        try:
-            source = read()
-            payload = source.preview(source.chosen, 0.0, source.end)
-        except Exception as error:
-            note = status(error_line(error), tone="error")
-            if fresh:
-                nobody = list(self.forget())
-                nobody[2] = note
-                yield tuple(nobody)
-            else:
-                yield *same, note, busy(""), *rest
-            return
+    def described(self, source: Source, *, at_end: bool) -> tuple[str, list[Any]]:
+        """The line on the part that is used; trim, person, start, end and found."""
         last = max(round(source.seconds, 1), _SHORTEST)
-        yield (
-            source,
-            source.key,
-            self._part_line(source, 0.0, source.end),
-            show(payload),
+        return self._part_line(source, 0.0, source.end), [
             gr.update(visible=True),
             gr.update(choices=source.choices, visible=len(source.people) > 1, value=source.chosen),
             gr.update(maximum=last, value=0),
             gr.update(maximum=last, value=min(round(source.end, 1), last)),
             _found(source),
-        )
+        ]
 
-    @staticmethod
-    def forget() -> Updates:
+    def forget(self) -> Updates:
         """The tab without an actor; a result stays in the downloads."""
         return None, "", status(), show(None), gr.update(visible=False), *(gr.skip(),) * 4
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -14,11 +14,11 @@ from motion import Clip, Duet, InputError
 from webdemo.inference.methods import installed, label_of, method
 from webdemo.inference.predict_request import LONGEST, PAST_SECONDS, PredictRequest, PredictResult
 from webdemo.inference.requests import Result
-from webdemo.ui.components.actors import Source, given_again, offered_animations, read_source, result_source
+from webdemo.ui.components.actors import Source, given_again, offered_animations
 from webdemo.ui.components.animations import animation_field, kept_animation
-from webdemo.ui.components.camera import CameraPanel, film_source
+from webdemo.ui.components.camera import CameraPanel
 from webdemo.ui.components.exports import Record
-from webdemo.ui.components.player import busy, show
+from webdemo.ui.components.player import show
 from webdemo.ui.components.prediction_view import (
     curves_figure,
     error_lines,
@@ -29,17 +29,14 @@ from webdemo.ui.components.prediction_view import (
 from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.sweep import BETWEEN_SENTENCES, Kind, grid_table, real
 from webdemo.ui.components.upload import chip, example_chips, file_field
-from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
-from webdemo.ui.text.examples import example_clips
 from webdemo.ui.text.panels import comparison_panel, method_line, prediction_lines, status
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import error_line
 from webdemo.view.payload import player_payload
 
 from .generate import named_method
 from .job import QUIET, Updates
-from .sweeps import SweepTab
+from .source import SourceTab
 
 EMPTY_TEXT = "player.empty_predict"
 
@@ -73,22 +70,13 @@ def _last_marker(source: Source) -> float:
     return max(int(source.seconds * 10 + 1e-6) / 10, PAST_SECONDS)
 
 
-class PredictTab(SweepTab):
-    """A past → its future.
-
-    Args:
-        page: what the tabs share.
-        examples: (name, file) of example motions; those that are shipped by default.
-    """
+class PredictTab(SourceTab):
+    """A past → its future; see :class:`SourceTab`."""
 
     label = "Predict"
     named = "tabs.predict"
     prefix = "predict-"
     restored = ("file", "given", "about", "animation")
-
-    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
-        super().__init__(page)
-        self.examples = example_clips() if examples is None else examples
 
     def request(self, fields: Mapping[str, Any]) -> Any:
         """A :class:`PredictRequest`; raises InputError where none can be made of the fields."""
@@ -170,7 +158,7 @@ class PredictTab(SweepTab):
         }  # fmt: skip
         self._wire_run([self.go.click], record)
         self._wire_sweeps()
-        self._wire_source()
+        self._wire_motion()
 
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
@@ -200,82 +188,37 @@ class PredictTab(SweepTab):
 
     # ---- events ----------------------------------------------------------------------------------
 
-    def _wire_source(self) -> None:
+    def _wire_motion(self) -> None:
         self.loaded = [self.source, self.given, self.line, self.player, self.marker]
-        load: dict[str, Any] = {
-            "outputs": self.loaded,
-            "concurrency_limit": 2,
-            "concurrency_id": "predict-read",
-            **QUIET,
-        }
-        self.file.upload(self.upload, inputs=self.file, **load).then(None, **self.compare)
-        self.camera.submit(self.read_film, inputs=self.camera, **load).then(None, **self.compare)
-        for button, (name, path) in zip(self.chips, self.examples, strict=True):
-            read = partial(self.load, partial(read_source, path, name))
-            button.click(read, **load).then(None, **self.compare)
-        self.take.click(self.take_result, inputs=self.record, **load).then(None, **self.compare)
+        load = self._wire_source(self.loaded, {self.take: self.take_result})
         self.model.input(
             None, inputs=self.model, outputs=[self.about, self.seed],
             js=looked_up({name: self._of_method(name) for _, name in predict_choices()}), **QUIET,
         )  # fmt: skip
-        others = [self.camera.submit, *(button.click for button in (*self.chips, self.take))]
-        gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
-        self.source.change(
-            offered_animations, inputs=self.source, outputs=self.animation, queue=False, **QUIET
-        )
         self.animation.input(
             self.read_again, inputs=[self.source, self.animation], trigger_mode="always_last",
             **{**load, "outputs": [*self.loaded, self.animation]},
         ).then(None, **self.compare)  # fmt: skip
-        self.file.clear(self.forget, outputs=self.loaded, queue=False, **QUIET)
-
-    def upload(self, path: str | None) -> Iterator[Updates]:
-        """Reads an uploaded file and shows its motion; one that cannot be read leaves no motion."""
-        if path is not None:
-            yield from self.load(partial(read_source, path), fresh=True)
 
     def read_again(self, source: Source | None, animation: int | None) -> Iterator[Updates]:
         """Reads another animation of the source's file, or takes that back where it cannot."""
         if source is None or source.path is None:
             return
-        asked = (*source.read_with[:4], animation)
-        for updates in self.load(partial(read_source, source.path, source.name, asked)):
-            failed = updates[0] == gr.skip() and "pd-error" in updates[2]
-            yield *updates, offered_animations(source) if failed else gr.skip()
-
-    def read_film(self, landmarks: str | None) -> Iterator[Updates]:
-        """Makes the motion of a film the past."""
-        yield from self.load(partial(film_source, landmarks))
+        yield from self.again(source, (*source.read_with[:4], animation), [offered_animations(source)])
 
     def take_result(self, record: Record | None) -> Iterator[Updates]:
         """Makes the session's last result the past: the marker stands at its end."""
+        yield from self.of_result("a", record, at_end=True)
 
-        def read() -> Source:
-            if record is None:
-                raise InputError("There is no result yet: generate one first.")
-            return result_source(record.result, record.prompt, "a")
+    def payload(self, source: Source) -> dict[str, Any]:
+        """All people of the motion."""
+        return player_payload(without_name(motion_of(source)), title=source.name)
 
-        yield from self.load(read, at_end=True)
-
-    def load(
-        self, read: Callable[[], Source], *, at_end: bool = False, fresh: bool = False
-    ) -> Iterator[Updates]:
-        """Updates of source, its key, line, player and marker while a motion is read.
-
-        Where it is ``fresh`` and cannot be read, an earlier motion is forgotten.
-        """
-        same = (gr.skip(),) * 2
-        yield *same, status("Reading the motion …", tone="busy"), busy("Reading the motion …"), gr.skip()
-        try:
-            source = read()
-            payload = player_payload(without_name(motion_of(source)), title=source.name)
-        except Exception as error:
-            note = status(error_line(error), tone="error")
-            yield (None, "", note, show(None), gr.skip()) if fresh else (*same, note, busy(""), gr.skip())
-            return
+    def described(self, source: Source, *, at_end: bool) -> tuple[str, list[Any]]:
+        """The line on its people and its length; the marker."""
         last = _last_marker(source)
         marker = last if at_end else max(PAST_SECONDS, round(last / 2, 1))
-        yield source, source.key, self._found_line(source), show(payload), self._marker(source, marker)
+        return self._found_line(source), [self._marker(source, marker)]
 
     @staticmethod
     def _marker(source: Source, value: float) -> Any:
@@ -309,8 +252,7 @@ class PredictTab(SweepTab):
             return status(f"{sentence} Cut it to {LONGEST:g} s or less.", tone="warning")
         return status(" ".join((sentence, *source.notes)), tone="warning" if source.notes else "quiet")
 
-    @staticmethod
-    def forget() -> Updates:
+    def forget(self) -> Updates:
         """The tab without a motion."""
         return None, "", status(), show(None), gr.skip()
 

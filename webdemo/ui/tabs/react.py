@@ -54,12 +54,7 @@ def _methods() -> list[tuple[str, str]]:
 
 
 class ReactTab(ActorTab):
-    """One person → two people.
-
-    Args:
-        page: what the tabs share.
-        examples: (name, file) of the example actors; those that are shipped by default.
-    """
+    """One person → two people; see :class:`~.source.SourceTab`."""
 
     label = "React"
     named = "tabs.react"
