@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from acts.frames import Event
 from acts.lexicon import Lexicon
 from acts.plan import Act, Relation
-from acts.shapes import Go, Strike
+from acts.shapes import Gesture, Go, Hold, Shape, Strike
 from acts.things import is_fixture
 
 BESIDE = frozenset(("gesture", "limb", "words"))
@@ -154,8 +154,16 @@ def coordinated(first: Act, then: Act, known: Lexicon, *, repeats: bool) -> str:
 
 
 def _linked(first: Act, then: Act, known: Lexicon) -> bool:
-    """True if two people go on hand in hand: "hold hands, walk"."""
-    return _is_hold(first, known) and any(isinstance(s, Go) for s in known.entries[then.act].stage)
+    """True if two people go on, spin or swing their arms hand in hand: "hold hands, walk"; so do arms that swing."""
+    shapes = known.entries[then.act].stage
+    goes = any(isinstance(s, Go | Hold) for s in shapes)
+    if any(_swings(s) for s in known.entries[first.act].stage):
+        return goes
+    return _is_hold(first, known) and (goes or any(_swings(s) for s in shapes))
+
+
+def _swings(shape: Shape) -> bool:
+    return isinstance(shape, Gesture) and shape.gesture == "swings"
 
 
 def _is_hold(act: Act, known: Lexicon) -> bool:

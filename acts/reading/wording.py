@@ -149,6 +149,10 @@ class _Preparation:
         if self._lower(i) == "'" and self._lower(i + 1) == "s":  # "person 2's"
             self._pieces.append(("'s", self._tokens[i][1], self._tokens[i + 1][2]))
             return 2
+        ends = not self._lower(i + 1).isalpha() or self._lower(i + 1) in ("and", "then", "while", "until")
+        if self._lower(i) == "round" and ends and self._is_verb(self._lower(i - 1)):
+            self._pieces.append(("around", *self._tokens[i][1:]))  # the adverb, and no noun: "and spin round"
+            return 1
         owned = self._lower(i - 1).endswith("'s") and self._lower(i - 1) not in ("he's", "she's", "it's")
         laid = self._lower(i - 2) == "on" and self._lower(i - 3).startswith(_LIES)
         turned = self._lower(i - 1) == "her" and (self._lower(i + 1) in _BEHIND_BACK or laid)

@@ -31,7 +31,7 @@ _NEAR = 1.2
 """Metres between two pelvises beyond which bodies do not touch."""
 _UPRIGHT, _ON_FLOOR = 0.7, 0.12
 """Heights in metres of the pelvis at least, and of the lower toe at most, of a person on their feet."""
-_EASE = 12
+_EASE = 6
 """Frames beside those at which somebody is not on their feet over which bodies begin to be moved."""
 _ROUNDS = 4
 _MOST = 0.12

@@ -26,7 +26,7 @@ _SOFT_ARMS = 0.018
 """The same for an arm in the other's arm: hands that hold each other stay together."""
 _NEAR = 1.5
 """Metres between two pelvises beyond which no arm reaches the other."""
-_ROUNDS = 8
+_ROUNDS = 12
 _SMOOTH = 2.0
 """Frames over which a push is spread (standard deviation): pushes that follow the other closely are jolts."""
 _SHARES = ((0.0, 0.6), (0.0, 1.0), (0.35, 1.0), (0.7, 1.0), (1.0, 1.0))

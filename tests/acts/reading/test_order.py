@@ -16,3 +16,11 @@ def test_only_two_who_hold_each_other_walk_meanwhile() -> None:
     then = Act(id="2", act="strut", agents=both)
     assert coordinated(Act(id="1", act="hold-hands", agents=both), then, lexicon(), repeats=False) == "with"
     assert coordinated(Act(id="1", act="bow", agents=both), then, lexicon(), repeats=False) == "after"
+
+
+def test_two_who_hold_hands_spin_or_swing_their_arms_meanwhile() -> None:
+    both = ("a", "b")
+    held, swung = Act(id="1", act="hold-hands", agents=both), Act(id="1", act="swing-arms", agents=both)
+    for first, act in ((held, "ring"), (held, "swing-arms"), (swung, "walk-together")):
+        assert coordinated(first, Act(id="2", act=act, agents=both), lexicon(), repeats=False) == "with", act
+    assert coordinated(swung, Act(id="2", act="bow", agents=both), lexicon(), repeats=False) == "after"

@@ -68,7 +68,9 @@ def test_who_is_carried_is_off_the_floor_in_reach_of_both_hands(carry: Carry, an
         for side in ("left", "right"):
             shoulder, wrist = one[SMPL22.index(f"{side}_shoulder")], one[SMPL22.index(f"{side}_wrist")]
             assert np.linalg.norm(wrist - shoulder) < arm + 0.12
-            loose = carry is Carry.DRAGS and one is pose  # their arms trail on the floor
+            loose = one is pose and (
+                carry is Carry.DRAGS or (carry is Carry.ARMS and side == "left")
+            )  # their arms trail on the floor, or a hand lies in the lap
             assert loose or np.linalg.norm(other - wrist, axis=-1).min() < 0.25
     still, other = carried(carry, np.zeros(2), 0.0)
     np.testing.assert_allclose(np.sort(pose[:, 1]), np.sort(still[:, 1]), atol=1e-9)
@@ -81,6 +83,13 @@ def test_the_legs_of_somebody_on_the_back_are_beside_the_carrier_and_not_inside(
     pose[arms], carrier[arms] = [0.0, 9.0, 0.0], [0.0, 19.0, 0.0]  # arms are bent later
     assert limb_depth(pose[None], carrier[None])[0] < 0.02
     assert limb_depth(carrier[None], pose[None])[0] < 0.02
+
+
+def test_the_arm_that_carries_the_legs_goes_under_the_thighs_and_not_through() -> None:
+    pose, carrier = carried(Carry.ARMS, np.zeros(2), 0.4)
+    carrier[[SMPL22.index("left_elbow"), SMPL22.index("left_wrist")]] = [0.0, 9.0, 0.0]
+    assert limb_depth(carrier[None], pose[None])[0] < 0.03
+    assert carrier[SMPL22.index("right_wrist"), 1] < pose[SMPL22.index("right_knee"), 1] - 0.05
 
 
 def test_who_is_carried_from_the_start_is_behind_and_who_is_lifted_before_the_other() -> None:

@@ -47,6 +47,32 @@ def test_palms_meet_where_wrists_did_and_bones_stay() -> None:
         np.testing.assert_allclose(lengths[1], lengths[0], atol=1e-6)
 
 
+def _shaking() -> np.ndarray:
+    """Two people face to face whose right wrists meet before their waists."""
+    pair = _pair(-0.3)
+    held = np.clip((24 - np.abs(np.arange(FRAMES) - 30)) / 12, 0.0, 1.0)[:, None]
+    middle = np.array([0.0, 1.1, 0.5 * pair[1, 0, 0, 2]])
+    for person, sign in ((0, 1.0), (1, -1.0)):
+        shoulder = pair[person, :, J("right_shoulder")]
+        for joint, down, there in (
+            ("right_elbow", 0.26, shoulder + np.array([-0.02 * sign, -0.24, 0.09 * sign])),
+            ("right_wrist", 0.5, middle - np.array([0.0, 0.0, 0.03 * sign])),
+        ):
+            hanging = shoulder - np.array([0.0, down, 0.0])
+            pair[person, :, J(joint)] = hanging + held * (there - hanging)
+    return pair
+
+
+def test_palms_lie_side_by_side_where_hands_are_shaken() -> None:
+    pair = _shaking()
+    found = palms_met(pair)
+    before, after = (np.linalg.norm(np.subtract(*_palms(x)), axis=-1)[MEETS] for x in (pair, found))
+    assert before.min() > 0.08
+    np.testing.assert_allclose(after, APART, atol=0.02)
+    wrists = np.linalg.norm(found[0, :, J("right_wrist")] - found[1, :, J("right_wrist")], axis=-1)
+    assert wrists[MEETS].min() > 0.1, "each hand ends at the other's wrist"
+
+
 def test_hands_that_meet_below_the_chest_stay() -> None:
     pair = _pair(-0.3)
     np.testing.assert_array_equal(palms_met(pair), pair)

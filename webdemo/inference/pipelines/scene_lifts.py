@@ -85,9 +85,10 @@ class Carrying:
     def given(self) -> list[KnownFrames]:
         """The body of the person carried, and the carrier's pelvis, trunk and hands, as the network is given them."""
         course, parts = self.stretch.course(self.carrier), []
-        at = self.stretch.shown(np.arange(*self.off, OFTEN))
+        first, last = self.off
+        at = self.stretch.shown(np.unique([*range(first, last, OFTEN), *range(last - 1, last)]))
         if len(at):
-            walking = self._walking()[at - self.off[0]]
+            walking = self._walking()[at - first]
             made = [carried(self.lift.carry, course.places[t], float(course.headings[t])) for t in at]
             theirs, own = (np.stack(poses) for poses in zip(*made, strict=True))
             sinks = walking[:, :1] - own[:, :1]
@@ -95,8 +96,9 @@ class Carrying:
             theirs += 0.0 if self.lift.carry is Carry.DRAGS else sinks
             own[:, LOWER] = walking[:, LOWER]
             self._gesture(theirs, at, course)
-            parts.append(self.stretch.given(1 - self.carrier, at, theirs, _BODY))
-            parts.append(self.stretch.given(self.carrier, at, own, _CARRIER))
+            elbows = _ELBOWS if self.lift.carry is Carry.ARMS else []
+            parts.append(self.stretch.given(1 - self.carrier, at, theirs, [*_BODY, *elbows]))
+            parts.append(self.stretch.given(self.carrier, at, own, [*_CARRIER, *elbows]))
         feet = [(frame, pose) for frame, pose in self._on_feet() if self.stretch.shows(frame)]
         if feet:
             frames, poses = zip(*feet, strict=True)

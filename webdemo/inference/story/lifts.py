@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22
 from motion.kinematics import forward_kinematics
+from motion.touch.bending import bent_towards
 from motion.transforms import heading_matrix
 
 from .poses import about, bending
@@ -25,7 +26,7 @@ class Carry(Enum):
     """Ways in which somebody is held, and the place of their pelvis beside the carrier's, who faces +Z, in metres."""
 
     UP = (0.0, 0.38, 0.3)
-    ARMS = (0.0, 0.12, 0.3)
+    ARMS = (0.0, 0.2, 0.29)
     BACK = (0.0, 0.22, -0.2)
     DRAGS = (0.0, -0.83, 1.0)
 
@@ -63,7 +64,7 @@ _WORDS = {
     Carry.BACK: "carries the other on their back",
     Carry.DRAGS: "drags the other",
 }
-_LEANS = {Carry.UP: -0.08, Carry.ARMS: -0.1, Carry.BACK: 0.3, Carry.DRAGS: 1.0}
+_LEANS = {Carry.UP: -0.08, Carry.ARMS: -0.03, Carry.BACK: 0.3, Carry.DRAGS: 1.0}
 """Radians by which the carrier leans forward."""
 _LEGS = {
     Carry.UP: (-0.15, 0.0, 0.35),
@@ -84,8 +85,8 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
         angle: the carrier's heading in radians.
 
     Returns:
-        (22, 3) metres in the world, with wrists where they hold on but elbows as they hang, and (22, 3) of the
-        carrier, of which the trunk and the wrists are meant.
+        (22, 3) metres in the world, with wrists where they hold on and elbows below, and (22, 3) of the carrier, of
+        which the trunk and the arms are meant.
     """
     turn = heading_matrix(angle)
     carrier = bending(place, angle, _LEANS[carry])
@@ -104,9 +105,12 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
     elif carry is Carry.ARMS:
         hands = {
             "left": theirs("spine3") - 0.1 * up,
-            "right": 0.5 * (theirs("left_knee") + theirs("right_knee")) - 0.1 * up,
+            "right": 0.7 * theirs("right_knee") + 0.3 * theirs("right_hip") - 0.11 * up + 0.1 * ahead,
         }
-        holds = {"left": theirs("spine2") + 0.16 * up, "right": own("neck") + 0.12 * left + 0.05 * ahead}
+        holds = {
+            "left": theirs("pelvis") + 0.13 * up + 0.05 * ahead,  # in the lap
+            "right": own("neck") + 0.05 * left - 0.1 * ahead,  # around the neck
+        }
     elif carry is Carry.DRAGS:
         hands = {s: theirs(f"{o}_ankle") for s, o in (("left", "right"), ("right", "left"))}
         holds = {s: theirs(f"{s}_shoulder") + 0.45 * ahead - 0.04 * up for s, _ in _SIDES}
@@ -114,9 +118,19 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
         hands = {s: 0.7 * theirs(f"{s}_knee") + 0.3 * theirs(f"{s}_hip") - 0.1 * up for s, _ in _SIDES}
         holds = {s: own("spine3") + 0.16 * ahead + sign * 0.06 * left - 0.02 * up for s, sign in _SIDES}
     for side, _ in _SIDES:
-        wrist = SMPL22.index(f"{side}_wrist")
-        carrier[wrist], pose[wrist] = hands[side], holds[side]
+        _bend(carrier, side, hands[side])
+        if carry is Carry.DRAGS:  # the arms trail on the floor
+            pose[SMPL22.index(f"{side}_wrist")] = holds[side]
+        else:
+            _bend(pose, side, holds[side])
     return pose, carrier
+
+
+def _bend(pose: Array, side: str, hand: Array) -> None:
+    """Has an arm of a pose (22, 3) reach for a place, with the elbow below."""
+    arm = [SMPL22.index(f"{side}_{joint}") for joint in ("shoulder", "elbow", "wrist")]
+    elbow, _ = bent_towards(*pose[arm][:, None], hand[None], np.array([[0.0, -1.0, 0.0]]))
+    pose[arm[1:]] = elbow[0], hand
 
 
 def _pose(carry: Carry) -> Array:
