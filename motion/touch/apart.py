@@ -9,6 +9,7 @@ the feet stand further apart. A foot that stands is set down elsewhere and stays
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from motion.cleaning import foot_contacts, solve_two_bones
 from motion.easing import minimum_jerk
-from motion.metrics.bodies import capsules, closest_points, sideless
+from motion.metrics.bodies import Capsules, capsules, closest_points, sideless
 from motion.planted import HIPS, UPPER, over_planted_feet
 from motion.skeleton import LEGS, SMPL22
 from motion.smoothing import eased_marks
@@ -43,7 +44,9 @@ _LEVEL = 0.4
 _ROOT = 0.4
 """Share of the upper arm that belongs to the body; the rest bends out of the way."""
 _FLAT = np.array([1.0, 0.0, 1.0])
-_ARM_PARTS, _LEG_PARTS = ("elbow", "wrist"), ("ankle", "foot")
+_LEG_PARTS = ("ankle", "foot")
+_RAISED, _SHORT = 0.2, 2.0
+"""Height in metres of a toe from which a leg is raised, and frames over which it is stopped."""
 
 
 def bodies_apart(pair: Array, fps: float, free: Array | None = None) -> Array:
@@ -77,6 +80,52 @@ def bodies_apart(pair: Array, fps: float, free: Array | None = None) -> Array:
                 for p, sign in ((0, -0.5), (1, 0.5))
             ]
         )
+    return _kicks_stopped(result, way, near, share)
+
+
+def _kicks_stopped(pair: Array, way: Array, near: NDArray[np.bool_], share: Array) -> Array:
+    """The two, with legs that are raised against the other ending at the other's body and not in it."""
+    result = np.array(pair)
+    for _ in range(_ROUNDS):
+        before = result.copy()
+        for person, sign in ((0, -1.0), (1, 1.0)):
+            for leg in LEGS:
+                raised = near & (before[person, :, leg[-1], 1] > _RAISED)
+                depth = _leg_depth(before, person, leg, way, raised)
+                if depth.any():
+                    spread = scipy.ndimage.maximum_filter1d(depth, 2 * round(_SHORT) + 1)
+                    spread = share * scipy.ndimage.gaussian_filter1d(spread, _SHORT, mode="nearest")
+                    result[person] = _foot_moved(result[person], leg, sign * spread[:, None] * way)
+    return result
+
+
+def _leg_depth(pair: Array, person: int, leg: Sequence[int], way: Array, raised: NDArray[np.bool_]) -> Array:
+    """(T,) metres that a shank and a foot are in the other's body along a level way, where they are raised."""
+    found = np.zeros(len(way))
+    at = np.flatnonzero(raised)
+    if not len(at):
+        return found
+    starts, ends, radii, lower = _segments(pair[:, at])
+    own = np.flatnonzero(np.isin(_body().ends, leg[2:]))
+    other = np.flatnonzero(~lower)
+    depth = _depth(
+        starts[person][:, own], ends[person][:, own], radii[own],
+        starts[1 - person][:, other], ends[1 - person][:, other], radii[other], way[at],
+    )  # fmt: skip
+    found[at] = depth.max(axis=(1, 2))
+    return found
+
+
+def _foot_moved(person: Array, leg: Sequence[int], by: Array) -> Array:
+    """A person (T, 22, 3) with an ankle and a toe moved by (T, 3) metres, and the knee after them."""
+    hip, knee, ankle, toe = leg
+    result = np.array(person)
+    goes = np.abs(by).max(axis=1) > 0
+    if goes.any():
+        limb = person[goes, hip], person[goes, knee], person[goes, ankle]
+        goal = limb[2] + by[goes]
+        result[goes, knee], result[goes, ankle] = solve_two_bones(*limb, goal, facing(person)[goes])
+        result[goes, toe] = result[goes, ankle] + person[goes, toe] - person[goes, ankle]
     return result
 
 
@@ -105,31 +154,49 @@ def _pushes(pair: Array, way: Array, near: NDArray[np.bool_]) -> tuple[Array, Ar
     at = np.flatnonzero(near)
     found = np.zeros((2, len(way)))
     starts, ends, radii, lower = _segments(pair[:, at])
-    shape = (len(at), len(radii), len(radii), 3)
-    one = (np.broadcast_to(each[0][:, :, None], shape).reshape(-1, 3) for each in (starts, ends))
-    other = (np.broadcast_to(each[1][:, None], shape).reshape(-1, 3) for each in (starts, ends))
-    here, there = closest_points(*one, *other)
-    line = (there - here).reshape(shape)
-    gap = np.linalg.norm(line, axis=-1)
-    depth = np.maximum(radii[:, None] + radii - SOFT - gap, 0.0)
-    along = np.abs(np.einsum("tabi,ti->tab", line, way[at])) / np.maximum(gap, 1e-6)
-    depth /= np.maximum(along, _LEVEL)
+    depth = _depth(starts[0], ends[0], radii, starts[1], ends[1], radii, way[at])
     of_legs = lower[:, None] | lower
     for kind, kept in enumerate((~of_legs, of_legs)):
         found[kind, at] = np.where(kept, depth, 0.0).max(axis=(1, 2))
     return found[0], found[1]
 
 
+def _depth(
+    start: Array,
+    end: Array,
+    radii: Array,
+    other_start: Array,
+    other_end: Array,
+    other_radii: Array,
+    way: Array,
+) -> Array:
+    """(N, C, D) metres that capsules are in others along a way (N, 3)."""
+    shape = (len(way), len(radii), len(other_radii), 3)
+    one = (np.broadcast_to(each[:, :, None], shape).reshape(-1, 3) for each in (start, end))
+    other = (np.broadcast_to(each[:, None], shape).reshape(-1, 3) for each in (other_start, other_end))
+    here, there = closest_points(*one, *other)
+    line = (there - here).reshape(shape)
+    gap = np.linalg.norm(line, axis=-1)
+    depth = np.maximum(radii[:, None] + other_radii - SOFT - gap, 0.0)
+    along = np.abs(np.einsum("tabi,ti->tab", line, way)) / np.maximum(gap, 1e-6)
+    return np.asarray(depth / np.maximum(along, _LEVEL))
+
+
 def _segments(pair: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """Middle lines from start to end (2, N, C, 3), radii (C,) and which are of shanks and feet (C,)."""
-    body = capsules(SMPL22)
+    body = _body()
     parts = [sideless(SMPL22.joint_names[end]) for end in body.ends]
-    kept = np.array([part != "wrist" for part in parts])
-    starts, ends = pair[:, :, body.starts[kept]], pair[:, :, body.ends[kept]]
-    arm = np.array([part in _ARM_PARTS for part in parts])[kept]
+    starts, ends = pair[:, :, body.starts], pair[:, :, body.ends]
+    arm = np.array([part == "elbow" for part in parts])
     ends = np.where(arm[:, None], starts + _ROOT * (ends - starts), ends)
-    lower = np.array([part in _LEG_PARTS for part in parts])[kept]
-    return starts, ends, body.radii[kept], lower
+    lower = np.array([part in _LEG_PARTS for part in parts])
+    return starts, ends, body.radii, lower
+
+
+@lru_cache(maxsize=1)
+def _body() -> Capsules:
+    body = capsules(SMPL22)
+    return body.part([sideless(SMPL22.joint_names[end]) != "wrist" for end in body.ends])
 
 
 def _stances(person: Array, fps: float) -> tuple[list[tuple[int, int]], ...]:
@@ -143,17 +210,8 @@ def _moved(person: Array, bodies: Array, feet: Array, stances: Sequence[Sequence
     if not (bodies.any() or feet.any()):
         return np.array(person)
     stood = np.array(person)
-    forward = facing(person)
-    for (hip, knee, ankle, toe), steps in zip(LEGS, stances, strict=True):
-        aside = _set_aside(bodies, feet, steps)
-        goes = np.abs(aside).max(axis=1) > 0
-        if not goes.any():
-            continue
-        goal = person[goes, ankle] + aside[goes]
-        stood[goes, knee], stood[goes, ankle] = solve_two_bones(
-            person[goes, hip], person[goes, knee], person[goes, ankle], goal, forward[goes]
-        )
-        stood[goes, toe] = stood[goes, ankle] + person[goes, toe] - person[goes, ankle]
+    for leg, steps in zip(LEGS, stances, strict=True):
+        stood = _foot_moved(stood, leg, _set_aside(bodies, feet, steps))
     result = np.array(stood)
     result[:, [*UPPER, *HIPS]] += bodies[:, None]
     return over_planted_feet(stood, result)

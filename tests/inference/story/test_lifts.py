@@ -87,7 +87,8 @@ def test_the_legs_of_somebody_on_the_back_are_beside_the_carrier_and_not_inside(
 
 def test_the_arm_that_carries_the_legs_goes_under_the_thighs_and_not_through() -> None:
     pose, carrier = carried(Carry.ARMS, np.zeros(2), 0.4)
-    carrier[[SMPL22.index("left_elbow"), SMPL22.index("left_wrist")]] = [0.0, 9.0, 0.0]
+    carrier[[SMPL22.index("left_elbow"), SMPL22.index("left_wrist")]] = carrier[SMPL22.index("left_shoulder")]
+    pose[[SMPL22.index("right_elbow"), SMPL22.index("right_wrist")]] = pose[SMPL22.index("right_shoulder")]
     assert limb_depth(carrier[None], pose[None])[0] < 0.03
     assert carrier[SMPL22.index("right_wrist"), 1] < pose[SMPL22.index("right_knee"), 1] - 0.05
 

@@ -78,3 +78,17 @@ def test_what_may_not_change_stays() -> None:
     found = bodies_apart(pair, 30.0, np.zeros(FRAMES))
     np.testing.assert_array_equal(found, pair)
     assert np.abs(bodies_apart(pair, 30.0, free)[:, 60:] - pair[:, 60:]).max() > 0.01
+
+
+def test_a_kick_ends_at_the_other_body() -> None:
+    pair = _pair(0.75)
+    share = np.clip((12 - np.abs(np.arange(FRAMES) - 45)) / 8, 0.0, 1.0)[:, None]
+    hip = pair[0, :, J("right_hip")]
+    for joint, there in (("right_knee", [0.0, 0.12, 0.34]), ("right_ankle", [0.02, 0.2, 0.68])):
+        pair[0, :, J(joint)] += share * (hip + np.array(there) - pair[0, :, J(joint)])
+    toe = pair[0, :, J("right_ankle")] + np.array([0.0, 0.12, 0.04])
+    pair[0, :, J("right_foot")] += share * (toe - pair[0, :, J("right_foot")])
+    found = bodies_apart(pair, 30.0)
+    assert limb_depth(pair[0], pair[1]).max() > 0.08
+    assert limb_depth(found[0], found[1]).max() < DEEP
+    assert found[0, 45, J("right_ankle"), 2] > 0.4, "it still goes as far as the body"

@@ -33,7 +33,7 @@ CLOSE = 0.9
 """Metres from each other at which people who walk up to each other are left to the network."""
 NEAR_BY = 0.6
 """Metres from the other at which one who came up behind them stands."""
-ABREAST = 0.8
+ABREAST = 0.9
 """Metres between two people who walk side by side."""
 LINKED = 0.6
 """Metres between two people who walk hand in hand or arm in arm."""

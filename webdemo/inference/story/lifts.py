@@ -105,7 +105,7 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
     elif carry is Carry.ARMS:
         hands = {
             "left": theirs("spine3") - 0.1 * up,
-            "right": 0.7 * theirs("right_knee") + 0.3 * theirs("right_hip") - 0.11 * up + 0.1 * ahead,
+            "right": 0.7 * theirs("right_knee") + 0.3 * theirs("right_hip") - 0.11 * up,
         }
         holds = {
             "left": theirs("pelvis") + 0.13 * up + 0.05 * ahead,  # in the lap
@@ -129,7 +129,8 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
 def _bend(pose: Array, side: str, hand: Array) -> None:
     """Has an arm of a pose (22, 3) reach for a place, with the elbow below."""
     arm = [SMPL22.index(f"{side}_{joint}") for joint in ("shoulder", "elbow", "wrist")]
-    elbow, _ = bent_towards(*pose[arm][:, None], hand[None], np.array([[0.0, -1.0, 0.0]]))
+    shoulder, elbow, wrist = pose[arm][:, None]
+    elbow, _ = bent_towards(shoulder, elbow, wrist, hand[None], np.array([[0.0, -1.0, 0.0]]))
     pose[arm[1:]] = elbow[0], hand
 
 
