@@ -90,7 +90,10 @@ def test_the_arm_that_carries_the_legs_goes_under_the_thighs_and_not_through() -
     carrier[[SMPL22.index("left_elbow"), SMPL22.index("left_wrist")]] = carrier[SMPL22.index("left_shoulder")]
     pose[[SMPL22.index("right_elbow"), SMPL22.index("right_wrist")]] = pose[SMPL22.index("right_shoulder")]
     assert limb_depth(carrier[None], pose[None])[0] < 0.03
-    assert carrier[SMPL22.index("right_wrist"), 1] < pose[SMPL22.index("right_knee"), 1] - 0.05
+    elbow, wrist = (SMPL22.index(f"right_{joint}") for joint in ("elbow", "wrist"))
+    assert carrier[wrist, 1] < pose[SMPL22.index("right_knee"), 1] - 0.05
+    forearm = float(np.linalg.norm(carrier[wrist] - carrier[elbow]))
+    assert forearm == pytest.approx(SMPL22.bone_lengths[wrist], abs=0.01)
 
 
 def test_who_is_carried_from_the_start_is_behind_and_who_is_lifted_before_the_other() -> None:

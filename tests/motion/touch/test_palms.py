@@ -71,6 +71,8 @@ def test_palms_lie_side_by_side_where_hands_are_shaken() -> None:
     np.testing.assert_allclose(after, APART, atol=0.02)
     wrists = np.linalg.norm(found[0, :, J("right_wrist")] - found[1, :, J("right_wrist")], axis=-1)
     assert wrists[MEETS].min() > 0.1, "each hand ends at the other's wrist"
+    aside = (_palms(found)[1] - _palms(found)[0])[MEETS, 0]
+    assert (aside > 0.02).all(), "right palms lie to the left of each other"
 
 
 def test_hands_that_meet_below_the_chest_stay() -> None:
