@@ -11,11 +11,13 @@ import pytest
 from motion import SMPL22, Duet
 from motion.looks import SIZES, UNSAID
 from motion.sizes import floor_scale
-from webdemo.inference import Engine, GenerateRequest, SceneRequest
+from webdemo.inference import Engine, GenerateRequest, Result, SceneRequest
 from webdemo.inference.paths import FloorPath, FloorPoint
+from webdemo.inference.predict_request import PredictRequest, PredictResult
 from webdemo.inference.sized import enlarged
 from webdemo.inference.story import Beat
 from webdemo.inference.story.wishes import Pose
+from webdemo.inference.things import furnished
 
 from .test_scenes import run
 
@@ -94,3 +96,28 @@ def test_a_childs_pose_is_asked_for_as_an_adults() -> None:
     same = replace(pose, positions=rest)
     (kept,) = enlarged(replace(request, poses=(same,))).poses
     np.testing.assert_allclose(kept.positions, rest, atol=1e-3)
+
+
+def test_what_comes_next_of_a_girl_is_hers(engine: Engine) -> None:
+    """The predictor would lift her to an adult's height."""
+    motion = run(engine, GenerateRequest(prompt="A man waves at a girl.", seconds=3.0, **QUICK)).duets[0]
+    request = PredictRequest(motion=motion, marker=2.0, seconds=1.0)
+    result = run(Engine(), request)
+    assert isinstance(result, PredictResult) and result.truth is not None
+    (duet,) = result.duets
+    assert duet.looks == ("man", "girl")
+    np.testing.assert_array_equal(duet.positions[:, :60], motion.positions[:, :60])
+    np.testing.assert_array_equal(result.truth.positions, motion.positions[:, 60:])
+    np.testing.assert_allclose(bones(duet.cut(60)), (1.0, CHILD), atol=0.01)
+    toes = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
+    assert abs(duet.positions[1, -1, toes, 1].min() - motion.positions[1, 59, toes, 1].min()) < 0.06
+    off = np.linalg.norm(duet.positions[:, 60:90] - motion.positions[:, 60:90], axis=-1).mean(axis=(0, 2))
+    np.testing.assert_allclose(result.error, 1000 * off, atol=0.02)
+
+
+def test_who_is_given_with_a_childs_bones_wears_a_childs_body(engine: Engine) -> None:
+    duet = run(engine, GenerateRequest(prompt="A man waves at a girl.", seconds=3.0, **QUICK)).duets[0]
+    bare = replace(duet, looks=UNSAID, things=(), grips=())
+    result = furnished(Result(duets=(bare,), manifest={}), [])
+    assert result.duets[0].looks == ("man", "girl")
+    np.testing.assert_array_equal(result.duets[0].positions, bare.positions)

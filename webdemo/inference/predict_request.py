@@ -195,6 +195,21 @@ def predicted(
     """
     past = stacked_positions(request.past).astype(np.float64)
     whole = np.stack([np.concatenate([past, future], axis=1) for future in futures])  # (N, people, T, 22, 3)
+    timer.lap("finish", now)
+    return PredictResult(
+        duets=tuple(with_people(request.motion, each) for each in whole),
+        manifest={},
+        timings={**timer.stages, "total": round(timer.elapsed, 4)},
+        past_frames=past.shape[1],
+        truth=request.truth,
+        **compared(request, futures),
+    )
+
+
+def compared(request: PredictRequest, futures: Sequence[Array]) -> dict[str, Any]:
+    """The curves of a :class:`PredictResult`: ``error``, ``speed`` and ``true_speed`` of its futures."""
+    past = stacked_positions(request.past).astype(np.float64)
+    whole = np.stack([np.concatenate([past, future], axis=1) for future in futures])  # (N, people, T, 22, 3)
     first = past.shape[1]
     truth, error, true_speed = request.truth, np.empty(0), np.empty(0)
     if truth is not None:
@@ -204,14 +219,8 @@ def predicted(
         )
         true_speed = mean_steps(np.concatenate([past[:, -1:], real], axis=1)).mean(0)
     speed = mean_steps(whole[:, :, first - 1 :]).mean(axis=(0, 1))
-    timer.lap("finish", now)
-    return PredictResult(
-        duets=tuple(with_people(request.motion, each) for each in whole),
-        manifest={},
-        timings={**timer.stages, "total": round(timer.elapsed, 4)},
-        past_frames=first,
-        truth=truth,
-        error=tuple((1000 * error).round(2).tolist()),
-        speed=tuple((1000 * speed).round(3).tolist()),
-        true_speed=tuple((1000 * true_speed).round(3).tolist()),
-    )
+    return {
+        "error": tuple((1000 * error).round(2).tolist()),
+        "speed": tuple((1000 * speed).round(3).tolist()),
+        "true_speed": tuple((1000 * true_speed).round(3).tolist()),
+    }

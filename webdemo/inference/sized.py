@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22, Clip, Duet
+from motion import SMPL22, Clip, Duet, stacked_positions
 from motion.easing import smoothstep
 from motion.looks import UNSAID, grown_up, size_of
 from motion.sizes import at_sizes, bones_of, floor_scale, of_adults
 
 from .acting import plans_of
 from .paths import FloorPath
+from .predict_request import PredictRequest, PredictResult, compared
 from .results import Result
 from .story.request import SceneRequest
 from .story.wishes import Pose
@@ -37,6 +38,8 @@ _A_CHILD = 0.87
 def enlarged(request: Any) -> Any:
     """A request whose paths, poses and given motion are those of two adults; the same one where both are adults."""
     given = getattr(request, "motion", None)
+    if isinstance(request, PredictRequest):
+        return _of_adults(request)
     if isinstance(request, SceneRequest) and given is not None:
         looks = given.looks
     elif getattr(request, "paths", ()) or getattr(request, "poses", ()):
@@ -61,20 +64,46 @@ def as_given(result: Result, request: Any) -> Result:
     given = getattr(request, "motion", None)
     if not isinstance(given, Duet) or given.looks == UNSAID:
         return result
-    return replace(result, duets=tuple(_as_given(duet, given, request) for duet in result.duets))
+    if isinstance(request, PredictRequest):
+        return _predicted(result, given, request)
+    kept, made = request.kept(given), request.made
+    return replace(result, duets=tuple(_as_given(duet, given, kept, made) for duet in result.duets))
 
 
-def _as_given(duet: Duet | Clip, given: Duet, request: Any) -> Duet | Clip:
+def _of_adults(request: PredictRequest) -> PredictRequest:
+    """A prediction from the same two people as adults."""
+    given = request.motion
+    if not isinstance(given, Duet) or (sizes := _sizes(given.looks)) == (1.0, 1.0):
+        return request
+    motion = given.with_positions(of_adults(given.positions, sizes))
+    return replace(request, motion=replace(motion, looks=grown_up(given.looks)))
+
+
+def _predicted(result: Result, given: Duet, request: PredictRequest) -> Result:
+    """A prediction at the sizes of its people, compared with what they really did next."""
+    if _sizes(given.looks) == (1.0, 1.0) or not isinstance(result, PredictResult):
+        return result
+    first, frames = result.past_frames, result.duets[0].num_frames
+    kept = given.positions[:, :first], given.positions[:, :0]
+    duets = [_as_given(duet, given, kept, (first, frames)) for duet in result.duets]
+    futures = [stacked_positions(duet)[:, first:] for duet in duets]
+    curves = compared(request, futures)
+    return replace(result, duets=tuple(duets), truth=request.truth, **curves)
+
+
+def _as_given(
+    duet: Duet | Clip, given: Duet, kept: tuple[Array, Array], made: tuple[int, int]
+) -> Duet | Clip:
+    """People as they are in a ``given`` motion, who were made between the frames of it that are ``kept``."""
     sizes = _sizes(given.looks)
-    if not isinstance(duet, Duet) or not isinstance(request, SceneRequest) or sizes == (1.0, 1.0):
+    if not isinstance(duet, Duet) or sizes == (1.0, 1.0):
         return replace(duet, looks=given.looks) if isinstance(duet, Duet) else duet
-    before, after = request.kept(given)
-    first, last = request.made
+    (before, after), (first, last) = kept, made
     positions = np.array(at_sizes(duet.positions, sizes))
     bones = bones_of(sizes)
-    for edge, kept, step in ((first - 1, before[:, -1:], 1), (last, after[:, :1], -1)):
-        if kept.shape[1]:
-            positions = _led(positions, edge, kept[:, 0] - positions[:, edge], step, bones)
+    for edge, beside, step in ((first - 1, before[:, -1:], 1), (last, after[:, :1], -1)):
+        if beside.shape[1]:
+            positions = _led(positions, edge, beside[:, 0] - positions[:, edge], step, bones)
     positions[:, :first] = before
     positions[:, last:] = after
     return replace(duet.with_positions(positions), looks=given.looks)

@@ -10,7 +10,7 @@ import numpy as np
 
 from acts import Plan
 from motion import SMPL22, Clip, Duet, InputError
-from motion.looks import UNSAID, grown_up, looks_of, size_of
+from motion.looks import SIZES, UNSAID, grown_up, looks_of, size_of
 from motion.metrics import compare
 from motion.sizes import at_sizes
 from motion.things import FURNITURE, MOST_THINGS, Mesh, Thing
@@ -23,6 +23,8 @@ from .holding import Hands, level, yaw_of
 from .seats import furniture
 from .uses import Use, lengths_of, uses_of
 
+_ALIKE = 0.02
+"""Share of an adult's thigh by which a child's bones may differ from those of a child's body."""
 Planned = tuple[Plan, int, int | None, int | None]
 """A plan, its first and last frame (None for the end), and the number of its beat."""
 
@@ -113,7 +115,7 @@ def _at_their_sizes(result: Result, looks: tuple[str, str]) -> Result:
     Of people who are smaller than they were made only what is shown is measured.
     """
     if looks == UNSAID:
-        return result
+        return replace(result, duets=tuple(map(_by_their_bones, result.duets)))
     duets, readouts = list(result.duets), list(result.readouts)
     a, b = (size_of(look) for look in looks)
     for i, duet in enumerate(duets):
@@ -125,6 +127,16 @@ def _at_their_sizes(result: Result, looks: tuple[str, str]) -> Result:
         duets[i] = replace(duet, looks=looks)
     manifest = {**result.manifest, "looks": list(looks)}
     return replace(result, duets=tuple(duets), readouts=tuple(readouts), manifest=manifest)
+
+
+def _by_their_bones(duet: Duet | Clip) -> Duet | Clip:
+    """Two people of whom nothing is said; one with a child's bones, such as the given person of a reaction, is one."""
+    if not _is_made(duet):
+        return duet
+    hip, knee = (SMPL22.index(f"left_{part}") for part in ("hip", "knee"))
+    thighs = np.linalg.norm(duet.positions[:, :, knee] - duet.positions[:, :, hip], axis=-1).mean(axis=1)
+    a, b = np.abs(thighs / SMPL22.bone_lengths[knee] - SIZES["boy"]) < _ALIKE
+    return replace(duet, looks=("boy" if a else UNSAID[0], "girl" if b else UNSAID[1]))
 
 
 def _is_made(duet: Duet | Clip) -> TypeGuard[Duet]:
