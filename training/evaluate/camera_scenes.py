@@ -54,7 +54,7 @@ class Scene:
     theme: str = "light"
 
 
-_BN1, _BN2 = "dataset-1_", "dataset-2_"
+_BN1 = "dataset-1_"
 TUNING = (
     Scene("walk-towards", (f"{_BN1}walk_normal_001",), start=1.0, distance=5.0),
     Scene("dance", (f"{_BN1}dance-short_normal_001",), start=1.0, yaw=25),

@@ -35,12 +35,8 @@ def going(rng: Rng, library: Library, action: str, frames: int, *, style: str | 
     return stride(rng, library, action, speed * frames / 30 + 0.8, style=take.style)
 
 
-def _styled(rng: Rng, library: Library, action: str = "walk") -> str | None:
-    return manner(rng, library, action)
-
-
 def _abreast(rng: Rng, library: Library, family: str, action: str) -> Scene:
-    style = _styled(rng, library, action)
+    style = manner(rng, library, action)
     frames = seconds(rng, 3, 6.5) if action == "walk" else seconds(rng, 2.2, 3.6)
     first = going(rng, library, action, frames, style=style)
     a = first.motion
@@ -81,7 +77,7 @@ def run_together(rng: Rng, library: Library) -> Scene:
 @register("meet", "walk-up", needs=("walk", "idle"), weight=1.8)
 def meet(rng: Rng, library: Library) -> Scene:
     """Both walk towards each other and stop face to face."""
-    style = _styled(rng, library)
+    style = manner(rng, library, "walk")
     takes = [stride(rng, library, "walk", rng.uniform(1.4, 2.6), style=style) for _ in range(2)]
     starts = [seconds(rng, 0.1, 0.5), seconds(rng, 0.1, 0.9)]
     people = [
@@ -116,7 +112,7 @@ def approach(rng: Rng, library: Library) -> Scene:
 
 def _approach(rng: Rng, library: Library, family: str) -> Scene:
     action = "run" if library.has("run") and rng.random() < 0.15 else "walk"
-    take = stride(rng, library, action, rng.uniform(1.8, 3.4), style=_styled(rng, library))
+    take = stride(rng, library, action, rng.uniform(1.8, 3.4), style=manner(rng, library, "walk"))
     a, _ = act(
         rng, library, (pick(rng, (0, seconds(rng, 0.2, 0.7))), take.motion), tail=seconds(rng, 0.5, 1.2)
     )
@@ -136,7 +132,7 @@ def _approach(rng: Rng, library: Library, family: str) -> Scene:
 @register("part", "part", needs=("walk", "idle"), weight=1.5)
 def part(rng: Rng, library: Library) -> Scene:
     """They stand face to face, turn about and walk apart."""
-    style = _styled(rng, library)
+    style = manner(rng, library, "walk")
     people = [
         act(
             rng,
@@ -174,7 +170,7 @@ def depart(rng: Rng, library: Library) -> Scene:
 
 
 def _leave(rng: Rng, library: Library, family: str) -> Scene:
-    style = _styled(rng, library)
+    style = manner(rng, library, "walk")
     walk = walk_off(rng, library, style=style, distance=2.4)
     a, _ = act(rng, library, (seconds(rng, 0.3, 1.2), walk), idle_after=False)
     b = oppose(rng, a, waiting(rng, library, len(a)), rng.uniform(0.9, 1.8))
@@ -189,7 +185,7 @@ def _behind(
     gap: tuple[float, float],
     lengths: tuple[float, float],
 ) -> Scene:
-    style = _styled(rng, library, actions[0])
+    style = manner(rng, library, actions[0])
     frames = seconds(rng, *lengths)
     first = going(rng, library, actions[0], frames, style=style)
     second = going(rng, library, actions[1], frames, style=None if rng.random() < 0.5 else style)
@@ -274,7 +270,7 @@ def _round(
 def circle(rng: Rng, library: Library) -> Scene:
     """a walks around b, who stands."""
     side, radius = pick(rng, (-1, 1)), rng.uniform(1.0, 1.5)
-    style = _styled(rng, library)
+    style = manner(rng, library, "walk")
     frames = seconds(rng, 4, 8)
     a, _ = _round(rng, library, radius, frames, side, style=style, speed=None)
     a = a[:270]
@@ -298,7 +294,7 @@ def circle(rng: Rng, library: Library) -> Scene:
 def circle_each_other(rng: Rng, library: Library) -> Scene:
     """Two people circle each other."""
     side, radius = pick(rng, (-1, 1)), rng.uniform(0.8, 1.3)
-    style, frames = _styled(rng, library), seconds(rng, 4, 8)
+    style, frames = manner(rng, library, "walk"), seconds(rng, 4, 8)
     a, speed = _round(rng, library, radius, frames, side, style=style, speed=None)
     b, _ = _round(rng, library, radius, frames, side, style=style, speed=speed)
     b = beside(b, np.array([side * 2 * radius, 0.0]), np.pi, 0.0, 0.0, 0.0)
@@ -316,9 +312,11 @@ def circle_each_other(rng: Rng, library: Library) -> Scene:
 @register("walk-past", "walk-past", needs=("walk",), weight=1.5)
 def walk_past(rng: Rng, library: Library) -> Scene:
     """Two people walk past each other."""
-    style = _styled(rng, library)
+    style = manner(rng, library, "walk")
     frames = seconds(rng, 3, 5)
-    first, second = (going(rng, library, "walk", frames, style=s) for s in (style, _styled(rng, library)))
+    first, second = (
+        going(rng, library, "walk", frames, style=s) for s in (style, manner(rng, library, "walk"))
+    )
     frames = min(len(first), len(second), 210)
     a = place(first.motion[:frames], 0.0, 0.0, 0.0, along="travel")
     b = place(second.motion[:frames], 0.0, 0.0, np.pi, along="travel")
@@ -334,7 +332,7 @@ def walk_past(rng: Rng, library: Library) -> Scene:
 
 def _advance(rng: Rng, library: Library, family: str, action: str, gap: float) -> Scene:
     """a walks up to b, who steps back or aside in time."""
-    take = stride(rng, library, "walk", rng.uniform(1.6, 2.6), style=_styled(rng, library))
+    take = stride(rng, library, "walk", rng.uniform(1.6, 2.6), style=manner(rng, library, "walk"))
     start = seconds(rng, 0.1, 0.5)
     a, _ = act(rng, library, (start, take.motion), tail=seconds(rng, 0.5, 1.0))
     side = {"walk-left": "left", "walk-right": "right"}.get(action)
