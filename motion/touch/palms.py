@@ -20,9 +20,9 @@ from motion.vectors import unit
 Array = NDArray[np.floating]
 Arm = tuple[int, ...]
 
-PALM = 0.09
-"""Metres from a wrist to the middle of the palm, in the direction of the forearm."""
-APART = 0.045
+PALM, GRIP = 0.09, 0.07
+"""Metres from a wrist along the forearm to the middle of the palm, and to where hands grip each other."""
+APART = 0.035
 """Metres between the middles of two hands that lie palm to palm."""
 _NEAR = 0.2
 """Metres between two wrists up to which hands meet."""
@@ -54,12 +54,12 @@ def palms_met(pair: Array, free: Array | None = None) -> Array:
             without_flicker(meets(result, mine, theirs), shortest)
             for meets, shortest in ((_raised, _SHORTEST), (_shaken, _SHAKEN))
         )
-        for meets, line in ((raised, way), (shaken, aside)):
+        for meets, line, palm in ((raised, way, PALM), (shaken, aside, GRIP)):
             share = eased_marks(meets, _EASE)
             share = share if free is None else share * free
             if share.any():
                 at = np.flatnonzero(share)
-                result[:, at] = _met(result[:, at], mine, theirs, share[at], APART * line[at])
+                result[:, at] = _met(result[:, at], mine, theirs, share[at], APART * line[at], palm)
     return result
 
 
@@ -86,11 +86,14 @@ def _aside(way: Array, mine: Arm, theirs: Arm) -> Array:
     return left if mine == ARMS[1] else -left
 
 
-def _met(pair: Array, mine: Arm, theirs: Arm, share: Array, apart: Array) -> Array:
-    """Some frames (2, N, 22, 3) with the palms of two arms brought to be ``apart`` (N, 3) by a ``share`` (N,)."""
+def _met(pair: Array, mine: Arm, theirs: Arm, share: Array, apart: Array, palm: float) -> Array:
+    """Some frames (2, N, 22, 3) with the palms of two arms brought to be ``apart`` (N, 3) by a ``share`` (N,).
+
+    A palm is so many metres beyond the wrist.
+    """
     result = pair.copy()
     for _ in range(_ROUNDS):
-        gap = _palm(result[1], theirs) - _palm(result[0], mine) - apart
+        gap = _palm(result[1], theirs, palm) - _palm(result[0], mine, palm) - apart
         for person, arm, half in ((0, mine, 0.5), (1, theirs, -0.5)):
             shoulder, elbow, wrist = arm
             own = result[person]
@@ -107,6 +110,6 @@ def _forearm(person: Array, arm: Arm) -> Array:
     return unit(person[:, arm[2]] - person[:, arm[1]])
 
 
-def _palm(person: Array, arm: Arm) -> Array:
-    """(N, 3) the middle of a palm."""
-    return np.asarray(person[:, arm[2]] + PALM * _forearm(person, arm))
+def _palm(person: Array, arm: Arm, palm: float) -> Array:
+    """(N, 3) the middle of a palm, so many metres beyond the wrist."""
+    return np.asarray(person[:, arm[2]] + palm * _forearm(person, arm))
