@@ -22,7 +22,7 @@ Arm = tuple[int, ...]
 
 PALM, GRIP = 0.09, 0.07
 """Metres from a wrist along the forearm to the middle of the palm, and to where hands grip each other."""
-APART = 0.035
+APART = 0.042
 """Metres between the middles of two hands that lie palm to palm."""
 _NEAR = 0.2
 """Metres between two wrists up to which hands meet."""

@@ -30,7 +30,7 @@ from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
 
 from .scene_contacts import coming, given_contact, given_hold, given_twirl, meeting, towards_touched
-from .scene_hands import hands, late_by
+from .scene_hands import hands, late_by, outer_hands
 from .scene_lifts import Carrying
 from .scene_paths import given_gait, path_of
 from .scene_postures import BOWED, DEEP, UPRIGHT, Pose, led, postures, still_down
@@ -138,6 +138,7 @@ def _on_their_ways(
     for arms in hands(told, found, posed, beat, before, request.seed):
         if told.lift is None or "ab"[arms.person] == told.lift.carrier:
             parts.append(arms)
+    parts += outer_hands(told, found, beat)
     return parts
 
 

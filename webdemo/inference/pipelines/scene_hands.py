@@ -33,6 +33,8 @@ SHORT = 120
 """Frames of a beat in which they begin sooner."""
 IN_TIME = (Hand.FLAPS, Hand.CIRCLES, Hand.SWINGS)
 """Gestures that two people make in one time."""
+SELDOM = 15
+"""Frames between two given places of a hand that hangs."""
 ARRIVED = 0.15
 """Metres from where a person stays, at most, at which their hands begin with a thing."""
 
@@ -79,6 +81,22 @@ def hands(
         joints, places = _arms(gesture, person, at, stretch, own, both=both, late=late)
         if len(shown := np.isin(at, stretch.shown(at)).nonzero()[0]):
             yield _given(person, joints, at[shown], places[shown], stretch)
+
+
+def outer_hands(told: Told, moves: Sequence[Move], stretch: Stretch) -> Iterator[KnownFrames]:
+    """The other hands of two who walk hand in hand: they hang, but for a gesture.
+
+    They are given now and then only, so that the arms swing.
+    """
+    at = stretch.shown(np.arange(0, stretch.frames, SELDOM))
+    for who, side in _inner(stretch.ways).items() if _linked(moves) and len(at) else ():
+        if who in told.gestures:
+            continue
+        person, outer = "ab".index(who), "right" if side == "left" else "left"
+        turns = np.stack([heading_matrix(angle) for angle in stretch.course(person).headings[at]])
+        places = wrist(Gesture(Hand.LINKED, (outer,)), outer, at / FPS, np.zeros((len(at), 3)))
+        joints = [SMPL22.index(f"{outer}_wrist")]
+        yield _given(person, joints, at, np.einsum("nij,nj->ni", turns, places)[:, None], stretch)
 
 
 def _linked(moves: Sequence[Move]) -> bool:
