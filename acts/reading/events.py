@@ -275,15 +275,7 @@ class Reader:
                 c.lower_ in ("no", "neither") for c in child.children
             ):
                 event.denied = True
-            if child.dep_ == "aux" and child.lower_ in (
-                "could",
-                "would",
-                "should",
-                "might",
-                "may",
-                "must",
-                "ought",
-            ):
+            if child.dep_ == "aux" and child.lower_ in self._words.modals["wished"]:
                 event.modality = "wished"
         if children & _NEARLY:
             event.modality = "tried"

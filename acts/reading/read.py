@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from acts.frames import Event, Frame, Match, Ref
+from acts.frames import Event, Frame, Match
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread, other_of
 from acts.shapes import Go
@@ -16,6 +16,7 @@ from motion import InputError
 
 from . import beside
 from .clauses import spans
+from .completion import completed, of_the_last
 from .events import Reader
 from .language import other_language, unknown
 from .matching import Found, matcher
@@ -37,13 +38,6 @@ _BEFORE = frozenset(("to", "toward", "towards", "for", "at", "by", "before", "ne
 """Prepositions before what people go to, or stand at."""
 _CANON = "move canon"
 """The formation of those who do something one after the other."""
-_SHARING = frozenset(("conj", "after", "with"))
-"""Joints of clauses that may share an object."""
-
-
-def _is_implied(subject: Ref | None) -> bool:
-    """True for the agent of a passive that the words leave out."""
-    return subject is not None and subject.kind == "person" and not subject.last
 
 
 def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
@@ -151,7 +145,7 @@ class _Planner:
         if found is not None and beside.is_given(event, self._known.entries[found[0]]):
             event = beside.given(event, self._events[number + 1 :])
             found = self._matcher.find(event)
-        if (theirs := self._of_the_last(event)) is not None and (
+        if (theirs := of_the_last(event, self._acts)) is not None and (
             other := self._matcher.find(theirs)
         ) is not None:
             touches = self._known.entries[other[0]].group in ("touch", "care") and other[2].patient
@@ -170,8 +164,10 @@ class _Planner:
             found = None if found is not None and (found[0] == "stand-still" or found[2].rest) else found
             event = placed if found is not None else event
         if found is None:
-            borrowed = (self._matcher.find(other) for other in self._completed(number, event))
-            found = next((other for other in borrowed if other is not None), None)
+            for whole, cost in completed(number, event, self._events, self._acts, self._known):
+                self.cost += cost
+                if (found := self._matcher.find(whole)) is not None:
+                    break
         formed = self._found(beside.formations(event, self._formations(number)))
         vague = found is None or event.lemma in vocabulary().verbs["vague"] | vocabulary().verbs["begins"]
         if vague and not (found is not None and inner) and (noun := self._noun(event, found)) is not None:
@@ -278,60 +274,6 @@ class _Planner:
         self._of[number] = own
         self._answers.add(own)
         return True
-
-    def _completed(self, number: int, event: Event) -> Iterator[Event]:
-        """The event with what other words say of it, as the object of "he reads and tears up the letter"."""
-        if event.subject is not None and event.subject.kind == "part" and event.object is None:
-            above = self._events[event.beside].subject if event.beside is not None else None
-            whose = event.subject.who or (above.who if above is not None and above.kind == "person" else "")
-            if len(whose) == 1:  # "an arm hooked around his waist": who hooks it there
-                yield replace(event, subject=Ref("person", whose), object=event.subject, state=True)
-        if event.object is not None and _is_implied(
-            event.subject
-        ):  # "is frozen" needs nobody who freezes him
-            yield replace(event, subject=event.object, object=None)
-        if event.object is not None or event.dative is not None:
-            return
-        beside = self._events[event.beside] if event.beside is not None and event.joint in _SHARING else None
-        after = [other for other in self._events if other.beside == number and other.joint in _SHARING]
-        for other in (beside, *after):
-            if other is not None and other.object is not None and other.subject == event.subject:
-                yield replace(event, object=other.object)
-        if (patient := self._meant(event)) is not None:  # "leans in, but does not kiss"
-            yield replace(event, object=Ref("person", patient))
-        alone = event.lemma in self._known.frames and not event.particles and event.joint != "comp"
-        alone = alone and event.lemma not in vocabulary().verbs["vague"]  # "leads with arm circles"
-        alone = alone and all(ref.kind == "thing" for _, ref in event.prepositions)
-        inner = any(other.beside == number and other.joint == "comp" for other in self._events)
-        if event.subject is not None and alone and not inner and (whom := other_of(event.subject.who)):
-            self.cost += 1.0
-            yield replace(event, object=Ref("person", whom))  # "one pushes and the other falls"
-
-    def _of_the_last(self, event: Event) -> Event | None:
-        """The event about the other's body, where what is done to it follows what was done to them.
-
-        As in "walks up to the other and covers his eyes", where nothing says whose.
-        """
-        part, who = event.object, event.subject.who if event.subject is not None else ""
-        if part is None or part.kind != "part" or part.who:
-            return None
-        last = next((act for act in reversed(self._acts) if "".join(act.agents) == who), None)
-        handles = (
-            last is not None
-            and last.patient is not None
-            and (not part.bare or (last.part is not None and part.definite))
-        )
-        return replace(event, object=replace(part, who=last.patient)) if last and handles else None  # type: ignore[arg-type]
-
-    def _meant(self, event: Event) -> str | None:
-        """The other person, where a verb without an object follows what was done to them."""
-        last, subject = next(reversed(self._acts), None), event.subject
-        if event.lemma in vocabulary().verbs["sees"] and subject is not None:
-            return other_of(subject.who) or None
-        if last is None or subject is None or subject.who != "".join(last.agents):
-            return None
-        bare = not event.particles and not event.prepositions and event.lemma in self._known.frames
-        return last.patient if bare else None
 
     def _unknown_words(self) -> None:
         """Adds the words that are none to what was not read."""

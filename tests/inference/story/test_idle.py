@@ -20,7 +20,7 @@ from webdemo.inference.story.poses import standing
         ("One wants a high five and is left hanging.", "b"),
         ("The first person stands still until the second person has come up to them.", "a"),
         # who is touched, spoken of together, or busy
-        ("Person A pats person B on the back.", ""),
+        ("Person A pats person B on the back.", "b"),
         ("They bow.", ""),
         ("They wave at each other.", ""),
         ("Person A waves and person B waves back.", ""),

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from acts import read
-from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.story.request import SceneRequest, as_scene
 from webdemo.inference.story.scripting import beats_of
 from webdemo.inference.story.staging import staged
 from webdemo.inference.story.ways import Way
@@ -102,3 +103,14 @@ def test_who_bends_down_to_a_shoe_kneels_down_to_it_at_once() -> None:
     assert not told.changes, "a bow on the spot comes before the shoe"
     (alone,) = beats_of(read("A bends down."))
     assert [change.posture.value for change in staged(alone.acts).changes["a"]] == ["bends down"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["They walk up to each other but do not kiss.", "They bow. They walk up to each other but do not kiss."],
+)
+def test_the_network_is_not_told_what_is_not_done(text: str) -> None:
+    scene = as_scene(GenerateRequest(prompt=text, seconds=8.0))
+    assert scene is not None and all("kiss" not in beat.sentence for beat in scene.beats)
+    done = as_scene(GenerateRequest(prompt="They walk up to each other and kiss.", seconds=8.0))
+    assert done is not None and any("kiss" in beat.sentence for beat in done.beats)

@@ -270,3 +270,10 @@ def test_who_is_carried_was_picked_up_first_if_the_words_say_so() -> None:
         "somebody walks up and picks up who stands there"
     )
     assert carried.lift is not None and not carried.lift.comes
+
+
+def test_who_tries_to_kiss_somebody_comes_near_and_leans_in() -> None:
+    stage = told("A tries to kiss B and B ducks.")
+    assert [(move.person, move.way) for move in stage.moves if move.person == "a"] == [("a", Way.TO)]
+    assert [limb.does for limb in stage.limbs["a"]] == ["leans"]
+    assert not told("They bow to each other.").moves

@@ -344,7 +344,7 @@ def _leads(told: Told, person: str) -> bool:
 def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, ...]:
     """The beats of a request: of its acts, or of those that its words are read as.
 
-    A sentence of one beat keeps its words, which the network reads.
+    A sentence of one beat keeps its words, which the network reads, unless they say what is not done.
     """
     go_on()
     most = request.seconds / LEAST_SHARE
@@ -355,7 +355,8 @@ def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, .
     beats = beats_of(script, own_words=request.acts is None)
     if not beats or len(beats) > most:
         return (Beat(words, acts=script.acts),)
-    return (replace(beats[0], words=words),) if len(beats) == 1 and words else beats
+    told = words and all(act.happens for act in script.acts)  # a network hears no "not"
+    return (replace(beats[0], words=words),) if len(beats) == 1 and told else beats
 
 
 def _told_before(story: list[Told]) -> None:

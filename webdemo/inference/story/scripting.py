@@ -172,7 +172,8 @@ def _own_sentences(plan: Plan, found: Sequence[Sequence[Act]]) -> dict[int, str]
             (i,) = within
             part = _without_then(part)
             own[i] = f"{own[i]} {part}" if i in own else part
-    return {i: words for i, words in own.items() if len(words) <= MAX_PROMPT}
+    done = {i for i, acts in enumerate(found) if all(act.happens for act in acts)}  # a network hears no "not"
+    return {i: words for i, words in own.items() if i in done and len(words) <= MAX_PROMPT}
 
 
 def _without_then(part: str) -> str:

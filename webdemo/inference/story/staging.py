@@ -98,7 +98,7 @@ class _Stage:
                 self._take(act, shape)
         for act in self.acts:
             refused = self.known.entries[act.act].refused if act.act in self.known.entries else ()
-            if act.polarity == "not" and act.modality == "told":
+            if act.polarity == "not" and act.modality == "told" and len(act.agents) == 1:
                 for shape in refused:
                     self._take(act, shape)
             elif not act.happens and act.polarity == "done" and len(act.agents) == 1:  # it is offered in vain
@@ -367,7 +367,8 @@ class _Stage:
             denied = any(who in act.agents and not act.happens and not self._stays(act) for act in self.acts)
             waits = bool(own) and all(only_stays(e) for _, e in own)
             touched = any(reaches(act, e) and not is_care(e) for act, e in theirs)
-            if touched or (own and not waits) or who in self.gestures or who in self.faces:
+            comes = any(move.person == who for move in self.moves)
+            if touched or comes or (own and not waits) or who in self.gestures or who in self.faces:
                 continue
             if waits or denied or any(not walks(e) for _, e in theirs):
                 found.add(who)
