@@ -41,6 +41,8 @@ def told(text: str) -> Told:
         ("The person behind pushes the person in front.", [("push", "b", "a")]),
         ("A stands with an arm around the neck of B.", [("stand-still", "a", None), ("arm-around", "a", "b")]),
         ("He lies on his back with his knees bent.", [("lie-down", "a", None)]),
+        ("A father and his little daughter dance.", [("dance", "ab", None)]),
+        ("A kid and a toddler wave.", [("wave", "ab", None)]),
         ("2 ppl playing rock paper scissors", [("rock-paper-scissors", "ab", None)]),
     ],
 )  # fmt: skip
