@@ -33,9 +33,8 @@ _SOFT = 3e-4
 """Weight of the size of the move against the equations, whose squared coefficients sum to about 0.5. A known number
 is met within 0.1 % of the move, and a control point on which a known frame barely depends hardly moves."""
 
-_RETURN, _RETURN_OF_PLACE = 0.02, 0.001
-"""Weight of a bend's size against its curvature; the bend dies out over (4 / 0.02)^¼ ≈ 4 knots, half a second. That of
-the pelvis' place on the floor takes twice as long: a walk that is held once a second surged at each held frame."""
+_RETURN = 0.02
+"""Weight of a bend's size against its curvature; the bend dies out over (4 / 0.02)^¼ ≈ 4 knots, half a second."""
 
 
 @dataclass
@@ -160,10 +159,9 @@ class Hold:
         if any(mask.all() for _, mask in self._masks):
             control = torch.stack([layout.fit(self.tokens) @ person for person in known.rows.flatten(0, 1)])
             self._whole = ((control - mean) / std).transpose(1, 2).reshape(len(masks), -1)
-        cost = torch.eye(basis.shape[1], dtype=torch.double)
-        self.groups: list[Group] = self._solved(cost, cost)
+        self.groups: list[Group] = self._solved(torch.eye(basis.shape[1], dtype=torch.double))
 
-    def _solved(self, cost: Tensor, cost_of_place: Tensor) -> list[Group]:
+    def _solved(self, cost: Tensor) -> list[Group]:
         """The moves of least cost that write what is known; columns that are known throughout are replaced."""
         unit, found = torch.eye(len(cost), dtype=torch.double), []
         for at, mask in self._masks:
@@ -171,15 +169,13 @@ class Hold:
                 found.append(Group(at, self._whole[at], None))
                 continue
             seen, wanted = self._basis[mask].double(), self._wanted[at][:, mask].double()
-            own = cost_of_place if int(at[0]) % FEATURES in FLOOR else cost
-            gain = torch.linalg.solve(seen.T @ seen + _SOFT * own, seen.T)
+            gain = torch.linalg.solve(seen.T @ seen + _SOFT * cost, seen.T)
             found.append(Group(at, (wanted @ gain.T).float(), (unit - gain @ seen).float()))
         return found
 
     @cached_property
     def _bends(self) -> list[Group]:
-        knots = self._basis.shape[1]
-        return self._solved(_stiffness(knots, _RETURN), _stiffness(knots, _RETURN_OF_PLACE))
+        return self._solved(_stiffness(self._basis.shape[1]))
 
     @property
     def frozen(self) -> Tensor:
@@ -231,15 +227,15 @@ class Hold:
         return pack(torch.cat([part.to(sums) for part in seen], -1), self.layout)
 
 
-def _stiffness(knots: int, back: float) -> Tensor:
-    """(K, K) the cost of a move: its squared curvature, and ``back`` of its squared size."""
+def _stiffness(knots: int) -> Tensor:
+    """(K, K) the cost of a move: its squared curvature, and a little of its squared size."""
     curvature = torch.eye(knots, dtype=torch.double).diff(n=2, dim=0)
-    return curvature.T @ curvature + back * torch.eye(knots, dtype=torch.double)
+    return curvature.T @ curvature + _RETURN * torch.eye(knots, dtype=torch.double)
 
 
 def _alike(masks: Tensor) -> list[tuple[Tensor, Tensor]]:
-    """Rows of masks (N, T) that are alike and not empty, places apart from others: (their indices, the mask)."""
-    found: dict[tuple[bytes, bool], list[int]] = {}
+    """Rows of masks (N, T) that are alike and not empty: (their indices, the mask)."""
+    found: dict[bytes, list[int]] = {}
     for i, packed in enumerate(np.packbits(masks.numpy(), axis=1)):
-        found.setdefault((packed.tobytes(), i % FEATURES in FLOOR), []).append(i)
+        found.setdefault(packed.tobytes(), []).append(i)
     return [(torch.tensor(at), masks[at[0]]) for at in found.values() if masks[at[0]].any()]
