@@ -40,6 +40,10 @@ _LENGTH = (0.2, 0.3)
 """Metres of a step at rest, and what it grows by with each metre a second (recorded walks: 0.5 to 0.65 m at 1.2)."""
 _LONGEST, _QUICKEST = 0.65, 0.22
 """Metres of a step at most, and seconds at least, where a body surges ahead."""
+_FASTEST, _PEAK = 6.5, 1.875
+"""Metres a second of a foot at most, and how much faster than on average a swing of least jerk is."""
+_STANDS = 3
+"""Frames of a stance, at least: fewer are none to who finds the feet that stand."""
 _RISE = 0.06
 """Metres by which an ankle rises in its swing."""
 TOE, ANKLE = 0.02, 0.09
@@ -144,11 +148,16 @@ def _steps(feet: Array, pelvis: Array, start: int, stop: int, fps: float) -> lis
     at = np.interp(np.arange(0, count + 1) * phase[-1] / count, phase, np.arange(len(phase)))
     ahead = pelvis[stop - 1] - pelvis[start]
     first = int(np.argmin([feet[start, side, 1] @ ahead for side in (0, 1)]))  # the foot that is behind
+    places = list(feet[start, :, 0])
     steps = []
     for i in range(count):
-        leaves, lands = start + at[i], start + at[i] + SWING * (at[i + 1] - at[i])
-        goal = stop - 1 if i >= count - 2 else min(lands + 0.5 * (at[i + 1] - at[i]), stop - 1)
-        steps.append(Step((first + i) % 2, round(leaves), max(round(lands), round(leaves) + 2), round(goal)))
+        foot, lands = (first + i) % 2, start + at[i] + SWING * (at[i + 1] - at[i])
+        leaves = max(start + at[i], _STANDS)  # who is seen first in a step stands for a moment
+        goal = round(stop - 1 if i >= count - 2 else min(lands + 0.5 * (at[i + 1] - at[i]), stop - 1))
+        least = max(2, math.ceil(_PEAK * np.linalg.norm(feet[goal, foot, 0] - places[foot]) / _FASTEST * fps))
+        again = start + at[min(i + 2, count)]  # when the foot leaves next
+        steps.append(Step(foot, round(leaves), round(max(lands, min(leaves + least, again))), goal))
+        places[foot] = feet[goal, foot, 0]
     return steps
 
 

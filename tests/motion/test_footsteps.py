@@ -7,6 +7,7 @@ from motion import SMPL22
 from motion.cleaning import foot_contacts, plant_feet
 from motion.footsteps import stepping
 from motion.metrics.naturalness import joint_speeds, naturalness
+from webdemo.inference.cleanup import on_constant_bones
 
 from .bodies import FPS
 
@@ -67,3 +68,16 @@ def test_a_body_that_surges_ahead_takes_no_giant_stride() -> None:
     after = stepping(before, FPS)
     apart = np.linalg.norm((after[:, FEET[0]] - after[:, FEET[2]])[:, [0, 2]], axis=-1)
     assert 0.35 < apart.max() < 0.85
+
+
+def test_a_body_that_glides_from_the_first_frame_on_kicks_no_foot_ahead() -> None:
+    """One foot is far behind then, and the step that takes it ahead began before anybody looked."""
+    motion, along, frame = gliding(0.0), np.array([0.6, 0, 0.8]), np.arange(120)
+    motion += 1.6 * np.clip(frame, 0, 9)[:, None, None] / FPS * along
+    motion[:, FEET[:2]] -= 0.6 * np.clip(1 - frame / 8, 0, 1)[:, None, None] * along
+    motion = on_constant_bones(motion)
+    after = stepping(motion, FPS)
+    walked = plant_feet(after, foot_contacts(after, FPS))
+    speeds = joint_speeds(walked, FPS)[:, FEET]
+    assert speeds[:2].max() < 2.5
+    assert speeds.max() < 6.0
