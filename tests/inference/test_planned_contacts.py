@@ -123,7 +123,7 @@ def test_a_touch_of_the_back_or_from_behind_comes_from_there(engine: Engine, pro
     across = found[1, :, SMPL22.index("left_hip")] - found[1, :, SMPL22.index("right_hip")]
     ahead = np.cross(across, [0.0, 1.0, 0.0])
     behind = np.sum((found[0, :, 0] - found[1, :, 0]) * ahead, axis=1) < 0
-    assert gap[behind].min() < 0.25, "a hand may come near on the way round them as well"
+    assert gap[behind].min() < 0.3, "a hand may come near on the way round them as well"
 
 
 def test_a_person_who_comes_up_goes_to_the_side_that_is_touched() -> None:

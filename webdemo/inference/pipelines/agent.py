@@ -27,6 +27,7 @@ from models.motion_tokens import TokenLayout
 from motion import SMPL22, Clip, Duet
 from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, Placement
 from webdemo.inference.cancel import CancelToken
+from webdemo.inference.joining import joined
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import NAMES, Finish, Reaction
@@ -50,6 +51,8 @@ FLOOR = 1e-3
 FIRST, BETWEEN = 45, 15
 """Frame of the agent's first look (the last frame of a shorter motion), and frames between two looks."""
 _HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
+_SEAM = 0.02
+"""Metres by which the clean-up may move the last pose of the past, at most."""
 _NO_WORDS = "The virtual agent finds the words itself, so yours were not used."
 
 
@@ -161,6 +164,10 @@ class Answering(Reaction):
         off = past[-1:] - pair[1, seen - 1]
         later = pair[1, seen:] + settle(off, np.arange(1, len(pair[1]) - seen + 1))[0]
         made = self.placement.to_world(finish(np.concatenate([past, later]).astype(pair.dtype)))
+        if (
+            np.abs(made[seen - 1] - self.past[-1]).max() > _SEAM
+        ):  # what comes later has given the past other steps
+            made = joined(made, np.arange(seen), self.past).astype(made.dtype)
         made[:seen] = self.past
         return Duet(self.clip, Clip(made, FPS, self.clip.skeleton, name=NAMES[1]), NAMES)
 

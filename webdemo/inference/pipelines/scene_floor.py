@@ -213,7 +213,7 @@ def _held(
             posed[person] = upright(stand.places[person], float(stand.headings[person]))
             continue
         if up and who in told.bows and _only_bows(told, who) and who not in gone:
-            parts.append(_bowed(person, told, beat, request.seed))
+            parts += _bowed(person, told, beat, request.seed)
             posed[person] = upright(stand.places[person], float(stand.headings[person]))
             continue
         turned = last is None and _keeps_back(told, who)
@@ -241,15 +241,17 @@ def _only_bows(told: Told, who: str) -> bool:
     return not (who in told.changes or who in told.leaps or who in told.gestures or told.contact)
 
 
-def _bowed(person: int, told: Told, beat: Stretch, seed: int) -> Part:
+def _bowed(person: int, told: Told, beat: Stretch, seed: int) -> list[Part]:
     """The body of a person who bows on the spot, as far as it falls into a window."""
     times, deep = told.bows["ab"[person]]
     frames = beat.shown(np.arange(SETTLES // 2 if beat.start else 0, beat.frames, LIMBED))
+    if not len(frames):  # of a beat of which only the way to the next one is in the window
+        return []
     angle, seconds = float(beat.stand.headings[person]), (frames + beat.start) / FPS
     stands = standing(_halted(person, beat), angle, seconds, seed=seed + person)
     late, lean = late_by(seed, person), DEEP if deep else BOWED
     poses = bowed(stands, angle, frames / FPS - late, beat.frames / FPS - late, times, lean)
-    return beat.given(person, frames, poses, _all_but(()))
+    return [beat.given(person, frames, poses, _all_but(()))]
 
 
 def _keeps_back(told: Told, who: str) -> bool:
