@@ -152,7 +152,7 @@ def _steps(feet: Array, pelvis: Array, start: int, stop: int, fps: float) -> lis
     steps = []
     for i in range(count):
         foot, lands = (first + i) % 2, start + at[i] + SWING * (at[i + 1] - at[i])
-        leaves = max(start + at[i], _STANDS)  # who is seen first in a step stands for a moment
+        leaves = max(start + at[i], _STANDS)  # a step that begins the motion starts from a standing foot
         goal = round(stop - 1 if i >= count - 2 else min(lands + 0.5 * (at[i + 1] - at[i]), stop - 1))
         least = max(2, math.ceil(_PEAK * np.linalg.norm(feet[goal, foot, 0] - places[foot]) / _FASTEST * fps))
         again = start + at[min(i + 2, count)]  # when the foot leaves next

@@ -41,30 +41,22 @@ def test_a_statue_does_not_move_and_the_other_does() -> None:
     assert np.abs(found[0] - scene[0]).max() > 0.01
 
 
-def test_palms_meet_in_the_beats_in_which_people_touch(monkeypatch: pytest.MonkeyPatch) -> None:
-    free: list[np.ndarray] = []
+@pytest.mark.parametrize(
+    ("part", "words"), [("palms_met", "They high-five."), ("hands_clasped", "They walk hand in hand.")]
+)
+def test_hands_meet_in_the_beats_in_which_the_words_say_so(
+    monkeypatch: pytest.MonkeyPatch, part: str, words: str
+) -> None:
+    shares: list[np.ndarray] = []
 
     def met(pair: np.ndarray, share: np.ndarray) -> np.ndarray:
-        free.append(share)
+        shares.append(share)
         return pair
 
-    monkeypatch.setattr(scene_finish, "palms_met", met)
-    beats = (Beat("They wave.", seconds=3.0), Beat("They high-five.", seconds=3.0))
+    monkeypatch.setattr(scene_finish, part, met)
+    beats = (Beat("They wave.", seconds=3.0), Beat(words, seconds=3.0))
     finished(SceneRequest(beats=beats), _still(), seed=1)
-    assert not free[0][:90].any() and (free[0][90:] == 1).all()
-
-
-def test_hands_are_held_in_the_beats_in_which_the_words_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    held: list[np.ndarray] = []
-
-    def clasped(pair: np.ndarray, share: np.ndarray) -> np.ndarray:
-        held.append(share)
-        return pair
-
-    monkeypatch.setattr(scene_finish, "hands_clasped", clasped)
-    beats = (Beat("They wave.", seconds=3.0), Beat("They walk hand in hand.", seconds=3.0))
-    finished(SceneRequest(beats=beats), _still(), seed=1)
-    assert not held[0][:90].any() and (held[0][90:] == 1).all()
+    assert not shares[0][:90].any() and (shares[0][90:] == 1).all()
 
 
 def test_two_who_stand_in_each_other_are_moved_apart() -> None:

@@ -52,7 +52,7 @@ UPRIGHT = 0.8
 LOW = 0.5
 """Metres of the head over the pelvis below which somebody lies or is bent."""
 _KNEELS = 0.3
-"""Height in metres of the pelvis above which the arms of somebody who is bent reach down to the floor."""
+"""Height in metres of the pelvis above which a bent person's arms reach down to the floor."""
 _HEAD = SMPL22.index("head")
 LEAP = 36
 """Frames from the highest moment of a jump to that of the next."""

@@ -276,13 +276,11 @@ class _Stage:
 
     def _agree(self) -> None:
         """Settles what two shapes ask of one body: a low person keeps their trunk, a lifted one is turned round."""
-        touch = self.contact
-        lowered = (
-            {change.posture for change in self.changes.get(touch.person, ())} if touch is not None else set()
-        )
-        if touch is not None and lowered and lowered <= LOWERED and touch.region in LOW:
-            del self.changes[touch.person]  # they kneel down to what they touch
-            self.contact = replace(touch, late=False)
+        if (touch := self.contact) is not None and touch.region in LOW:
+            lowered = {change.posture for change in self.changes.get(touch.person, ())}
+            if lowered and lowered <= LOWERED:
+                del self.changes[touch.person]  # they kneel down to what they touch
+                self.contact = replace(touch, late=False)
         low = {who for who, listed in self.changes.items() if listed[-1].posture is not Posture.STANDS}
         self.limbs = {who: limbs for who, limbs in self.limbs.items() if who not in low}
         comes = next((move.person for move in self.moves if move.way is Way.TO), "")
