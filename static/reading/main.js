@@ -35,6 +35,7 @@ class View {
     this.entries = null; // all acts
     this.note = "";
     this.checks = null;
+    this.waiting = false; // a run, for its text to be read
     this.editor = new Editor(root, this);
     const lab = root.closest(".pd-lab");
     this.length = new Length(
@@ -49,11 +50,20 @@ class View {
     this.find(".pdr-add").addEventListener("click", () => this.editor.show());
     this.find(".pdr-fold").addEventListener("click", () => this.fold(false));
     const asks = root.closest(".pd-ask");
-    asks?.addEventListener("click", (event) => event.target.closest(".pd-run") && this.leave());
-    asks?.addEventListener("keydown", (event) => {
-      if (event.key === "Enter" && !event.shiftKey && event.target.matches("textarea")) this.leave();
-    });
     asks?.addEventListener("focusin", (event) => event.target.matches("textarea") && this.fold(false));
+  }
+
+  /**
+   * Before a run: reads the `text` that it is asked for, so that the motion is as long as its acts. A run that is asked
+   * for meanwhile never begins, as none does while another goes on.
+   */
+  async readFirst(text) {
+    if (this.waiting) await new Promise(() => {});
+    this.waiting = true;
+    this.typed(text);
+    await this.asking.answered(() => this.shown);
+    this.waiting = false;
+    this.leave();
   }
 
   /** A run begins: what is read and edited makes room for its result. */

@@ -69,6 +69,26 @@ def test_the_length_follows_a_typed_sentence_until_it_is_set(page: Page) -> None
     expect(seconds).to_have_value("3")
 
 
+def test_a_motion_is_as_long_as_its_acts_where_enter_follows_the_last_letter(page: Page) -> None:
+    prompt, seconds = page.locator("#prompt textarea"), page.locator("#seconds input[type=number]")
+    page.wait_for_function("document.querySelector('#reading .pdr')?.view")
+    runs = []
+    page.on(
+        "request",
+        lambda sent: "queue/join" in sent.url and '"intergen"' in sent.post_data and runs.append(sent),
+    )
+    for sentence, length in (("A bows to B. Then they hug.", 7), ("They hug.", 5)):
+        prompt.fill(sentence)
+        prompt.press("Enter")
+        prompt.press("Enter")  # dropped, as one is while a run goes on
+        expect(page.locator("#status")).to_contain_text("Done", timeout=SLOW)
+        expect(seconds).to_have_value(str(length))
+        expect(page.locator("#readouts")).to_contain_text(f"{length}.0 s")
+        expect(page.locator("#changed")).to_be_empty()
+        expect(page.locator("#generate")).to_be_enabled(timeout=SLOW)
+    assert len(runs) == 2
+
+
 def test_a_story_is_read_as_well(page: Page) -> None:
     page.get_by_role("tab", name="Scene").click()
     page.fill("#scene-prompt textarea", "They wave. Then they hug.")

@@ -70,3 +70,17 @@ test("a text that is set once more is not new", () => {
   assert.equal(it.typed("They hug."), true);
   assert.equal(it.typed("They hug."), false);
 });
+
+test("a run has its text read at once, and waits for the answer", async () => {
+  const asked = [];
+  const it = new Asking((text) => asked.push(text));
+  let shown = null;
+  it.typed("They hug.");
+  const waiting = it.answered(() => shown).then(() => shown?.text);
+  assert.deepEqual(asked, ["They hug."]);
+  setTimeout(() => (shown = { text: "They hug." }), 60);
+  assert.equal(await waiting, "They hug.");
+  it.typed("");
+  await it.answered(() => shown);
+  assert.deepEqual(asked, ["They hug."]);
+});

@@ -7,7 +7,7 @@ The browser (``static/reading``) asks as somebody types; what is shown is made h
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, ClassVar
 
 import gradio as gr
@@ -35,6 +35,17 @@ READERS = 2
 
 _TYPED = """(text) => ({ __type__: "update", props: { text: text ?? "" } })"""
 """JavaScript that tells the component what is typed; it waits for a pause and asks."""
+
+
+_READ_FIRST = """async (...values) => {
+  const [id, text, seconds] = %s;
+  const view = () => document.querySelector(`#${id} .pdr`)?.view;
+  for (let looks = 0; !view() && looks < 40; looks++) await new Promise((done) => setTimeout(done, 50));  // a new page
+  await view()?.readFirst(values[text] ?? "");
+  const shown = document.querySelector("#seconds input[type=number]");
+  if (shown) values[seconds] = Number(shown.value);
+  return values;
+}"""
 
 
 class SentReading(Sent):
@@ -73,6 +84,11 @@ class Reading(Part):
     style = scoped(READING_FOLDER / "reading.css")
     declared: ClassVar = {"text": "", "shown": None, "acts": None, "checked": None, "editable": False}
     sends = ("object", "a text that is to be read, or its edited plan; or null")
+
+    def read_first(self, prompt: gr.Textbox, seconds: gr.Slider, inputs: Iterable[gr.Component]) -> str:
+        """JavaScript for a run of ``inputs``, a set, that waits until its prompt is read and takes the length then."""
+        order = sorted(inputs, key=lambda part: part._id)  # as Gradio passes a set
+        return _READ_FIRST % json.dumps([self.elem_id, order.index(prompt), order.index(seconds)])
 
     def follow(self, prompt: gr.Textbox, **quiet: Any) -> None:
         """Reads what is typed into a prompt; ``quiet`` are the options of the page's own events."""

@@ -169,6 +169,7 @@ class GenerateTab(SweepTab):
             "steps": self.steps, "damping": self.damping, "tries": self.tries, "planned": self.planned,
             "acts": self.reading,
         }  # fmt: skip
+        self.first = self.reading.read_first(self.prompt, self.seconds, self.controls.values())
         self._wire_run([self.go.click, self.prompt.submit], record)
         self._wire_sweeps()
         self.reading.follow(self.prompt, **QUIET)

@@ -60,6 +60,8 @@ class JobTab(SamplingTab, ABC):
     """Attributes that :meth:`opened` sets, besides the result and controls named as a request's fields."""
     controls: Mapping[str, gr.components.Component]
     """The inputs of a run, by the names of its fields; set by ``build``."""
+    first: str | None = None
+    """JavaScript that the values of ``controls`` pass through before a run, in the order of the components' ids."""
 
     @abstractmethod
     def request(self, fields: Mapping[str, Any]) -> SamplingRequest:
@@ -124,7 +126,7 @@ class JobTab(SamplingTab, ABC):
         changes: list[Any] = [getattr(part, "change") for part in self.knobs.values()]  # noqa: B009
         gr.on(changes, None, **self.compare)
         self._wire_sampling()
-        self._wire_start(self.start, triggers)
+        self._wire_start(self.start, triggers, first=self.first)
         self.stop.click(self.cancel, queue=False, **QUIET)
         self._wire_results()
 
@@ -134,6 +136,7 @@ class JobTab(SamplingTab, ABC):
         triggers: Sequence[Any] | Callable[..., Any],
         *,
         more: Sequence[gr.components.Component] = (),
+        first: str | None = None,
     ) -> None:
         listen = triggers if callable(triggers) else partial(gr.on, list(triggers))
         run = listen(
@@ -142,6 +145,7 @@ class JobTab(SamplingTab, ABC):
             outputs=list(self.outputs.values()),
             concurrency_limit=None,  # runs wait in a line of their own, where they can be cancelled
             trigger_mode="once",
+            js=first,
             **QUIET,
         )
         # Only now would a press be taken: while the event goes on, Gradio drops it.
