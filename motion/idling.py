@@ -65,9 +65,13 @@ _STANDS = (0.7, 0.8)
 """Heights in metres of the pelvis: of a sitting person at most, and of a standing one at least."""
 _SOLE = 0.12
 """Height in metres of a toe of a foot that is on the floor, at most."""
-_LOOSE, _TIGHT = 5.0, -4.0
-"""Tens' exponents of the weight of what was made against least jerk: of a body in motion, which stays as it is, and of
-one at rest, of which is kept what is slower than a hertz."""
+_LOOSE, _TIGHT, _LAID = 5.0, -4.0, -5.5
+"""Tens' exponents of the weight of what was made against least jerk: of a body in motion, which stays as it is, of one
+at rest, of which is kept what is slower than a hertz, and of arms that have nothing to do, slower than 0.6."""
+_END = 30
+"""Frames by which a motion is mirrored at its ends: a path of least jerk would run away there."""
+_SETTLED = (0.15, 0.5)
+"""The same of a body whose arms have nothing to do: they lie still on it sooner."""
 _J = SMPL22.index
 _WRISTS = [wrist for *_, wrist in ARMS]
 _HEAD, _NECK, _CHEST, _WAIST = (_J(name) for name in ("head", "neck", "spine3", "spine2"))
@@ -76,7 +80,9 @@ _ABOVE = [joint for joint in UPPER if joint not in (_J("spine1"), _J("spine2"))]
 _TOES = [leg[-1] for leg in LEGS]
 
 
-def alive(pair: Array, fps: float, seed: int = 0, free: Array | None = None) -> Array:
+def alive(
+    pair: Array, fps: float, seed: int = 0, free: Array | None = None, loose: Array | None = None
+) -> Array:
     """Two people of whom nobody is a statue.
 
     Args:
@@ -84,6 +90,7 @@ def alive(pair: Array, fps: float, seed: int = 0, free: Array | None = None) -> 
         fps: frames a second.
         seed: draws how each of them rests.
         free: (2, T) how far what a person does may be changed, 0 to 1; wholly by default.
+        loose: (2, T) how far their arms have nothing to do, 0 to 1; by default, arms that move do something.
 
     Returns:
         (2, T, 22, 3) on the same bones, with feet in the same places.
@@ -95,12 +102,14 @@ def alive(pair: Array, fps: float, seed: int = 0, free: Array | None = None) -> 
     apart = _apart(pair)
     found = []
     for person in (0, 1):
-        rest = share[person] * apart * _calm(_body_speed(pair[person], fps), _WAITS)
-        if rest.max() < 1e-3:
+        speed, own = _body_speed(pair[person], fps), share[person] * apart
+        rest = own * _calm(speed, _WAITS)
+        laid = np.zeros(len(rest)) if loose is None else own * loose[person] * _calm(speed, _SETTLED)
+        if max(rest.max(), laid.max()) < 1e-3:
             found.append(pair[person].copy())
             continue
         manner = _Manner.drawn(np.random.default_rng([seed, person]), pair.shape[1], fps)
-        calm = _calmed(pair[person], fps, rest)
+        calm = _calmed(pair[person], fps, rest, laid)
         found.append(_rested(calm, pair[1 - person], fps, rest, manner))
     return np.stack(found)
 
@@ -148,28 +157,38 @@ def _shifts(rng: np.random.Generator, frames: int, fps: float, count: int) -> Ar
     return found
 
 
-def _calmed(own: Array, fps: float, rest: Array) -> Array:
-    """A person (T, 22, 3) whose bones above the legs do not tremble while they rest.
+def _calmed(own: Array, fps: float, rest: Array, laid: Array) -> Array:
+    """A person (T, 22, 3) whose bones above the legs do not tremble while they rest, nor arms that are ``laid`` (T,).
 
     Poses that are given now and then leave the frames between them to waver at a hertz or two; people at rest sway
     more slowly.
     """
     result = own.copy()
-    shares = dict.fromkeys(UPPER, rest)
+    weights = dict.fromkeys(UPPER, _LOOSE - (_LOOSE - _TIGHT) * rest)
     for shoulder, elbow, wrist in ARMS:
         hand = own[:, wrist] - own[:, shoulder]
-        shares |= dict.fromkeys((elbow, wrist), rest * _calm(_speed(hand, fps), _HAND_WAITS))
+        still = rest * _calm(_speed(hand, fps), _HAND_WAITS)
+        tight = np.minimum(_LOOSE - (_LOOSE - _TIGHT) * still, _LOOSE - (_LOOSE - _LAID) * laid)
+        weights |= dict.fromkeys((elbow, wrist), tight)
     parents = {child: parent for parent, child in SMPL22.bones}
     groups: dict[int, list[int]] = {}
     for joint in UPPER:
-        groups.setdefault(id(shares[joint]), []).append(joint)
+        groups.setdefault(id(weights[joint]), []).append(joint)
     for joints in groups.values():
         bones = own[:, joints] - own[:, [parents[joint] for joint in joints]]
-        calm = least_jerk(bones, 10.0 ** (_LOOSE - (_LOOSE - _TIGHT) * shares[joints[0]]))
+        calm = _smoothed(bones, 10.0 ** weights[joints[0]])
         calm = _unit(calm) * np.linalg.norm(bones, axis=-1, keepdims=True)
         for joint, bone in zip(joints, np.moveaxis(calm, 1, 0), strict=True):
             result[:, joint] = result[:, parents[joint]] + bone
     return result
+
+
+def _smoothed(bones: Array, weights: Array) -> Array:
+    """Bones (T, N, 3) held by weights (T,) to what they were, along paths of least jerk that end in rest."""
+    ends = min(_END, len(bones))
+    held = np.pad(weights, ends, mode="symmetric")
+    padded = np.pad(bones, ((ends, ends), (0, 0), (0, 0)), mode="symmetric")
+    return least_jerk(padded, held)[ends:-ends]
 
 
 def _rested(own: Array, other: Array, fps: float, rest: Array, manner: _Manner) -> Array:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from motion import SMPL22, Duet
+from motion import SMPL22, Duet, InputError
 from motion.transforms import heading_matrix
 from webdemo.inference import SceneRequest
 from webdemo.inference.pipelines import scene_finish
-from webdemo.inference.pipelines.scene_finish import finished
+from webdemo.inference.pipelines.scene_finish import finished, finishes
+from webdemo.inference.plans import BeatFinish
 from webdemo.inference.story.beats import Beat
 
 FRAMES = 180
@@ -57,6 +58,25 @@ def test_hands_meet_in_the_beats_in_which_the_words_say_so(
     beats = (Beat("They wave.", seconds=3.0), Beat(words, seconds=3.0))
     finished(SceneRequest(beats=beats), _still(), seed=1)
     assert not shares[0][:90].any() and (shares[0][90:] == 1).all()
+
+
+def test_arms_swing_in_the_beats_in_which_they_have_nothing_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    shares: list[np.ndarray] = []
+
+    def swung(person: np.ndarray, fps: float, free: np.ndarray, seed: object) -> np.ndarray:
+        shares.append(free)
+        return person
+
+    monkeypatch.setattr(scene_finish, "swinging", swung)
+    beats = (Beat("Person A waves.", seconds=3.0), Beat("Person A walks away.", seconds=3.0))
+    request = SceneRequest(beats=beats)
+    finished(request, _still(), seed=1)
+    assert not shares[0][:90].any() and (shares[0][90:] == 1).all() and (shares[1][:90] == 1).all()
+    kept = [BeatFinish.from_dict(each.to_dict()) for each in finishes(request)]
+    assert kept == list(finishes(request)) and [each.loose for each in kept] == ["b", "a"]
+    with pytest.raises(InputError, match="damaged"):
+        BeatFinish.from_dict(kept[0].to_dict() | {"loose": "c"})
+    assert BeatFinish.from_dict({"reaching": False, "still": "a"}).loose == "", "as older plans were kept"
 
 
 def test_two_who_stand_in_each_other_are_moved_apart() -> None:

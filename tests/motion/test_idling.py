@@ -107,3 +107,21 @@ def test_hands_of_somebody_who_sits_stay_where_they_lie() -> None:
     found = alive(pair, FPS, seed=5)
     np.testing.assert_allclose(found[0][:, hands], pair[0][:, hands], atol=0.01)
     assert np.ptp(found[0, :, J("left_shoulder")], axis=0).max() > 0.005, "the chest breathes and turns"
+
+
+def test_arms_that_have_nothing_to_do_lie_still_on_a_body_that_rests() -> None:
+    pair = _pair()
+    time = np.arange(FRAMES) / FPS
+    for joint, far in (("elbow", 0.03), ("wrist", 0.1)):
+        pair[0, :, J(f"left_{joint}"), 2] += far * np.sin(2 * np.pi * 1.3 * time)
+    loose = np.ones(pair.shape[:2])
+    speeds = []
+    for laid in (None, loose):
+        hand = alive(pair, FPS, 1, loose=laid)[0, 40:-40, J("left_wrist")]
+        speeds.append(np.linalg.norm(np.diff(hand, axis=0), axis=-1).mean() * FPS)
+    assert speeds[1] < 0.25 * speeds[0]
+    hand = alive(pair, FPS, 1, loose=loose)[0, :, J("left_wrist")]
+    assert np.linalg.norm(np.diff(hand[-8:], axis=0), axis=-1).max() * FPS < 0.15, "it comes to rest"
+    walks = pair.copy()
+    walks[0, :, :, 0] += np.linspace(0, 8, FRAMES)[:, None]
+    np.testing.assert_allclose(alive(walks, FPS, loose=loose)[0], walks[0], atol=1e-6)

@@ -87,24 +87,27 @@ class BeatFinish:
         reaching: whether palms meet what they reach for.
         still: who ("", "a", "b" or "ab") does not look about or shift their weight.
         held: whether the two hold each other by the hand.
+        loose: whose ("", "a", "b" or "ab") arms have nothing to do.
     """
 
     reaching: bool = False
     still: str = ""
     held: bool = False
+    loose: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """As JSON."""
-        return {"reaching": self.reaching, "still": self.still, "held": self.held}
+        return {"reaching": self.reaching, "still": self.still, "held": self.held, "loose": self.loose}
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> BeatFinish:
         """A finish from :meth:`to_dict`; raises InputError for anything else."""
-        reaching, still, held = values.get("reaching"), values.get("still"), values.get("held", False)
-        known = still in ("", "a", "b", "ab")
+        reaching, held = values.get("reaching"), values.get("held", False)
+        still, loose = values.get("still"), values.get("loose", "")
+        known = all(who in ("", "a", "b", "ab") for who in (still, loose))
         if not isinstance(reaching, bool) or not isinstance(held, bool) or not known:
             raise InputError(_WRONG.format("the finish of a beat is none"))
-        return cls(reaching, str(still), held)
+        return cls(reaching, str(still), held, str(loose))
 
 
 @dataclass(frozen=True, eq=False)

@@ -76,3 +76,22 @@ def test_a_bystander_stands_on_the_floor_and_sways() -> None:
     assert (wrists[..., 1] < poses[:, :1, 1] + 0.1).all(), "the arms hang"
     assert np.ptp(wrists, axis=0).max() > 0.005, "nobody stands like a statue"
     assert not np.allclose(poses, standing(np.array([1.0, -2.0]), 0.7, np.arange(20) / 2, seed=4))
+
+
+@pytest.mark.parametrize(
+    ("sentence", "found"),
+    [
+        ("Person A walks up to person B.", "a"),
+        ("Two people walk side by side.", "ab"),
+        ("Person A lies down.", "ab"),
+        ("Person A waves while person B stands still.", "b"),
+        ("Person A walks to person B and waves.", "b"),
+        ("They walk hand in hand.", ""),
+        ("Person A sneaks away.", ""),
+        ("Person A hugs person B.", ""),
+        ("Person A carries a box to person B.", ""),
+        ("Person A picks person B up.", ""),
+    ],
+)
+def test_the_arms_of_those_who_only_walk_or_rest_have_nothing_to_do(sentence: str, found: str) -> None:
+    assert "".join(sorted(told(sentence).loose)) == found

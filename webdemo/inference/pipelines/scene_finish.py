@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.arm_swing import swinging
 from motion.easing import smoothstep
 from motion.idling import alive
 from motion.touch.apart import bodies_apart
@@ -37,13 +38,17 @@ def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
     """
     free = _made(request, scene.shape[1])
     rests, raised, held = np.stack([free, free]), np.zeros_like(free), np.zeros_like(free)
+    loose = np.zeros_like(rests)
     for beat, finish in enumerate(finishes(request)):
         inside = slice(request.edges[beat], request.edges[beat + 1])
         raised[inside] = free[inside] * finish.reaching
         held[inside] = free[inside] * finish.held
         for who in finish.still:
             rests["ab".index(who), inside] = 0.0
-    result = alive(in_touch(scene, free, raised, held), FPS, seed, rests).astype(np.float32)
+        for who in finish.loose:
+            loose["ab".index(who), inside] = free[inside]
+    swung = np.stack([swinging(scene[i], FPS, loose[i], [seed, i]) for i in (0, 1)])
+    result = alive(in_touch(swung, free, raised, held), FPS, seed, rests, loose).astype(np.float32)
     result[:, free <= 0] = scene[:, free <= 0]
     return result
 
@@ -60,7 +65,8 @@ def finish_of(told: Told) -> BeatFinish:
     around = any(gesture.hand is Hand.AROUND for gesture in told.gestures.values())
     # a head that is tilted is not turned to the other
     still = "".join(sorted({*told.frozen, *told.limbs}))
-    return BeatFinish(bool(told.reaching), still, told.linked and not around)
+    loose = "".join(sorted(told.loose - told.frozen))
+    return BeatFinish(bool(told.reaching), still, told.linked and not around, loose)
 
 
 def in_touch(scene: Array, free: Array, raised: Array, held: Array) -> Array:

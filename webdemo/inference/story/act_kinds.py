@@ -15,6 +15,14 @@ _HANDED = frozenset(("things", "handling", "daily"))
 """Groups whose acts with the other person pass something from hand to hand."""
 _GENTLE = frozenset(("care", "touch"))
 """Groups of acts that somebody lets be done to them."""
+_BODILY = frozenset(("body", "ways", "moves", "stage"))
+"""Groups of acts of the whole body."""
+_OWN_ARMS = frozenset(
+    ("creep-up", "sneak", "sneak-away", "stagger", "skip", "moonwalk", "strut", "stumble", "dive")
+)
+"""Acts of which arms of their own are part."""
+_HANDS_FREE = frozenset(("go", "turn", "stay", "place", "posture", "jump", "bow"))
+"""Shapes that need no hands."""
 _JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
 """Shapes that take the other along."""
 _REGIONS = {
@@ -40,6 +48,12 @@ def only_stays(entry: Entry) -> bool:
     """True for an act of a bystander."""
     shown = {shape.do for shape in entry.stage}
     return "stay" in shown and shown <= {"stay", "place"}
+
+
+def leaves_hands(act: Act, entry: Entry) -> bool:
+    """True for an act of the whole body, without a thing, that leaves the hands free."""
+    bodily = entry.group in _BODILY and act.act not in _OWN_ARMS and act.thing is None and act.part is None
+    return bodily and bool(entry.stage) and all(shape.do in _HANDS_FREE for shape in entry.stage)
 
 
 def walks(entry: Entry) -> bool:

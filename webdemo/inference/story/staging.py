@@ -16,7 +16,18 @@ from acts.lexicon import Lexicon, lexicon
 from acts.plan import FROM_BEHIND, Act, beats, other_of
 from acts.things import is_fixture
 
-from .act_kinds import is_after, is_attempt, is_care, is_deep, is_near, only_stays, reaches, region_of, walks
+from .act_kinds import (
+    is_after,
+    is_attempt,
+    is_care,
+    is_deep,
+    is_near,
+    leaves_hands,
+    only_stays,
+    reaches,
+    region_of,
+    walks,
+)
 from .beginnings import Setting, standing
 from .contacts import LOW, Contact, Region
 from .gestures import AT_OTHER, OF_BOTH, SIDES, Gesture, Hand
@@ -115,6 +126,7 @@ class _Stage:
             twirls=self.twirls, pulls=self.pulls, lift=self.lift, strike=struck, changes=self.changes, limbs=self.limbs,
             leaps=self.leaps, bows=self.bows, linked=self.linked or any(move.linked for move in moves),
             on_feet=frozenset(who for act, e in self.done if e.group in _LEGS for who in act.agents),
+            loose=frozenset(who for who in "ab" if self._is_loose(who, idle)),
             placed=standing(
                 replace(
                     self.setting, lift=self.lift, strike=struck, twirls=bool(self.twirls),
@@ -375,6 +387,17 @@ class _Stage:
     def _stays(self, act: Act) -> bool:
         entry = self.known.entries.get(act.act)
         return entry is not None and only_stays(entry)
+
+    def _is_loose(self, who: str, idle: frozenset[str]) -> bool:
+        """True for a person whose hands have nothing to do, and whom the other does not touch."""
+        own = [(act, e) for act, e in self.done if who in act.agents]
+        touched = any(reaches(act, e) for act, e in self.done if who not in act.agents)
+        joined = (
+            self.lift or self.hold or self.twirls or self.linked or any(move.linked for move in self.moves)
+        )
+        if touched or joined or who in self.gestures or who in self.limbs:
+            return False
+        return who in idle or (bool(own) and all(leaves_hands(act, e) for act, e in own))
 
     def _gesturing(self, moves: Sequence[Move]) -> frozenset[str]:
         gone = {move.person for move in moves if move.way not in (Way.STAY, Way.BACKS)}

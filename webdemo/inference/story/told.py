@@ -46,6 +46,7 @@ class Told:
         leaps: the number of jumps, by person.
         bows: the number of bows, by person, and True where they are deep.
         on_feet: those who do what needs legs.
+        loose: those who do nothing with their hands: they walk, sit, jump or stand by.
         placed: where both are when the story begins with this beat.
         keeps_place: they are side by side or back to back, and stay so.
         reaching: those who do something within the other's reach, and the metres between the two for it.
@@ -70,6 +71,7 @@ class Told:
     leaps: Mapping[str, int] = field(default_factory=dict)
     bows: Mapping[str, tuple[int, bool]] = field(default_factory=dict)
     on_feet: frozenset[str] = frozenset()
+    loose: frozenset[str] = frozenset()
     placed: Standing | None = None
     keeps_place: bool = False
     reaching: Mapping[str, float] = field(default_factory=dict)
