@@ -7,6 +7,7 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from .easing import smoothstep
+from .heels import heel_raised
 from .skeleton import SMPL22, Skeleton
 from .smoothing import REACH, frames_from, least_jerk, led
 from .transforms import facing
@@ -96,7 +97,8 @@ def plant_feet(
     # A leg is kept from being straight where its foot stands or is led to where it stands, and free frames stay free.
     near = smoothstep(1 - frames_from(np.asarray(contacts.any(axis=1))) / (REACH + 1))[:, None]
     soft = _SOFT * near * (1 - _fade(stays, blend))
-    sink = _needed_sink(result, ankles, soft[:, 0], skeleton) * (1 - _fade(stays, blend)[:, 0])
+    ankles = _over_toes(result, ankles, toes, soft, skeleton)
+    sink = _needed_sink(result, ankles, soft, skeleton) * (1 - _fade(stays, blend)[:, 0])
     result[..., 1] -= sink[:, None]
     forward = facing(result, skeleton)
     for name, ankle_goal, toe_goal in zip(_SIDES, ankles, toes, strict=True):
@@ -287,17 +289,34 @@ def _fade(stands: NDArray[np.bool_], blend: int) -> Array:
     return smoothstep(1 - distance / (blend + 1))[:, None]
 
 
-def _needed_sink(positions: Array, ankles: list[Array], soft: Array, skeleton: Skeleton) -> Array:
-    """(T,) metres the body must go down for both legs to reach their goals, at most 0.12, smooth."""
-    need = np.zeros(len(positions))
-    for name, goal in zip(_SIDES, ankles, strict=True):
+def _over_toes(
+    positions: Array, ankles: list[Array], toes: list[Array], soft: Array, skeleton: Skeleton
+) -> list[Array]:
+    """Targets (T, 3) of both ankles, with heels that rise where a foot behind is out of reach."""
+    return [
+        heel_raised(hip, ankle, toe, reach)
+        for (hip, reach), ankle, toe in zip(_reaches(positions, soft, skeleton), ankles, toes, strict=True)
+    ]
+
+
+def _reaches(positions: Array, soft: Array, skeleton: Skeleton) -> list[tuple[Array, Array]]:
+    """The hip (T, 3) and the metres (T, 1) that a leg reaches, of each side."""
+    found = []
+    for name in _SIDES:
         hip, knee, ankle = (
             positions[:, skeleton.index(f"{name}_{part}")] for part in ("hip", "knee", "ankle")
         )
         leg = np.linalg.norm(knee - hip, axis=-1) + np.linalg.norm(ankle - knee, axis=-1)
-        leg = (1 - soft) * leg - 1e-3
+        found.append((hip, (1 - soft) * leg[:, None] - 1e-3))
+    return found
+
+
+def _needed_sink(positions: Array, ankles: list[Array], soft: Array, skeleton: Skeleton) -> Array:
+    """(T,) metres the body must go down for both legs to reach their goals, at most 0.12, smooth."""
+    need = np.zeros(len(positions))
+    for (hip, leg), goal in zip(_reaches(positions, soft, skeleton), ankles, strict=True):
         aside = hip - goal
-        height = np.sqrt(np.maximum(leg**2 - aside[:, 0] ** 2 - aside[:, 2] ** 2, 0.0))
+        height = np.sqrt(np.maximum(leg[:, 0] ** 2 - aside[:, 0] ** 2 - aside[:, 2] ** 2, 0.0))
         need = np.maximum(need, aside[:, 1] - height)
     need = np.clip(need, 0.0, 0.12)
     if len(need) < 3 or not need.any():

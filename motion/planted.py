@@ -7,6 +7,7 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from .cleaning import solve_two_bones
+from .heels import heel_raised
 from .skeleton import LEGS, SMPL22
 from .transforms import facing
 
@@ -20,6 +21,8 @@ UPPER = [
 """Joints above the legs."""
 _SINKS = 0.06
 """Metres by which a body sinks at most."""
+_MOST = 0.995
+"""Share of a leg's length that it reaches."""
 _FLAT = np.array([1.0, 0.0, 1.0])
 
 
@@ -31,26 +34,36 @@ def over_planted_feet(own: Array, moved: Array) -> Array:
         moved: (T, 22, 3), the same with pelvis, hips and the joints above them elsewhere.
 
     Returns:
-        (T, 22, 3) on bones as long as before; what was moved is lowered, smoothly, where a leg would not reach.
+        (T, 22, 3) on bones as long as before; where a leg would not reach, the heel of a foot behind rises, and what
+        was moved is lowered, smoothly.
     """
     result = np.array(moved)
-    result[:, [*UPPER, *HIPS], 1] -= scipy.ndimage.gaussian_filter1d(_sunk(own, moved), 2.0)[:, None]
+    reaches = [
+        _MOST
+        * sum(np.linalg.norm(own[:, end] - own[:, start], axis=-1, keepdims=True) for start, end in bones)
+        for bones in ((leg[:2], leg[1:3]) for leg in LEGS)
+    ]
+    ankles = [
+        heel_raised(moved[:, leg[0]], own[:, leg[2]], own[:, leg[3]], reach)
+        for leg, reach in zip(LEGS, reaches, strict=True)
+    ]
+    sunk = scipy.ndimage.gaussian_filter1d(_sunk(moved, ankles, reaches), 2.0)
+    result[:, [*UPPER, *HIPS], 1] -= sunk[:, None]
     forward = facing(own)
-    for hip, knee, ankle, toe in LEGS:
+    for (hip, knee, ankle, toe), goal in zip(LEGS, ankles, strict=True):
         shift = result[:, hip] - own[:, hip]
         bent = own[:, knee] + shift, own[:, ankle] + shift
-        result[:, knee], result[:, ankle] = solve_two_bones(result[:, hip], *bent, own[:, ankle], forward)
-        result[:, toe] = result[:, ankle] + own[:, toe] - own[:, ankle]
+        result[:, knee], result[:, ankle] = solve_two_bones(result[:, hip], *bent, goal, forward)
+        result[:, toe] = result[:, ankle] + own[:, toe] - goal
     return result
 
 
-def _sunk(own: Array, moved: Array) -> Array:
+def _sunk(moved: Array, ankles: list[Array], reaches: list[Array]) -> Array:
     """(T,) metres by which hips that are ``moved`` (T, 22, 3) go down, so that no leg is too short."""
-    sunk = np.zeros(len(own))
-    for hip, knee, ankle, _ in LEGS:
-        length = np.linalg.norm(own[:, knee] - own[:, hip], axis=-1)
-        length += np.linalg.norm(own[:, ankle] - own[:, knee], axis=-1)
-        aside = np.linalg.norm((moved[:, hip] - own[:, ankle]) * _FLAT, axis=-1)
-        reach = np.sqrt(np.maximum((0.995 * length) ** 2 - aside**2, 0.0))
-        sunk = np.maximum(sunk, np.minimum(moved[:, hip, 1] - own[:, ankle, 1] - reach, _SINKS))
+    sunk = np.zeros(len(moved))
+    for leg, ankle, most in zip(LEGS, ankles, reaches, strict=True):
+        hip = moved[:, leg[0]]
+        aside = np.linalg.norm((hip - ankle) * _FLAT, axis=-1)
+        reach = np.sqrt(np.maximum(most[:, 0] ** 2 - aside**2, 0.0))
+        sunk = np.maximum(sunk, np.minimum(hip[:, 1] - ankle[:, 1] - reach, _SINKS))
     return sunk

@@ -165,3 +165,24 @@ def test_a_body_sinks_no_deeper_than_a_hand_for_feet_out_of_reach():
     planted = plant_feet(high, np.ones((60, 4), bool))
     sunk = high[:, 0, 1] - planted[:, 0, 1]
     assert 0.1 < sunk.max() < 0.121
+
+
+def test_the_heel_of_a_foot_that_is_left_behind_rises_and_the_body_stays_up():
+    """A body that goes 45 cm ahead of its right foot, which glides after it: over a flat foot it sinks by 12 cm."""
+    positions = gliding(60, speed=0.0, sink=0.0)
+    hip, knee, ankle, toe = (SMPL22.index(f"right_{part}") for part in ("hip", "knee", "ankle", "foot"))
+    foot = positions[:, [ankle, toe]].copy()
+    ahead = np.clip((np.arange(60) - 35) / 15, 0, 1)
+    positions[..., 2] += 0.45 * ahead[:, None]
+    glides = 0.15 * ahead[:, None] * [0.0, 0.0, 1.0]
+    positions[:, knee], positions[:, ankle] = solve_two_bones(
+        positions[:, hip], positions[:, knee], positions[:, ankle], foot[:, 0] + glides, np.array([0, 0, 1.0])
+    )
+    positions[:, toe] = positions[:, ankle] + foot[:, 1] - foot[:, 0]
+    contacts = np.zeros((60, 4), bool)
+    contacts[:, 2:] = True
+    planted = plant_feet(positions, contacts)
+    assert positions[-1, 0, 1] - planted[-1, 0, 1] < 0.04
+    assert planted[-1, ankle, 1] > foot[0, 0, 1] + 0.05
+    np.testing.assert_allclose(planted[-1, toe], foot[0, 1], atol=0.01)
+    np.testing.assert_allclose(_bones(planted), _bones(positions), atol=1e-6)
