@@ -237,6 +237,35 @@ class Limb(_Shape):
     direction: Literal["", "up", "down", "forward", "back", "out", "left", "right"] = ""
 
 
+class Figure(_Shape):
+    """A figure of the whole body on the spot, by its name in ``webdemo/inference/story/figures.toml``.
+
+    Attributes:
+        figure: which one.
+        times: how often its middle is done where the words give no number; 0 for as long as there is time.
+        mirrored: left and right are exchanged.
+        meets: it is done to the other, who stands within its reach: the two do not move apart for it.
+    """
+
+    do: Literal["figure"] = "figure"
+    figure: Literal[
+        "push-ups",
+        "sit-ups",
+        "handstand",
+        "cartwheel",
+        "somersault",
+        "jumping-jacks",
+        "kicks",
+        "kicks-ball",
+        "shadow-boxes",
+        "rows",
+        "swims",
+    ]
+    times: Annotated[int, Field(ge=0, le=20)] = 0
+    mirrored: bool = False
+    meets: bool = False
+
+
 class Words(_Shape):
     """Nothing is given: the network makes the act from its caption, which it was trained on."""
 
@@ -259,6 +288,7 @@ Shape = Annotated[
     | Lift
     | Strike
     | Limb
+    | Figure
     | Words,
     Field(discriminator="do"),
 ]

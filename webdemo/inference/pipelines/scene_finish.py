@@ -64,7 +64,7 @@ def finish_of(told: Told) -> BeatFinish:
     """The finish that a beat's words ask for."""
     around = any(gesture.hand is Hand.AROUND for gesture in told.gestures.values())
     # a head that is tilted is not turned to the other
-    still = "".join(sorted({*told.frozen, *told.limbs}))
+    still = "".join(sorted({*told.frozen, *told.limbs, *told.figures}))
     loose = "".join(sorted(told.loose - told.frozen))
     return BeatFinish(bool(told.reaching), still, told.linked and not around, loose)
 

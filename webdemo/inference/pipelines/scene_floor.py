@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acts.plan import other_of
-from motion import SMPL22
 from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.known_parts import KnownFrames, Part
@@ -18,22 +17,21 @@ from webdemo.inference.story.contacts import Contact
 from webdemo.inference.story.floor import Standing, Way2D, plan
 from webdemo.inference.story.gestures import Hand
 from webdemo.inference.story.holds import Hold
-from webdemo.inference.story.limbs import WITH_ARMS, Limb, limbed
 from webdemo.inference.story.moves import Move, goes
 from webdemo.inference.story.plan import Window
-from webdemo.inference.story.poses import ARMS, HANDS, bowed, standing, upright
+from webdemo.inference.story.poses import ARMS, HANDS, standing, upright
 from webdemo.inference.story.postures import Change, Posture
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.strikes import Bout
 from webdemo.inference.story.told import Told
-from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
 
+from .scene_bodies import SETTLES, all_but, figure_poses, given_bow, given_figure, given_limbs, halted
 from .scene_contacts import coming, given_contact, given_hold, given_twirl, meeting, towards_touched
-from .scene_hands import hands, late_by, outer_hands
+from .scene_hands import hands, outer_hands
 from .scene_lifts import Carrying
 from .scene_paths import given_gait, path_of
-from .scene_postures import BOWED, DEEP, UPRIGHT, Pose, led, postures, still_down
+from .scene_postures import UPRIGHT, Pose, led, postures, still_down
 from .scene_pulls import given_pull
 from .scene_room import Room, roomy
 from .scene_stretch import Stretch
@@ -44,12 +42,8 @@ Array = NDArray[np.floating]
 
 POSED = 6
 """Frames between two poses of a bystander."""
-LIMBED = 3
-"""Frames between two poses of a person who moves single limbs."""
 TURNED = 5
 """Frames between two poses of a person whose trunk the network would turn to the other."""
-SETTLES = 24
-"""Frames that changing to another stance takes."""
 
 
 def planned(
@@ -82,7 +76,7 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
     stand = _stand(before) if start else _beginning(request)
     lifted = told.lift
     found = coming(told, stand, _down(scene, start)) if start else told.moves
-    room = _room(request, window, scene, stand, still, found)
+    room = _room(request, scene, still, found, Stretch(window, placement, stand, start, stop))
     stand = room.stand
     beat = Stretch(window, placement, stand, start, stop)
     parts, posed = ([], {}) if lifted else _held(request, scene, room, still, found, beat)
@@ -158,26 +152,21 @@ def _until_posed(way: Way2D, hand: KnownFrames | None, beat: Stretch) -> Way2D:
 
 
 def _room(
-    request: SceneRequest,
-    window: Window,
-    scene: Array,
-    stand: Standing,
-    still: Collection[str],
-    found: Sequence[Move],
+    request: SceneRequest, scene: Array, still: Collection[str], found: Sequence[Move], beat: Stretch
 ) -> Room:
     """The room that the postures of a beat need, in which nobody goes anywhere or touches the other."""
-    told = request.told[window.beat]
-    if told.joined or told.strike or told.contact or _going(found):
+    told, stand = request.told[beat.window.beat], beat.stand
+    met = any(figure.meets for figure in told.figures.values())
+    if told.joined or told.strike or told.contact or met or _going(found):
         return Room(stand)
-    start, stop = request.edges[window.beat], request.edges[window.beat + 1]
     poses = {
-        person: postures(
-            request.told, window.beat, person, start, stop, stand, scene[person, start - 1] if start else None
-        )
+        person: figure_poses(told, person, beat)
+        if who in told.figures
+        else _postures(request, scene, person, beat)
         for person, who in enumerate("ab")
         if who not in still
     }
-    return roomy(stand, poses, _down(scene, start), first=not start)
+    return roomy(stand, poses, _down(scene, beat.start), first=not beat.start)
 
 
 def _down(scene: Array, start: int) -> list[int]:
@@ -208,12 +197,16 @@ def _held(
     for person, who in enumerate("ab"):
         last = scene[person, start - room.delay - 1] if start else None
         up = last is None or last[0, 1] > UPRIGHT
+        if who in told.figures and who not in gone:
+            parts += given_figure(request.told, person, beat, last)
+            posed[person] = upright(stand.places[person], float(stand.headings[person]))
+            continue
         if up and who in told.limbs and who not in gone:
-            parts += _limbed(told.limbs[who], person, beat)
+            parts += given_limbs(told.limbs[who], person, beat)
             posed[person] = upright(stand.places[person], float(stand.headings[person]))
             continue
         if up and who in told.bows and _only_bows(told, who) and who not in gone:
-            parts += _bowed(person, told, beat, request.seed)
+            parts += given_bow(person, told, beat, request.seed)
             posed[person] = upright(stand.places[person], float(stand.headings[person]))
             continue
         turned = last is None and _keeps_back(told, who)
@@ -239,19 +232,6 @@ def _held(
 def _only_bows(told: Told, who: str) -> bool:
     """True for a person who bows and keeps their feet and hands out of other things."""
     return not (who in told.changes or who in told.leaps or who in told.gestures or told.contact)
-
-
-def _bowed(person: int, told: Told, beat: Stretch, seed: int) -> list[Part]:
-    """The body of a person who bows on the spot, as far as it falls into a window."""
-    times, deep = told.bows["ab"[person]]
-    frames = beat.shown(np.arange(SETTLES // 2 if beat.start else 0, beat.frames, LIMBED))
-    if not len(frames):  # of a beat of which only the way to the next one is in the window
-        return []
-    angle, seconds = float(beat.stand.headings[person]), (frames + beat.start) / FPS
-    stands = standing(_halted(person, beat), angle, seconds, seed=seed + person)
-    late, lean = late_by(seed, person), DEEP if deep else BOWED
-    poses = bowed(stands, angle, frames / FPS - late, beat.frames / FPS - late, times, lean)
-    return [beat.given(person, frames, poses, _all_but(()))]
 
 
 def _keeps_back(told: Told, who: str) -> bool:
@@ -307,6 +287,8 @@ def _said_postures(told: Told) -> Iterator[str]:
             yield f"person {who.upper()} {'gets up' if up else change.posture.value}"
     for who in told.leaps:
         yield f"person {who.upper()} jumps"
+    for who, figure in told.figures.items():
+        yield f"person {who.upper()} does a figure ({figure.name})"
 
 
 def _beginning(request: SceneRequest) -> Standing:
@@ -356,29 +338,8 @@ def _posed(person: int, beat: Stretch, seed: int, free: Collection[int], every: 
     if not len(frames):
         return []
     seconds = (frames + beat.start) / FPS
-    poses = standing(_halted(person, beat), float(beat.stand.headings[person]), seconds, seed=seed + person)
-    return [beat.given(person, frames, poses, _all_but(free))]
-
-
-def _limbed(limbs: Sequence[Limb], person: int, beat: Stretch) -> list[Part]:
-    """The body, without the arms, of a person who moves single limbs, as far as it falls into a window."""
-    frames = beat.shown(np.arange(SETTLES // 2 if beat.start else 0, beat.frames, LIMBED))
-    if not len(frames):
-        return []
-    angle, seconds = float(beat.stand.headings[person]), beat.frames / FPS
-    poses = limbed(limbs, _halted(person, beat), angle, frames / FPS, seconds)
-    free = () if any(limb.does in WITH_ARMS for limb in limbs) else HANDS
-    return [replace(beat.given(person, frames, poses, _all_but(free)), kept=True)]
-
-
-def _halted(person: int, beat: Stretch) -> Array:
-    """The place (x, z) at which a person comes to a halt."""
-    return beat.stand.places[person] + (HALT * beat.stand.speeds[person] if beat.start else 0.0)
-
-
-def _all_but(free: Collection[int]) -> list[int]:
-    """All joints of a body but some."""
-    return [joint for joint in range(SMPL22.num_joints) if joint not in free]
+    poses = standing(halted(person, beat), float(beat.stand.headings[person]), seconds, seed=seed + person)
+    return [beat.given(person, frames, poses, all_but(free))]
 
 
 def _stand(poses: Array) -> Standing:

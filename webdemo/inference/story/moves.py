@@ -95,6 +95,19 @@ def lifted_moves(found: Lift, speed: float) -> tuple[Move, ...]:
     return tuple(made)
 
 
+def away(alone: tuple[str, str], moves: Sequence[Move]) -> tuple[str, str]:
+    """The sentences of each, of which one who goes to a thing only walks away, as the network knows no things.
+
+    Their hands are given; of a reach the network would make one to the other, and not turn round.
+    """
+    gone = {move.person for move in moves if move.way is Way.THING}
+    a, b = (
+        "One person turns around and walks away." if words and who in gone else words
+        for who, words in zip("ab", alone, strict=True)
+    )
+    return a, b
+
+
 def _followed(made: list[Move], *, until: bool) -> list[Move]:
     """The moves: the person followed goes ahead; ``until`` something ends that early."""
     for person, other in ("ab", "ba"):

@@ -30,11 +30,12 @@ from .act_kinds import (
 )
 from .beginnings import Setting, standing
 from .contacts import LOW, Contact, Region
+from .figures import Figure
 from .gestures import AT_OTHER, OF_BOTH, SIDES, Gesture, Hand
 from .holds import TWIRL, Hold
 from .lifts import Carry, Lift
 from .limbs import Limb
-from .moves import Move, fastest, finished, goes, lifted_moves, struck_moves
+from .moves import Move, away, fastest, finished, goes, lifted_moves, struck_moves
 from .postures import LOWERED, Change, Posture
 from .strikes import Bout, Strike
 from .told import Told
@@ -88,6 +89,7 @@ class _Stage:
         self.changes: dict[str, tuple[Change, ...]] = {}
         self.leaps: dict[str, int] = {}
         self.limbs: dict[str, tuple[Limb, ...]] = {}
+        self.figures: dict[str, Figure] = {}
         self.bows: dict[str, tuple[int, bool]] = {}
         self.contact: Contact | None = None
         self.hold: Hold | None = None
@@ -124,7 +126,8 @@ class _Stage:
             gestures=self.gestures, contact=self.contact,
             hold=self.hold, by_both_hands=any(self._leads_by_both_hands(move) for move in moves),
             twirls=self.twirls, pulls=self.pulls, lift=self.lift, strike=struck, changes=self.changes, limbs=self.limbs,
-            leaps=self.leaps, bows=self.bows, linked=self.linked or any(move.linked for move in moves),
+            figures=self.figures, leaps=self.leaps, bows=self.bows,
+            linked=self.linked or any(move.linked for move in moves),
             on_feet=frozenset(who for act, e in self.done if e.group in _LEGS for who in act.agents),
             loose=frozenset(who for who in "ab" if self._is_loose(who, idle)),
             placed=standing(
@@ -135,7 +138,7 @@ class _Stage:
             ),
             keeps_place=self.setting.backs or self.setting.beside,
             reaching={who: e.near for act, e in self.done if is_near(act, e) for who in act.agents},
-            alone=_away(of_each(self.acts, self.known), moves),
+            alone=away(of_each(self.acts, self.known), moves),
         )  # fmt: skip
 
     # ---- shapes --------------------------------------------------------------------------------------
@@ -170,6 +173,10 @@ class _Stage:
                 side, direction = act.side or shape.side, act.direction or shape.direction
                 limb = Limb(shape.does, side, direction, act.times or 0)
                 self.limbs |= {who: (*self.limbs.get(who, ()), limb) for who in people}
+            case shapes.Figure():
+                mirrored = shape.mirrored ^ (act.side == "left")
+                told = Figure(shape.figure, act.times or shape.times, mirrored, shape.meets)
+                self.figures |= dict.fromkeys(people, told)
             case shapes.Jump():
                 times = act.times or (max(shape.times, _JUMPS) if act.already else shape.times)
                 self.leaps |= dict.fromkeys(people, min(times, 5))
@@ -346,7 +353,7 @@ class _Stage:
             other = other_of(self.twirls)
             turned = Move(other, Way.FACE, late=True), Move(other, Way.TURN, turns=1.0)
             return Move(self.twirls, Way.TO, near=TWIRL), *turned
-        low = set(self.changes) | set(self.leaps)
+        low = {*self.changes, *self.leaps, *self.figures}
         if struck is not None:
             other = other_of(struck.turns[0])
             own = next((m for m in self.moves if m.person == other and m.way in _DODGES), None)
@@ -407,16 +414,3 @@ class _Stage:
             for who, gesture in self.gestures.items()
             if gesture.hand not in AT_OTHER and own[who] < 2 and who not in gone
         )
-
-
-def _away(alone: tuple[str, str], moves: Sequence[Move]) -> tuple[str, str]:
-    """The sentences of each, of which one who goes to a thing only walks away, as the network knows no things.
-
-    Their hands are given; of a reach the network would make one to the other, and not turn round.
-    """
-    gone = {move.person for move in moves if move.way is Way.THING}
-    a, b = (
-        "One person turns around and walks away." if words and who in gone else words
-        for who, words in zip("ab", alone, strict=True)
-    )
-    return a, b

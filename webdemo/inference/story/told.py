@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from .contacts import Contact
+from .figures import Figure
 from .floor import Standing
 from .gestures import Gesture
 from .holds import Hold
@@ -43,6 +44,7 @@ class Told:
         strike: blows or throws.
         changes: of posture in order, by person.
         limbs: legs, trunk and head that move by themselves, by person.
+        figures: what whole bodies do on the spot, by person.
         leaps: the number of jumps, by person.
         bows: the number of bows, by person, and True where they are deep.
         on_feet: those who do what needs legs.
@@ -68,6 +70,7 @@ class Told:
     strike: Strike | None = None
     changes: Mapping[str, tuple[Change, ...]] = field(default_factory=dict)
     limbs: Mapping[str, tuple[Limb, ...]] = field(default_factory=dict)
+    figures: Mapping[str, Figure] = field(default_factory=dict)
     leaps: Mapping[str, int] = field(default_factory=dict)
     bows: Mapping[str, tuple[int, bool]] = field(default_factory=dict)
     on_feet: frozenset[str] = frozenset()
@@ -85,7 +88,7 @@ class Told:
     @property
     def moves_bodies(self) -> bool:
         """True if more is planned than bystanders and a gesture."""
-        found = (self.contact, self.changes, self.leaps, self.bows, self.limbs)
+        found = (self.contact, self.changes, self.leaps, self.bows, self.limbs, self.figures)
         return goes(self.moves) or self.placed is not None or any(found)
 
     @property
@@ -93,14 +96,15 @@ class Told:
         """The number of things that are planned, without who stands by."""
         ways = {(move.person, move.way) for move in self.moves if move.way is not Way.STAY}
         single = (self.contact, self.hold, self.lift, self.strike, self.twirls, self.keeps_place)
-        listed = [*self.changes.values(), *self.limbs.values(), self.gestures, self.leaps, self.bows, ways]
+        whole = (self.leaps, self.bows, self.figures)
+        listed = [*self.changes.values(), *self.limbs.values(), self.gestures, *whole, ways]
         return sum(map(bool, single)) + sum(map(len, listed))
 
     @property
     def going(self) -> set[str]:
         """The people who walk, jump, dance or the like."""
         going = {move.person for move in self.moves if move.way not in _IN_PLACE}
-        return going | self.on_feet | set(self.leaps)
+        return going | self.on_feet | set(self.leaps) | set(self.figures)
 
     @property
     def joined(self) -> bool:

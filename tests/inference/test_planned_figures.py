@@ -1,0 +1,49 @@
+"""Figures of the words are met by a network that has learned nothing, with room for both bodies."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from motion import SMPL22
+from webdemo.inference import Engine, SceneRequest
+from webdemo.inference.pipelines.scene_room import BODY, distance
+from webdemo.inference.story import Beat
+from webdemo.inference.story.figures import Figure, figured
+from webdemo.inference.story.poses import STANCE
+
+from .test_planned_scenes import FEET, QUICK, WRISTS, heights, made
+from .test_scenes import positions, run
+
+HEAD = SMPL22.index("head")
+
+
+def test_two_do_push_ups_on_hands_that_stay_and_with_room_for_both(engine: Engine) -> None:
+    found = made(engine, "They do push-ups.", seconds=6.0)
+    for person in (0, 1):
+        down = (found[person][:, WRISTS, 1] < 0.07).all(axis=1)
+        assert down.sum() > 45
+        assert np.ptp(found[person][down][8:-8][:, WRISTS][..., [0, 2]], axis=0).max() < 0.05
+        assert heights(found, person)[[0, -1]].min() > 0.85
+    assert distance(found[0][::5], found[1][::5]) > 0.8 * BODY
+
+
+def test_a_person_does_a_handstand_and_the_other_stands_by(engine: Engine) -> None:
+    found = made(engine, "Person A does a handstand.", seconds=5.0)
+    assert (found[0][:, FEET, 1].min(axis=1) > 1.5).sum() > 20
+    wanted = figured(Figure("handstand"), found[0, 0, FEET].mean(axis=0)[[0, 2]] - [0.0, STANCE], 0.0, 150)
+    assert np.abs(found[0] - wanted).max() < 0.03, "no clean-up plants what is given"
+    assert heights(found, 1).min() > 0.85
+    free = made(engine, "Person A does a handstand.", seconds=5.0, planned=False)
+    assert not (free[0][:, FEET, 1].min(axis=1) > 1.5).any()
+
+
+def test_a_person_who_lies_gets_up_before_a_cartwheel(engine: Engine) -> None:
+    beats = (Beat("Person A lies down.", seconds=3.0), Beat("Person A does a cartwheel.", seconds=6.0))
+    found = positions(run(engine, SceneRequest(beats=beats, **QUICK)))[0]
+    assert found[85, HEAD, 1] < 0.5
+    up = np.flatnonzero(found[90:, 0, 1] > 0.85)[0]
+    wheels = np.flatnonzero(found[90:, FEET, 1].min(axis=1) > 0.9)
+    assert len(wheels) and wheels[0] > up
+    assert found[-1, HEAD, 1] > 1.4
+    speed = np.linalg.norm(np.diff(found, axis=0), axis=-1) * 30
+    assert speed.max() < 9.0
