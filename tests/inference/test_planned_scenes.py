@@ -57,6 +57,14 @@ def test_who_falls_ends_on_the_floor_and_may_be_helped_up(engine: Engine) -> Non
     assert found[0] > 0.85 and found.min() < 0.35 and found[-5] > 0.85
 
 
+def test_who_has_thrown_stands_still_while_the_other_has_it(engine: Engine) -> None:
+    found = made(engine, "A throws a ball to B and B catches it.", seconds=6.0)
+    hands = (found - found[:, :, :1])[0][:, WRISTS]
+    speed = np.linalg.norm(np.diff(hands, axis=0), axis=-1).max(axis=1) * 30
+    assert speed[:60].max() > 3.0, "the throw"
+    assert speed[110:].max() < 1.0
+
+
 def test_who_stands_in_a_given_motion_sits_down_for_words_that_have_them_seated(engine: Engine) -> None:
     motion = run(engine, SceneRequest(beats=(Beat("Person B stands still.", seconds=2.0),), **QUICK)).duets[0]
     assert heights(motion.positions, 1)[-1] > 0.85

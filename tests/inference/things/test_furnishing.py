@@ -208,6 +208,39 @@ def test_a_ball_that_is_rolled_leaves_the_lowest_hand_and_rolls_over_the_floor_t
     assert turned == pytest.approx(way / radius, abs=0.02), "it does not slide"
 
 
+def test_a_ball_that_is_kicked_lies_before_the_foot_and_rolls_from_it_to_the_other():
+    people = standing()
+    people[1, :, :, 2] += 2.0
+    swing = 0.5 * np.exp(-(((np.arange(FRAMES) - 40) / 5.0) ** 2))
+    for joint in ("right_ankle", "right_foot"):
+        people[0, :, SMPL22.index(joint), 2] += swing
+    (ball,) = made(people, act("kick-ball", patient="b", thing="ball"))
+    lies = ball.places[0]
+    assert lies[1] == pytest.approx(ball.mesh.size[1] / 2, abs=0.005) and lies[2] > 0.3
+    moved = np.flatnonzero(np.abs(ball.places[:, 2] - lies[2]) > 0.02)[0]
+    foot = people[0, moved, SMPL22.index("right_foot")]
+    assert 30 < moved < 45 and np.hypot(*(foot - lies)[[0, 2]]) < 0.3, "the foot meets it"
+    assert 0.2 < abs(ball.places[-1, 2] - GAP - 2.0) < 0.4, "at b's feet"
+
+
+def test_two_who_throw_a_ball_have_it_in_turn():
+    people = standing()
+    people[1, :, :, 2] += 2.0
+    frames = np.arange(FRAMES)
+    for person, thrown, ahead in ((0, 25, 1.0), (1, 80, -1.0)):
+        swing = np.clip((frames - thrown) / 6.0, 0, 1)[:, None]
+        start = np.array([-0.2 * ahead, 1.3, person * (GAP + 2.0) - 0.1 * ahead])
+        put_hand(people[person], "right", start + swing * np.array([0.0, 0.2, 0.6 * ahead]))
+    sentence = "They play catch."
+    throws, _ = said(sentence, "throw-ball", "ab")
+    (ball,) = made(people, throws, sentence=sentence)
+    assert ball.kind == "ball"
+    hands = palms(people)
+    for frame, person in ((10, 0), (65, 1), (110, 0)):
+        gaps = np.linalg.norm(ball.places[frame] - hands[person, :, frame], axis=-1)
+        assert gaps.min() < 0.16, f"person {person} has it at frame {frame}"
+
+
 def test_a_throw_is_a_parabola_from_hand_to_hand():
     people = standing()
     people[1, :, :, 2] += 2.0
@@ -225,9 +258,11 @@ def test_a_throw_is_a_parabola_from_hand_to_hand():
 
 
 def test_what_nobody_catches_comes_down_on_the_floor():
-    one = act("throw-ball", "ab", thing="ball")
-    (ball,) = made(standing(), one)
+    away, up = (act("throw-ball", patient="b", thing="ball", direction=way) for way in ("away", "up"))
+    (ball,) = made(standing(), away)
     assert ball.places[-1, 1] == pytest.approx(ball.mesh.size[1] / 2, abs=0.02)
+    (ball,) = made(standing(), up)
+    assert np.linalg.norm(ball.places[-1] - palms(standing())[0, :, -1], axis=-1).min() < 0.25
 
 
 # ---- rest ------------------------------------------------------------------------------------------------

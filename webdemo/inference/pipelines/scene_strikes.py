@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
+from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
 from webdemo.inference.story.gestures import SIDES
-from webdemo.inference.story.poses import TRUNK
+from webdemo.inference.story.poses import HANDS, TRUNK, standing
 from webdemo.inference.story.strikes import FIRST, Bout, Strike, blows, catching, poses, ready
 from webdemo.inference.story.told import Told
 
@@ -24,6 +25,8 @@ LATE = 0.5
 """Share of a beat after which a blow comes that something else goes on until."""
 _NEARLY = 0.15
 """Metres from the distance of a blow at which it is struck."""
+RESTS, EVERY = 20, 8
+"""Frames from the last pose of a blow to a pose at rest, and between two of these."""
 
 
 def given_blows(struck: Strike, told: Told, stretch: Stretch) -> list[KnownFrames]:
@@ -42,12 +45,14 @@ def given_blows(struck: Strike, told: Told, stretch: Stretch) -> list[KnownFrame
             pose = ready(*(courses[i].places[0] for i in (person, 1 - person)))
             if stretch.shows(0):
                 given[(person, SIDES)] = {0: pose}
+    after: dict[int, int] = {}
     for blow in blows(struck, stretch.frames, first=first):
         places = [course.places[blow.frame] for course in courses]
         own, other = places[blow.person], places[1 - blow.person]
         made: list[_Given] = [(blow.person, (blow.side,), poses(struck.bout, blow.side, own, other))]
         if struck.bout is Bout.THROWS:
             made.append((1 - blow.person, SIDES, catching(other, own)))
+        after |= {person: blow.frame + beside[-1] for person, _, (beside, _) in made}
         for person, sides, (beside, known) in made:
             for frame, pose in zip(beside, known, strict=True):
                 if stretch.shows(blow.frame + frame):
@@ -60,7 +65,36 @@ def given_blows(struck: Strike, told: Told, stretch: Stretch) -> list[KnownFrame
             [*TRUNK, *(SMPL22.index(f"{side}_wrist") for side in sides)],
         )
         for (person, sides), known in given.items()
-    ]
+    ] + _rests(struck, after, courses, stretch)
+
+
+def _rests(
+    struck: Strike, after: Mapping[int, int], courses: Sequence[Course], stretch: Stretch
+) -> list[KnownFrames]:
+    """The bodies of people once their last blow or throw is over, where the network would strike again.
+
+    Args:
+        struck: the blows of the beat.
+        after: the last frame that is given of each person.
+        courses: of the two people.
+        stretch: the beat.
+    """
+    if struck.goes_on:
+        return []
+    found = []
+    for person in {"ab".index(who) for who in struck.turns} & after.keys():
+        frames = stretch.shown(np.arange(after[person] + RESTS, stretch.frames, EVERY))
+        course = courses[person]
+        poses = [
+            standing(
+                course.places[frame], float(course.headings[frame]), np.array([frame / FPS]), seed=person
+            )
+            for frame in frames
+        ]
+        if poses:
+            still = np.concatenate(poses)
+            found.append(stretch.given(person, frames, still - still[:, :1], [*TRUNK, *HANDS]))
+    return found
 
 
 def _first(struck: Strike, told: Told, courses: Sequence[Course]) -> int:

@@ -66,7 +66,7 @@ FIRST = 20
 """Frames before the first blow."""
 _DRAWN = 5
 """Frames before a blow in which the arm is drawn back."""
-_PERIODS = {Bout.FISTS: 22, Bout.WEAPONS: 26, Bout.RACKETS: 36, Bout.THROWS: 48}
+PERIODS = {Bout.FISTS: 22, Bout.WEAPONS: 26, Bout.RACKETS: 36, Bout.THROWS: 48}
 """Frames from one blow to the next."""
 _FLIGHT = 16
 """Frames for which what was thrown is in the air."""
@@ -98,7 +98,7 @@ def turning(bout: Bout) -> float:
 
 def blows(struck: Strike, frames: int, *, first: int = 0) -> list[Blow]:
     """The blows of a beat of so many frames, from its ``first`` frame at which the two are at their distance."""
-    period = _PERIODS[struck.bout] * (1 if len(set(struck.turns)) > 1 or struck.hands else 2)
+    period = PERIODS[struck.bout] * (1 if len(set(struck.turns)) > 1 or struck.hands else 2)
     last = frames - (_FLIGHT + 6 if struck.bout is Bout.THROWS else _DRAWN)
     at = range(first + FIRST, last, period)
     made = [

@@ -10,8 +10,8 @@ import numpy as np
 
 from motion.things import Mesh, Thing, shape
 
-from .holding import Hands, Track, frame_of, held, level, smoothed, takes_both_hands, unit, yaw_of
-from .timing import WITHIN, lowest, meeting, release
+from .holding import SIDES, Hands, Track, frame_of, held, level, smoothed, takes_both_hands, unit, yaw_of
+from .timing import WITHIN, Moment, kick, lowest, meeting, release
 from .tracks import BLEND, Course, at_rest, put, rolled, thrown
 from .uses import Use
 
@@ -21,6 +21,8 @@ SHORTEST, LONGEST = 0.4, 1.1
 """Seconds of a flight."""
 BEFORE_FEET = 0.3
 """Metres from a pelvis at which a thing that was rolled there comes to rest."""
+TOE = 0.06
+"""Metres from the ball of a foot to the tip of its shoe."""
 TABLE = 0.74
 """Height of a table in metres, where the hand does not say it."""
 TABLES = (0.45, 1.0)
@@ -70,6 +72,9 @@ class ThingCourse:
         who = use.agents[0]
         if use.does == "carries":
             return self._between_both()
+        if use.does == "kicks":
+            self.holder = None
+            return self._before_foot(who, kick(self.hands, who, use.start, use.stop))
         if use.does == "lifts":
             return self._on_floor(who, lowest(self.hands, who, use.start, use.stop).frame)
         if use.does in ("takes", "catches") and use.other is not None:
@@ -100,6 +105,13 @@ class ThingCourse:
         short = 0.3 + self.surface.size[2] / 2 - float((spot - pelvis) @ ahead)
         spot = (spot + max(short, 0.0) * ahead) * [1, 0, 1]
         return at_rest(self.kind, self.surface, spot, ahead, hands.frames)
+
+    def _before_foot(self, who: int, found: Moment) -> Track:
+        """On the floor, where the foot of a kick strikes it."""
+        ahead = self.hands.ahead[who, found.frame]
+        toes = self.hands.joint(who, f"{SIDES[found.sides[0]]}_foot")[found.frame]
+        spot = (toes + (TOE + self.surface.size[2] / 2) * ahead) * [1, 0, 1]
+        return at_rest(self.kind, self.surface, spot, ahead, self.hands.frames)
 
     def _hold_from(self, frame: int) -> None:
         """Notes who holds it from a frame on."""
@@ -266,7 +278,19 @@ class ThingCourse:
         self._taken_up(use, who)
         if self.holder != who:
             return
-        frame = lowest(hands, who, use.start, use.stop, self.side).frame
+        self._roll(use, lowest(hands, who, use.start, use.stop, self.side).frame)
+
+    def _kicks(self, use: Use) -> None:
+        """Struck by the foot that swings fastest, it rolls over the floor as :meth:`_rolls` lets it."""
+        who = use.agents[0]
+        found = kick(self.hands, who, use.start, use.stop)
+        if self.holder is not None:
+            laid = max(found.frame - self.hands.fps // 2, use.start)
+            put(self.course, round(laid), self._before_foot(who, found))
+        self._roll(use, found.frame)
+
+    def _roll(self, use: Use, frame: int) -> None:
+        who, hands = use.agents[0], self.hands
         goal = self.course.places[frame] + 3.0 * hands.ahead[who, frame]
         if use.other is not None:
             other = hands.joint(use.other, "pelvis")[

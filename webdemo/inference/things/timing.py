@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .holding import Hands, smoothed, unit
+from .holding import SIDES, Hands, smoothed, unit
 
 Array = NDArray[np.floating]
 
 WITHIN = 0.6
 """Metres between two palms, at most, at which a thing passes from one to the other."""
+BEYOND = 0.35
+"""Metres before the pelvis at which a foot meets a ball: farther than the toes of somebody who stands."""
 AROUND = 0.5
 """Seconds by which a moment may lie outside the frames of its act: what is made keeps no beat to the frame."""
 
@@ -54,6 +56,18 @@ def release(hands: Hands, thrower: int, start: int, stop: int, towards: Array | 
     speed = np.gradient(hands.palms[thrower], axis=1)[:, part] * hands.fps
     along = np.linalg.norm(speed, axis=-1) if towards is None else speed @ unit(towards)
     along = np.stack([smoothed(each, 3) for each in along])
+    side, frame = np.unravel_index(along.argmax(), along.shape)
+    return Moment(part.start + int(frame), (int(side), int(side)), float(along.max()))
+
+
+def kick(hands: Hands, person: int, start: int, stop: int) -> Moment:
+    """The moment at which the ball of a person's foot swings ahead fastest, in front of the body if it gets there."""
+    part = window(hands, start, stop)
+    feet = np.stack([hands.joint(person, f"{side}_foot") for side in SIDES])
+    speed = np.gradient(feet, axis=1)[:, part] * hands.fps
+    along = np.stack([smoothed(each, 3) for each in (speed * hands.ahead[person, part]).sum(axis=-1)])
+    beyond = ((feet - hands.joint(person, "pelvis"))[:, part] * hands.ahead[person, part]).sum(axis=-1)
+    along = np.where(beyond > BEYOND, along, 0.0) if (beyond > BEYOND).any() else along
     side, frame = np.unravel_index(along.argmax(), along.shape)
     return Moment(part.start + int(frame), (int(side), int(side)), float(along.max()))
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from acts import Act, Plan, lexicon
 from acts.things import Does, is_fixture, kind_of, nouns_in, on_floor, thing_of
+from webdemo.inference.story.strikes import PERIODS, Bout
 
 TABLES = ("computer", "table")
 """Furniture at which people sit."""
@@ -63,7 +64,19 @@ def uses_of(plan: Plan, start: int, stop: int, lengths: Sequence[float] = ()) ->
         for make in (_use, _fixture, _door):
             if use := make(act, words, first, last):
                 found.append(use)
-    return _at_desks(found)
+    return [each for use in _at_desks(found) for each in _in_turn(use)]
+
+
+def _in_turn(use: Use) -> Iterator[Use]:
+    """A use; of two who throw each other something, one throw after the other."""
+    if use.does != "throws" or len(use.agents) == 1:
+        yield use
+        return
+    times = max(round((use.stop - use.start) / PERIODS[Bout.THROWS]), 2)
+    edges = np.linspace(use.start, use.stop, times + 1).astype(int).tolist()
+    for i, (start, stop) in enumerate(pairwise(edges)):
+        who = use.agents[i % 2]
+        yield replace(use, agents=(who,), other=1 - who, start=start, stop=stop)
 
 
 def _at_desks(found: Sequence[Use]) -> list[Use]:
@@ -124,6 +137,10 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
         name, kind = seats[0] if seats else ("chair", "")
         return Use(act.id, does, kind, name, agents, other, side, start, stop, place, words)
     name, kind = thing_of(act, words)
+    if does in ("throws", "kicks"):
+        if not (kind or act.thing):
+            name = kind = "ball"  # "they play catch"
+        other = {"up": agents[0], "away": None}.get(act.direction or "", other)
     if not kind or is_fixture(name):
         return None
     if does in ("opens", "closes"):
