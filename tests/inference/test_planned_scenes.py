@@ -137,7 +137,7 @@ def test_who_lies_stays_on_the_floor_in_the_next_beat(engine: Engine) -> None:
 
 def test_who_is_down_at_the_end_of_a_beat_is_so_behind_it() -> None:
     down, up = lying(np.zeros(2), 0.0), upright(np.zeros(2), 0.0)
-    assert [frame for frame, _ in still_down([(3, up), (9, down)], 10, 8)] == [3, 9, 10, 16, 17]
+    assert [frame for frame, _ in still_down([(3, up), (9, down)], 10, 8)] == [3, 9, 10, 14, 17]
     for poses, more in (([(9, up)], 8), ([(5, down)], 8), ([(9, down)], 0), ([], 8)):
         assert still_down(poses, 10, more) == poses
 
@@ -154,6 +154,14 @@ def test_who_lies_is_given_the_trunk_and_who_sits_the_legs_alone() -> None:
     assert {SMPL22.joint_names[joint] for joint in joints} - given[stooping] == {
         "left_elbow", "right_elbow", "left_wrist", "right_wrist"
     }  # fmt: skip
+    ((joints, *_),) = led([(3, lying(np.zeros(2), 0.0))], 0, 10, loose=True)
+    assert {SMPL22.index("left_wrist"), SMPL22.index("right_elbow")} < set(joints)
+    down = [(f, lying(np.zeros(2), 0.0)) for f in range(20, 60, 4)]
+    groups = list(led([(3, upright(np.zeros(2), 0.0)), *down], 0, 60, loose=True))
+    hands = {
+        frame for joints, frames, _ in groups for frame in frames if SMPL22.index("left_wrist") in joints
+    }
+    assert min(hands) == 40 and max(hands) == 56, "a hand comes to lie on the belly a little later"
     assert given[lying] - given[seated] == {
         "spine2", "spine3", "neck", "head", "left_collar", "right_collar", "left_shoulder", "right_shoulder"
     }  # fmt: skip

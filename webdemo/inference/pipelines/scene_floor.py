@@ -224,7 +224,10 @@ def _held(
             tail = window.tail(request.edges[-1])
             busy = who in told.gestures or (told.contact is not None and told.contact.person == who)
             down = still_down(poses, stop, tail)
-            for joints, frames, known in led(down, window.start, window.stop + tail, arms=not busy):
+            loose = who in told.loose
+            for joints, frames, known in led(
+                down, window.start, window.stop + tail, arms=not busy, loose=loose
+            ):
                 parts.append(beat.given(person, np.asarray(frames) - start, known, joints))
     return parts, posed
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
+from motion.easing import minimum_jerk
 from motion.transforms import heading
 from webdemo.inference.actor import FPS
 from webdemo.inference.story.floor import Standing
@@ -39,18 +40,24 @@ Array = NDArray[np.floating]
 Pose = tuple[int, Array]
 """A frame of the scene and a pose (22, 3) in metres of its world."""
 
-HELD = 6
+HELD = 4
 """Frames between two poses of a person who keeps a posture."""
 SETTLING = 40
 """Frames in which somebody sits down, falls or gets up."""
 RISING = 54
 """Frames in which somebody gets up from the ground."""
+LYING_DOWN = 84
+"""Frames in which somebody lies down who does not fall, where there is time (recorded: 2.5 to 3.5 s)."""
 DUCKING = 16
 """Frames in which somebody ducks, and as many in which they are up again."""
 UPRIGHT = 0.8
 """Height in metres of the pelvis of people who stand."""
 LOW = 0.5
 """Metres of the head over the pelvis below which somebody lies or is bent."""
+_FLAT = 0.3
+"""Height in metres of the head below which somebody lies flat."""
+FOLDS = 18
+"""Frames after lying down in which a hand comes to lie on the belly."""
 _KNEELS = 0.3
 """Height in metres of the pelvis above which a bent person's arms reach down to the floor."""
 _HEAD = SMPL22.index("head")
@@ -114,10 +121,8 @@ def postures(
             found |= {middle: _MAKES[change.posture](place, angle), middle + DUCKING: upright(place, angle)}
             begins = middle + DUCKING
             continue
-        ends = min(at + (RISING if now in _LOW and change.posture is Posture.STANDS else SETTLING), stop - 1)
-        if now in _LOW and change.posture is Posture.STANDS:
-            on_the_way = rising(place, angle, lies=now is Posture.LIES)
-            found |= {at + round(share * (ends - at)): pose for share, pose in on_the_way}
+        ends, on_the_way = _on_the_way(now, change, at, stop, place, angle)
+        found |= on_the_way
         now, pose, begins = change.posture, _MAKES[change.posture](place, angle), ends
     if own and now is Posture.STANDS:
         found |= _stays(pose, begins, min(begins + 2 * HELD + 1, stop))
@@ -127,6 +132,31 @@ def postures(
         found |= dict(_jumping(jumps, start, stop, place, angle))
         found |= dict(_bowing(*nods, start, stop, place, angle)) if nods else {}
     return [(frame, found[frame]) for frame in sorted(found) if start <= frame < stop]
+
+
+def _on_the_way(
+    now: Posture, change: Change, at: int, stop: int, place: Array, angle: float
+) -> tuple[int, dict[int, Array]]:
+    """The frame at which a change of posture is over that begins ``at`` one, and the poses on the way."""
+    lies = Posture.LIES in (now, change.posture)
+    if now in _LOW and change.posture is Posture.STANDS:
+        ends = min(at + RISING, stop - 1)
+        return ends, {
+            at + round(share * (ends - at)): pose for share, pose in rising(place, angle, lies=lies)
+        }
+    ends = min(at + SETTLING, stop - 1)
+    if {now, change.posture} == {Posture.BENDS, Posture.STANDS}:
+        shares = minimum_jerk(np.arange(HELD, ends - at, HELD) / (ends - at))
+        down = shares if change.posture is Posture.BENDS else 1 - shares
+        return ends, {
+            at + HELD * (i + 1): stooping(place, angle, float(share)) for i, share in enumerate(down)
+        }
+    falls = lies and not change.gently
+    if now is not Posture.STANDS or change.posture not in _LOW or not (change.gently or falls):
+        return ends, {}
+    ends = min(at + (SETTLING if falls else LYING_DOWN if lies else RISING), stop - 1)
+    on_the_way = reversed(rising(place, angle, lies=lies))
+    return ends, {at + round((1 - share) * (ends - at)): pose for share, pose in on_the_way}
 
 
 def still_down(poses: list[Pose], stop: int, more: int) -> list[Pose]:
@@ -141,23 +171,29 @@ def still_down(poses: list[Pose], stop: int, more: int) -> list[Pose]:
 
 
 def led(
-    poses: list[Pose], first: int, last: int, *, arms: bool = False
+    poses: list[Pose], first: int, last: int, *, arms: bool = False, loose: bool = False
 ) -> Iterator[tuple[Sequence[int], list[int], Array]]:
     """The joints, frames and poses (N, 22, 3) from ``first`` to before ``last`` that are given.
 
     Pelvis and legs, and the trunk and head of those who lie or bend down, which the network would raise; with
-    ``arms`` also the arms of those who bend down.
+    ``arms`` also the arms of those who bend down, and with ``loose`` of those who lie.
     """
+    down = [bool(pose[_HEAD, 1] - pose[0, 1] < LOW) for _, pose in poses]
+    gets_down = (frame for (frame, _), was, now in zip(poses[1:], down, down[1:], strict=False) if now > was)
+    folds = next(gets_down, first - FOLDS) + FOLDS
     for joints, lies in ((LOWER, False), (FLAT, True)):
         inside = [
-            (f, pose)
-            for f, pose in poses
-            if first <= f < last and bool(pose[_HEAD, 1] - pose[0, 1] < LOW) is lies
+            each for each, low in zip(poses, down, strict=True) if first <= each[0] < last and low is lies
         ]
-        if inside:
-            stoops = arms and lies and inside[-1][1][0, 1] > _KNEELS
-            given = (*joints, *HANDS) if stoops else joints
-            yield given, [frame for frame, _ in inside], np.stack([pose for _, pose in inside])
+        stoops = bool(inside) and inside[-1][1][0, 1] > _KNEELS
+        laid = [
+            lies and (arms if stoops else loose and frame >= folds and bool(pose[_HEAD, 1] < _FLAT))
+            for frame, pose in inside
+        ]
+        for own, given in ((False, joints), (True, (*joints, *HANDS))):
+            shown = [each for each, with_hands in zip(inside, laid, strict=True) if with_hands == own]
+            if shown:
+                yield given, [frame for frame, _ in shown], np.stack([pose for _, pose in shown])
 
 
 def _stays(pose: Array, start: int, stop: int) -> dict[int, Array]:

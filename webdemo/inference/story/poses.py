@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from motion.easing import minimum_jerk
 from motion.kinematics import forward_kinematics
+from motion.touch.bending import bent_towards
 from motion.transforms import heading_matrix
 
 Array = NDArray[np.floating]
@@ -108,6 +109,14 @@ _BENDS: Mapping[str, float] = {
 _STOOPS: Mapping[str, float] = {
     "hip": -0.7, "knee": 0.9, "ankle": -0.2, "shoulder": 1.4, "elbow": 0.3, "spine": 0.05,
 }  # fmt: skip
+_LIES: Mapping[str, float] = {
+    "hip": -0.12, "knee": 0.25, "ankle": 0.4, "shoulder": 0.9, "elbow": 0.2, "spine": 0.0,
+}  # fmt: skip
+_BELLY = np.array([-0.03, 0.19, 0.14])
+"""Metres from the pelvis of a person who faces +Z to a wrist on the belly."""
+_SITS_UP: Mapping[str, float] = {
+    "hip": -2.4, "knee": 1.9, "ankle": 0.1, "shoulder": 1.2, "elbow": 0.3, "spine": 0.15,
+}  # fmt: skip
 _STOOPED = 1.6
 """Radians by which the trunk of a person leans who bends down to the floor."""
 _BENT = 0.9
@@ -172,9 +181,10 @@ def leaning(pose: Array, angle: float, lean: float) -> Array:
     return moved
 
 
-def stooping(place: Array, angle: float) -> Array:
-    """A person bent down on soft knees whose arms hang to the floor: (22, 3) metres."""
-    pose = leaning(_on_floor(_posed(angle, _STOOPS)[None], place, angle)[0], angle, _STOOPED)
+def stooping(place: Array, angle: float, share: float = 1.0) -> Array:
+    """A person bent down on soft knees, or by a share of that, whose arms hang to the floor: (22, 3) metres."""
+    bent = {name: (1 - share) * up + share * _STOOPS[name] for name, up in STANDS.items()}
+    pose = leaning(_on_floor(_posed(angle, bent)[None], place, angle)[0], angle, share * _STOOPED)
     for side in _SIDES:
         shoulder, elbow, wrist = (SMPL22.index(f"{side}_{name}") for name in ("shoulder", "elbow", "wrist"))
         for joint, parent in ((elbow, shoulder), (wrist, elbow)):
@@ -199,13 +209,25 @@ def kneeling(place: Array, angle: float) -> Array:
 
 
 def lying(place: Array, angle: float) -> Array:
-    """A person lying on the back, the feet about where they stood: (22, 3) metres."""
-    pose = _posed(
-        0.0, {"hip": -0.12, "knee": 0.25, "ankle": 0.4, "shoulder": 0.9, "elbow": 0.2, "spine": 0.0}
-    )
+    """A person lying on the back, a hand on the belly, the feet about where they stood: (22, 3) metres."""
+    pose = _posed(0.0, _LIES)
+    arm = [SMPL22.index(f"right_{joint}") for joint in ("shoulder", "elbow", "wrist")]
+    joints, pole = [pose[[joint]] for joint in arm], np.array([[-1.0, -0.2, -0.6]])
+    elbow, wrist = bent_towards(joints[0], joints[1], joints[2], (pose[0] + _BELLY)[None], pole)
+    pose[arm[1:]] = elbow[0], wrist[0]
     pose = (pose - pose[0]) @ (heading_matrix(angle) @ about(0, -np.pi / 2)).T
     pose[:, 1] += 0.08 - pose[:, 1].min()
     return pose + np.array([place[0], 0.0, place[1]]) - LYING * np.array([np.sin(angle), 0.0, np.cos(angle)])
+
+
+def _reclining(place: Array, angle: float, share: float) -> Array:
+    """A person between sitting with the feet under them and lying on the back, by a share from 0 to 1."""
+    ends = _on_floor(_posed(angle, _SITS_UP)[None], place, angle)[0], lying(place, angle)
+    pose = _posed(0.0, {name: (1 - share) * up + share * _LIES[name] for name, up in _SITS_UP.items()})
+    pose = (pose - pose[0]) @ (heading_matrix(angle) @ about(0, -share * np.pi / 2)).T
+    lowest = [float(end[:, 1].min()) for end in ends]
+    pose[:, 1] += (1 - share) * lowest[0] + share * lowest[1] - pose[:, 1].min()
+    return pose + ((1 - share) * ends[0][0] + share * ends[1][0]) * [1, 0, 1]
 
 
 def rising(place: Array, angle: float, *, lies: bool) -> Sequence[tuple[float, Array]]:
@@ -218,11 +240,10 @@ def rising(place: Array, angle: float, *, lies: bool) -> Sequence[tuple[float, A
         angle: heading in radians.
         lies: they lie on the back before, and do not sit.
     """
-    sits = _posed(
-        angle, {"hip": -2.4, "knee": 1.9, "ankle": 0.1, "shoulder": 1.2, "elbow": 0.3, "spine": 0.15}
-    )
-    sits = _on_floor(sits[None], place, angle)[0]
-    return ((0.45, sits), (0.75, crouching(place, angle))) if lies else ((0.6, crouching(place, angle)),)
+    if not lies:
+        return ((0.6, crouching(place, angle)),)
+    up = [(0.45 * share, _reclining(place, angle, 1 - share)) for share in (0.25, 0.5, 0.75, 1.0)]
+    return (*up, (0.75, crouching(place, angle)))
 
 
 def leaping(place: Array, angle: float, rise: float = 0.22) -> Sequence[tuple[float, Array]]:

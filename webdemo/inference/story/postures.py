@@ -37,9 +37,11 @@ class Change:
         already: they do so when the beat begins, if nothing before it says otherwise ("while she sits").
         after: how much of the beat comes before, from 0 to 1.
         passing: they are up again at once, as after ducking.
+        gently: they let themselves down and do not fall.
     """
 
     posture: Posture
     already: bool = False
     after: float = 0.0
     passing: bool = False
+    gently: bool = False

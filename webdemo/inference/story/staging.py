@@ -21,6 +21,7 @@ from .act_kinds import (
     is_attempt,
     is_care,
     is_deep,
+    is_gentle,
     is_near,
     leaves_hands,
     only_stays,
@@ -229,7 +230,8 @@ class _Stage:
         after = max(self.level[act.id] / self.levels, waits.get(posture, 0.0))
         times = min(act.times or shape.times, 5) if shape.passing else 1
         shares = [0.0 if already else after + (1 - after) * i / times for i in range(times)]
-        return [Change(posture, already, share, shape.passing) for share in shares]
+        gently = is_gentle(act)
+        return [Change(posture, already, share, shape.passing, gently) for share in shares]
 
     def _people(self, act: Act, shape: shapes.Shape) -> tuple[str, ...]:
         """Whom a shape is for."""
