@@ -148,6 +148,7 @@ class Touch(_Shape):
         hands: which; "none" for a kiss, which the head gives.
         times: how often a short touch is made; 0 for a hand that stays.
         behind: from behind the other.
+        beside: from beside the other, who looks the same way: an arm around them, or a head on their shoulder.
         fells: the other falls from it.
     """
 
@@ -156,6 +157,7 @@ class Touch(_Shape):
     hands: Literal["left", "right", "both", "none"] = "right"
     times: Annotated[int, Field(ge=0, le=20)] = 0
     behind: bool = False
+    beside: bool = False
     fells: bool = False
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
+from motion.transforms import heading
 from webdemo.inference import Engine
 from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.pipelines.scene_contacts import coming, meeting
@@ -47,6 +48,30 @@ def test_a_hand_touches_what_the_words_name(engine: Engine, prompt: str, giver: 
     assert gap.min() < (0.25 if part[0] == "left_ankle" else 0.2)  # a shoe is tied before the ankle
     free = nearest(made(engine, prompt, planned=False), giver, ["left_wrist", "right_wrist"], part)
     assert gap.min() < free.min()
+
+
+@pytest.mark.parametrize("before", ["", "Person A walks up to person B. "])
+def test_a_head_is_laid_on_the_shoulder_of_the_one_beside(engine: Engine, before: str) -> None:
+    found = made(
+        engine, before + "Person A rests the head on person B's shoulder.", seconds=4.0 + len(before) / 10
+    )
+    gap = nearest(found, 0, ["head"], ["left_shoulder", "right_shoulder"])
+    assert gap.min() < 0.24
+    rests = int(gap.argmin())
+    facing = [np.array([np.sin(angle), np.cos(angle)]) for angle in heading(found[:, rests])]
+    assert facing[0] @ facing[1] > 0.7, "they look the same way"
+    lean = found[0, rests, SMPL22.index("neck")] - found[0, rests, 0]
+    assert abs(lean[[0, 2]] @ facing[0]) < 0.2, "to the side, not forward"
+
+
+def test_an_arm_around_somebody_lies_on_their_far_shoulder_behind_them(engine: Engine) -> None:
+    found = made(engine, "Person B puts an arm around person A.")
+    frame = found[:, 60].astype(np.float64)
+    wrist, angle = frame[1, SMPL22.index("left_wrist")], heading(frame)[0]
+    far = frame[0, SMPL22.index("left_shoulder")]
+    near = frame[0, SMPL22.index("right_shoulder")]
+    assert np.linalg.norm(wrist - far) < min(0.25, np.linalg.norm(wrist - near))
+    assert (wrist - far)[[0, 2]] @ [np.sin(angle), np.cos(angle)] < -0.05
 
 
 def test_a_pat_is_given_twice(engine: Engine) -> None:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
+from motion import SMPL22
 from tests.inference.story.staged_words import beginning
 from webdemo.inference.story.beginnings import BACKS
 from webdemo.inference.story.floor import ABREAST
-from webdemo.inference.story.poses import grounded
+from webdemo.inference.story.poses import grounded, upright
 
 
 @pytest.mark.parametrize(
@@ -24,18 +26,19 @@ def test_those_beside_each_other_look_the_same_way(words: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "seat"), [("They stand back to back.", None), ("sitting on the floor back to back", grounded)]
+    ("words", "pose"),
+    [("They stand back to back.", upright), ("sitting on the floor back to back", grounded)],
 )
-def test_those_back_to_back_have_their_backs_near_each_other(words: str, seat: object) -> None:
+def test_those_back_to_back_touch_with_their_backs(words: str, pose: Callable[..., np.ndarray]) -> None:
     placed = beginning(words)
     assert placed is not None
     assert math.cos(placed.headings[0] - placed.headings[1]) < -0.99
-    assert callable(seat) or abs(placed.gap() - BACKS) < 1e-6
-    if callable(seat):
-        pelvises = [seat(placed.places[i], placed.headings[i])[0] for i in (0, 1)]
-        assert abs(np.linalg.norm(pelvises[0] - pelvises[1]) - BACKS) < 0.05
-        away = pelvises[0] - pelvises[1]
-        assert away[2] * math.cos(placed.headings[0]) > 0, "each looks away from the other"
+    a, b = (pose(placed.places[i], placed.headings[i]) for i in (0, 1))
+    assert abs(np.linalg.norm(a[0] - b[0]) - BACKS) < 0.05
+    assert (a[0] - b[0])[2] * math.cos(placed.headings[0]) > 0, "each looks away from the other"
+    spines = [SMPL22.index(name) for name in ("spine1", "spine2", "spine3")]
+    gap = np.linalg.norm(a[spines] - b[spines], axis=1).min()
+    assert 0.22 < gap < 0.3, "a trunk is 24 cm thick"
 
 
 def test_other_words_leave_the_beginning_free() -> None:

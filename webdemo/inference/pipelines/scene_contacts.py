@@ -11,7 +11,17 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
-from webdemo.inference.story.contacts import LOWEST, Contact, beside, kneels, middle, reach, touched, touching
+from webdemo.inference.story.contacts import (
+    LOWEST,
+    Contact,
+    beside,
+    inner_side,
+    kneels,
+    middle,
+    reach,
+    touched,
+    touching,
+)
 from webdemo.inference.story.curves import direction
 from webdemo.inference.story.floor import ABEAM, Standing
 from webdemo.inference.story.holds import Hold, joined, raised
@@ -42,7 +52,7 @@ KNEELS = 40
 """Frames in which somebody kneels down to touch what is low."""
 _HIPS = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
 _WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
-_COMES = (Way.TO, Way.BEHIND, Way.STAY, Way.FACE)
+_COMES = (Way.TO, Way.BEHIND, Way.BESIDE, Way.STAY, Way.FACE)
 _WAITS = (Way.STAY, Way.AVERTED, Way.FACE, Way.TURN)
 
 
@@ -77,15 +87,16 @@ def meeting(
         return None, moves
     near = reach(touch, pose)
     lies = 1 - giver in posed and beside(pose, stand.places[giver]) is not None
-    way = Way.BEHIND if touch.behind or lies else Way.TO
+    way = Way.BEHIND if touch.behind or lies else Way.BESIDE if touch.beside else Way.TO
     comes = [
         Move(m.person, way if m.way is Way.TO else m.way, m.speed, late=m.late, near=near)
-        if m.way in _COMES[:2]
+        if m.way in _COMES[:3]
         else m
         for m in own
     ]
     if not any(move.near for move in comes):
-        comes = [*(m for m in comes if m.way is Way.FACE), Move(touch.person, way, 0.8, near=near)]
+        speed = 1.2 if touch.beside else 0.8
+        comes = [*(m for m in comes if m.way is Way.FACE), Move(touch.person, way, speed, near=near)]
     other = "ab"[1 - giver]
     waits = [Move(m.person, m.way, m.speed, near=near) if m.way is Way.TO else m for m in theirs]
     if 1 - giver not in posed and not touch.fells and (not waits or waits[0].way in (Way.TURN, Way.FACE)):
@@ -150,8 +161,14 @@ def given_contact(touch: Contact, posed: Mapping[int, Array], stretch: Stretch) 
     if giver not in stretch.ways:
         return None
     own, other = stretch.course(giver), stretch.course(1 - giver)
+    arms = touch.sides
+    if touch.beside:
+        there = upright(other.places[-1], float(other.headings[-1]))
+        arms = (inner_side(there, own.places[-1], float(own.headings[-1])),)
+        touch = replace(touch, sides=arms if touch.sides else ())
     down = kneels(touch, posed.get(1 - giver, upright(np.zeros(2), 0.0)))
-    first = max(_arrival(own), _arrival(other) if 1 - giver in stretch.ways else 0)
+    first = _turned(own) if touch.beside else 0
+    first = max(first, _arrival(own), _arrival(other) if 1 - giver in stretch.ways else 0)
     first += KNEELS if down else REACHES
     first = max(first, round(0.6 * frames)) if touch.late else first
     last = min(frames, _leaving(other, first))
@@ -159,7 +176,7 @@ def given_contact(touch: Contact, posed: Mapping[int, Array], stretch: Stretch) 
     if down and at:
         rest = TAKEN_BACK if touch.times else 0.0
         at += [(frame, rest) for frame in range(at[-1][0] + REACHES // 2, frames, REACHES // 2)]
-    wrists = [SMPL22.index(f"{side}_wrist") for side in touch.sides]
+    wrists = [SMPL22.index(f"{side}_wrist") for side in arms]
     joints = [*(LOWER if down else ()), *(j for j in TRUNK if not down or j not in LOWER), *wrists]
     kept: list[int] = []
     poses: list[Array] = []
@@ -254,6 +271,12 @@ def _rests(touch: Contact, at: Sequence[tuple[int, float]], frames: int) -> rang
 def _arrival(course: Course) -> int:
     """The frame from which somebody stays within 4 cm of where they end up."""
     away = np.linalg.norm(course.places - course.places[-1], axis=1) > 0.04
+    return int(np.flatnonzero(away)[-1]) + 1 if away.any() else 0
+
+
+def _turned(course: Course) -> int:
+    """The frame from which somebody faces where they will face in the end."""
+    away = np.abs(course.headings - course.headings[-1]) > 0.2
     return int(np.flatnonzero(away)[-1]) + 1 if away.any() else 0
 
 

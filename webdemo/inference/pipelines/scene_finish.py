@@ -64,9 +64,11 @@ def finish_of(told: Told) -> BeatFinish:
     """The finish that a beat's words ask for."""
     around = any(gesture.hand is Hand.AROUND for gesture in told.gestures.values())
     # a head that is tilted is not turned to the other
-    still = "".join(sorted({*told.frozen, *told.limbs, *told.figures}))
+    still = {*told.frozen, *told.limbs, *told.figures}
+    if (touch := told.contact) is not None and touch.beside:
+        still.add(touch.person)
     loose = "".join(sorted(told.loose - told.frozen))
-    return BeatFinish(bool(told.reaching), still, told.linked and not around, loose)
+    return BeatFinish(bool(told.reaching), "".join(sorted(still)), told.linked and not around, loose)
 
 
 def in_touch(scene: Array, free: Array, raised: Array, held: Array) -> Array:

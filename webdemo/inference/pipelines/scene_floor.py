@@ -240,6 +240,8 @@ def _only_bows(told: Told, who: str) -> bool:
 def _keeps_back(told: Told, who: str) -> bool:
     """True for a person who stands so that the network would turn their trunk to the other, against their feet."""
     touch, down = told.contact, who in told.changes
+    if touch is not None and touch.beside and touch.person == who:
+        return False  # they lean to the other, or reach around them
     return not down and (told.keeps_place or (touch is not None and touch.behind and touch.person != who))
 
 

@@ -14,13 +14,13 @@ from .floor import ABREAST, BEHIND, CLOSE, LINKED, Standing
 from .holds import TWIRL
 from .lifts import Carry, Lift
 from .moves import Move
-from .poses import grounded, seated
+from .poses import grounded, seated, upright
 from .postures import Posture
 from .strikes import Bout, Strike
 from .ways import Way
 
-BACKS = 0.5
-"""Metres between the pelvises of two people who stand or sit back to back."""
+BACKS = 0.34
+"""Metres between the pelvises of two people who stand or sit back to back: the backs touch."""
 BEHIND_BACK = 0.6
 """Metres between two people one of whom stands behind the other."""
 RUN_UP = 2.5
@@ -44,7 +44,7 @@ class Setting:
         postures: that they take up or are in.
         lift, strike: of the beat.
         twirls: one turns under the other's arm.
-        apart: metres between them where they face each other; 0 leaves it free.
+        apart: metres between them where they face each other or are side by side; 0 leaves it free.
         behind: the person who stands behind the other; "" for nobody.
     """
 
@@ -83,7 +83,8 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
         facing = math.pi if ways[Way.PAST].person == "a" else 0.0  # both look the same way
         return Standing(np.array([[0.0, 0.0], [0.0, _START[Way.PAST]]]), np.full(2, facing))
     if Way.BACKS in ways:
-        return Standing(np.array([[0.0, 0.0], [0.0, -0.6]]), np.array([0.0, math.pi]))
+        apart = BACKS - 2 * float(upright(np.zeros(2), 0.0)[0, 2])
+        return Standing(np.array([[0.0, 0.0], [0.0, -apart]]), np.array([0.0, math.pi]))
     gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
     gap = next((ways[way].near for way in (Way.HOLD, Way.SPAR) if way in ways), gap)
     for way in (Way.TO, Way.BEHIND):
@@ -101,12 +102,12 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
 def standing(setting: Setting) -> Standing | None:
     """The places of two people in a setting; None where it leaves them free."""
     if setting.backs:
-        seat = next((_SEATS[posture] for posture in setting.postures if posture in _SEATS), None)
-        behind = float(seat(np.zeros(2), 0.0)[0, 2]) if seat else 0.0  # the feet are where they stand
+        pose = next((_SEATS[posture] for posture in setting.postures if posture in _SEATS), upright)
+        behind = float(pose(np.zeros(2), 0.0)[0, 2])  # the feet are where they stand
         apart = BACKS - 2 * behind
         return Standing(np.array([[0.0, 0.0], [0.0, -apart]]), np.array([0.0, math.pi]))
     if setting.beside:
-        return Standing(np.array([[0.0, 0.0], [-ABREAST, 0.0]]), np.zeros(2))
+        return Standing(np.array([[0.0, 0.0], [-(setting.apart or ABREAST), 0.0]]), np.zeros(2))
     lifted = setting.lift
     if lifted is not None and lifted.carry is Carry.BACK and lifted.comes not in ("", lifted.carrier):
         return _from_behind(lifted)

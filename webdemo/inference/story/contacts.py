@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
-from motion.transforms import heading
+from motion.transforms import heading, heading_matrix
 from motion.vectors import unit
 
 from .gestures import SIDES
-from .poses import kneeling, leaning, upright
+from .poses import TRUNK, about, kneeling, leaning, upright
 
 Array = NDArray[np.floating]
 
@@ -44,11 +44,13 @@ class Contact:
     Attributes:
         person: "a" or "b", the one who touches the other.
         region: of the other's body.
-        sides: the hands that touch, "left", "right" or both; none for a kiss, which the head gives.
+        sides: the hands that touch, "left", "right" or both; none for a kiss, which the head gives, or a head that is
+            laid on the other's shoulder from beside.
         times: how often a short touch is made; 0 for a hand that stays.
         late: something else goes on until then.
         behind: the one who touches stands behind the other.
         fells: the other falls from it, and stood before.
+        beside: the one who touches stands beside the other, and looks the same way.
     """
 
     person: str
@@ -58,6 +60,7 @@ class Contact:
     late: bool = False
     behind: bool = False
     fells: bool = False
+    beside: bool = False
 
 
 _JOINTS = {
@@ -81,6 +84,14 @@ _DOWN = 0.33
 """Metres that the hand of a person who kneels is below their shoulder."""
 _FLAT = 0.3
 """Metres between the heights of head and pelvis of a person who lies, at most."""
+BESIDE = 0.46
+"""Metres between the pelvises of two people one of whom has an arm around the other or the head on their shoulder."""
+_TILT, _HEAD_TILT = 0.2, 0.65
+"""Radians to the side of a trunk, and further ones of the neck and head, of a person whose head is on a shoulder."""
+_OWN_HAND = np.array([0.04, 0.1, 0.22])
+"""Metres from their pelvis to that side, up and ahead, of the wrist on that side: clear of the other's body."""
+_AROUND = (0.13, 0.06, 0.04)
+"""Metres behind, inside of and under the other's far shoulder of a wrist whose arm is around them."""
 LOW = frozenset((Region.LEG, Region.FOOT))
 """What is kneeled down to, of somebody who stands."""
 LOWEST = 0.55
@@ -104,6 +115,8 @@ def beside(pose: Array, place: Array) -> float | None:
 
 def touching(touch: Contact, pose: Array, place: Array, angle: float) -> Array:
     """The pose (22, 3) of a person at a place (2,) who leans, or kneels down, to the other's pose, arms hanging."""
+    if touch.beside:
+        return upright(place, angle) if touch.sides else _tilted(pose, upright(place, angle), angle)
     make = kneeling if kneels(touch, pose) else upright
     return leaning(make(place, angle), angle, lean(touch, pose))
 
@@ -115,6 +128,8 @@ def reach(touch: Contact, pose: Array) -> float:
         touch: the contact.
         pose: (22, 3) metres of the one who is touched.
     """
+    if touch.beside:
+        return BESIDE
     height, angle = float(middle(touch, pose)[1]), lean(touch, pose)
     if kneels(touch, pose):
         return float(_TRUNK * np.sin(angle) + np.sqrt(_ARM**2 - _DOWN**2))
@@ -166,6 +181,9 @@ def touched(touch: Contact, other: Array, own: Array) -> Array:
     found = []
     for side in touch.sides:
         shoulder = own[SMPL22.index(f"{side}_shoulder")]
+        if touch.beside:
+            found.append(_around(other, shoulder))
+            continue
         joint = min(joints, key=lambda j: float(np.linalg.norm(other[j] - shoulder)))
         place = other[joint] + _SKIN * unit(shoulder - other[joint])
         if touch.region is Region.WAIST:  # the arms go round
@@ -177,6 +195,35 @@ def touched(touch: Contact, other: Array, own: Array) -> Array:
             place = place + _PALM * unit(shoulder - back)
         found.append(place)
     return np.stack(found)
+
+
+def inner_side(other: Array, place: Array, angle: float) -> str:
+    """The side, "left" or "right", on which a person at a place (2,) has the other (22, 3)."""
+    left = np.array([np.cos(angle), -np.sin(angle)])
+    return SIDES[0] if float((np.asarray(other)[0][[0, 2]] - place) @ left) > 0 else SIDES[1]
+
+
+def _tilted(other: Array, own: Array, angle: float) -> Array:
+    """A pose (22, 3) whose trunk and head are tilted to the side where the other (22, 3) is, that hand before it."""
+    side = inner_side(other, own[0][[0, 2]], angle)
+    sign = -1.0 if side == SIDES[0] else 1.0
+    found = own.copy()
+    neck, head = SMPL22.index("neck"), SMPL22.index("head")
+    for root, moved, tilt in ((0, list(TRUNK), _TILT), (neck, [head], _HEAD_TILT)):
+        turn = heading_matrix(angle) @ about(2, sign * tilt) @ heading_matrix(-angle)
+        found[moved] = found[root] + (found[moved] - found[root]) @ turn.T
+    found[SMPL22.index(f"{side}_wrist")] = found[0] + heading_matrix(angle) @ (_OWN_HAND * [-sign, 1.0, 1.0])
+    return found
+
+
+def _around(other: Array, shoulder: Array) -> Array:
+    """The place (3,) of a wrist on the other's (22, 3) far shoulder, behind them, of an arm from a shoulder (3,)."""
+    behind, inside, under = _AROUND
+    far, near = sorted(
+        (other[SMPL22.index(f"{side}_shoulder")] for side in SIDES),
+        key=lambda joint: -float(np.linalg.norm(joint - shoulder)),
+    )
+    return np.asarray(far + inside * unit(near - far) - behind * _facing(other) - [0.0, under, 0.0])
 
 
 def _facing(pose: Array) -> Array:

@@ -169,7 +169,7 @@ def _moved(
     match move.way:
         case Way.STAY | Way.BACKS | Way.AVERTED:
             track.halt(standing.speeds[who])
-            watched = any(way in theirs for way in (Way.TURN, Way.FACE, Way.BEHIND, Way.AWAY))
+            watched = any(way in theirs for way in (Way.TURN, Way.FACE, Way.BEHIND, Way.BESIDE, Way.AWAY))
             track.stay(
                 None if seconds >= track.left() else seconds, facing=watched or move.way is not Way.STAY
             )
@@ -184,10 +184,9 @@ def _moved(
         case Way.FACE:
             track.turn(wrapped(bearing(other - here) - track.heading))
             track.stay(facing=True, seconds=None if last else 0.2)
-        case Way.BEHIND:
-            _behind(
-                move, track, other, tracks[1 - who].faces(track.frame, standing.headings[1 - who]), seconds
-            )
+        case Way.BEHIND | Way.BESIDE:
+            faces = tracks[1 - who].faces(track.frame, standing.headings[1 - who])
+            _behind(move, track, other, faces, seconds)
         case Way.TO:
             _to(move, track, gap, to, seconds, both=both, last=last)
         case Way.AWAY:
@@ -226,13 +225,15 @@ def _to(move: Move, track: Track, gap: float, to: Array, seconds: float, *, both
 
 
 def _behind(move: Move, track: Track, other: Array, faces: float, seconds: float) -> None:
-    """A walk up to the other's back, round them where they stand in the way, that ends facing it."""
-    near = move.near or NEAR_BY
-    goal, out = other - near * direction(faces), track.place - other
-    start = bearing(out)
-    sweep = wrapped(faces + math.pi - start)
+    """A walk up to the other's back, or side, round them where they stand in the way, that ends facing as they do."""
+    near, out = move.near or NEAR_BY, track.place - other
+    start, ends = bearing(out), faces + math.pi
+    if move.way is Way.BESIDE:  # the nearer one
+        ends = min((faces + math.pi / 2, faces - math.pi / 2), key=lambda side: abs(wrapped(side - start)))
+    goal = other + near * direction(ends)
+    sweep = wrapped(ends - start)
     line = [track.place, goal]
-    if abs(sweep) > math.pi / 3:
+    if abs(sweep) > (math.pi / 3 if move.way is Way.BEHIND else 0.6 * math.pi):
         wide = min(float(np.linalg.norm(out)), WIDE)
         line[1:1] = [other + wide * direction(start + share * sweep) for share in (0.4, 0.75)]
     way = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())

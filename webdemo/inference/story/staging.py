@@ -279,7 +279,8 @@ class _Stage:
     def _touch(self, act: Act, shape: shapes.Touch) -> None:
         if self.contact is not None:
             return
-        giver, region = act.agents[0], region_of(act, shape)
+        giver = act.agents[0]
+        region = Region.SHOULDER if shape.beside else region_of(act, shape)
         if region is None:
             return
         hands = act.side if act.side and shape.hands in ("left", "right") else shape.hands
@@ -288,7 +289,9 @@ class _Stage:
         late = self._follows(act)
         behind = shape.behind or giver in self.behind or FROM_BEHIND in act.manner
         behind = behind or (region is Region.BACK and not any(e.mutual for _, e in self.done))
-        self.contact = Contact(giver, region, sides, times, late, behind, shape.fells)
+        self.contact = Contact(
+            giver, region, sides, times, late, behind and not shape.beside, shape.fells, shape.beside
+        )
         if shape.fells:
             fallen = Change(Posture.LIES, after=0.4)
             self.changes[other_of(giver)] = (*self.changes.get(other_of(giver), ()), fallen)

@@ -10,6 +10,7 @@ class Way(Enum):
 
     TO = "walks up to the other"
     BEHIND = "comes up behind the other"
+    BESIDE = "comes up beside the other"
     AWAY = "walks away from the other"
     BACK = "steps back"
     PAST = "walks past the other"
