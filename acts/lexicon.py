@@ -24,7 +24,7 @@ from motion import InputError
 from .frames import Frame
 from .own import OwnFiles, own_files
 from .shapes import Shape
-from .things import Does
+from .things import Does, Prop
 
 log = logging.getLogger(__name__)
 
@@ -55,6 +55,7 @@ class Entry(BaseModel):
         to: "other" for what is done to the other person even where the words do not name them, as a salute.
         thing: what it does with the thing that its words name, see :mod:`acts.things`; a person who "sits" has a seat
             even where they name none.
+        prop: the kind of thing with which it is done where they name none: a cup for "drinks".
         hand: the shape of the fingers while it is done (:mod:`motion.hands`); "" where none is special.
         mutual: done together even where one is named first: "he hugs her" has both arms around.
         near: metres between the two people, where one comes up to the other for it.
@@ -76,6 +77,7 @@ class Entry(BaseModel):
     rule: Annotated[tuple[Sentence, ...], Field(max_length=6)] = ()
     to: Literal["", "other"] = ""
     thing: Does = ""
+    prop: Prop = ""
     hand: Literal["", "flat", "fist", "point", "grasp", "clasp", "thumbs up", "pinch"] = ""
     mutual: bool = False
     near: Annotated[float, Field(ge=0.3, le=1.5)] = 0.75

@@ -57,6 +57,13 @@ def test_who_falls_ends_on_the_floor_and_may_be_helped_up(engine: Engine) -> Non
     assert found[0] > 0.85 and found.min() < 0.35 and found[-5] > 0.85
 
 
+def test_who_holds_out_a_ring_kneels(engine: Engine) -> None:
+    found = made(engine, "A proposes to B.")[0]
+    assert found[-20:, 0, 1].max() < 0.65
+    ahead = (found[-20:, WRISTS] - found[-20:, :1])[..., 2].max(axis=1)
+    assert np.median(ahead) > 0.3, "no hand is held out"
+
+
 def test_who_has_thrown_stands_still_while_the_other_has_it(engine: Engine) -> None:
     found = made(engine, "A throws a ball to B and B catches it.", seconds=6.0)
     hands = (found - found[:, :, :1])[0][:, WRISTS]

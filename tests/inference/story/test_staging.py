@@ -84,7 +84,7 @@ def test_who_glides_backwards_goes_backwards_and_may_lead_with_a_hand_raised() -
 
 def test_who_brings_something_walks_up_with_both_hands_before_them() -> None:
     brought = told("The waiter brings a tray.")
-    assert brought.gestures["a"].hand is Hand.AHEAD and len(brought.gestures["a"].sides) == 2
+    assert brought.gestures["a"].hand is Hand.OFFERS and len(brought.gestures["a"].sides) == 2
     assert [move.way for move in brought.moves if move.person == "a"] == [Way.TO]
 
 

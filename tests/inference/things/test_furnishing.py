@@ -265,6 +265,16 @@ def test_what_nobody_catches_comes_down_on_the_floor():
     assert np.linalg.norm(ball.places[-1] - palms(standing())[0, :, -1], axis=-1).min() < 0.25
 
 
+def test_what_goes_without_saying_is_in_the_hand():
+    sentence = "They drink."
+    drinks, _ = said(sentence, "drink", "ab")
+    cups = made(standing(), drinks, sentence=sentence)
+    assert [cup.kind for cup in cups] == ["cup", "cup"]
+    assert not made(standing(), act("wave")), "a wave needs nothing"
+    other, sentence = said("A drinks the sea.", "drink", thing="sea")
+    assert not made(standing(), other, sentence=sentence), "what is named has no shape"
+
+
 # ---- rest ------------------------------------------------------------------------------------------------
 def bending() -> np.ndarray:
     """A's right hand goes down to 30 cm over the floor at frame 60, ahead of the feet, and comes up again."""

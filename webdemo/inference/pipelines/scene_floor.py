@@ -301,7 +301,7 @@ def _beginning(request: SceneRequest) -> Standing:
     first = request.told[0]
     if (first.lift or first.twirls or first.strike or not _going(first.moves)) and first.placed is not None:
         return first.placed
-    if any(gesture.hand is Hand.OFFERS for gesture in first.gestures.values()):
+    if any(gesture.hand is Hand.OFFERS for gesture in first.gestures.values()) and not goes(first.moves):
         return starting((), request.beats[0].length)
     lies = any(listed[0] == Change(Posture.LIES, already=True) for listed in first.changes.values())
     near = lies or bool(first.reaching)

@@ -417,5 +417,5 @@ class _Stage:
         return frozenset(
             who
             for who, gesture in self.gestures.items()
-            if gesture.hand not in AT_OTHER and own[who] < 2 and who not in gone
+            if gesture.hand not in AT_OTHER and own[who] < 2 and who not in gone and who not in self.changes
         )

@@ -137,9 +137,9 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
         name, kind = seats[0] if seats else ("chair", "")
         return Use(act.id, does, kind, name, agents, other, side, start, stop, place, words)
     name, kind = thing_of(act, words)
+    if entry and not (kind or act.thing):
+        name = kind = entry.prop
     if does in ("throws", "kicks"):
-        if not (kind or act.thing):
-            name = kind = "ball"  # "they play catch"
         other = {"up": agents[0], "away": None}.get(act.direction or "", other)
     if not kind or is_fixture(name):
         return None
