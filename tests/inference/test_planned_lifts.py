@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
+from motion.metrics.naturalness import standing_foot
 from webdemo.inference import Engine, SceneRequest
 from webdemo.inference.actor import FPS
 from webdemo.inference.pipelines.scene_floor import plan_note
@@ -37,6 +38,26 @@ def test_two_who_spin_in_a_lift_turn_all_the_way_round(engine: Engine) -> None:
     line = found[1, :, 0] - found[0, :, 0]
     angle = np.unwrap(np.arctan2(line[:, 0], line[:, 2]))
     assert abs(angle[-20] - angle[0]) > np.radians(300)
+    up = np.flatnonzero(low(found, 1) > 0.15)
+    assert abs(angle[up[0]] - angle[0]) < np.radians(30), "they turn once one is in the air"
+    assert abs(angle[-1] - angle[up[-1]]) < np.radians(30), "and not while they are set down"
+    assert np.degrees(np.abs(np.gradient(angle[up[0] : up[-1]])).max() * FPS) < 360
+    for person in (0, 1):
+        assert standing_foot(found[person].astype(float), FPS) < 2.5
+
+
+def test_who_is_picked_up_at_once_stands_first_and_is_set_down_on_feet_that_stay(engine: Engine) -> None:
+    found = made(engine, "He lifts her up.")
+    assert low(found, 1)[:10].max() < 0.08 and np.ptp(found[1, :10, FEET][..., [0, 2]], axis=1).max() < 0.03
+    assert low(found, 1)[-10:].max() < 0.1 and np.ptp(found[1, -8:, FEET][..., [0, 2]], axis=1).max() < 0.03
+
+
+def test_who_carries_takes_steps_as_long_as_a_walkers(engine: Engine) -> None:
+    found = made(engine, "He carries her in his arms.")
+    toe = found[0, 30:-20, SMPL22.index("left_foot")][:, [0, 2]]
+    stands = np.linalg.norm(np.diff(toe, axis=0), axis=-1) * FPS < 0.2
+    lands = int((stands[1:] & ~stands[:-1]).sum())
+    assert 2 <= lands <= 1 + len(toe) / FPS / 0.7, "a step of a foot in 0.7 s or more"
 
 
 @pytest.mark.parametrize(

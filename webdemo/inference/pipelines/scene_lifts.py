@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from motion import SMPL22
 from motion.transforms import heading_matrix
 from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
+from webdemo.inference.story.curves import eased
 from webdemo.inference.story.floor import Way2D
 from webdemo.inference.story.gestures import Gesture, wrist
 from webdemo.inference.story.lifts import Carry, Lift, carried
@@ -27,6 +29,13 @@ RISES = 16
 """Frames that picking a person up takes, and setting them down."""
 LONG = 75
 """Frames: after a longer lift the person is set down again before the beat ends."""
+WAITS = 12
+"""Frames for which somebody who is picked up at once stands before."""
+LADEN = 11
+"""Frames of a step of somebody who walks with the other in their arms or on their back."""
+SPIN, SETTLED, EASED = 90, 3, 0.3
+"""Frames of a whole turn with somebody in the air, frames in the air before and after it, and the share of the turn in
+which it gets up its speed."""
 _FAR = 0.45
 """Metres beyond a lift's own distance: from farther away nobody is picked up."""
 _STANDS = 0.003
@@ -64,10 +73,31 @@ class Carrying:
             return 0, frames
         own, other = (self.stretch.course(person) for person in (0, 1))
         apart = np.linalg.norm(own.places - other.places, axis=1)
-        near = int(np.flatnonzero(apart < max(self.lift.carry.near, float(apart.min())) + 0.05)[0])
-        first = min(near + RISES if apart[near] < self.lift.carry.near + _FAR else frames, frames)
+        near = self._meets(apart)
+        waits = 0 if self.stretch.start else max(WAITS - near, 0)
+        first = min(near + waits + RISES if apart[near] < self.lift.carry.near + _FAR else frames, frames)
         down = self.lift.carry is Carry.UP and frames - first > LONG
         return first, frames - 2 * RISES if down else frames
+
+    def _meets(self, apart: Array) -> int:
+        """The frame from which two who are so far apart (T,) are near enough."""
+        return int(np.flatnonzero(apart < max(self.lift.carry.near, float(apart.min())) + 0.05)[0])
+
+    @cached_property
+    def course(self) -> Course:
+        """The carrier's course; where the two turn round, it is once one is in the air, as fast as people turn so."""
+        course = self.stretch.course(self.carrier)
+        if not self.lift.spins:
+            return course
+        other = self.stretch.course(1 - self.carrier)
+        met = self._meets(np.linalg.norm(course.places - other.places, axis=1))
+        first, last = (edge + shift for edge, shift in zip(self.off, (SETTLED, -SETTLED), strict=True))
+        turn = course.headings[-1] - course.headings[met]
+        takes = min(max(last - first, 1), round(abs(turn) / (2 * np.pi) * SPIN))
+        done = eased(np.arange(1, takes + 1) / takes, EASED)
+        share = np.interp(np.arange(len(course.headings)), np.arange(takes) + first, done, left=0.0)
+        headings = np.where(np.arange(len(share)) < met, course.headings, course.headings[met] + share * turn)
+        return replace(course, headings=headings)
 
     def before(self) -> dict[int, Way2D]:
         """The ways until shortly before the feet leave the floor; from then on, poses say where people are."""
@@ -79,12 +109,14 @@ class Carrying:
             if kept.any():
                 headings = None if way.headings is None else way.headings[kept]
                 frames = np.asarray(way.frames)[kept].tolist()
+                if person == self.carrier and headings is not None:
+                    headings = np.where(np.isfinite(headings), self.course.headings[frames], headings)
                 found[person] = replace(way, frames=frames, places=way.places[kept], headings=headings)
         return found
 
     def given(self) -> list[KnownFrames]:
         """The body of the person carried, and the carrier's pelvis, trunk and hands, as the network is given them."""
-        course, parts = self.stretch.course(self.carrier), []
+        course, parts = self.course, []
         first, last = self.off
         held = [
             *range(first, last, OFTEN),
@@ -121,7 +153,8 @@ class Carrying:
 
     def _walking(self) -> Array:
         """(N, 22, 3) the carrier's poses while the other is off the floor, one foot after the other."""
-        course, steps = self.stretch.course(self.carrier), Steps()
+        course, stride = self.course, STRIDE if self.lift.spins else LADEN
+        steps = Steps(stride)
         speed = np.insert(np.gradient(course.places, axis=0), 1, 0.0, axis=1)
         turned = np.gradient(course.headings)
         found = []
@@ -129,7 +162,7 @@ class Carrying:
             pose = upright(course.places[t], float(course.headings[t]))
             pose -= (pose[0] - [*course.places[t][:1], 0.0, *course.places[t][1:]]) * [1.0, 0.0, 1.0]
             moving = bool(np.linalg.norm(speed[t]) > _STANDS or abs(turned[t]) > _STANDS)
-            found.append(steps(pose, moving=moving, ahead=STRIDE / 2 * speed[t]))
+            found.append(steps(pose, moving=moving, ahead=stride / 2 * speed[t]))
         return np.stack(found)
 
     def _on_feet(self) -> Iterator[tuple[int, Array]]:
@@ -137,10 +170,11 @@ class Carrying:
         first, last = self.off
         other, frames, stand = 1 - self.carrier, self.stretch.frames, self.stretch.stand
         if first and not self.stretch.start:
-            yield 0, upright(stand.places[other], float(stand.headings[other]))
+            for frame in range(0, max(first - RISES, 1), OFTEN if first < LONG else LONG):
+                yield frame, upright(stand.places[other], float(stand.headings[other]))
         if last < frames:
-            own = self.stretch.course(self.carrier)
+            own = self.course
             angle = float(own.headings[-1])
             place = own.places[-1] + self.lift.carry.near * np.array([np.sin(angle), np.cos(angle)])
-            for frame in (frames - RISES // 2, frames - 1):
+            for frame in range(frames - RISES, frames, OFTEN):
                 yield frame, upright(place, angle + np.pi)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22
 from motion.cleaning import solve_two_bones
-from motion.easing import smoothstep
+from motion.easing import minimum_jerk
 from motion.skeleton import LEGS
 from motion.transforms import facing, heading, heading_matrix
 from motion.vectors import wrapped
@@ -128,9 +128,14 @@ class Steering:
 
 
 class Steps:
-    """Feet that stand while the body above them turns or goes, and step one after the other."""
+    """Feet that stand while the body above them turns or goes, and step one after the other.
 
-    def __init__(self) -> None:
+    Args:
+        stride: frames of a step.
+    """
+
+    def __init__(self, stride: int = STRIDE) -> None:
+        self.stride = stride
         self._stands: list[tuple[Array, Array] | None] = [None, None]
         self._swings: list[tuple[int, Array, Array] | None] = [None, None]
 
@@ -181,9 +186,9 @@ class Steps:
         assert stand is not None  # both feet stand or swing
         if swing is not None:
             frame, began, foot = swing
-            share = (frame + 1) / STRIDE
-            smooth = float(smoothstep(share))
-            place = began + smooth * (goal[0] - began) + [0.0, LIFT * np.sin(np.pi * share), 0.0]
+            share = (frame + 1) / self.stride
+            smooth = float(minimum_jerk(share))
+            place = began + smooth * (goal[0] - began) + [0.0, LIFT * np.sin(np.pi * share) ** 2, 0.0]
             turned = _turned(foot, goal[1], smooth)
             done = share >= 1
             self._swings[side] = None if done else (frame + 1, began, foot)
