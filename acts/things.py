@@ -17,6 +17,8 @@ Does = Literal[
     "passes", "faces", "opens", "closes", "rolls", "kicks",
 ]  # fmt: skip
 """What is done with a thing: the values that an entry's ``thing`` may have."""
+SEATS = ("chair", "bench", "bed")
+"""Kinds of things on which people sit."""
 Prop = Literal["", "ball", "book", "cup", "guitar", "phone", "ring", "stick", "sword"]
 """Kinds of things that go without saying: the values that an entry's ``prop`` may have."""
 

@@ -11,7 +11,7 @@ from acts.frames import Event, Frame, Match
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread, other_of
 from acts.shapes import Go
-from acts.things import is_fixture, kind_of
+from acts.things import SEATS, is_fixture, kind_of
 from motion import InputError
 
 from . import beside
@@ -344,8 +344,11 @@ class _Planner:
             self._of[number] = number_of
 
     def _named(self, event: Event, name: str) -> str | None:
-        """The thing of an act whose frame has its noun as a word, or the window before which one is done."""
+        """The thing of an act whose frame has its noun as a word, a seat, or the window before which one is done."""
         ref = event.object
+        if self._known.entries[name].thing == "sits":
+            places = [place.lemma for _, place in event.prepositions if place.kind == "thing"]
+            return next((noun for noun in places if kind_of(noun) in SEATS), None)
         if ref is not None and ref.kind == "thing" and self._known.entries[name].thing and kind_of(ref.lemma):
             return ref.lemma
         goals = (ref for word, ref in event.prepositions if word in _BEFORE and ref.kind == "thing")

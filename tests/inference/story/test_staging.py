@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from acts import lexicon, read
@@ -277,3 +278,10 @@ def test_who_tries_to_kiss_somebody_comes_near_and_leans_in() -> None:
     assert [(move.person, move.way) for move in stage.moves if move.person == "a"] == [("a", Way.TO)]
     assert [limb.does for limb in stage.limbs["a"]] == ["leans"]
     assert not told("They bow to each other.").moves
+
+
+def test_two_who_sit_on_a_bench_sit_on_one() -> None:
+    bench = told("They sit down on the sofa.").placed
+    assert bench is not None and bench.gap() < 0.8 and np.ptp(bench.headings) == 0
+    chairs = told("They sit down on chairs.").placed
+    assert chairs is None or np.ptp(chairs.headings) > 3

@@ -265,6 +265,14 @@ def test_what_nobody_catches_comes_down_on_the_floor():
     assert np.linalg.norm(ball.places[-1] - palms(standing())[0, :, -1], axis=-1).min() < 0.25
 
 
+def test_two_have_a_glass_each_and_carry_one_box():
+    sentence = "They raise their glasses."
+    glasses, _ = said(sentence, "drink-together", "ab", thing="glass")
+    assert [thing.kind for thing in made(standing(), glasses, sentence=sentence)] == ["cup", "cup"]
+    boxes = made(standing(), act("hold-thing", "ab", thing="box"))
+    assert [thing.kind for thing in boxes] == ["box"]
+
+
 def test_what_goes_without_saying_is_in_the_hand():
     sentence = "They drink."
     drinks, _ = said(sentence, "drink", "ab")

@@ -14,7 +14,7 @@ from acts import shapes
 from acts.captions import of_each
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import FROM_BEHIND, Act, beats, other_of
-from acts.things import is_fixture
+from acts.things import is_fixture, kind_of
 
 from .act_kinds import (
     is_after,
@@ -49,6 +49,8 @@ _WAYS = {
 _TURNS = {"around": Way.TURN, "to": Way.FACE, "away": Way.TURN}
 PULLED = 0.8
 """Metres from where somebody stands up at which the one stands who pulls them up."""
+ON_BENCH = 0.65
+"""Metres between two who sit on one bench."""
 _JUMPS = 3
 """Jumps of a person who is already jumping when the beat begins."""
 _DODGES = (Way.BACK, Way.ASIDE)
@@ -168,8 +170,7 @@ class _Stage:
             case shapes.Place():
                 self._place(act, shape)
             case shapes.Posture():
-                for who in people:
-                    self.changes[who] = (*self.changes.get(who, ()), *self._changed(act, shape))
+                self._posture(act, shape, people)
             case shapes.Limb():
                 side, direction = act.side or shape.side, act.direction or shape.direction
                 limb = Limb(shape.does, side, direction, act.times or 0)
@@ -222,6 +223,12 @@ class _Stage:
             here, backs=here.backs or backs, beside=beside, apart=here.apart or shape.apart
         )
         self.moves += [Move(who, Way.BACKS) for who in "ab" if backs]
+
+    def _posture(self, act: Act, shape: shapes.Posture, people: tuple[str, ...]) -> None:
+        if len(people) == 2 and kind_of(act.thing or "") == "bench":
+            self.setting = replace(self.setting, beside=True, apart=ON_BENCH)
+        for who in people:
+            self.changes[who] = (*self.changes.get(who, ()), *self._changed(act, shape))
 
     def _changed(self, act: Act, shape: shapes.Posture) -> list[Change]:
         """The changes of posture of an act, one after another where it is done several times."""

@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 
 from acts import Act, Plan, lexicon
-from acts.things import Does, is_fixture, kind_of, nouns_in, on_floor, thing_of
+from acts.things import SEATS, Does, is_fixture, kind_of, nouns_in, on_floor, thing_of
 from webdemo.inference.story.strikes import PERIODS, Bout
 
 TABLES = ("computer", "table")
 """Furniture at which people sit."""
+ONE_EACH = ("book", "cigarette", "cup", "flower", "guitar", "phone", "sword")
+"""Kinds of which two people hold one each."""
 _THROUGH = re.compile(r"\bthrough (?:the|an?) ((?:\w+ )?(?:door|doorway|gate))\b")
 _ON = re.compile(r"\b(?:on|onto|upon|at|to) (?:the|an?|his|her|their) ((?:\w+ )?\w+)")
 
@@ -133,7 +135,7 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
     if does == "sits":
         if on_floor(words) and not place:
             return None
-        seats = [noun for noun in nouns_in(words) if noun[1] in ("chair", "bench", "bed")]
+        seats = [noun for noun in nouns_in(words) if noun[1] in SEATS]
         name, kind = seats[0] if seats else ("chair", "")
         return Use(act.id, does, kind, name, agents, other, side, start, stop, place, words)
     name, kind = thing_of(act, words)
@@ -145,7 +147,7 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
         return None
     if does in ("opens", "closes"):
         does = "holds"
-    if does == "holds" and len(agents) == 2 and act.thing:
+    if does == "holds" and len(agents) == 2 and act.thing and kind not in ONE_EACH:
         does = "carries"
     on = place if does in ("puts", "drops") and place != kind else ""
     return Use(act.id, does, kind, name, agents, other, side, start, stop, on, words)
