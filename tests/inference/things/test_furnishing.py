@@ -265,6 +265,19 @@ def test_what_nobody_catches_comes_down_on_the_floor():
     assert np.linalg.norm(ball.places[-1] - palms(standing())[0, :, -1], axis=-1).min() < 0.25
 
 
+def test_a_broom_is_in_the_hand_with_its_far_end_on_the_floor():
+    sentence = "A sweeps the floor."
+    sweeps, _ = said(sentence, "sweep", thing="floor")
+    (broom,) = made(standing(), sweeps, sentence=sentence)
+    ends = broom.mesh.vertices[[broom.mesh.vertices[:, 1].argmin(), broom.mesh.vertices[:, 1].argmax()]]
+    handle, far = (broom.places + broom.rotations @ end for end in ends)
+    assert np.abs(far[:, 1]).max() < 0.05 and far[:, 2].min() > 0.4, "the far end is on the floor ahead"
+    palm = palms(standing())[0, 1]
+    along = (far - handle) / np.linalg.norm(far - handle, axis=1, keepdims=True)
+    off = np.linalg.norm(np.cross(palm - handle, along), axis=1)
+    assert off.max() < 0.05, "the hand is not on it"
+
+
 def test_two_have_a_glass_each_and_carry_one_box():
     sentence = "They raise their glasses."
     glasses, _ = said(sentence, "drink-together", "ab", thing="glass")

@@ -23,6 +23,8 @@ BEFORE_FEET = 0.3
 """Metres from a pelvis at which a thing that was rolled there comes to rest."""
 TOE = 0.06
 """Metres from the ball of a foot to the tip of its shoe."""
+WORKS_AHEAD = 0.75
+"""Metres before the pelvis at which the far end of a broom or a spade is on the floor."""
 TABLE = 0.74
 """Height of a table in metres, where the hand does not say it."""
 TABLES = (0.45, 1.0)
@@ -72,6 +74,8 @@ class ThingCourse:
         who = use.agents[0]
         if use.does == "carries":
             return self._between_both()
+        if use.does == "uses":
+            return self._to_floor(who)
         if use.does == "kicks":
             self.holder = None
             return self._before_foot(who, kick(self.hands, who, use.start, use.stop))
@@ -105,6 +109,16 @@ class ThingCourse:
         short = 0.3 + self.surface.size[2] / 2 - float((spot - pelvis) @ ahead)
         spot = (spot + max(short, 0.0) * ahead) * [1, 0, 1]
         return at_rest(self.kind, self.surface, spot, ahead, hands.frames)
+
+    def _to_floor(self, who: int) -> Track:
+        """A tool in the right hand, as a broom is held: its far end is on the floor ahead."""
+        self.holder, self.side = who, 1
+        hands, ahead = self.hands, self.hands.ahead[who]
+        palm = smoothed(hands.palms[who, 1], 3)
+        goal = (hands.joint(who, "pelvis") + WORKS_AHEAD * ahead) * [1, 0, 1]
+        reach = np.linalg.norm(goal - palm, axis=1, keepdims=True)
+        along = (goal - palm) / reach
+        return palm + (reach - self.surface.vertices[:, 1].max()) * along, frame_of(along, ahead)
 
     def _before_foot(self, who: int, found: Moment) -> Track:
         """On the floor, where the foot of a kick strikes it."""
@@ -161,7 +175,7 @@ class ThingCourse:
     def _holds(self, use: Use) -> None:
         self._taken_up(use, use.agents[0])
 
-    _plays = _fights = _holds
+    _plays = _fights = _uses = _holds
 
     def _lifts(self, use: Use) -> None:
         if self.holder is not None:

@@ -173,7 +173,7 @@ def _courses(hands: Hands, uses: Iterable[Use], own: Mesh | None) -> list[ThingC
             continue
         if use.kind in FURNITURE and use.does != "carries":
             continue
-        single = use.does in ("holds", "fights", "plays") and len(use.agents) == 2
+        single = use.does in ("holds", "fights", "plays", "uses") and len(use.agents) == 2
         for who in use.agents if single else (None,):
             mine = use if who is None else replace(use, agents=(who,), other=None)
             found.setdefault((use.name, "" if who is None else "ab"[who]), []).append(mine)

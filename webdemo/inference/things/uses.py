@@ -12,6 +12,7 @@ import numpy as np
 
 from acts import Act, Plan, lexicon
 from acts.things import SEATS, Does, is_fixture, kind_of, nouns_in, on_floor, thing_of
+from motion.things import HELD
 from webdemo.inference.story.strikes import PERIODS, Bout
 
 TABLES = ("computer", "table")
@@ -139,7 +140,11 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
         name, kind = seats[0] if seats else ("chair", "")
         return Use(act.id, does, kind, name, agents, other, side, start, stop, place, words)
     name, kind = thing_of(act, words)
-    if entry and not (kind or act.thing):
+    if does == "uses":  # a tool, on whatever the words name
+        kind = kind if kind in HELD else ""
+    elif act.thing:
+        entry = None
+    if entry and not kind:
         name = kind = entry.prop
     if does in ("throws", "kicks"):
         other = {"up": agents[0], "away": None}.get(act.direction or "", other)
