@@ -1,7 +1,8 @@
 """The shapes of which an act's score is made: few, typed, and the same in the lexicon, in a plan and over the API.
 
 Each shape is a table with a ``do`` in the lexicon's TOML, as ``{do = "go", way = "to", near = 0.6}``. ``who`` says
-which of the act's people it is for: its agents, its patient, or both people.
+which of the act's people it is for: its agents, its patient, both people, or the first of two agents, whose patient
+is then the second.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ Metres = Annotated[float, Field(ge=0, le=20)]
 
 class _Shape(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
-    who: Literal["agent", "patient", "both"] = "agent"
+    who: Literal["agent", "patient", "both", "first"] = "agent"
 
 
 class Go(_Shape):
@@ -136,6 +137,17 @@ class Gesture(_Shape):
         "around",
         "works",
         "rubs",
+        "lowers",
+        "drums",
+        "types",
+        "juggles",
+        "dribbles",
+        "conducts",
+        "pumps",
+        "knocks",
+        "paints",
+        "brushes",
+        "carries",
     ]
     sides: Literal["left", "right", "both"] = "right"
 
@@ -262,6 +274,20 @@ class Figure(_Shape):
         "shadow-boxes",
         "rows",
         "swims",
+        "sweeps",
+        "digs",
+        "ties",
+        "arm-wrestles",
+        "thumb-wrestles",
+        "bumps-elbow",
+        "pulls",
+        "frog",
+        "leapfrog",
+        "shoots",
+        "stops-ball",
+        "pirouette",
+        "warms-up",
+        "phrase",
     ]
     times: Annotated[int, Field(ge=0, le=20)] = 0
     mirrored: bool = False

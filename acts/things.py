@@ -14,7 +14,7 @@ from .plan import Act
 
 Does = Literal[
     "", "gives", "takes", "throws", "catches", "carries", "holds", "lifts", "puts", "drops", "plays", "sits", "fights",
-    "passes", "faces", "opens", "closes", "rolls", "kicks", "uses",
+    "passes", "faces", "opens", "closes", "rolls", "kicks", "uses", "bounces",
 ]  # fmt: skip
 """What is done with a thing: the values that an entry's ``thing`` may have."""
 SEATS = ("chair", "bench", "bed")

@@ -11,7 +11,7 @@ import numpy as np
 
 from .joints import Array, Motion
 from .poses import _lift, _wrist_speed
-from .touches import _hand_gaps, to_joints
+from .touches import _hand_gaps, elbow_gap, to_joints
 
 MEASURES: dict[str, Callable[..., str]] = {}
 """The measures by the name of their predicate."""
@@ -41,6 +41,11 @@ def _gone(m: Motion, rate: Array, least: float = 0.1) -> float:
 @measure("hands_meet", "both_hands_meet")
 def _hands(m: Motion, *_: object, **__: object) -> str:
     return f"hands {_cm(float(_hand_gaps(m).min()))} apart"
+
+
+@measure("elbows_meet")
+def _elbows(m: Motion, *_: object, **__: object) -> str:
+    return f"elbows {_cm(float(elbow_gap(m).min()))} apart"
 
 
 @measure("hand_on", "both_hands_on", "arm_on")

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import numpy as np
 import pytest
 
+from acts import shapes
 from motion import SMPL22
 from tests.inference.story.staged_words import gestures
-from webdemo.inference.story.gestures import Gesture, Hand, wrist
+from webdemo.inference.story.gestures import SIDES, Gesture, Hand, wrist
 from webdemo.inference.story.poses import upright
+from webdemo.inference.story.strokes import STROKES
 
 AHEAD = np.tile([0.0, 0.0, 1.0], (60, 1))
 TIME = np.arange(60) / 30
@@ -50,6 +54,20 @@ def test_a_named_hand_is_that_hand() -> None:
     assert gestures("Person A waves.")["a"].sides == ("right",)
 
 
+def test_two_hands_drum_in_turn_as_often_as_said() -> None:
+    """One is down where the other is up, twice a second."""
+    left, right = (wrist(Gesture(Hand.DRUMS, SIDES), side, TIME, AHEAD)[:, 1] for side in SIDES)
+    assert np.corrcoef(left, right)[0, 1] < -0.9
+    peaks = (left[1:-1] > left[:-2]) & (left[1:-1] > left[2:])
+    assert peaks.sum() == pytest.approx(4, abs=1)
+
+
+def test_the_lexicon_may_name_each_stroke() -> None:
+    named = set(get_args(shapes.Gesture.model_fields["gesture"].annotation))
+    assert set(STROKES) <= named
+    assert {Hand[name.upper()].name.lower() for name in named} == named
+
+
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_hands_are_where_the_gesture_has_them(side: str) -> None:
     pose = upright(np.zeros(2), 0.0)
@@ -77,5 +95,10 @@ def test_hands_are_where_the_gesture_has_them(side: str) -> None:
         and (offered[:, 1] > 0.1).all()
     )
     assert np.sign(way(Hand.LINKED)[0, 0]) == out
+    drum, ball = way(Hand.DRUMS), way(Hand.DRIBBLES)
+    assert np.ptp(drum[:, 1]) > 0.15 and (drum[:, 2] > 0.25).all()
+    assert np.ptp(ball[:, 1]) > 0.15 and (ball[:, 1] < shoulder[1] - 0.2).all()
+    assert np.ptp(way(Hand.PAINTS)[:, 1]) > 0.3 and np.ptp(way(Hand.CONDUCTS)[:, 0]) > 0.2
+    assert np.ptp(way(Hand.CARRIES), axis=0).max() == 0 and (way(Hand.LOWERS)[:, 1] < 0.05).all()
     assert 0.15 < np.ptp(way(Hand.FANS)[:, 0]) < 0.25 and (way(Hand.FANS)[:, 1] < head[1]).all()
     assert np.ptp(way(Hand.WAVES)[:, 0]) > 0.2 and np.ptp(way(Hand.UP), axis=0).max() == 0

@@ -241,6 +241,27 @@ def test_two_who_throw_a_ball_have_it_in_turn():
         assert gaps.min() < 0.16, f"person {person} has it at frame {frame}"
 
 
+def test_a_ball_bounces_between_a_hand_that_goes_up_and_down_and_the_floor():
+    people = standing()
+    hand = np.tile([-0.25, 0.95, 0.3], (FRAMES, 1))
+    hand[30:, 1] += 0.1 * np.cos(2 * np.pi * 1.5 * np.arange(FRAMES - 30) / FPS)
+    put_hand(people[0], "right", hand)
+    bounces, sentence = said("A bounces a ball.", "dribble", side="right")
+    (ball,) = made(people, bounces, sentence=sentence)
+    radius = ball.mesh.size[1] / 2
+    assert ball.places[:, 1].min() > radius - 0.005, "not into the floor"
+    low = ball.places[:, 1] < radius + 0.15
+    assert np.sum(np.diff(low.astype(int)) == 1) == 4, "as often as the hand goes down, once the ball is back"
+    assert np.linalg.norm(ball.places[:25] - palms(people)[0, 1, :25], axis=1).max() < radius + 0.06
+    assert np.linalg.norm(np.diff(ball.places, axis=0), axis=1).max() * FPS < 9.0
+
+
+def test_who_dribbles_has_a_ball_that_no_word_names():
+    people = standing()
+    dribbles, sentence = said("The player dribbles.", "dribble")
+    assert [thing.kind for thing in made(people, dribbles, sentence=sentence)] == ["ball"]
+
+
 def test_a_throw_is_a_parabola_from_hand_to_hand():
     people = standing()
     people[1, :, :, 2] += 2.0

@@ -20,7 +20,7 @@ from webdemo.inference.story.told import Told
 from webdemo.inference.story.track import HALT
 
 from .scene_hands import late_by
-from .scene_postures import BOWED, DEEP, RISING, UPRIGHT, Pose, led, postures
+from .scene_postures import BOWED, DEEP, RISING, Pose, led, postures
 from .scene_stretch import Stretch
 
 Array = NDArray[np.floating]
@@ -29,6 +29,8 @@ LIMBED = 3
 """Frames between two poses of a person who moves single limbs or does a figure."""
 SETTLES = 24
 """Frames that changing to another stance takes."""
+DOWN = 0.35
+"""Height in metres of the pelvis of a person on the ground, who has to get up before a figure."""
 SHORTEST = 20
 """Frames for which a figure is begun, at least."""
 _SEEN = 6
@@ -70,7 +72,7 @@ def given_figure(story: Sequence[Told], person: int, beat: Stretch, last: Array 
     """
     parts: list[Part] = []
     first = SETTLES // 2 if beat.start else 0
-    if last is not None and last[0, 1] <= UPRIGHT:
+    if last is not None and last[0, 1] <= DOWN:
         first = min(RISING, beat.frames)
         rising = _getting_up(story, person, beat, last)
         for joints, at, known in led(rising, beat.window.start, beat.window.stop):

@@ -11,7 +11,7 @@ from motion import SMPL22
 from motion.transforms import heading, heading_matrix
 from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
-from webdemo.inference.story.arm_course import arm, directions, hanging, hangs, rested
+from webdemo.inference.story.arm_course import arm, directions, hanging, hangs, raised, rested
 from webdemo.inference.story.floor import Way2D
 from webdemo.inference.story.gestures import AT_OTHER, SIDES, Gesture, Hand, wrist
 from webdemo.inference.story.moves import Move
@@ -135,7 +135,7 @@ def _arms(
     seconds, length = (at - start) / FPS - late, (stretch.frames - start) / FPS - late
     for side in SIDES:
         wrist_joint, elbow_joint = SMPL22.index(f"{side}_wrist"), SMPL22.index(f"{side}_elbow")
-        was = hanging(side)
+        was = raised(side) if gesture.hand is Hand.LOWERS else hanging(side)
         if before is not None:
             was = directions(before @ heading_matrix(float(heading(before[None])[0])), side)
         if side in gesture.sides and gesture.hand in AT_OTHER:

@@ -48,6 +48,7 @@ _POLES = {
     Hand.HEAD: (1.0, 0.1, 0.3), Hand.HIGH: (1.0, -0.3, 0.4), Hand.UP: (0.8, -0.8, 0.3),
     Hand.EARS: (0.9, -1.0, 0.2), Hand.EYES: (0.7, -1.0, 0.1), Hand.PHOTO: (0.7, -1.0, 0.1),
     Hand.PHONE: (0.6, -1.0, 0.3), Hand.WAVES: (0.5, -1.0, 0.0), Hand.CROSSED: (0.6, -1.0, 0.0),
+    Hand.CONDUCTS: (0.9, -0.8, 0.0), Hand.BRUSHES: (0.8, -0.8, 0.0), Hand.DRUMS: (0.7, -1.0, -0.2),
     Hand.PRAYS: (0.7, -1.0, -0.1), Hand.OFFERS: (0.25, -1.0, -0.2), Hand.CHEST: (0.6, -1.0, -0.1),
 }  # fmt: skip
 
@@ -85,6 +86,12 @@ def arm(gesture: Gesture, side: str, seconds: Array, length: float, towards: Arr
 def hanging(side: str) -> Array:
     """(2, 3) directions of the upper arm and the forearm of an arm that hangs, of a person who faces +Z."""
     return directions(upright(np.zeros(2), 0.0), side)
+
+
+def raised(side: str) -> Array:
+    """(2, 3) directions of the upper arm and the forearm of an arm that is up, of a person who faces +Z."""
+    out = 1.0 if side == "left" else -1.0
+    return np.asarray(unit(np.array([[0.35 * out, 0.8, 0.35], [0.1 * out, 1.0, 0.1]])))
 
 
 def directions(poses: Array, side: str) -> Array:

@@ -44,7 +44,7 @@ class Setting:
         postures: that they take up or are in.
         lift, strike: of the beat.
         twirls: one turns under the other's arm.
-        apart: metres between them where they face each other or are side by side; 0 leaves it free.
+        apart: metres between them where they face each other, are side by side or one stands behind; 0 leaves it free.
         behind: the person who stands behind the other; "" for nobody.
     """
 
@@ -115,7 +115,7 @@ def standing(setting: Setting) -> Standing | None:
         return _carried(lifted)
     if setting.behind:
         places = np.zeros((2, 2))
-        places["ab".index(setting.behind), 1] = -BEHIND_BACK
+        places["ab".index(setting.behind), 1] = -(setting.apart or BEHIND_BACK)
         return Standing(places, np.zeros(2))
     struck = setting.strike
     if setting.twirls or (struck and struck.answered) or setting.apart:

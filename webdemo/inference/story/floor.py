@@ -340,7 +340,8 @@ def _along(who: int, move: Move, track: Track, standing: Standing, seconds: floa
     side = between * ((LINKED if move.linked else ABREAST) / 2) * (-1 if who == 0 else 1)
     way = min(max(seconds - 0.4, 0.5) * move.speed, 7.0)
     line = np.stack([track.place, middle + side + min(0.8, 0.4 * way) * ahead, middle + side + way * ahead])
-    track.walk(smoothed(line), seconds)
+    taken = way / move.speed + EASE if move.speed > RUN else seconds
+    track.walk(smoothed(line), min(seconds, taken))
     track.going = ahead
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from motion import SMPL22
 
 from .poses import upright
+from .strokes import STROKES
 
 Array = NDArray[np.floating]
 SIDES = ("left", "right")
@@ -54,6 +55,17 @@ class Hand(Enum):
     WORKS = "works before the body"
     RUBS = "rubs the other hand"
     AROUND = "around the back of the other, who is beside"
+    LOWERS = "is lowered"
+    DRUMS = "beats a drum"
+    TYPES = "types"
+    JUGGLES = "juggles"
+    DRIBBLES = "bounces a ball"
+    CONDUCTS = "conducts"
+    PUMPS = "goes up and down before the body"
+    KNOCKS = "knocks"
+    PAINTS = "paints a wall"
+    BRUSHES = "goes to and fro before the mouth"
+    CARRIES = "carries something before the body"
 
 
 @dataclass(frozen=True)
@@ -150,9 +162,13 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
         case Hand.AROUND:
             shoulder = np.zeros(3)
             offset = _BEYOND * towards + _AT_BACK
+        case Hand.LOWERS:
+            offset[:] = pose[SMPL22.index(f"{side}_wrist")] - pose[0] - shoulder
         case Hand.LINKED:
             shoulder = np.zeros(3)
             offset[:] = [0.22 * out, 0.0, 0.08]
+        case _ if (stroke := STROKES.get(gesture.hand.name.lower())) is not None:
+            offset = stroke.way(out, seconds) - shoulder
         case _:
             offset = _beside(gesture.hand, out, np.asarray(seconds), shoulder)
     return shoulder + offset

@@ -214,8 +214,10 @@ class _Stage:
 
     def _place(self, act: Act, shape: shapes.Place) -> None:
         if shape.way == "behind":
-            self.behind.update(act.agents)
-            self.setting = replace(self.setting, behind=act.agents[0] if len(act.agents) == 1 else "")
+            self.behind.update(self._people(act, shape))
+            alone = len(act.agents) == 1 or shape.who == "first"
+            if alone:
+                self.setting = replace(self.setting, behind=act.agents[0], apart=shape.apart)
             return
         here, backs = self.setting, shape.way == "back to back"
         beside = here.beside or shape.way == "beside"
@@ -246,6 +248,8 @@ class _Stage:
             return ("a", "b")
         if shape.who == "patient":
             return (act.patient or other_of(act.agents[0]),)
+        if shape.who == "first":
+            return act.agents[:1]
         return act.agents
 
     def _go(self, act: Act, shape: shapes.Go, who: str) -> Move:

@@ -12,7 +12,7 @@ from motion.things import Mesh, Thing, shape
 
 from .holding import SIDES, Hands, Track, frame_of, held, level, smoothed, takes_both_hands, unit, yaw_of
 from .timing import WITHIN, Moment, kick, lowest, meeting, release
-from .tracks import BLEND, Course, at_rest, put, rolled, thrown
+from .tracks import BLEND, Course, at_rest, bounced, put, rolled, thrown
 from .uses import Use
 
 SPEED = 5.5
@@ -315,6 +315,17 @@ class ThingCourse:
         self.holder = None
         self._hold_from(frame)
         self._say(use, frame, **({} if use.other is None else {"to": "ab"[use.other]}))
+
+    def _bounces(self, use: Use) -> None:
+        """From the hand to the floor and back, as often as the hand goes down."""
+        who, hands = use.agents[0], self.hands
+        self._taken_up(use, who)
+        if self.holder != who:
+            return
+        radius = float(self.surface.size[1]) / 2
+        under = hands.palms[who, self.side] - [0.0, radius + 0.02, 0.0]
+        bounced(self.course, under, use.start, use.stop, radius)
+        self._say(use, use.start)
 
     def _catches(self, use: Use) -> None:
         who = use.agents[0]

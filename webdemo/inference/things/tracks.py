@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+from scipy.signal import find_peaks
 from scipy.spatial.transform import Rotation
 
 from motion.easing import smoothstep
@@ -89,6 +91,33 @@ def rolled(course: Course, start: int, goal: Array, radius: float) -> None:
     axis = np.cross([0.0, 1.0, 0.0], ahead)
     spin = Rotation.from_rotvec(axis * (along / radius)[:, None]).as_matrix()
     course.rotations[start:] = spin @ course.rotations[start]
+
+
+def bounced(course: Course, under: Array, start: int, stop: int, radius: float) -> None:
+    """Lets a ball bounce from a hand that goes up and down.
+
+    It is under the hand on its way down, and on the hand's way up it is on the floor and back.
+
+    Args:
+        course: of the ball.
+        under: (T, 3) where it is under the hand.
+        start, stop: frames of the hand's strokes.
+        radius: of the ball.
+    """
+    height = gaussian_filter1d(under[:, 1], 1.0)
+    lows, highs = (start + find_peaks(sign * height[start:stop], prominence=0.04)[0] for sign in (-1.0, 1.0))
+    if not len(lows):
+        return
+    course.then(int(lows[0]), (under, course.rotations), BLEND)
+    for low in lows:
+        later = highs[highs > low]
+        if not len(later):
+            break
+        now = np.arange(low, later[0] + 1)
+        share = (now - low) / (later[0] - low)
+        down = np.minimum(2 * share, 2 - 2 * share)  # 0 at the hand, 1 on the floor
+        course.places[now] = under[now]
+        course.places[now, 1] -= down * (under[now, 1] - radius)
 
 
 def at_rest(kind: str, mesh: Mesh, place: Array, ahead: Array, frames: int) -> Track:
