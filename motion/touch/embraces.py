@@ -25,15 +25,16 @@ from .bending import across, bent_towards
 Array = NDArray[np.floating]
 Hands = tuple[tuple[float, float, float, float], ...]
 
-CLOSE = 0.34
-"""Metres between two spines in an embrace: 10 to 15 cm between two chests."""
+CLOSE = 0.29
+"""Metres between two spines in an embrace: two chests touch."""
 _MOST = 0.75
 """Metres between two spines beyond which arms that are held out are no embrace."""
 _AROUND = (-0.2, 0.27)
 """Metres past the other's chest, at least, and beside it, at most, of a wrist that is around the other."""
-_HANDS = ((0.04, 0.12, -0.13, 0.7), (0.11, 0.1, 0.15, 0.0))
+_HANDS = ((0.05, 0.14, -0.17, 1.2), (0.05, 0.07, 0.15, 0.0))
 """Of the left and of the right wrist: metres past the other's spine, beside it and over it, and how far the elbow
-hangs for a metre outwards. Of hundreds drawn at random, such hands leave few arms in the other's body."""
+hangs for a metre outwards. Of hundreds drawn at random, such hands leave few arms in the other's body, and the hands
+beyond the wrists stand out least behind it."""
 _CLOSE_BEHIND = 0.27
 """Metres between two spines where one holds the other from behind."""
 _ASIDE_BEHIND = 0.06
