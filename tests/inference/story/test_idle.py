@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
+from motion.metrics.naturalness import mirror_gap
 from motion.transforms import heading
 from tests.inference.story.staged_words import gesturing, idle, is_planned, told
 from webdemo.inference.story.poses import standing
@@ -95,3 +96,8 @@ def test_a_bystander_stands_on_the_floor_and_sways() -> None:
 )
 def test_the_arms_of_those_who_only_walk_or_rest_have_nothing_to_do(sentence: str, found: str) -> None:
     assert "".join(sorted(told(sentence).loose)) == found
+
+
+def test_two_arms_hang_differently_and_so_do_those_of_others() -> None:
+    gaps = [mirror_gap(standing(np.zeros(2), 0.0, np.zeros(4), seed=seed)) for seed in range(20)]
+    assert 3.0 < np.median(gaps) < 8.0 and np.ptp(gaps) > 2.0, "recorded people who wait have 6 cm"

@@ -40,9 +40,9 @@ from .scene_strikes import given_blows
 Array = NDArray[np.floating]
 
 
-POSED = 6
-"""Frames between two poses of a bystander."""
-TURNED = 5
+POSED = 4
+"""Frames between two poses of a bystander: as many as between the network's knots, of which others would waver."""
+TURNED = 4
 """Frames between two poses of a person whose trunk the network would turn to the other."""
 
 

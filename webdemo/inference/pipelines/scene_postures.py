@@ -41,7 +41,7 @@ Pose = tuple[int, Array]
 """A frame of the scene and a pose (22, 3) in metres of its world."""
 
 HELD = 4
-"""Frames between two poses of a person who keeps a posture."""
+"""Frames between two poses of a person who keeps a posture: as many as between the network's knots."""
 SETTLING = 40
 """Frames in which somebody sits down, falls or gets up."""
 RISING = 54

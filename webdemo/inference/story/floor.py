@@ -27,7 +27,7 @@ Array = NDArray[np.floating]
 
 EVERY = 30
 """Frames between two given places."""
-_DENSE = 5
+_DENSE = 4
 """Frames from one place to the next that are given to a couple who dance in hold."""
 CLOSE = 0.9
 """Metres from each other at which people who walk up to each other are left to the network."""

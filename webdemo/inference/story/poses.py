@@ -47,6 +47,8 @@ FLAT = (
 TRUNK = tuple(joint for joint in FLAT if joint not in LOWER or joint == SMPL22.index("spine1"))
 """Joints of the trunk, the head and the shoulders."""
 TOES = (SMPL22.index("left_foot"), SMPL22.index("right_foot"))
+_UNALIKE = np.array([0.06, 0.1, 0.15])
+"""Radians by which each arm of a person who stands hangs closer, further ahead and more bent, or less, than usual."""
 _SIDES = {"left": 1.0, "right": -1.0}
 """Sides of the body, with the sign of their x for a person who faces +Z."""
 
@@ -58,12 +60,13 @@ def standing(place: Array, angle: float, seconds: Array, *, seed: int = 0) -> Ar
         place: (2,) x and z of the pelvis in metres.
         angle: heading in radians from +Z towards +X.
         seconds: (N,) moments.
-        seed: draws the phases of the sway.
+        seed: draws the phases of the sway, and how each arm hangs.
 
     Returns:
         (N, 22, 3) metres, the feet on the floor and at one place.
     """
-    phases = np.random.default_rng(seed).uniform(0, 2 * np.pi, 4)
+    rng = np.random.default_rng(seed)
+    phases, hangs = rng.uniform(0, 2 * np.pi, 4), _UNALIKE * rng.uniform(-1, 1, (2, 3))
     sway = [
         np.sin(2 * np.pi * np.asarray(seconds) / period + phase)
         for period, phase in zip((5.3, 3.9, 7.1, 4.4), phases, strict=True)
@@ -73,11 +76,12 @@ def standing(place: Array, angle: float, seconds: Array, *, seed: int = 0) -> Ar
     turns[:, SMPL22.index("spine2")] = about(2, -0.02 * sway[0]) @ heading_matrix(0.03 * sway[1])
     turns[:, SMPL22.index("neck")] = about(0, 0.05 + 0.02 * sway[1])
     turns[:, SMPL22.index("head")] = heading_matrix(0.1 * sway[2])
-    for side, sign, arm in (("left", 1.0, sway[3]), ("right", -1.0, sway[1])):
-        turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * (1.4 + 0.015 * arm)) @ about(
-            0, 0.05 + 0.03 * arm
+    sides = (("left", 1.0, sway[3], hangs[0]), ("right", -1.0, sway[1], hangs[1]))
+    for side, sign, arm, (close, ahead, bent) in sides:
+        turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * (1.4 + close + 0.015 * arm)) @ about(
+            0, 0.05 + ahead + 0.03 * arm
         )
-        turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * (0.3 + 0.06 * arm))
+        turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * (0.3 + bent + 0.06 * arm))
         turns[:, SMPL22.index(f"{side}_hip")] = about(2, -sign * 0.02 - 0.012 * sway[0]) @ about(
             0, np.full(len(seconds), -0.06)
         )
