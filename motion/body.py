@@ -177,8 +177,8 @@ def bone_rotations(motion: Clip | Array) -> Array:
 
     Bones point where the positions say. Their twist follows from their neighbours: trunk and pelvis turn with
     hips and collars; elbows and knees bend about one axis, which fixes the twist of a bent limb, and a
-    straight one keeps the least twist; shins turn with the feet; soles near the floor lie flat, toes bend;
-    the head turns to the side on which it lies in front of the neck, and looks ahead if only the neck bends.
+    straight one keeps the least twist; shins turn with the feet; soles and palms near the floor lie flat, toes
+    bend; the head turns to the side on which it lies in front of the neck, and looks ahead if only the neck bends.
 
     Args:
         motion: a clip on SMPL22, or positions (T, 22, 3) in metres, Y up, floor at 0.
@@ -205,6 +205,10 @@ _MOST_ROLL = 0.6
 _ARM_BEND = (0.2, 0.55)
 """Sines of the bend between which the axis of a hinge begins to count and counts in full."""
 _LEG_BEND = (0.2, 0.5)
+_LOW_HAND = (0.07, 0.13)
+"""Heights in metres of the wrist between which a hand stops lying flat on the floor."""
+_STEEP_ARM = (0.25, 0.6)
+"""Sines of a forearm's way down between which its hand begins to lie flat and lies flat."""
 _LOW_FOOT = (0.03, 0.1)
 """Heights in metres of the ball of the foot between which a sole stops lying flat."""
 
@@ -278,7 +282,23 @@ def _turn_arm(positions: Array, world: Array, side: str, sign: float) -> None:
     # Half of the twist sits in the upper arm, all of it in the forearm: shoulders keep their shape.
     world[:, _J[shoulder]] = _rotation(0.5 * twist[:, None] * upper) @ straight
     world[:, _J[elbow]] = _follow(positions, _rotation(twist[:, None] * upper) @ straight, elbow, wrist)
-    world[:, _J[wrist]] = world[:, _J[elbow]]
+    world[:, _J[wrist]] = _flat_hand(positions[:, _J[wrist], 1], world[:, _J[elbow]], sign)
+
+
+def _flat_hand(height: Array, forearm: Array, sign: float) -> Array:
+    """(T, 3, 3) rotations of a hand in line with its forearm (T, 3, 3), or flat on the floor where it is put there.
+
+    Args:
+        height: (T,) metres of the wrist.
+        forearm: its rotations.
+        sign: -1 for the left hand.
+    """
+    down, palm = np.array([0.0, -1.0, 0.0]), -forearm[:, :, 1]
+    steep = smoothstep(sign * forearm[:, 1, 0], *_STEEP_ARM)
+    axis = np.cross(palm, down)
+    angle = np.arctan2(np.linalg.norm(axis, axis=-1), palm @ down)
+    bent = steep * (1 - smoothstep(height, *_LOW_HAND)) * angle
+    return _rotation(bent[:, None] * unit(axis)) @ forearm
 
 
 def _turn_leg(positions: Array, world: Array, side: str) -> None:

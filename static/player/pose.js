@@ -9,6 +9,8 @@ const MOST_ROLL = 0.6;
 const ARM_BEND = [0.2, 0.55]; // sines of a hinge's bend between which its axis begins to count and counts in full
 const LEG_BEND = [0.2, 0.5];
 const LOW_FOOT = [0.03, 0.1]; // metres
+const LOW_HAND = [0.07, 0.13];
+const STEEP_ARM = [0.25, 0.6]; // sines of a forearm's way down
 const UP = [0, 1, 0];
 
 export const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -92,6 +94,15 @@ function hingeTwist(first, second, hinge, span) {
   return angle * bendOf(first, second, span) * (1 - smoothStep(Math.abs(angle), 2.4, 3.0));
 }
 
+/** A hand in line with its forearm, or flat on the floor where it is put there. */
+function flatHand(height, forearm, sign) {
+  const palm = times(column(forearm, 1), -1);
+  const axis = cross(palm, [0, -1, 0]);
+  const steep = smoothStep(sign * forearm[3], ...STEEP_ARM);
+  const bent = steep * (1 - smoothStep(height, ...LOW_HAND)) * Math.atan2(norm(axis), -palm[1]);
+  return multiply(rotation(times(unit(axis), bent)), forearm);
+}
+
 /** `rest`: places of SMPL22's joints in the T-pose; `names` its joints. */
 export class Poser {
   constructor(names, rest) {
@@ -131,7 +142,8 @@ export class Poser {
       const upper = toward(shoulder, elbow);
       const turn = hingeTwist(upper, toward(elbow, wrist), apply(arm, [0, sign, 0]), ARM_BEND);
       world[at[shoulder]] = twisted(0.5 * turn, upper, arm);
-      world[at[elbow]] = world[at[wrist]] = follow(twisted(turn, upper, arm), elbow, wrist);
+      world[at[elbow]] = follow(twisted(turn, upper, arm), elbow, wrist);
+      world[at[wrist]] = flatHand(points[at[wrist]][1], world[at[elbow]], sign);
 
       const [hip, knee, ankle, foot] = ["hip", "knee", "ankle", "foot"].map((n) => `${side}_${n}`);
       const leg = follow(pelvis, hip, knee);

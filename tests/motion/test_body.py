@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from motion.body import FOLDER, bone_rotations, load_body, skin, vertex_normals
 from motion.clip import Clip
 from motion.errors import InputError
+from motion.hands import SHAPES
 from motion.kinematics import forward_kinematics, global_rotations
 from motion.looks import LOOKS, SIZES, size_of
 from motion.skeleton import SBU15, SMPL22
@@ -148,3 +149,32 @@ def test_no_skin_shows_through_the_clothes(name, small):
     covered = np.isin(lead, ["pelvis", "spine1", "spine2", "left_hip", "right_hip", *shins])
     bare = body.faces[body.face_zones == body.zones.index("skin")]
     assert not covered[bare].all(axis=1).any()
+
+
+def put_on_the_floor(height: float) -> np.ndarray:
+    """(2, 22, 3) somebody on both hands, which are straight under the shoulders; and the same a metre higher."""
+    pose = t_pose()[0]
+    for side in ("left", "right"):
+        shoulder, elbow, wrist = (J[f"{side}_{name}"] for name in ("shoulder", "elbow", "wrist"))
+        for joint, parent in ((elbow, shoulder), (wrist, elbow)):
+            pose[joint] = pose[parent] - [0.0, SMPL22.bone_lengths[joint], 0.0]
+    pose[:, 1] += height - pose[J["left_wrist"], 1]
+    return np.stack([pose, pose + np.array([0.0, 1.0, 0.0])])
+
+
+def test_a_hand_that_is_put_on_the_floor_lies_flat_and_one_in_the_air_goes_on_with_its_forearm():
+    poses = put_on_the_floor(0.055)
+    world = bone_rotations(poses)
+    for side in ("left", "right"):
+        palm = -world[:, J[f"{side}_wrist"], :, 1]
+        assert palm[0, 1] < -0.99, "the palm is down"
+        assert world[1, J[f"{side}_wrist"]] == pytest.approx(world[1, J[f"{side}_elbow"]])
+    body = load_body("man")
+    hands = np.isin(
+        body.bones[np.arange(len(body.bones)), body.weights.argmax(axis=1)],
+        [J["left_wrist"], J["right_wrist"]],
+    )
+    flat = np.broadcast_to(SHAPES["flat"], (2, 2, 20))
+    lowest = skin(body, poses, flat)[:, hands, 1].min(axis=1)
+    assert lowest[0] > -0.03, "no fingers in the floor"
+    assert lowest[1] < 1.0 - 0.08, "they hang down in the air"

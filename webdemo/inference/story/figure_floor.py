@@ -26,7 +26,7 @@ Array = NDArray[np.floating]
 
 _SIDES = (("left", 1.0), ("right", -1.0))
 _CLEAR = {
-    "foot": SOLE, "ankle": 0.07, "knee": 0.045, "hip": 0.1, "wrist": 0.04, "elbow": 0.045, "shoulder": 0.08,
+    "foot": SOLE, "ankle": 0.07, "knee": 0.045, "hip": 0.1, "wrist": 0.055, "elbow": 0.045, "shoulder": 0.08,
     "collar": 0.08, "pelvis": 0.11, "spine1": 0.11, "spine2": 0.12, "spine3": 0.12, "neck": 0.07, "head": 0.11,
 }  # fmt: skip
 """Metres from a joint to the skin below it, on which a body lies or stands."""
