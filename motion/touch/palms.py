@@ -50,11 +50,11 @@ def palms_met(pair: Array, free: Array | None = None) -> Array:
     way = unit((result[1, :, _SPINE] - result[0, :, _SPINE]) * _FLAT)
     for mine, theirs in itertools.product(ARMS, ARMS):
         aside = _aside(way, mine, theirs)
-        raised, shaken = (
+        against, clasped = (
             without_flicker(meets(result, mine, theirs), shortest)
-            for meets, shortest in ((_raised, _SHORTEST), (_shaken, _SHAKEN))
+            for meets, shortest in ((_raised, _SHORTEST), (shaken, _SHAKEN))
         )
-        for meets, line, palm in ((raised, way, PALM), (shaken, aside, GRIP)):
+        for meets, line, palm in ((against, way, PALM), (clasped, aside, GRIP)):
             share = eased_marks(meets, _EASE)
             share = share if free is None else share * free
             if share.any():
@@ -70,7 +70,7 @@ def _raised(pair: Array, mine: Arm, theirs: Arm) -> NDArray[np.bool_]:
     return np.asarray(near & raised[0] & raised[1])
 
 
-def _shaken(pair: Array, mine: Arm, theirs: Arm) -> NDArray[np.bool_]:
+def shaken(pair: Array, mine: Arm, theirs: Arm) -> NDArray[np.bool_]:
     """(T,) frames at which two wrists meet, not both above the chest, whose forearms point at each other."""
     near = np.linalg.norm(pair[0, :, mine[-1]] - pair[1, :, theirs[-1]], axis=-1) < _NEAR
     ahead = [_forearm(pair[i], arm) for i, arm in enumerate((mine, theirs))]

@@ -13,6 +13,7 @@ from motion.touch.arms import arms_apart
 from motion.touch.clasped import hands_clasped
 from motion.touch.embraces import embraced
 from motion.touch.palms import palms_met
+from motion.touch.upright import backs_straight
 from webdemo.inference.actor import FPS
 from webdemo.inference.plans import BeatFinish
 from webdemo.inference.story.gestures import Hand
@@ -80,7 +81,7 @@ def in_touch(scene: Array, free: Array, raised: Array, held: Array) -> Array:
         raised: (T,) likewise, where hands that are raised against each other meet.
         held: (T,) likewise, where hands are held.
     """
-    result = bodies_apart(embraced(scene, free), FPS, free)
+    result = backs_straight(bodies_apart(embraced(scene, free), FPS, free), raised)
     result = arms_apart(hands_clasped(result, held), np.stack([free, free]))
     return palms_met(result, raised)
 
