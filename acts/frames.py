@@ -204,6 +204,8 @@ class Frame:
             if element.family:
                 score += 0.4
             if isinstance(ref, Ref):
+                if element.slot == "b.part" and len(agents) == 2 and _is_own(ref):
+                    score -= _OWN
                 name = element.slot.partition(".")[2] or element.slot
                 if (
                     name not in bound or element.slot == "b.part"
@@ -272,6 +274,14 @@ class Frame:
             )
             return subject.who if with_other or (event.object and event.object.kind == "person") else None
         return subject.who
+
+
+_OWN = 2.5
+"""What it costs that "the arm" or "their arms" of two who do something should be the other's."""
+
+
+def _is_own(ref: Ref) -> bool:
+    return ref.who == "ab" or (ref.definite and not ref.who)
 
 
 def _beside(event: Event, used: list[int], taken: set[str], together: bool) -> float:

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 DENY = frozenset(("not", "n't", "never", "hardly", "barely", "no", "neither", "nor"))
 _LENGTHS = frozenset(("step", "pace", "metre", "meter", "yard"))
+_PATHS = frozenset(
+    ("circle", "lap", "loop", "line", "arc", "curve", "spiral", "semicircle", "diagonal", "zigzag")
+)
 _WAYS = frozenset(("way", "manner", "fashion", "mood", "style"))
 _RECEIVES = frozenset(("get", "receive", "take", "have"))
 _MODIFIERS = frozenset(
@@ -74,6 +77,10 @@ class Arguments:
                 self._modifier(child, event)
             elif child.dep_ in ("dobj", "obj") and self._is_measure(child, event):  # "walk a few steps"
                 self._measured(child, who, event)
+            elif self._is_path(child, event):  # "walks a circle around her"
+                event.prepositions.append(("in", self._argument(child, who, event)))
+                for phrase in (c for c in child.children if c.dep_ == "prep"):
+                    self._preposition(phrase, who, event)
             elif child.dep_ in ("dobj", "obj") or (
                 child.dep_ == "appos" and child.pos_ == "NOUN" and token.pos_ == "VERB"
             ):
@@ -139,6 +146,10 @@ class Arguments:
         lemma = noun.lemma_.lower()
         lasts = lemma in self._words.seconds and any(c.dep_ == "nummod" for c in noun.children)
         return (lemma in _LENGTHS or lasts) and event.lemma not in self._words.verbs["light"]
+
+    def _is_path(self, noun: Token, event: Event) -> bool:
+        goes = event.lemma in self._words.verbs["goes"]
+        return goes and noun.dep_ in ("dobj", "obj", "npadvmod") and noun.lemma_.lower() in _PATHS
 
     def _object(self, token: Token, who: str, event: Event) -> None:
         """Takes up an object; of two, as in "hands the knight his sword", the person is the receiver."""

@@ -54,7 +54,8 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
         "already": False,
         "times": event.times or last.times,
         "part_of": agents[0] if last.part_of in last.agents else last.part_of,
-        "side": event.side or (_MIRRORED.get(last.side or "") if event.lemma == "mirror" else last.side),
+        "side": event.side
+        or (_MIRRORED.get(last.side or "", last.side) if event.lemma == "mirror" else last.side),
     }
 
 

@@ -94,3 +94,22 @@ def test_a_text_is_read_alike_in_every_process() -> None:
         for seed in ("1", "2", "3")
     }  # fmt: skip
     assert len(found) == 1 and "talk" in found.pop()
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [
+        ("A walks a circle around B.", ["a walk-around b"]),
+        ("Both raise the right arm in unison.", ["ab raise-arm", "ab unison"]),
+        ("They lift their left leg in canon.", ["a raise-leg", "b raise-leg"]),
+        ("They touch palms.", ["ab push-palms"]),
+    ],
+)
+def test_paths_and_ones_own_limbs(text: str, acts: list[str]) -> None:
+    found = read(text)
+    assert [" ".join(filter(None, ("".join(a.agents), a.act, a.patient))) for a in found.acts] == acts
+
+
+def test_who_mirrors_both_arms_raises_both() -> None:
+    first, then = read("A raises both arms and B mirrors it.").acts
+    assert (first.side, then.side, then.agents) == ("both", "both", ("b",))

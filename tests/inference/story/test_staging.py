@@ -285,3 +285,8 @@ def test_two_who_sit_on_a_bench_sit_on_one() -> None:
     assert bench is not None and bench.gap() < 0.8 and np.ptp(bench.headings) == 0
     chairs = told("They sit down on chairs.").placed
     assert chairs is None or np.ptp(chairs.headings) > 3
+
+
+@pytest.mark.parametrize(("words", "turns"), [("A turns around.", 0.5), ("A turns around twice.", 2.0)])
+def test_who_turns_more_than_once_turns_all_the_way_round(words: str, turns: float) -> None:
+    assert [move.turns for move in told(words).moves if move.person == "a"] == [turns]

@@ -161,7 +161,8 @@ class _Stage:
             case shapes.Turn(way="to") if len(people) == 2 and self._is_going(act):
                 pass  # they circle each other face to face
             case shapes.Turn():
-                late, turns = self._late(act), float(act.times or 1) * shape.turns
+                late, times = self._late(act), act.times or 1
+                turns = times * (shape.turns if times == 1 else max(shape.turns, 1.0))  # "turns around twice"
                 faces = shape.way == "around" and shape.turns < 1 and act.patient and not act.part
                 way = Way.FACE if faces else _TURNS[shape.way]
                 self.moves += [Move(who, way, turns=turns, late=late) for who in people]
