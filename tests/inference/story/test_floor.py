@@ -13,6 +13,7 @@ from webdemo.inference.story.floor import (
     ACROSS,
     BEHIND,
     CLOSE,
+    EVERY,
     FARTHEST,
     LINKED,
     Standing,
@@ -48,6 +49,23 @@ def test_those_who_walk_up_to_each_other_end_close() -> None:
     assert gaps(found)[0] > 1.7 and abs(gaps(found)[-1] - CLOSE) < 0.05
     _, found = ways("Person B walks up to person A.")
     assert np.ptp(found[0].places, axis=0).max() == 0 and abs(gaps(found)[-1] - CLOSE) < 0.05
+
+
+@pytest.mark.parametrize(
+    ("words", "near"),
+    [
+        ("They walk up to each other and shake hands.", 0.75),
+        ("They run towards each other and hug.", 0.4),
+        ("They walk up to each other.", CLOSE),
+    ],
+)
+def test_those_who_meet_stay_as_near_as_what_they_do_then_needs(words: str, near: float) -> None:
+    _, found = ways(words, 5.0)
+    for way in found.values():
+        arrived = np.linalg.norm(way.places - way.places[-1], axis=1) < 0.01
+        assert way.frames[-1] == 149 and np.diff(np.asarray(way.frames)[arrived]).max() <= EVERY
+        assert np.asarray(way.frames)[arrived][0] < 110, "they are given where they met until the end"
+    assert abs(gaps(found)[-1] - near) < 0.05
 
 
 def test_those_who_part_turn_and_get_away_but_not_out_of_sight() -> None:

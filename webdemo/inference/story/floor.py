@@ -220,7 +220,7 @@ def _to(move: Move, track: Track, gap: float, to: Array, seconds: float, *, both
     way = (gap - near) / (2 if both else 1)
     if way > (0.05 if move.near else 0.25):
         track.walk(np.stack([track.place, track.place + way * to]), _time(way, move.speed, seconds))
-    if last and (move.near or not both):
+    if last:
         track.stay(facing=bool(move.near))
 
 

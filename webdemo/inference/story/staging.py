@@ -140,7 +140,7 @@ class _Stage:
                 )
             ),
             keeps_place=self.setting.backs or self.setting.beside,
-            reaching={who: e.near for act, e in self.done if is_near(act, e) for who in act.agents},
+            reaching=self._reaching(),
             alone=away(of_each(self.acts, self.known), moves),
         )  # fmt: skip
 
@@ -376,6 +376,11 @@ class _Stage:
             own = next((m for m in self.moves if m.person == other and m.way in _DODGES), None)
             return struck_moves(struck, own, down=other in self.changes)
         told = [replace(move, linked=move.linked or self.linked) for move in fastest(self.moves)]
+        if {move.person for move in told if move.way is Way.TO} == {
+            "a",
+            "b",
+        }:  # they meet for what they do then
+            told = [replace(m, near=m.near or self._reaching().get(m.person, 0.0)) for m in told]
         going = {move.person for move in told} | low
         told += [Move(who, Way.THING) for who in sorted(self.faces - going)]
         made = finished(told, until=any(move.until for move in self.moves))
@@ -387,6 +392,10 @@ class _Stage:
             if all(move.person != who for move in made) and who not in low and not backs:
                 made.append(Move(who, Way.STAY))
         return tuple(move for move in made if move.way is not Way.STAY or move.person not in low)
+
+    def _reaching(self) -> dict[str, float]:
+        """The metres between the two for what each does within the other's reach."""
+        return {who: e.near for act, e in self.done if is_near(act, e) for who in act.agents}
 
     def _leads_by_both_hands(self, move: Move) -> bool:
         return move.backwards and move.way is Way.AWAY and move.person not in self.gestures
