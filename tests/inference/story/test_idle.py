@@ -88,6 +88,7 @@ def test_a_bystander_stands_on_the_floor_and_sways() -> None:
         ("Person A waves while person B stands still.", "b"),
         ("Person A walks to person B and waves.", "b"),
         ("They walk hand in hand.", ""),
+        ("Person A walks to the door.", "a"),
         ("Person A sneaks away.", ""),
         ("Person A hugs person B.", ""),
         ("Person A carries a box to person B.", ""),

@@ -6,6 +6,7 @@ from acts import shapes
 from acts.lexicon import Entry
 from acts.plan import Act
 from acts.reading.vocabulary import vocabulary
+from acts.things import is_fixture
 
 from .contacts import LOW, Region
 
@@ -58,9 +59,10 @@ def is_gentle(act: Act) -> bool:
 
 
 def leaves_hands(act: Act, entry: Entry) -> bool:
-    """True for an act of the whole body, without a thing, that leaves the hands free."""
-    bodily = entry.group in _BODILY and act.act not in _OWN_ARMS and act.thing is None and act.part is None
-    return bodily and bool(entry.stage) and all(shape.do in _HANDS_FREE for shape in entry.stage)
+    """True for an act of the whole body, with nothing in the hands, that leaves them free."""
+    bodily = entry.group in _BODILY and act.act not in _OWN_ARMS and act.part is None
+    free = act.thing is None or is_fixture(act.thing)
+    return bodily and free and bool(entry.stage) and all(shape.do in _HANDS_FREE for shape in entry.stage)
 
 
 def walks(entry: Entry) -> bool:
