@@ -147,6 +147,12 @@ class Gesture(_Shape):
         "knocks",
         "paints",
         "brushes",
+        "hammers",
+        "eats",
+        "combs",
+        "writes",
+        "beats",
+        "bends",
         "carries",
     ]
     sides: Literal["left", "right", "both"] = "right"
@@ -244,6 +250,8 @@ class Limb(_Shape):
         "rolls head",
         "nods",
         "shakes",
+        "shakes head",
+        "turns head",
         "shrugs",
         "marches",
     ]
@@ -259,6 +267,8 @@ class Figure(_Shape):
         times: how often its middle is done where the words give no number; 0 for as long as there is time.
         mirrored: left and right are exchanged.
         meets: it is done to the other, who stands within its reach: the two do not move apart for it.
+        late, early: seconds after which it begins, of a person who follows the other, and before the end of the beat
+            that it ends, of the one who is followed.
     """
 
     do: Literal["figure"] = "figure"
@@ -285,6 +295,16 @@ class Figure(_Shape):
         "leapfrog",
         "shoots",
         "stops-ball",
+        "rests-on-knees",
+        "lifts-weights",
+        "skips-rope",
+        "hops",
+        "shoots-bow",
+        "slashes",
+        "chops",
+        "swings-club",
+        "smashes",
+        "rolls",
         "pirouette",
         "warms-up",
         "phrase",
@@ -292,6 +312,8 @@ class Figure(_Shape):
     times: Annotated[int, Field(ge=0, le=20)] = 0
     mirrored: bool = False
     meets: bool = False
+    late: Annotated[float, Field(ge=0, le=3)] = 0.0
+    early: Annotated[float, Field(ge=0, le=3)] = 0.0
 
 
 class Words(_Shape):

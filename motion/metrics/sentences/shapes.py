@@ -311,7 +311,7 @@ def alike(m: Motion, mirrored: bool = False, lag: float = 0.0, least: float = 0.
     energies = over(first**2), over(second**2)
     cos = over(first * second) / np.sqrt(np.maximum(energies[0] * energies[1], 1e-12))
     mask = (cos > least) & (np.minimum(*energies) > 0.15)
-    mask[:shift] = False
+    mask[: max(shift, 0)] = False
     mask[m.frames + min(shift, 0) :] = False
     return keep(mask, m.fps, lambda i, j: j - i >= 0.5 * m.fps, pause=0.1)
 

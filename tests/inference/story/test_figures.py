@@ -17,7 +17,7 @@ from webdemo.inference.story.poses import upright
 J = {name: i for i, name in enumerate(SMPL22.joint_names)}
 FEET, HANDS = [J["left_foot"], J["right_foot"]], [J["left_wrist"], J["right_wrist"]]
 LENGTHS = (1.0, 2.3, 6.0)
-IN_THE_AIR = ("jumping-jacks", "leapfrog", "shoots")
+IN_THE_AIR = ("jumping-jacks", "leapfrog", "shoots", "skips-rope", "hops", "smashes")
 
 
 def made(name: str, seconds: float = 6.0, **more: object) -> NDArray[np.floating]:

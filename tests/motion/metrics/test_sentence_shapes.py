@@ -177,7 +177,7 @@ def test_it_holds_for_those_who_do_it_and_not_for_those_who_stand(name: str) -> 
         ("higher", "b"),
         ("copies", "a"),
         ("alike", "mirrored=True"),
-        ("alike", "lag=-0.6"),
+        ("alike", "lag=-0.8"),
         ("wide_stance", "b"),
         ("off_floor", "b"),
         ("at_others_start", "b"),
@@ -194,6 +194,11 @@ def test_a_mirror_and_a_lag_are_told_from_unison() -> None:
     assert check("happens(alike(mirrored=True), 1.0)", mirrored) and not check("happens(alike())", mirrored)
     assert check("happens(alike(lag=0.5), 1.0)", late)
     assert not check("happens(alike(lag=90.0))", late)
+
+
+def test_either_may_copy_the_other() -> None:
+    ahead = duet(swing(0, "left", 0.8), swing(1, "left"))
+    assert check("happens(copies(a))", ahead) and not check("happens(copies(b))", ahead)
 
 
 def test_left_and_right_are_the_leaning_persons_own() -> None:

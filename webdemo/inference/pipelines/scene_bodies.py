@@ -50,14 +50,18 @@ def given_bow(person: int, told: Told, beat: Stretch, seed: int) -> list[Part]:
     return [beat.given(person, frames, poses, all_but(()))]
 
 
-def given_limbs(limbs: Sequence[Limb], person: int, beat: Stretch) -> list[Part]:
-    """The body, without the arms, of a person who moves single limbs, as far as it falls into a window."""
+def given_limbs(limbs: Sequence[Limb], person: int, told: Told, beat: Stretch) -> list[Part]:
+    """The body of a person who moves single limbs, as far as it falls into a window.
+
+    Their arms hang, unless their hands have something else to do: a network that is free there crosses them.
+    """
     frames = beat.shown(np.arange(SETTLES // 2 if beat.start else 0, beat.frames, LIMBED))
     if not len(frames):
         return []
     angle, seconds = float(beat.stand.headings[person]), beat.frames / FPS
     poses = limbed(limbs, halted(person, beat), angle, frames / FPS, seconds)
-    free = () if any(limb.does in WITH_ARMS for limb in limbs) else HANDS
+    busy = "ab"[person] in told.gestures or told.contact is not None
+    free = HANDS if busy and not any(limb.does in WITH_ARMS for limb in limbs) else ()
     return [replace(beat.given(person, frames, poses, all_but(free)), kept=True)]
 
 

@@ -9,6 +9,7 @@ from acts.reading.vocabulary import vocabulary
 from acts.things import is_fixture
 
 from .contacts import LOW, Region
+from .figures import Figure
 
 _NEAR = frozenset(("touch", "fight", "dance", "care"))
 """Groups of the lexicon whose acts two people do within each other's reach."""
@@ -104,3 +105,9 @@ def region_of(act: Act, shape: shapes.Touch) -> Region | None:
 def reaches_low(act: Act, entry: Entry) -> bool:
     """True for an act that touches the other's legs or feet."""
     return any(isinstance(shape, shapes.Touch) and region_of(act, shape) in LOW for shape in entry.stage)
+
+
+def figure_of(act: Act, shape: shapes.Figure) -> Figure:
+    """The figure of an act: as often as its words say, and with the other leg where they name the left one."""
+    mirrored = shape.mirrored ^ (act.side == "left")
+    return Figure(shape.figure, act.times or shape.times, mirrored, shape.meets, shape.late, shape.early)

@@ -49,6 +49,7 @@ _POLES = {
     Hand.EARS: (0.9, -1.0, 0.2), Hand.EYES: (0.7, -1.0, 0.1), Hand.PHOTO: (0.7, -1.0, 0.1),
     Hand.PHONE: (0.6, -1.0, 0.3), Hand.WAVES: (0.5, -1.0, 0.0), Hand.CROSSED: (0.6, -1.0, 0.0),
     Hand.CONDUCTS: (0.9, -0.8, 0.0), Hand.BRUSHES: (0.8, -0.8, 0.0), Hand.DRUMS: (0.7, -1.0, -0.2),
+    Hand.COMBS: (1.0, -0.4, 0.2), Hand.BEATS: (1.0, -0.5, 0.0), Hand.BENDS: (0.3, -1.0, 0.1),
     Hand.PRAYS: (0.7, -1.0, -0.1), Hand.OFFERS: (0.25, -1.0, -0.2), Hand.CHEST: (0.6, -1.0, -0.1),
 }  # fmt: skip
 

@@ -73,12 +73,15 @@ class Figure:
         times: how often its middle is done; 0 for as long as the beat lasts.
         mirrored: left and right are exchanged.
         meets: it is done to the other, who stands within its reach: the two do not move apart for it.
+        late, early: seconds by which it begins later, and by which it ends before the beat does.
     """
 
     name: str
     times: int = 0
     mirrored: bool = False
     meets: bool = False
+    late: float = 0.0
+    early: float = 0.0
 
 
 @lru_cache(maxsize=1)
@@ -104,7 +107,10 @@ def figured(figure: Figure, place: Array, angle: float, frames: int) -> Array:
     Returns:
         (frames, 22, 3) metres; the body is on the floor, and what stands on it does not glide.
     """
-    times, rows = _scheduled(figures()[figure.name], figure.times, frames / FPS)
+    length = frames / FPS
+    late, early = (min(seconds, length / 4) for seconds in (figure.late, figure.early))
+    times, rows = _scheduled(figures()[figure.name], figure.times, length - late - early)
+    times[1:] += late
     if figure.mirrored:
         rows = _mirrored(rows)
     at = np.arange(frames) / FPS

@@ -66,6 +66,12 @@ class Hand(Enum):
     PAINTS = "paints a wall"
     BRUSHES = "goes to and fro before the mouth"
     CARRIES = "carries something before the body"
+    HAMMERS = "hammers"
+    EATS = "brings food to the mouth"
+    COMBS = "combs the hair"
+    WRITES = "writes"
+    BEATS = "beats the chest"
+    BENDS = "is bent at the elbow"
 
 
 @dataclass(frozen=True)

@@ -253,6 +253,19 @@ def _nodding(limb: Limb, held: Array, since: Array) -> Turns:
     return {joint: about(0, 0.28 * pulse) for joint in ("neck", "head")}
 
 
+def _shaken_head(limb: Limb, held: Array, since: Array) -> Turns:
+    """A head that says no."""
+    swing = _swing(since, held, limb.times, 0.7)
+    return {joint: heading_matrix(0.22 * swing) for joint in ("neck", "head")}
+
+
+def _turned_head(limb: Limb, held: Array, since: Array) -> Turns:
+    """A head that turns to the side that is named, or else to one and the other."""
+    named = limb.direction in ("left", "right")
+    turned = _aside(limb) * held if named else _swing(since, held, limb.times, 2.4)
+    return {joint: heading_matrix(0.42 * turned) for joint in ("neck", "head")}
+
+
 def _shaking(limb: Limb, held: Array, since: Array) -> Turns:
     """A trunk that shakes, as of somebody who laughs or shivers."""
     quick = _swing(since, held, limb.times, 0.45)
@@ -300,6 +313,8 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "rolls head": _rolled_head,
     "nods": _nodding,
     "shakes": _shaking,
+    "shakes head": _shaken_head,
+    "turns head": _turned_head,
     "shrugs": _shrugging,
     "marches": _marching,
 }

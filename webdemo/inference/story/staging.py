@@ -17,6 +17,7 @@ from acts.plan import FROM_BEHIND, Act, beats, other_of
 from acts.things import is_fixture, kind_of
 
 from .act_kinds import (
+    figure_of,
     is_after,
     is_attempt,
     is_care,
@@ -177,9 +178,7 @@ class _Stage:
                 limb = Limb(shape.does, side, direction, act.times or 0)
                 self.limbs |= {who: (*self.limbs.get(who, ()), limb) for who in people}
             case shapes.Figure():
-                mirrored = shape.mirrored ^ (act.side == "left")
-                told = Figure(shape.figure, act.times or shape.times, mirrored, shape.meets)
-                self.figures |= dict.fromkeys(people, told)
+                self.figures |= dict.fromkeys(people, figure_of(act, shape))
             case shapes.Jump():
                 times = act.times or (max(shape.times, _JUMPS) if act.already else shape.times)
                 self.leaps |= dict.fromkeys(people, min(times, 5))

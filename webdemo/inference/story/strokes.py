@@ -55,6 +55,12 @@ STROKES: Mapping[str, Stroke] = {
     "knocks": Stroke((0.1, 0.46, 0.4), by=(0.0, 0.01, 0.045), rate=2.4),
     "paints": Stroke((0.12, 0.46, 0.4), by=(0.0, 0.2, 0.0), around=(0.05, 0.0, 0.0), rate=0.7),
     "brushes": Stroke((0.08, 0.49, 0.2), by=(0.045, 0.0, 0.0), rate=2.2),
+    "hammers": Stroke((0.13, 0.28, 0.32), by=(0.0, 0.14, -0.03), rate=1.3),
+    "eats": Stroke((0.085, 0.31, 0.24), by=(0.01, -0.15, 0.06), rate=0.5),
+    "combs": Stroke((0.14, 0.6, 0.02), by=(0.0, 0.06, -0.05), rate=0.8),
+    "writes": Stroke((0.06, 0.2, 0.34), by=(0.05, 0.0, 0.01), around=(0.0, 0.012, 0.0), rate=0.9),
+    "beats": Stroke((0.06, 0.37, 0.22), by=(0.0, 0.0, 0.07), rate=1.8, in_turn=True),
+    "bends": Stroke((0.2, 0.42, 0.2)),
     "carries": Stroke((0.15, 0.14, 0.3)),
 }
 """By the names of gestures in the lexicon."""
