@@ -210,10 +210,10 @@ class Lift(_Shape):
 
 
 class Strike(_Shape):
-    """Blows or throws at the distance they need: with fists, weapons or rackets, or something thrown."""
+    """Blows or throws at the distance they need: with fists, flat hands, weapons or rackets, or something thrown."""
 
     do: Literal["strike"] = "strike"
-    bout: Literal["fists", "weapons", "rackets", "throws"]
+    bout: Literal["fists", "slaps", "weapons", "rackets", "throws"]
     goes_on: bool = False
 
 

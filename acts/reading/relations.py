@@ -129,7 +129,9 @@ def _upright_again(first: Act, then: Act, known: Lexicon) -> Act:
 def _answers_blow(first: Act, then: Act, known: Lexicon) -> bool:
     """True where somebody ducks under a blow or blocks it, which is staged with the blow."""
     shapes = known.entries[first.act].stage
-    strikes = any(isinstance(shape, Strike) and shape.bout in ("fists", "weapons") for shape in shapes)
+    strikes = any(
+        isinstance(shape, Strike) and shape.bout in ("fists", "slaps", "weapons") for shape in shapes
+    )
     return strikes and known.entries[then.act].answers and first.agents != then.agents
 
 

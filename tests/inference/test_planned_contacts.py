@@ -226,6 +226,15 @@ def test_two_who_fight_both_strike_and_reach_each_other(engine: Engine) -> None:
         )
 
 
+def test_who_is_slapped_is_hit_on_the_cheek_and_does_not_guard_before(engine: Engine) -> None:
+    found = made(engine, "Person A slaps person B.")
+    gap = nearest(found, 0, ["right_wrist"], ["head"])
+    hit = int(gap[25:60].argmin()) + 25
+    assert gap[hit] < 0.22
+    hands = found[1, :hit, [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")], 1]
+    assert (hands < found[1, :hit, SMPL22.index("spine2"), 1]).all(), "they hang"
+
+
 def test_a_punch_goes_over_who_ducks_and_is_returned(engine: Engine) -> None:
     found = made(engine, "Person A throws a punch, person B ducks under it and punches back.")
     fast = [speed_of_hands(found, person).max(axis=0)[15:] for person in (0, 1)]

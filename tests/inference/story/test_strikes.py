@@ -29,8 +29,8 @@ HEAD = SMPL22.index("head")
         ("Person B catches keys thrown by person A.", Bout.THROWS, "a", False),
         ("Person B punches person A.", Bout.FISTS, "b", False),
         ("She hits back.", Bout.FISTS, "a", False),
-        ("He slaps her in the face.", Bout.FISTS, "a", False),
-        ("He slaps her in the face twice.", Bout.FISTS, "aa", False),
+        ("He slaps her in the face.", Bout.SLAPS, "a", False),
+        ("He slaps her in the face twice.", Bout.SLAPS, "aa", False),
     ],
 )
 def test_blows_are_read(words: str, bout: Bout, turns: str, goes_on: bool) -> None:
@@ -96,16 +96,27 @@ def test_one_blow_is_struck_once_when_the_two_are_near() -> None:
 def test_a_fist_shoots_out_to_the_head_and_not_into_it(side: str) -> None:
     frames, found = poses(Bout.FISTS, side, HERE, THERE)
     wrist = found[:, SMPL22.index(f"{side}_wrist")]
-    head = np.array([0.0, ready(HERE, THERE)[HEAD, 1], Bout.FISTS.value - 0.1])
+    ahead = ready(HERE, THERE)[HEAD]
+    head = np.array([0.0, ahead[1], Bout.FISTS.value - ahead[2]])
     away = np.linalg.norm(wrist - head, axis=-1)
     landed = frames.index(-1)
-    assert 0.1 < away[landed] < 0.3 < away[0]
+    assert 0.08 < away[landed] < 0.2 < 0.3 < away[0]
     assert np.linalg.norm(wrist[landed] - wrist[0]) / (frames[landed] - frames[0]) * 30 > 2.5  # m/s
     other = "left" if side == "right" else "right"
     assert (
         found[landed, SMPL22.index(f"{side}_shoulder"), 2]
         > found[landed, SMPL22.index(f"{other}_shoulder"), 2]
     )
+
+
+def test_a_slap_comes_from_the_side_and_lands_on_the_cheek() -> None:
+    there = np.array([0.0, Bout.SLAPS.value])
+    frames, found = poses(Bout.SLAPS, "right", HERE, there)
+    drawn, landed = (found[i, SMPL22.index("right_wrist")] for i in (0, frames.index(-1)))
+    head = ready(HERE, there)[HEAD]
+    beside = landed - [0.0, head[1], Bout.SLAPS.value - head[2]]
+    assert drawn[0] < -0.35 < -0.2 < beside[0] < -0.06, "on the right of the one who slaps"
+    assert np.linalg.norm(beside) < 0.16
 
 
 @pytest.mark.parametrize("bout", [Bout.WEAPONS, Bout.RACKETS, Bout.THROWS])

@@ -11,8 +11,8 @@ from motion import SMPL22
 from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
 from webdemo.inference.story.gestures import SIDES
-from webdemo.inference.story.poses import HANDS, TRUNK, standing
-from webdemo.inference.story.strikes import FIRST, Bout, Strike, blows, catching, poses, ready
+from webdemo.inference.story.poses import HANDS, TRUNK, standing, upright
+from webdemo.inference.story.strikes import FIRST, Blow, Bout, Strike, blows, catching, poses, ready
 from webdemo.inference.story.told import Told
 
 from .scene_postures import DUCKING
@@ -23,6 +23,8 @@ _Given = tuple[int, tuple[str, ...], tuple[tuple[int, ...], Array]]
 """A person, their hands, and frames with the poses at them."""
 LATE = 0.5
 """Share of a beat after which a blow comes that something else goes on until."""
+WAITS = 18
+"""Frames before somebody makes ready for a single blow: that is when the network has the other answer it."""
 _NEARLY = 0.15
 """Metres from the distance of a blow at which it is struck."""
 RESTS, EVERY = 20, 8
@@ -46,7 +48,8 @@ def given_blows(struck: Strike, told: Told, stretch: Stretch) -> list[KnownFrame
             if stretch.shows(0):
                 given[(person, SIDES)] = {0: pose}
     after: dict[int, int] = {}
-    for blow in blows(struck, stretch.frames, first=first):
+    listed = blows(struck, stretch.frames, first=first)
+    for blow in listed:
         places = [course.places[blow.frame] for course in courses]
         own, other = places[blow.person], places[1 - blow.person]
         made: list[_Given] = [(blow.person, (blow.side,), poses(struck.bout, blow.side, own, other))]
@@ -65,7 +68,7 @@ def given_blows(struck: Strike, told: Told, stretch: Stretch) -> list[KnownFrame
             [*TRUNK, *(SMPL22.index(f"{side}_wrist") for side in sides)],
         )
         for (person, sides), known in given.items()
-    ] + _rests(struck, after, courses, stretch)
+    ] + [*_rests(struck, after, courses, stretch), *_unwarned(struck, told, listed, stretch)]
 
 
 def _rests(
@@ -97,12 +100,38 @@ def _rests(
     return found
 
 
+def _is_single(struck: Strike) -> bool:
+    """True for blows of one person with the hand, who does not go on."""
+    by_hand = struck.bout in (Bout.FISTS, Bout.SLAPS)
+    return by_hand and not struck.goes_on and len(set(struck.turns)) == 1
+
+
+def _unwarned(struck: Strike, told: Told, listed: Sequence[Blow], stretch: Stretch) -> list[KnownFrames]:
+    """The arms of a person who is hit, which hang up to the blow: the network raises them to a guard before it.
+
+    Who is slapped keeps them down, and reaches for the other's hand no more.
+    """
+    if not _is_single(struck) or not listed:
+        return []
+    person = 1 - listed[-1].person
+    if "ab"[person] in {*told.gestures, *told.changes, *told.limbs}:
+        return []
+    stop = stretch.frames if struck.bout is Bout.SLAPS else listed[-1].frame + 1
+    frames = stretch.shown(np.arange(RESTS if stretch.start else 0, stop, EVERY))
+    if not len(frames):
+        return []
+    course = stretch.course(person)
+    poses = np.stack([upright(course.places[t], float(course.headings[t])) for t in frames])
+    return [stretch.given(person, frames, poses - poses[:, :1], HANDS)]
+
+
 def _first(struck: Strike, told: Told, courses: Sequence[Course]) -> int:
     """The frame of the beat at which the two are near, or so long before the first blow that it meets its answer."""
     apart, frames = np.linalg.norm(courses[0].places - courses[1].places, axis=1), len(courses[0].places)
     there = np.flatnonzero(np.abs(apart - struck.bout.value) < _NEARLY)
     near = int(there[0]) if len(there) else 0
     if not struck.answered:
+        near = max(near, WAITS) if _is_single(struck) and frames > 4 * WAITS else near
         return max(near, round(LATE * frames)) if struck.late else near
     change = next(iter(told.changes.get("b" if struck.turns[0] == "a" else "a", ())), None)
     at = round((0.35 if change is None else change.after) * frames)

@@ -16,7 +16,7 @@ from .lifts import Carry, Lift
 from .moves import Move
 from .poses import grounded, seated, upright
 from .postures import Posture
-from .strikes import Bout, Strike
+from .strikes import Strike
 from .ways import Way
 
 BACKS = 0.34
@@ -119,7 +119,7 @@ def standing(setting: Setting) -> Standing | None:
         return Standing(places, np.zeros(2))
     struck = setting.strike
     if setting.twirls or (struck and struck.answered) or setting.apart:
-        apart = TWIRL if setting.twirls else Bout.FISTS.value if struck else setting.apart
+        apart = TWIRL if setting.twirls else struck.bout.value if struck else setting.apart
         return Standing(np.array([[0.0, 0.0], [0.0, apart]]), np.array([0.0, math.pi]))
     return None
 

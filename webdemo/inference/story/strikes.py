@@ -25,6 +25,7 @@ class Bout(Enum):
     """Kinds of blows and throws, and the metres between the pelvises of the two."""
 
     FISTS = 0.75
+    SLAPS = 0.65
     WEAPONS = 1.3
     RACKETS = 3.0
     THROWS = 2.2
@@ -66,12 +67,13 @@ FIRST = 20
 """Frames before the first blow."""
 _DRAWN = 5
 """Frames before a blow in which the arm is drawn back."""
-PERIODS = {Bout.FISTS: 22, Bout.WEAPONS: 26, Bout.RACKETS: 36, Bout.THROWS: 48}
+PERIODS = {Bout.FISTS: 22, Bout.SLAPS: 24, Bout.WEAPONS: 26, Bout.RACKETS: 36, Bout.THROWS: 48}
 """Frames from one blow to the next."""
 _FLIGHT = 16
 """Frames for which what was thrown is in the air."""
 _REACHES = {
     Bout.FISTS: ((0.14, 0.4, 0.14), None),
+    Bout.SLAPS: ((0.5, 0.5, 0.08), None),
     Bout.WEAPONS: ((0.12, 0.78, 0.02), (0.02, 0.4, 0.5)),
     Bout.RACKETS: ((0.45, 0.3, -0.1), (-0.05, 0.4, 0.45)),
     Bout.THROWS: ((0.22, 0.68, -0.12), (0.05, 0.5, 0.48)),
@@ -89,6 +91,8 @@ _ARM = 0.5
 """Metres from the shoulder to the wrist of an arm that strikes."""
 _FIST = 0.1
 """Metres from the wrist to what its fist hits."""
+_CHEEK = np.array([0.11, 0.0, 0.05])
+"""Metres from the other's head to the left wrist of a flat hand on the cheek: aside, up, and back to the shoulder."""
 
 
 def turning(bout: Bout) -> float:
@@ -136,10 +140,14 @@ def poses(bout: Bout, side: str, place: Array, other: Array) -> tuple[tuple[int,
     drawn[wrist] = drawn[0] + turn @ (np.array(back) * [sign, 1.0, 1.0])
     landed = bending(place, angle - sign * _TWIST, _LEAN)
     if ahead is None:
-        head = bending(np.asarray(other), angle + np.pi, _LEAN)[SMPL22.index("head")]
+        pose = bending(np.asarray(other), angle + np.pi, _LEAN)
+        head = pose[SMPL22.index("head")] + landed[0] - pose[0] + np.array([line[0], 0.0, line[1]])
+        if bout is Bout.SLAPS:
+            head = head + turn @ (_CHEEK * [sign, 1.0, -1.0])
         shoulder = landed[SMPL22.index(f"{side}_shoulder")]
         length = float(np.linalg.norm(head - shoulder))
-        landed[wrist] = shoulder + (head - shoulder) * min(_ARM, length - _FIST) / length
+        near = 0.0 if bout is Bout.SLAPS else _FIST
+        landed[wrist] = shoulder + (head - shoulder) * min(_ARM, length - near) / length
     else:
         landed[wrist] = landed[0] + turn @ (np.array(ahead) * [sign, 1.0, 1.0])
     after = drawn if ahead is None else ready(place, other)
