@@ -332,7 +332,7 @@ class _Planner:
             patient=patient or None, thing=match.thing or self._named(event, name),  # type: ignore[arg-type]
             part=part.lemma if part is not None else None, part_of=owner,  # type: ignore[arg-type]
             polarity="not" if event.denied else "done", modality=event.modality,  # type: ignore[arg-type]
-            already=self._goes_on(event, match.agents), seconds=event.seconds,
+            already=self._goes_on(event, match.agents) and not self._known.entries[name].moment, seconds=event.seconds,
             side=side if side in ("left", "right", "both") else None,  # type: ignore[arg-type]
             times=event.times, manner=tuple(event.adverbs[:8]), speed=min(max(speed, 0.2), 3.0),
             direction=event.direction, distance=event.distance, words=self._span(number),

@@ -145,6 +145,8 @@ def coordinated(first: Act, then: Act, known: Lexicon, *, repeats: bool) -> str:
     answers = known.entries[then.act].answers or then.thing == "it" or same
     if answers and first.agents != then.agents:
         return "after"
+    if first.patient in then.agents and _leaves(then, known):
+        return "after"  # "A slaps B and B runs away"
     if not _people_of(first) & _people_of(then):
         return "with"
     tugs = first.patient in then.agents and {s.do for s in known.entries[then.act].stage} <= BESIDE
@@ -153,6 +155,10 @@ def coordinated(first: Act, then: Act, known: Lexicon, *, repeats: bool) -> str:
     if first.agents == then.agents and (_accompanies(first, then, known) or _linked(first, then, known)):
         return "with"
     return "after"
+
+
+def _leaves(act: Act, known: Lexicon) -> bool:
+    return any(isinstance(shape, Go) and shape.way == "away" for shape in known.entries[act.act].stage)
 
 
 def _linked(first: Act, then: Act, known: Lexicon) -> bool:

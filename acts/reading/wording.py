@@ -120,8 +120,23 @@ class _Preparation:
         while i < len(self._tokens):
             if verb := self._ellipsis.before(i):
                 self._supply(verb, i)
+            if self._named_again(i):
+                self._pieces.append((",", self._tokens[i][1], self._tokens[i][1]))
             i += self._phrase(i) or self._pair(i) or self._single(i)
         return Text(self._text, self._pieces)
+
+    def _named_again(self, i: int) -> bool:
+        """True for the "and" of "A hits B and B cries": nobody stands beside themselves, so a clause begins there."""
+        last = self._lower(i - 1)
+        if self._lower(i) != "and" or not (i - 1 in self._letters or self._words.is_person(last)):
+            return False
+        known = self._lower(i + 1) in (
+            "the",
+            "this",
+            "that",
+            *_LETTER_BEFORE,
+        )  # "a woman and a woman" are two
+        return last == self._lower(i + 1 + known)
 
     def _supply(self, verb: str, i: int) -> None:
         """Puts a verb that the text leaves out before a token; what it joins by a comma becomes a clause."""

@@ -113,3 +113,22 @@ def test_paths_and_ones_own_limbs(text: str, acts: list[str]) -> None:
 def test_who_mirrors_both_arms_raises_both() -> None:
     first, then = read("A raises both arms and B mirrors it.").acts
     assert (first.side, then.side, then.agents) == ("both", "both", ("b",))
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [
+        ("A slaps B and B runs away.", ["a slap b", "b run-away a"]),
+        ("The man hits the woman and the woman cries.", ["a punch b", "b cry"]),
+        ("A catches B as she faints.", ["a catch-person b", "b fall-down"]),
+    ],
+)
+def test_what_follows_on_a_touch(text: str, acts: list[str]) -> None:
+    found = read(text).acts
+    assert [" ".join(filter(None, ("".join(a.agents), a.act, a.patient))) for a in found] == acts
+    assert [relation.kind for relation in found[1].order] == ["while" if " as " in text else "after"]
+    assert not found[1].already
+
+
+def test_a_woman_and_a_woman_are_two() -> None:
+    assert [act.agents for act in read("A woman and a woman dance.").acts] == [("a", "b")]

@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from acts import read
 from motion import SMPL22
 from tests.inference.story.staged_words import beginning, moves, strike
+from webdemo.inference.story.scripting import beats_of
+from webdemo.inference.story.staging import staged
 from webdemo.inference.story.strikes import Bout, Strike, blows, catching, poses, ready
 from webdemo.inference.story.ways import Way
 
@@ -158,3 +161,10 @@ def test_a_person_who_stands_behind_begins_behind() -> None:
 def test_two_who_circle_face_to_face_keep_circling() -> None:
     ways = {move.way for move in moves("They circle each other without losing eye contact.")}
     assert ways == {Way.ROUND}
+
+
+@pytest.mark.parametrize("words", ["A punches B and B falls down.", "A kicks B and B falls down."])
+def test_who_is_struck_falls_afterwards(words: str) -> None:
+    (beat,) = beats_of(read(words))
+    ((fall,),) = staged(beat.acts).changes.values()
+    assert 0.3 < fall.after < 0.6

@@ -37,6 +37,11 @@ _REGIONS = {
 """Families of parts of the body and the region of each."""
 
 
+def hits(entry: Entry) -> bool:
+    """True for a blow or a kick at the other."""
+    return any(shape.do == "strike" or getattr(shape, "meets", False) for shape in entry.stage)
+
+
 def is_attempt(act: Act, entry: Entry) -> bool:
     """True for a blow or a push that is only tried: it is struck past the other, or they push against each other."""
     tried = act.polarity == "done" and act.modality == "tried"

@@ -14,7 +14,7 @@ from motion import InputError
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.limits import MAX_PROMPT
 
-from .act_kinds import reaches_low
+from .act_kinds import hits, reaches_low
 from .beats import MOST_BEATS, Beat
 from .postures import LOWERED
 from .staging import staged
@@ -217,7 +217,7 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry, text: str) -> boo
     other = "b" if act.agents[0] == "a" else "a"
     if (entry.thing, after.thing) == ("throws", "catches") and later.agents != act.agents:
         return True
-    hit = "strike" in does or getattr(does.get("touch"), "fells", False)
+    hit = hits(entry) or getattr(does.get("touch"), "fells", False)
     if hit and other in later.agents and len(later.agents) == 1:
         return bool(then.keys() & {"posture", "strike"}) or getattr(then.get("go"), "way", "") in (
             "back",

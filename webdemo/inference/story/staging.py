@@ -18,6 +18,7 @@ from acts.things import is_fixture, kind_of
 
 from .act_kinds import (
     figure_of,
+    hits,
     is_after,
     is_attempt,
     is_care,
@@ -236,6 +237,8 @@ class _Stage:
         """The changes of posture of an act, one after another where it is done several times."""
         posture, already = Posture(shape.posture), shape.already or act.already
         waits = {Posture.LIES: 0.4, Posture.STANDS: 0.35} if shape.who == "patient" else {}
+        if any(other.agents != act.agents and hits(entry) for other, entry in self.done):
+            waits = {Posture.LIES: 0.35}  # they are struck first
         after = max(self.level[act.id] / self.levels, waits.get(posture, 0.0))
         times = min(act.times or shape.times, 5) if shape.passing else 1
         shares = [0.0 if already else after + (1 - after) * i / times for i in range(times)]
