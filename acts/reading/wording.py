@@ -284,7 +284,11 @@ class _Preparation:
         """True for a person, or somebody named elsewhere in the text, who owns the noun behind: "a customers beard"."""
         word = self._words.shorthand.get(word, word)
         if self._words.part(self._lower(i + 1)):
-            return self._words.is_usual_person(word) or any(word == w.lower() for w, _, _ in self._tokens)
+            return (
+                word == "other"
+                or self._words.is_usual_person(word)
+                or any(word == w.lower() for w, _, _ in self._tokens)
+            )
         article = self._lower(i - 1) in ("a", "an") and i - 1 not in self._letters
         return article and self._words.is_person(word)
 

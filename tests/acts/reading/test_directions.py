@@ -132,3 +132,17 @@ def test_what_follows_on_a_touch(text: str, acts: list[str]) -> None:
 
 def test_a_woman_and_a_woman_are_two() -> None:
     assert [act.agents for act in read("A woman and a woman dance.").acts] == [("a", "b")]
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [
+        ("One gets a piggyback ride and falls off.", "fall-down"),
+        ("then one slaps the others back", "pat"),
+        ("Two kids spin holding hands.", "ring"),
+        ("They play patty cake.", "high-five"),
+    ],
+)
+def test_what_visitors_type(text: str, acts: str) -> None:
+    found = read(text)
+    assert found.acts[-1].act == acts and not found.unread
