@@ -31,7 +31,7 @@ class Go(_Shape):
         backwards: with the face towards where one comes from.
         linked: the two hold each other by the hands or arms.
         stops: it ends early, before what comes next.
-        gait: of a person who goes low over the floor.
+        gait: of a person who goes low over the floor, limps, or walks on tiptoe.
     """
 
     do: Literal["go"] = "go"
@@ -45,7 +45,7 @@ class Go(_Shape):
     backwards: bool = False
     linked: bool = False
     stops: bool = False
-    gait: Literal["", "crawls", "on the knees"] = ""
+    gait: Literal["", "crawls", "on the knees", "limps", "on tiptoe"] = ""
 
 
 class Turn(_Shape):

@@ -84,3 +84,11 @@ def test_a_person_who_lies_gets_up_before_a_cartwheel(engine: Engine) -> None:
     assert found[-1, HEAD, 1] > 1.4
     speed = np.linalg.norm(np.diff(found, axis=0), axis=-1) * 30
     assert speed.max() < 9.0
+
+
+def test_who_sneaks_away_walks_on_tiptoe_and_whoever_touches_then_walks_as_ever(engine: Engine) -> None:
+    found = made(engine, "Person A sneaks away.", seconds=4.0)[0]
+    ankles = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
+    assert (found[:, ankles, 1] - found[:, FEET, 1]).min() > 0.09
+    assert np.linalg.norm((found[-1, 0] - found[0, 0])[[0, 2]]) > 1.0
+    made(engine, "Person A limps up to person B and hugs them.", seconds=5.0)

@@ -16,6 +16,7 @@ from webdemo.inference.story.floor import Standing
 from webdemo.inference.story.limbs import WITH_ARMS, Limb, limbed
 from webdemo.inference.story.poses import HANDS, bowed, standing
 from webdemo.inference.story.postures import Change, Posture
+from webdemo.inference.story.steps import stepped
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.track import HALT
 
@@ -63,6 +64,17 @@ def given_limbs(limbs: Sequence[Limb], person: int, told: Told, beat: Stretch) -
     busy = "ab"[person] in told.gestures or told.contact is not None
     free = HANDS if busy and not any(limb.does in WITH_ARMS for limb in limbs) else ()
     return [replace(beat.given(person, frames, poses, all_but(free)), kept=True)]
+
+
+def given_steps(gait: str, person: int, told: Told, beat: Stretch) -> list[Part]:
+    """The body of a person who limps or walks on tiptoe along a way, as far as it falls into a window."""
+    course = beat.course(person)
+    poses = stepped(gait, course.places, course.headings)
+    frames = np.union1d(np.arange(SETTLES // 2 if beat.start else 0, beat.frames, LIMBED), [beat.frames - 1])
+    if not len(frames := beat.shown(frames)):
+        return []
+    joints = all_but(HANDS if "ab"[person] in told.gestures else ())
+    return [replace(beat.given(person, frames, poses[frames], joints), kept=True)]
 
 
 def given_figure(story: Sequence[Told], person: int, beat: Stretch, last: Array | None) -> list[Part]:

@@ -22,11 +22,21 @@ from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import ARMS, HANDS, standing, upright
 from webdemo.inference.story.postures import Change, Posture
 from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.story.steps import STEPS
 from webdemo.inference.story.strikes import Bout
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.ways import Way
 
-from .scene_bodies import SETTLES, all_but, figure_poses, given_bow, given_figure, given_limbs, halted
+from .scene_bodies import (
+    SETTLES,
+    all_but,
+    figure_poses,
+    given_bow,
+    given_figure,
+    given_limbs,
+    given_steps,
+    halted,
+)
 from .scene_contacts import coming, given_contact, given_hold, given_twirl, meeting, towards_touched
 from .scene_hands import hands, outer_hands
 from .scene_lifts import Carrying
@@ -116,8 +126,11 @@ def _on_their_ways(
         down = 1 - "ab".index(told.pulls)
         parts += given_pull(told.pulls, _postures(request, scene, down, beat), beat)
     low = {"ab".index(move.person): move.gait for move in found if move.gait}
+    free = not (told.contact or told.joined or told.linked or told.strike)
     for person, way in ways.items():
-        if person in low:
+        if low.get(person) in STEPS:
+            parts += given_steps(low[person], person, told, beat) if free else path_of(way, beat)
+        elif person in low:
             parts += given_gait(low[person], person, _down(scene, beat.start), beat)
         else:
             parts += path_of(_until_posed(way, hand, beat), beat)

@@ -29,7 +29,8 @@ class Move:
         metres: length of the way, of :attr:`Way.AHEAD`.
         near: metres from the other at which who comes up to them stands; 0 for as far as the network likes.
         backwards: they go away with their face to the other.
-        gait: of :data:`.gaits.GAITS`, of a person who goes low over the floor; "" for a walk or a run.
+        gait: of :data:`.gaits.GAITS`, of a person who goes low over the floor, or of :data:`.steps.STEPS`; "" for a
+            walk or a run.
     """
 
     person: str
