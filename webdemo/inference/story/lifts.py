@@ -73,6 +73,8 @@ _LEGS = {
     Carry.DRAGS: (-0.9, 0.0, 0.1),
 }
 """Radians of the thighs forward (negative) and out, about the upright, and of the knees, of the person carried."""
+_UNEVEN = 0.05
+"""Metres by which the left of two hands before the carrier's chest is higher, and the right one lower."""
 _SIDES = (("left", 1.0), ("right", -1.0))
 
 
@@ -116,7 +118,10 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
         holds = {s: theirs(f"{s}_shoulder") + 0.45 * ahead - 0.04 * up for s, _ in _SIDES}
     else:
         hands = {s: 0.7 * theirs(f"{s}_knee") + 0.3 * theirs(f"{s}_hip") - 0.1 * up for s, _ in _SIDES}
-        holds = {s: own("spine3") + 0.16 * ahead + sign * 0.06 * left - 0.02 * up for s, sign in _SIDES}
+        holds = {
+            s: own("spine3") + 0.16 * ahead + sign * 0.02 * left + (sign * _UNEVEN - 0.02) * up
+            for s, sign in _SIDES
+        }
     for side, _ in _SIDES:
         _bend(carrier, side, hands[side])
         if carry is Carry.DRAGS:  # the arms trail on the floor
