@@ -21,7 +21,7 @@ from webdemo.inference.story.floor import (
     plan,
 )
 from webdemo.inference.story.moves import Move
-from webdemo.inference.story.track import MOST
+from webdemo.inference.story.track import EVENLY, MOST
 from webdemo.inference.story.ways import Way
 
 FACING = Standing(np.array([[0.0, 0.0], [0.0, 1.2]]), np.array([0.0, math.pi]))
@@ -66,6 +66,14 @@ def test_those_who_meet_stay_as_near_as_what_they_do_then_needs(words: str, near
         assert way.frames[-1] == 149 and np.diff(np.asarray(way.frames)[arrived]).max() <= EVERY
         assert np.asarray(way.frames)[arrived][0] < 110, "they are given where they met until the end"
     assert abs(gaps(found)[-1] - near) < 0.05
+
+
+@pytest.mark.parametrize(("words", "evenly"), [("They walk up to each other.", True), ("They part.", False)])
+def test_the_pace_of_a_walk_that_ends_before_the_other_is_given(words: str, evenly: bool) -> None:
+    _, found = ways(words, 5.0)
+    for way in found.values():
+        moving = np.linalg.norm(np.diff(way.places, axis=0), axis=1) > 0.01
+        assert (np.diff(way.frames)[moving].max() <= EVENLY) is evenly
 
 
 def test_those_who_part_turn_and_get_away_but_not_out_of_sight() -> None:

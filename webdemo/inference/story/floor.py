@@ -176,7 +176,8 @@ def _moved(
         case Way.THING:
             if direction(track.heading) @ to > ABEAM:  # it is not where the other stands
                 far = min(ACROSS, 0.6 * seconds * move.speed)
-                track.walk(np.stack([here, here - far * to]), _time(far, move.speed, 0.7 * seconds))
+                line = np.stack([here, here - far * to])
+                track.walk(line, _time(far, move.speed, 0.7 * seconds), evenly=True)
             track.stay(facing=True)
         case Way.TURN:
             track.turn(2 * math.pi * move.turns)
@@ -219,7 +220,8 @@ def _to(move: Move, track: Track, gap: float, to: Array, seconds: float, *, both
     near = move.near or CLOSE
     way = (gap - near) / (2 if both else 1)
     if way > (0.05 if move.near else 0.25):
-        track.walk(np.stack([track.place, track.place + way * to]), _time(way, move.speed, seconds))
+        line = np.stack([track.place, track.place + way * to])
+        track.walk(line, _time(way, move.speed, seconds), evenly=move.speed < RUN)
     if last:
         track.stay(facing=bool(move.near))
 

@@ -19,6 +19,8 @@ MOST = 2.6
 """Metres a second of the fastest run that is planned."""
 TURNING = 0.9
 """Seconds of a half turn."""
+EVENLY = 8
+"""Frames between two given places of a walk whose pace is given: at every other knot of the network."""
 EASE = 0.5
 """Seconds in which a walk gets up its speed, and slows down again."""
 HALT = 0.3
@@ -47,8 +49,14 @@ class Track:
     going: Array = field(default_factory=lambda: np.zeros(2))
     dense: set[int] = field(default_factory=set)
 
-    def walk(self, line: Array, seconds: float, *, heading: float | None = None) -> None:
-        """Walks along points (N, 2) within some seconds; faces where it goes, or where ``heading`` says."""
+    def walk(
+        self, line: Array, seconds: float, *, heading: float | None = None, evenly: bool = False
+    ) -> None:
+        """Walks along points (N, 2) within some seconds; faces where it goes, or where ``heading`` says.
+
+        Places of a walk are given every second or so. Where it ends there, a network that is late would surge: a way
+        gone ``evenly`` has them every :data:`EVENLY` frames.
+        """
         frames = max(1, min(round(seconds * FPS), len(self.places) - self.frame))
         steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
         along = np.concatenate([[0.0], np.cumsum(steps)])
@@ -58,6 +66,8 @@ class Track:
         at = np.stack([np.interp(done * far, along, line[:, axis]) for axis in (0, 1)], axis=1)
         stop = self.frame + frames
         self.places[self.frame : stop] = at
+        if evenly:
+            self.dense.update(range(self.frame + EVENLY, stop, EVENLY))
         if heading is None:
             ahead = np.diff(np.concatenate([self.place[None], at]), axis=0)
             facing = np.arctan2(ahead[:, 0], ahead[:, 1])
