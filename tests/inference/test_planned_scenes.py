@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
+from motion.metrics.naturalness import mirror_gap
 from webdemo.inference import Engine, GenerateRequest, SceneRequest
 from webdemo.inference.pipelines.scene_postures import led, still_down
 from webdemo.inference.story import Beat
@@ -286,3 +287,11 @@ def test_a_head_that_is_tilted_stays_so_and_is_not_turned_to_the_other(engine: E
     motion = made(engine, "She tilts her head.")
     neck, head = (motion[0, :, SMPL22.index(name)] for name in ("neck", "head"))
     assert np.abs((head - neck)[45:90, 0]).min() > 0.02
+
+
+def test_the_arms_of_who_moves_a_leg_or_the_head_hang_and_differ(engine: Engine) -> None:
+    for words in ("Person A raises the left leg.", "Person A shakes the head."):
+        found = made(engine, words)[0].astype(np.float64)
+        wrists = found[:, [SMPL22.index(f"{side}_wrist") for side in ("left", "right")], 1]
+        shoulders = found[:, [SMPL22.index(f"{side}_shoulder") for side in ("left", "right")], 1]
+        assert (shoulders - wrists)[20:-20].min() > 0.35 and mirror_gap(found[20:-20]) > 1.5

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
+from motion.skeleton import ARMS
 from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames, Part
 from webdemo.inference.story.figures import figured
@@ -51,7 +52,7 @@ def given_bow(person: int, told: Told, beat: Stretch, seed: int) -> list[Part]:
     return [beat.given(person, frames, poses, all_but(()))]
 
 
-def given_limbs(limbs: Sequence[Limb], person: int, told: Told, beat: Stretch) -> list[Part]:
+def given_limbs(limbs: Sequence[Limb], person: int, told: Told, beat: Stretch, seed: int) -> list[Part]:
     """The body of a person who moves single limbs, as far as it falls into a window.
 
     Their arms hang, unless their hands have something else to do: a network that is free there crosses them.
@@ -61,6 +62,10 @@ def given_limbs(limbs: Sequence[Limb], person: int, told: Told, beat: Stretch) -
         return []
     angle, seconds = float(beat.stand.headings[person]), beat.frames / FPS
     poses = limbed(limbs, halted(person, beat), angle, frames / FPS, seconds)
+    if not any(limb.does in WITH_ARMS for limb in limbs):
+        stands = standing(halted(person, beat), angle, (frames + beat.start) / FPS, seed=seed + person)
+        for shoulder, *arm in ARMS:
+            poses[:, arm] = poses[:, [shoulder]] + stands[:, arm] - stands[:, [shoulder]]
     busy = "ab"[person] in told.gestures or told.contact is not None
     free = HANDS if busy and not any(limb.does in WITH_ARMS for limb in limbs) else ()
     return [replace(beat.given(person, frames, poses, all_but(free)), kept=True)]

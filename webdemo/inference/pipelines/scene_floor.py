@@ -215,7 +215,7 @@ def _held(
             posed[person] = upright(stand.places[person], float(stand.headings[person]))
             continue
         if up and who in told.limbs and who not in gone:
-            parts += given_limbs(told.limbs[who], person, told, beat)
+            parts += given_limbs(told.limbs[who], person, told, beat, request.seed)
             posed[person] = upright(stand.places[person], float(stand.headings[person]))
             continue
         if up and who in told.bows and _only_bows(told, who) and who not in gone:
