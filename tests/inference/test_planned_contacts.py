@@ -76,6 +76,17 @@ def test_an_arm_around_somebody_lies_on_their_far_shoulder_behind_them(engine: E
     assert (wrist - far)[[0, 2]] @ [np.sin(angle), np.cos(angle)] < -0.05
 
 
+def test_who_whispers_leans_to_the_ear_of_the_one_beside_with_a_hand_before_the_mouth(engine: Engine) -> None:
+    found = made(engine, "Person A whispers something in person B's ear.")[:, 30:90]
+    assert nearest(found, 0, ["head"], ["head"]).max() < 0.45
+    assert (
+        nearest(found, 0, ["left_elbow", "left_wrist", "right_elbow", "right_wrist"], ["head"]).min() > 0.13
+    )
+    hands = found[0][:, [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]]
+    gap = np.linalg.norm(hands - found[0, :, SMPL22.index("head")][:, None], axis=-1)
+    assert gap.min(axis=1).max() < 0.3
+
+
 def test_a_pat_is_given_twice(engine: Engine) -> None:
     gap = nearest(
         made(engine, "Person B pats person A on the shoulder."),

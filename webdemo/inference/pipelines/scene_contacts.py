@@ -14,8 +14,8 @@ from webdemo.inference.known_parts import KnownFrames
 from webdemo.inference.story.contacts import (
     LOWEST,
     Contact,
+    arms_beside,
     beside,
-    inner_side,
     kneels,
     middle,
     reach,
@@ -164,7 +164,7 @@ def given_contact(touch: Contact, posed: Mapping[int, Array], stretch: Stretch) 
     arms = touch.sides
     if touch.beside:
         there = upright(other.places[-1], float(other.headings[-1]))
-        arms = (inner_side(there, own.places[-1], float(own.headings[-1])),)
+        arms = arms_beside(touch, there, own.places[-1], float(own.headings[-1]))
         touch = replace(touch, sides=arms if touch.sides else ())
     down = kneels(touch, posed.get(1 - giver, upright(np.zeros(2), 0.0)))
     first = _turned(own) if touch.beside else 0
@@ -190,14 +190,16 @@ def given_contact(touch: Contact, posed: Mapping[int, Array], stretch: Stretch) 
         pose -= 0.0 if down else pose[0].copy()
         kept.append(frame)
         poses.append(pose)
-    for frame in _rests(touch, at, frames):
+    comes = range(REACHES, first - REACHES, REACHES) if touch.beside and stretch.start else range(0)
+    for frame in (*comes, *_rests(touch, at, frames)):
         if stretch.shows(frame):
             kept.append(frame)
             pose = upright(own.places[frame], float(own.headings[frame]))
             poses.append(pose - pose[0])
     if not kept:
         return None
-    return stretch.given(giver, kept, np.stack(poses), joints)
+    order = np.argsort(kept)
+    return stretch.given(giver, np.array(kept)[order], np.stack(poses)[order], joints)
 
 
 def _reaching(touch: Contact, target: Array, own: Course, frame: int, back: float) -> Array:

@@ -86,10 +86,13 @@ _FLAT = 0.3
 """Metres between the heights of head and pelvis of a person who lies, at most."""
 BESIDE = 0.46
 """Metres between the pelvises of two people one of whom has an arm around the other or the head on their shoulder."""
-_TILT, _HEAD_TILT = 0.2, 0.65
-"""Radians to the side of a trunk, and further ones of the neck and head, of a person whose head is on a shoulder."""
+_RESTS, _WHISPERS = (0.2, 0.65), (0.34, 0.7)
+"""Radians to the side of a trunk, and further ones of the head, of a person whose head is on a shoulder, and of one who
+whispers."""
 _OWN_HAND = np.array([0.04, 0.1, 0.22])
 """Metres from their pelvis to that side, up and ahead, of the wrist on that side: clear of the other's body."""
+_AT_MOUTH = np.array([0.05, -0.1, 0.16])
+"""The same from the head of a person who whispers, of the other hand, whose fingers are before the mouth."""
 _AROUND = (0.13, 0.06, 0.04)
 """Metres behind, inside of and under the other's far shoulder of a wrist whose arm is around them."""
 LOW = frozenset((Region.LEG, Region.FOOT))
@@ -116,7 +119,8 @@ def beside(pose: Array, place: Array) -> float | None:
 def touching(touch: Contact, pose: Array, place: Array, angle: float) -> Array:
     """The pose (22, 3) of a person at a place (2,) who leans, or kneels down, to the other's pose, arms hanging."""
     if touch.beside:
-        return upright(place, angle) if touch.sides else _tilted(pose, upright(place, angle), angle)
+        own = upright(place, angle)
+        return own if touch.sides else _tilted(pose, own, angle, whispers=touch.region is Region.HEAD)
     make = kneeling if kneels(touch, pose) else upright
     return leaning(make(place, angle), angle, lean(touch, pose))
 
@@ -203,16 +207,32 @@ def inner_side(other: Array, place: Array, angle: float) -> str:
     return SIDES[0] if float((np.asarray(other)[0][[0, 2]] - place) @ left) > 0 else SIDES[1]
 
 
-def _tilted(other: Array, own: Array, angle: float) -> Array:
-    """A pose (22, 3) whose trunk and head are tilted to the side where the other (22, 3) is, that hand before it."""
+def arms_beside(touch: Contact, other: Array, place: Array, angle: float) -> tuple[str, ...]:
+    """The sides of the arms that are given of a person at a place (2,) beside the other (22, 3): the inner one, and of
+    one who whispers both."""
+    whispers = touch.region is Region.HEAD and not touch.sides
+    return SIDES if whispers else (inner_side(other, place, angle),)
+
+
+def _tilted(other: Array, own: Array, angle: float, *, whispers: bool = False) -> Array:
+    """A pose (22, 3) whose trunk and head are tilted to the side where the other (22, 3) is.
+
+    The hand on that side is before the belly; of a person who whispers the other hand is before the mouth.
+    """
     side = inner_side(other, own[0][[0, 2]], angle)
     sign = -1.0 if side == SIDES[0] else 1.0
     found = own.copy()
     neck, head = SMPL22.index("neck"), SMPL22.index("head")
-    for root, moved, tilt in ((0, list(TRUNK), _TILT), (neck, [head], _HEAD_TILT)):
+    for root, moved, tilt in zip(
+        (0, neck), (list(TRUNK), [head]), _WHISPERS if whispers else _RESTS, strict=True
+    ):
         turn = heading_matrix(angle) @ about(2, sign * tilt) @ heading_matrix(-angle)
         found[moved] = found[root] + (found[moved] - found[root]) @ turn.T
-    found[SMPL22.index(f"{side}_wrist")] = found[0] + heading_matrix(angle) @ (_OWN_HAND * [-sign, 1.0, 1.0])
+    inner = SIDES.index(side)
+    hands = [(inner, 0, _OWN_HAND), *([(1 - inner, head, _AT_MOUTH)] if whispers else [])]
+    for hand, root, at in hands:
+        place = heading_matrix(angle) @ (at * [-sign, 1.0, 1.0])
+        found[SMPL22.index(f"{SIDES[hand]}_wrist")] = found[root] + place
     return found
 
 

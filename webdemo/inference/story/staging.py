@@ -294,7 +294,8 @@ class _Stage:
         if self.contact is not None:
             return
         giver = act.agents[0]
-        region = Region.SHOULDER if shape.beside else region_of(act, shape)
+        lies = shape.beside and shape.part == "shoulder"  # also of a head on the chest
+        region = Region.SHOULDER if lies else region_of(act, shape)
         if region is None:
             return
         hands = act.side if act.side and shape.hands in ("left", "right") else shape.hands
