@@ -211,6 +211,8 @@ class Arguments:
                 if self._measure(child, token, event):
                     continue
                 event.prepositions.append(self._between(token, self._instrument(child, who, event), who))
+                if child.lower_ == "air" and event.direction is None:
+                    event.direction = "up"  # "into the air"
                 for more in child.conjuncts:
                     if more.i > child.i and more.pos_ in ("NOUN", "PRON", "PROPN"):
                         event.prepositions.append((token.lower_, self._argument(more, who, event)))

@@ -41,6 +41,16 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
     return ref
 
 
+def _is_aside(token: Token, cast: Cast) -> bool:
+    """True for the noun of a preposition whose verb does something with a thing: "throws the ball in the air"."""
+    verb = token.head.head if token.dep_ == "pobj" else token
+    objects = (child for child in verb.children if child.dep_ in ("dobj", "obj"))
+    thing = cast.thing
+    return (
+        thing is not None and thing.kind == "thing" and any(o.lemma_.lower() == thing.lemma for o in objects)
+    )
+
+
 def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
     """Notes what "it" and "them" mean from here on."""
     light = token.head.lemma_.lower() in vocabulary().verbs["light"]  # "does two jumps"
@@ -49,7 +59,7 @@ def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
     beside = (
         token.dep_ == "pobj" and cast.thing is not None and (ref.kind, cast.thing.kind) == ("part", "thing")
     )
-    if beside:  # "throws the ball over her shoulder, and he catches it"
+    if beside or _is_aside(token, cast):  # "throws the ball over her shoulder, and he catches it"
         return
     goal = ref.kind == "thing" and cast.thing is None and is_fixture(ref.lemma)  # "at the door, and opens it"
     if ref.kind in ("part", "thing") and token.tag_ in ("NN", "NNP") and (goal or not ref.place):

@@ -295,3 +295,11 @@ def test_the_arms_of_who_moves_a_leg_or_the_head_hang_and_differ(engine: Engine)
         wrists = found[:, [SMPL22.index(f"{side}_wrist") for side in ("left", "right")], 1]
         shoulders = found[:, [SMPL22.index(f"{side}_shoulder") for side in ("left", "right")], 1]
         assert (shoulders - wrists)[20:-20].min() > 0.35 and mirror_gap(found[20:-20]) > 1.5
+
+
+def test_who_throws_a_ball_up_catches_it_without_a_jerk(engine: Engine) -> None:
+    found = made(engine, "A throws the ball into the air and catches it.", seconds=6.0)
+    speed = np.linalg.norm(np.diff(found[0], axis=0), axis=-1) * 30
+    assert speed.max() < 8.0
+    other = (found - found[:, :, :1])[1][:, WRISTS]
+    assert other[:60, :, 1].max() < 0.35, "the other catches nothing"

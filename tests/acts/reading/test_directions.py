@@ -146,3 +146,8 @@ def test_a_woman_and_a_woman_are_two() -> None:
 def test_what_visitors_type(text: str, acts: str) -> None:
     found = read(text)
     assert found.acts[-1].act == acts and not found.unread
+
+
+def test_what_is_thrown_into_the_air_is_what_is_caught() -> None:
+    thrown, caught = read("A throws the ball in the air and catches it.").acts
+    assert (thrown.direction, thrown.thing, caught.thing, caught.agents) == ("up", "ball", "ball", ("a",))

@@ -54,7 +54,10 @@ def given_blows(struck: Strike, told: Told, stretch: Stretch) -> list[KnownFrame
         own, other = places[blow.person], places[1 - blow.person]
         made: list[_Given] = [(blow.person, (blow.side,), poses(struck.bout, blow.side, own, other))]
         if struck.bout is Bout.THROWS:
-            made.append((1 - blow.person, SIDES, catching(other, own)))
+            if struck.up:
+                made.append((blow.person, SIDES, catching(own, other, up=True)))
+            else:
+                made.append((1 - blow.person, SIDES, catching(other, own)))
         after |= {person: blow.frame + beside[-1] for person, _, (beside, _) in made}
         for person, sides, (beside, known) in made:
             for frame, pose in zip(beside, known, strict=True):

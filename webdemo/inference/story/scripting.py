@@ -215,7 +215,9 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry, text: str) -> boo
     """True if one act answers another, or goes on with it in one movement."""
     does, then = {shape.do: shape for shape in entry.stage}, {shape.do: shape for shape in after.stage}
     other = "b" if act.agents[0] == "a" else "a"
-    if (entry.thing, after.thing) == ("throws", "catches") and later.agents != act.agents:
+    if (entry.thing, after.thing) == ("throws", "catches") and (later.agents != act.agents) ^ (
+        act.direction == "up"
+    ):
         return True
     hit = hits(entry) or getattr(does.get("touch"), "fells", False)
     if hit and other in later.agents and len(later.agents) == 1:

@@ -355,14 +355,17 @@ class _Stage:
             for other, e in self.done
             for shape in e.stage
         )
-        goes_on = shape.goes_on or (len(self.blows) > 1 and not answered)
+        fight = len(self.blows) > 1 and not answered and bout is not Bout.THROWS
+        goes_on = shape.goes_on or fight
         late = self._follows(act)
         hands = tuple(each.side or "" for _, _, each in self.blows for _ in range(min(each.times or 1, 5)))
         if len(set(turns)) == 1 and any(
             hand in SIDES for hand in hands
         ):  # "two jabs with the left and a cross"
             return Strike(bout, turns[0] * len(hands), False, answered, late, hands)
-        return Strike(bout, turns, goes_on, answered, late)
+        if up := act.direction == "up":
+            self.gestures.pop(people[0], None)  # the hands of who catches it again
+        return Strike(bout, turns, goes_on, answered, late, up=up)
 
     def _moves(self, struck: Strike | None) -> tuple[Move, ...]:
         if self.hold is not None:
@@ -412,7 +415,7 @@ class _Stage:
             theirs = [(act, e) for act, e in self.done if other in act.agents and who not in act.agents]
             denied = any(who in act.agents and not act.happens and not self._stays(act) for act in self.acts)
             waits = bool(own) and all(only_stays(e) for _, e in own)
-            touched = any(reaches(act, e) and not is_care(e) for act, e in theirs)
+            touched = any(reaches(act, e) and not is_care(e) and act.direction != "up" for act, e in theirs)
             comes = any(move.person == who for move in self.moves)
             if touched or comes or (own and not waits) or who in self.gestures or who in self.faces:
                 continue

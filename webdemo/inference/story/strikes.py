@@ -42,6 +42,7 @@ class Strike:
         answered: the other ducks, falls or steps back at the first blow.
         late: something else goes on until then.
         hands: the hand of each blow, where the words name them; "" leaves it open.
+        up: what is thrown goes up, and comes down to who threw it.
     """
 
     bout: Bout
@@ -50,6 +51,7 @@ class Strike:
     answered: bool = False
     late: bool = False
     hands: tuple[str, ...] = ()
+    up: bool = False
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,8 @@ def turning(bout: Bout) -> float:
 def blows(struck: Strike, frames: int, *, first: int = 0) -> list[Blow]:
     """The blows of a beat of so many frames, from its ``first`` frame at which the two are at their distance."""
     period = PERIODS[struck.bout] * (1 if len(set(struck.turns)) > 1 or struck.hands else 2)
+    if struck.bout is Bout.THROWS and not struck.goes_on:  # each in its own share of the beat
+        period = max(period, frames // len(struck.turns))
     last = frames - (_FLIGHT + 6 if struck.bout is Bout.THROWS else _DRAWN)
     at = range(first + FIRST, last, period)
     made = [
@@ -164,6 +168,7 @@ def ready(place: Array, other: Array, reach: Array = _READY) -> Array:
     return pose - pose[0]
 
 
-def catching(place: Array, other: Array) -> tuple[tuple[int, ...], Array]:
-    """Both hands that catch what the other throws, as :func:`poses` from the frame at which it is thrown."""
-    return (_FLIGHT - 6, _FLIGHT, _FLIGHT + 6), np.stack([ready(place, other, _CATCHING)] * 3)
+def catching(place: Array, other: Array, *, up: bool = False) -> tuple[tuple[int, ...], Array]:
+    """Both hands that catch what is thrown, or thrown up, as :func:`poses` from the frame at which it is thrown."""
+    flight = 2 * _FLIGHT if up else _FLIGHT
+    return (flight - 6, flight, flight + 6), np.stack([ready(place, other, _CATCHING)] * 3)
