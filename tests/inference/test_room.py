@@ -15,7 +15,7 @@ from webdemo.inference.pipelines.scene_postures import postures
 from webdemo.inference.pipelines.scene_room import BODY, distance, roomy
 from webdemo.inference.story import Beat
 from webdemo.inference.story.floor import Standing
-from webdemo.inference.story.poses import bowing, lying, stooping, upright
+from webdemo.inference.story.poses import at_rest, bowing, lying, stooping, upright
 from webdemo.inference.story.scripting import told_by
 from webdemo.inference.story.told import Told
 
@@ -146,9 +146,32 @@ def test_who_lies_down_sits_down_first_and_takes_longer_than_who_falls() -> None
         assert np.diff(heads).max() < 0.02, "down all the way"
         assert any(0.4 < head < 0.75 for head in heads), "the trunk goes down between sitting and lying"
         flat[words] = next(frame for (frame, _), head in zip(poses, heads, strict=True) if head < 0.3)
+        halfway = next(frame for (frame, _), head in zip(poses, heads, strict=True) if head < 1.2)
+        assert halfway - 60 >= 15, "nobody drops at once"
     assert flat["lies down"] - flat["falls over"] > 30 and flat["lies down"] - 60 < 105
     hurried = postures(told("They wave.", "Person A lies down."), 1, 0, 60, 110, stand, up)
     assert hurried[-1][1][0, 1] < 0.2, "in a short beat as well"
+
+
+def test_who_bends_over_somebody_lying_there_begins_near_them(follower: Follower) -> None:
+    made = scene(follower, "Person B is lying on the floor, and person A bends down over person B.")
+    assert made[1, :, 0, 1].max() < 0.3
+    assert np.linalg.norm(made[0, :, 0] - made[1, :, 0], axis=-1)[[0, -1]].max() < 1.3
+
+
+def test_who_lies_at_rest_has_a_hand_on_the_belly() -> None:
+    for angle in (0.0, 1.3, -2.5):
+        pose = lying(np.array([0.5, -0.2]), angle)
+        found = at_rest(pose[None])[0]
+        moved = np.flatnonzero(np.abs(found - pose).max(axis=1) > 1e-9)
+        assert {SMPL22.joint_names[joint] for joint in moved} == {"right_elbow", "right_wrist"}
+        ends = [SMPL22.index(f"right_{joint}") for joint in ("shoulder", "elbow", "wrist")]
+        np.testing.assert_allclose(
+            *(np.linalg.norm(np.diff(p[ends], axis=0), axis=-1) for p in (pose, found)), atol=1e-6
+        )
+        trunk = (found[0] + found[SMPL22.index("spine2")]) / 2
+        hand = found[ends[2]] - trunk
+        assert 0.08 < hand[1] < 0.2 and np.linalg.norm(hand[[0, 2]]) < 0.12
 
 
 def test_a_trunk_bends_down_and_rises_evenly() -> None:

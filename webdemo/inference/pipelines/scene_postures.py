@@ -21,6 +21,7 @@ from webdemo.inference.story.poses import (
     LYING,
     STANCE,
     TOES,
+    at_rest,
     bowing,
     crouching,
     grounded,
@@ -56,6 +57,8 @@ LOW = 0.5
 """Metres of the head over the pelvis below which somebody lies or is bent."""
 _FLAT = 0.3
 """Height in metres of the head below which somebody lies flat."""
+_DROPS = 0.6
+"""Exponent of the time of a fall, which begins slowly."""
 FOLDS = 18
 """Frames after lying down in which a hand comes to lie on the belly."""
 _KNEELS = 0.3
@@ -155,8 +158,9 @@ def _on_the_way(
     if now is not Posture.STANDS or change.posture not in _LOW or not (change.gently or falls):
         return ends, {}
     ends = min(at + (SETTLING if falls else LYING_DOWN if lies else RISING), stop - 1)
+    pace = _DROPS if falls else 1.0
     on_the_way = reversed(rising(place, angle, lies=lies))
-    return ends, {at + round((1 - share) * (ends - at)): pose for share, pose in on_the_way}
+    return ends, {at + round((1 - share) ** pace * (ends - at)): pose for share, pose in on_the_way}
 
 
 def still_down(poses: list[Pose], stop: int, more: int) -> list[Pose]:
@@ -193,7 +197,8 @@ def led(
         for own, given in ((False, joints), (True, (*joints, *HANDS))):
             shown = [each for each, with_hands in zip(inside, laid, strict=True) if with_hands == own]
             if shown:
-                yield given, [frame for frame, _ in shown], np.stack([pose for _, pose in shown])
+                known = np.stack([pose for _, pose in shown])
+                yield given, [frame for frame, _ in shown], known if stoops or not own else at_rest(known)
 
 
 def _stays(pose: Array, start: int, stop: int) -> dict[int, Array]:

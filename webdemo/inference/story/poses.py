@@ -11,7 +11,7 @@ from motion import SMPL22
 from motion.easing import minimum_jerk
 from motion.kinematics import forward_kinematics
 from motion.touch.bending import bent_towards
-from motion.transforms import heading_matrix
+from motion.transforms import heading, heading_matrix
 
 Array = NDArray[np.floating]
 
@@ -116,8 +116,8 @@ _STOOPS: Mapping[str, float] = {
 _LIES: Mapping[str, float] = {
     "hip": -0.12, "knee": 0.25, "ankle": 0.4, "shoulder": 0.9, "elbow": 0.2, "spine": 0.0,
 }  # fmt: skip
-_BELLY = np.array([-0.03, 0.19, 0.14])
-"""Metres from the pelvis of a person who faces +Z to a wrist on the belly."""
+_BELLY, _ELBOW_LIES = (-0.03, 0.14, -0.19), (-1.0, -0.6, 0.2)
+"""Metres from the pelvis of a person on the back, the feet towards +Z, to a wrist on the belly, and its elbow's way."""
 _SITS_UP: Mapping[str, float] = {
     "hip": -2.4, "knee": 1.9, "ankle": 0.1, "shoulder": 1.2, "elbow": 0.3, "spine": 0.15,
 }  # fmt: skip
@@ -213,15 +213,22 @@ def kneeling(place: Array, angle: float) -> Array:
 
 
 def lying(place: Array, angle: float) -> Array:
-    """A person lying on the back, a hand on the belly, the feet about where they stood: (22, 3) metres."""
+    """A person lying on the back, the feet about where they stood: (22, 3) metres."""
     pose = _posed(0.0, _LIES)
-    arm = [SMPL22.index(f"right_{joint}") for joint in ("shoulder", "elbow", "wrist")]
-    joints, pole = [pose[[joint]] for joint in arm], np.array([[-1.0, -0.2, -0.6]])
-    elbow, wrist = bent_towards(joints[0], joints[1], joints[2], (pose[0] + _BELLY)[None], pole)
-    pose[arm[1:]] = elbow[0], wrist[0]
     pose = (pose - pose[0]) @ (heading_matrix(angle) @ about(0, -np.pi / 2)).T
     pose[:, 1] += 0.08 - pose[:, 1].min()
     return pose + np.array([place[0], 0.0, place[1]]) - LYING * np.array([np.sin(angle), 0.0, np.cos(angle)])
+
+
+def at_rest(poses: Array) -> Array:
+    """Poses (N, 22, 3) of a person lying on the back, with the right hand on the belly."""
+    found = np.array(poses)
+    arm = [SMPL22.index(f"right_{joint}") for joint in ("shoulder", "elbow", "wrist")]
+    turns = np.swapaxes(heading_matrix(heading(found)), -1, -2)
+    goal, pole = (np.asarray(way) @ turns for way in (_BELLY, _ELBOW_LIES))
+    shoulder, elbow, wrist = (found[:, joint] for joint in arm)
+    found[:, arm[1]], found[:, arm[2]] = bent_towards(shoulder, elbow, wrist, found[:, 0] + goal, pole)
+    return found
 
 
 def _reclining(place: Array, angle: float, share: float) -> Array:

@@ -242,7 +242,7 @@ class _Stage:
         after = max(self.level[act.id] / self.levels, waits.get(posture, 0.0))
         times = min(act.times or shape.times, 5) if shape.passing else 1
         shares = [0.0 if already else after + (1 - after) * i / times for i in range(times)]
-        gently = is_gentle(act)
+        gently = is_gentle(act) and not already
         return [Change(posture, already, share, shape.passing, gently) for share in shares]
 
     def _people(self, act: Act, shape: shapes.Shape) -> tuple[str, ...]:
