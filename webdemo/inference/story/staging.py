@@ -21,26 +21,24 @@ from .act_kinds import (
     hits,
     is_after,
     is_attempt,
-    is_care,
     is_deep,
     is_gentle,
     is_near,
-    leaves_hands,
     only_stays,
-    reaches,
     region_of,
     walks,
 )
 from .beginnings import Setting, standing
 from .contacts import LOW, Contact, Region
 from .figures import Figure
-from .gestures import AT_OTHER, OF_BOTH, SIDES, Gesture, Hand
+from .gestures import OF_BOTH, SIDES, Gesture, Hand
 from .holds import TWIRL, Hold
 from .lifts import Carry, Lift
 from .limbs import Limb
 from .moves import Move, away, fastest, finished, goes, lifted_moves, struck_moves
 from .postures import LOWERED, Change, Posture
-from .strikes import Bout, Strike
+from .roles import gesturing, loose, standing_by, strike_of
+from .strikes import Strike
 from .told import Told
 from .ways import Way
 
@@ -123,18 +121,23 @@ class _Stage:
                 for shape in refused:
                     self._take(act, shape.model_copy(update={"who": "agent"}))
         self._agree()
-        struck = self._strike()
+        struck = strike_of(self.blows, self.done, late=bool(self.blows) and self._follows(self.blows[0][2]))
+        if struck is not None and struck.up:
+            self.gestures.pop(struck.turns[0], None)  # the hands of who catches it again
         moves = self._moves(struck)
-        idle = self._idle()
+        busy = {*self.gestures, *self.faces, *(move.person for move in self.moves)}
+        idle = standing_by(self.acts, self.done, busy, self.known)
+        waving = gesturing(self.gestures, moves, self.done)
+        free = frozenset[str]() if self._is_joined() else loose(self.done, idle)
         return Told(
-            moves=moves, idle=idle, frozen=frozenset(self.frozen), gesturing=self._gesturing(moves),
+            moves=moves, idle=idle, frozen=frozenset(self.frozen), gesturing=waving - self.changes.keys(),
             gestures=self.gestures, contact=self.contact,
             hold=self.hold, by_both_hands=any(self._leads_by_both_hands(move) for move in moves),
             twirls=self.twirls, pulls=self.pulls, lift=self.lift, strike=struck, changes=self.changes, limbs=self.limbs,
             figures=self.figures, leaps=self.leaps, bows=self.bows,
             linked=self.linked or any(move.linked for move in moves),
             on_feet=frozenset(who for act, e in self.done if e.group in _LEGS for who in act.agents),
-            loose=frozenset(who for who in "ab" if self._is_loose(who, idle)),
+            loose=free - self.gestures.keys() - self.limbs.keys(),
             placed=standing(
                 replace(
                     self.setting, lift=self.lift, strike=struck, twirls=bool(self.twirls),
@@ -339,34 +342,6 @@ class _Stage:
             for who, listed in self.changes.items()
         }
 
-    def _strike(self) -> Strike | None:
-        """The blows, in the order in which they are told."""
-        if not self.blows:
-            return None
-        people, shape, act = self.blows[0]
-        bout = Bout[shape.bout.upper()]
-        if len(people) == 2:
-            return Strike(bout, "ab")
-        turns = "".join(dict.fromkeys("".join(each) for each, *_ in self.blows))
-        turns = turns if len(self.blows) > 1 else turns * min(act.times or 1, 5)
-        hit = other_of(people[0])
-        answered = any(
-            hit in other.agents and shape.do in ("posture", "go")
-            for other, e in self.done
-            for shape in e.stage
-        )
-        fight = len(self.blows) > 1 and not answered and bout is not Bout.THROWS
-        goes_on = shape.goes_on or fight
-        late = self._follows(act)
-        hands = tuple(each.side or "" for _, _, each in self.blows for _ in range(min(each.times or 1, 5)))
-        if len(set(turns)) == 1 and any(
-            hand in SIDES for hand in hands
-        ):  # "two jabs with the left and a cross"
-            return Strike(bout, turns[0] * len(hands), False, answered, late, hands)
-        if up := act.direction == "up":
-            self.gestures.pop(people[0], None)  # the hands of who catches it again
-        return Strike(bout, turns, goes_on, answered, late, up=up)
-
     def _moves(self, struck: Strike | None) -> tuple[Move, ...]:
         if self.hold is not None:
             return tuple(Move(who, Way.HOLD, near=self.hold.value, turns=self.hold.turns) for who in "ab")
@@ -406,43 +381,7 @@ class _Stage:
     def _leads_by_both_hands(self, move: Move) -> bool:
         return move.backwards and move.way is Way.AWAY and move.person not in self.gestures
 
-    def _idle(self) -> frozenset[str]:
-        """The people who stand by: of whom nothing is told that happens, while the other does something alone."""
-        found = set()
-        for who in "ab":
-            other = other_of(who)
-            own = [(act, e) for act, e in self.done if who in act.agents]
-            theirs = [(act, e) for act, e in self.done if other in act.agents and who not in act.agents]
-            denied = any(who in act.agents and not act.happens and not self._stays(act) for act in self.acts)
-            waits = bool(own) and all(only_stays(e) for _, e in own)
-            touched = any(reaches(act, e) and not is_care(e) and act.direction != "up" for act, e in theirs)
-            comes = any(move.person == who for move in self.moves)
-            if touched or comes or (own and not waits) or who in self.gestures or who in self.faces:
-                continue
-            if waits or denied or any(not walks(e) for _, e in theirs):
-                found.add(who)
-        return frozenset(found)
-
-    def _stays(self, act: Act) -> bool:
-        entry = self.known.entries.get(act.act)
-        return entry is not None and only_stays(entry)
-
-    def _is_loose(self, who: str, idle: frozenset[str]) -> bool:
-        """True for a person whose hands have nothing to do, and whom the other does not touch."""
-        own = [(act, e) for act, e in self.done if who in act.agents]
-        touched = any(reaches(act, e) for act, e in self.done if who not in act.agents)
-        joined = (
-            self.lift or self.hold or self.twirls or self.linked or any(move.linked for move in self.moves)
-        )
-        if touched or joined or who in self.gestures or who in self.limbs:
-            return False
-        return who in idle or (bool(own) and all(leaves_hands(act, e) for act, e in own))
-
-    def _gesturing(self, moves: Sequence[Move]) -> frozenset[str]:
-        gone = {move.person for move in moves if move.way not in (Way.STAY, Way.BACKS)}
-        own = {who: sum(who in act.agents and not only_stays(e) for act, e in self.done) for who in "ab"}
-        return frozenset(
-            who
-            for who, gesture in self.gestures.items()
-            if gesture.hand not in AT_OTHER and own[who] < 2 and who not in gone and who not in self.changes
-        )
+    def _is_joined(self) -> bool:
+        """True for two who hold each other or are led."""
+        linked = self.linked or any(move.linked for move in self.moves)
+        return bool(self.lift or self.hold or self.twirls or linked)
