@@ -269,6 +269,7 @@ class Figure(_Shape):
         meets: it is done to the other, who stands within its reach: the two do not move apart for it.
         late, early: seconds after which it begins, of a person who follows the other, and before the end of the beat
             that it ends, of the one who is followed.
+        in_time: two people who do it, do it as one.
     """
 
     do: Literal["figure"] = "figure"
@@ -314,6 +315,7 @@ class Figure(_Shape):
     meets: bool = False
     late: Annotated[float, Field(ge=0, le=3)] = 0.0
     early: Annotated[float, Field(ge=0, le=3)] = 0.0
+    in_time: bool = False
 
 
 class Words(_Shape):

@@ -21,7 +21,7 @@ from webdemo.inference.story.steps import stepped
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.track import HALT
 
-from .scene_hands import late_by
+from .scene_hands import SHORT, late_by
 from .scene_postures import BOWED, DEEP, RISING, Pose, led, postures
 from .scene_stretch import Stretch
 
@@ -82,7 +82,9 @@ def given_steps(gait: str, person: int, told: Told, beat: Stretch) -> list[Part]
     return [replace(beat.given(person, frames, poses[frames], joints), kept=True)]
 
 
-def given_figure(story: Sequence[Told], person: int, beat: Stretch, last: Array | None) -> list[Part]:
+def given_figure(
+    story: Sequence[Told], person: int, beat: Stretch, last: Array | None, seed: int
+) -> list[Part]:
     """The body of a person who does a figure, as far as it falls into a window; one who is down gets up before.
 
     Args:
@@ -90,6 +92,7 @@ def given_figure(story: Sequence[Told], person: int, beat: Stretch, last: Array 
         person: 0 for a, 1 for b.
         beat: the beat.
         last: (22, 3) the person before it; None in a first beat.
+        seed: draws how late they are, and how they waver.
     """
     parts: list[Part] = []
     first = SETTLES // 2 if beat.start else 0
@@ -98,28 +101,33 @@ def given_figure(story: Sequence[Told], person: int, beat: Stretch, last: Array 
         rising = _getting_up(story, person, beat, last)
         for joints, at, known in led(rising, beat.window.start, beat.window.stop):
             parts.append(beat.given(person, np.asarray(at) - beat.start, known, joints))
-    frames, poses = _figure(story[beat.window.beat], person, beat, first)
+    frames, poses = _figure(story[beat.window.beat], person, beat, first, seed)
     if len(shown := np.isin(frames, beat.shown(frames)).nonzero()[0]):
         given: KnownFrames = beat.given(person, frames[shown], poses[shown], all_but(()))
         parts.append(replace(given, kept=True))
     return parts
 
 
-def figure_poses(told: Told, person: int, beat: Stretch) -> list[Pose]:
+def figure_poses(told: Told, person: int, beat: Stretch, seed: int) -> list[Pose]:
     """Some poses of a figure, with their frames of the scene, that show the room it needs."""
-    frames, poses = _figure(told, person, beat, 0)
+    frames, poses = _figure(told, person, beat, 0, seed)
     return [(int(frame) + beat.start, pose) for frame, pose in zip(frames, poses, strict=True)][
         :: _SEEN // LIMBED
     ]
 
 
-def _figure(told: Told, person: int, beat: Stretch, first: int) -> tuple[NDArray[np.integer], Array]:
-    """Frames (N,) of a beat and the poses (N, 22, 3) of a figure that begins with its ``first`` frame."""
+def _figure(
+    told: Told, person: int, beat: Stretch, first: int, seed: int
+) -> tuple[NDArray[np.integer], Array]:
+    """Frames (N,) of a beat and the poses (N, 22, 3) of a figure that begins with its ``first`` frame, or later."""
+    figure, angle = told.figures["ab"[person]], float(beat.stand.headings[person])
+    together = figure.meets or figure.in_time
+    late = 0.0 if together else late_by(seed, person) * min(1.0, beat.frames / SHORT)
     count = beat.frames - first
     if count < SHORTEST:
         return np.zeros(0, dtype=int), np.zeros((0, SMPL22.num_joints, 3))
-    figure, angle = told.figures["ab"[person]], float(beat.stand.headings[person])
-    poses = figured(figure, halted(person, beat), angle, count)
+    figure = replace(figure, late=figure.late + late)
+    poses = figured(figure, halted(person, beat), angle, count, seed + person)
     frames = np.union1d(np.arange(0, count, LIMBED), [count - 1])
     return frames + first, poses[frames]
 

@@ -173,7 +173,7 @@ def _room(
     if told.joined or told.strike or told.contact or met or _going(found):
         return Room(stand)
     poses = {
-        person: figure_poses(told, person, beat)
+        person: figure_poses(told, person, beat, request.seed)
         if who in told.figures
         else _postures(request, scene, person, beat)
         for person, who in enumerate("ab")
@@ -211,7 +211,7 @@ def _held(
         last = scene[person, start - room.delay - 1] if start else None
         up = last is None or last[0, 1] > UPRIGHT
         if who in told.figures and who not in gone:
-            parts += given_figure(request.told, person, beat, last)
+            parts += given_figure(request.told, person, beat, last, request.seed)
             posed[person] = upright(stand.places[person], float(stand.headings[person]))
             continue
         if up and who in told.limbs and who not in gone:

@@ -115,4 +115,5 @@ def reaches_low(act: Act, entry: Entry) -> bool:
 def figure_of(act: Act, shape: shapes.Figure) -> Figure:
     """The figure of an act: as often as its words say, and with the other leg where they name the left one."""
     mirrored = shape.mirrored ^ (act.side == "left")
-    return Figure(shape.figure, act.times or shape.times, mirrored, shape.meets, shape.late, shape.early)
+    times = act.times or shape.times
+    return Figure(shape.figure, times, mirrored, shape.meets, shape.late, shape.early, shape.in_time)

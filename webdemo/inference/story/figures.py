@@ -18,6 +18,7 @@ import scipy.interpolate
 import scipy.ndimage
 from numpy.typing import NDArray
 
+from motion.easing import smoothstep
 from webdemo.inference.actor import FPS
 
 from .figure_floor import grounded_poses
@@ -34,9 +35,31 @@ PAIRED = ("hip", "out", "turnout", "knee", "ankle", "arm", "side", "rotate", "el
 and turned in, an elbow bent, a shoulder raised; "free" is 1 for a leg that does not carry the body, as it swings past
 the floor. A number for both sides, or [left, right]."""
 NAMES = (*SINGLE, *METRES, *(f"{side}_{name}" for side in ("left", "right") for name in PAIRED))
+_SWAY = {
+    "lean": 0.8,
+    "twist": 1.5,
+    "neck": 2.0,
+    "look": 3.0,
+    "tilt": 1.0,
+    "arm": 2.5,
+    "side": 2.0,
+    "elbow": 2.5,
+}
+"""Degrees by which parts of the body waver."""
+
+
+def _wavers(name: str) -> float:
+    return float(np.deg2rad(_SWAY.get(name.split("_")[-1], 0.0)))
+
+
 _ASIDE = tuple(NAMES.index(name) for name in ("roll", "yaw", "lean", "twist", "look", "tilt", "aside"))
 """Those that change their sign in a mirror."""
 _STANDS = {"hip": 3.4, "out": -1.1, "knee": 6.9, "ankle": -3.4, "side": 9.8, "elbow": 17.2}
+_LEFT_ARM = [NAMES.index(f"left_{name}") for name in ("arm", "side", "rotate", "elbow", "shrug")]
+_LAG = 0.05
+"""Seconds by which the left arm is behind the right one."""
+_WAVERS = np.array([_wavers(name) for name in NAMES])
+"""Radians by which each angle wavers."""
 BEGINS, RESTS = 0.3, 0.15
 """Seconds of a beat before a figure begins, and after it."""
 FASTEST, SLOWEST = 0.75, 1.25
@@ -74,6 +97,7 @@ class Figure:
         mirrored: left and right are exchanged.
         meets: it is done to the other, who stands within its reach: the two do not move apart for it.
         late, early: seconds by which it begins later, and by which it ends before the beat does.
+        in_time: two people who do it, do it as one.
     """
 
     name: str
@@ -82,6 +106,7 @@ class Figure:
     meets: bool = False
     late: float = 0.0
     early: float = 0.0
+    in_time: bool = False
 
 
 @lru_cache(maxsize=1)
@@ -95,7 +120,7 @@ def figures() -> Mapping[str, Course]:
     }
 
 
-def figured(figure: Figure, place: Array, angle: float, frames: int) -> Array:
+def figured(figure: Figure, place: Array, angle: float, frames: int, seed: int = 0) -> Array:
     """A person who does a figure through a beat of so many frames.
 
     Args:
@@ -103,6 +128,7 @@ def figured(figure: Figure, place: Array, angle: float, frames: int) -> Array:
         place: (2,) x and z of the pelvis in metres where they stand before.
         angle: heading in radians from +Z towards +X.
         frames: of the beat.
+        seed: draws how the body wavers.
 
     Returns:
         (frames, 22, 3) metres; the body is on the floor, and what stands on it does not glide.
@@ -114,9 +140,27 @@ def figured(figure: Figure, place: Array, angle: float, frames: int) -> Array:
     if figure.mirrored:
         rows = _mirrored(rows)
     at = np.arange(frames) / FPS
-    course = scipy.interpolate.PchipInterpolator(times, rows, axis=0)(np.clip(at, times[0], times[-1]))
+    between = scipy.interpolate.PchipInterpolator(times, rows, axis=0)
+    course, later = (between(np.clip(at - lag, times[0], times[-1])) for lag in (0.0, _LAG))
+    stands = _upright(course)
+    course[:, _LEFT_ARM] += stands * (later - course)[:, _LEFT_ARM]
+    course += stands * _wavering(at, seed)
     course = scipy.ndimage.gaussian_filter1d(course, _ROUND, axis=0, mode="nearest")
     return grounded_poses(dict(zip(NAMES, course.T, strict=True)), place, angle)
+
+
+def _upright(course: Array) -> Array:
+    """(N, 1) 1 where the trunk is upright, 0 where hands may be on the floor, which are not to leave it."""
+    up = np.cos(course[:, NAMES.index("pitch")]) * np.cos(course[:, NAMES.index("roll")])
+    return np.asarray(smoothstep(up, 0.4, 0.85))[:, None]
+
+
+def _wavering(at: Array, seed: int) -> Array:
+    """Angles (N, angles) by which trunk and arms waver, each in its own time: nobody is as even as a drawing."""
+    dice = np.random.default_rng(seed)
+    periods, phases = dice.uniform(1.7, 4.3, len(NAMES)), dice.uniform(0.0, 2 * np.pi, len(NAMES))
+    found: Array = np.sin(2 * np.pi * at[:, None] / periods + phases) * _WAVERS
+    return found
 
 
 def _scheduled(course: Course, times: int, length: float) -> tuple[Array, Array]:

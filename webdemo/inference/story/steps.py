@@ -7,7 +7,7 @@ swings to its next one meanwhile, and two-bone IK gives the knees.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.ndimage
@@ -19,6 +19,7 @@ from motion.easing import minimum_jerk
 from motion.kinematics import forward_kinematics
 from motion.skeleton import LEGS
 from motion.transforms import heading_matrix
+from webdemo.inference.actor import FPS
 
 from .poses import SOLE, STANDS, about
 
@@ -26,19 +27,23 @@ Array = NDArray[np.floating]
 
 _SIDES = (("left", 1.0, 0.0), ("right", -1.0, 0.5))
 """Sides with the sign of their x and the share of a cycle by which their foot is ahead."""
-_SWINGS = 0.36
+_SWINGS = 0.43
 """Share of a cycle in which a foot swings."""
 _TURNED = 0.2
 """Metres that are walked on the spot for each radian of a turn."""
+_TAKES = 0.64
+"""Seconds of a step, at least: who goes faster takes longer steps."""
 _LAST = 0.12
 """Share of a cycle by which the last footprint of a foot may be behind the other one."""
+_AHEAD = 0.33
+"""Share of a cycle by which it may land before the body."""
 _WIDE = 0.1
 """Metres of a foot beside the line that is walked."""
 _REACH = 0.985
 """Share of a leg's length that is used at most."""
 _SMOOTH = 5.0
 """Frames over which a way that is given now and then is rounded."""
-_EVEN = 3.0
+_EVEN = 4.0
 """Frames over which the height of the hips is evened out."""
 _TOE = SMPL22.offsets[SMPL22.index("left_foot")]
 _LEG = float(SMPL22.bone_lengths[SMPL22.index("left_knee")] + SMPL22.bone_lengths[SMPL22.index("left_ankle")])
@@ -69,8 +74,8 @@ class Steps:
 
 
 STEPS: Mapping[str, Steps] = {
-    "limps": Steps(0.42, (0.05, 0.025), sinks=0.03, pitch=0.12, arms=0.45, lurch=0.16, short=0.14),
-    "on tiptoe": Steps(0.36, (0.14, 0.14), heels=0.75, sinks=0.05, pitch=0.16, arms=0.9),
+    "limps": Steps(0.44, (0.05, 0.025), sinks=0.03, pitch=0.12, arms=0.45, lurch=0.16, short=0.14),
+    "on tiptoe": Steps(0.4, (0.1, 0.1), heels=0.75, sinks=0.05, pitch=0.16, arms=0.9),
 }
 """The gaits by their names in the lexicon."""
 
@@ -92,6 +97,7 @@ def stepped(gait: str, places: Array, headings: Array) -> Array:
         for values in (np.asarray(places, dtype=float), np.unwrap(headings))
     )
     gone = np.linalg.norm(np.diff(places, axis=0, prepend=places[:1]), axis=1)
+    steps = replace(steps, length=max(steps.length, _TAKES * float(np.percentile(gone, 80)) * FPS))
     gone = np.cumsum(gone + _TURNED * np.abs(np.diff(headings, prepend=headings[:1])))
     cycles = max(round(float(gone[-1]) / steps.length), 1) / 2 if gone[-1] > steps.length / 2 else 0.0
     phase = cycles * gone / max(float(gone[-1]), 1e-6)
@@ -121,7 +127,8 @@ def _foot(steps: Steps, side: int, phase: Array, cycles: float, places: Array, h
         """(N, 3) the footprint of the stance of a cycle: where the body is in the middle of it, or begins, or ends."""
         middle = count + (1 + _SWINGS) / 2 - ahead - late
         last = count + 1 - ahead >= cycles - 1e-6
-        middle = np.clip(np.where(last, np.maximum(middle, cycles - _LAST), middle), 0.0, cycles)
+        nearer = np.maximum(middle, np.minimum(cycles - _LAST, count - ahead + _SWINGS + _AHEAD))
+        middle = np.clip(np.where(last, nearer, middle), 0.0, cycles)
         at = np.interp(middle, phase + 1e-9 * time, time)
         place = np.stack([np.interp(at, time, places[:, i]) for i in (0, 1)], axis=1)
         angle = np.interp(at, time, np.unwrap(headings))
@@ -131,7 +138,8 @@ def _foot(steps: Steps, side: int, phase: Array, cycles: float, places: Array, h
 
     swung = minimum_jerk(share / _SWINGS)[:, None]
     way = print_of(number - 1) + swung * (print_of(number) - print_of(number - 1))
-    way[:, 1] += steps.lift[side] * np.sin(np.pi * np.clip(share / _SWINGS, 0.0, 1.0)) ** 2
+    up = np.clip(share / _SWINGS, 0.0, 1.0)
+    way[:, 1] += steps.lift[side] * (4 * up * (1 - up)) ** 3
     return way
 
 
