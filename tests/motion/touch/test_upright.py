@@ -51,6 +51,8 @@ def test_backs_are_straight_and_hands_stay_where_they_met() -> None:
         assert np.abs(_bend(found[person], ahead)[SHAKES]).max() < 0.12
         hands = found[person, SHAKES, J("right_wrist")] - pair[person, SHAKES, J("right_wrist")]
         assert np.linalg.norm(hands, axis=-1).max() < 0.02
+        went = (found - pair)[person, SHAKES][:, [J("left_shoulder"), J("right_shoulder")], 2].mean(axis=1)
+        assert np.abs(went).max() < 0.01, "the shoulders are as near as before"
     feet = [J(f"{side}_{joint}") for side in ("left", "right") for joint in ("ankle", "foot")]
     np.testing.assert_allclose(found[:, :, feet], pair[:, :, feet], atol=0.01)
     parents, children = (list(ends) for ends in zip(*SMPL22.bones, strict=True))
