@@ -71,6 +71,7 @@ def test_who_has_thrown_stands_still_while_the_other_has_it(engine: Engine) -> N
     speed = np.linalg.norm(np.diff(hands, axis=0), axis=-1).max(axis=1) * 30
     assert speed[:60].max() > 3.0, "the throw"
     assert speed[110:].max() < 1.0
+    assert (np.linalg.norm(np.diff(found, axis=1), axis=-1) * 30).max() < 9.0, "a hand jumps"
 
 
 def test_who_stands_in_a_given_motion_sits_down_for_words_that_have_them_seated(engine: Engine) -> None:

@@ -12,7 +12,7 @@ from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
 from webdemo.inference.story.gestures import SIDES
 from webdemo.inference.story.poses import HANDS, TRUNK, standing, upright
-from webdemo.inference.story.strikes import FIRST, Blow, Bout, Strike, blows, catching, poses, ready
+from webdemo.inference.story.strikes import CATCHING, FIRST, Blow, Bout, Strike, blows, catching, poses, ready
 from webdemo.inference.story.told import Told
 
 from .scene_postures import DUCKING
@@ -63,6 +63,13 @@ def given_blows(struck: Strike, told: Told, stretch: Stretch) -> list[KnownFrame
             for frame, pose in zip(beside, known, strict=True):
                 if stretch.shows(blow.frame + frame):
                     given.setdefault((person, sides), {})[blow.frame + frame] = pose
+    if struck.bout is Bout.THROWS and not struck.goes_on and listed:
+        catcher = listed[-1].person if struck.up else 1 - listed[-1].person
+        own, other = (courses[person].places for person in (catcher, 1 - catcher))
+        held = stretch.shown(np.arange(after.pop(catcher) + EVERY, stretch.frames, EVERY))
+        given.setdefault((catcher, SIDES), {}).update(
+            {int(frame): ready(own[frame], other[frame], CATCHING) for frame in held}
+        )
     return [
         stretch.given(
             person,

@@ -38,7 +38,7 @@ from .limbs import Limb
 from .moves import Move, away, fastest, finished, goes, lifted_moves, struck_moves
 from .postures import LOWERED, Change, Posture
 from .roles import gesturing, loose, standing_by, strike_of
-from .strikes import Strike
+from .strikes import Bout, Strike
 from .told import Told
 from .ways import Way
 
@@ -122,8 +122,9 @@ class _Stage:
                     self._take(act, shape.model_copy(update={"who": "agent"}))
         self._agree()
         struck = strike_of(self.blows, self.done, late=bool(self.blows) and self._follows(self.blows[0][2]))
-        if struck is not None and struck.up:
-            self.gestures.pop(struck.turns[0], None)  # the hands of who catches it again
+        if struck is not None and struck.bout is Bout.THROWS:  # catching is part of it
+            caught = {who for act, e in self.done if e.thing == "catches" for who in act.agents}
+            self.gestures = {who: gesture for who, gesture in self.gestures.items() if who not in caught}
         moves = self._moves(struck)
         busy = {*self.gestures, *self.faces, *(move.person for move in self.moves)}
         idle = standing_by(self.acts, self.done, busy, self.known)

@@ -85,7 +85,7 @@ _READY = np.array([0.12, 0.2, 0.28])
 """Metres from the pelvis to the left wrist between two blows."""
 _RECOVERS = 11
 """Frames after a blow in which the arm is ready again."""
-_CATCHING = np.array([0.12, 0.35, 0.4])
+CATCHING = np.array([0.12, 0.35, 0.4])
 """Metres from the pelvis to the left wrist of hands that catch."""
 _TWIST, _LEAN = 0.4, 0.12
 """Radians by which the shoulder goes ahead with the fist, and by which the trunk leans forward."""
@@ -171,4 +171,4 @@ def ready(place: Array, other: Array, reach: Array = _READY) -> Array:
 def catching(place: Array, other: Array, *, up: bool = False) -> tuple[tuple[int, ...], Array]:
     """Both hands that catch what is thrown, or thrown up, as :func:`poses` from the frame at which it is thrown."""
     flight = 2 * _FLIGHT if up else _FLIGHT
-    return (flight - 6, flight, flight + 6), np.stack([ready(place, other, _CATCHING)] * 3)
+    return (flight - 6, flight, flight + 6), np.stack([ready(place, other, CATCHING)] * 3)
