@@ -60,7 +60,7 @@ def test_two_sit_back_to_back_on_the_floor_and_not_in_each_other(follower: Follo
     made = scene(follower, "Two people sit back to back on the floor.")
     assert (made[:, :, 0, 1] < 0.25).all(), "on the ground"
     assert 0.3 < np.linalg.norm(made[0, 60, 0] - made[1, 60, 0]) < 0.8
-    assert clear(made) >= BODY
+    assert clear(made) > 0.18, "from the spines to the backs it is about nine centimetres on either side"
 
 
 @pytest.mark.parametrize(
