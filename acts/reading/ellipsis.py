@@ -90,6 +90,8 @@ class Ellipsis:
         count, listed = self._count(i), self._lower(i - 1) in _ENDS
         if self._lower(i - 1) == "and":  # "throws a jab and a hook" has its verb
             listed = self._last.startswith(PERFORM)
+        if not count and self._is_headline(i):
+            return PERFORM
         if not count or not listed:
             return ""
         at = i + 1
@@ -110,6 +112,25 @@ class Ellipsis:
         if one == "turn" and (self._lower(i), self._lower(i + 1)) in _HALVES:
             return self._form("turn")
         return self._form("take" if one in ("step", "pace") else PERFORM)
+
+    def _is_headline(self, i: int) -> bool:
+        """True for a sentence that is only a noun of several deeds: "push-ups", "synchronized jumping jacks"."""
+        outside = PREPOSITIONS | _ENDS | _OWNERS | _CLAUSES | _ARTICLES | _OTHERS
+        at = i
+        while at < i + _LONGEST and self._lower(at) not in outside:
+            at += 1
+        if (
+            at == i
+            or self._lower(i - 1) not in ("", ".", "!", "?")
+            or self._lower(at) not in ("", ".", "!", "?")
+        ):
+            return False
+        *before, noun = [self._lower(k) for k in range(i, at)]
+        one = noun.removesuffix("s")
+        people = any(map(self._words.is_person, (*before, one))) or any(word.endswith("s") for word in before)
+        alone = noun in self._forms and not before  # "jumps" is a verb
+        alone = alone or any(self._ending(word) in ("", "s") for word in before)  # "do jumps"
+        return noun != one and not people and not alone and self._is_deed(one)
 
     def _count(self, i: int) -> int:
         """The number that a word is, 1 for an article; 0 for other words."""

@@ -151,3 +151,15 @@ def test_what_visitors_type(text: str, acts: str) -> None:
 def test_what_is_thrown_into_the_air_is_what_is_caught() -> None:
     thrown, caught = read("A throws the ball in the air and catches it.").acts
     assert (thrown.direction, thrown.thing, caught.thing, caught.agents) == ("up", "ball", "ball", ("a",))
+
+
+@pytest.mark.parametrize(
+    ("text", "act"),
+    [("push-ups", "push-ups"), ("synchronized jumping jacks", "jumping-jacks"), ("Slow bows.", "bow")],
+)
+def test_a_headline_is_done_by_both(text: str, act: str) -> None:
+    assert [(each.agents, each.act) for each in read(text).acts] == [(("a", "b"), act)]
+
+
+def test_a_pronoun_makes_no_headline() -> None:
+    assert [(each.agents, each.act) for each in read("He jumps.").acts] == [(("a",), "jump")]

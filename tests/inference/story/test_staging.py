@@ -290,3 +290,9 @@ def test_two_who_sit_on_a_bench_sit_on_one() -> None:
 @pytest.mark.parametrize(("words", "turns"), [("A turns around.", 0.5), ("A turns around twice.", 2.0)])
 def test_who_turns_more_than_once_turns_all_the_way_round(words: str, turns: float) -> None:
     assert [move.turns for move in told(words).moves if move.person == "a"] == [turns]
+
+
+def test_what_is_done_in_unison_is_no_phrase_of_a_dance() -> None:
+    stage = told("They bow in unison.")
+    assert stage.bows.keys() == {"a", "b"} and not stage.figures
+    assert told("They move in unison.").figures

@@ -22,6 +22,8 @@ BEFORE = 45
 """Frames before somebody is up in which their hand is held."""
 _ARM = 0.48
 """Metres from the shoulder to the wrist of an arm that pulls."""
+_NEARLY = 1.15
+"""Times the length of both arms between two shoulders at which the hands begin to reach for each other."""
 _LEANS = np.linspace(0.1, 1.2, 12)
 """Radians by which somebody leans forward who pulls the other up: as little as gets the hands together."""
 _GAP = 0.03
@@ -55,6 +57,8 @@ def given_pull(puller: str, poses: Sequence[Pose], stretch: Stretch) -> list[Kno
         place, angle = course.places[t], float(course.headings[t])
         one, other = _leaning_to(pose, place, angle), pose.copy()
         line = one[_SHOULDER] - other[_SHOULDER]
+        if np.linalg.norm(line) > _NEARLY * 2 * _ARM:
+            continue  # they are still on their way
         meet, gap = other[_SHOULDER] + line / 2, _GAP * line / np.linalg.norm(line)
         one[_WRIST], other[_WRIST] = meet + gap, meet - gap
         frames.append(t)

@@ -112,6 +112,11 @@ def reaches_low(act: Act, entry: Entry) -> bool:
     return any(isinstance(shape, shapes.Touch) and region_of(act, shape) in LOW for shape in entry.stage)
 
 
+def is_manner(entry: Entry) -> bool:
+    """True for moving in unison, in canon or as the other does: another act's manner, or else a phrase of a dance."""
+    return any(getattr(shape, "figure", "") == "phrase" for shape in entry.stage)
+
+
 def figure_of(act: Act, shape: shapes.Figure) -> Figure:
     """The figure of an act: as often as its words say, and with the other leg where they name the left one."""
     mirrored = shape.mirrored ^ (act.side == "left")

@@ -23,6 +23,7 @@ from .act_kinds import (
     is_attempt,
     is_deep,
     is_gentle,
+    is_manner,
     is_near,
     only_stays,
     region_of,
@@ -110,7 +111,7 @@ class _Stage:
     def told(self) -> Told:
         """All that they tell."""
         for act, entry in sorted(self.done, key=lambda pair: self.level[pair[0].id]):
-            for shape in entry.stage:
+            for shape in () if is_manner(entry) and len(self.done) > 1 else entry.stage:
                 self._take(act, shape)
         for act in self.acts:
             refused = self.known.entries[act.act].refused if act.act in self.known.entries else ()
