@@ -94,7 +94,8 @@ class ClauseTree:
                 and self._words.is_person(token.head.lemma_.lower())
             )
         event = token.dep_ == "relcl" and token.head.lemma_.lower() not in self._words.places
-        if token.dep_ != "ROOT" and not event and any(c.lower_ == "where" for c in token.children):
+        beneath = token.subtree if token.dep_ == "pcomp" else token.children
+        if token.dep_ != "ROOT" and not event and any(c.lower_ == "where" for c in beneath):
             return False  # "to where she came from" is a place, and "a tango where he dips her" none
         if is_kept(token):
             return False

@@ -163,3 +163,10 @@ def test_a_headline_is_done_by_both(text: str, act: str) -> None:
 
 def test_a_pronoun_makes_no_headline() -> None:
     assert [(each.agents, each.act) for each in read("He jumps.").acts] == [(("a",), "jump")]
+
+
+def test_where_somebody_came_from_is_a_place() -> None:
+    assert [act.act for act in read("She bows to him and goes back to where she came from.").acts] == [
+        "bow",
+        "go-back",
+    ]
