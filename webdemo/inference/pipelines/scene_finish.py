@@ -58,7 +58,7 @@ def finishes(request: SceneRequest) -> tuple[BeatFinish, ...]:
     """The finish of each beat: as it was kept, or else as the words say."""
     if request.plan is not None and request.plan.finishes:
         return request.plan.finishes[: len(request.beats)]
-    return tuple(finish_of(told) for told in (request.told if request.planned else ()))
+    return tuple(finish_of(told) for told in (request.told if request.plans_words else ()))
 
 
 def finish_of(told: Told) -> BeatFinish:

@@ -274,7 +274,7 @@ def plan_note(request: SceneRequest, go_on: Callable[[], None] = lambda: None) -
             said.append(
                 (f"in beat {number} " if len(request.beats) > 1 else "") + " and ".join(dict.fromkeys(ways))
             )
-    if not request.planned or request.loop or request.end is not None or not said:
+    if not request.plans_words or not said:
         return []
     return [f"From the words: {'; '.join(said)}. A path that you draw takes the place of this."]
 

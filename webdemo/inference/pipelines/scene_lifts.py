@@ -38,6 +38,8 @@ SPIN, SETTLED, EASED = 90, 3, 0.3
 which it gets up its speed."""
 _FAR = 0.45
 """Metres beyond a lift's own distance: from farther away nobody is picked up."""
+_STAYS = 0.3
+"""Metres within which somebody who is picked up keeps their place before."""
 _STANDS = 0.003
 """Metres or radians a frame below which a body stands."""
 _ELBOWS = [SMPL22.index("left_elbow"), SMPL22.index("right_elbow")]
@@ -99,12 +101,18 @@ class Carrying:
         headings = np.where(np.arange(len(share)) < met, course.headings, course.headings[met] + share * turn)
         return replace(course, headings=headings)
 
+    @property
+    def _waits(self) -> bool:
+        """True where a story begins with somebody on their feet who is picked up where they stand."""
+        places = self.stretch.course(1 - self.carrier).places[: max(self.off[0] - RISES, 1)]
+        return not self.stretch.start and float(np.ptp(places, axis=0).max()) < _STAYS
+
     def before(self) -> dict[int, Way2D]:
         """The ways until shortly before the feet leave the floor; from then on, poses say where people are."""
         found, until = {}, self.off[0] - RISES // 2
         for person, way in self.stretch.ways.items():
             kept = np.asarray(way.frames) < (until if person != self.carrier else self.off[0])
-            if person != self.carrier and not self.stretch.start:
+            if person != self.carrier and self._waits:
                 kept &= np.asarray(way.frames) > 0  # where they begin on their feet
             if kept.any():
                 headings = None if way.headings is None else way.headings[kept]
@@ -169,7 +177,7 @@ class Carrying:
         """Frames before and after the lift, and poses (22, 3) of the person carried then."""
         first, last = self.off
         other, frames, stand = 1 - self.carrier, self.stretch.frames, self.stretch.stand
-        if first and not self.stretch.start:
+        if first and self._waits:
             for frame in range(0, max(first - RISES, 1), OFTEN if first < LONG else LONG):
                 yield frame, upright(stand.places[other], float(stand.headings[other]))
         if last < frames:

@@ -115,7 +115,7 @@ def _plan(
     """The plan, by the wishes and the words of a scene, of a window whose frame begins at a place."""
     placement, beat = _at(place), request.beats[window.beat]
     parts, notes = wishes(request, window, scene, placement)
-    if request.planned and request.end is None and not request.loop:
+    if request.plans_words:
         parts += planned(request, window, scene, placement, {part.person for part in parts})
     alone = beat.alone if any(beat.alone) else request.told[window.beat].alone
     return WindowPlan(place, tuple(parts), alone, tuple(notes))

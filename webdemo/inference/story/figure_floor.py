@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-import scipy.ndimage
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion import SMPL22

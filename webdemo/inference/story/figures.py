@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.interpolate
-import scipy.ndimage
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion.easing import smoothstep

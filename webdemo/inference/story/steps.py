@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.ndimage
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion import SMPL22

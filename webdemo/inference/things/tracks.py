@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
-from scipy.signal import find_peaks
 from scipy.spatial.transform import Rotation
 
 from motion.easing import smoothstep
@@ -104,8 +103,10 @@ def bounced(course: Course, under: Array, start: int, stop: int, radius: float) 
         start, stop: frames of the hand's strokes.
         radius: of the ball.
     """
-    height = gaussian_filter1d(under[:, 1], 1.0)
-    lows, highs = (start + find_peaks(sign * height[start:stop], prominence=0.04)[0] for sign in (-1.0, 1.0))
+    height = scipy.ndimage.gaussian_filter1d(under[:, 1], 1.0)
+    lows, highs = (
+        start + scipy.signal.find_peaks(sign * height[start:stop], prominence=0.04)[0] for sign in (-1.0, 1.0)
+    )
     if not len(lows):
         return
     course.then(int(lows[0]), (under, course.rotations), BLEND)
