@@ -19,7 +19,7 @@ from webdemo.inference.pipelines.scene import SceneMaker
 from webdemo.inference.pipelines.scene_setting import Setting
 from webdemo.inference.requests import Result
 from webdemo.inference.story import SceneRequest
-from webdemo.inference.story.poses import upright
+from webdemo.inference.story.bodies.poses import upright
 from webdemo.inference.timer import StageTimer
 
 BETWEEN = 40

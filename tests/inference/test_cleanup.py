@@ -9,7 +9,7 @@ from tests.motion.test_pivots import apart, turned
 from webdemo.inference import cleanup
 from webdemo.inference.cleanup import _elbow_pole, clean_person, on_constant_bones
 from webdemo.inference.following import FollowingCleanup
-from webdemo.inference.story.poses import lying
+from webdemo.inference.story.bodies.poses import lying
 
 WRISTS = [SMPL22.index(name) for name in ("left_wrist", "right_wrist")]
 TOES = [SMPL22.index(name) for name in ("left_foot", "right_foot")]

@@ -12,7 +12,7 @@ from webdemo.inference.complaints import BRIGHT, COLD, FRAMES, HOT, LOUD, SMELLS
 from webdemo.inference.pipelines.agent import FIRST
 from webdemo.inference.pipelines.live_agent import BESIDE, LiveAgent
 from webdemo.inference.pipelines.live_room import PLACES, STANDS, USES
-from webdemo.inference.story.gestures import Gesture, Hand, wrist
+from webdemo.inference.story.bodies.gestures import Gesture, Hand, wrist
 
 from .test_live_partner import NOTHING, STANDING, Recorded, Scripted
 

@@ -13,7 +13,7 @@ from motion.transforms import heading
 from webdemo.inference import Engine, SceneRequest
 from webdemo.inference.actor import FPS
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose
-from webdemo.inference.story.poses import upright
+from webdemo.inference.story.bodies.poses import upright
 
 from .followed import Follower, speeds
 from .test_scenes import positions, run

@@ -9,7 +9,7 @@ from webdemo.inference import Engine, SceneRequest
 from webdemo.inference.pipelines.scene_hands import late_by
 from webdemo.inference.pipelines.scene_room import BODY, distance
 from webdemo.inference.story import Beat
-from webdemo.inference.story.figures import Figure, figured
+from webdemo.inference.story.bodies.figures import Figure, figured
 
 from .test_planned_scenes import FEET, QUICK, WRISTS, heights, made
 from .test_scenes import positions, run

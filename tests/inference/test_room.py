@@ -14,8 +14,8 @@ from webdemo.inference.pipelines.scene_floor import plan_note
 from webdemo.inference.pipelines.scene_postures import postures
 from webdemo.inference.pipelines.scene_room import BODY, distance, roomy
 from webdemo.inference.story import Beat
+from webdemo.inference.story.bodies.poses import at_rest, bowing, lying, stooping, upright
 from webdemo.inference.story.floor import Standing
-from webdemo.inference.story.poses import at_rest, bowing, lying, stooping, upright
 from webdemo.inference.story.scripting import told_by
 from webdemo.inference.story.told import Told
 

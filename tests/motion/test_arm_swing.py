@@ -12,7 +12,7 @@ from motion.kinematics import forward_kinematics
 from motion.skeleton import ARMS
 from motion.transforms import heading_matrix
 from motion.vectors import unit
-from webdemo.inference.story.poses import about
+from webdemo.inference.story.bodies.poses import about
 
 Array = NDArray[np.floating]
 FPS, FRAMES, STRIDES = 30.0, 180, 0.9

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22
 from motion.ground import _turned_up, above_floor
-from webdemo.inference.story.poses import kneeling, lying, upright
+from webdemo.inference.story.bodies.poses import kneeling, lying, upright
 
 Array = NDArray[np.floating]
 HERE = np.zeros(2)

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from webdemo.inference.story import Beat
+from webdemo.inference.story.bodies.gestures import Gesture
+from webdemo.inference.story.bodies.strikes import Strike
 from webdemo.inference.story.contacts import Contact
 from webdemo.inference.story.floor import Standing
-from webdemo.inference.story.gestures import Gesture
 from webdemo.inference.story.holds import Hold
 from webdemo.inference.story.lifts import Lift
 from webdemo.inference.story.moves import Move
 from webdemo.inference.story.postures import Change
 from webdemo.inference.story.scripting import told_by
-from webdemo.inference.story.strikes import Strike
 from webdemo.inference.story.told import Told
 
 

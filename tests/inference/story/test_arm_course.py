@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
-from webdemo.inference.story.arm_course import PASSING, arm, hanging, hangs, rested
-from webdemo.inference.story.gestures import Gesture, Hand
-from webdemo.inference.story.poses import upright
+from webdemo.inference.story.bodies.arm_course import PASSING, arm, hanging, hangs, rested
+from webdemo.inference.story.bodies.gestures import Gesture, Hand
+from webdemo.inference.story.bodies.poses import upright
 
 LENGTH = 5.0
 TIME = np.arange(0, 150, 2) / 30

@@ -11,8 +11,8 @@ import pytest
 from motion import SMPL22
 from tests.inference.story.staged_words import beginning
 from webdemo.inference.story.beginnings import BACKS
+from webdemo.inference.story.bodies.poses import grounded, upright
 from webdemo.inference.story.floor import ABREAST
-from webdemo.inference.story.poses import grounded, upright
 
 
 @pytest.mark.parametrize(

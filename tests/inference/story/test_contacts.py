@@ -7,6 +7,7 @@ import pytest
 
 from motion import SMPL22
 from tests.inference.story.staged_words import contact
+from webdemo.inference.story.bodies.poses import bending, kneeling, lying, upright
 from webdemo.inference.story.contacts import (
     Contact,
     Region,
@@ -18,7 +19,6 @@ from webdemo.inference.story.contacts import (
     touched,
     touching,
 )
-from webdemo.inference.story.poses import bending, kneeling, lying, upright
 
 ORIGIN = np.zeros(2)
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from acts import shapes
 from motion import SMPL22
-from webdemo.inference.story.figure_floor import _CLEARANCES
-from webdemo.inference.story.figures import Figure, figured, figures
-from webdemo.inference.story.poses import upright
+from webdemo.inference.story.bodies.figure_floor import _CLEARANCES
+from webdemo.inference.story.bodies.figures import Figure, figured, figures
+from webdemo.inference.story.bodies.poses import upright
 
 J = {name: i for i, name in enumerate(SMPL22.joint_names)}
 FEET, HANDS = [J["left_foot"], J["right_foot"]], [J["left_wrist"], J["right_wrist"]]

@@ -12,7 +12,7 @@ from tests.inference.followed import Follower
 from tests.inference.story.staged_words import moves
 from tests.inference.test_scenes import positions
 from webdemo.inference.story import Beat, SceneRequest
-from webdemo.inference.story.gaits import CYCLE, GAITS, low_gait
+from webdemo.inference.story.bodies.gaits import CYCLE, GAITS, low_gait
 
 KNEES = [SMPL22.index(f"{side}_knee") for side in ("left", "right")]
 HANDS = [SMPL22.index(f"{side}_wrist") for side in ("left", "right")]

@@ -10,9 +10,9 @@ import pytest
 from acts import shapes
 from motion import SMPL22
 from tests.inference.story.staged_words import gestures
-from webdemo.inference.story.gestures import SIDES, Gesture, Hand, wrist
-from webdemo.inference.story.poses import upright
-from webdemo.inference.story.strokes import STROKES
+from webdemo.inference.story.bodies.gestures import SIDES, Gesture, Hand, wrist
+from webdemo.inference.story.bodies.poses import upright
+from webdemo.inference.story.bodies.strokes import STROKES
 
 AHEAD = np.tile([0.0, 0.0, 1.0], (60, 1))
 TIME = np.arange(60) / 30

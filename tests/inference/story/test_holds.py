@@ -7,8 +7,8 @@ import pytest
 
 from motion import SMPL22
 from tests.inference.story.staged_words import hold, twirls
+from webdemo.inference.story.bodies.poses import upright
 from webdemo.inference.story.holds import TWIRL, Hold, joined, raised
-from webdemo.inference.story.poses import upright
 
 FACING = np.array([[[0.0, 0.0]], [[0.0, 0.5]]])
 """Person a at the origin, facing +Z; person b before them."""

@@ -7,7 +7,7 @@ from motion import SMPL22
 from motion.metrics.naturalness import mirror_gap
 from motion.transforms import heading
 from tests.inference.story.staged_words import gesturing, idle, is_planned, told
-from webdemo.inference.story.poses import standing
+from webdemo.inference.story.bodies.poses import standing
 
 
 @pytest.mark.parametrize(

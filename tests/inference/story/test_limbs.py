@@ -11,8 +11,8 @@ from acts.plan import Act, Plan
 from motion import SMPL22, Duet
 from webdemo.inference.actor import FPS
 from webdemo.inference.scenes import NAMES
-from webdemo.inference.story.limbs import MOVES, RAISES, Limb, limbed
-from webdemo.inference.story.poses import upright
+from webdemo.inference.story.bodies.limbs import MOVES, RAISES, Limb, limbed
+from webdemo.inference.story.bodies.poses import upright
 from webdemo.inference.story.staging import staged
 
 SECONDS = np.arange(150) / FPS

@@ -12,7 +12,7 @@ from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.poses import kneels, lies, low, sits
 from motion.metrics.sentences.poses import upright as is_upright
 from motion.transforms import heading
-from webdemo.inference.story.poses import (
+from webdemo.inference.story.bodies.poses import (
     LOWER,
     bending,
     bowed,

@@ -10,15 +10,15 @@ from acts.plan import Act, Plan, Relation
 from motion import InputError
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.story.beats import Beat, acts_of
+from webdemo.inference.story.bodies.gestures import Hand
+from webdemo.inference.story.bodies.strikes import Bout
 from webdemo.inference.story.contacts import Region
-from webdemo.inference.story.gestures import Hand
 from webdemo.inference.story.holds import Hold
 from webdemo.inference.story.lifts import Carry
 from webdemo.inference.story.postures import Posture
 from webdemo.inference.story.request import SceneRequest, as_scene, beat_of
 from webdemo.inference.story.scripting import beats_of
 from webdemo.inference.story.staging import staged
-from webdemo.inference.story.strikes import Bout
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.toml import read_story, write_story
 from webdemo.inference.story.ways import Way

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from acts import shapes
 from motion import SMPL22
 from tests.inference.story.staged_words import moves
-from webdemo.inference.story.gaits import GAITS
-from webdemo.inference.story.poses import SOLE
-from webdemo.inference.story.steps import STEPS, stepped
+from webdemo.inference.story.bodies.gaits import GAITS
+from webdemo.inference.story.bodies.poses import SOLE
+from webdemo.inference.story.bodies.steps import STEPS, stepped
 
 Array = NDArray[np.floating]
 J = {name: i for i, name in enumerate(SMPL22.joint_names)}

@@ -8,9 +8,9 @@ import pytest
 from acts import read
 from motion import SMPL22
 from tests.inference.story.staged_words import beginning, moves, strike
+from webdemo.inference.story.bodies.strikes import Bout, Strike, blows, catching, poses, ready
 from webdemo.inference.story.scripting import beats_of
 from webdemo.inference.story.staging import staged
-from webdemo.inference.story.strikes import Bout, Strike, blows, catching, poses, ready
 from webdemo.inference.story.ways import Way
 
 HERE, THERE = np.zeros(2), np.array([0.0, Bout.FISTS.value])

@@ -12,12 +12,12 @@ from motion import SMPL22
 from motion.skeleton import ARMS
 from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames, Part
-from webdemo.inference.story.figures import figured
+from webdemo.inference.story.bodies.figures import figured
+from webdemo.inference.story.bodies.limbs import WITH_ARMS, Limb, limbed
+from webdemo.inference.story.bodies.poses import HANDS, bowed, standing
+from webdemo.inference.story.bodies.steps import stepped
 from webdemo.inference.story.floor import Standing
-from webdemo.inference.story.limbs import WITH_ARMS, Limb, limbed
-from webdemo.inference.story.poses import HANDS, bowed, standing
 from webdemo.inference.story.postures import Change, Posture
-from webdemo.inference.story.steps import stepped
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.track import HALT
 

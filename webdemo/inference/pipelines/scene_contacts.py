@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
+from webdemo.inference.story.bodies.curves import direction
+from webdemo.inference.story.bodies.poses import LOWER, TRUNK, bending, upright
 from webdemo.inference.story.contacts import (
     LOWEST,
     Contact,
@@ -22,11 +24,9 @@ from webdemo.inference.story.contacts import (
     touched,
     touching,
 )
-from webdemo.inference.story.curves import direction
 from webdemo.inference.story.floor import ABEAM, Standing
 from webdemo.inference.story.holds import Hold, joined, raised
 from webdemo.inference.story.moves import Move
-from webdemo.inference.story.poses import LOWER, TRUNK, bending, upright
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.ways import Way
 

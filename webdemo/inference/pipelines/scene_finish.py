@@ -16,7 +16,7 @@ from motion.touch.palms import palms_met
 from motion.touch.upright import backs_straight
 from webdemo.inference.actor import FPS
 from webdemo.inference.plans import BeatFinish
-from webdemo.inference.story.gestures import Hand
+from webdemo.inference.story.bodies.gestures import Hand
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.told import Told
 

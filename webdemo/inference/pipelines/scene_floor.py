@@ -13,17 +13,17 @@ from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.known_parts import KnownFrames, Part
 from webdemo.inference.story.beginnings import starting
+from webdemo.inference.story.bodies.gestures import Hand
+from webdemo.inference.story.bodies.poses import ARMS, HANDS, standing, upright
+from webdemo.inference.story.bodies.steps import STEPS
+from webdemo.inference.story.bodies.strikes import Bout
 from webdemo.inference.story.contacts import Contact
 from webdemo.inference.story.floor import Standing, Way2D, plan
-from webdemo.inference.story.gestures import Hand
 from webdemo.inference.story.holds import Hold
 from webdemo.inference.story.moves import Move, goes
 from webdemo.inference.story.plan import Window
-from webdemo.inference.story.poses import ARMS, HANDS, standing, upright
 from webdemo.inference.story.postures import Change, Posture
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.steps import STEPS
-from webdemo.inference.story.strikes import Bout
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.ways import Way
 

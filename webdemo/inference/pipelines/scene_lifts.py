@@ -13,11 +13,11 @@ from motion import SMPL22
 from motion.transforms import heading_matrix
 from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
-from webdemo.inference.story.curves import eased
+from webdemo.inference.story.bodies.curves import eased
+from webdemo.inference.story.bodies.gestures import Gesture, wrist
+from webdemo.inference.story.bodies.poses import LOWER, TRUNK, upright
 from webdemo.inference.story.floor import Way2D
-from webdemo.inference.story.gestures import Gesture, wrist
 from webdemo.inference.story.lifts import Carry, Lift, carried
-from webdemo.inference.story.poses import LOWER, TRUNK, upright
 
 from .scene_stretch import Course, Stretch
 from .steering import STRIDE, Steps

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from webdemo.inference.actor import Placement
 from webdemo.inference.known_parts import KnownPath, Part
+from webdemo.inference.story.bodies.gaits import low_gait
 from webdemo.inference.story.floor import Way2D
-from webdemo.inference.story.gaits import low_gait
 
 from .scene_stretch import Stretch
 
@@ -36,7 +36,7 @@ def given_gait(gait: str, person: int, down: Collection[int], stretch: Stretch) 
     """The poses of a person who crawls or walks on the knees along a way.
 
     Args:
-        gait: of :data:`webdemo.inference.story.gaits.GAITS`.
+        gait: of :data:`webdemo.inference.story.bodies.gaits.GAITS`.
         person: 0 for a, 1 for b.
         down: the people who are down already when the beat begins; the others get down first.
         stretch: the beat.

@@ -12,9 +12,8 @@ from motion import SMPL22
 from motion.easing import minimum_jerk
 from motion.transforms import heading
 from webdemo.inference.actor import FPS
-from webdemo.inference.story.floor import Standing
-from webdemo.inference.story.gaits import on_all_fours
-from webdemo.inference.story.poses import (
+from webdemo.inference.story.bodies.gaits import on_all_fours
+from webdemo.inference.story.bodies.poses import (
     FLAT,
     HANDS,
     LOWER,
@@ -33,6 +32,7 @@ from webdemo.inference.story.poses import (
     stooping,
     upright,
 )
+from webdemo.inference.story.floor import Standing
 from webdemo.inference.story.postures import Change, Posture
 from webdemo.inference.story.told import Told, at_start
 from webdemo.inference.story.track import HALT

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22
 from webdemo.inference.known_parts import KnownFrames
-from webdemo.inference.story.poses import TRUNK, bending
+from webdemo.inference.story.bodies.poses import TRUNK, bending
 
 from .scene_postures import UPRIGHT, Pose
 from .scene_stretch import Stretch

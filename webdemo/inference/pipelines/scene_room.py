@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.known_parts import Part
-from webdemo.inference.story.curves import eased
+from webdemo.inference.story.bodies.curves import eased
+from webdemo.inference.story.bodies.poses import upright
 from webdemo.inference.story.floor import Standing
 from webdemo.inference.story.plan import Window
-from webdemo.inference.story.poses import upright
 
 from .scene_paths import known_paths
 from .scene_postures import Pose

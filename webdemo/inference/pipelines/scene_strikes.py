@@ -10,9 +10,19 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
-from webdemo.inference.story.gestures import SIDES
-from webdemo.inference.story.poses import HANDS, TRUNK, standing, upright
-from webdemo.inference.story.strikes import CATCHING, FIRST, Blow, Bout, Strike, blows, catching, poses, ready
+from webdemo.inference.story.bodies.gestures import SIDES
+from webdemo.inference.story.bodies.poses import HANDS, TRUNK, standing, upright
+from webdemo.inference.story.bodies.strikes import (
+    CATCHING,
+    FIRST,
+    Blow,
+    Bout,
+    Strike,
+    blows,
+    catching,
+    poses,
+    ready,
+)
 from webdemo.inference.story.told import Told
 
 from .scene_postures import DUCKING

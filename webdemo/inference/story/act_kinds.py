@@ -8,8 +8,8 @@ from acts.plan import Act
 from acts.reading.vocabulary import vocabulary
 from acts.things import is_fixture
 
+from .bodies.figures import Figure
 from .contacts import LOW, Region
-from .figures import Figure
 
 _NEAR = frozenset(("touch", "fight", "dance", "care"))
 """Groups of the lexicon whose acts two people do within each other's reach."""

@@ -10,13 +10,13 @@ import numpy as np
 
 from acts.plan import other_of
 
+from .bodies.poses import grounded, seated, upright
+from .bodies.strikes import Strike
 from .floor import ABREAST, BEHIND, CLOSE, LINKED, Standing
 from .holds import TWIRL
 from .lifts import Carry, Lift
 from .moves import Move
-from .poses import grounded, seated, upright
 from .postures import Posture
-from .strikes import Strike
 from .ways import Way
 
 BACKS = 0.34

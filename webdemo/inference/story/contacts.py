@@ -17,8 +17,8 @@ from motion import SMPL22
 from motion.transforms import heading, heading_matrix
 from motion.vectors import unit
 
-from .gestures import SIDES
-from .poses import TRUNK, about, kneeling, leaning, upright
+from .bodies.gestures import SIDES
+from .bodies.poses import TRUNK, about, kneeling, leaning, upright
 
 Array = NDArray[np.floating]
 

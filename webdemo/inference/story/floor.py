@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from motion.vectors import wrapped
 from webdemo.inference.actor import FPS
 
-from .curves import bearing, direction, eased, smoothed
+from .bodies.curves import bearing, direction, eased, smoothed
 from .holds import Hold, danced
 from .moves import Move
 from .track import EASE, MOST, Track

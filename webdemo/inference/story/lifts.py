@@ -17,7 +17,7 @@ from motion.kinematics import forward_kinematics
 from motion.touch.bending import bent_towards
 from motion.transforms import heading_matrix
 
-from .poses import about, bending
+from .bodies.poses import about, bending
 
 Array = NDArray[np.floating]
 

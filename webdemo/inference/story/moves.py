@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 from acts.plan import other_of
 
+from .bodies.strikes import Strike, turning
 from .holds import Hold
 from .lifts import Carry, Lift
-from .strikes import Strike, turning
 from .ways import Way
 
 

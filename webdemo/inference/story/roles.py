@@ -9,9 +9,9 @@ from acts.lexicon import Entry, Lexicon
 from acts.plan import Act, other_of
 
 from .act_kinds import is_care, leaves_hands, only_stays, reaches, walks
-from .gestures import AT_OTHER, SIDES, Gesture
+from .bodies.gestures import AT_OTHER, SIDES, Gesture
+from .bodies.strikes import Bout, Strike
 from .moves import Move
-from .strikes import Bout, Strike
 from .ways import Way
 
 Done = Sequence[tuple[Act, Entry]]

@@ -30,16 +30,16 @@ from .act_kinds import (
     walks,
 )
 from .beginnings import Setting, standing
+from .bodies.figures import Figure
+from .bodies.gestures import OF_BOTH, SIDES, Gesture, Hand
+from .bodies.limbs import Limb
+from .bodies.strikes import Bout, Strike
 from .contacts import LOW, Contact, Region
-from .figures import Figure
-from .gestures import OF_BOTH, SIDES, Gesture, Hand
 from .holds import TWIRL, Hold
 from .lifts import Carry, Lift
-from .limbs import Limb
 from .moves import Move, away, fastest, finished, goes, lifted_moves, struck_moves
 from .postures import LOWERED, Change, Posture
 from .roles import gesturing, loose, standing_by, strike_of
-from .strikes import Bout, Strike
 from .told import Told
 from .ways import Way
 

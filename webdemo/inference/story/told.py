@@ -8,16 +8,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from .bodies.figures import Figure
+from .bodies.gestures import Gesture
+from .bodies.limbs import Limb
+from .bodies.strikes import Strike
 from .contacts import Contact
-from .figures import Figure
 from .floor import Standing
-from .gestures import Gesture
 from .holds import Hold
 from .lifts import Lift
-from .limbs import Limb
 from .moves import Move, goes
 from .postures import Change, Posture
-from .strikes import Strike
 from .ways import Way
 
 _IN_PLACE = (Way.STAY, Way.FACE, Way.BACKS)

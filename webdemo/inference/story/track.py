@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from motion.vectors import wrapped
 from webdemo.inference.actor import FPS
 
-from .curves import eased, filled
+from .bodies.curves import eased, filled
 
 Array = NDArray[np.floating]
 
