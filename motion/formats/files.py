@@ -67,7 +67,7 @@ def decode_text(data: bytes, label: str, kind: str) -> str:
     elif 3 * data[:200].count(0) > len(data[:200]):
         encoding = "utf-16-le" if data[1:2] == b"\0" else "utf-16-be"
     else:
-        encoding = "utf-8-sig"
+        encoding, data = "utf-8", data.removeprefix(codecs.BOM_UTF8)
     text = data.decode(encoding if _is_text(data, encoding) else "latin-1")
     if "\0" in text:
         raise InputError(f"{label} is not {kind}: it holds binary data.")

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, InputError, formats
+from motion.formats.files import decode_text
 from motion.formats.importing import ImportChoices, import_motion
 from motion.kinematics import forward_kinematics
 from motion.retarget import to_smpl
@@ -108,3 +109,17 @@ def test_joints_in_one_place_are_no_body() -> None:
         nobody = import_motion(npy(np.full((30, joints, 3), 0.5)), name="nobody.npy").people[0]
         with pytest.raises(InputError, match="lie in one place"):
             to_smpl(nobody)
+
+
+@pytest.mark.parametrize(
+    ("data", "text"),
+    [
+        (b"\xef", "ï"),
+        (b"\xef\xbb", "ï»"),
+        (b"\xef\xbb\xbfHi", "Hi"),
+        (b"\xff\xfeH\0", "H"),
+        (b"\xe9t\xe9", "été"),
+    ],
+)
+def test_text_is_decoded_whatever_breaks_off(data: bytes, text: str) -> None:
+    assert decode_text(data, "a.txt", "a text") == text
