@@ -305,8 +305,6 @@ def _said_postures(told: Told) -> Iterator[str]:
             yield f"person {who.upper()} {'gets up' if up else change.posture.value}"
     for who in told.leaps:
         yield f"person {who.upper()} jumps"
-    for who, figure in told.figures.items():
-        yield f"person {who.upper()} does a figure ({figure.name})"
 
 
 def _beginning(request: SceneRequest) -> Standing:
