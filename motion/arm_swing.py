@@ -36,9 +36,9 @@ _LEADS = 0.07
 _WALKS = (0.25, 0.6)
 """Metres a second of a body from which its arms begin to swing, and swing wholly."""
 _UPRIGHT = (0.7, 0.8)
-"""Heights in metres of the pelvis: of people who are low at most, and of those who walk at least."""
+"""Heights of the pelvis in metres: a person below the first is low, and one above the second walks upright."""
 _LEAPS = (0.4, 0.8)
-"""Metres a second of a pelvis up or down: of people who walk at most, and of those who jump or get up at least."""
+"""Vertical speeds of the pelvis in m/s: below the first a person walks, above the second they jump or get up."""
 _HANGS, _RAISED = (0.35, 0.6), (-0.3, 0.0)
 """Shares of an arm's length by which a wrist is below its shoulder: of an arm that hangs, and of one that is low."""
 _OUT, _AHEAD, _BENT = np.radians([27.0, 20.0, 40.0])

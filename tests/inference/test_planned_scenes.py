@@ -67,10 +67,12 @@ def test_who_holds_out_a_ring_kneels(engine: Engine) -> None:
 
 def test_who_has_thrown_stands_still_while_the_other_has_it(engine: Engine) -> None:
     found = made(engine, "A throws a ball to B and B catches it.", seconds=6.0)
-    hands = (found - found[:, :, :1])[0][:, WRISTS]
+    hands, holds = (found - found[:, :, :1])[:, :, WRISTS]
     speed = np.linalg.norm(np.diff(hands, axis=0), axis=-1).max(axis=1) * 30
     assert speed[:60].max() > 3.0, "the throw"
     assert speed[110:].max() < 1.0
+    assert hands[110:, :, 1].max() < 0.1, "arms hang"
+    assert np.abs(holds[110:, :, 2]).min() > 0.3, "the ball is held"
     assert (np.linalg.norm(np.diff(found, axis=1), axis=-1) * 30).max() < 9.0, "a hand jumps"
 
 

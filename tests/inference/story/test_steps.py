@@ -13,7 +13,7 @@ from motion import SMPL22
 from tests.inference.story.staged_words import moves
 from webdemo.inference.story.bodies.gaits import GAITS
 from webdemo.inference.story.bodies.poses import SOLE
-from webdemo.inference.story.bodies.steps import STEPS, stepped
+from webdemo.inference.story.bodies.steps import ON_FEET, stepped
 
 Array = NDArray[np.floating]
 J = {name: i for i, name in enumerate(SMPL22.joint_names)}
@@ -34,10 +34,10 @@ def standing(poses: Array) -> Array:
 
 
 def test_the_lexicon_may_name_each_gait() -> None:
-    assert set(get_args(shapes.Go.model_fields["gait"].annotation)) == {"", *GAITS, *STEPS}
+    assert set(get_args(shapes.Go.model_fields["gait"].annotation)) == {"", *GAITS, *ON_FEET}
 
 
-@pytest.mark.parametrize("gait", STEPS)
+@pytest.mark.parametrize("gait", ON_FEET)
 @pytest.mark.parametrize(("metres", "turn"), [(2.5, 0.0), (1.0, np.pi), (0.1, 0.0), (0.0, 0.0)])
 def test_bones_are_kept_and_a_foot_that_stands_stays(gait: str, metres: float, turn: float) -> None:
     poses = gone(gait, metres, turn)
@@ -53,7 +53,7 @@ def test_bones_are_kept_and_a_foot_that_stands_stays(gait: str, metres: float, t
     assert np.linalg.norm(np.diff(poses, axis=0), axis=-1).max() * 30 < 6.0
 
 
-@pytest.mark.parametrize("gait", STEPS)
+@pytest.mark.parametrize("gait", ON_FEET)
 def test_the_body_turns_with_its_way(gait: str) -> None:
     poses = gone(gait, 1.0, np.pi)
     across = poses[:, J["left_hip"], 0] - poses[:, J["right_hip"], 0]
@@ -62,7 +62,7 @@ def test_the_body_turns_with_its_way(gait: str) -> None:
     assert toes[0].min() > 0.05 and toes[-1].max() < -0.05
 
 
-@pytest.mark.parametrize("gait", STEPS)
+@pytest.mark.parametrize("gait", ON_FEET)
 def test_feet_take_turns(gait: str) -> None:
     stands = standing(gone(gait))
     assert (~stands[:, 0]).sum() > 20 and (~stands[:, 1]).sum() > 20

@@ -15,7 +15,7 @@ from webdemo.inference.known_parts import KnownFrames, Part
 from webdemo.inference.story.beginnings import starting
 from webdemo.inference.story.bodies.gestures import Hand
 from webdemo.inference.story.bodies.poses import ARMS, HANDS, standing, upright
-from webdemo.inference.story.bodies.steps import STEPS
+from webdemo.inference.story.bodies.steps import ON_FEET
 from webdemo.inference.story.bodies.strikes import Bout
 from webdemo.inference.story.contacts import Contact
 from webdemo.inference.story.floor import Standing, Way2D, plan
@@ -128,7 +128,7 @@ def _on_their_ways(
     low = {"ab".index(move.person): move.gait for move in found if move.gait}
     free = not (told.contact or told.joined or told.linked or told.strike)
     for person, way in ways.items():
-        if low.get(person) in STEPS:
+        if low.get(person) in ON_FEET:
             parts += given_steps(low[person], person, told, beat) if free else path_of(way, beat)
         elif person in low:
             parts += given_gait(low[person], person, _down(scene, beat.start), beat)

@@ -60,7 +60,7 @@ def only_stays(entry: Entry) -> bool:
 
 
 def is_gentle(act: Act) -> bool:
-    """True for an act of somebody who lets themselves down on the floor, and does not fall."""
+    """True for an act that takes a person down to the floor on purpose: no fall."""
     return act.act in _LAYS
 
 

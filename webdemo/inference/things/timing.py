@@ -14,7 +14,7 @@ Array = NDArray[np.floating]
 WITHIN = 0.6
 """Metres between two palms, at most, at which a thing passes from one to the other."""
 BEYOND = 0.35
-"""Metres before the pelvis at which a foot meets a ball: farther than the toes of somebody who stands."""
+"""Metres in front of the pelvis at which a foot meets a ball: beyond the toes of a standing person."""
 AROUND = 0.5
 """Seconds by which a moment may lie outside the frames of its act: what is made keeps no beat to the frame."""
 

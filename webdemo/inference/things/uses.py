@@ -140,12 +140,10 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
         name, kind = seats[0] if seats else ("chair", "")
         return Use(act.id, does, kind, name, agents, other, side, start, stop, place, words)
     name, kind = thing_of(act, words)
-    if does == "uses":  # a tool, on whatever the words name
-        kind = kind if kind in HELD else ""
-    elif act.thing:
-        entry = None
-    if entry and not kind:
-        name = kind = entry.prop
+    if does == "uses" and kind not in HELD:
+        kind = ""  # "sweeps the floor" with a tool
+    if not kind and (does == "uses" or not act.thing):
+        name = kind = entry.prop if entry else ""
     if does in ("throws", "kicks"):
         other = {"up": agents[0], "away": None}.get(act.direction or "", other)
     if not kind or is_fixture(name):

@@ -50,7 +50,7 @@ _LEG = float(SMPL22.bone_lengths[SMPL22.index("left_knee")] + SMPL22.bone_length
 
 
 @dataclass(frozen=True)
-class Steps:
+class Gait:
     """A gait on two feet.
 
     Attributes:
@@ -73,9 +73,9 @@ class Steps:
     short: float = 0.0
 
 
-STEPS: Mapping[str, Steps] = {
-    "limps": Steps(0.44, (0.05, 0.025), sinks=0.03, pitch=0.12, arms=0.45, lurch=0.16, short=0.14),
-    "on tiptoe": Steps(0.4, (0.1, 0.1), heels=0.75, sinks=0.05, pitch=0.16, arms=0.9),
+ON_FEET: Mapping[str, Gait] = {
+    "limps": Gait(0.44, (0.05, 0.025), sinks=0.03, pitch=0.12, arms=0.45, lurch=0.16, short=0.14),
+    "on tiptoe": Gait(0.4, (0.1, 0.1), heels=0.75, sinks=0.05, pitch=0.16, arms=0.9),
 }
 """The gaits by their names in the lexicon."""
 
@@ -84,14 +84,14 @@ def stepped(gait: str, places: Array, headings: Array) -> Array:
     """A person who walks with a gait.
 
     Args:
-        gait: a name of :data:`STEPS`.
+        gait: a name of :data:`ON_FEET`.
         places: (N, 2) x and z of the pelvis in metres, one a frame.
         headings: (N,) radians from +Z towards +X.
 
     Returns:
         (N, 22, 3) metres, on the floor.
     """
-    steps = STEPS[gait]
+    steps = ON_FEET[gait]
     places, headings = (
         scipy.ndimage.gaussian_filter1d(values, _SMOOTH, axis=0, mode="nearest")
         for values in (np.asarray(places, dtype=float), np.unwrap(headings))
@@ -115,7 +115,7 @@ def stepped(gait: str, places: Array, headings: Array) -> Array:
     return poses
 
 
-def _foot(steps: Steps, side: int, phase: Array, cycles: float, places: Array, headings: Array) -> Array:
+def _foot(steps: Gait, side: int, phase: Array, cycles: float, places: Array, headings: Array) -> Array:
     """The way (N, 3) of a toe from footprint to footprint."""
     _, sign, ahead = _SIDES[side]
     own = phase + ahead
@@ -143,13 +143,13 @@ def _foot(steps: Steps, side: int, phase: Array, cycles: float, places: Array, h
     return way
 
 
-def _ankle(steps: Steps, toe: Array, sign: float, headings: Array) -> Array:
+def _ankle(steps: Gait, toe: Array, sign: float, headings: Array) -> Array:
     """(N, 3) the ankle over a toe whose heel is up."""
     sole = about(0, steps.heels) @ (_TOE * [sign, 1.0, 1.0])
     return toe - np.stack([heading_matrix(float(angle)) @ sole for angle in headings])
 
 
-def _height(steps: Steps, poses: Array, places: Array, ankles: list[Array]) -> Array:
+def _height(steps: Gait, poses: Array, places: Array, ankles: list[Array]) -> Array:
     """(N,) metres of the pelvis from which both feet are within reach."""
     found = []
     for (hip, *_), ankle in zip(LEGS, ankles, strict=True):
@@ -161,7 +161,7 @@ def _height(steps: Steps, poses: Array, places: Array, ankles: list[Array]) -> A
     return np.asarray(scipy.ndimage.gaussian_filter1d(lowest, _EVEN, mode="nearest") - steps.sinks)
 
 
-def _trunk(steps: Steps, phase: Array, headings: Array) -> Array:
+def _trunk(steps: Gait, phase: Array, headings: Array) -> Array:
     """Rotations (N, 22, 3, 3) of a trunk that leans over the leg that hurts, and of arms that swing a little."""
     turns = np.tile(np.eye(3), (len(phase), SMPL22.num_joints, 1, 1))
     cycle = 2 * np.pi * phase
