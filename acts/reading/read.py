@@ -321,7 +321,9 @@ class _Planner:
         own = [ref.side for ref in parts if ref.who in ("", match.agents)]
         side = event.side or next((side for side in (*own, *(ref.side for ref in parts))), None)
         patient = match.patient
-        if self._known.entries[name].to == "other" and len(match.agents) == 1:
+        entry = self._known.entries[name]
+        upwards = entry.thing == "throws" and event.direction == "up"  # to nobody
+        if entry.to == "other" and len(match.agents) == 1 and not upwards:
             patient = patient or other_of(match.agents)
         owner = None
         if part is not None:

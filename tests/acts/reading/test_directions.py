@@ -151,6 +151,7 @@ def test_what_visitors_type(text: str, acts: str) -> None:
 def test_what_is_thrown_into_the_air_is_what_is_caught() -> None:
     thrown, caught = read("A throws the ball in the air and catches it.").acts
     assert (thrown.direction, thrown.thing, caught.thing, caught.agents) == ("up", "ball", "ball", ("a",))
+    assert thrown.patient is None
 
 
 @pytest.mark.parametrize(
