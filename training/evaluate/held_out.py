@@ -31,7 +31,7 @@ from training.trainers.intergen_data import Data, Settings, seeded, settings_of
 TIMESTEPS = (200, 500, 800, 900, 950, 980, 999)
 NOTHING = Shares(person=0, past=0, span=0, poses=0, path=0, joints=0, more=0)
 GIVEN = {"nothing": NOTHING} | {
-    kind: replace(NOTHING, **{kind: 1.0}) for kind in ("person", "past", "span", "poses", "path")
+    kind: replace(NOTHING, **{kind: 1.0}) for kind in ("person", "past", "span", "poses", "path", "staged")
 }
 
 

@@ -1,7 +1,8 @@
-"""Draws the given part of a training motion: a person, the past, all but a span, poses, joints, or paths."""
+"""Draws the given part of a training motion: a person, the past, all but a span, poses, joints, paths, or a stage's."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import torch
@@ -24,6 +25,7 @@ class Shares:
         poses: one to three single frames, of both or of one.
         path: where one or both are on the floor, at all times or at a few; in half of them the heading, too.
         joints: the pelvis and one to four joints of a person for a while.
+        staged: as the lab gives a story's beat to the network, see :func:`_staged`.
         more: of the samples in which something is given, how many have a second kind given.
     """
 
@@ -33,7 +35,12 @@ class Shares:
     poses: float = 0.06
     path: float = 0.1
     joints: float = 0.03
+    staged: float = 0.0
     more: float = 0.3
+
+
+AS_STAGED = Shares(person=0.08, past=0.08, span=0.04, poses=0.04, path=0.05, joints=0.03, staged=0.45)
+"""What is given where the network is to be led by the lab's plans."""
 
 
 class Draw:
@@ -80,7 +87,7 @@ def known_parts(
     draw = Draw(generator)
     basis = layout.basis(control.shape[2] // layout.knots_per_token)
     known = Known.nothing(len(basis), len(control))
-    names = ("person", "past", "span", "poses", "path", "joints")
+    names = tuple(_KINDS)
     weights = [getattr(shares, name) for name in names]
     for i, (count, before) in enumerate(zip(frames, past, strict=True)):
         known.mask[i, :, :before] = True
@@ -145,4 +152,65 @@ def _joints(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
         mask[person, start:stop, 3 + 3 * joint : 6 + 3 * joint] = True
 
 
-_KINDS = {"person": _person, "past": _past, "span": _span, "poses": _poses, "path": _path, "joints": _joints}
+_HIPS = (1, 2)
+_LEGS = (0, 1, 2, 3, 4, 5, 7, 8, 10, 11)
+_TRUNK = tuple(range(16))
+_REACHING = (3, 6, 9, 12, 15, 13, 14, 16, 17)
+_ARMS = ((18, 20), (19, 21), (18, 20, 19, 21))
+
+
+def _staged(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
+    """The parts that a story's plan gives: a way with its headings, or a stand, legs or a trunk, and hands that reach.
+
+    Each person has their own, at every fourth frame or so, from the beginning or for a while.
+    """
+    for person in range(2):
+        kind = draw.uniform()
+        if kind < 0.35:
+            _way(mask[person], heading[person], frames, draw)
+        elif kind < 0.55:
+            _kept(mask[person], _times(frames, draw), range(22))
+        elif kind < 0.7:
+            _kept(mask[person], _times(frames, draw), _LEGS)
+        elif kind < 0.8:
+            _kept(mask[person], _times(frames, draw), _TRUNK)
+        if (kind < 0.35 or kind > 0.55) and draw.uniform() < 0.5:
+            arm = _ARMS[draw.integer(0, 2)]
+            joints = arm if draw.uniform() < 0.3 else (*_REACHING, *arm)
+            _kept(mask[person], _times(frames, draw), joints)
+
+
+def _way(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
+    """A person's places at times 4 to 30 frames apart, and in most of them where they turn."""
+    times = torch.arange(0, frames, draw.integer(4, 30))
+    if draw.uniform() < 0.4:
+        times = times[draw.integer(0, len(times) - 1) :]
+    for column in FLOOR:
+        mask[times, column] = True
+    turned = times[: draw.integer(1, len(times))] if draw.uniform() < 0.4 else times
+    heading[turned] = True
+    for hip in _HIPS:
+        for axis in FLOOR:
+            mask[turned, 3 * hip + axis] = True
+
+
+def _times(frames: int, draw: Draw) -> Tensor:
+    """Times of a shape: all along or for a while, 3 to 8 frames apart, or one to six of them."""
+    if draw.uniform() < 0.2:
+        return draw.frames(draw.integer(1, 6), frames)
+    start, stop = 0, frames
+    if draw.uniform() < 0.6:
+        start = draw.integer(0, frames - 1)
+        stop = min(frames, start + draw.integer(10, 90))
+    return torch.arange(start, stop, draw.integer(3, 8))
+
+
+def _kept(mask: Tensor, times: Tensor, joints: Iterable[int]) -> None:
+    for joint in joints:
+        mask[times, 3 * joint : 3 * joint + 3] = True
+
+
+_KINDS = {
+    "person": _person, "past": _past, "span": _span, "poses": _poses, "path": _path, "joints": _joints,
+    "staged": _staged,
+}  # fmt: skip

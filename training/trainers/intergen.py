@@ -32,7 +32,7 @@ from training.core.precision import mixed_precision
 from training.core.samples import write_sheet
 from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
-from training.trainers.given import known_parts
+from training.trainers.given import AS_STAGED, known_parts
 from training.trainers.held import Held
 from training.trainers.intergen_data import Batch, Data, Settings, seeded
 from training.trainers.plan_acts import MOSTLY_PLANS
@@ -255,6 +255,8 @@ def _run(options: argparse.Namespace) -> None:
     settings = chosen(options, Settings)
     if settings.only_plan:
         settings = replace(settings, told=MOSTLY_PLANS)
+    if settings.staged:
+        settings = replace(settings, given=AS_STAGED)
     trainer = Trainer(
         load(options.scenes),
         settings,

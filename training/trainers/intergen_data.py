@@ -47,6 +47,8 @@ class Settings:
         :mod:`training.trainers.plan_acts`.
     only_plan: trains nothing but what reads the plan, see :class:`models.intergen.plan_adapter.PlanAdapter`; the rest
         stays as the run begins with.
+    staged: parts of the motion are given as the lab's plans give them, see
+        :data:`training.trainers.given.AS_STAGED`.
     told: how often it is told words, a plan or both.
     given: how often each kind of part of the motion is given.
     """
@@ -73,6 +75,7 @@ class Settings:
     continued: float = 0.2
     plans: bool = False
     only_plan: bool = False
+    staged: bool = False
     told: PlanShares = field(default_factory=PlanShares)
     given: Shares = field(default_factory=Shares)
     weights: LossWeights = field(
