@@ -1,4 +1,4 @@
-"""Verb phrases of an act from its entry: its captions, also with verbs of its frames that WordNet calls the same.
+"""Verb phrases of an act from its entry: its captions, also with other verbs of its frames, and its plainer frames.
 
 A phrase is written as captions are (:mod:`acts.captions`), ``{a+b}`` for what is only said of both.
 """
@@ -9,12 +9,13 @@ import re
 import zlib
 from collections import Counter
 from functools import cache
+from itertools import product
 
 from acts import Act
 from acts.captions import gerund, singular
-from acts.frames import Frame
+from acts.frames import PREPOSITIONS, Frame
 from acts.lexicon import Entry, lexicon
-from acts.reading import read, wordnet
+from acts.reading import read
 
 from .cues import entry
 
@@ -26,6 +27,8 @@ _LIMBS = ("arm", "hand", "leg", "foot")
 _ONE_EACH = re.compile(r"\btheir (head|face|chest|fist|ear|guard|temper)\b")
 _LIGHT = ("be", "do", "go", "have", "make", "remain")
 """Verbs that stand in no other's place."""
+_PLAIN = PREPOSITIONS | {"back", "together", "apart", "forward", "backward", "backwards"}
+"""Words of a frame that need no article."""
 
 
 def held_out(text: str) -> bool:
@@ -46,7 +49,8 @@ def phrases(name: str) -> tuple[str, ...]:
     own = [text for text in known.caption if _verb(text) in verbs and text not in shared]
     if all(text.startswith("{a+b}") for text in own):
         own += known.caption[:1]
-    return tuple(dict.fromkeys([*own, *(other for text in own for other in _reworded(text, known))]))
+    others = [other for text in own for other in _reworded(text, known)]
+    return tuple(dict.fromkeys([*own, *others, *_of_frames(known)]))
 
 
 @cache
@@ -61,18 +65,25 @@ def _verb(phrase: str) -> str:
 
 
 def _reworded(phrase: str, known: Entry) -> list[str]:
-    """The phrase by other verbs of the entry's frames that have the same first sense in WordNet."""
+    """The phrase by other verbs of the entry's frames that hold its verb."""
     verb = _verb(phrase)
-    alike: dict[str, None] = {}
+    verbs: dict[str, None] = {}
     for frame in known.frames:
-        verbs = Frame.parse(frame).verbs
-        if verb in verbs:
-            alike |= dict.fromkeys(sorted(other for other in verbs - {verb} if _same(verb, other)))
-    return [_VERB.sub(f"[{other}]", phrase, count=1) for other in alike]
+        alike = Frame.parse(frame).verbs
+        if verb in alike:
+            verbs |= dict.fromkeys(sorted(other for other in alike - {verb} if other not in _LIGHT))
+    return [_VERB.sub(f"[{other}]", phrase, count=1) for other in verbs]
 
 
-def _same(verb: str, other: str) -> bool:
-    return other not in _LIGHT and wordnet.senses(verb)[:1] == wordnet.senses(other)[:1] != ()
+def _of_frames(known: Entry) -> list[str]:
+    """The entry's frames that are nothing but verbs, particles and the other person."""
+    found = []
+    for frame in known.frames:
+        subject, verbs, *rest = frame.replace("?", "").split()
+        if all(word == "{b}" or _PLAIN.issuperset(word.split("|")) for word in rest):
+            choices = product([v for v in verbs.split("|") if v not in _LIGHT], *(w.split("|") for w in rest))
+            found += [" ".join([subject, f"[{verb}]", *words]) for verb, *words in choices]
+    return found
 
 
 @cache
@@ -94,7 +105,8 @@ def reads_back(name: str, phrase: str, *, both: bool) -> bool:
         text = f"A man jumps, and then they {spoken(act, phrase, 'each other', 'their', 'plural')}."
     else:
         text = f"A man jumps, and then he {spoken(act, phrase, 'the woman', 'his', 's')}."
-    return [one.act for one in read(text).acts] == ["jump", name]
+    acts = read(text).acts
+    return [one.act for one in acts] == ["jump", name] and acts[1].speed == 1.0
 
 
 def fitting(act: Act, *, sided: bool) -> list[str]:
@@ -127,8 +139,10 @@ def spoken(act: Act, phrase: str, other: str, whose: str, form: str) -> str:
     Args:
         other: name of the other person, or "each other".
         whose: "his", "her" or "their", of the agent.
-        form: "s" (waves), "plural" (wave) or "ing" (waving).
+        form: "s" (waves), "plural" (wave), "ing" (waving), "is" (is waving) or "are" (are waving).
     """
+    if form in ("is", "are"):
+        return f"{form} {spoken(act, phrase, other, whose, 'ing')}"
     inflected = {"s": singular, "ing": gerund}.get(form, str)
     text = _VERB.sub(lambda match: inflected(match[1]), phrase).partition(" ")[2]
     limb = act.part if act.part in _LIMBS and "{part}" not in phrase else "hand"

@@ -17,7 +17,7 @@ from acts import Act, Plan, Relation
 from acts.plan import other_of
 from motion.metrics.sentences import kept_out
 
-from .cues import STILL, Label, label
+from .cues import STILL, Label, entry, label
 from .people import Cast, Names, draw_cast
 from .phrasing import fitting, held_out, names_side, spoken
 from .scene import Scene
@@ -31,6 +31,11 @@ _THEN = (", then {}", ", and then {}", " and then {}", ". Then {}", ". Then {}",
          ". {}")  # fmt: skip
 _PAIRS = ("After {}, {}", "First {}, then {}", "{} and then {}")
 """How two clauses that follow each other may stand in one sentence."""
+_WHERE = ("in a park", "in the street", "at a party", "in a gym", "on a stage", "in an office", "in a kitchen",
+          "in a school", "outside a shop", "at the station", "in a garden", "in a hall", "at home",
+          "on the beach", "in a corridor", "at night", "in the morning", "one day", "as usual",
+          "for no reason", "without a word", "in this scene", "in this clip", "here")  # fmt: skip
+"""Where and when it may happen, which the motion does not show."""
 
 
 @dataclass(frozen=True)
@@ -162,10 +167,13 @@ class _Writer:
         self.names = Names(rng, cast)
         self.test = held_out(cast.first[0] + cast.first[1])
         self.told: list[Act] = []
+        self.going = False
+        """Whether it says what the people are doing, as in "is waving"."""
 
     def write(self, groups: Sequence[Sequence[Act]]) -> Told:
         """The caption of acts in groups that follow each other."""
         text = ""
+        self.going = len(groups) == 1 and self.rng.random() < 0.25
         links = self._pair() if len(groups) == 2 and not self.alone else None
         clauses: list[str] = []
         last: list[str] = []
@@ -182,6 +190,8 @@ class _Writer:
             last = subjects
         if links is not None:
             text = links.format(*clauses)
+        if self.rng.random() < 0.15:
+            text = f"{_WHERE[int(self.rng.integers(len(_WHERE)))]}, {text[:1].lower()}{text[1:]}"
         return Told(finished(text), self._plan(groups), self.test)
 
     def _pick(self, items: Sequence[str]) -> str:
@@ -219,13 +229,16 @@ class _Writer:
 
     def _phrases(self, acts: Sequence[Act], subject: str) -> str:
         """The verb phrases of acts of one subject at the same time."""
-        form = "plural" if len(subject) == 2 else "s"
+        both = len(subject) == 2
+        form = ("are" if both else "is") if self.going else "plural" if both else "s"
         first, *others = (self._phrase(act, form if k == 0 else "ing") for k, act in enumerate(acts))
         return " while ".join([first, *others])
 
     def _phrase(self, act: Act, form: str) -> str:
         sided = act.side is not None and (self.sides or self.rng.random() < 0.5)
-        phrase = self._pick(fitting(act, sided=sided))
+        phrases = fitting(act, sided=sided)
+        usual = [text for text in phrases if text in entry(act.act).caption]
+        phrase = self._pick(usual if usual and self.rng.random() < 0.5 else phrases)
         both = len(act.agents) == 2
         other = "b" if act.agents[0] == "a" else "a"
         whom = ""

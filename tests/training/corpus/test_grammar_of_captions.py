@@ -135,6 +135,14 @@ def test_a_phrase_that_reads_as_another_act_is_not_used() -> None:
     assert set(phrases("jump")) - set(used)  # "springs up" is read as standing up
 
 
+def test_an_act_is_told_by_all_verbs_and_plain_frames_that_are_read_as_it() -> None:
+    used = fitting(Act(id="1", act="walk-up", agents=("a",)), sided=False)
+    assert {"{a} [step] up to {b}", "{a} [come] towards {b}", "{a} [come]"} <= set(used)
+    assert "{a} [hurry] up to {b}" in phrases("walk-up"), "a frame has it"
+    assert "{a} [hurry] up to {b}" not in used, "it says how fast"
+    assert spoken(Act(id="1", act="wave", agents=("a",)), "{a} [wave]", "her", "his", "is") == "is waving"
+
+
 def test_a_sided_act_is_told_with_its_side_where_asked() -> None:
     wave = Act(id="1", act="wave", agents=("a",), side="left")
     assert all("{limb}" in text or "{side}" in text for text in fitting(wave, sided=True))

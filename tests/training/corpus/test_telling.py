@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -57,6 +58,14 @@ def _alike(read: tuple[int, Act], told: tuple[int, Act]) -> bool:
         and all(a == b for a, b in named if a is not None and b is not None)
         and (other.side is None or one.side is not None)
     )
+
+
+def test_captions_say_what_people_are_doing_and_where() -> None:
+    told = [one.text for one in captions(seed=3, count=300)]
+    going = [text for text in told if re.search(r"\b(is|are) \w+ing\b", text)]
+    assert 3 <= len(going) <= 60
+    assert not [text for text in going if " then " in text], "said of one moment alone"
+    assert 20 <= sum(text.startswith(("In ", "At ", "On ")) for text in told) <= 60
 
 
 def test_captions_are_read_as_the_plan_that_they_tell() -> None:
