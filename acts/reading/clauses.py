@@ -106,6 +106,9 @@ class ClauseTree:
         if token.dep_ == "pobj" and token.pos_ == "NOUN" and token.head.lower_ in NOUNMARKS:
             known = self.lemma(token) in self._verbs and token.tag_ == "NN"  # "after a quick hug"
             known = known and not self._words.part(token.lemma_.lower())
+            bare = not any(c.dep_ in ("det", "poss", "amod", "nummod") for c in token.children)
+            if bare and token.lemma_.lower() in self._words.verbs["no_nouns"]:
+                return False  # "after work"
             return (
                 known
                 and token.head.head.pos_ in ("VERB", "AUX")

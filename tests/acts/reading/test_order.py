@@ -1,6 +1,8 @@
 """The order of acts that a text only puts side by side."""
 
-from acts import Act, lexicon
+import pytest
+
+from acts import Act, lexicon, read
 from acts.reading.relations import coordinated
 
 
@@ -24,3 +26,12 @@ def test_two_who_hold_hands_spin_or_swing_their_arms_meanwhile() -> None:
     for first, act in ((held, "ring"), (held, "swing-arms"), (swung, "walk-together")):
         assert coordinated(first, Act(id="2", act=act, agents=both), lexicon(), repeats=False) == "with", act
     assert coordinated(swung, Act(id="2", act="bow", agents=both), lexicon(), repeats=False) == "after"
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [("After work, one person bows.", ["bow"]), ("After the work the two hug.", ["build", "hug"]),
+     ("After a quick hug they part.", ["hug", "part"]), ("After dance they hug.", ["dance", "hug"])],
+)  # fmt: skip
+def test_a_bare_noun_that_names_a_time_is_no_act(text: str, acts: list[str]) -> None:
+    assert [act.act for act in read(text).acts] == acts
