@@ -13,11 +13,12 @@ import torch
 from acts import read
 from models.intergen.plan_track import PACE
 from motion import InputError
-from tests.inference.conftest import PLAN_WORDS
+from tests.inference.conftest import PLAN_WORDS, tiny_weights
 from training.trainers.traits import TRAITS
 from webdemo.inference import Engine, GenerateRequest, methods
 from webdemo.inference.batch import run_batch
 from webdemo.inference.cancel import CancelToken
+from webdemo.inference.methods.intergen import takes
 from webdemo.inference.results import Progress
 from webdemo.inference.story.beats import Beat
 from webdemo.inference.story.request import SceneRequest
@@ -168,3 +169,14 @@ def test_requests_that_share_a_pass_keep_their_plans_and_scales(
     for i, request in enumerate(wanted):
         (*_, alone) = planning_engine.run(request)
         np.testing.assert_allclose(found[i].duets[0].positions, alone.duets[0].positions, atol=2e-4)
+
+
+def test_only_weights_that_read_plans_take_what_is_said_of_them(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    plain = tiny_weights(tmp_path_factory.mktemp("plain"), words=True) / "intergen"
+    reads = tiny_weights(tmp_path_factory.mktemp("reads"), words=True, plan_words=PLAN_WORDS) / "intergen"
+    assert "plan" not in takes(plain) and takes(reads) == takes(plain) | {"plan"}
+    assert "plan" not in methods.method("intergen").takes, "the shipped weights read none"
+    (plain / "config.json").write_text('{"model": []}')
+    assert takes(plain) == takes(plain / "nowhere") == {"words", "actor", "either role"}
