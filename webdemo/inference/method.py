@@ -22,6 +22,8 @@ DEFAULT_STEPS = 8
 """Denoising steps where neither the request nor the method names any: on the page, in the shell, the API, stories and
 Python. With the shipped InterGen the rules obeyed at 8 and at 25 steps differ by no more than chance (docs/scores.md).
 """
+WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
+"""The folder of all shipped weights."""
 Input = Literal["words", "class", "actor", "first pose", "either role", "past", "plan", "two people"]
 
 

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import ModuleType
 
 from motion import InputError
-from webdemo.inference.method import Method, Task, Variant
+from webdemo.inference.method import WEIGHTS, Method, Task, Variant
 from webdemo.inference.own import method_of, read_entries
 from webdemo.inference.own.classes import method_of_class
 
@@ -55,8 +55,6 @@ PATHS_VARIABLE = "PASDEDEUX_METHODS"
 ENTRY_POINTS = "pasdedeux.methods"
 AUTOMATIC = "automatic"
 """Stands for a model in a request for a reaction: :func:`automatic` chooses it."""
-WEIGHTS = Path(__file__).resolve().parents[3] / "models" / "weights"
-"""The folder of all shipped weights."""
 
 _lock = threading.RLock()
 _registered: dict[str, Method] = {}

@@ -6,9 +6,7 @@ import json
 from functools import partial
 from pathlib import Path
 
-from webdemo.inference.method import Input, Method, load_pipeline
-
-_WEIGHTS = Path(__file__).resolve().parents[3] / "models" / "weights" / "intergen"
+from webdemo.inference.method import WEIGHTS, Input, Method, load_pipeline
 
 
 def takes(folder: Path) -> frozenset[Input]:
@@ -26,7 +24,7 @@ METHOD = Method(
     label="InterGen",
     summary="Generates two people from a sentence, or a partner for one person from the whole motion.",
     tasks=("generate", "react", "scene"),
-    takes=takes(_WEIGHTS),
+    takes=takes(WEIGHTS / "intergen"),
     modes={"offline": "InterGen, person to person"},
     shares_passes=True,
     weights="intergen",
