@@ -1,4 +1,4 @@
-"""Draws the given part of a training motion: a person, the past, all but a span, poses, joints, paths, or a stage's."""
+"""Draws what is given of a training motion: a person, the past, all but a span, poses, joints, paths, a stage."""
 
 from __future__ import annotations
 
@@ -153,10 +153,12 @@ def _joints(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
 
 
 _HIPS = (1, 2)
+"""Joints of SMPL, as are those below."""
 _LEGS = (0, 1, 2, 3, 4, 5, 7, 8, 10, 11)
 _TRUNK = tuple(range(16))
 _REACHING = (3, 6, 9, 12, 15, 13, 14, 16, 17)
 _ARMS = ((18, 20), (19, 21), (18, 20, 19, 21))
+"""Elbow and wrist of the left arm, of the right one, of both."""
 
 
 def _staged(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
