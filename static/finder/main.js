@@ -65,7 +65,7 @@ async function write(sentence) {
 
 /** The switches of the player that is seen, if one is. */
 function switchesInView() {
-  const player = [...document.querySelectorAll(".pdd")].find((each) => each.offsetParent && each.dataset.state !== "empty");
+  const player = [...document.querySelectorAll(".pdd")].find((each) => each.offsetParent && each.dataset.state === "ready");
   const tab = document.querySelector(".pd-tabs [role=tab][aria-selected=true]");
   return player && tab ? switchesOf(player, tab.textContent.trim()) : [];
 }
@@ -78,7 +78,6 @@ class Finder {
     this.list = root.querySelector("[role=listbox]");
     this.entries = [];
     this.places = placesOf(window.gradio_config);
-    this.switches = [];
     root.querySelector(".pdq-open").addEventListener("click", () => this.open());
     root.querySelector(".pdq-open kbd").textContent = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘ K" : say("finder.keys");
     this.field.addEventListener("input", () => this.show());
@@ -98,7 +97,6 @@ class Finder {
   }
 
   open() {
-    this.switches = switchesInView();
     this.ask(); // runs change, and acts are read when they are first wanted
     this.field.value = "";
     this.dialog.showModal();
@@ -118,7 +116,7 @@ class Finder {
 
   show() {
     const entries = this.entries.length ? this.entries : this.places;
-    this.found = search([...entries, ...this.switches], this.field.value);
+    this.found = search([...entries, ...switchesInView()], this.field.value); // a player may come while this is open
     this.at = 0;
     this.list.replaceChildren(...this.found.map((entry, index) => {
       const row = make("li", "pdq-row", "");

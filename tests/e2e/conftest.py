@@ -25,7 +25,11 @@ from .playing import press
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 LOOPBACK = {"127.0.0.1", "localhost", "::1", ""}
-LEAVING = ("AbortError: signal is aborted", "Unexpected error Connection errored out.")
+LEAVING = (  # what Gradio's script says of its open streams as a page is left
+    "AbortError: signal is aborted",
+    "AbortError: BodyStreamBuffer was aborted",
+    "Unexpected error Connection errored out.",
+)
 FLAGS = [
     "--no-sandbox",
     "--disable-gpu",
