@@ -6,8 +6,8 @@ from collections.abc import Set
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from acts.frames import Event, Ref
 from acts.plan import FROM_BEHIND
+from acts.said import Event, Ref
 
 from . import wordnet
 from .people import Cast, states_of

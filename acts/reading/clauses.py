@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import TYPE_CHECKING
 
-from acts.frames import Event
+from acts.said import Event
 
 from .arguments import is_kept
 from .syntax import is_adverb

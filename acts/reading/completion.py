@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from acts.frames import Event, Ref
 from acts.lexicon import Lexicon
 from acts.plan import Act, other_of
+from acts.said import Event, Ref
 
 from .vocabulary import vocabulary
 

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from acts.frames import Event, Ref, best
+from acts.frames import best
 from acts.lexicon import Lexicon
+from acts.said import Event, Ref
 
 from . import wordnet
 from .absolute import Absolute, absolutes

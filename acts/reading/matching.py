@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 
-from acts.frames import Event, Frame, Match, Ref, best
+from acts.frames import Frame, Match, best
 from acts.lexicon import Lexicon
 from acts.plan import other_of
+from acts.said import Event, Ref
 
 from . import wordnet
 from .ellipsis import PERFORM

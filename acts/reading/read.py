@@ -7,9 +7,10 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from acts.frames import Event, Frame, Match
+from acts.frames import Frame, Match
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread, other_of
+from acts.said import Event
 from acts.shapes import Go
 from acts.things import SEATS, is_fixture, kind_of
 from motion import InputError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from acts.frames import Ref
+from acts.said import Ref
 from acts.things import is_fixture
 
 from .people import PRONOUN_SEX, Cast, begins_clause
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def reference(token: Token, cast: Cast, subject: str) -> Ref:
-    """The reference of a noun or pronoun; see :class:`acts.frames.Ref`."""
+    """The reference of a noun or pronoun; see :class:`acts.said.Ref`."""
     first, last = token.idx, token.idx + len(token.text)
     lemma = token.lemma_.lower()
     children = {child.lower_ for child in token.children}

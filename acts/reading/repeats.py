@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from acts.frames import Event
 from acts.lexicon import Lexicon
 from acts.plan import Act, other_of
+from acts.said import Event
 
 from .vocabulary import vocabulary
 

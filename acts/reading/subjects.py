@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from acts.frames import Event, Ref
+from acts.said import Event, Ref
 
 from .clauses import ClauseTree, is_finite
 from .people import A_NAME, B_NAME, Cast, begins_clause

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from acts.frames import Event, Ref, best
+from acts.frames import best
 from acts.lexicon import Lexicon
 from acts.plan import other_of
+from acts.said import Event, Ref
 
 from .vocabulary import vocabulary
 

@@ -11,7 +11,7 @@ from acts import own
 from acts.own import look_again
 from webdemo.inference.acting import acted
 from webdemo.inference.requests import GenerateRequest
-from webdemo.inference.story.request import as_scene
+from webdemo.inference.story.prompted import as_scene
 
 OLLIE = '[ollie]\nframes = ["{a} ollie"]\ncaption = ["{a} [jump]"]\nreads = ["She ollies."]\n'
 

@@ -14,7 +14,7 @@ from webdemo.inference.batch import run_batch
 from webdemo.inference.pipelines.scene import WindowRequest
 from webdemo.inference.plans import KeptPlan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
-from webdemo.inference.story.request import as_scene
+from webdemo.inference.story.prompted import as_scene
 
 QUICK: dict[str, Any] = {"steps": 3}
 BEATS = (

@@ -20,7 +20,7 @@ from webdemo.inference.partner import Belief
 from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.story import SceneProgress, SceneRequest
-from webdemo.inference.story.request import as_scene
+from webdemo.inference.story.prompted import as_scene
 from webdemo.inference.timer import StageTimer
 
 FPS = 30

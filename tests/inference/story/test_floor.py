@@ -13,14 +13,13 @@ from webdemo.inference.story.floor import (
     ACROSS,
     BEHIND,
     CLOSE,
-    EVERY,
     FARTHEST,
     LINKED,
     Standing,
-    Way2D,
     plan,
 )
 from webdemo.inference.story.moves import Move
+from webdemo.inference.story.sampled import EVERY, Way2D
 from webdemo.inference.story.track import EVENLY, MOST
 from webdemo.inference.story.ways import Way
 

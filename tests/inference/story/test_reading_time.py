@@ -19,7 +19,7 @@ from webdemo.inference.pipelines.scene import SceneMaker
 from webdemo.inference.pipelines.scene_floor import plan_note
 from webdemo.inference.requests import Cancelled, GenerateRequest
 from webdemo.inference.story import Beat, SceneRequest, split_sentence
-from webdemo.inference.story.request import as_scene
+from webdemo.inference.story.prompted import as_scene
 from webdemo.inference.story.understood import of_each
 from webdemo.inference.timer import StageTimer
 

@@ -6,7 +6,8 @@ import pytest
 
 from acts import read
 from webdemo.inference.requests import GenerateRequest
-from webdemo.inference.story.request import SceneRequest, as_scene
+from webdemo.inference.story.prompted import as_scene
+from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.scripting import beats_of
 from webdemo.inference.story.staging import staged
 from webdemo.inference.story.ways import Way

@@ -16,7 +16,8 @@ from webdemo.inference.story.contacts import Region
 from webdemo.inference.story.holds import Hold
 from webdemo.inference.story.lifts import Carry
 from webdemo.inference.story.postures import Posture
-from webdemo.inference.story.request import SceneRequest, as_scene, beat_of
+from webdemo.inference.story.prompted import as_scene
+from webdemo.inference.story.request import SceneRequest, beat_of
 from webdemo.inference.story.scripting import beats_of
 from webdemo.inference.story.staging import staged
 from webdemo.inference.story.told import Told

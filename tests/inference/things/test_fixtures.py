@@ -17,7 +17,7 @@ from webdemo.inference.things.furnishing import furnished
 from webdemo.inference.things.looking import watched
 from webdemo.inference.things.opening import opened
 
-from .test_furnishing import FPS, FRAMES, put_hand, standing
+from .furnishing import FPS, FRAMES, put_hand, standing
 
 HALF = FRAMES // 2
 
@@ -167,7 +167,7 @@ def test_who_is_elsewhere_moves_nothing_and_the_manifest_says_so():
 
 
 def test_a_computer_is_on_the_desk_of_one_who_types():
-    from .test_furnishing import sitting
+    from .furnishing import sitting
 
     kinds, _ = made("A sits at a desk and types on a keyboard.", sitting())
     assert {"chair", "computer"} <= kinds.keys() and "table" not in kinds
@@ -181,7 +181,7 @@ def test_a_computer_is_on_the_desk_of_one_who_types():
     ("seat", "desk"), [("sits at a desk", "table"), ("sits at a desk and types on a keyboard", "computer")]
 )
 def test_what_is_put_out_at_a_desk_is_on_it(seat, desk):
-    from .test_furnishing import sitting
+    from .furnishing import sitting
 
     kinds, _ = made(f"A {seat}. Then A puts out the cigarette.", sitting())
     ((cigarette,), (top,)) = kinds["cigarette"], kinds[desk]

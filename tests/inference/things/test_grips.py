@@ -12,7 +12,7 @@ from motion.hands import SHAPES, Grip, angles
 from webdemo.inference.requests import Result
 from webdemo.inference.things.furnishing import furnished
 
-from .test_furnishing import FPS, FRAMES, GAP, act, put_hand, reaching, said, standing
+from .furnishing import FPS, FRAMES, GAP, act, put_hand, reaching, said, standing
 
 
 def grips(people: np.ndarray, *acts: Act, sentence: str = "") -> tuple[Grip, ...]:

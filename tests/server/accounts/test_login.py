@@ -155,7 +155,9 @@ def test_a_run_of_another_is_not_opened_by_its_id(shared: TestClient) -> None:
     event = shared.post(f"{CALL}/generate", json={"data": FIELDS}, headers=ada).json()["event_id"]
     assert shared.get(f"{CALL}/generate/{event}").status_code == 401
     assert shared.get("/config", headers={"cookie": "pasdedeux_session=user ada"}).status_code == 401
-    assert "event: complete" in shared.get(f"{CALL}/generate/{event}", headers=ada).text  # else it ends in a later test
+    assert (
+        "event: complete" in shared.get(f"{CALL}/generate/{event}", headers=ada).text
+    )  # else it ends in a later test
 
 
 def page_at(client: TestClient, key: str, headers: dict[str, str]) -> str:

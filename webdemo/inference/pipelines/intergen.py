@@ -22,7 +22,8 @@ from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import Scene
 from webdemo.inference.story import understood
 from webdemo.inference.story.beats import Beat
-from webdemo.inference.story.request import SceneRequest, as_scene
+from webdemo.inference.story.prompted import as_scene
+from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.scripting import told_by
 from webdemo.inference.timed import acts_of, timed
 from webdemo.inference.timer import StageTimer

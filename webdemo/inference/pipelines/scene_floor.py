@@ -18,12 +18,13 @@ from webdemo.inference.story.bodies.poses import ARMS, HANDS, standing, upright
 from webdemo.inference.story.bodies.steps import ON_FEET
 from webdemo.inference.story.bodies.strikes import Bout
 from webdemo.inference.story.contacts import Contact
-from webdemo.inference.story.floor import Standing, Way2D, plan
+from webdemo.inference.story.floor import Standing, plan
 from webdemo.inference.story.holds import Hold
 from webdemo.inference.story.moves import Move, goes
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.postures import Change, Posture
 from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.story.sampled import Way2D
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.ways import Way
 

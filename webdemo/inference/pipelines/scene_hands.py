@@ -13,8 +13,8 @@ from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
 from webdemo.inference.story.bodies.arm_course import arm, directions, hanging, hangs, raised, rested
 from webdemo.inference.story.bodies.gestures import AT_OTHER, SIDES, Gesture, Hand, wrist
-from webdemo.inference.story.floor import Way2D
 from webdemo.inference.story.moves import Move
+from webdemo.inference.story.sampled import Way2D
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.ways import Way
 

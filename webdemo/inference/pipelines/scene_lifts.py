@@ -16,8 +16,8 @@ from webdemo.inference.known_parts import KnownFrames
 from webdemo.inference.story.bodies.curves import eased
 from webdemo.inference.story.bodies.gestures import Gesture, wrist
 from webdemo.inference.story.bodies.poses import LOWER, TRUNK, upright
-from webdemo.inference.story.floor import Way2D
 from webdemo.inference.story.lifts import Carry, Lift, carried
+from webdemo.inference.story.sampled import Way2D
 
 from .scene_stretch import Course, Stretch
 from .steering import STRIDE, Steps

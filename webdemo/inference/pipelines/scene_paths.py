@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from webdemo.inference.actor import Placement
 from webdemo.inference.known_parts import KnownPath, Part
 from webdemo.inference.story.bodies.gaits import low_gait
-from webdemo.inference.story.floor import Way2D
+from webdemo.inference.story.sampled import Way2D
 
 from .scene_stretch import Stretch
 

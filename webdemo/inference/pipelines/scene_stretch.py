@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from webdemo.inference.actor import Placement
 from webdemo.inference.known_parts import KnownFrames
-from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.story.floor import Standing
 from webdemo.inference.story.plan import Window
+from webdemo.inference.story.sampled import Way2D
 
 Array = NDArray[np.floating]
 Frames = NDArray[np.integer]

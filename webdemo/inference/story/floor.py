@@ -6,7 +6,6 @@ given once a second and the network does the walking between; where people touch
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -20,13 +19,12 @@ from webdemo.inference.actor import FPS
 from .bodies.curves import bearing, direction, eased, smoothed
 from .holds import Hold, danced
 from .moves import Move
+from .sampled import Way2D, sampled
 from .track import EASE, MOST, Track
 from .ways import Way
 
 Array = NDArray[np.floating]
 
-EVERY = 30
-"""Frames between two given places."""
 _DENSE = 4
 """Frames from one place to the next that are given to a couple who dance in hold."""
 CLOSE = 0.9
@@ -57,8 +55,6 @@ WIDE = 0.9
 """Radius in metres of a walk around the other, at least."""
 FARTHEST = 5.0
 """Metres apart to which people walk; the training scenes hold next to nothing beyond."""
-STEP = math.pi / 3
-"""Radians of a turn between two given headings."""
 _CHASED = 7.0
 """Metres that somebody goes who is followed."""
 _REACTS = 0.4
@@ -94,23 +90,6 @@ class Standing:
         return line / length if length > 0.05 else direction(float(self.headings[who]))
 
 
-@dataclass(frozen=True, eq=False)
-class Way2D:
-    """The places and headings of one person at some frames of a beat.
-
-    Attributes:
-        person: 0 for a, 1 for b.
-        frames: N frames of the beat, in order.
-        places: (N, 2) metres.
-        headings: (N,) radians; None where they may look where they like.
-    """
-
-    person: int
-    frames: Sequence[int]
-    places: Array
-    headings: Array | None
-
-
 def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool = False) -> list[Way2D]:
     """The ways of both people through a beat of so many frames, from where they stand.
 
@@ -126,11 +105,10 @@ def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool 
     own = [[move for move in moves if move.person == person] for person in "ab"]
     for who in (0, 1) if not any(m.way is Way.AFTER for m in own[0]) else (1, 0):
         _walked(who, own, tracks, standing)
-    return [
-        way
-        for who, track in enumerate(tracks)
-        if (way := _sampled(who, track, standing if first else None)) is not None
-    ]
+    if first:
+        for who, track in enumerate(tracks):
+            track.places[0], track.headings[0] = standing.places[who], standing.headings[who]
+    return [way for who, track in enumerate(tracks) if (way := sampled(who, track, first=first)) is not None]
 
 
 def _walked(who: int, own: Sequence[Sequence[Move]], tracks: Sequence[Track], standing: Standing) -> None:
@@ -364,39 +342,6 @@ def _after(move: Move, track: Track, ahead: Track, start: Array, seconds: float)
     if done[-1] > 0.25:
         at = np.stack([np.interp(done, along, line[:, axis]) for axis in (0, 1)], axis=1)
         track.follow(at)
-
-
-def _sampled(who: int, track: Track, standing: Standing | None) -> Way2D | None:
-    """The way at every :data:`EVERY` frames and at the last one that is planned, and where it begins."""
-    if standing is not None:
-        track.places[0], track.headings[0] = standing.places[who], standing.headings[who]
-    known = np.flatnonzero(np.isfinite(track.places[:, 0]))
-    if not len(known):
-        return None
-    wanted = {
-        *known[known % EVERY == EVERY - 1].tolist(),
-        *(track.dense & set(known.tolist())),
-        int(known[-1]),
-        *([0] if standing is not None else []),
-    }
-    frames = [f for f in _with_turns(sorted(wanted), track.headings) if np.isfinite(track.places[f, 0])]
-    headings = track.headings[frames]
-    facing = np.isfinite(headings)
-    return Way2D(
-        who, frames, track.places[frames], np.where(facing, headings, np.nan) if facing.any() else None
-    )
-
-
-def _with_turns(frames: Sequence[int], headings: Array) -> list[int]:
-    """The frames, with more of them where somebody turns: a network that is free there turns them within a few."""
-    found = list(frames)
-    for first, last in itertools.pairwise([0, *frames]):
-        turned = abs(headings[last] - headings[first])
-        if turned > STEP:  # false where either heading is free
-            gone = np.abs(headings[first : last + 1] - headings[first])
-            each = turned / math.ceil(turned / STEP)
-            found += [first + int(np.argmax(gone >= share)) for share in np.arange(each, turned - 0.01, each)]
-    return sorted(set(found))
 
 
 def _time(way: float, speed: float, most: float) -> float:

@@ -1,0 +1,101 @@
+"""Any text is read in linear time, gives a plan, and is refused where it is too long."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from acts import Plan, read
+from acts.reading.read import MOST_CHARACTERS
+from motion import InputError
+
+
+def test_too_long_a_text_is_refused() -> None:
+    with pytest.raises(InputError, match="shorten it"):
+        read("a" * (MOST_CHARACTERS + 1))
+
+
+LONG = {
+    "one word": "slowly ", "acts": "he hugs her and ", "commas": ",", "letters": "A B ", "stops": "a. ",
+    "names": "Bob ", "digits": "7", "of": "the hand of ", "apostrophes": "'s ", "while": "while he hugs ",
+    "to": "tries to ", "brackets": "([{", "unicode": "é ",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", sorted(LONG))
+def test_reading_grows_with_the_text_and_not_faster(kind: str) -> None:
+    """Twice the text takes little more than twice the processor's time."""
+    read("They hug.")  # loads the parser
+    spent = []
+    for length in (MOST_CHARACTERS // 2, MOST_CHARACTERS):
+        text = (LONG[kind] * MOST_CHARACTERS)[:length]
+        turns = []
+        for turn in range(3):
+            began = time.process_time()
+            read(text[: length - turn])  # what was read before is kept
+            turns.append(time.process_time() - began)
+        spent.append(min(turns))
+    assert spent[1] < 4 * spent[0] + 0.1
+    assert spent[1] < 2
+
+
+_WORDS = st.sampled_from(
+    [
+        "A",
+        "B",
+        "he",
+        "she",
+        "they",
+        "hugs",
+        "pats",
+        "the",
+        "a",
+        "man",
+        "woman",
+        "boy",
+        "and",
+        "then",
+        "while",
+        "before",
+        "without",
+        "not",
+        "hand",
+        "left",
+        "back",
+        "on",
+        "to",
+        "his",
+        "her",
+        "each",
+        "other",
+        "one",
+        "two",
+        "people",
+        "tries",
+        ",",
+        ".",
+        ";",
+        "'",
+        "then",
+        "gives",
+        "kid",
+        "walks",
+        "up",
+        "down",
+    ]
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(_WORDS, max_size=40).map(" ".join) | st.text(max_size=200))
+def test_any_text_gives_a_plan(text: str) -> None:
+    plan = read(text)
+    assert Plan.model_validate_json(plan.model_dump_json()) == plan
+    for act in plan.acts:
+        assert act.words is not None and 0 <= act.words.start < act.words.stop <= len(text)
+    for unread in plan.unread:
+        assert unread.words.stop <= len(text)
+    plan.beats()
