@@ -159,7 +159,7 @@ def _sentence(group: Sequence[Act], known: Lexicon) -> str:
 
 
 def _is_still(act: Act, known: Lexicon) -> bool:
-    """True for standing still, which nobody does of whom it is denied."""
+    """True for standing still: whoever is denied something just stands still."""
     entry = known.entries.get(act.act)
     return entry is not None and {shape.do for shape in entry.stage} == {"stay"}
 
@@ -170,7 +170,7 @@ def in_words(plan: Plan) -> str:
 
 
 def of_each(acts: Sequence[Act], known: Lexicon) -> tuple[str, str]:
-    """A sentence for person a and one for person b; "" for who does nothing.
+    """A sentence for person a and one for person b; "" for a person who does nothing.
 
     Both are "" where an act is both people's: then the sentence of the whole beat says it best.
     """

@@ -43,7 +43,7 @@ _LONGEST, _QUICKEST = 0.65, 0.22
 _FASTEST, _PEAK = 6.5, 1.875
 """Metres a second of a foot at most, and how much faster than on average a swing of least jerk is."""
 _STANDS = 3
-"""Frames of a stance, at least: fewer are none to who finds the feet that stand."""
+"""Frames of a stance, at least: fewer do not count as standing."""
 _RISE = 0.06
 """Metres by which an ankle rises in its swing."""
 TOE, ANKLE = 0.02, 0.09

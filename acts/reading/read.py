@@ -277,7 +277,7 @@ class _Planner:
         return True
 
     def _unknown_words(self) -> None:
-        """Adds the words that are none to what was not read."""
+        """Adds the words that no dictionary has to what was not read."""
         for first, last in self._nonsense:
             start, stop = self._prepared.span(first, last)
             if not any(u.words.start <= start and stop <= u.words.stop for u in self._unread):

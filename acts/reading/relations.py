@@ -188,5 +188,5 @@ def _accompanies(first: Act, then: Act, known: Lexicon) -> bool:
     if is_fixture(first.thing) and then.thing == first.thing:
         return False  # "goes to the window and opens it"
     jumps = shown == {"jump"} and "gesture" in later
-    free = not later & shown and shown <= BESIDE  # of who points, the trunk can laugh
+    free = not later & shown and shown <= BESIDE  # whoever points can still laugh with the trunk
     return on_way or jumps or first.already or (free and other.group == "feelings")

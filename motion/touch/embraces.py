@@ -39,7 +39,7 @@ _CLOSE_BEHIND = 0.27
 """Metres between two spines where one holds the other from behind."""
 _ASIDE_BEHIND = 0.06
 _WAIST = ((0.1, 0.13, -0.17, 0.2), (0.12, 0.12, -0.14, 0.2))
-"""As :data:`_HANDS`, of hands that are around the waist of somebody who faces the same way."""
+"""As :data:`_HANDS`, for hands around the waist of a person who faces the same way."""
 _UPON = ((0.21, 0.12, -0.12, 0.9), (0.23, 0.12, -0.09, 0.9))
 """As :data:`_HANDS`, of the hands that the person who is held lays upon them, from their own spine."""
 _OPEN, _OPENS = (-0.12, 0.36), 1.0

@@ -64,7 +64,7 @@ class Panel {
     return near.querySelector(".pdd")?.player ?? null;
   }
 
-  /** Shows the lens that was last set for who is filmed; a chosen person was filmed by nobody. */
+  /** Shows the lens that was last set for the person being filmed; a chosen person was not filmed. */
   takeLens() {
     this.more.hidden = this.source.value === "clip";
     this.lens.value = lensOf(this.source.value);
@@ -266,7 +266,7 @@ class Panel {
   }
 }
 
-/** The middle value; undefined of none. */
+/** The middle value; undefined for an empty list. */
 function median(values) {
   return [...values].sort((a, b) => a - b)[values.length >> 1];
 }

@@ -353,7 +353,7 @@ export class Player {
     return this.shown.map((pane) => pane.scene?.setStill(still, this.sparing)).some(Boolean);
   }
 
-  /** Whether the processor draws here while it is also needed to follow somebody who moves now. */
+  /** Whether the processor draws here while it is also needed to follow a person live. */
   get sparing() {
     return Boolean(this.data?.stream && this.clock.limit !== null && this.scene?.software);
   }

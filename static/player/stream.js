@@ -7,7 +7,7 @@ const KEPT = 1800; // frames that can be looked at again
 const DROPPED = 600; // of the oldest, when there are more
 const BEHIND = 8; // frames: a clock that lags more jumps
 const BUFFER = 2; // frames that it keeps in hand
-const LONG = 30; // frames from which on a stream can be kept
+const LONG = 30; // frames that a stream must have before it can be kept
 
 export class Stream {
   /** `template` is a payload of one person; `roles` are the names of the two. */

@@ -1,4 +1,4 @@
-"""A stream of somebody who moves now: where the processor draws, pictures are smaller and fewer while it goes on."""
+"""A live stream: where the processor draws, pictures are smaller and fewer while it goes on."""
 
 from __future__ import annotations
 

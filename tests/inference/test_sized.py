@@ -75,7 +75,7 @@ def test_a_scene_goes_on_from_a_girl_as_she_was(engine: Engine) -> None:
 
 
 def test_people_of_a_given_motion_stay_who_they_are(engine: Engine) -> None:
-    """Words about a child do not shrink somebody who has been an adult so far."""
+    """Words about a child do not shrink a person who has been an adult so far."""
     first = run(engine, GenerateRequest(prompt="Two people wave.", seconds=3.0, **QUICK)).duets[0]
     assert first.looks == UNSAID
     request = SceneRequest(beats=(Beat("A man hugs a girl.", seconds=2.0),), motion=first, **QUICK)

@@ -22,7 +22,7 @@ SHOULDERS = [SMPL22.index("left_shoulder"), SMPL22.index("right_shoulder")]
 
 
 def standing(angle: float = 0.0) -> Tensor:
-    """(T, 22, 3) somebody who stands and faces an angle."""
+    """(T, 22, 3) a person who stands and faces an angle."""
     pose = (SMPL22.rest_positions() + np.array([0, 0.98, 0])) @ heading_matrix(angle).T
     return torch.from_numpy(np.repeat(pose[None], FRAMES, 0)).float()
 

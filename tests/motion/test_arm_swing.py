@@ -23,7 +23,7 @@ _BONES = tuple(list(ends) for ends in zip(*SMPL22.bones, strict=True))
 
 
 def walker(speed: float = 1.1, swing: float = 0.0, angle: float = 0.4) -> Array:
-    """(T, 22, 3) somebody who walks along a heading and whose hanging arms swing by so many radians."""
+    """(T, 22, 3) a person who walks along a heading, with hanging arms that swing by so many radians."""
     turns = np.tile(np.eye(3), (FRAMES, 22, 1, 1))
     turns[:, 0] = heading_matrix(angle)
     for (side, sign), arm in zip((("left", 1.0), ("right", -1.0)), (-STEP, STEP), strict=True):

@@ -16,7 +16,7 @@ LEGS = [*FEET, *(SMPL22.index(f"{side}_knee") for side in ("left", "right"))]
 
 
 def gliding(speed: float, frames: int = 120) -> np.ndarray:
-    """Somebody who stands for half a second, is moved over the floor, and stands again for half a second."""
+    """A person who stands for half a second, is moved over the floor, and stands again for half a second."""
     rest = np.repeat((SMPL22.rest_positions() + np.array([0, 0.92, 0]))[None], frames, axis=0)
     rest = plant_feet(rest, np.ones((frames, 4), dtype=bool))  # on bent knees
     time = np.clip(np.arange(frames) - 15, 0, frames - 30) / FPS

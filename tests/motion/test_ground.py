@@ -22,7 +22,7 @@ def lengths(positions: Array) -> Array:
 
 
 def falling(deep: float) -> Array:
-    """(40, 22, 3) somebody who lies and sinks by so many metres and comes back."""
+    """(40, 22, 3) a person who lies and sinks by so many metres and comes back."""
     sunk = deep * np.sin(np.linspace(0, np.pi, 40)) ** 2
     return lying(HERE, 0.3)[None] - sunk[:, None, None] * [0.0, 1.0, 0.0]
 

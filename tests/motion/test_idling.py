@@ -16,7 +16,7 @@ FEET = [J(f"{side}_{joint}") for side in ("left", "right") for joint in ("ankle"
 
 
 def _standing() -> np.ndarray:
-    """(22, 3) somebody who stands facing +Z with hanging arms, knees a little bent."""
+    """(22, 3) a person who stands facing +Z with hanging arms, knees a little bent."""
     pose = SMPL22.rest_positions().copy()
     pose -= pose[:, 1].min() * np.array([0.0, 1.0, 0.0])
     for side, sign in (("left", 1.0), ("right", -1.0)):

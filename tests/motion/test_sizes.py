@@ -33,7 +33,7 @@ def standing() -> np.ndarray:
 
 
 def walking(seconds: float = 4.0, speed: float = 0.9) -> np.ndarray:
-    """(T, 22, 3) somebody who goes along Z in steps."""
+    """(T, 22, 3) a person who goes along Z in steps."""
     frames = round(seconds * FPS)
     body = np.tile(standing(), (frames, 1, 1))
     body[..., 1] -= 0.03

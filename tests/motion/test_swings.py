@@ -15,7 +15,7 @@ ANKLE, TOE = SMPL22.index("right_ankle"), SMPL22.index("right_foot")
 
 
 def step(length: float = 0.9, frames: int = 14, *, before: int = 10, hips: float = 0.0) -> Array:
-    """(T, 22, 3) somebody who stands facing +Z and takes one flat step with the right foot."""
+    """(T, 22, 3) a person who stands facing +Z and takes one flat step with the right foot."""
     total = frames + 2 * before
     pose = np.zeros((22, 3))
     for parent, joint in SMPL22.bones:

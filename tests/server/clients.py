@@ -65,7 +65,7 @@ def lab_of(client: TestClient) -> Lab:
 
 
 def sign_in(client: TestClient, name: str) -> dict[str, str]:
-    """The headers of somebody who signed in."""
+    """The headers of a signed-in user."""
     client.cookies.clear()
     answer = client.post("/login", data={"username": name, "password": f"password of {name}"})
     assert answer.json() == {"success": True}

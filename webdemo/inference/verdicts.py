@@ -52,7 +52,7 @@ class Judged:
 
 
 def judged(request: Any, result: Result) -> Judged:
-    """A result with the verdicts on the acts of its request's words; as it is where there are none to judge."""
+    """A result with the verdicts on the acts of its request's words; unchanged where there are none to judge."""
     plans = list(plans_of(request))
     lengths = lengths_of(result.manifest)
     found = [_judged_sample(plans, duet, lengths) for duet in result.duets] if plans else []

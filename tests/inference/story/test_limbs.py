@@ -58,7 +58,7 @@ def names() -> list[str]:
 
 @pytest.mark.parametrize("name", names())
 def test_an_act_of_limbs_does_what_its_rule_asks_for(name: str) -> None:
-    """The rule fails on somebody who stands, and holds for the poses that the stage gives."""
+    """The rule fails on a standing person, and holds for the poses that the stage gives."""
     act = Act(id="1", act=name, agents=("a",))
     other = np.tile(upright(np.array([0.0, 1.2]), np.pi), (len(SECONDS), 1, 1))
     moved = limbed(staged((act,)).limbs["a"], np.zeros(2), 0.0, SECONDS, 5.0)

@@ -82,7 +82,7 @@ def test_hands_reach_what_they_use():
 
 
 def stepping(metres: float) -> np.ndarray:
-    """Somebody who reaches for a hi-fi, after a foot was so far ahead of them."""
+    """A person who reaches for a hi-fi, after a foot was so far ahead of them."""
     people = apart()
     people[0, : HALF // 2, [SMPL22.index("left_ankle"), SMPL22.index("left_foot")], 2] += metres
     return people

@@ -1,4 +1,4 @@
-"""One's own thing from a file, in the hands or under who sits."""
+"""One's own thing from a file, in the hands or under a person who sits."""
 
 from __future__ import annotations
 

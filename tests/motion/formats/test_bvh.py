@@ -93,7 +93,7 @@ def test_channel_order_positions_and_up_axis(order, positions_everywhere, z_up):
 
 
 def down(kind: str) -> np.ndarray:
-    """Rotations of somebody who lies on the back, or is on hands and knees, all the time."""
+    """Rotations of a person who lies on their back, or is on hands and knees, all the time."""
     rotations = np.tile(np.eye(3), (40, 22, 1, 1))
     rotations[:, 0] = Rotation.from_euler("x", -88 if kind == "lies" else 88, degrees=True).as_matrix()
     if kind == "crawls":

@@ -135,7 +135,7 @@ def clock(sign_ins: SignIns) -> Clock:
 
 
 def refused_for(sign_ins: SignIns, password: str, address: str, known: str = "") -> int:
-    """The seconds for which somebody who signs in as ada has to wait; 0 if the password is looked at."""
+    """The seconds that a sign-in as ada has to wait; 0 if the password is looked at."""
     try:
         sign_ins.begin("ada", password, address, known)
     except TooManyTries as error:

@@ -1,4 +1,4 @@
-"""Uploads and requests of somebody who means ill."""
+"""Hostile uploads and requests."""
 
 from __future__ import annotations
 

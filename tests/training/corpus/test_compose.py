@@ -173,7 +173,7 @@ def test_mirror_twice_is_the_motion_and_once_swaps_hands() -> None:
 def test_steer_turns_left_for_positive_angles() -> None:
     straight = motion(walk(91))
     bent = compose.steer(straight, np.linspace(0, np.pi / 2, 91))
-    assert bent.root[-1, 0] > 0.5  # +X is to the left of who faces +Z
+    assert bent.root[-1, 0] > 0.5  # +X is to the left of a person facing +Z
     assert abs(bent.headings[-1] - straight.headings[-1] - np.pi / 2) < 1e-6
     length = [np.linalg.norm(np.diff(m.root, axis=0), axis=-1).sum() for m in (straight, bent)]
     assert abs(length[0] - length[1]) < 1e-9

@@ -100,7 +100,7 @@ def test_the_table_holds_every_method(monkeypatch: pytest.MonkeyPatch) -> None:
     mean, half = interval([1.0, 3.0])
     assert (mean, half) == (2.0, pytest.approx(12.706, abs=1e-3))  # t of one degree of freedom
     shown = readouts(pairs, still)
-    assert shown["response_delay"] is None  # of somebody who stands still
+    assert shown["response_delay"] is None  # they stand still
     assert shown["contact_due"] == pytest.approx(
         100
         * np.mean(

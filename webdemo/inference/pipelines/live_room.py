@@ -26,7 +26,7 @@ from .steering import Goal
 Array = NDArray[np.floating]
 
 PLACES = {"window": (0.0, 2.2), "hi-fi": (2.0, 0.9)}
-"""Metres from where the agent first stands, to its left and behind it, seen by somebody who faces it."""
+"""Metres from where the agent first stands, to its left and behind it, as seen by a person facing it."""
 STANDS = 0.62
 """Metres before a thing at which the agent stands to use it."""
 LATEST = 300
@@ -129,7 +129,7 @@ class Room:
         depth = float(shape(body).vertices[:, 2].max())
         height, asides = HANDS[kind]
         agent, ahead = agent.copy(), facing(agent)
-        right = np.cross(front, _UP)  # of somebody who faces the thing, to their left
+        right = np.cross(front, _UP)  # of the thing, seen by a person facing it: to their left
         for side, aside in zip(("left", "right") if len(asides) == 2 else ("right",), asides, strict=True):
             shoulder, elbow, wrist = (
                 SMPL22.index(f"{side}_{name}") for name in ("shoulder", "elbow", "wrist")

@@ -35,7 +35,7 @@ from .scene_stretch import Course, Stretch
 Array = NDArray[np.floating]
 
 FAR_APART = 1.8
-"""Metres between two people from which one comes up who does something within the other's reach."""
+"""Metres between two people beyond which one comes up to do something within the other's reach."""
 _NEARLY = 0.2
 """Metres more than in a hold at which two who begin in it stand."""
 REACHES = 12

@@ -30,16 +30,16 @@ RISES = 16
 LONG = 75
 """Frames: after a longer lift the person is set down again before the beat ends."""
 WAITS = 12
-"""Frames for which somebody who is picked up at once stands before."""
+"""Frames for which a person stands before they are picked up, where that is what comes first."""
 LADEN = 11
-"""Frames of a step of somebody who walks with the other in their arms or on their back."""
+"""Frames of a step by a person who carries the other in their arms or on their back."""
 SPIN, SETTLED, EASED = 90, 3, 0.3
 """Frames of a whole turn with somebody in the air, frames in the air before and after it, and the share of the turn in
 which it gets up its speed."""
 _FAR = 0.45
 """Metres beyond a lift's own distance: from farther away nobody is picked up."""
 _STAYS = 0.3
-"""Metres within which somebody who is picked up keeps their place before."""
+"""Metres within which a person keeps their place before they are picked up."""
 _STANDS = 0.003
 """Metres or radians a frame below which a body stands."""
 _ELBOWS = [SMPL22.index("left_elbow"), SMPL22.index("right_elbow")]

@@ -132,7 +132,7 @@ def _from_behind(lifted: Lift) -> Standing:
 
 
 def _carried(lifted: Lift) -> Standing:
-    """A place before the other for who is lifted or dragged, and behind the one who walks on for who is carried."""
+    """A place in front of the other for one who is lifted or dragged, and behind the walker for one who is carried."""
     places, headings = np.zeros((2, 2)), np.zeros(2)
     if lifted.carry in (Carry.UP, Carry.DRAGS):
         places[1, 1], headings[1] = lifted.carry.near, math.pi

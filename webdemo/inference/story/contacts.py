@@ -96,7 +96,7 @@ _AT_MOUTH = np.array([0.05, -0.1, 0.16])
 _AROUND = (0.13, 0.06, 0.04)
 """Metres behind, inside of and under the other's far shoulder of a wrist whose arm is around them."""
 LOW = frozenset((Region.LEG, Region.FOOT))
-"""What is kneeled down to, of somebody who stands."""
+"""What one kneels down to reach on a person who stands."""
 LOWEST = 0.55
 """Height in metres of the lowest place that somebody on their feet reaches."""
 

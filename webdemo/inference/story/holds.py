@@ -32,7 +32,7 @@ class Hold(Enum):
 
 
 TWIRL = 0.42
-"""Metres between the pelvises of two of whom one turns under the other's arm."""
+"""Metres between the pelvises of two people while one turns under the other's arm."""
 _OVER = 1.88
 """Height in metres of the hands over the person who turns under them."""
 _BASIC, _BAR = 0.16, 2.0

@@ -72,7 +72,7 @@ def finished(made: Sequence[Move], *, until: bool) -> list[Move]:
 
 
 def struck_moves(found: Strike, dodge: Move | None, *, down: bool) -> tuple[Move, ...]:
-    """The places of two of whom at least one strikes; the other dodges, goes down or stays."""
+    """The places of two people when at least one strikes; the other dodges, goes down or stays."""
     near, first = found.bout.value, found.turns[0]
     if not found.answered:
         return tuple(Move(person, Way.SPAR, near=near, turns=turning(found.bout)) for person in "ab")

@@ -48,7 +48,7 @@ def strike_of(blows: Blows, done: Done, *, late: bool) -> Strike | None:
 
 
 def standing_by(acts: Sequence[Act], done: Done, busy: Collection[str], known: Lexicon) -> frozenset[str]:
-    """The people who stand by: of whom nothing is told that happens, while the other does something alone.
+    """The people who stand by: nothing is told that they do, while the other does something alone.
 
     Args:
         acts: of the beat.

@@ -52,7 +52,7 @@ class Told:
         placed: where both are when the story begins with this beat.
         keeps_place: they are side by side or back to back, and stay so.
         reaching: those who do something within the other's reach, and the metres between the two for it.
-        alone: a sentence on what a does and one on what b does; "" for who has none of their own.
+        alone: a sentence on what a does and one on what b does; "" for a person who has none of their own.
     """
 
     moves: tuple[Move, ...] = ()

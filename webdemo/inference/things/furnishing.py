@@ -130,7 +130,7 @@ def _at_their_sizes(result: Result, looks: tuple[str, str]) -> Result:
 
 
 def _by_their_bones(duet: Duet | Clip) -> Duet | Clip:
-    """Two people of whom nothing is said; one with a child's bones, such as the given person of a reaction, is one."""
+    """Two people who are not described; one with a child's bones, such as the given person of a reaction, is one."""
     if not _is_made(duet):
         return duet
     hip, knee = (SMPL22.index(f"left_{part}") for part in ("hip", "knee"))

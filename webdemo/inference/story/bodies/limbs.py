@@ -267,7 +267,7 @@ def _turned_head(limb: Limb, held: Array, since: Array) -> Turns:
 
 
 def _shaking(limb: Limb, held: Array, since: Array) -> Turns:
-    """A trunk that shakes, as of somebody who laughs or shivers."""
+    """A trunk that shakes with laughter or cold."""
     quick = _swing(since, held, limb.times, 0.45)
     return {joint: about(0, 0.05 * quick + 0.04 * held) for joint in ("spine1", "spine2", "spine3")} | {
         "neck": about(0, 0.08 * quick)

@@ -42,7 +42,7 @@ class Strike:
         answered: the other ducks, falls or steps back at the first blow.
         late: something else goes on until then.
         hands: the hand of each blow, where the words name them; "" leaves it open.
-        up: what is thrown goes up, and comes down to who threw it.
+        up: what is thrown goes up, and comes down to the one who threw it.
     """
 
     bout: Bout
