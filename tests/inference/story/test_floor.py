@@ -374,3 +374,8 @@ def test_a_turn_is_given_all_along_so_that_nobody_spins_round_within_it(words: s
     assert np.nanmax(turned[quick] / (np.diff(way.frames)[quick] / 30)) < 6.5, (
         "a half turn takes half a second at least"
     )
+
+
+@pytest.mark.parametrize("words", ["She stands over him.", "They stand still.", "A waits."])
+def test_the_other_stays_too_where_nobody_is_told_to_move(words: str) -> None:
+    assert {(move.person, move.way) for move in moves(words)} == {("a", Way.STAY), ("b", Way.STAY)}

@@ -368,7 +368,7 @@ class _Stage:
         told += [Move(who, Way.THING) for who in sorted(self.faces - going)]
         made = finished(told, until=any(move.until for move in self.moves))
         if not goes(made):
-            stay = self.done and all(only_stays(e) and len(act.agents) == 2 for act, e in self.done)
+            stay = self.done and all(only_stays(entry) for _, entry in self.done)
             return tuple(Move(who, Way.STAY) for who in "ab") if stay and not made else tuple(made)
         backs = any(move.way in (Way.BACK, Way.ASIDE) for move in made)
         for who in "ab":
