@@ -3,9 +3,9 @@
 A frame is a subject, the lemmas of its verb, and what must stand beside it:
 
 - ``{a}`` one person or both, each for themselves; ``{a+b}`` the two together ("they hug", "he dances with her");
-- ``{b}`` the other person ("each other" after both); ``{self}``; ``{thing}`` any noun that is no person and no part of
-  the body; ``{part}`` a part of a body, ``{a.part}`` one's own, ``{b.part}`` the other's, ``{b.part:head}`` one of a
-  family;
+- ``{b}`` the other person ("each other" after both); ``{each}`` only "each other"; ``{self}``; ``{thing}`` any noun
+  that is no person and no part of the body; ``{part}`` a part of a body, ``{a.part}`` one's own, ``{b.part}`` the
+  other's, ``{b.part:head}`` one of a family;
 - a preposition before a slot or a noun: ``on {b.part}``, ``to {b}``, ``on floor|ground``; with ``from? {b}`` it may
   also be the object;
 - any other word: a particle, an adverb, a complement, or the object's noun: ``sit down``, ``shake hand``; of a part of
@@ -33,7 +33,7 @@ PREPOSITIONS = frozenset(_PREPOSITIONS.split())
 _DIRECTIONS = frozenset(("across", "along", "around", "back", "by", "in", "out", "over", "past", "up"))
 """Particles that only say where somebody goes; "away", "off" and "down" say more."""
 _PARTICLES = PREPOSITIONS | {"back"}
-_SLOTS = frozenset(("a", "a+b", "b", "self", "thing", "part", "place"))
+_SLOTS = frozenset(("a", "a+b", "b", "each", "self", "thing", "part", "place"))
 
 
 @dataclass(frozen=True)
@@ -296,6 +296,8 @@ def _fills(element: _Element, ref: Ref, agents: str, event: Event) -> bool:
     match element.slot:
         case "b":
             return (ref.kind == "person" and ref.who != agents) or (ref.kind == "each" and len(agents) == 2)
+        case "each":
+            return ref.kind == "each" and len(agents) == 2
         case "self":
             return ref.kind == "self" or (ref.kind == "person" and ref.who == agents and len(agents) == 1)
         case "thing":
