@@ -14,7 +14,7 @@ from webdemo.inference.known_parts import KnownFrames, KnownPath
 from webdemo.inference.pipelines import intergen, scene_setting
 from webdemo.inference.pipelines.scene import Parts
 from webdemo.inference.plans import KeptPlan, WindowPlan, kept_plan
-from webdemo.inference.story import Beat, FloorPath, FloorPoint, request, understood
+from webdemo.inference.story import Beat, FloorPath, FloorPoint, prompted, request, understood
 from webdemo.inference.story.told import Told
 
 from .test_scenes import positions, run
@@ -50,9 +50,10 @@ def changed_reader(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(scene_setting, "_anchor", lambda _: (3.0, 3.0, 1.0))
     alone = ("One person falls.", "One person jumps.")
     monkeypatch.setattr(understood, "of_each", lambda _: alone)
-    monkeypatch.setattr(request, "told_by", lambda _: Told(alone=alone))
+    for module in (request, prompted):
+        monkeypatch.setattr(module, "told_by", lambda _: Told(alone=alone))
     monkeypatch.setattr(intergen.InterGenPipeline, "notes", lambda *_: ("Read again.",))
-    monkeypatch.setattr(request, "_beats", lambda *_: (Beat("They hug."), Beat("They bow.")))
+    monkeypatch.setattr(prompted, "_beats", lambda *_: (Beat("They hug."), Beat("They bow.")))
 
 
 @pytest.mark.parametrize(
