@@ -1,0 +1,386 @@
+// The story under the player: beats as blocks in three lanes, a span, paths on the floor. Its value is a story.
+
+import { Draft } from "./draft.js";
+import { chips } from "../player/paths/walks.js";
+import * as edits from "./edits.js";
+import { Floor } from "./floor.js";
+import { block, drawRuler, drawTicks, node } from "./lanes.js";
+import { Pins } from "./pins.js";
+import { say } from "../texts.js";
+
+const LANES = [["words", say("story.both")], ["a", "A"], ["b", "B"]];
+const PIXELS = 44; // a second, at least
+
+const plain = (story) => JSON.stringify({ ...story, ahead: false });
+
+/** The editor of a story: it shows one and tells of each change. */
+export class Editor {
+  /** `kept` takes the story as the component's value; `changed` tells the server that the user changed it. */
+  constructor(root, props, kept, changed) {
+    this.root = root;
+    this.props = props;
+    this.kept = kept;
+    this.changed = changed;
+    this.story = edits.empty();
+    this.selected = 0;
+    this.past = new edits.Past();
+    this.draft = new Draft();
+    this.note = null; // stands in for the hint until the next change
+    this.floor = new Floor(root.querySelector(".pds-floor"), this);
+    this.pins = new Pins(this);
+    root.addEventListener("click", (event) => this.press(event));
+    root.addEventListener("change", (event) => this.field(event));
+    root.addEventListener("keydown", (event) => this.key(event));
+    const ruler = this.find(".pds-ruler");
+    ruler.addEventListener("pointerdown", (event) => this.select(event, ruler));
+    this.timer = setInterval(() => this.tick(), 80);
+  }
+
+  find(selector) {
+    return this.root.querySelector(selector);
+  }
+
+  get player() {
+    return this.root.closest(".pd-results")?.querySelector(".pdd")?.player;
+  }
+
+  /** As the player asks for them: each person's kept pose at a frame, or null. */
+  posesAt(frame) {
+    return ["a", "b"].map((person) => edits.poseAt(this.story, person, frame)?.positions ?? null);
+  }
+
+  /** What was posed in the player becomes a part of the story, and the time around it is selected. */
+  keepPoses(frame, poses) {
+    const motion = this.props.motion?.seconds;
+    let story = this.story;
+    for (const { person, positions } of poses) story = edits.pose(story, person, frame, positions);
+    if (motion) story = { ...story, span: edits.spanAround(edits.momentOf(frame), motion) };
+    this.edit(story);
+    this.tell(say("story.pinned"));
+  }
+
+  get paths() {
+    return this.story.paths;
+  }
+
+  get seconds() {
+    return this.story.beats.length ? edits.edges(this.story).at(-1) : this.total;
+  }
+
+  get mayUndo() {
+    return this.past.before.length > 0;
+  }
+
+  keepPath(person, points) {
+    this.edit(edits.path(this.story, person, points));
+  }
+
+  undo() {
+    this.travel("undo");
+  }
+
+  /** Goes back to the story before, or forward again. */
+  travel(way) {
+    const next = this.past[way](this.story);
+    if (next !== this.story) this.show(next);
+  }
+
+  /** The player's sample is to be the motion from now on: as the button *Take the one shown* does. */
+  takeFuture() {
+    this.root.closest(".pd-results")?.querySelector(".pd-take")?.click();
+  }
+
+  /** Seconds that the line shows: the story's, or the motion's where that is longer. */
+  get total() {
+    return Math.max(edits.edges(this.story).at(-1), this.props.motion?.seconds ?? 0, 1);
+  }
+
+  /** The value as the server gave it. */
+  load(story) {
+    if (story === this.given) return;
+    this.given = story;
+    const changed = this.draft.given(story);
+    const next = edits.read(story);
+    if (plain(next) === this.sent && !changed) {
+      this.story = { ...this.story, ahead: next.ahead };
+      return;
+    }
+    this.keepPast();
+    this.story = next;
+    this.bound();
+    if (changed) this.edit(changed);
+    else this.draw();
+  }
+
+  /** The beats, paths and poses that the text over the line gives, unless they were changed since it was written. */
+  lay(laid) {
+    if (!laid || laid === this.laid) return;
+    this.laid = laid;
+    if (this.story.ahead) return;
+    this.keepPast();
+    this.hold(edits.read({ ...this.story, ...laid, span: null }));
+    this.bound();
+    this.draw();
+    this.draft.keep(this.story);
+  }
+
+  /** The story becomes the component's value. */
+  hold(story) {
+    this.story = this.given = story;
+    this.sent = plain(story);
+    this.kept(story);
+  }
+
+  keepPast() {
+    if (this.story.beats.length) this.past.keep(this.story);
+  }
+
+  bound() {
+    this.selected = Math.min(Math.max(this.selected, 0), this.story.beats.length - 1);
+  }
+
+  /** Lengths that follow from the words, as the server worked them out. */
+  measure(lengths) {
+    if (!lengths || lengths.length !== this.story.beats.length) return;
+    this.story = edits.measured(this.story, lengths);
+    if (!this.find("textarea")) this.draw();
+  }
+
+  /** A change by the user. */
+  edit(story) {
+    if (story === this.story) return this.draw();
+    this.past.keep(this.story);
+    this.note = null;
+    this.show(story);
+  }
+
+  show(next) {
+    const ahead = this.story.ahead || edits.wordsOf(next) !== edits.wordsOf(this.story);
+    this.hold({ ...next, ahead });
+    this.bound();
+    this.draw();
+    this.draft.keep(this.story);
+    this.changed();
+  }
+
+  // ---- events ----------------------------------------------------------------------------------
+
+  press(event) {
+    const cell = event.target.closest?.(".pds-cell");
+    if (cell) return this.write(Number(cell.dataset.beat), cell.dataset.lane);
+    const act = event.target.closest?.("[data-act]")?.dataset.act;
+    if (!act) return;
+    const { story, selected } = this;
+    if (act === "add") {
+      this.selected = story.beats.length ? selected + 1 : 0;
+      this.edit(edits.add(story, selected));
+      this.write(this.selected, "words");
+    } else if (act === "undo" || act === "redo") this.travel(act);
+    else if (act === "no-span") this.edit({ ...story, span: null });
+    else if (act === "add-point") this.floor.addPoint();
+    else if (act === "clear-path") this.floor.clear();
+    else if (story.beats.length) this.change(act);
+  }
+
+  /** What is done to the selected beat. */
+  change(act) {
+    const { story, selected } = this;
+    if (act === "split") this.edit(edits.split(story, selected));
+    else if (act === "delete") this.edit(edits.remove(story, selected));
+    else if (act === "again") this.edit(edits.change(story, selected, { seed: Math.floor(Math.random() * 2 ** 32) }));
+    else {
+      const by = act === "left" ? -1 : 1;
+      const next = edits.move(story, selected, by);
+      if (next !== story) this.selected += by;
+      this.edit(next);
+    }
+  }
+
+  field(event) {
+    const { field } = event.target.dataset;
+    const { story, selected } = this;
+    const value = Number(event.target.value);
+    if (field === "seconds" && story.beats.length) {
+      const free = event.target.value === "";
+      this.edit(free ? edits.change(story, selected, { seconds: null }) : edits.stretch(story, selected, value));
+    } else if (field === "loop" || field === "planned") this.edit({ ...story, [field]: event.target.checked });
+    else if (field === "from" || field === "to") {
+      const [from, to] = ["from", "to"].map((name) => Number(this.find(`[data-field=${name}]`).value));
+      if (to > from) this.edit({ ...story, span: [from, Math.min(to, this.total)] });
+    }
+  }
+
+  key(event) {
+    const cell = event.target.closest?.(".pds-cell");
+    const handle = event.target.closest?.(".pds-handle");
+    const arrow = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (this.pins.key(event)) return event.preventDefault();
+    if (handle && arrow) {
+      const index = Number(handle.dataset.beat);
+      this.edit(edits.stretch(this.story, index, edits.lengthOf(this.story.beats[index]) + 0.5 * arrow));
+      this.find(`.pds-handle[data-beat="${index}"]`)?.focus();
+    } else if (cell && arrow) {
+      if (event.altKey) this.change(arrow < 0 ? "left" : "right");
+      else this.selected = Math.min(Math.max(this.selected + arrow, 0), this.story.beats.length - 1);
+      this.draw();
+      this.find(`.pds-cell[data-beat="${this.selected}"][data-lane="${cell.dataset.lane}"]`)?.focus();
+    } else if (cell && event.key === "Delete") this.change("delete");
+    else if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" && event.target.tagName !== "TEXTAREA") {
+      this.travel(event.shiftKey ? "redo" : "undo");
+    } else return;
+    event.preventDefault();
+  }
+
+  /** Opens a field for the words of a lane over its block. */
+  write(index, lane) {
+    this.selected = index;
+    this.draw();
+    const cell = this.find(`.pds-cell[data-beat="${index}"][data-lane="${lane}"]`);
+    if (!cell) return;
+    const field = node("textarea", "pds-words");
+    field.value = this.story.beats[index][lane] ?? "";
+    field.rows = 2;
+    field.maxLength = 400;
+    field.setAttribute("aria-label", cell.getAttribute("aria-label"));
+    let open = true;
+    const close = (keep, focus) => {
+      if (!open) return;
+      open = false;
+      const words = field.value.trim();
+      field.remove();
+      const before = this.story.beats[index]?.[lane] ?? "";
+      if (keep && words !== before) this.edit(edits.change(this.story, index, { [lane]: words }));
+      if (focus) this.find(`.pds-cell[data-beat="${index}"][data-lane="${lane}"]`)?.focus();
+    };
+    field.addEventListener("keydown", (event) => {
+      event.stopPropagation();
+      if (event.key === "Enter" && !event.shiftKey) close(true, true);
+      else if (event.key === "Escape") close(false, true);
+      else return;
+      event.preventDefault();
+    });
+    field.addEventListener("blur", () => close(true, false));
+    cell.parentElement.append(field);
+    field.focus();
+    field.select();
+  }
+
+  /** A span on the ruler: a press seeks, a drag selects. */
+  select(event, ruler) {
+    if (event.button) return;
+    const box = ruler.getBoundingClientRect();
+    const at = (x) => Math.round(10 * Math.min(Math.max((x - box.left) / box.width, 0), 1) * this.total) / 10;
+    const first = at(event.clientX);
+    this.player?.seek(Math.round(30 * first));
+    ruler.setPointerCapture(event.pointerId);
+    let span = null;
+    const drag = (moved) => {
+      const now = at(moved.clientX);
+      span = Math.abs(now - first) >= edits.SHORTEST ? [Math.min(first, now), Math.max(first, now)] : null;
+      this.drawSpan(span);
+    };
+    const end = () => {
+      ruler.removeEventListener("pointermove", drag);
+      if (span) this.edit({ ...this.story, span });
+    };
+    ruler.addEventListener("pointermove", drag);
+    ruler.addEventListener("pointerup", end, { once: true });
+    ruler.addEventListener("pointercancel", end, { once: true });
+  }
+
+  stretchBy(event, index) {
+    event.preventDefault();
+    event.stopPropagation();
+    const handle = event.currentTarget;
+    const wide = this.find(".pds-lanes").clientWidth / this.total;
+    const [from, before, story] = [event.clientX, edits.lengthOf(this.story.beats[index]), this.story];
+    let next = story;
+    const drag = (moved) => {
+      next = edits.stretch(story, index, before + (moved.clientX - from) / wide);
+      this.find(".pds-hint").textContent = say("story.beat_length", { number: index + 1, seconds: next.beats[index].seconds });
+    };
+    const end = () => {
+      window.removeEventListener("pointermove", drag);
+      if (next !== story) this.edit(next);
+    };
+    handle.blur();
+    window.addEventListener("pointermove", drag);
+    window.addEventListener("pointerup", end, { once: true });
+  }
+
+  tick() {
+    if (!this.root.isConnected) return clearInterval(this.timer);
+    const { player } = this;
+    if (player && player.director !== this) player.direct(this);
+    const frame = player?.frameShown;
+    if (frame == null || !this.root.offsetParent) return;
+    this.find(".pds-playhead").style.left = `${(100 * frame) / 30 / this.total}%`;
+  }
+
+  // ---- drawing ---------------------------------------------------------------------------------
+
+  draw() {
+    if (this.pins.held) return; // it is drawn when that is over
+    const { story, total } = this;
+    const starts = edits.edges(story);
+    const focused = this.root.contains(document.activeElement) && document.activeElement.dataset.key;
+    this.find(".pds-line").style.minWidth = `${Math.round(PIXELS * total)}px`;
+    const lanes = this.find(".pds-lanes");
+    lanes.replaceChildren();
+    for (const [lane, name] of LANES) {
+      const row = node("div", `pds-lane pds-lane-${lane}`);
+      row.append(node("span", "pds-name", name));
+      const stretch = (event, index) => this.stretchBy(event, index);
+      story.beats.forEach((beat, i) => row.append(
+        block(beat, i, { lane, name, starts, total, selected: i === this.selected, stretch }),
+      ));
+      row.append(...this.pins.of(lane, total));
+      lanes.append(row);
+    }
+    if (focused) this.find(`[data-key="${focused}"]`)?.focus({ preventScroll: true });
+    drawRuler(this.find(".pds-ruler"), total);
+    drawTicks(this.find(".pds-ticks"), this.props.motion?.contacts ?? [], total);
+    this.drawSpan(story.span);
+    this.floor.draw(story);
+    chips(this.find(".pds-walks"), story.paths, (person) => this.keepPath(person, []));
+    this.player?.refresh(); // it shows poses
+    const beat = story.beats[this.selected];
+    this.find("[data-field=seconds]").value = beat ? edits.lengthOf(beat) : "";
+    for (const name of ["loop", "planned"]) this.find(`[data-field=${name}]`).checked = story[name];
+    this.find("[data-field=from]").value = story.span?.[0] ?? "";
+    this.find("[data-field=to]").value = story.span?.[1] ?? "";
+    for (const act of ["split", "left", "right", "again", "delete"]) {
+      this.find(`[data-act=${act}]`).disabled = !beat;
+    }
+    this.find("[data-act=undo]").disabled = !this.past.before.length;
+    this.find("[data-act=redo]").disabled = !this.past.after.length;
+    this.find("[data-act=no-span]").disabled = !story.span;
+    const said = beat ? this.summary(beat) : say("story.empty");
+    this.find(".pds-hint").textContent = this.note ?? said;
+  }
+
+  focusPin(person, frame) {
+    const index = this.story.poses.indexOf(edits.poseAt(this.story, person, frame));
+    this.find(`.pds-pin[data-pose="${index}"]`)?.focus({ preventScroll: true });
+  }
+
+  /** Says something in place of the hint, until the next change. */
+  tell(note) {
+    this.note = note;
+    this.find(".pds-hint").textContent = note;
+  }
+
+  summary(beat) {
+    const length = `${edits.lengthOf(beat).toFixed(1)} s${beat.seconds == null ? say("story.from_words") : ""}`;
+    const seed = beat.seed == null ? "" : say("story.seed", { seed: beat.seed });
+    return say("story.beat", { number: this.selected + 1, facts: length + seed });
+  }
+
+  drawSpan(span) {
+    const shown = this.find(".pds-span");
+    shown.hidden = !span;
+    if (!span) return;
+    shown.style.left = `${(100 * span[0]) / this.total}%`;
+    shown.style.width = `${(100 * (span[1] - span[0])) / this.total}%`;
+  }
+}
