@@ -159,7 +159,7 @@ def _sentence(group: Sequence[Act], known: Lexicon) -> str:
 
 
 def _is_still(act: Act, known: Lexicon) -> bool:
-    """True for standing still: whoever is denied something just stands still."""
+    """True for standing still, which must not be said of a person who is told not to."""
     entry = known.entries.get(act.act)
     return entry is not None and {shape.do for shape in entry.stage} == {"stay"}
 

@@ -66,6 +66,18 @@ def test_no_rule_passes_on_two_people_who_stand_still() -> None:
     assert passing <= STANDING
 
 
+def test_no_touch_is_found_on_two_who_stand_near_each_other() -> None:
+    """Nearness alone is no touch."""
+    near = duet(gap=0.7)
+    touches = {name: e for name, e in ENTRIES.items() if any(shape.do == "touch" for shape in e.stage)}
+    passing = {
+        name
+        for name, entry in touches.items()
+        if entry.rule and all(check(cast(rule, "a", "b"), near) for rule in entry.rule)
+    }
+    assert len(touches) >= 40 and not passing
+
+
 def test_what_stands_needs_standing() -> None:
     away = duet(shift((0, 0, 0), (0, 0, -3)))
     for name in ("stand-still", "listen", "freeze"):
