@@ -325,6 +325,7 @@ def test_the_time_of_a_run_begins_when_it_runs(monkeypatch: pytest.MonkeyPatch) 
     people.threads[1].join(timeout=10)
     assert isinstance(people.ends["second"], InputError)
     assert "longer than the 10 minutes that this lab allows" in str(people.ends["second"])
+    wait_for(lambda: ("third",) in gate.order)  # else the second may still take what is released
     gate.open.release()
     people.end()
     assert isinstance(people.ends["third"], Result)
