@@ -1,13 +1,11 @@
 """Rigs as files bring them, and which of their joints play which part of the body.
 
-A rig names its joints as its makers liked: ``mixamorig:LeftUpLeg``, ``UpperLeg_L``, ``lfemur`` and
-``LeftHip`` are one joint. :func:`match_joints` finds the parts by rules over the words of a name and
-by the tree; it needs no table of known rigs.
+:func:`match_joints` finds the parts by their names (:mod:`motion.joint_names`) and by the tree: a limb is a chain, so
+that its upper joints are ancestors of its lower ones.
 """
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -15,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InputError
+from .joint_names import PARTS, Key, joint_keys
 from .skeleton import SMPL22
 
 Array = NDArray[np.floating]
@@ -36,6 +35,7 @@ class RigMotion:
         up: the axis that points up ("x", "y" or "z"), where it is known; it is found from the body otherwise.
         every: of how many frames of the file one is here.
         y_up: Y is up unless the rest pose stands along another axis, as in a BVH.
+        mirrored: the world shows what is named left on the right.
     """
 
     joint_names: tuple[str, ...]
@@ -49,6 +49,7 @@ class RigMotion:
     up: str | None = None
     every: int = 1
     y_up: bool = False
+    mirrored: bool = False
 
     @property
     def num_frames(self) -> int:
@@ -93,25 +94,11 @@ class BodyParts:
     right: dict[str, int | None]
 
 
-# The words of a name that say nothing about the body: prefixes of exporters and rigging tools.
-_NOISE = {
-    "mixamorig", "bip", "biped", "valve", "character", "cc", "base", "j", "def", "org", "mcp", "jnt", "joint",
-    "bone", "skel", "skeleton", "ctrl", "rig", "m", "b", "sk", "avg", "f",
-}  # fmt: skip
-_SIDES = {"l": "left", "left": "left", "lft": "left", "r": "right", "right": "right", "rgt": "right"}
-# By preference. Parts earlier in this table claim a joint first: "shoulder" is the upper arm in Xsens' rig,
-# where nothing else is, and the collar in Mixamo's, where "arm" is the upper arm.
-_LIMB_NAMES = {
-    "wrist": ("wrist", "hand"),
-    "elbow": ("elbow", "forearm", "lowerarm", "lowarm", "radius"),
-    "shoulder": ("upperarm", "uparm", "humerus", "arm", "shldr", "shoulder"),
-    "collar": ("collar", "collarbone", "clavicle", "clav", "shoulder", "inshoulder"),
-    "ankle": ("ankle", "foot"),
-    "toe": ("toe", "toes", "toebase", "ball", "forefoot", "foot"),
-    "knee": ("knee", "lowerleg", "lowleg", "shin", "shank", "calf", "tibia", "leg"),
-    "hip": ("upleg", "upperleg", "thigh", "femur", "hip", "leg"),
-}
-_ALL_LIMB_NAMES = {name for names in _LIMB_NAMES.values() for name in names}
+_BELOW = {"elbow": "wrist", "shoulder": "elbow", "collar": "shoulder", "knee": "ankle", "hip": "knee"}
+"""The next joint down the limb."""
+_LIMB = ("wrist", "elbow", "shoulder", "collar", "ankle", "toe", "knee", "hip")
+_ONE_PLACE = 1e-3
+"""Share of a body's height within which the left and the right of a part are helpers at one place."""
 _SPINE_NAMES = ("spine1", "spine2", "spine3")
 _REQUIRED = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 
@@ -152,8 +139,9 @@ def match_joints(rig: RigMotion) -> BodyParts:
     Raises:
         InputError: naming the parts that no joint was found for.
     """
-    keys = [_side_and_key(name) for name in rig.joint_names]
-    limbs = {side: _match_limbs(rig, keys, side) for side in ("left", "right")}
+    keys = joint_keys(rig.joint_names)
+    helpers = _helpers(rig, keys)
+    limbs = {side: _match_limbs(rig, keys, side, helpers) for side in ("left", "right")}
     missing = [f"{side} {part}" for side in limbs for part in _REQUIRED if limbs[side][part] is None]
     if missing:
         raise InputError(
@@ -166,18 +154,35 @@ def match_joints(rig: RigMotion) -> BodyParts:
         raise InputError(f"{rig.name or 'The file'} holds more than one skeleton: give one person a file.")
     path = rig.path_to_root(chest)
     spine = path[: path.index(pelvis) + 1][::-1] if pelvis in path else [pelvis, chest]
-    neck = _first(rig, keys, "centre", ("neck", "lowerneck"))
-    head = _first(rig, keys, "centre", ("head", "face", "skull"))
+    neck, head = (_best(rig, keys, "centre", part) for part in ("neck", "head"))
     if head is None and neck is not None:
         head = next((joint for joint, parent in enumerate(rig.parents) if parent == neck), None)
-    return BodyParts(pelvis, tuple(spine), neck, head, limbs["left"], limbs["right"])
+    left, right = (limbs["right"], limbs["left"]) if rig.mirrored else (limbs["left"], limbs["right"])
+    return BodyParts(pelvis, tuple(spine), neck, head, left, right)
 
 
-def _match_limbs(rig: RigMotion, keys: list[tuple[str, str]], side: str) -> dict[str, int | None]:
+def _helpers(rig: RigMotion, keys: list[Key]) -> frozenset[int]:
+    """Joints that share their place with the same part of the other side: they are no limb's."""
+    by_key: dict[Key, list[int]] = {}
+    for joint, key in enumerate(keys):
+        by_key.setdefault(key, []).append(joint)
+    near = _ONE_PLACE * float(np.ptp(rig.positions[0], axis=0).max())
+    found: set[int] = set()
+    for (side, part), joints in by_key.items():
+        for one in joints if side == "left" else ():
+            for other in by_key.get(("right", part), ()):
+                if np.linalg.norm(rig.positions[:, one] - rig.positions[:, other], axis=-1).max() < near:
+                    found |= {one, other}
+    return frozenset(found)
+
+
+def _match_limbs(
+    rig: RigMotion, keys: list[Key], side: str, helpers: frozenset[int]
+) -> dict[str, int | None]:
     found: dict[str, int | None] = {}
-    for part, names in _LIMB_NAMES.items():
-        taken = {joint for joint in found.values() if joint is not None}
-        found[part] = _first(rig, keys, side, names, taken)
+    for part in _LIMB:
+        taken = helpers.union(joint for joint in found.values() if joint is not None)
+        found[part] = _best(rig, keys, side, part, taken, found.get(_BELOW.get(part, "")))
     # A chain that stops at the forearm or the foot still has a tip (BVH's End Site), which is the next joint.
     for part, carrier in (("wrist", "elbow"), ("toe", "ankle")):
         parent = found[carrier]
@@ -187,32 +192,26 @@ def _match_limbs(rig: RigMotion, keys: list[tuple[str, str]], side: str) -> dict
     return found
 
 
-def _first(
-    rig: RigMotion,
-    keys: list[tuple[str, str]],
-    side: str,
-    names: tuple[str, ...],
-    taken: set[int] | None = None,
-) -> int | None:
-    """The joint with the best-liked name; among equals the one nearest to the root."""
-    for name in names:
-        found = [
-            joint for joint, key in enumerate(keys) if key == (side, name) and joint not in (taken or ())
-        ]
-        if found:
-            return min(found, key=lambda joint: len(rig.path_to_root(joint)))
-    return None
+def _best(
+    rig: RigMotion, keys: list[Key], side: str, part: str, taken: frozenset[int] = frozenset(), below: int | None = None
+) -> int | None:  # fmt: skip
+    """The joint of a part: one above the next joint down the limb, with the best-liked name, the nearest to that.
 
-
-def _side_and_key(name: str) -> tuple[str, str]:
-    """("left" | "right" | "centre", the name's words in one, without side, digits and prefixes)."""
-    words = [w.lower() for w in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", name.rsplit(":", 1)[-1])]
-    sides = [_SIDES[w] for w in words if w in _SIDES]
-    rest = [w for w in words if w not in _SIDES and w not in _NOISE]
-    if not sides and len(rest) == 1 and rest[0][0] in "lr" and rest[0][1:] in _ALL_LIMB_NAMES:
-        # "lfemur": a side glued to the part.
-        return _SIDES[rest[0][0]], rest[0][1:]
-    return (sides[0] if sides else "centre"), "".join(rest)
+    Where nothing is known below, or nothing with such a name is above it, it is the one nearest to the root.
+    """
+    above = [] if below is None else rig.path_to_root(below)[1:]
+    named = [
+        joint
+        for joint, key in enumerate(keys)
+        if key[0] == side and key[1] in PARTS[part] and joint not in taken
+    ]
+    if held := [joint for joint in named if joint in above]:
+        return min(held, key=lambda joint: (PARTS[part].index(keys[joint][1]), above.index(joint)))
+    return min(
+        named,
+        key=lambda joint: (PARTS[part].index(keys[joint][1]), len(rig.path_to_root(joint))),
+        default=None,
+    )
 
 
 def _shorten(names: tuple[str, ...]) -> str:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from motion import SMPL22, Clip, Duet, InputError
+from motion.joint_names import without_beginning
 from motion.retarget import retarget, retarget_duet, to_smpl
 from motion.rigs import RigMotion
 
@@ -90,9 +91,10 @@ def _read_rig_clips(
 
 def own_clip(rig: RigMotion) -> Clip | None:
     """A file whose joints are SMPL22's needs no retargeting: it keeps its frame rate, bones and place."""
-    if not set(SMPL22.joint_names) <= set(rig.joint_names) or rig.metres_per_unit != 1.0:
+    names = without_beginning(rig.joint_names)
+    if not set(SMPL22.joint_names) <= set(names) or rig.metres_per_unit != 1.0:
         return None
-    order = [rig.joint_names.index(name) for name in SMPL22.joint_names]
+    order = [names.index(name) for name in SMPL22.joint_names]
     rotations = None if rig.rotations is None else rig.rotations[:, order]
     return Clip(rig.positions[:, order], rig.fps, SMPL22, rotations, rig.name)
 

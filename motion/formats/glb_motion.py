@@ -49,7 +49,7 @@ def read_glb(
     """The animated people in a .glb file, who share one clock, one unit and one world, and its animations.
 
     Key frames are read at the rate of the densest channel, at 60 a second at most; keys further apart than a tenth of
-    a second are filled in at 30. Names of joints lose the beginning that they share.
+    a second are filled in at 30.
 
     Args:
         source: a path, or the file's bytes.
@@ -107,9 +107,7 @@ class _Person:
     def __init__(self, file: GlbFile, parents: Sequence[int], rig: Rig) -> None:
         self.file, self.parents, self.rig = file, parents, rig
         self.nodes = with_those_above(rig.nodes, parents)
-        names = [file.joint_name(node) for node in rig.nodes]
-        shared = _shared_beginning(names)
-        self.names = tuple(each.removeprefix(shared) for each in names)
+        self.names = tuple(file.joint_name(node) for node in rig.nodes)
         self.problem: InputError | None = None
         rest = self._joints(placed(file, self.nodes, parents), 1)
         try:
@@ -151,13 +149,6 @@ def metres_per_unit(rig: RigMotion) -> float:
     """The file's unit: metres, as glTF has it, or another in which the legs have a person's length, if not theirs."""
     scale = leg_scale(rig)
     return next((unit for unit in _UNITS if _LEGS[0] <= scale / unit <= _LEGS[1]), scale)
-
-
-def _shared_beginning(names: Sequence[str]) -> str:
-    """The beginning of all names, such as "actor_"; empty where they differ before the first mark."""
-    first, last = min(names), max(names)
-    same = next((i for i, (one, other) in enumerate(zip(first, last, strict=False)) if one != other), 0)
-    return first[: max(first[:same].rfind(mark) for mark in "_:|. -") + 1]
 
 
 def _clock(file: GlbFile, moved: Sequence[Sequence[Channel]], nodes: int) -> tuple[Array, float, int]:

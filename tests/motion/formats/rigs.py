@@ -81,6 +81,39 @@ RIGS = {
         ("Collar", "Shoulder", "Elbow", "Wrist", "Hip", "Knee", "Ankle", "Foot"),
         "{part}{Side}",
     ),
+    "optitrack": _rig(
+        {"pelvis": "Hip", "spine1": "Ab", "spine3": "Chest", "neck": "Neck", "head": "Head"},
+        ("Shoulder", "UArm", "FArm", "Hand", "Thigh", "Shin", "Foot", "Toe"),
+        "{S}{part}",
+    ),
+    "daz-genesis-8": _rig(
+        _centre("hip", "abdomenLower", "chestLower", "chestUpper", "neckLower", "head"),
+        ("Collar", "ShldrBend", "ForearmBend", "Hand", "ThighBend", "Shin", "Foot", "Toe"),
+        "{s}{part}",
+    ),
+    "auto-rig": _rig(
+        _centre("root.x", "spine_01.x", "spine_02.x", "spine_03.x", "neck.x", "head.x"),
+        ("shoulder", "arm_stretch", "forearm_stretch", "hand", "thigh_stretch", "leg_stretch", "foot", "toes_01"),
+        "{part}.{s}",
+    ),
+    "a prefix": _rig(
+        _centre("Zoë Hips", "Zoë Spine", "Zoë Spine1", "Zoë Spine2", "Zoë Neck", "Zoë Head"),
+        _MIXAMO_LIMBS,
+        "Zoë{Side}{part}",
+    ),
+    "a suffix": _rig(
+        _centre("Hips_Bob", "Spine_Bob", "Spine1_Bob", "Spine2_Bob", "Neck_Bob", "Head_Bob"),
+        _MIXAMO_LIMBS,
+        "{Side}{part}_Bob",
+    ),
+    "mikumikudance": {
+        "pelvis": "センター", "spine1": "上半身", "spine3": "上半身2", "neck": "首", "head": "頭",
+        **{
+            f"{side}_{part}": letter + name
+            for side, letter in (("left", "左"), ("right", "右"))
+            for part, name in zip(_SIDED, ("肩", "腕", "ひじ", "手首", "足", "ひざ", "足首", "つま先"), strict=True)
+        },
+    },
 }  # fmt: skip
 
 

@@ -126,6 +126,33 @@ def test_who_is_down_all_the_time_is_not_stood_up(kind, rig, z_up):
     assert other.up == "x", "and it can be corrected"
 
 
+@pytest.mark.parametrize("helper", ["HipJoint", "_Hip", "Hip_helper_Joint"])
+def test_a_helper_at_the_root_never_beats_the_hip(helper):
+    text = bvh_text(ROTATIONS, ROOT, RIGS["xsens"])
+    head, numbers = text.split("MOTION\n")
+    widths = [int(line.split()[1]) for line in head.splitlines() if line.startswith("CHANNELS")]
+    names = [line.split()[1] for line in head.splitlines() if line.startswith(("ROOT", "JOINT"))]
+    for side in ("Left", "Right"):
+        joint = f"JOINT {side}Hip\n"
+        head = head.replace(
+            joint, f"JOINT {side[0]}{helper}\n{{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n"
+            f"{{\nOFFSET 0 0 0\n}}\n}}\n{joint}",
+        )  # fmt: skip
+    rows = numbers.splitlines()
+    for side in ("Right", "Left"):
+        before = sum(widths[: names.index(f"{side}Hip")])
+        rows[2:] = [" ".join([*(w := row.split())[:before], "0 0 0", *w[before:]]) for row in rows[2:]]
+    found = read_bvh("\n".join([head + "MOTION", *rows]).encode())
+    parts = match_joints(found)
+    assert (
+        found.joint_names[parts.left["hip"]] == "LeftHip"
+        and found.joint_names[parts.right["hip"]] == "RightHip"
+    )
+    np.testing.assert_allclose(
+        retarget(found).positions, retarget(read_bvh(text.encode())).positions, atol=1e-3
+    )
+
+
 def test_one_and_two_rotation_channels():
     text = """HIERARCHY
 ROOT hip
