@@ -163,8 +163,8 @@ def main() -> None:
     files = len(engine.calls.keys() - undamped.calls.keys())
     moves = engine.moves.total() - undamped.moves.total()
     print(
-        f"threshold: named in {len(naming)} of the engine's {len(engine.calls)} files; the correction adds {files} files "
-        f"and {moves} moves"
+        f"threshold: named in {len(naming)} of the engine's {len(engine.calls)} files; "
+        f"the correction adds {files} files and {moves} moves"
     )
     for name in sorted(naming):
         print(f"    {Path(name).relative_to(ROOT)}")
