@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 
 from acts.frames import Frame, Match
@@ -55,11 +54,6 @@ def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
         raise InputError(
             f"The text has {len(text)} characters: shorten it to {MOST_CHARACTERS}, or use several beats."
         )
-    return _read(text, lexicon(folders))
-
-
-@lru_cache(maxsize=512)
-def _read(text: str, known: Lexicon) -> Plan:
     if not text.strip():
         return Plan(sentence=text, notes=("Nothing is said: write what the two people do.",))
     if (foreign := other_language(text)) is not None:
@@ -68,7 +62,7 @@ def _read(text: str, known: Lexicon) -> Plan:
             unread=(Unread(words=Span(start=0, stop=len(text)), why=foreign),),
             notes=(foreign,),
         )
-    return min(_attempts(text, known), key=lambda attempt: attempt[0])[1]
+    return min(_attempts(text, lexicon(folders)), key=lambda attempt: attempt[0])[1]
 
 
 def _attempts(text: str, known: Lexicon) -> Iterator[tuple[float, Plan]]:

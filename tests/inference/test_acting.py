@@ -55,12 +55,11 @@ def test_more_acts_than_the_seconds_have_room_for_share_a_beat() -> None:
         {"prompt": "She ollies.", "planned": False},
     ],
 )
-def test_other_requests_stay_as_they_are(fields: dict[str, object]) -> None:
-    request = GenerateRequest(**fields)  # type: ignore[arg-type]
-    assert acted(request) is request
+def test_other_requests_follow_no_acts(fields: dict[str, object]) -> None:
+    assert acted(GenerateRequest(**fields)).acts is None  # type: ignore[arg-type]
 
 
 def test_without_acts_of_ones_own_nothing_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("webdemo.inference.acting.read", None)
+    monkeypatch.setattr("webdemo.inference.acting.directed", None)
     request = GenerateRequest(prompt="She ollies.")
     assert acted(request) is request

@@ -1,7 +1,9 @@
 """What was planned for a result is kept in its manifest, and replayed without reading the words again."""
 
 import copy
+import importlib
 import json
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -9,14 +11,17 @@ import numpy as np
 import pytest
 
 from motion import InputError
-from webdemo.inference import Engine, GenerateRequest, SceneRequest
+from motion.looks import UNSAID
+from webdemo.inference import Engine, GenerateRequest, ReactRequest, SceneRequest
 from webdemo.inference.known_parts import KnownFrames, KnownPath
 from webdemo.inference.pipelines import intergen, scene_setting
 from webdemo.inference.pipelines.scene import Parts
 from webdemo.inference.plans import KeptPlan, WindowPlan, kept_plan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, prompted, request, understood
 from webdemo.inference.story.told import Told
+from webdemo.inference.tries import replayed
 
+from .people import waver
 from .test_scenes import positions, run
 
 QUICK: dict[str, Any] = {"steps": 2, "seed": 4}
@@ -38,8 +43,31 @@ SPLIT = GenerateRequest(prompt="Person A sits down, then person B walks away.", 
 AS_IT_IS = GenerateRequest(prompt="Person A shakes person B by the hand.", seconds=2.0, split=False, **QUICK)
 
 
-def changed_reader(monkeypatch: pytest.MonkeyPatch) -> None:
-    """From now on the words of every beat are read in another way, or are not to be read at all."""
+def reading(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The texts that the reader is given from now on."""
+    texts: list[str] = []
+    reader = importlib.import_module("acts.reading.read")
+    attempts = reader._attempts
+
+    def noted(text: str, known: Any) -> Any:
+        texts.append(text)
+        return attempts(text, known)
+
+    monkeypatch.setattr(reader, "_attempts", noted)
+    return texts
+
+
+def forgotten_reader(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From now on no text can be read, whoever asks."""
+
+    def know_nothing(text: str, known: Any) -> Any:
+        raise AssertionError(f"“{text}” is read again.")
+
+    monkeypatch.setattr(importlib.import_module("acts.reading.read"), "_attempts", know_nothing)
+
+
+def changed_stage(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From now on every plan of acts is staged in another way."""
 
     def elsewhere(asked: Any, window: Any, scene: Any, placement: Any, taken: Any) -> list[Any]:
         place = np.array([[1.5, 1.0]])
@@ -50,8 +78,8 @@ def changed_reader(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(scene_setting, "_anchor", lambda _: (3.0, 3.0, 1.0))
     alone = ("One person falls.", "One person jumps.")
     monkeypatch.setattr(understood, "of_each", lambda _: alone)
-    for module in (request, prompted):
-        monkeypatch.setattr(module, "told_by", lambda _: Told(alone=alone))
+    for module in (request, prompted, intergen):
+        monkeypatch.setattr(module, "staged", lambda _: Told(alone=alone))
     monkeypatch.setattr(intergen.InterGenPipeline, "notes", lambda *_: ("Read again.",))
     monkeypatch.setattr(prompted, "_beats", lambda *_: (Beat("They hug."), Beat("They bow.")))
 
@@ -65,11 +93,14 @@ def test_a_replayed_plan_gives_the_same_bytes_whatever_the_words_now_mean(
     first = run(reading_engine, asked)
     manifest = json.loads(json.dumps(first.manifest))
     monkeypatch.setattr(reading_engine.pipeline("intergen").scenes, "parts", Parts())
-    changed_reader(monkeypatch)
-    replayed = run(reading_engine, replace(asked, plan=kept_plan(manifest)))
+    with monkeypatch.context() as forgetful:
+        forgotten_reader(forgetful)
+        changed_stage(forgetful)
+        replayed = run(reading_engine, replace(asked, plan=kept_plan(manifest)))
     for sample in range(asked.samples):
         np.testing.assert_array_equal(positions(replayed, sample), positions(first, sample))
     assert replayed.manifest == first.manifest
+    changed_stage(monkeypatch)
     read_now = positions(run(reading_engine, asked))
     assert read_now.shape != positions(first).shape or np.abs(read_now - positions(first)).max() > 1e-3
 
@@ -81,10 +112,76 @@ def test_a_continuation_is_replayed_from_its_own_plan(
     asked = SceneRequest(beats=(Beat("Person A walks away.", seconds=2.0),), motion=given, start=1.0, **QUICK)
     first = run(engine, asked)
     monkeypatch.setattr(engine.pipeline("intergen").scenes, "parts", Parts())
-    changed_reader(monkeypatch)
+    forgotten_reader(monkeypatch)
+    changed_stage(monkeypatch)
     stored = json.loads(json.dumps(first.manifest))
     again = SceneRequest.from_dict(stored["request"], first.duets[0], kept_plan(stored))
     np.testing.assert_array_equal(positions(run(engine, again)), positions(first))
+
+
+SENTENCES = (
+    "Two people shake hands.", "A girl waves at her mother.", "A boy throws a ball to his sister and she catches it.",
+    "She hands him a cup and he drinks from it.", "A man punches another man, who falls down.", "A opens the window.",
+    "They walk up to each other and hug, then they dance.", "They sit down at a table and talk.",
+    "A mother and her little son wave, then he runs away.", "The old man sits down and reads a newspaper.",
+    "He flurbles gravely.", "A kneels. B does not bow.",
+)  # fmt: skip
+
+
+def _asked() -> Iterator[Any]:
+    """Twenty requests of all kinds that have words, as they are made from their fields."""
+    for i, sentence in enumerate(SENTENCES):
+        yield lambda sentence=sentence, i=i: GenerateRequest(prompt=sentence, seconds=2.0, seed=i, steps=1)
+    yield lambda: replace(SPLIT, tries=2)
+    yield lambda: replace(AS_IT_IS, samples=2)
+    yield lambda: replace(SPLIT, planned=False)
+    yield lambda: replace(SPLIT, paths=DRAWN.paths)
+    yield lambda: SceneRequest(beats=(Beat("The girl sits down."), Beat(a="waves", b="claps")), **QUICK)
+    yield lambda: SceneRequest(beats=(Beat("He jumps.", seconds=2.0),), loop=True, **QUICK)
+    yield lambda: ReactRequest(actor=waver(), model="intergen", prompt="A pushes B, who falls.", **QUICK)
+    yield lambda: ReactRequest(actor=waver(), model="intergen", role="b", prompt="She hugs him.", **QUICK)
+
+
+def test_twenty_results_are_read_once_and_made_again_by_a_reader_that_knows_nothing(
+    reading_engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = []
+    with monkeypatch.context() as reader:
+        for ask in _asked():
+            texts = reading(reader)
+            asked = ask()
+            result = run(reading_engine, asked)
+            sentences = (
+                {beat.sentence for beat in asked.beats} if isinstance(asked, SceneRequest) else {asked.prompt}
+            )
+            assert sorted(texts) == sorted(sentences)
+            kept.append((asked, result))
+    assert len(kept) == 20 and sum(bool(result.duets[0].things) for _, result in kept) >= 4
+    assert sum(result.duets[0].looks != UNSAID for _, result in kept) >= 5
+    monkeypatch.setattr(reading_engine.pipeline("intergen").scenes, "parts", Parts())
+    forgotten_reader(monkeypatch)
+    for asked, first in kept:
+        manifest = json.loads(json.dumps(first.manifest))
+        own = replayed_fields(asked, manifest)
+        again = run(reading_engine, replace(asked, plan=kept_plan(manifest), **own))
+        for one, other in zip(first.duets, again.duets, strict=True):
+            np.testing.assert_array_equal(one.positions, other.positions)
+            assert one.looks == other.looks and one.grips == other.grips
+            assert [(t.kind, t.name) for t in one.things] == [(t.kind, t.name) for t in other.things]
+            for thing, same in zip(one.things, other.things, strict=True):
+                np.testing.assert_array_equal(thing.places, same.places)
+        assert (
+            again.manifest.get("checked") == manifest.get("checked")
+            and again.manifest["plan"] == manifest["plan"]
+        )
+        said = [note for note in first.notes if " tries" not in note]
+        assert [note for note in again.notes if note in said] == said
+
+
+def replayed_fields(asked: Any, manifest: dict[str, Any]) -> dict[str, Any]:
+    """The seed and the tries of a result that is made again."""
+    fields = replayed({"seed": asked.seed, "tries": asked.tries}, manifest)
+    return {"seed": fields["seed"], "tries": fields["tries"]}
 
 
 def test_a_plan_of_another_scene_is_refused(engine: Engine) -> None:

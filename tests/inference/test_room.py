@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from acts import read
 from motion import SMPL22, Duet
 from webdemo.inference import SceneRequest
 from webdemo.inference.actor import FPS
@@ -16,7 +17,7 @@ from webdemo.inference.pipelines.scene_room import BODY, distance, roomy
 from webdemo.inference.story import Beat
 from webdemo.inference.story.bodies.poses import at_rest, bowing, lying, stooping, upright
 from webdemo.inference.story.floor import Standing
-from webdemo.inference.story.scripting import told_by
+from webdemo.inference.story.staging import staged
 from webdemo.inference.story.told import Told
 
 from .followed import Follower, speeds
@@ -35,7 +36,7 @@ def follower(monkeypatch: pytest.MonkeyPatch) -> Follower:
 
 
 def told(*words: str) -> list[Told]:
-    return [told_by(Beat(each)) for each in words]
+    return [staged(read(each).acts) for each in words]
 
 
 def scene(follower: Follower, *words: str, **fields: Any) -> np.ndarray:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import torch
 
+from acts import read
 from motion import SMPL22, Duet
 from motion.skeleton import ARMS
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
@@ -15,6 +16,7 @@ from webdemo.inference.pipelines.scene import WindowRequest
 from webdemo.inference.plans import KeptPlan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
 from webdemo.inference.story.prompted import as_scene
+from webdemo.inference.story.understood import of_each
 
 QUICK: dict[str, Any] = {"steps": 3}
 BEATS = (
@@ -251,13 +253,17 @@ def test_a_network_that_reads_them_is_given_each_persons_own_words(reading_engin
 
 def test_names_in_a_plain_sentence_say_who_does_what(reading_engine: Engine) -> None:
     pipeline = reading_engine.pipeline("intergen")
-    named, _ = pipeline.condition("Person A waves while person B claps.")
+
+    def read_of(prompt: str) -> torch.Tensor:
+        return pipeline.condition(prompt, of_each(read(prompt)))[0]
+
+    named = read_of("Person A waves while person B claps.")
     a, b = (pipeline.condition("x", (s, s))[0] for s in ("One person waves.", "One person claps."))
     assert torch.allclose(named[:, 1, :4], a[:, 1, :4], atol=1e-5)
     assert torch.allclose(named[:, 2, :4], b[:, 2, :4], atol=1e-5)
-    unnamed, _ = pipeline.condition("One waves while the other claps.")
+    unnamed = read_of("One waves while the other claps.")
     assert torch.allclose(unnamed[:, 1:, :4], named[:, 1:, :4], atol=1e-5)
-    both, _ = pipeline.condition("They wave.")
+    both = read_of("They wave.")
     assert not both[:, 1:].any()
 
 

@@ -22,7 +22,7 @@ from webdemo.inference.methods.intergen import takes
 from webdemo.inference.results import Progress
 from webdemo.inference.story.beats import Beat
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.timed import acts_of, timed
+from webdemo.inference.timed import timed
 from webdemo.inference.traits import SPREAD
 
 
@@ -35,7 +35,7 @@ def test_acts_that_follow_each_other_share_the_time() -> None:
 
 
 def test_what_does_not_happen_is_not_told() -> None:
-    assert [act.name for act in timed(acts_of(Beat("A waves, but B does not bow.")), 0, 60)] == ["wave"]
+    assert [act.name for act in timed(read("A waves, but B does not bow.").acts, 0, 60)] == ["wave"]
     assert timed((), 0, 60) == ()
 
 

@@ -1,24 +1,48 @@
-"""The plans of acts that a request follows: of its words, read by the lexicon or a director, or of its beats."""
+"""The plan of acts that a request follows: read once, when its run begins, and kept in the request from then on."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
-from acts import Act, Plan, lexicon, read
+from acts import Plan, lexicon
 from acts.config import director_settings
 from acts.own import own_files
+from acts.plan import plan_of
 from acts.reading.director import directed
 from motion import InputError
 
 from . import methods
-from .requests import GenerateRequest
-from .story.request import SceneRequest
+from .plans import KeptPlan, kept_acts
+from .requests import GenerateRequest, ReactRequest
+from .story.request import SceneRequest, beat_of
+from .story.scripting import plan_of_beat
+from .story.understood import understood
+
+Request = TypeVar("Request")
+
+
+def with_plan(request: Request) -> Request:
+    """A request whose words are read; the same one where they are, or where it has none that its method takes."""
+    if not isinstance(request, (GenerateRequest, ReactRequest, SceneRequest)):
+        return request
+    plan = request.plan or KeptPlan()
+    if plan.acts or "words" not in methods.method(request.model).takes:
+        return request
+    if isinstance(request, SceneRequest):
+        acts = request.plans
+    elif isinstance(request, GenerateRequest) and request.acts is not None:
+        acts = (request.acts,)
+    else:
+        acts = (understood(request.prompt),)
+    return replace(request, plan=replace(plan, acts=acts))
 
 
 def acted(request: GenerateRequest) -> GenerateRequest:
-    """The request with the plan of its words, if a director reads them or they name an act of the lab's own.
+    """The request with its acts, if a director reads its words or they name an act of the lab's own.
+
+    Both are settings of the process in which people ask; a run may be made in another one.
 
     Raises:
         InputError: if the parser is not installed.
@@ -26,21 +50,12 @@ def acted(request: GenerateRequest) -> GenerateRequest:
     planned = request.split and request.planned and request.acts is None and request.plan is None
     if not planned or "scene" not in methods.method(request.model).tasks:
         return request
-    plan = _plan_for(request.prompt)
-    return request if plan is None else replace(request, acts=plan)
-
-
-def _plan_for(prompt: str) -> Plan | None:
-    """The plan of a prompt that a director read, or that has an act of the lab's own."""
-    if _has_director():
-        plan = directed(prompt)
-        if plan.reader != "lexicon" and any(act.happens for act in plan.acts):
-            return plan
-    if not own_files().files:
-        return None
-    own = set(lexicon().own)
-    plan = read(prompt) if own else Plan()
-    return plan if any(act.happens and act.act in own for act in plan.acts) else None
+    own = set(lexicon().own) if own_files().files else set()
+    if not own and not _has_director():
+        return request
+    plan = directed(request.prompt)
+    followed = [act for act in plan.acts if act.happens and (plan.reader != "lexicon" or act.act in own)]
+    return replace(request, acts=plan if followed else None, plan=KeptPlan(acts=(plan,)))
 
 
 def _has_director() -> bool:
@@ -51,31 +66,30 @@ def _has_director() -> bool:
 
 
 def plans_of(request: Any) -> Iterator[tuple[Plan, int, int | None, int | None]]:
-    """The plans of a request's words, with the frames of each and the number of its beat, where there are several."""
+    """The plans of what people do, with the frames of each and the number of its beat, where there are several."""
     if isinstance(request, SceneRequest):
-        edges = request.edges
-        several = len(request.beats) > 1
-        for i, beat in enumerate(request.beats):
-            plan = _of_acts(beat.acts) if beat.acts else _read(beat.sentence)
-            if plan is not None:
+        several, edges = len(request.beats) > 1, request.edges
+        for i, plan in enumerate(request.plans):
+            if plan.sentence or plan.acts:
                 yield plan, edges[i], edges[i + 1], i + 1 if several else None
-        return
-    if isinstance(request, GenerateRequest) and "words" in methods.method(request.model).takes:
-        plan = _read(request.prompt) if request.acts is None else request.acts
-        if plan is not None:
-            yield plan, 0, None, None
+    elif isinstance(request, GenerateRequest):  # a reaction is not judged by its words
+        whole = with_plan(request).plan
+        for plan in whole.acts if whole is not None else ():
+            if plan.sentence or plan.acts:
+                yield plan, 0, None, None
 
 
-def _of_acts(acts: Sequence[Act]) -> Plan:
-    """The plan of a beat's acts alone, without their relations to acts of other beats."""
-    here = {act.id for act in acts}
-    kept = [act.model_copy(update={"order": tuple(r for r in act.order if r.act in here)}) for act in acts]
-    return Plan(acts=tuple(kept))
+def plans_of_result(manifest: Mapping[str, Any]) -> tuple[Plan, ...]:
+    """The plans of a result's words, of each beat where it is of a story; read now, if a version kept none.
 
-
-def _read(sentence: str) -> Plan | None:
-    """The plan of a sentence; None without words, or where no parser is installed."""
-    try:
-        return read(sentence) if sentence.strip() else None
-    except InputError:
-        return None
+    Raises:
+        InputError: if they are damaged.
+    """
+    if kept := kept_acts(manifest):
+        return kept
+    asked = manifest.get("request") or {}
+    if asked.get("acts"):
+        return (plan_of(asked["acts"]),)
+    if asked.get("beats"):
+        return tuple(plan_of_beat(beat_of(beat)) for beat in asked["beats"])
+    return (understood(str(asked.get("prompt") or "")),)

@@ -21,7 +21,7 @@ from typing import Any, cast
 from motion import Duet, InputError
 
 from . import methods
-from .acting import plans_of
+from .acting import plans_of, with_plan
 from .cancel import CancelToken
 from .live import LiveFrame
 from .live_take import LiveTake
@@ -103,6 +103,7 @@ class Engine:
         yield timer.progress("load")
         pipeline = self.pipeline(request.model)
         _take_threads(pipeline)
+        request = with_plan(request)
         timer.lap("load", timer.began)
         cancel.raise_if_cancelled()
         if isinstance(request, LiveTake):  # its motion is there
@@ -197,7 +198,8 @@ def _take_threads(pipeline: Pipeline | None = None) -> None:
 
 def _manifest(request: Any, pipeline: Pipeline) -> dict[str, Any]:
     """Everything that reproduces a result."""
-    return {
+    plan = getattr(request, "plan", None)
+    return ({} if plan is None else {"plan": plan.to_dict()}) | {
         "product": "Pas de Deux",
         "request": request.to_dict(),
         "model": pipeline.name,

@@ -1,7 +1,8 @@
-"""The plan of a result: all that was read from its words and given to the network beside them.
+"""The plan of a request and of its result: what its words are read as, and what that gives the network.
 
-A plan is kept in the result's manifest. A result that is made again takes its plan from there, so that its words are
-not read a second time: a later version may read them in another way.
+Words are read once, when a run begins (:mod:`.acting`), and their plan of acts travels in the request. The run adds its
+windows and finishes, and the result's manifest keeps the whole. A result that is made again takes its plan from there:
+a later version may read its words in another way.
 
 Positions are kept in hundredths of a millimetre. A plan is rounded to them before its first use, so a replayed plan
 gives the network the same numbers.
@@ -16,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from acts.plan import Plan, plan_of
 from motion import SMPL22, InputError
 
 from .known_parts import KnownFrames, KnownPath, Part
@@ -112,9 +114,12 @@ class BeatFinish:
 
 @dataclass(frozen=True, eq=False)
 class KeptPlan:
-    """The plan of a result.
+    """The plan of a request.
 
     Attributes:
+        acts: what its words are read as, with the looks of the two people and the things: of a sentence one plan, of a
+            story one a beat; () where nothing is read yet, or a version kept none.
+        of_result: a result was made from it, so its beats, windows and finishes are taken as they are.
         beats: the fields of the beats that a sentence was split into; () where it is given to the network as it is,
             and in the plan of a story, which has its beats itself.
         alone: where there are no windows, as in :class:`WindowPlan`.
@@ -124,6 +129,8 @@ class KeptPlan:
             is made without a plan.
     """
 
+    acts: tuple[Plan, ...] = ()
+    of_result: bool = False
     beats: tuple[Mapping[str, Any], ...] = ()
     alone: tuple[str, str] = ("", "")
     windows: tuple[WindowPlan, ...] = ()
@@ -133,6 +140,7 @@ class KeptPlan:
     def to_dict(self) -> dict[str, Any]:
         """As JSON."""
         return {
+            "acts": [plan.model_dump(mode="json", exclude_defaults=True) for plan in self.acts],
             "beats": [dict(beat) for beat in self.beats],
             "alone": list(self.alone),
             "windows": [window.to_dict() for window in self.windows],
@@ -150,6 +158,8 @@ class KeptPlan:
         values = _mapping(values)
         beats = (_mapping(beat) for beat in _list(values.get("beats"), MOST_WINDOWS))
         return cls(
+            _acts(values),
+            True,
             tuple(
                 {name: beat.get(name) for name in ("words", "a", "b", "seconds", "seed", "acts")}
                 for beat in beats
@@ -171,6 +181,22 @@ def kept_plan(manifest: Mapping[str, Any]) -> KeptPlan | None:
         InputError: if it is damaged.
     """
     return None if manifest.get("plan") is None else KeptPlan.from_dict(manifest["plan"])
+
+
+def kept_acts(manifest: Mapping[str, Any]) -> tuple[Plan, ...]:
+    """What the words of a result were read as, from its manifest; () in those of versions that kept none.
+
+    Raises:
+        InputError: if it is damaged.
+    """
+    return () if manifest.get("plan") is None else _acts(_mapping(manifest["plan"]))
+
+
+def _acts(values: Mapping[str, Any]) -> tuple[Plan, ...]:
+    try:
+        return tuple(plan_of(plan) for plan in _list(values.get("acts") or [], MOST_WINDOWS))
+    except InputError as error:
+        raise InputError(_WRONG.format("its acts are none")) from error
 
 
 def _encoded(part: Part) -> dict[str, Any]:

@@ -146,7 +146,7 @@ class GenerateRequest(SamplingRequest):
         acts: what the two do, as a plan that was written or edited by hand; the words are then read by nobody. Where
             there are no words, they follow from the acts. Only with ``split`` and ``planned``.
         paths: on the floor, one for a person at most; only with ``split``, by a model that makes scenes.
-        plan: of an earlier result of this request, which is used instead of reading the words; read them by default.
+        plan: of the words, or of an earlier result of this request; by default the words are read when the run begins.
     """
 
     prompt: str = ""
@@ -215,6 +215,7 @@ class ReactRequest(SamplingRequest):
             depends only on the given person's frames so far.
         first_pose: (22, 3) metres, the generated person's first pose in the actor's world; free by default. Not for
             InterGen and the virtual agent.
+        plan: as of :class:`GenerateRequest`.
     """
 
     actor: Clip
@@ -223,6 +224,7 @@ class ReactRequest(SamplingRequest):
     role: str = "a"
     mode: str = "offline"
     first_pose: NDArray[np.floating] | None = field(default=None, compare=False)
+    plan: KeptPlan | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         prompt_of(self.prompt, needed=False)

@@ -8,17 +8,6 @@ from acts import Act
 from acts.plan import beats
 from models.intergen.plan_track import TimedAct
 
-from .story.beats import Beat
-from .story.scripting import understood
-
-
-def acts_of(beat: Beat) -> tuple[Act, ...]:
-    """A beat's acts: those of its plan, or those that its words are read as."""
-    if beat.acts:
-        return beat.acts
-    plan = understood(beat.sentence)
-    return () if plan is None else plan.acts
-
 
 def timed(acts: Sequence[Act], start: float, stop: float) -> tuple[TimedAct, ...]:
     """The acts that happen from frame ``start`` to ``stop``; those that follow one another get equal parts of it."""

@@ -19,8 +19,8 @@ def run_tries(
     """The progress of up to ``request.tries`` runs and the result of the first that does all that was said.
 
     Where none does all, it is the one with the largest share of acts done, of equals the first. The tries have the
-    seeds that follow the request's. A request with a plan has one try: the plan belongs to its seed. So has one of
-    whose words nothing can be judged.
+    seeds that follow the request's. One with the plan of a result has one try: the plan belongs to its seed. So has
+    one of whose words nothing can be judged.
 
     Args:
         request: what is asked for; every try is this request with ``tries=1`` and its own seed.
@@ -28,7 +28,8 @@ def run_tries(
         cancel: ends the tries, also between two.
         timer: of all tries together.
     """
-    asked = getattr(request, "tries", 1) if getattr(request, "plan", None) is None else 1
+    plan = getattr(request, "plan", None)
+    asked = 1 if plan is not None and plan.of_result else getattr(request, "tries", 1)
     best: Judged | None = None
     made, won = 0, 1
     while made < asked and (best is None or best.share < 1.0):

@@ -56,7 +56,9 @@ def request_of(opened: Opened) -> Request:
     given: dict[str, Any] = {f.name: asked[f.name] for f in fields(kind) if f.name in asked}
     if kind is GenerateRequest:
         older = {"split": False, "planned": False}  # of a time before sentences were split or planned
-        given = {**older, **given, "plan": kept_plan(opened.result.manifest)}
+        given = {**older, **given}
+    if kind is not PredictRequest:
+        given["plan"] = kept_plan(opened.result.manifest)
     if kind is ReactRequest:
         given["actor"] = actor_source(opened).people[0]
     if kind is PredictRequest:

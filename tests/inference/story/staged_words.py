@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from webdemo.inference.story import Beat
+from acts import read
 from webdemo.inference.story.bodies.gestures import Gesture
 from webdemo.inference.story.bodies.strikes import Strike
 from webdemo.inference.story.contacts import Contact
@@ -13,12 +13,12 @@ from webdemo.inference.story.holds import Hold
 from webdemo.inference.story.lifts import Lift
 from webdemo.inference.story.moves import Move
 from webdemo.inference.story.postures import Change
-from webdemo.inference.story.scripting import told_by
+from webdemo.inference.story.staging import staged
 from webdemo.inference.story.told import Told
 
 
 def told(words: str) -> Told:
-    return told_by(Beat(words))
+    return staged(read(words).acts)
 
 
 def moves(words: str) -> tuple[Move, ...]:

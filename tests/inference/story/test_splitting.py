@@ -6,7 +6,8 @@ import pytest
 
 from motion import InputError
 from webdemo.inference.story import split_sentence
-from webdemo.inference.story.scripting import MOST_WORDS, _without_then, told_by
+from webdemo.inference.story.scripting import MOST_WORDS, _without_then, plan_of_beat
+from webdemo.inference.story.staging import staged
 
 ONE = [
     "Two people hug.",
@@ -52,12 +53,13 @@ def test_what_follows_something_else_is_a_beat_of_its_own(sentence: str, beats: 
 def test_a_sentence_that_is_not_understood_keeps_its_words_and_its_place() -> None:
     first, second, third = split_sentence("They bow. They flurble gravely. They hug.")
     assert (first.acts[0].act, second.words, third.acts[0].act) == ("bow", "They flurble gravely.", "hug")
-    assert not told_by(second).is_planned
+    assert not plan_of_beat(second).acts
 
 
 def test_speech_and_remarks_are_no_acts() -> None:
     (beat,) = split_sentence('"Follow me!" She bows (he likes that).')
-    assert told_by(beat).bows == {"a": (1, False)} and not told_by(beat).moves
+    told = staged(plan_of_beat(beat).acts)
+    assert told.bows == {"a": (1, False)} and not told.moves
 
 
 def test_nothing_is_no_beat() -> None:

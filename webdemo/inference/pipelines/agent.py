@@ -28,9 +28,11 @@ from motion import SMPL22, Clip, Duet
 from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, Placement
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.joining import joined
+from webdemo.inference.plans import KeptPlan
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import NAMES, Finish, Reaction
+from webdemo.inference.story.understood import understood
 from webdemo.inference.timer import StageTimer
 
 from .intergen import InterGenPipeline
@@ -192,7 +194,7 @@ class AgentPipeline:
     def run(
         self, request: ReactRequest, cancel: CancelToken, timer: StageTimer
     ) -> Iterator[Progress | Result]:
-        """Progress events, then one :class:`Result` without a manifest, whose first note says what was recognised.
+        """Progress events, then one :class:`Result`, whose first note says what was recognised.
 
         Raises:
             Cancelled: within one denoising step.
@@ -202,17 +204,20 @@ class AgentPipeline:
         notes = [self.eye.note(decision)] + [_NO_WORDS] * bool(request.prompt.strip())
         sentences, frame = self.eye.recogniser.config.sentences, decision.look.frame
         answers = decision.sure and frame < request.actor.num_frames
-        asked = replace(request, model=self.answers.name, prompt=sentences[0])
+        said = [sentences[0], *([sentences[decision.place or 0]] if answers else ())]
+        plans = (request.plan and request.plan.acts) or tuple(map(understood, said))
+        asked = replace(request, model=self.answers.name, prompt=said[0], plan=KeptPlan(plans[:1]))
         if answers:  # all samples continue the same past
             first = replace(asked, samples=1)
             waits = yield from self._made(first, self._attending(first), cancel, timer)
             past = np.asarray(waits.duets[0].b.positions)[:frame]  # type: ignore[union-attr]
-            asked = replace(asked, prompt=sentences[decision.place or 0])
+            asked = replace(asked, prompt=said[1], plan=KeptPlan(plans[1:]))
             scene: Reaction = self._answering(asked, past)
         else:
             scene = self._attending(asked)
         result = yield from self._made(asked, scene, cancel, timer)
-        yield replace(result, notes=(*notes, *result.notes))
+        plan = {"plan": KeptPlan(plans).to_dict()}
+        yield replace(result, notes=(*notes, *result.notes), manifest=plan)
 
     def _made(
         self, request: ReactRequest, scene: Reaction, cancel: CancelToken, timer: StageTimer

@@ -12,20 +12,19 @@ from torch import Tensor
 
 from models.compiled import compile_network
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
-from models.intergen.plan_track import TimedAct
 from models.text import MiniLM
 from motion import Clip, Duet
+from webdemo.inference.acting import with_plan
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.plans import BeatFinish, KeptPlan
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import Scene
 from webdemo.inference.story import understood
-from webdemo.inference.story.beats import Beat
 from webdemo.inference.story.prompted import as_scene
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.scripting import told_by
-from webdemo.inference.timed import acts_of, timed
+from webdemo.inference.story.staging import staged
+from webdemo.inference.timed import timed
 from webdemo.inference.timer import StageTimer
 
 from .scene import SceneMaker
@@ -61,19 +60,20 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         if isinstance(request, SceneRequest):
             return self.scenes.run(request, cancel, timer, passes)
         if isinstance(request, GenerateRequest) and scene is None:
-            return self._generate(request, cancel, timer, passes)
-        return super().run(request, cancel, timer, passes, scene)
+            return self._generate(with_plan(request), cancel, timer, passes)
+        return super().run(with_plan(request), cancel, timer, passes, scene)
 
     def _generate(
         self, request: GenerateRequest, cancel: CancelToken, timer: StageTimer, passes: Passes | None
     ) -> Iterator[Progress | Result]:
         """A sentence, made as a scene where it has several beats or a plan."""
-        split = as_scene(request, cancel.raise_if_cancelled)
+        assert request.plan is not None
+        split, plan = as_scene(request, cancel.raise_if_cancelled), request.plan
         if split is None:
-            plan = request.plan or _plan(request)
+            plan = plan if plan.of_result else _unsplit(plan, request.planned)
             events = super().run(replace(request, plan=plan), cancel, timer, passes)
         else:
-            plan = KeptPlan(beats=tuple(beat.to_dict() for beat in split.beats))
+            plan = replace(plan, beats=tuple(beat.to_dict() for beat in split.beats))
             notes = [
                 f"This was made as {len(split.beats)} beats, one after another; the tab Scene lets you change them."
             ]
@@ -85,9 +85,9 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
                 if split is None and request.cleanup:
                     finish = plan.finishes[0] if plan.finishes else BeatFinish()
                     event = replace(event, duets=tuple(_in_touch(duet, finish) for duet in event.duets))
-                own = plan.to_dict()
-                said = () if request.plan is not None else understood.notes(request.prompt)
-                kept = {**own, **event.manifest.get("plan", {}), "beats": own["beats"]}
+                own, said = plan.to_dict(), understood.notes(plan.acts[0])
+                whole = {name: own[name] for name in ("acts", "beats")}
+                kept = own | event.manifest.get("plan", {}) | whole
                 event = replace(
                     event, notes=tuple(dict.fromkeys((*said, *event.notes))), manifest={"plan": kept}
                 )
@@ -96,31 +96,28 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
     def scene(self, request: GenerateRequest | ReactRequest) -> Scene:
         """As :meth:`TwoPersonPipeline.scene`, with the acts that the words are read as."""
         scene = super().scene(request)
-        return replace(scene, acts=self.acts(request.prompt, scene.frames))
+        plan = request.plan
+        reads = self.model.plan_track is not None and plan is not None and bool(plan.acts)
+        return replace(scene, acts=timed(plan.acts[0].acts, 0, scene.frames) if plan and reads else ())
 
-    def acts(self, prompt: str, frames: int) -> tuple[TimedAct, ...]:
-        """The acts of a prompt over a motion of so many frames; nothing for a network that reads no plans."""
-        reads = self.model.plan_track is not None and prompt.strip()
-        return timed(acts_of(Beat(prompt)), 0, frames) if reads else ()
-
-    def condition(self, prompt: str, alone: tuple[str, str] | None = None) -> tuple[Tensor, Tensor]:
+    def condition(self, prompt: str, alone: tuple[str, str] = ("", "")) -> tuple[Tensor, Tensor]:
         """The condition (1, …) of a prompt and its unit sentence vector (384,).
 
         Args:
-            alone: what a and b do, in a sentence each, or "". By default it is taken from the prompt, where that says
-                it by their names. Only a network with ``words`` reads it.
+            prompt: what both do.
+            alone: what a and b do, in a sentence each, or "". Only a network with ``words`` reads it.
         """
         tokens = self.encoder([prompt])
         parts = [tokens]
-        if self.model.config.words and any(own := understood.of_each(prompt) if alone is None else alone):
-            parts += [self.encoder([sentence]) if sentence else tokens.missing() for sentence in own]
+        if self.model.config.words and any(alone):
+            parts += [self.encoder([sentence]) if sentence else tokens.missing() for sentence in alone]
         with torch.no_grad():
             return self.model.condition(*parts), tokens.pooled()[0]
 
-    def notes(self, prompt: str, vector: Tensor) -> tuple[str, ...]:
+    def notes(self, plan: KeptPlan, vector: Tensor) -> tuple[str, ...]:
         """Warns the user of a prompt that is not understood and far from all that was trained on."""
         near = self.bank.nearest(vector)
-        if near[0][0] >= self.bank.far or understood.is_understood(prompt):
+        if near[0][0] >= self.bank.far or understood.is_understood(plan.acts[0]):
             return ()
         return (
             "This sentence is far from anything the model was trained on, so the motion may not match it. "
@@ -131,16 +128,18 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         """The text vector and the touches that the text asks for; nothing without text."""
         if not request.prompt.strip():  # without an intent both halves of the guidance are the same
             return Conditioning(self.model.no_condition(), 1.0)
-        plan = request.plan if isinstance(request, GenerateRequest) else None
-        condition, vector = self.condition(request.prompt, None if plan is None else plan.alone)
+        plan = with_plan(request).plan
+        assert plan is not None
+        alone = plan.alone if isinstance(request, GenerateRequest) else understood.of_each(plan.acts[0])
+        condition, vector = self.condition(request.prompt, alone)
         (touch,) = self.model.touches(condition)
-        return Conditioning(condition, request.guidance, touch, self.notes(request.prompt, vector))
+        return Conditioning(condition, request.guidance, touch, self.notes(plan, vector))
 
 
-def _plan(request: GenerateRequest) -> KeptPlan:
+def _unsplit(plan: KeptPlan, planned: bool) -> KeptPlan:
     """The plan of a sentence that is given to the network as it is."""
-    finishes = (finish_of(told_by(Beat(request.prompt))),) if request.planned else ()
-    return KeptPlan(alone=understood.of_each(request.prompt), finishes=finishes)
+    finishes = (finish_of(staged(plan.acts[0].acts)),) if planned else ()
+    return replace(plan, alone=understood.of_each(plan.acts[0]), finishes=finishes)
 
 
 def _in_touch(duet: Duet | Clip, finish: BeatFinish) -> Duet | Clip:

@@ -121,6 +121,7 @@ class SceneMaker:
             Cancelled: within one denoising step; the windows that were finished are kept.
         """
         listed, kept = windows(request), request.plan
+        kept = kept if kept is not None and kept.of_result else None
         if kept is not None and len(kept.windows) != len(listed) * request.samples:
             raise InputError(
                 f"The kept plan is of {len(kept.windows)} windows, and this scene has {len(listed) * request.samples}: "
@@ -150,7 +151,9 @@ class SceneMaker:
                 _close(request, scene)
             duets.append(_duet(request, scene, sample))
         said += _distance_note(duets, request)
-        plan = KeptPlan(windows=tuple(made_plans), notes=tuple(planning), finishes=finishes(request))
+        plan = KeptPlan(
+            request.plans, windows=tuple(made_plans), notes=tuple(planning), finishes=finishes(request)
+        )
         yield timer.progress("finish")
         yield Result(
             duets=tuple(duets),
@@ -200,7 +203,8 @@ def _asked(
     plain = {f.name: getattr(request, f.name) for f in fields(SamplingRequest)} | {"samples": 1}
     plain["seed"] = window_seed(request, sample, window)
     prompt = request.beats[window.beat].sentence
-    return WindowRequest(prompt=prompt, seconds=frames / FPS, plan=KeptPlan(alone=plan.alone), **plain)
+    own = KeptPlan((request.plans[window.beat],), alone=plan.alone)
+    return WindowRequest(prompt=prompt, seconds=frames / FPS, plan=own, **plain)
 
 
 def _blank(request: SceneRequest) -> Array:

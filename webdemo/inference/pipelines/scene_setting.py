@@ -22,7 +22,7 @@ from webdemo.inference.plans import WindowPlan
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.timed import acts_of, timed
+from webdemo.inference.timed import timed
 
 from .scene_floor import planned
 from .scene_wishes import wishes
@@ -127,9 +127,9 @@ def _acts(request: SceneRequest, window: Window) -> tuple[TimedAct, ...]:
     spans = ((start - first, stop - first) for start, stop in itertools.pairwise(request.edges))
     return tuple(
         act
-        for beat, (start, stop) in zip(request.beats, spans, strict=True)
+        for plan, (start, stop) in zip(request.plans, spans, strict=True)
         if start < window.stop - first and stop > 0
-        for act in timed(acts_of(beat), start, stop)
+        for act in timed(plan.acts, start, stop)
     )
 
 

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any
 
 from pydantic import ValidationError
 
-from acts import read
 from acts.captions import sentence
 from acts.lexicon import lexicon
 from acts.plan import MOST_ACTS, Act, beats, problem
 from acts.reading.wording import begins_with_subject
 from motion import InputError
 from webdemo.inference.limits import MAX_PROMPT, MAX_SEED
+
+from .understood import understood
 
 SHORTEST, LONGEST = 0.5, 30.0
 """Seconds of one beat."""
@@ -76,7 +77,7 @@ class Beat:
         """Seconds, as set or as they follow from the acts or the words."""
         if self.seconds is not None:
             return self.seconds
-        return seconds_of_acts(self.acts) if self.acts else seconds_of(self.sentence)
+        return seconds_of_acts(self.acts or understood(self.sentence).acts)
 
     def check(self, number: int) -> None:
         """Raises InputError if something is wrong with it; ``number`` from 1 is for the message."""
@@ -102,10 +103,6 @@ class Beat:
             raise InputError(
                 f"{which}: its seed must be a whole number from 0 to {MAX_SEED:,}, not {self.seed!r:.20}."
             )
-
-    def timed(self) -> Beat:
-        """The same beat with its length set."""
-        return replace(self, seconds=self.length)
 
 
 def story_title(beats: Sequence[Mapping[str, Any]]) -> str:
@@ -144,6 +141,8 @@ def acts_of(values: Sequence[Any]) -> tuple[Act, ...]:
 
 def seconds_of_acts(acts: Sequence[Act]) -> float:
     """The length of acts of one beat: of the longest of those that happen one after another, in half seconds."""
+    if not acts:
+        return DEFAULT_SECONDS
     known = lexicon().entries
     total = 0.0
     for group in beats(acts):
@@ -158,8 +157,4 @@ def seconds_of_acts(acts: Sequence[Act]) -> float:
 
 def seconds_of(words: str) -> float:
     """The length of what a sentence says, in half seconds: as it states, or as long as its acts usually take."""
-    try:
-        acts = read(words).acts
-    except InputError:  # too long, or no parser is installed
-        acts = ()
-    return seconds_of_acts(acts) if acts else DEFAULT_SECONDS
+    return seconds_of_acts(understood(words).acts)

@@ -7,15 +7,18 @@ from dataclasses import fields, replace
 
 import numpy as np
 
+from acts import Plan
 from motion import InputError
 from webdemo.inference import methods
+from webdemo.inference.acting import with_plan
 from webdemo.inference.actor import FPS
 from webdemo.inference.paths import FloorPath
 from webdemo.inference.requests import GenerateRequest, SamplingRequest
 
-from .beats import SHORTEST, Beat
+from .beats import SHORTEST, Beat, seconds_of_acts
 from .request import SceneRequest, beat_of
-from .scripting import beats_of, told_by, understood
+from .scripting import beats_of, plan_of_beat
+from .staging import staged
 from .told import Told
 
 LEAST_SHARE = 1.25
@@ -26,47 +29,47 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
     """The scene of a sentence with several beats, which share the request's seconds, or of one with a plan or paths.
 
     None if the sentence is given to the network as it is, as one whose beats would be longer than a prompt. A request
-    with a plan has its beats from there. ``go_on`` is called before each sentence; what it raises ends the reading.
+    with the plan of a result has its beats from there. ``go_on`` is called before the sentence is read; what it raises
+    ends the reading.
     """
-    plain = {f.name: getattr(request, f.name) for f in fields(SamplingRequest)}
-    if request.plan is not None:
-        beats = tuple(beat_of(beat) for beat in request.plan.beats)
-        return (
-            SceneRequest(
-                beats=beats,
-                paths=_staying(request.paths, beats),
-                planned=request.planned,
-                plan=request.plan,
-                **plain,
-            )
-            if beats
-            else None
-        )
     if not request.split or "scene" not in methods.method(request.model).tasks:
         return None
+    go_on()
+    request = with_plan(request)
+    assert request.plan is not None
+    whole, replays = request.plan.acts[0], request.plan.of_result
+    beats = tuple(beat_of(beat) for beat in request.plan.beats) if replays else _beats(request, whole)
     try:
-        beats = _beats(request, go_on)
         for place, beat in enumerate(beats, 1):
             beat.check(place)
     except InputError:
-        go_on()  # may be what raised it
         if request.paths:
             raise
         return None
-    if not beats or (
-        len(beats) < 2
-        and request.acts is None
-        and not request.paths
-        and not (request.planned and told_by(beats[0]).is_planned)
-    ):
+    plans = tuple(plan_of_beat(beat) if beat.acts else whole for beat in beats)
+    as_it_is = len(beats) == 1 and request.acts is None and not request.paths and not replays
+    if not beats or (as_it_is and not (request.planned and staged(plans[0].acts).is_planned)):
         return None
-    factor = request.seconds / sum(beat.length for beat in beats)
-    edges = np.round(np.cumsum([0.0, *(beat.length * factor for beat in beats)]) * FPS) / FPS
-    timed = tuple(
+    if not replays:
+        beats = _filling(request.seconds, beats, plans)
+    return SceneRequest(
+        beats=beats,
+        paths=_staying(request.paths, beats),
+        planned=request.planned,
+        plan=replace(request.plan, acts=plans),
+        **{f.name: getattr(request, f.name) for f in fields(SamplingRequest)},
+    )
+
+
+def _filling(seconds: float, beats: Sequence[Beat], plans: Sequence[Plan]) -> tuple[Beat, ...]:
+    """Beats that share some seconds by the lengths of their acts, in whole frames."""
+    lengths = [seconds_of_acts(beat.acts or plan.acts) for beat, plan in zip(beats, plans, strict=True)]
+    factor = seconds / sum(lengths)
+    edges = np.round(np.cumsum([0.0, *(length * factor for length in lengths)]) * FPS) / FPS
+    return tuple(
         replace(beat, seconds=round(max(float(s), SHORTEST), 4))
         for beat, s in zip(beats, np.diff(edges), strict=True)
     )
-    return SceneRequest(beats=timed, paths=_staying(request.paths, timed), planned=request.planned, **plain)
 
 
 def _staying(paths: Sequence[FloorPath], beats: Sequence[Beat]) -> tuple[FloorPath, ...]:
@@ -76,7 +79,7 @@ def _staying(paths: Sequence[FloorPath], beats: Sequence[Beat]) -> tuple[FloorPa
     for path in paths:
         last = path.points[-1]
         led = any(
-            end > (last.seconds or 0.0) and _leads(told_by(beat), path.person)
+            end > (last.seconds or 0.0) and _leads(staged(beat.acts), path.person)
             for beat, end in zip(beats, ends, strict=True)
         )
         rest = float(ends[-1]) - 1 / FPS
@@ -90,15 +93,13 @@ def _leads(told: Told, person: str) -> bool:
     return person in told.going or told.joined or bool(told.contact or told.strike or told.reaching)
 
 
-def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, ...]:
-    """The beats of a request: of its acts, or of those that its words are read as.
+def _beats(request: GenerateRequest, script: Plan) -> tuple[Beat, ...]:
+    """The beats of a request's plan.
 
     A sentence of one beat keeps its words, which the network reads, unless they say what is not done.
     """
-    go_on()
     most = request.seconds / LEAST_SHARE
-    script = request.acts if request.acts is not None else understood(request.prompt)
-    if script is None:
+    if request.acts is None and not script.acts:
         return (Beat(request.prompt),)
     words = request.prompt if request.acts is None else ""
     beats = beats_of(script, own_words=request.acts is None)

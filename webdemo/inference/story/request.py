@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from acts import Plan
 from motion import Duet, InputError
 from webdemo.inference import methods
 from webdemo.inference.actor import FPS
@@ -20,10 +21,11 @@ from webdemo.inference.plans import KeptPlan
 from webdemo.inference.predict_request import check_motion
 from webdemo.inference.requests import SamplingRequest
 
-from .beats import MOST_BEATS, SHORTEST, Beat, acts_of
+from .beats import MOST_BEATS, SHORTEST, Beat, acts_of, seconds_of_acts
 from .contacts import Region
 from .postures import Posture
-from .scripting import told_by
+from .scripting import plan_of_beat
+from .staging import staged
 from .told import Told, at_start
 from .ways import Way
 from .wishes import MOST_POSES, Pose, check_together
@@ -54,7 +56,7 @@ class SceneRequest(SamplingRequest):
         motion: a given motion of two people on SMPL22's joints, of up to three minutes.
         start: second of the given motion at which the beats begin; its end by default.
         end: second at which the given motion goes on.
-        plan: of an earlier result of this request, which is used instead of reading the words; read them by default.
+        plan: of the beats, or of an earlier result of this request; by default the words are read.
     """
 
     beats: tuple[Beat, ...] = ()
@@ -140,7 +142,12 @@ class SceneRequest(SamplingRequest):
 
     def _time_beats(self) -> None:
         """Sets the beats' lengths, in whole frames; in a span they fill it."""
-        beats = [beat.timed() for beat in self.beats]
+        beats = [
+            beat
+            if beat.seconds is not None
+            else replace(beat, seconds=seconds_of_acts(beat.acts or self.plans[i].acts))
+            for i, beat in enumerate(self.beats)
+        ]
         if self.end is not None:
             span = self.end - (self.start or 0.0)
             factor = span / sum(beat.length for beat in beats)
@@ -206,9 +213,15 @@ class SceneRequest(SamplingRequest):
         return self.edges[0], self.edges[-1]
 
     @cached_property
+    def plans(self) -> tuple[Plan, ...]:
+        """The plan of acts of each beat: as it is kept, or as its words are read now."""
+        kept = self.plan.acts if self.plan is not None else ()
+        return kept if len(kept) == len(self.beats) else tuple(map(plan_of_beat, self.beats))
+
+    @cached_property
     def told(self) -> tuple[Told, ...]:
         """The stage of each beat."""
-        story = [told_by(beat) for beat in self.beats]
+        story = [staged(beat.acts or plan.acts) for beat, plan in zip(self.beats, self.plans, strict=True)]
         _told_before(story)
         _touched_from_behind(story)
         for i in range(len(story)):  # who is down does not stand by

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from acts import Act, Plan, read
+from acts import Act, Plan
 from acts.captions import sentence
 from acts.lexicon import Entry, Lexicon, lexicon
 from acts.things import is_fixture
@@ -17,8 +17,7 @@ from webdemo.inference.limits import MAX_PROMPT
 from .act_kinds import hits, reaches_low
 from .beats import MOST_BEATS, Beat
 from .postures import LOWERED
-from .staging import staged
-from .told import Told
+from .understood import understood
 
 MOST_WORDS = MOST_BEATS * MAX_PROMPT
 """Characters of a story in sentences: as many as its beats may have."""
@@ -67,10 +66,15 @@ def split_sentence(text: str, go_on: Callable[[], None] = lambda: None) -> tuple
     return (Beat(text),) if text else ()
 
 
-def told_by(beat: Beat) -> Told:
-    """The stage of a beat: of its acts, or of those that its words are read as."""
-    plan = None if beat.acts else understood(beat.sentence)
-    return staged(beat.acts or (plan.acts if plan is not None else ()))
+def plan_of_beat(beat: Beat) -> Plan:
+    """The plan of a beat: of its acts alone, without their relations to acts of other beats, or of its words."""
+    if not beat.acts:
+        return understood(beat.sentence)
+    here = {act.id for act in beat.acts}
+    own = (
+        act.model_copy(update={"order": tuple(r for r in act.order if r.act in here)}) for act in beat.acts
+    )
+    return Plan(acts=tuple(own))
 
 
 def _stretches(text: str) -> Iterator[str]:
@@ -91,9 +95,8 @@ def _stretches(text: str) -> Iterator[str]:
 
 def _beats_in(text: str) -> list[Beat]:
     """The beats of a stretch of text; a sentence of which nothing is known is one in its own words."""
-    try:
-        plan = read(text)
-    except InputError:  # no parser is installed
+    plan = understood(text)
+    if not (plan.acts or plan.unread):  # no parser is installed
         return [Beat(text)]
     beats, unread = list(beats_of(plan)), list(_unread_sentences(plan))
     first = [min((act.words.start for act in beat.acts if act.words), default=0) for beat in beats]
@@ -113,15 +116,6 @@ def _unread_sentences(plan: Plan) -> Iterator[tuple[int, Beat]]:
         if not acts and any(start <= each.words.start < stop for each in plan.unread):
             yield start, Beat(part)
         start = stop
-
-
-def understood(text: str) -> Plan | None:
-    """The plan of a text; None where it says nothing that is known, or no parser is installed."""
-    try:
-        plan = read(text)
-    except InputError:
-        return None
-    return plan if plan.acts else None
 
 
 def beats_of(plan: Plan, *, own_words: bool = True) -> tuple[Beat, ...]:

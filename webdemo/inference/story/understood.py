@@ -1,4 +1,4 @@
-"""Notes on what of a sentence cannot be shown: further people, and acts that nobody knows."""
+"""What words are read as: the one place where a request's words become a plan of acts, and what is said of a plan."""
 
 from __future__ import annotations
 
@@ -12,17 +12,21 @@ MOST_NAMED = 3
 """Parts of a sentence that a note quotes, at most."""
 
 
-def is_understood(sentence: str) -> bool:
-    """True if people's ways, postures or touches are planned from a sentence, or all of its acts are known."""
-    plan = _plan(sentence)
-    return plan is not None and bool(plan.acts) and (not plan.unread or staged(plan.acts).is_planned)
+def understood(text: str) -> Plan:
+    """The plan of a text; an empty one where it says nothing, is too long, or no parser is installed."""
+    try:
+        return read(text) if text.strip() else Plan()
+    except InputError:
+        return Plan()
 
 
-def notes(sentence: str) -> tuple[str, ...]:
-    """Sentences on what of the words is not shown; none where the words were planned, or no parser is installed."""
-    plan = _plan(sentence)
-    if plan is None:
-        return ()
+def is_understood(plan: Plan) -> bool:
+    """True if people's ways, postures or touches are planned from a plan, or its text has nothing but known acts."""
+    return bool(plan.acts) and (not plan.unread or staged(plan.acts).is_planned)
+
+
+def notes(plan: Plan) -> tuple[str, ...]:
+    """Sentences on what of the words is not shown; only those on the whole text where the words were planned."""
     found = list(plan.notes)
     parts = [plan.text(unread.words) for unread in plan.unread][:MOST_NAMED]
     if parts and not staged(plan.acts).is_planned:
@@ -31,14 +35,6 @@ def notes(sentence: str) -> tuple[str, ...]:
     return tuple(found)
 
 
-def of_each(sentence: str) -> tuple[str, str]:
+def of_each(plan: Plan) -> tuple[str, str]:
     """A sentence on what person a does and one on what b does, as :func:`acts.captions.of_each` gives them."""
-    plan = _plan(sentence)
-    return ("", "") if plan is None else captions.of_each(plan.acts, lexicon())
-
-
-def _plan(sentence: str) -> Plan | None:
-    try:
-        return read(sentence)
-    except InputError:
-        return None
+    return captions.of_each(plan.acts, lexicon())

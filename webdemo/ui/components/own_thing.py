@@ -39,7 +39,7 @@ def _request(manifest: Mapping[str, Any]) -> Any:
     try:
         if asked.get("kind") == "generate":
             given = {f.name: asked[f.name] for f in fields(GenerateRequest) if f.name in asked}
-            return GenerateRequest(**given)
+            return GenerateRequest(**given, plan=kept_plan(manifest))
         if asked.get("kind") == "scene" and "motion" not in asked:
             return SceneRequest.from_dict(asked, None, kept_plan(manifest))
     except InputError:  # made by an earlier version, or with a model that is gone

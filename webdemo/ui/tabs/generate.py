@@ -9,17 +9,15 @@ from typing import Any
 
 import gradio as gr
 
-from acts import read
-from acts.plan import plan_of
 from motion import InputError
-from webdemo.inference.acting import acted
+from webdemo.inference.acting import acted, plans_of_result
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.methods import installed, label_of, method
 from webdemo.inference.paths import path_of
 from webdemo.inference.requests import GenerateRequest, Result
 from webdemo.ui.components.gallery import Gallery
 from webdemo.ui.components.pace import pace_of
-from webdemo.ui.components.reading import Reading, checked, drawn_paths, edited_plan, reread, shown
+from webdemo.ui.components.reading import Reading, checked, drawn_paths, edited_plan, shown
 from webdemo.ui.components.settings import UNPLANNED, looked_up
 from webdemo.ui.components.show import arrival_payload
 from webdemo.ui.components.story import path_value
@@ -71,12 +69,12 @@ def _class_in(sentence: str, label: str) -> str:
     return found
 
 
-def _marks(text: str, asked: Mapping[str, Any], result: Result) -> dict[str, Any] | None:
+def _marks(text: str, result: Result) -> dict[str, Any] | None:
     """The marks of a result's acts; None where they were not checked, or their plan cannot be had."""
     if not result.manifest.get("checked"):
         return None
     try:
-        return checked(text, plan_of(asked["acts"]) if asked.get("acts") else read(text), result.manifest)
+        return checked(text, plans_of_result(result.manifest)[0], result.manifest)
     except InputError:
         return None
 
@@ -129,14 +127,12 @@ class GenerateTab(SweepTab):
         return found | {self.by_sentence: sentence, self.class_name: label, self.about: about}
 
     def _opened_reading(self, asked: Mapping[str, Any], result: Result) -> dict[str, Any]:
-        """The update that shows the plan of a kept run: as it was edited, or else as its words are read."""
+        """The update that shows the plan of a kept run."""
         text = str(asked.get("prompt") or "")
-        update = reread({"text": text})
-        if asked.get("acts"):
-            plan = plan_of(asked["acts"])
-            update["shown"] |= {**shown(plan), "edited": plan.reader == "hand"}
-        update["shown"]["paths"] = [path_value(path_of(path)) for path in asked.get("paths") or ()]
-        return update | {"checked": _marks(text, asked, result)}
+        plan = plans_of_result(result.manifest)[0]
+        drawn = [path_value(path_of(path)) for path in asked.get("paths") or ()]
+        of_text = {"text": text, "number": None, "edited": plan.reader == "hand", "paths": drawn}
+        return gr.update(shown=of_text | shown(plan), checked=_marks(text, result))
 
     def more_outputs(self) -> dict[str, Any]:
         """The reading, whose acts are marked as done or not."""
@@ -144,7 +140,7 @@ class GenerateTab(SweepTab):
 
     def _shown(self, result: Result, title: str) -> dict[str, Any]:
         asked = result.manifest.get("request") or {}
-        marks = _marks(str(asked.get("prompt") or ""), asked, result)
+        marks = _marks(str(asked.get("prompt") or ""), result)
         return {**super()._shown(result, title), "reading": gr.update(checked=marks)}
 
     def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:

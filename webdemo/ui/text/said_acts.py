@@ -6,15 +6,14 @@ An act without a line there, such as a lab's own, stays English.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
-from acts import Act, Plan, lexicon, read
+from acts import Act, lexicon
 from acts.captions import TURNS, short
-from acts.plan import plan_of
 from motion import InputError
-from webdemo.inference.story.beats import Beat, acts_of
+from webdemo.inference.acting import plans_of_result
 from webdemo.ui.visitor import wanted_language
 
 from .said import Phrases, said, sections_of, words_of
@@ -123,24 +122,10 @@ def _judged(manifest: Mapping[str, Any]) -> Iterator[tuple[Mapping[str, Any], Ac
     rows = manifest.get("checked") or ()
     if not rows or not _lines(wanted_language()):
         return
-    for row, act in zip(rows, _acts(manifest.get("request") or {}), strict=False):
+    try:
+        plans = plans_of_result(manifest)
+    except InputError:
+        return
+    for row, act in zip(rows, (act for plan in plans for act in plan.acts), strict=False):
         if row.get("act") == act.act:
             yield row, act
-
-
-def _acts(asked: Mapping[str, Any]) -> Sequence[Act]:
-    """The acts of a request's words, in their order."""
-    try:
-        if beats := asked.get("beats"):
-            return [act for beat in beats for act in _acts_of_beat(beat)]
-        plan = plan_of(asked["acts"]) if asked.get("acts") else read(str(asked.get("prompt") or ""))
-        return plan.acts
-    except InputError:
-        return ()
-
-
-def _acts_of_beat(beat: Mapping[str, Any]) -> Sequence[Act]:
-    if beat.get("acts"):
-        return acts_of(beat["acts"])
-    sentence = Beat(beat.get("words") or "", beat.get("a") or "", beat.get("b") or "").sentence
-    return read(sentence).acts if sentence.strip() else Plan().acts
