@@ -45,11 +45,6 @@ class TimestepEmbedding(nn.Module):
             nn.Linear(latent_dim, latent_dim), nn.SiLU(), nn.Linear(latent_dim, latent_dim)
         )
 
-    def start_at_zero(self) -> None:
-        """Zeroes the last layer, so that the embedding adds nothing before training."""
-        for weight in self.time_embed[2].parameters():
-            nn.init.zeros_(weight)
-
     def forward(self, t: Tensor) -> Tensor:
         """Timesteps (B,) → (B, d)."""
         return self.time_embed(sinusoids_at(t, self.latent_dim))

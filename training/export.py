@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import argparse
 import json
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import torch
 
-from models.intergen.compact import CaptionBank, CompactInterGen, save_folder
+from models.intergen.compact import CaptionBank, save_folder
 from models.text import MiniLM
 from motion import InputError
 from training.core import checkpoint
@@ -60,23 +59,12 @@ def encode(encoder: MiniLM, captions: list[str]) -> torch.Tensor:
     return torch.cat([encoder(captions[i : i + 128]).pooled() for i in range(0, len(captions), 128)])
 
 
-def with_fast(model: CompactInterGen, path: Path) -> CompactInterGen:
-    """The same network with the averaged change of a checkpoint of :mod:`training.trainers.intergen_fast`."""
-    rank = json.loads(checkpoint.metadata(path)["settings"])["rank"]
-    result = CompactInterGen(replace(model.config, fast_rank=rank))
-    result.load_state_dict(model.state_dict(), strict=False)
-    assert result.fast is not None
-    checkpoint.restore_part(path, "ema", result.fast)
-    return result
-
-
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Turn a training run into the folder that is shipped.")
     parser.add_argument("--run", type=Path, required=True, help="--out of the training")
     parser.add_argument("--scenes", type=Path, required=True)
     parser.add_argument("--out", type=Path, required=True, help="folder under models/weights")
-    parser.add_argument("--fast", type=Path, help="--out of training.trainers.intergen_fast on that training")
     parser.add_argument("--card", type=Path, help="JSON with the card's fields")
     options = parser.parse_args(argv)
     return exit_code(lambda: _run(options))
@@ -88,8 +76,6 @@ def _run(options: argparse.Namespace) -> None:
     scenes = load(options.scenes)
     model = new_model(settings, Data(scenes, settings, options.run, "cpu", captions=False))
     checkpoint.restore_part(path, "ema", model)
-    if options.fast:
-        model = with_fast(model, options.fast / "last.safetensors")
     try:
         card: dict[str, Any] = json.loads(options.card.read_text()) if options.card else {}
     except (OSError, ValueError) as error:

@@ -46,39 +46,19 @@ def classifier_free(
 
 @dataclass(frozen=True)
 class Term:
-    """One prediction of a guided sum: its weight, and whether the network reads words and plan for it."""
+    """One prediction of a guided sum: its weight, and whether the network reads the words for it."""
 
     weight: float
     words: bool
-    plan: bool
 
 
-def terms(scale: float, plan_scale: float | None = None) -> list[Term]:
-    """The sum of predictions in which words have one scale and the plan another.
-
-    D(nothing) + plan_scale · (D(plan) − D(nothing)) + scale · (D(words, plan) − D(plan)), as in Liu et al. 2022
-    ("Compositional Visual Generation"); with one scale for both it is :func:`guide`. Terms without weight are left out.
-    """
-    if plan_scale is None or plan_scale == scale:
-        found = [Term(scale, True, True), Term(1 - scale, False, False)]
-    else:
-        found = [
-            Term(scale, True, True), Term(plan_scale - scale, False, True), Term(1 - plan_scale, False, False)
-        ]  # fmt: skip
-    return [term for term in found if term.weight]
+def terms(scale: float) -> list[Term]:
+    """The sum of predictions in :func:`guide`, without those that have no weight."""
+    return [term for term in (Term(scale, True), Term(1 - scale, False)) if term.weight]
 
 
 class Guided:
     """A denoiser of two people that its condition guides."""
-
-    @property
-    def takes_scale(self) -> bool:
-        """True for a network that takes the scale as an input and so needs a single pass."""
-        return False
-
-    def untold(self, plan: Tensor) -> Tensor:
-        """A plan (B, tokens, 2·P) without what it says of acts."""
-        return torch.zeros_like(plan)
 
     def guided(
         self,
@@ -87,31 +67,20 @@ class Guided:
         cond: Tensor,
         mask: Tensor | None = None,
         known: Tensor | None = None,
-        plan: Tensor | None = None,
         *,
         scale: float = 3.5,
-        plan_scale: float | None = None,
     ) -> Tensor:
         """The sum of :func:`terms` of this network's predictions, made in one batch.
 
-        Shapes are as in its ``forward``; ``known`` and ``plan`` may have one row. Without a plan there is no scale of
-        its own, and a network that takes the scale has one for both.
+        Shapes are as in its ``forward``; ``known`` may have one row.
         """
         network = cast(Callable[..., Tensor], self)
-        seen = {"known": known, "plan": plan}
-        told = {name: value.expand(len(x), -1, -1) for name, value in seen.items() if value is not None}
-        if self.takes_scale:
-            scales = torch.full((len(x),), scale, device=x.device)
-            return network(x, t, cond, mask, guidance=scales, **told)
-        sum_of = terms(scale, None if plan is None else plan_scale)
+        sum_of = terms(scale)
         many = len(sum_of)
-        rows = {name: value.repeat(many, 1, 1) for name, value in told.items()}
-        if plan is not None:
-            plans = [told["plan"] if term.plan else self.untold(told["plan"]) for term in sum_of]
-            rows["plan"] = torch.cat(plans)
+        seen = {} if known is None else {"known": known.expand(len(x), -1, -1).repeat(many, 1, 1)}
         words = torch.cat([cond if term.words else torch.zeros_like(cond) for term in sum_of])
         masks = None if mask is None else mask.repeat(many, 1, 1)
-        made = network(x.repeat(many, 1, 1), t.repeat(many), words, masks, **rows).chunk(many)
+        made = network(x.repeat(many, 1, 1), t.repeat(many), words, masks, **seen).chunk(many)
         return weighted(sum_of, made)
 
 

@@ -10,9 +10,8 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import torch
 from safetensors.torch import save
@@ -25,8 +24,6 @@ from models.text import TextConditioner, TextConditionerConfig, TokenFeatures
 from models.weights_io import WeightsFolder, load_network, save_network
 from motion.errors import InputError
 
-from .fast import FastChange
-from .plan_track import PlanTrack, columns
 from .words import WordDenoiser
 
 Touch = tuple[tuple[str, str], ...]
@@ -45,10 +42,6 @@ class CompactConfig:
     role_text: see :class:`models.intergen.InterGenConfig`.
     words: the denoiser is a :class:`models.intergen.words.WordDenoiser`, which reads words, a sentence for each
         person and the known part of a motion.
-    plan_words: the vocabulary of the plans of acts that it reads (:mod:`models.intergen.plan_track`); none where it
-        reads none. Only a network with ``words`` has one.
-    traits: what a network that reads plans can be told of how a person moves whatever is done: energy, tempo.
-    fast_rank: rank of the :class:`models.intergen.fast.FastChange` that comes with it; 0: there is none.
     """
 
     latent_dim: int = 320
@@ -60,23 +53,15 @@ class CompactConfig:
     dropout: float = 0.0
     role_text: bool = False
     words: bool = False
-    plan_words: tuple[str, ...] = ()
-    traits: tuple[str, ...] = ()
-    fast_rank: int = 0
     layout: TokenLayout = field(default_factory=TokenLayout)
     touches: tuple[Touch, ...] = ()
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> CompactConfig:
         """The config that ``config.json`` holds as a dictionary."""
+        known = {key: value for key, value in values.items() if key != "fast_rank"}  # 0 in the shipped folder
         touches = as_touches(values.get("touches", ()))
-        lists = {key: tuple(values.get(key, ())) for key in ("plan_words", "traits")}
-        return cls(**(values | lists | {"layout": TokenLayout(**values["layout"]), "touches": touches}))
-
-    @property
-    def plan_columns(self) -> tuple[str, ...]:
-        """The columns of a person's track of a plan."""
-        return columns(self.plan_words, self.traits)
+        return cls(**(known | {"layout": TokenLayout(**values["layout"]), "touches": touches}))
 
 
 class TouchReader(nn.Module):
@@ -153,30 +138,14 @@ class CompactInterGen(DuetSpace):
             role_text=config.role_text,
         )
         self.denoiser: InterGenDenoiser = (
-            WordDenoiser(
-                sizes,
-                KNOWN_FEATURES * config.layout.knots_per_token,
-                plan_features=len(config.plan_columns),
-                traits=len(config.traits),
-            )
+            WordDenoiser(sizes, KNOWN_FEATURES * config.layout.knots_per_token)
             if config.words
             else InterGenDenoiser(sizes)
         )
-        self.fast = FastChange(self._grown, config.fast_rank) if config.fast_rank else None
         self.conditioner = TextConditioner(
             TextConditionerConfig(latent_dim=config.cond_dim, num_layers=config.text_layers, dropout=0.05)
         )
         self.touch_reader = TouchReader(config.cond_dim, config.touches) if config.touches else None
-
-    @property
-    def _grown(self) -> WordDenoiser:
-        """The denoiser of weights with a fast mode, which reads words."""
-        return cast(WordDenoiser, self.denoiser)
-
-    @cached_property
-    def fast_denoiser(self) -> WordDenoiser | None:
-        """The denoiser in fast mode, see :mod:`models.intergen.fast`; None if the weights have none."""
-        return None if self.fast is None else self.fast.applied_to(self._grown)
 
     def condition(
         self, both: TokenFeatures, a: TokenFeatures | None = None, b: TokenFeatures | None = None
@@ -200,12 +169,6 @@ class CompactInterGen(DuetSpace):
             text[:, i, : rows.shape[1]] = rows * tokens.mask.any(1)[:, None, None]
         return text
 
-    @cached_property
-    def plan_track(self) -> PlanTrack | None:
-        """Writes plans as this network reads them; None if it reads none."""
-        words = self.config.plan_words
-        return PlanTrack(words, self.layout, self.config.traits) if words else None
-
     def no_condition(self, batch: int = 1) -> Tensor:
         """The condition of no words."""
         shape = (3, 1, self.config.cond_dim) if self.config.words else (self.config.cond_dim,)
@@ -228,25 +191,12 @@ class CompactInterGen(DuetSpace):
             InputError: if its sizes are others.
         """
         own, taken = self.state_dict(), trained.state_dict()
-        taken = {
-            name: tensor for name, tensor in taken.items() if not name.startswith(("touch_reader.", "fast."))
-        }
-        if (name := "denoiser.plan_adapter.read.weight") in taken and name in own:
-            taken[name] = self._columns_of(taken[name], trained.config.plan_columns)
+        taken = {name: tensor for name, tensor in taken.items() if not name.startswith("touch_reader.")}
         if any(name not in own or own[name].shape != tensor.shape for name, tensor in taken.items()):
             raise InputError(
                 "The weights to begin with are of other sizes: give the sizes they were trained with."
             )
         self.load_state_dict(own | taken)
-
-    def _columns_of(self, weight: Tensor, columns: Sequence[str]) -> Tensor:
-        """The weights (…, 2·columns) that read both people's tracks of another network, for the tracks of this one."""
-        of_each = weight.unflatten(1, (2, len(columns)))
-        grown = of_each.new_zeros(len(weight), 2, len(self.config.plan_columns))
-        for i, column in enumerate(self.config.plan_columns):
-            if column in columns:
-                grown[..., i] = of_each[..., columns.index(column)]
-        return grown.flatten(1)
 
 
 @dataclass(frozen=True)

@@ -19,13 +19,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.layers import TimestepEmbedding
-
 from .network import Block, InterGenConfig, InterGenDenoiser, attend, padding
-from .plan_adapter import PlanAdapter
-
-GUIDANCE_UNITS = 100.0
-"""A guidance scale times this has the sinusoids of a timestep: scales of 1 to 10 cover 100 to 1000."""
 
 
 def join_conditions(conditions: Sequence[Tensor]) -> Tensor:
@@ -87,22 +81,9 @@ class WordDenoiser(InterGenDenoiser):
     Args:
         config: sizes; its text width is that of a row of text.
         known_features: numbers a person and token by which the network sees what is known.
-        plan_features: numbers a person and token by which it sees the plan of acts
-            (:mod:`models.intergen.plan_track`); 0 for a network that reads no plans.
-        traits: how many of these, the last ones, are traits of the person and say nothing of acts.
-        guidance_input: takes the scale of the guidance as an input, so that one pass gives what two did
-            (Meng et al. 2023, "On Distillation of Guided Diffusion Models").
     """
 
-    def __init__(
-        self,
-        config: InterGenConfig,
-        known_features: int,
-        *,
-        plan_features: int = 0,
-        traits: int = 0,
-        guidance_input: bool = False,
-    ) -> None:
+    def __init__(self, config: InterGenConfig, known_features: int) -> None:
         super().__init__(config)
         d = config.latent_dim
         self.blocks = nn.ModuleList(WordBlock(config) for _ in range(config.num_layers))
@@ -111,11 +92,6 @@ class WordDenoiser(InterGenDenoiser):
         self.known_embed = nn.Linear(known_features, d, bias=False)
         nn.init.zeros_(self.person_text.weight)
         nn.init.zeros_(self.known_embed.weight)
-        self.plan_adapter = PlanAdapter(plan_features, d, config.num_layers) if plan_features else None
-        self.traits = traits
-        self.embed_guidance = TimestepEmbedding(d) if guidance_input else None
-        if self.embed_guidance is not None:
-            self.embed_guidance.start_at_zero()
 
     def forward(
         self,
@@ -124,8 +100,6 @@ class WordDenoiser(InterGenDenoiser):
         cond: Tensor,
         mask: Tensor | None = None,
         known: Tensor | None = None,
-        plan: Tensor | None = None,
-        guidance: Tensor | None = None,
     ) -> Tensor:
         """The predicted clean motion.
 
@@ -135,42 +109,25 @@ class WordDenoiser(InterGenDenoiser):
             cond: (B, 3, R, C) text; zeros for the unconditional prediction.
             mask: (B, T, 2), nonzero where a person's token is real; padding is not attended to.
             known: (B, T, 2·known_features), see :attr:`models.known.Hold.features`; None if nothing is.
-            plan: (B, T, 2·plan_features), see :class:`models.intergen.plan_track.PlanTrack`; None, or zeros, for no
-                plan.
-            guidance: (B,) scales, for a network with ``guidance_input``.
 
         Returns:
             (B, T, 2F); what stands at padded tokens means nothing.
         """
         b, length, _ = x.shape
         emb = self.embed(t, cond)
-        if self.embed_guidance is not None and guidance is not None:
-            emb = emb + self.embed_guidance(GUIDANCE_UNITS * guidance)
         h = self.embed_motion(x.view(b, length, 2, -1).permute(2, 0, 1, 3))
         if known is not None:
             h = h + self.known_embed(known.view(b, length, 2, -1).permute(2, 0, 1, 3))
-        added: list[Tensor] = []
-        if self.plan_adapter is not None and plan is not None:
-            added, whole = self.plan_adapter(plan.view(b, length, 2, -1).permute(2, 0, 1, 3))
-            emb = emb + whole
         text, real = self.text_of_each(cond)
         keep, keep_other = padding(mask)
-        for i, block in enumerate(cast(list[WordBlock], self.blocks)):
-            h = block.read(h + added[i] if added else h, emb, keep, keep_other, text, real)
+        for block in cast(list[WordBlock], self.blocks):
+            h = block.read(h, emb, keep, keep_other, text, real)
         return self.out(h).permute(1, 2, 0, 3).reshape(b, length, -1)
-
-    @property
-    def plan_features(self) -> int:
-        """Numbers a person and token by which it sees plans; 0 where it reads none."""
-        return 0 if self.plan_adapter is None else self.plan_adapter.features
 
     @property
     def varying(self) -> dict[str, tuple[int, ...]]:
         """See :class:`models.compiled.Compilable`."""
-        more: dict[str, tuple[int, ...]] = {"cond": (0, 2), "known": (0, 1)}
-        if self.plan_adapter is not None:
-            more["plan"] = (0, 1)
-        return super().varying | more | ({} if self.embed_guidance is None else {"guidance": (0,)})
+        return super().varying | {"cond": (0, 2), "known": (0, 1)}
 
     def filled(
         self,
@@ -179,17 +136,11 @@ class WordDenoiser(InterGenDenoiser):
         cond: Tensor,
         mask: Tensor | None = None,
         known: Tensor | None = None,
-        plan: Tensor | None = None,
-        guidance: Tensor | None = None,
     ) -> tuple[Tensor, ...]:
-        """See :class:`models.compiled.Compilable`; zeros say that nothing is known, and that there is no plan."""
+        """See :class:`models.compiled.Compilable`; zeros say that nothing is known."""
         if known is None:
             known = x.new_zeros(*x.shape[:2], 2 * self.known_embed.in_features)
-        inputs = (*super().filled(x, t, cond, mask), known)
-        if self.plan_adapter is not None:
-            none = x.new_zeros(*x.shape[:2], 2 * self.plan_adapter.features)
-            inputs = (*inputs, none if plan is None else plan)
-        return inputs if self.embed_guidance is None or guidance is None else (*inputs, guidance)
+        return (*super().filled(x, t, cond, mask), known)
 
     def example(self) -> tuple[Tensor, ...]:
         """See :class:`models.compiled.Compilable`: the second motion has no words for each and less known."""
@@ -199,10 +150,7 @@ class WordDenoiser(InterGenDenoiser):
         cond[1, 1:] = 0
         known = torch.randn(2, x.shape[1], 2 * self.known_embed.in_features, generator=draw)
         known[1, 3:] = 0
-        inputs: tuple[Tensor, ...] = (x, t, cond, mask, known)
-        if self.plan_adapter is not None:
-            inputs = (*inputs, torch.rand(2, x.shape[1], 2 * self.plan_adapter.features, generator=draw))
-        return inputs if self.embed_guidance is None else (*inputs, torch.tensor([3.5, 1.5]))
+        return x, t, cond, mask, known
 
     def embed(self, t: Tensor, cond: Tensor) -> Tensor:
         """The embedding for AdaLN of timesteps (B,) and the sentences' vectors in text (B, 3, R, C): (2, B, d)."""
@@ -225,14 +173,3 @@ class WordDenoiser(InterGenDenoiser):
             text = text.gather(2, first[None, :, :, None].expand(2, -1, -1, text.shape[-1]))
             real = real.gather(1, first)
         return text.flatten(0, 1), real.repeat(2, 1)
-
-    def untold(self, plan: Tensor) -> Tensor:
-        """See :class:`models.diffusion.Guided`; traits stay, so that guidance makes no more of them."""
-        people = plan.unflatten(-1, (2, -1))
-        acts = people.shape[-1] - self.traits
-        return torch.cat([torch.zeros_like(people[..., :acts]), people[..., acts:]], -1).flatten(-2)
-
-    @property
-    def takes_scale(self) -> bool:
-        """See :class:`models.diffusion.Guided`."""
-        return self.embed_guidance is not None

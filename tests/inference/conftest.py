@@ -14,12 +14,7 @@ from webdemo.inference.engine import Engine
 CAPTIONS = ("Two people shake hands.", "One person waves.", "They walk away from each other.")
 
 
-PLAN_WORDS = ("do shake-hands", "do walk-away", "do wave", "side left", "undergo punch")
-
-
-def tiny_weights(
-    folder: Path, *, words: bool, plan_words: tuple[str, ...] = (), traits: tuple[str, ...] = ()
-) -> Path:
+def tiny_weights(folder: Path, *, words: bool) -> Path:
     torch.manual_seed(0)
     sizes = {
         "latent_dim": 32,
@@ -29,7 +24,7 @@ def tiny_weights(
         "cond_dim": 64,
         "text_layers": 1,
     }
-    model = CompactInterGen(CompactConfig(**sizes, words=words, plan_words=plan_words, traits=traits))
+    model = CompactInterGen(CompactConfig(**sizes, words=words))
     for parameter in model.parameters():  # the zero-initialised layers would hide what the input does
         torch.nn.init.normal_(parameter, std=0.05)
     rest = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([0.0, 0.98, 0.0])
@@ -53,16 +48,9 @@ def reading_engine(tmp_path_factory: pytest.TempPathFactory) -> Engine:
     return Engine(tiny_weights(tmp_path_factory.mktemp("reading"), words=True))
 
 
-@pytest.fixture(scope="session")
-def planning_engine(tmp_path_factory: pytest.TempPathFactory) -> Engine:
-    """With a network that reads plans of acts, too, and is told traits."""
-    folder = tmp_path_factory.mktemp("planning")
-    return Engine(tiny_weights(folder, words=True, plan_words=PLAN_WORDS, traits=("energy", "tempo")))
-
-
-@pytest.fixture(params=["engine", "reading_engine", "planning_engine"])
+@pytest.fixture(params=["engine", "reading_engine"])
 def either_engine(request: pytest.FixtureRequest) -> Engine:
-    """Each of the three networks."""
+    """Each of the two networks."""
     return request.getfixturevalue(request.param)
 
 

@@ -33,7 +33,7 @@ class Follower:
     digest = "follower"
 
     def __init__(self, patch: pytest.MonkeyPatch) -> None:
-        patch.setattr(Setting, "scene", lambda setting, pipeline, traits: setting)
+        patch.setattr(Setting, "scene", lambda setting, pipeline: setting)
         self.settings: list[Setting] = []
 
     def run(
@@ -47,9 +47,7 @@ class Follower:
     def scene(self, request: SceneRequest) -> Result:
         """A scene's result; ``settings`` are those of its windows."""
         self.settings = []
-        pipeline: Any = SimpleNamespace(
-            run=self.run, digest=self.digest, model=SimpleNamespace(plan_track=None)
-        )
+        pipeline: Any = SimpleNamespace(run=self.run, digest=self.digest)
         *_, result = SceneMaker(pipeline).run(request, CancelToken(), StageTimer.start())
         assert isinstance(result, Result)
         return result

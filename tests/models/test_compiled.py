@@ -33,7 +33,6 @@ def bigraphdiff() -> nn.Module:
 NETWORKS = {
     "intergen": lambda: InterGenDenoiser(InterGenConfig(**SIZES)),
     "words": lambda: WordDenoiser(InterGenConfig(**SIZES), 7),
-    "distilled": lambda: WordDenoiser(InterGenConfig(**SIZES), 7, guidance_input=True),
     "bigraphdiff": bigraphdiff,
 }
 

@@ -4,7 +4,7 @@ import math
 
 import torch
 
-from models.layers import FeedForward, TimestepEmbedding, sinusoids, sinusoids_at
+from models.layers import FeedForward, sinusoids, sinusoids_at
 
 
 def test_sinusoids_are_those_of_the_paper() -> None:
@@ -20,17 +20,6 @@ def test_rows_from_a_start_are_rows_of_the_table() -> None:
     table = sinusoids(12, 7)
     torch.testing.assert_close(sinusoids(4, 7, start=8), table[8:])
     torch.testing.assert_close(sinusoids_at(torch.tensor([3, 11]), 7), table[[3, 11]])
-
-
-def test_an_embedding_that_starts_at_zero_adds_nothing_until_it_is_trained() -> None:
-    torch.manual_seed(0)
-    embedding, t = TimestepEmbedding(8), torch.tensor([0, 500])
-    assert embedding(t).abs().max() > 0.01
-    embedding.start_at_zero()
-    assert torch.count_nonzero(embedding(t)) == 0
-    embedding(t).square().sum().backward()
-    embedding(t).sum().backward()
-    assert embedding.time_embed[2].weight.grad.abs().max() > 0
 
 
 def test_dropout_acts_in_training_only() -> None:

@@ -35,9 +35,6 @@ def evaluate(options: argparse.Namespace) -> dict[str, Any]:
         steps=options.steps,
         guidance=options.guidance,
         damping=options.damping,
-        told=options.told,
-        plan_guidance=options.plan_guidance,
-        fast=options.fast,
     )
     generator = InterGenPipeline(options.weights)
     motions = motions_folder(options.cache, generator.digest, sampling)
@@ -48,17 +45,13 @@ def evaluate(options: argparse.Namespace) -> dict[str, Any]:
         "steps": options.steps,
         "guidance": options.guidance,
         "damping": options.damping,
-        "told": options.told,
-        "plan_guidance": options.plan_guidance,
-        "fast": options.fast,
         "seeds": options.seeds,
         "weights_sha256": generator.digest,
         "motions": str(motions.folder.name),
     }
-    sampler = "fast mode" if options.fast else f"DDIM-{options.steps}"
     about = (
         f"{len(sentences)} sentences, {sum(map(len, duets))} motions, seeds 0 to {options.seeds - 1}; "
-        f"{sampler}, guidance {options.guidance:g}, damping {options.damping:g}, weights "
+        f"DDIM-{options.steps}, guidance {options.guidance:g}, damping {options.damping:g}, weights "
         f"{generator.digest[:12]}"
     )
     if missing:
@@ -79,13 +72,6 @@ def main(argv: list[str] | None = None) -> int:
     add_options(parser, "out", "table", "steps", "guidance", "damping")
     parser.add_argument("--beside", type=Path, help="JSON file of another run, shown beside this one")
     parser.add_argument("--seeds", type=int, default=4, help="motions of each sentence (4)")
-    parser.add_argument("--fast", action="store_true", help="the weights' fast mode, in eight steps")
-    parser.add_argument(
-        "--told", choices=("words", "plan", "both"), default="both", help="to a network that reads plans"
-    )
-    parser.add_argument(
-        "--plan-guidance", type=float, help="scale of the guidance by the plan; by default that of the words"
-    )
     parser.add_argument("--sentences", type=Path, help="others than the eighty, as a file of their kind")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="only these sentences or tags")
     parser.add_argument("--minutes", type=float, default=0.0, help="draw no more after this; 0: no limit")

@@ -35,8 +35,6 @@ from training.prepare import Scenes, load
 from training.trainers.given import AS_STAGED, known_parts
 from training.trainers.held import Held
 from training.trainers.intergen_data import Batch, Data, Settings, seeded
-from training.trainers.plan_acts import MOSTLY_PLANS
-from training.trainers.traits import TRAITS
 
 
 def draw_timesteps(size: int, timesteps: int, noisiest: float, generator: torch.Generator) -> Tensor:
@@ -63,8 +61,6 @@ def new_model(settings: Settings, data: Data) -> CompactInterGen:
             dropout=settings.dropout,
             role_text=True,
             words=settings.words,
-            plan_words=data.plan_words,
-            traits=TRAITS if data.plan_words else (),
             layout=data.scenes.layout,
         )
     )
@@ -123,14 +119,10 @@ class Trainer(Loop):
                 self.model.grow_from(load_folder(init)[0])
             else:
                 checkpoint.restore_part(init, "ema", self.model)
-        if settings.only_plan:
-            for name, weight in self.model.named_parameters():
-                weight.requires_grad_(name.startswith("denoiser.plan_adapter."))
         self.ema = build(settings, self.data).to(device).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
         self.reader = self.data.reader.to(device)
-        trained = [*self.model.parameters(), *self.reader.parameters()]
-        self.optimizer = adamw([weight for weight in trained if weight.requires_grad], settings)
+        self.optimizer = adamw([*self.model.parameters(), *self.reader.parameters()], settings)
         self.restore(asdict(settings))
         self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
 
@@ -192,7 +184,6 @@ class Trainer(Loop):
         if hold is not None:
             xt = hold(xt)
         seen = {} if hold is None or not self.settings.words else {"known": hold.features.to(xt)}
-        seen |= {"plan": batch.plan} if self.data.plan_words else {}
         with mixed_precision(self.device):
             cond, vectors = condition(self.model, batch)
             predicted = self.model.denoiser(xt, t, cond, batch.mask, **seen)
@@ -244,7 +235,7 @@ def main(argv: list[str] | None = None) -> int:
         "--sheets", type=float, default=20.0, help="minutes between contact sheets of samples; 0: none (20)"
     )
     parser.add_argument("--compile", action="store_true", help="compile the network (needs a C++ compiler)")
-    add_run_options(parser, Settings, leave_out=("weights", "given", "told"))
+    add_run_options(parser, Settings, leave_out=("weights", "given"))
     options = parser.parse_args(argv)
     if options.threads:
         torch.set_num_threads(options.threads)
@@ -253,8 +244,6 @@ def main(argv: list[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> None:
     settings = chosen(options, Settings)
-    if settings.only_plan:
-        settings = replace(settings, told=MOSTLY_PLANS)
     if settings.staged:
         settings = replace(settings, given=AS_STAGED)
     trainer = Trainer(

@@ -16,7 +16,6 @@ import torch
 from torch import Tensor
 
 from models.intergen.losses import LossWeights
-from models.intergen.plan_track import PlanTrack, TimedAct
 from models.motion_tokens import canonical_control, mirror_control, pack, unpack
 from motion import SMPL22, InputError
 from training.core import checkpoint
@@ -26,10 +25,7 @@ from training.core.text_features import CaptionFeatures, CaptionTokens
 from training.corpus.grammar import mirror_caption
 from training.prepare import Scenes, normalizer, sentence_lists
 from training.trainers.given import Shares
-from training.trainers.plan_acts import PlanShares, acts_of_label, mirrored_act, sides_named, told, vocabulary
 from training.trainers.reading import UNKNOWN, CaptionReader
-from training.trainers.traits import TRAITS, traits
-from training.trainers.traits import UNKNOWN as TRAITS_UNKNOWN
 
 
 @dataclass(frozen=True)
@@ -43,13 +39,8 @@ class Settings:
         :mod:`models.intergen.words`.
     continued: share of the scenes of several beats that are cut: their words are one beat's, and what came before
         is given, which is how a scene is made longer.
-    plans: a network with ``words`` reads the plan of acts that a scene's label gives, see
-        :mod:`training.trainers.plan_acts`.
-    only_plan: trains nothing but what reads the plan, see :class:`models.intergen.plan_adapter.PlanAdapter`; the rest
-        stays as the run begins with.
     staged: parts of the motion are given as the lab's plans give them, see
         :data:`training.trainers.given.AS_STAGED`.
-    told: how often it is told words, a plan or both.
     given: how often each kind of part of the motion is given.
     """
 
@@ -73,10 +64,7 @@ class Settings:
     seed: int = 0
     words: bool = True
     continued: float = 0.2
-    plans: bool = False
-    only_plan: bool = False
     staged: bool = False
-    told: PlanShares = field(default_factory=PlanShares)
     given: Shares = field(default_factory=Shares)
     weights: LossWeights = field(
         default_factory=lambda: LossWeights(
@@ -94,10 +82,6 @@ class Settings:
         for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "cond_dim", "batch", "warmup"):
             if getattr(self, name) < 1:
                 raise InputError(f"{name} is {getattr(self, name)}: give 1 or more.")
-        if self.only_plan and not self.plans:
-            raise InputError(
-                "Only what reads plans is to be trained, and it reads none: give --plans as well."
-            )
         if self.latent_dim % self.num_heads:
             raise InputError(
                 f"latent_dim {self.latent_dim} cannot be shared by {self.num_heads} heads: give a multiple."
@@ -108,7 +92,7 @@ def settings_of(path: Path) -> Settings:
     """The settings of a checkpoint; raises InputError where it is damaged or of another trainer."""
     known = json.loads(checkpoint.metadata(path)["settings"])
     try:
-        parts = {"weights": LossWeights, "given": Shares, "told": PlanShares}
+        parts = {"weights": LossWeights, "given": Shares}
         known |= {name: kind(**known[name]) for name, kind in parts.items()}
         return Settings(**known)
     except (KeyError, TypeError) as error:
@@ -147,7 +131,6 @@ class Batch:
         read: (B, 3), 1 where a sentence is read; those for both people are there even if they are not.
         past: (B,) frames at the beginning that are given.
         labels: (B, 5) what the captions say, see :mod:`training.trainers.reading`.
-        plan: (B, tokens, 2·P) the plan of acts (:class:`models.intergen.plan_track.PlanTrack`); P is 0 without plans.
     """
 
     x0: Tensor
@@ -159,11 +142,8 @@ class Batch:
     read: Tensor
     past: Tensor
     labels: Tensor
-    plan: Tensor
 
 
-MOST_DRAWN = 2 + 3 * 30 + 1
-"""Numbers that are drawn for the plan of a scene, which are enough for thirty acts; the last is for the traits."""
 LEAST = 20
 """Frames of a beat that must be left of it, where a scene was cut to ten seconds."""
 
@@ -227,11 +207,6 @@ class Data:
             self.captions = CaptionFeatures(sorted(known), cache) if on_cpu else CaptionTokens(device)
         self.mean, self.std = normalizer(scenes, SMPL22.mirror)
         self.tokens = torch.tensor([row["tokens"] for row in self.rows])
-        plans = getattr(settings, "plans", False) and settings.words  # other networks' settings have no words
-        self.acts = {row["start"]: acts_of_label(row) for row in self.rows if plans}
-        self.plan_words = vocabulary(self.acts.values())
-        self.traits = traits(scenes, self.acts)
-        self.track = PlanTrack(self.plan_words, scenes.layout, TRAITS)
         self.reader = CaptionReader(scenes.rows, settings.cond_dim)
         self.batches_an_epoch = len(self.rows) // settings.batch
         self._epoch, self._order = -1, torch.empty(0)
@@ -257,39 +232,12 @@ class Data:
         """
         found = zip(sentence_lists(row), draw[2:], strict=True)
         chosen = [sentences[int(u * len(sentences))] if sentences else "" for sentences, u in found]
-        if draw[0] < self.dropped:
+        if draw[0] < self.settings.cond_drop_prob:
             return chosen, [False] * 3
         if not self.settings.words or not all(chosen):
             return chosen, [True, False, False]
         read = bisect(list(accumulate(SENTENCES.values())), draw[1])
         return chosen, list(list(SENTENCES)[min(read, len(SENTENCES) - 1)])
-
-    @property
-    def dropped(self) -> float:
-        """The share of scenes whose words are not read."""
-        if not self.plan_words:
-            return self.settings.cond_drop_prob
-        return self.settings.told.neither + self.settings.told.plan
-
-    def plan(
-        self, row: dict[str, Any], draw: float, drawn: Sequence[float], *, before: float, frames: float
-    ) -> list[TimedAct]:
-        """The plan of a scene, or nothing.
-
-        Args:
-            draw: the number by which :meth:`sentences` says whether words are read.
-            drawn, before, frames: see :func:`training.trainers.plan_acts.told`.
-        """
-        if not self.plan_words:
-            return []
-        shares = self.settings.told
-        if draw < shares.neither or draw >= 1 - shares.words:
-            return []
-        return told(self.acts[row["start"]], shares, drawn, before=before, frames=frames)
-
-    def traits_told(self, row: dict[str, Any], drawn: float) -> Tensor | None:
-        """The traits of both people, or nothing, by a number in [0, 1); with words and plan or without either."""
-        return self.traits[row["start"]] if self.plan_words and drawn >= TRAITS_UNKNOWN else None
 
     def continued(self, row: dict[str, Any], draw: Sequence[float]) -> tuple[Tensor, int, str] | None:
         """A scene from some time before one of its later beats until that beat's end.
@@ -298,8 +246,8 @@ class Data:
             draw: four numbers uniform in [0, 1): whether, which beat, its sentence, how long before.
 
         Returns:
-            control points (2, K, 70) in metres, canonical, how many frames pass before the beat, its words, and how
-            many frames of the scene were cut off; None where the scene is not cut.
+            control points (2, K, 70) in metres, canonical, how many frames pass before the beat, and its words;
+            None where the scene is not cut.
         """
         beats = later_beats(row) if self.settings.words else []
         if not beats or draw[0] >= self.settings.continued:
@@ -314,7 +262,7 @@ class Data:
             return None
         one = self.scenes.scene(row)[:, knot : knot + tokens * layout.knots_per_token]
         words = beat["captions"][int(draw[2] * len(beat["captions"]))]
-        return canonical_control(one), before, words, knot * layout.frames_per_knot
+        return canonical_control(one), before, words
 
     def features(self, captions: list[str]) -> tuple[Tensor, Tensor]:
         """The text encoder's output for captions: features (B, …) and their mask."""
@@ -330,32 +278,27 @@ class Data:
         rows = [self.rows[i] for i in self._rows_of(step)]
         generator = seeded(settings.seed, 2, step)
         draws = torch.rand(len(rows), 10, generator=generator).tolist()
-        planned = torch.rand(len(rows), MOST_DRAWN, generator=seeded(settings.seed, 6, step)).tolist()
         tokens = -4 * (-max(row["tokens"] for row in rows) // 4)  # few shapes: kernels are made for each
         control = self.mean.expand(len(rows), 2, tokens * layout.knots_per_token, -1).clone()
         mask, read = torch.zeros(len(rows), tokens, 2), torch.zeros(len(rows), 3)
         frame_mask = torch.zeros(len(rows), layout.num_frames(tokens))
         past = torch.zeros(len(rows), dtype=torch.long)
-        both, alone, places, labels, plans = [], [], [], [], []
+        both, alone, places, labels = [], [], [], []
         for i, (row, draw) in enumerate(zip(rows, draws, strict=True)):
             one, (sentences, chosen) = self.scenes.scene(row), self.sentences(row, draw[1:6])
             cut = self.continued(row, draw[6:])
-            before = 0
             if cut is not None:
-                one, past[i], words, before = cut
+                one, past[i], words = cut
                 sentences, chosen = [words, "", ""], [any(chosen), False, False]
             own = one.shape[1] // layout.knots_per_token
-            plan = self.plan(row, draw[1], planned[i], before=before, frames=layout.num_frames(own))
             named = [s for s, wanted in zip(sentences, chosen, strict=True) if wanted]
-            text = " ".join([*named, sides_named(plan)] if named or plan else sentences[:1])
+            text = " ".join(named or sentences[:1])
             mirror = mirrored(text, row.get("hand"), draw[0])
             label = self.reader.labels(row, mirror=mirror)
             labels.append(label if cut is None else torch.full_like(label, UNKNOWN))
             if mirror:
                 one = mirror_control(one, SMPL22.mirror)
                 sentences = [mirror_caption(sentence) for sentence in sentences]
-                plan = [mirrored_act(act) for act in plan]
-            plans.append(self.track(plan, tokens, self.traits_told(row, planned[i][-1])))
             control[i, :, : one.shape[1]] = one
             mask[i, :own] = 1
             frame_mask[i, : layout.num_frames(own)] = 1
@@ -368,8 +311,7 @@ class Data:
         text, text_mask = self.features(both + alone)
         x0 = pack((control - self.mean) / self.std, layout)
         where = torch.tensor([*range(0, 3 * len(rows), 3), *places])
-        tensors = (x0, mask, frame_mask, text, text_mask, where, read, past, torch.stack(labels))
-        return Batch(*tensors, torch.stack(plans))
+        return Batch(x0, mask, frame_mask, text, text_mask, where, read, past, torch.stack(labels))
 
     def on_device(self, batch: Batch) -> Batch:
         """A batch on the device, with the features of its sentences."""

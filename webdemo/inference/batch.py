@@ -87,13 +87,11 @@ class SharedPasses:
         cond: Tensor,
         mask: Tensor | None = None,
         known: Tensor | None = None,
-        plan: Tensor | None = None,
         *,
         scale: float,
-        plan_scale: float | None = None,
     ) -> Tensor:
         """As the denoiser's own ``guided``, together with the other lanes."""
-        return self._meeting.predict(self._lane, _Question(x, t, cond, mask, scale, known, plan, plan_scale))
+        return self._meeting.predict(self._lane, _Question(x, t, cond, mask, scale, known))
 
     def correct(self, damping: Damping, x0: Tensor, timestep: int) -> Tensor:
         """A prediction corrected by its damping, together with the other lanes."""
@@ -110,18 +108,15 @@ class _Question:
     mask: Tensor | None
     scale: float
     known: Tensor | None = None
-    plan: Tensor | None = None
-    plan_scale: float | None = None
 
     @property
     def terms(self) -> list[Term]:
         """The predictions whose sum is the answer."""
-        return terms(self.scale, None if self.plan is None else self.plan_scale)
+        return terms(self.scale)
 
-    def told(self, term: Term, denoiser: InterGenDenoiser) -> _Question:
+    def told(self, term: Term) -> _Question:
         """The question of one of its terms."""
-        plan = self.plan if self.plan is None or term.plan else denoiser.untold(self.plan)
-        return replace(self, cond=self.cond if term.words else torch.zeros_like(self.cond), plan=plan)
+        return self if term.words else replace(self, cond=torch.zeros_like(self.cond))
 
 
 @dataclass(frozen=True)
@@ -215,29 +210,25 @@ def answer_together(denoiser: InterGenDenoiser, questions: Sequence[_Question]) 
     """The guided predictions for all questions; one pass computes all terms of all guided sums."""
     if len(questions) == 1:
         q = questions[0]
-        seen = {name: value for name in _SHOWN if (value := getattr(q, name)) is not None}
-        return [denoiser.guided(q.x, q.t, q.cond, q.mask, scale=q.scale, plan_scale=q.plan_scale, **seen)]
+        return [denoiser.guided(q.x, q.t, q.cond, q.mask, q.known, scale=q.scale)]
     length = max(q.x.shape[1] for q in questions)
     padded = any(q.x.shape[1] < length or q.mask is not None for q in questions)
-    rows = [q.told(term, denoiser) for q in questions for term in q.terms]
+    rows = [q.told(term) for q in questions for term in q.terms]
+    known = _known(rows, length)
     out = denoiser(
         torch.cat([pad(q.x, (0, 0, 0, length - q.x.shape[1])) for q in rows]),
         torch.cat([q.t for q in rows]),
         join_conditions([q.cond for q in rows]),
         torch.cat([_mask(q, length) for q in rows]) if padded else None,
-        **{name: value for name in _SHOWN if (value := _shown(rows, name, length)) is not None},
+        **({} if known is None else {"known": known}),
     )
     parts = iter(out.split([len(q.x) for q in rows]))
     return [weighted(q.terms, [next(parts)[:, : q.x.shape[1]] for _ in q.terms]) for q in questions]
 
 
-_SHOWN = ("known", "plan")
-"""Arguments of the denoiser that a question may lack."""
-
-
-def _shown(questions: Sequence[_Question], name: str, length: int) -> Tensor | None:
-    """One of :data:`_SHOWN` for all questions; None if no question has it."""
-    values: list[Tensor | None] = [getattr(q, name) for q in questions]
+def _known(questions: Sequence[_Question], length: int) -> Tensor | None:
+    """What is known for all questions; None if nothing is for any."""
+    values = [q.known for q in questions]
     width = next((value.shape[-1] for value in values if value is not None), None)
     if width is None:
         return None

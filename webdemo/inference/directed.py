@@ -14,7 +14,6 @@ import torch
 from numpy.typing import NDArray
 
 from models.intergen.compact import DuetSpace
-from models.intergen.plan_track import TimedAct
 from models.known import Hold, Known
 from motion import SMPL22, Duet, InputError
 from motion.easing import minimum_jerk
@@ -130,8 +129,6 @@ def directed(
     frames: int,
     parts: Sequence[Part],
     *,
-    acts: tuple[TimedAct, ...] = (),
-    traits: torch.Tensor | None = None,
     check: bool = True,
 ) -> Directed:
     """A scene of so many frames with what is given of it.
@@ -140,8 +137,6 @@ def directed(
         model: the network's space.
         frames: length at 30 fps.
         parts: what is given.
-        acts: what happens when, for a network that reads plans.
-        traits: see :attr:`Scene.traits`.
         check: whether poses and places may be outside the limits; off for what a network made itself.
 
     Raises:
@@ -173,7 +168,7 @@ def directed(
             if part.turned and headings is not None:
                 _hold_hips(known, part.person, at, headings)
     hold = Hold(known, model.layout, model.mean, model.std) if parts else None
-    return Directed(frames, hold, acts, traits, parts=parts)
+    return Directed(frames, hold, parts=parts)
 
 
 def _hold_hips(known: Known, person: int, at: list[int], headings: torch.Tensor) -> None:

@@ -24,7 +24,7 @@ Python. With the shipped InterGen the rules obeyed at 8 and at 25 steps differ b
 """
 WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
 """The folder of all shipped weights."""
-Input = Literal["words", "class", "actor", "first pose", "either role", "past", "plan", "two people"]
+Input = Literal["words", "class", "actor", "first pose", "either role", "past", "two people"]
 
 
 class Pipeline(Protocol):
@@ -74,8 +74,8 @@ class Method:
         label: what people call it.
         summary: one sentence that is shown where the method is chosen.
         tasks: what it can be asked for.
-        takes: what a request may give it. "either role": the given person may act or react; "plan": the network reads
-            plans of acts and is told energy and tempo; "two people": the past must be of both.
+        takes: what a request may give it. "either role": the given person may act or react; "two people": the past
+            must be of both.
         load: (weights folder, *the pipelines of ``needs``) → a :class:`Pipeline`. Imports torch when called, not
             before.
         modes: mode → label, for reactions. "offline" sees the whole given motion; "online" sees the frames so

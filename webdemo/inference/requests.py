@@ -27,7 +27,6 @@ from .limits import (
     SAMPLERS,
     SAMPLES,
     STEPS,
-    TRAIT,
     TRIES,
     choice,
     number,
@@ -50,7 +49,6 @@ def _others(needed: str) -> str:
     return "the model " + " or ".join(m.name for m in methods.methods("react") if needed in m.takes)
 
 
-_OF_FEW = ("plan_guidance", "energy", "tempo")
 OWN_STEPS: Any = None
 """In place of steps: those of the model."""
 
@@ -69,10 +67,6 @@ class SamplingRequest:
         sampler: "ddim" (η = 0) or "dpm++" (DPM-Solver++ multistep).
         model: the name of a generator in the registry.
         cleanup: project the result onto constant bones and planted feet.
-        plan_guidance: scale of the guidance by the plan of acts, for a network that reads plans; by default that of the
-            words.
-        energy, tempo: how far and how fast people move beside what is usual for what they do, in standard deviations
-            of recorded people, for a network that is told it. Each person is drawn around it, from the seed.
         tries: of a sentence or a story, the seeds from ``seed`` on that are tried until a motion shows all that is
             said; the best is kept (:mod:`.tries`).
     """
@@ -86,25 +80,11 @@ class SamplingRequest:
     model: str = "intergen"
     cleanup: bool = True
     tries: int = 1
-    plan_guidance: float | None = None
-    energy: float = 0.0
-    tempo: float = 0.0
-
-    @property
-    def traits(self) -> dict[str, float]:
-        """The traits that are asked for."""
-        return {"energy": self.energy, "tempo": self.tempo}
 
     @property
     def sampling(self) -> dict[str, Any]:
-        """The settings by their names; those that few networks take only where they are set."""
-        few = {name for name in _OF_FEW if name not in self._of_few}
-        return {f.name: getattr(self, f.name) for f in fields(SamplingRequest) if f.name not in few}
-
-    @property
-    def _of_few(self) -> list[str]:
-        """The settings that few networks take and that are set."""
-        return [name for name in _OF_FEW if getattr(self, name) != getattr(SamplingRequest, name)]
+        """The settings by their names."""
+        return {f.name: getattr(self, f.name) for f in fields(SamplingRequest)}
 
     def _check(self, method: Method) -> None:
         set_ = object.__setattr__
@@ -118,13 +98,6 @@ class SamplingRequest:
         set_(self, "guidance", number("Guidance scale", self.guidance, *GUIDANCE))
         set_(self, "steps", whole("DDIM steps", self.steps, *STEPS))
         set_(self, "damping", number("Damping threshold", self.damping, *DAMPING))
-        for name in ("energy", "tempo"):
-            set_(self, name, number(name.capitalize(), getattr(self, name), *TRAIT))
-        if self.plan_guidance is not None:
-            set_(self, "plan_guidance", number("The plan's guidance scale", self.plan_guidance, *GUIDANCE))
-        if "plan" not in method.takes and self._of_few:
-            named = " and ".join(name.replace("_", " ") for name in self._of_few)
-            raise InputError(f"{method.label} reads no plans: leave {named} out.")
         choice("Sampler", self.sampler, SAMPLERS)
         if self.sampler not in method.samplers:
             raise InputError(

@@ -8,10 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from torch import Tensor
 
 from models.intergen.compact import DuetSpace
-from models.intergen.plan_track import TimedAct
 from models.known import Hold, Known
 from motion import Clip, Duet
 
@@ -30,15 +28,10 @@ class Scene:
     Attributes:
         frames: length at 30 fps.
         given: what is known of the motion, if anything.
-        acts: what happens when, for a network that reads plans.
-        traits: (2, traits) of a and b, for a network that is told them; by default they are drawn for each sample
-            (:mod:`.traits`).
     """
 
     frames: int
     given: Hold | None = None
-    acts: tuple[TimedAct, ...] = ()
-    traits: Tensor | None = None
 
     def duet(self, pair: Array, finish: Finish) -> Duet:
         """The duet of one sample (2, T, 22, 3) in metres; ``finish`` cleans up a generated person."""

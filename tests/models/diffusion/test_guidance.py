@@ -31,46 +31,21 @@ def test_what_stands_for_no_condition_may_be_given():
 
 
 class Adding(Guided):
-    """A network whose prediction says what it read: 1 for words, 10 for a plan, 100 for a trait."""
+    """A network whose prediction says whether it read words."""
 
     passes: list[int]
 
     def __init__(self) -> None:
         self.passes = []
 
-    def untold(self, plan: torch.Tensor) -> torch.Tensor:
-        return plan * torch.tensor([0.0, 1.0])
-
-    def __call__(self, x, t, cond, mask=None, known=None, plan=None):
+    def __call__(self, x, t, cond, mask=None, known=None):
         self.passes.append(len(x))
-        own = torch.zeros(len(x)) if plan is None else plan[:, 0] @ torch.tensor([10.0, 100.0])
-        return x + (cond[:, 0] + own)[:, None, None]
+        return x + (10 + cond[:, 0])[:, None, None]
 
 
-PLAN = torch.ones(1, 1, 2)
-
-
-@pytest.mark.parametrize(
-    ("scale", "plan_scale", "expected", "rows"),
-    [
-        (3.0, None, 3 * 11 + 100, 4),  # one scale for both; traits are not guided
-        (3.0, 3.0, 3 * 11 + 100, 4),
-        (3.0, 2.0, 3 * 1 + 2 * 10 + 100, 6),
-        (3.0, 1.0, 3 * 1 + 10 + 100, 4),  # nothing has no weight
-        (0.0, 2.0, 2 * 10 + 100, 4),  # words have none
-        (1.0, None, 111, 2),
-    ],
-)
-def test_words_and_plan_have_scales_of_their_own(
-    scale: float, plan_scale: float | None, expected: float, rows: int
-) -> None:
+@pytest.mark.parametrize(("scale", "expected", "rows"), [(3.0, 13.0, 4), (1.0, 11.0, 2), (0.0, 10.0, 2)])
+def test_a_prediction_without_weight_is_not_made(scale: float, expected: float, rows: int) -> None:
     network = Adding()
-    x, t, cond = torch.zeros(2, 1, 1), torch.zeros(2), torch.ones(2, 1)
-    found = network.guided(x, t, cond, plan=PLAN, scale=scale, plan_scale=plan_scale)
+    found = network.guided(torch.zeros(2, 1, 1), torch.zeros(2), torch.ones(2, 1), scale=scale)
     assert found.flatten().tolist() == pytest.approx([expected] * 2)
     assert network.passes == [rows]
-
-
-def test_without_a_plan_there_is_no_scale_of_its_own() -> None:
-    found = Adding().guided(torch.zeros(1, 1, 1), torch.zeros(1), torch.ones(1, 1), scale=3.0, plan_scale=2.0)
-    assert found.item() == pytest.approx(3.0)

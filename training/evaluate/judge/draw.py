@@ -13,14 +13,11 @@ import torch
 
 from models.diffusion import denoise, make_scheduler
 from models.intergen.compact import CompactInterGen
-from models.intergen.fast import PASSES
-from models.intergen.plan_track import TimedAct
 from models.intergen.words import join_conditions
 from motion import Duet, InputError
 from webdemo.inference.cleanup import clean_person
 from webdemo.inference.damping import Damping
 from webdemo.inference.noise import sample_noise
-from webdemo.inference.traits import traits_of
 
 from .rules import Task
 
@@ -30,21 +27,12 @@ LENGTH_STEP = 30
 
 @dataclass(frozen=True, kw_only=True)
 class Sampling:
-    """Sampling settings; the names are those of :class:`webdemo.inference.GenerateRequest`.
-
-    Attributes:
-        told: "words", "plan" or "both": what a network that reads plans is told.
-        plan_guidance: scale of the guidance by the plan; by default that of the words.
-        fast: in the weights' fast mode, which takes :data:`models.intergen.fast.PASSES` steps whatever ``steps`` says.
-    """
+    """Sampling settings; the names are those of :class:`webdemo.inference.GenerateRequest`."""
 
     seed: int = 0
     steps: int = 25
     guidance: float = 4.3
     damping: float = 0.7
-    told: str = "both"
-    plan_guidance: float | None = None
-    fast: bool = False
 
 
 def batches(tasks: Sequence[Task], *, size: int = BATCH, seed: int = 0) -> list[list[int]]:
@@ -73,10 +61,6 @@ class Generator(Protocol):
         """The condition (1, …) and the sentence vector of a prompt."""
         ...
 
-    def acts(self, prompt: str, frames: int) -> tuple[TimedAct, ...]:
-        """The acts of a prompt, for a network that reads plans."""
-        ...
-
 
 def draw(
     generator: Generator, tasks: Sequence[Task], sampling: Sampling, seeds: Sequence[int] | None = None
@@ -88,9 +72,6 @@ def draw(
     Raises InputError if a motion is not finite.
     """
     model = generator.model
-    denoiser = model.fast_denoiser if sampling.fast else model.denoiser
-    if denoiser is None:
-        raise InputError("These weights have no fast mode: make one with training.trainers.intergen_fast.")
     seeds = [sampling.seed + i for i in range(len(tasks))] if seeds is None else seeds
     for group in batches(tasks, seed=sampling.seed):
         frames = _frames(tasks[group[0]])
@@ -98,10 +79,7 @@ def draw(
         noise = torch.cat([sample_noise(seeds[i], 1, shape) for i in group])
         condition = join_conditions([generator.condition(tasks[i].caption)[0] for i in group])
         touches = model.touches(condition)
-        if sampling.told == "plan":
-            condition = torch.zeros_like(condition)
-        plan = _plan(generator, [(tasks[i].caption, seeds[i]) for i in group], frames, sampling.told)
-        scheduler = make_scheduler("ddim", PASSES if sampling.fast else sampling.steps, spacing="top")
+        scheduler = make_scheduler("ddim", sampling.steps, spacing="top")
         damping = Damping(
             model,
             sampling.damping,
@@ -109,7 +87,7 @@ def draw(
             final_timestep=int(scheduler.timesteps[-1]),
             touches=touches,
         )
-        predict = partial(_guided, denoiser, condition, plan, sampling)
+        predict = partial(_guided, model.denoiser, condition, sampling.guidance)
         sample = denoise(predict, noise, scheduler, correct=damping)
         with torch.no_grad():
             positions = model.positions(sample)[0][:, :, :frames].numpy()
@@ -120,26 +98,7 @@ def draw(
             yield i, Duet.from_positions(clean, fps=30.0, roles=("actor", "reactor"))
 
 
-def _plan(
-    generator: Generator, asked: Sequence[tuple[str, int]], frames: int, told: str
-) -> torch.Tensor | None:
-    """The plans (B, tokens, 2·P) that captions are read as, of people drawn by their seeds; None for no plans."""
-    track = getattr(generator.model, "plan_track", None)
-    if track is None or (told == "words" and not track.traits):
-        return None
-    tokens = generator.model.layout.num_tokens(frames)
-    acts = [() if told == "words" else generator.acts(caption, frames) for caption, _ in asked]
-    traits = [traits_of(track, seed, 0, {}) for _, seed in asked]
-    return torch.stack([track(one, tokens, other) for one, other in zip(acts, traits, strict=True)])
-
-
 def _guided(
-    denoiser: Any,
-    condition: torch.Tensor,
-    plan: torch.Tensor | None,
-    sampling: Sampling,
-    x: torch.Tensor,
-    t: torch.Tensor,
+    denoiser: Any, condition: torch.Tensor, scale: float, x: torch.Tensor, t: torch.Tensor
 ) -> torch.Tensor:
-    told = {} if plan is None else {"plan": plan, "plan_scale": sampling.plan_guidance}
-    return denoiser.guided(x, t, condition, scale=sampling.guidance, **told)
+    return denoiser.guided(x, t, condition, scale=scale)

@@ -16,10 +16,7 @@ from webdemo.inference.pipelines.intergen import InterGenPipeline
 
 def motions_folder(cache: Path, digest: str, sampling: Sampling) -> Motions:
     """The folder for motions of these weights and settings."""
-    sampler = "fast" if sampling.fast else f"ddim{sampling.steps}"
-    name = f"{digest[:12]}-{sampler}-g{sampling.guidance:g}-d{sampling.damping:g}"
-    name += "" if sampling.told == "both" else f"-{sampling.told}"
-    name += "" if sampling.plan_guidance is None else f"-p{sampling.plan_guidance:g}"
+    name = f"{digest[:12]}-ddim{sampling.steps}-g{sampling.guidance:g}-d{sampling.damping:g}"
     return Motions(cache / name)
 
 

@@ -10,7 +10,6 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from models.compiled import compile_network
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
 from models.text import MiniLM
 from motion import Clip, Duet
@@ -24,7 +23,6 @@ from webdemo.inference.story import understood
 from webdemo.inference.story.prompted import as_scene
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.staging import staged
-from webdemo.inference.timed import timed
 from webdemo.inference.timer import StageTimer
 
 from .scene import SceneMaker
@@ -40,10 +38,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
 
     def __init__(self, folder: Path) -> None:
         model, source = load_folder(folder)
-        fast = model.fast_denoiser  # before the network's own weights are let go
         super().__init__(source, model)
-        if fast is not None:
-            compile_network(fast, f"{source.digest} fast")
         self.bank: CaptionBank = load_captions(source)
         self.encoder = MiniLM()
         self.scenes = SceneMaker(self)
@@ -92,13 +87,6 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
                     event, notes=tuple(dict.fromkeys((*said, *event.notes))), manifest={"plan": kept}
                 )
             yield event
-
-    def scene(self, request: GenerateRequest | ReactRequest) -> Scene:
-        """As :meth:`TwoPersonPipeline.scene`, with the acts that the words are read as."""
-        scene = super().scene(request)
-        plan = request.plan
-        reads = self.model.plan_track is not None and plan is not None and bool(plan.acts)
-        return replace(scene, acts=timed(plan.acts[0].acts, 0, scene.frames) if plan and reads else ())
 
     def condition(self, prompt: str, alone: tuple[str, str] = ("", "")) -> tuple[Tensor, Tensor]:
         """The condition (1, …) of a prompt and its unit sentence vector (384,).

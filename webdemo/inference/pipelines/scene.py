@@ -31,7 +31,6 @@ from webdemo.inference.story.plan import Window, window_seed, windows
 from webdemo.inference.story.progress import SceneProgress
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.timer import StageTimer
-from webdemo.inference.traits import traits_of
 
 from .scene_finish import finished, finishes
 from .scene_floor import plan_note
@@ -177,12 +176,10 @@ class SceneMaker:
         """One window, made now or kept from an earlier run."""
         window = setting.window
         asked = _asked(request, sample, window, setting.frames, setting.plan)
-        # By the seed of the whole scene: people stay who they are from beat to beat.
-        traits = traits_of(self.pipeline.model.plan_track, request.seed, sample, request.traits)
-        key = setting.key(asked, self.pipeline.digest, traits)
+        key = setting.key(asked, self.pipeline.digest)
         if (kept := self.parts.get(key)) is not None:
             return kept
-        given = setting.scene(self.pipeline, traits)
+        given = setting.scene(self.pipeline)
         for event in self.pipeline.run(asked, cancel, timer, passes, given):
             if isinstance(event, Result):
                 made = setting.made(event.duets[0].positions)

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-import itertools
 import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from torch import Tensor
 
 from models.intergen.compact import CompactInterGen
-from models.intergen.plan_track import TimedAct
 from motion.transforms import heading, heading_matrix
 from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, ROLES, SECONDS, Placement
 from webdemo.inference.directed import Directed, directed
@@ -22,7 +19,6 @@ from webdemo.inference.plans import WindowPlan
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.timed import timed
 
 from .scene_floor import planned
 from .scene_wishes import wishes
@@ -41,7 +37,6 @@ class Setting:
         parts: what is given.
         placement: from the scene's world to the network's frame.
         plan: what was planned of it.
-        acts: what happens when, in the window and in what it sees before it.
     """
 
     window: Window
@@ -49,7 +44,6 @@ class Setting:
     parts: tuple[Part, ...]
     placement: Placement
     plan: WindowPlan
-    acts: tuple[TimedAct, ...] = ()
 
     @classmethod
     def of(
@@ -79,12 +73,11 @@ class Setting:
                 parts.append(KnownFrames(person, behind, placement.to_network(after[person])))
         tail = window.after or window.tail(request.edges[-1])
         frames = max(past + length + tail, round(SECONDS[0] * FPS))
-        return cls(window, frames, (*parts, *plan.parts), placement, plan, _acts(request, window))
+        return cls(window, frames, (*parts, *plan.parts), placement, plan)
 
-    def scene(self, pipeline: TwoPersonPipeline[CompactInterGen], traits: Tensor | None) -> Directed:
-        """As the pipeline takes it, of people who have these traits."""
-        acts = () if pipeline.model.plan_track is None else self.acts
-        return directed(pipeline.model, self.frames, self.parts, acts=acts, traits=traits, check=False)
+    def scene(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> Directed:
+        """As the pipeline takes it."""
+        return directed(pipeline.model, self.frames, self.parts, check=False)
 
     def made(self, positions: Array) -> Array:
         """The new frames (2, T, 22, 3) in the scene's world, of the whole window's."""
@@ -92,10 +85,9 @@ class Setting:
         new = positions[:, first : first + self.window.stop - self.window.start]
         return self.placement.to_world(new).astype(np.float32)
 
-    def key(self, asked: GenerateRequest, digest: str, traits: Tensor | None) -> str:
+    def key(self, asked: GenerateRequest, digest: str) -> str:
         """A hash of all that the window is made from."""
-        acts, moving = [asdict(act) for act in self.acts], [] if traits is None else traits.tolist()
-        told = [digest, asked.to_dict(), self.plan.alone, self.frames, self.window.past, acts, moving]
+        told = [digest, asked.to_dict(), self.plan.alone, self.frames, self.window.past]
         found = hashlib.sha256(json.dumps(told).encode())
         for part in self.parts:
             values = part.positions if isinstance(part, KnownFrames) else part.places
@@ -119,18 +111,6 @@ def _plan(
         parts += planned(request, window, scene, placement, {part.person for part in parts})
     alone = beat.alone if any(beat.alone) else request.told[window.beat].alone
     return WindowPlan(place, tuple(parts), alone, tuple(notes))
-
-
-def _acts(request: SceneRequest, window: Window) -> tuple[TimedAct, ...]:
-    """The acts of the beats that a window makes or sees before it, in the window's frames."""
-    first = window.start - window.past
-    spans = ((start - first, stop - first) for start, stop in itertools.pairwise(request.edges))
-    return tuple(
-        act
-        for plan, (start, stop) in zip(request.plans, spans, strict=True)
-        if start < window.stop - first and stop > 0
-        for act in timed(plan.acts, start, stop)
-    )
 
 
 def _place(request: SceneRequest, before: Array, after: Array) -> tuple[float, float, float]:

@@ -17,7 +17,6 @@ from models.compiled import compile_network
 from models.diffusion import SamplerName, make_scheduler, sample_steps
 from models.diffusion.schedule import Spacing
 from models.intergen.compact import CompactInterGen, DuetSpace, Touch
-from models.intergen.plan_track import PlanTrack
 from models.intergen.released import ReleasedInterGen
 from models.weights_io import WeightsFolder
 from motion import Duet, InputError
@@ -30,7 +29,6 @@ from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import Finish, Scene, scene_of
 from webdemo.inference.timer import StageTimer
-from webdemo.inference.traits import traits_of
 
 Network = TypeVar("Network", CompactInterGen, CompactBiGraphDiff, ReleasedInterGen)
 
@@ -62,10 +60,8 @@ class Passes(Protocol):
         cond: Tensor,
         mask: Tensor | None = None,
         known: Tensor | None = None,
-        plan: Tensor | None = None,
         *,
         scale: float,
-        plan_scale: float | None = None,
     ) -> Tensor:
         """The guided prediction of x0, as the denoiser's own ``guided``."""
         ...
@@ -206,7 +202,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             frozen=None if given is None else given.frozen[0],
             touches=(conditioning.touch,) * request.samples,
         )
-        seen = self._seen(request, scene)
+        seen = self._seen(scene)
         steps = _Steps(passes, damping, condition, conditioning.guidance, given, seen)
         cancel.raise_if_cancelled()
         sample = steps.uncorrected = noise
@@ -227,20 +223,11 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             notes=conditioning.notes,
         )
 
-    def _seen(self, request: GenerateRequest | ReactRequest, scene: Scene) -> dict[str, Any]:
-        """Arguments of the network's ``guided``: what is known, for one that reads it, and each sample's plan."""
-        seen: dict[str, Any] = {}
-        if scene.given is not None and self.model.reads_known:
-            seen["known"] = scene.given.features
-        track: PlanTrack | None = getattr(self.model, "plan_track", None)
-        if track is not None and (scene.acts or track.traits):
-            tokens = self.model.layout.num_tokens(scene.frames)
-            drawn = [traits_of(track, request.seed, i, request.traits) for i in range(request.samples)]
-            each = drawn if scene.traits is None else [scene.traits] * request.samples
-            seen["plan"] = torch.stack([track(scene.acts, tokens, traits) for traits in each])
-            if request.plan_guidance is not None:
-                seen["plan_scale"] = request.plan_guidance
-        return seen
+    def _seen(self, scene: Scene) -> dict[str, Any]:
+        """Arguments of the network's ``guided``: what is known, for one that reads it."""
+        if scene.given is None or not self.model.reads_known:
+            return {}
+        return {"known": scene.given.features}
 
     def _finished(
         self, request: GenerateRequest | ReactRequest, scene: Scene, uncorrected: Tensor, sample: Tensor

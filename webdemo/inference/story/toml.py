@@ -53,7 +53,6 @@ _NUMBER, _TEXT = (int, float), (str,)
 _TOP: dict[str, tuple[type, ...]] = {
     "seed": (int,), "samples": (int,), "guidance": _NUMBER, "steps": (int,), "damping": _NUMBER, "sampler": _TEXT,
     "model": _TEXT, "cleanup": (bool,), "tries": (int,), "loop": (bool,),
-    "plan_guidance": _NUMBER, "energy": _NUMBER, "tempo": _NUMBER,
     "planned": (bool,), "beat": (list,), "path": (list,), "pose": (list,),
 }  # fmt: skip
 _BEAT: dict[str, tuple[type, ...]] = {

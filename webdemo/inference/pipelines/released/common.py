@@ -62,7 +62,7 @@ class Measured:
     """
 
     def __init__(self, scene: Scene) -> None:
-        self.frames, self.given, self.acts, self._scene = scene.frames, scene.given, scene.acts, scene
+        self.frames, self.given, self._scene = scene.frames, scene.given, scene
         self.moved: list[float] = []
         """Mean distance in metres, one of each generated person."""
 
