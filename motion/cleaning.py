@@ -109,7 +109,13 @@ def plant_feet(
             result[:, hip], result[:, knee], result[:, ankle], ankle_goal, forward, soft=soft
         )
         result[:, knee] = steadied(
-            result[:, hip], new_knee, new_ankle, result[:, knee], forward, free=near[:, 0] * ~stays
+            result[:, hip],
+            new_knee,
+            new_ankle,
+            result[:, knee],
+            forward,
+            free=near[:, 0] * ~stays,
+            hinged=True,
         )
         result[:, ankle] = new_ankle
         result[:, toe] = toe_goal + (new_ankle - ankle_goal)
@@ -331,7 +337,14 @@ def _smooth(need: Array, reach: int) -> Array:
 
 
 def steadied(
-    root: Array, middle: Array, end: Array, guide: Array, pole: Array, *, free: Array | float = 1.0
+    root: Array,
+    middle: Array,
+    end: Array,
+    guide: Array,
+    pole: Array,
+    *,
+    free: Array | float = 1.0,
+    hinged: bool = False,
 ) -> Array:
     """(T, 3) the middle joints of a limb, turned about the line between its ends so that they go round it smoothly.
 
@@ -343,6 +356,7 @@ def steadied(
         guide: (T, 3) where the middle joint was seen, on bones of any length.
         pole: (T, 3) the direction in which a straight limb bends.
         free: (T,) from 1, where the joint may move, to 0, where it stays.
+        hinged: the limb bends towards the pole alone, as a knee does: a joint seen on the other side is mirrored.
     """
     axis = end - root
     axis = unit(axis)
@@ -351,6 +365,9 @@ def steadied(
     share = np.broadcast_to(np.asarray(free, dtype=np.float64), (len(root),))[:, None]
     share = share * open_limb(root, middle, end)
     out = guide - root - _along(guide - root, axis)
+    if hinged:
+        towards = pole - _along(pole, axis)
+        out += 2 * np.maximum(-np.sum(out * towards, axis=-1, keepdims=True), 0.0) * towards
     out = share * (out + _LEANS * (pole - _along(pole, axis))) + (1 - share) * (middle - root - along)
     length = np.linalg.norm(out, axis=-1, keepdims=True)
     side = out / np.maximum(length, 1e-9)

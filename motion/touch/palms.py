@@ -30,6 +30,8 @@ _EASE, _SHORTEST, _SHAKEN = 10, 3, 12
 """Frames in which hands come to the place where they meet, that they meet at least, and that they are shaken."""
 _ROUNDS = 3
 """Rounds in which the palms are brought together: a forearm turns as its wrist moves."""
+_SOFT = 0.06
+"""Share of an arm's length before its end that is used up ever more slowly: a straight arm jolts its elbow."""
 _AGAINST = -0.2
 """Cosine between two forearms that point at each other, at most."""
 _FLAT = np.array([1.0, 0.0, 1.0])
@@ -98,9 +100,10 @@ def _met(pair: Array, mine: Arm, theirs: Arm, share: Array, apart: Array, palm: 
             shoulder, elbow, wrist = arm
             own = result[person]
             goal = own[:, wrist] + half * share[:, None] * gap
-            pole = own[:, elbow] - 0.5 * (own[:, shoulder] + own[:, wrist])
+            away = unit(own[:, shoulder] - result[1 - person, :, shoulder])  # where a straight arm bends
+            pole = own[:, elbow] - 0.5 * (own[:, shoulder] + own[:, wrist]) + 1e-3 * away
             own[:, elbow], own[:, wrist] = solve_two_bones(
-                own[:, shoulder], own[:, elbow], own[:, wrist], goal, pole
+                own[:, shoulder], own[:, elbow], own[:, wrist], goal, pole, soft=_SOFT
             )
     return result
 

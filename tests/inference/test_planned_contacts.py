@@ -322,6 +322,15 @@ def test_who_is_pulled_up_has_their_hand_held_while_they_are_down(engine: Engine
     assert lean[apart > 1.5].min() > 0.4, "they walk up bent, with an arm stretched out"
 
 
+def test_both_hands_are_held_where_the_words_say_so(engine: Engine) -> None:
+    found = made(engine, "Person A kneels. Person B helps person A up with both hands.", seconds=7.0)
+    held = [
+        nearest(found, 1, [f"{one}_wrist"], [f"{two}_wrist"])
+        for one, two in (("left", "right"), ("right", "left"))
+    ]
+    assert np.maximum(*held).min() < 0.2
+
+
 @pytest.mark.parametrize(
     ("prompt", "near"),
     [("Then person B hugs person A.", 0.4), ("Then they hug.", 0.4), ("Then they shake hands.", 0.75)],

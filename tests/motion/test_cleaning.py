@@ -160,6 +160,16 @@ def test_an_elbow_does_not_jump_from_side_to_side():
     assert np.abs(np.diff(found, axis=0)).max() < 0.015
 
 
+def test_a_knee_that_was_seen_to_bend_backwards_bends_forwards():
+    time = np.linspace(0, np.pi, 60)
+    hip, ankle = np.tile([0.0, 0.8, 0.0], (60, 1)), np.zeros((60, 3))
+    seen = np.stack([np.full(60, 0.01), np.full(60, 0.4), 0.1 * np.cos(time)], axis=1)
+    forward = np.tile([0.0, 0.0, 1.0], (60, 1))
+    knee = steadied(hip, seen, ankle, seen, forward, hinged=True)
+    assert (knee[:, 2] > -1e-3).all()
+    assert np.abs(np.diff(knee, axis=0)).max() < 0.03, "no jump where it turns"
+
+
 def test_a_body_sinks_no_deeper_than_a_hand_for_feet_out_of_reach():
     high = gliding(60, speed=0.0, sink=0.0) + np.array([0, 0.5, 0])
     planted = plant_feet(high, np.ones((60, 4), bool))

@@ -102,7 +102,8 @@ def _steady_limbs(result: Array, seen: Array) -> Array:
         result[:, elbow] = steadied(*limb, guide, _elbow_pole(forward))
     for hip, knee, ankle, _ in LEGS:
         guide = seen[:, knee] - seen[:, hip] + result[:, hip]
-        result[:, knee] = steadied(result[:, hip], result[:, knee], result[:, ankle], guide, forward)
+        leg = result[:, hip], result[:, knee], result[:, ankle]
+        result[:, knee] = steadied(*leg, guide, forward, hinged=True)
     return result
 
 

@@ -379,3 +379,16 @@ def test_a_turn_is_given_all_along_so_that_nobody_spins_round_within_it(words: s
 @pytest.mark.parametrize("words", ["She stands over him.", "They stand still.", "A waits."])
 def test_the_other_stays_too_where_nobody_is_told_to_move(words: str) -> None:
     assert {(move.person, move.way) for move in moves(words)} == {("a", Way.STAY), ("b", Way.STAY)}
+
+
+def test_a_person_who_watches_the_other_go_round_them_turns_with_them() -> None:
+    _, found = ways("A walks around B while B turns to watch.", seconds=6.0)
+    watched, watcher = found[0], found[1]
+    assert watcher.headings is not None and np.ptp(watcher.headings) > math.pi
+    shared = [f for f in watched.frames if f in watcher.frames]
+    line = np.stack(
+        [watched.places[watched.frames.index(f)] - watcher.places[watcher.frames.index(f)] for f in shared]
+    )
+    facing = np.array([watcher.headings[watcher.frames.index(f)] for f in shared])
+    off = np.arctan2(line[:, 0], line[:, 1]) - facing
+    assert np.cos(off).min() > math.cos(0.5)

@@ -42,7 +42,7 @@ _SEEN = 6
 def given_bow(person: int, told: Told, beat: Stretch, seed: int) -> list[Part]:
     """The body of a person who bows on the spot, as far as it falls into a window."""
     times, deep = told.bows["ab"[person]]
-    frames = beat.shown(np.arange(SETTLES // 2 if beat.start else 0, beat.frames, LIMBED))
+    frames = beat.every(LIMBED, SETTLES // 2 if beat.start else 0)
     if not len(frames):  # of a beat of which only the way to the next one is in the window
         return []
     angle, seconds = float(beat.stand.headings[person]), (frames + beat.start) / FPS
@@ -57,7 +57,7 @@ def given_limbs(limbs: Sequence[Limb], person: int, told: Told, beat: Stretch, s
 
     Their arms hang, unless their hands have something else to do: a network that is free there crosses them.
     """
-    frames = beat.shown(np.arange(SETTLES // 2 if beat.start else 0, beat.frames, LIMBED))
+    frames = beat.every(LIMBED, SETTLES // 2 if beat.start else 0)
     if not len(frames):
         return []
     angle, seconds = float(beat.stand.headings[person]), beat.frames / FPS
@@ -75,8 +75,7 @@ def given_steps(gait: str, person: int, told: Told, beat: Stretch) -> list[Part]
     """The body of a person who limps or walks on tiptoe along a way, as far as it falls into a window."""
     course = beat.course(person)
     poses = stepped(gait, course.places, course.headings)
-    frames = np.union1d(np.arange(SETTLES // 2 if beat.start else 0, beat.frames, LIMBED), [beat.frames - 1])
-    if not len(frames := beat.shown(frames)):
+    if not len(frames := beat.every(LIMBED, SETTLES // 2 if beat.start else 0)):
         return []
     joints = all_but(HANDS if "ab"[person] in told.gestures else ())
     return [replace(beat.given(person, frames, poses[frames], joints), kept=True)]

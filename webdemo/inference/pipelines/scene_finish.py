@@ -8,13 +8,14 @@ from numpy.typing import NDArray
 from motion.arm_swing import swinging
 from motion.easing import smoothstep
 from motion.idling import alive
+from motion.smoothing import eased_marks
 from motion.touch.apart import bodies_apart
 from motion.touch.arms import arms_apart
 from motion.touch.clasped import hands_clasped
 from motion.touch.embraces import embraced
 from motion.touch.palms import palms_met
 from motion.touch.upright import backs_straight
-from webdemo.inference.actor import FPS
+from webdemo.inference.actor import FPS, ROLES
 from webdemo.inference.plans import BeatFinish
 from webdemo.inference.story.bodies.gestures import Hand
 from webdemo.inference.story.request import SceneRequest
@@ -23,7 +24,7 @@ from webdemo.inference.story.told import Told
 Array = NDArray[np.floating]
 
 EASES = 20
-"""Frames over which a finish begins beside frames that are kept of a given motion."""
+"""Frames over which a finish begins and ends: beside beats without it, and beside frames that are kept."""
 
 
 def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
@@ -38,16 +39,15 @@ def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
         (2, T, 22, 3) float32.
     """
     free = _made(request, scene.shape[1])
-    rests, raised, held = np.stack([free, free]), np.zeros_like(free), np.zeros_like(free)
-    loose = np.zeros_like(rests)
+    marks = np.zeros((6, scene.shape[1]), dtype=bool)  # palms meet, hands held; a and b still; a and b loose
     for beat, finish in enumerate(finishes(request)):
-        inside = slice(request.edges[beat], request.edges[beat + 1])
-        raised[inside] = free[inside] * finish.reaching
-        held[inside] = free[inside] * finish.held
-        for who in finish.still:
-            rests["ab".index(who), inside] = 0.0
-        for who in finish.loose:
-            loose["ab".index(who), inside] = free[inside]
+        whose = (who in people for people in (finish.still, finish.loose) for who in ROLES)
+        marks[:, request.edges[beat] : request.edges[beat + 1]] = np.array(
+            [finish.reaching, finish.held, *whose]
+        )[:, None]
+    shares = np.stack([eased_marks(each, EASES) for each in marks]) * free
+    raised, held, loose = shares[0], shares[1], shares[4:]
+    rests = free - shares[2:4]
     swung = np.stack([swinging(scene[i], FPS, loose[i], [seed, i]) for i in (0, 1)])
     result = alive(in_touch(swung, free, raised, held), FPS, seed, rests, loose).astype(np.float32)
     result[:, free <= 0] = scene[:, free <= 0]

@@ -125,7 +125,7 @@ def _on_their_ways(
         parts.append(hand)
     if told.pulls:
         down = 1 - "ab".index(told.pulls)
-        parts += given_pull(told.pulls, _postures(request, scene, down, beat), beat)
+        parts += given_pull(told.pulls, _postures(request, scene, down, beat), beat, both=told.by_both_hands)
     low = {"ab".index(move.person): move.gait for move in found if move.gait}
     free = not (told.contact or told.joined or told.linked or told.strike)
     for person, way in ways.items():
@@ -351,7 +351,7 @@ def _given_places(stand: Standing, window: Window, placement: Placement) -> list
 
 def _posed(person: int, beat: Stretch, seed: int, free: Collection[int], every: int) -> list[Part]:
     """The poses of a bystander that fall into a window, but for the joints that are ``free``."""
-    frames = beat.shown(np.arange(SETTLES if beat.start else 0, beat.frames, every))
+    frames = beat.every(every, SETTLES if beat.start else 0)
     if not len(frames):
         return []
     seconds = (frames + beat.start) / FPS

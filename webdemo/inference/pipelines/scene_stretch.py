@@ -86,6 +86,10 @@ class Stretch:
         """Those of some frames (N,) that fall into the window."""
         return frames[(frames + self.start >= self.window.start) & (frames + self.start < self.window.stop)]
 
+    def every(self, spacing: int, first: int = 0) -> Frames:
+        """Frames of the beat in the window: so many apart, and the last one, from which the next beat goes on."""
+        return self.shown(np.union1d(np.arange(first, self.frames, spacing), [self.frames - 1]))
+
     def in_window(self, frames: Frames | Sequence[int]) -> list[int]:
         """Frames as the window counts them."""
         return (np.asarray(frames) + self.start - self.window.start + self.window.past).tolist()

@@ -92,7 +92,8 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
             gap = float(
                 np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0)
             )
-    turned = next((m.person for m in moves if m.way in (Way.FACE, Way.AVERTED)), "")
+    averted = (Way.AVERTED,) if Way.ROUND in ways else (Way.AVERTED, Way.FACE)
+    turned = next((m.person for m in moves if m.way in averted), "")
     turned = turned or next((other_of(m.person) for m in moves if m.way is Way.BEHIND), "")
     ahead = -1.0 if turned == "a" else 1.0
     facing_b = 0.0 if turned else math.pi

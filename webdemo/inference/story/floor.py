@@ -103,7 +103,7 @@ def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool 
         for i in range(2)
     ]  # fmt: skip
     own = [[move for move in moves if move.person == person] for person in "ab"]
-    for who in (0, 1) if not any(m.way is Way.AFTER for m in own[0]) else (1, 0):
+    for who in (0, 1) if not any(m.way in (Way.AFTER, Way.FACE) for m in own[0]) else (1, 0):
         _walked(who, own, tracks, standing)
     if first:
         for who, track in enumerate(tracks):
@@ -122,7 +122,9 @@ def _walked(who: int, own: Sequence[Sequence[Move]], tracks: Sequence[Track], st
             track.frame = round(0.35 * track.left() * FPS)
         later = [after.way for after in listed[i + 1 :]]
         if move.way is Way.TURN and (Way.AWAY in later or Way.PAST in later):
-            continue  # who walks away has turned
+            continue  # a person walking away has turned
+        if move.way is Way.TURN and Way.FACE in later and Way.ROUND in theirs:
+            continue  # they turn as the other goes round them
         if move.way is Way.TO and Way.PAST in later:
             continue  # who walks past comes up on the way
         seconds = track.left() * _WEIGHT.get(move.way, 1.0)
@@ -160,6 +162,8 @@ def _moved(
         case Way.TURN:
             track.turn(2 * math.pi * move.turns)
             track.stay(facing=True, seconds=None if last else 0.2)
+        case Way.FACE if last and Way.ROUND in theirs and tracks[1 - who].frame > track.frame:
+            track.watch(tracks[1 - who])
         case Way.FACE:
             track.turn(wrapped(bearing(other - here) - track.heading))
             track.stay(facing=True, seconds=None if last else 0.2)

@@ -101,7 +101,7 @@ class _Stage:
         self.lift: Lift | None = None
         self.blows: list[tuple[tuple[str, ...], shapes.Strike, Act]] = []
         self.setting = Setting()
-        self.linked = False
+        self.linked = self.both_hands = False
         self.frozen: set[str] = set()
         self.behind: set[str] = set()
         """Those who stand behind the other."""
@@ -134,7 +134,7 @@ class _Stage:
         return Told(
             moves=moves, idle=idle, frozen=frozenset(self.frozen), gesturing=waving - self.changes.keys(),
             gestures=self.gestures, contact=self.contact,
-            hold=self.hold, by_both_hands=any(self._leads_by_both_hands(move) for move in moves),
+            hold=self.hold, by_both_hands=self.both_hands or any(self._leads_by_both_hands(move) for move in moves),
             twirls=self.twirls, pulls=self.pulls, lift=self.lift, strike=struck, changes=self.changes, limbs=self.limbs,
             figures=self.figures, leaps=self.leaps, bows=self.bows,
             linked=self.linked or any(move.linked for move in moves),
@@ -201,7 +201,7 @@ class _Stage:
             case shapes.Hold():
                 self.hold = Hold[shape.hold.upper()]
             case shapes.Pull():
-                self.pulls = people[0]
+                self.pulls, self.both_hands = people[0], act.side == "both"
                 self.moves.append(Move(people[0], Way.TO, near=PULLED))
             case shapes.Link():
                 self.linked = True
@@ -370,9 +370,11 @@ class _Stage:
         if not goes(made):
             stay = self.done and all(only_stays(entry) for _, entry in self.done)
             return tuple(Move(who, Way.STAY) for who in "ab") if stay and not made else tuple(made)
-        backs = any(move.way in (Way.BACK, Way.ASIDE) for move in made)
+        backs = any(move.way in _DODGES for move in made)
+        acting = {who for act, _ in self.done for who in act.agents}
         for who in "ab":
-            if all(move.person != who for move in made) and who not in low and not backs:
+            stands = all(move.person != who for move in made) and who not in low
+            if stands and not (backs and who in acting):  # a push or a blow takes its own step
                 made.append(Move(who, Way.STAY))
         return tuple(move for move in made if move.way is not Way.STAY or move.person not in low)
 

@@ -117,6 +117,15 @@ class Track:
         )
         self.heading, self.frame = self.heading + angle, stop
 
+    def watch(self, other: Track) -> None:
+        """Stays to the end of the beat, and turns to where the other goes."""
+        line = other.places[self.frame :] - self.place
+        bearings = np.arctan2(line[:, 0], line[:, 1])
+        bearings = filled(bearings, np.isfinite(bearings), self.heading)
+        self.headings[self.frame :] = self._turned_into(np.unwrap(bearings))
+        self.places[self.frame :] = self.place
+        self.heading, self.frame = float(self.headings[-1]), len(self.places)
+
     def stay(self, seconds: float | None = None, *, facing: bool = False) -> None:
         """Stays for some seconds, or to the end of the beat."""
         stop = (
