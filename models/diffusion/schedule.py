@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import importlib
 import math
-import sys
 import threading
 from collections.abc import Callable
 from functools import cache
@@ -98,20 +97,9 @@ def top_timesteps(steps: int, total: int = TRAIN_TIMESTEPS) -> np.ndarray:
 
 
 def _diffusers(name: str) -> Any:
-    """A scheduler class of `diffusers`, imported with the first sampling: it takes half a second.
-
-    `diffusers` marks some functions for `torch._dynamo`, PyTorch's compiler, where that can be imported. The
-    compiler would take 90 MB and 1.5 s and is not used, so it is kept out of this import.
-    """
+    """A scheduler class of `diffusers`, imported with the first sampling: it takes some seconds."""
     with _IMPORTING:  # its lazy modules cannot be imported by two threads at once
-        compiler = sys.modules.get("torch._dynamo")
-        if compiler is None:
-            sys.modules["torch._dynamo"] = None  # type: ignore[assignment]
-        try:
-            return getattr(importlib.import_module("diffusers"), name)
-        finally:
-            if compiler is None:
-                del sys.modules["torch._dynamo"]
+        return getattr(importlib.import_module("diffusers"), name)
 
 
 @cache

@@ -227,7 +227,7 @@ def answer_together(denoiser: InterGenDenoiser, questions: Sequence[_Question]) 
 
 
 def _known(questions: Sequence[_Question], length: int) -> Tensor | None:
-    """What is known for all questions; None if nothing is for any."""
+    """The known parts of all questions; None if none has one."""
     values = [q.known for q in questions]
     width = next((value.shape[-1] for value in values if value is not None), None)
     if width is None:
