@@ -146,6 +146,7 @@ class Plan(_Model):
         things: nouns of the objects that take part.
         acts: in the order of the text.
         unread: what was not understood.
+        doubts: what another parse of the text takes for another act, with the names of what it would be.
         notes: sentences on the text as a whole, such as its language.
         reader: who read the text: "lexicon", a director's model, or "hand".
     """
@@ -155,6 +156,7 @@ class Plan(_Model):
     things: Annotated[tuple[Name, ...], Field(max_length=20)] = ()
     acts: Annotated[tuple[Act, ...], Field(max_length=MOST_ACTS)] = ()
     unread: Annotated[tuple[Unread, ...], Field(max_length=60)] = ()
+    doubts: Annotated[tuple[Unread, ...], Field(max_length=8)] = ()
     notes: Annotated[tuple[Text, ...], Field(max_length=20)] = ()
     reader: Name = "lexicon"
 

@@ -6,7 +6,6 @@ from collections.abc import Set
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from acts.plan import FROM_BEHIND
 from acts.said import Event, Ref
 
 from . import wordnet
@@ -23,6 +22,7 @@ _LENGTHS = frozenset(("step", "pace", "metre", "meter", "yard"))
 _PATHS = frozenset(
     ("circle", "lap", "loop", "line", "arc", "curve", "spiral", "semicircle", "diagonal", "zigzag")
 )
+_SIDES = frozenset(("behind", "below", "above"))
 _WAYS = frozenset(("way", "manner", "fashion", "mood", "style"))
 _RECEIVES = frozenset(("get", "receive", "take", "have"))
 _MODIFIERS = frozenset(
@@ -43,6 +43,14 @@ def is_kept(token: Token) -> bool:
         token.tag_ in ("VBN", "VBD") and token.dep_ == "dep" and token.head.lemma_ in ("keep", "have", "hold")
     )
     return keeps and token.i > 0 and token.nbor(-1).dep_ == "dobj" and token.nbor(-1).head == token.head
+
+
+def _taken_away(verb: Token) -> list[Token]:
+    """The objects of a verb that the parser hung on the one before: "stands behind him and massages his shoulders"."""
+    if verb.dep_ != "conj" or verb.pos_ != "VERB" or any(c.dep_ in ("dobj", "obj") for c in verb.children):
+        return []
+    others = (c for above in verb.ancestors for c in above.children if c.dep_ in ("dobj", "obj"))
+    return [noun for noun in others if noun.left_edge.i == verb.i + 1]
 
 
 class Arguments:
@@ -67,7 +75,10 @@ class Arguments:
         subject = event.subject
         who = subject.who if subject is not None and subject.kind == "person" else ""
         agent: Ref | None = None
-        for child in token.children:
+        for child in (*token.children, *_taken_away(token)):
+            before = child.left_edge.i - 1
+            if before > token.i and child.head == token and child in _taken_away(token.doc[before]):
+                continue
             if subject is not None and self.cast.seen.get(child.i) is subject:  # "…, said the witch"
                 continue
             bare = all(c.dep_ not in ("poss", "det") for c in child.children)
@@ -222,8 +233,10 @@ class Arguments:
                 event.words.append(token.lower_)
                 self._preposition(child, who, event)
                 found = True
-        if token.lower_ == "from" and any(c.lower_ == "behind" and not c.n_rights for c in token.children):
-            event.adverbs.append(FROM_BEHIND)
+        if token.lower_ == "from":  # "from behind"
+            event.adverbs += [
+                f"from {c.lower_}" for c in token.children if c.lower_ in _SIDES and not c.n_rights
+            ]
         if not found:
             event.words.append(token.lower_)
             event.particles.append(token.lower_)
@@ -371,7 +384,7 @@ class Arguments:
             return
         if noun.lemma not in self._verbs or noun.lemma in ("step", "hand") or not is_act(noun.lemma):
             return
-        if wordnet.usual_kind(noun.lemma) == "consumption":
+        if wordnet.usual_kind(noun.lemma) == "consumption" and noun.lemma not in self._words.verbs["nouns"]:
             return  # "offers her a drink" hands something over
         event.noun = replace(event, lemma=noun.lemma, object=event.dative, dative=None)
         giver = next(

@@ -14,6 +14,8 @@ from .vocabulary import vocabulary
 _SHARING = frozenset(("conj", "after", "with"))
 """Joints of clauses that may share an object."""
 
+_LIMBS = frozenset(("hand", "arm", "leg", "foot"))
+
 
 def completed(
     number: int, event: Event, events: Sequence[Event], acts: Sequence[Act], known: Lexicon
@@ -32,6 +34,10 @@ def completed(
         whose = event.subject.who or (above.who if above is not None and above.kind == "person" else "")
         if len(whose) == 1:  # "an arm hooked around his waist": who hooks it there
             yield replace(event, subject=Ref("person", whose), object=event.subject, state=True), 0.0
+    if (limb := event.subject) is not None and limb.kind == "part" and limb.family in _LIMBS:
+        whose = limb.who or ("".join(acts[-1].agents) if acts else "a")
+        by = ("with", replace(limb, who=""))  # "his right hand picks it up": with it, he does
+        yield replace(event, subject=Ref("person", whose), prepositions=[*event.prepositions, by]), 0.0
     if event.object is not None and _is_implied(event.subject):  # "is frozen" needs nobody who freezes him
         yield replace(event, subject=event.object, object=None), 0.0
     if event.object is not None or event.dative is not None:

@@ -63,6 +63,10 @@ class Ellipsis:
             self._last = verb.partition(" ")[0] or word
         return verb
 
+    def has_acted(self) -> bool:
+        """True if the sentence has a verb before the word that was asked for last."""
+        return bool(self._last)
+
     def _stand(self, i: int) -> None:
         """Notes the verb "be" behind a person who is said to be somewhere: "therapist behind", "both in a squat"."""
         if self._lower(i - 1) not in _ENDS:
@@ -103,8 +107,9 @@ class Ellipsis:
             return ""
         one = noun if count == 1 else noun.removesuffix("s")
         before = [self._lower(k) for k in range(i + 1, at - 1)]
-        if any(map(self._words.is_person, (*before, one))) or any(word.endswith("s") for word in before):
-            return ""  # "two boxers throw punches"
+        plural = any(word.endswith("s") or word in self._words.both for word in before)
+        if plural or any(map(self._words.is_person, (*before, one))):
+            return ""  # "two boxers throw punches", "two people do jumping jacks"
         if one in self._words.seconds and self._lower(at) in self._words.directions and self._last:
             return f"{self._last} for"  # "march, (march for) eight counts forward"
         if (count > 1) == (one == noun) or not (self._is_deed(one) or self._is_deed(one.removesuffix("e"))):

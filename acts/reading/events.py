@@ -67,17 +67,21 @@ class Reader:
         self._resolve()
         return self.events
 
+    def without_subject(self) -> int:
+        """The number of verbs that lack their subject."""
+        subjects = ((self.events[number].subject, self.doc[i].tag_) for i, number in self._of.items())
+        return sum(
+            who is not None and not who.lemma and tag in ("VBZ", "VBD", "NNS", "NN") for who, tag in subjects
+        )
+
     def missed(self) -> Iterator[Token]:
-        """Words with a meaning of their own that no event has taken up, and verbs that lack their subject."""
-        for i, number in self._of.items():
-            who = self.events[number].subject
-            if who is not None and not who.lemma and self.doc[i].tag_ in ("VBZ", "VBD", "NNS", "NN"):
-                yield self.doc[i]
+        """Words with a meaning of their own that no event has taken up."""
         held = {t.i for found in self._absolutes.values() for t in (found.part, found.state)}
         seen = self._arguments.seen | self._of.keys() | self.cast.seen.keys() | held
         for token in self.doc:
             own = token.dep_ not in _WITHIN and token.i not in seen
-            if token.pos_ in _MEANING and (own or self._is_swallowed(token)):
+            own = (own and token.lower_ not in _THEN | _AT_ONCE) or self._is_swallowed(token)
+            if token.pos_ in _MEANING and own:
                 yield token
 
     def _is_swallowed(self, token: Token) -> bool:
@@ -90,14 +94,8 @@ class Reader:
         for i, (verb, who) in sorted(self.cast.states.items()):
             phrase = self.doc[i]
             clause = next((t for t in phrase.ancestors if t.i in self._of), None)
-            event = Event(
-                verb,
-                Ref("person", who),
-                first=phrase.idx,
-                last=phrase.idx + len(phrase),
-                ongoing=True,
-                state=True,
-            )
+            last = phrase.idx + len(phrase)
+            event = Event(verb, Ref("person", who), first=phrase.idx, last=last, ongoing=True, state=True)
             self._joints.append((event, phrase, "with", clause.i if clause is not None else None))
             self.events.append(event)
 
@@ -130,10 +128,11 @@ class Reader:
 
     def _holder(self, found: Absolute, clause: Token | None) -> Ref | None:
         """The person who holds a part of the body so: the clause's subject, where nothing says another."""
-        if clause is None:  # "Both hands behind the back, chin up."
-            return Ref("person", "ab")
-        subject = self.events[self._of[clause.i]].subject
         before = found.preposition.nbor(-1) if found.preposition.i else found.preposition
+        if clause is None:  # "a person with one hand on the hip", "Both hands behind the back, chin up."
+            held = self.cast.seen.get(before.i) or reference(before, self.cast, "")
+            return held if held.kind == "person" else Ref("person", "ab")
+        subject = self.events[self._of[clause.i]].subject
         if any(t.text == ":" for t in self.doc[found.preposition.i : clause.i]):
             return Ref("person", "ab")  # said of both, before anybody is named
         if before.pos_ in ("NOUN", "PROPN") and found.state.lower_ == "behind":

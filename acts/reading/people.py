@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from acts.plan import Person, other_of
 from acts.said import Ref
+from acts.things import kind_of
 
 from . import wordnet
 from .syntax import IN_PLACE, is_likeness
@@ -21,16 +22,9 @@ A_NAME, B_NAME = "Adam", "Beth"
 
 _FIRST, _SECOND = frozenset(("first", "former")), frozenset(("second", "latter"))
 _THEY = frozenset(("they", "them", "themselves", "we", "us", "ourselves"))
-PRONOUN_SEX = {
-    "he": "m",
-    "him": "m",
-    "his": "m",
-    "himself": "m",
-    "she": "f",
-    "her": "f",
-    "hers": "f",
-    "herself": "f",
-}
+PRONOUN_SEX = dict.fromkeys(("he", "him", "his", "himself"), "m") | dict.fromkeys(
+    ("she", "her", "hers", "herself"), "f"
+)
 """The sex that a pronoun tells."""
 _NOMINATIVE = frozenset(("i", "he", "she", "they", "we"))
 _ANYONE = frozenset(("someone", "somebody", "anyone", "anybody", "person"))
@@ -200,7 +194,15 @@ class Cast:
             t for t in token.head.subtree if t.tag_ == "PRP$" and t.lower_ in PRONOUN_SEX and t.i > token.i
         )
         bodily = any(self._words.part(t.head.lemma_.lower()) for t in own)
-        return wordnet.may_be_person(token.lemma_.lower()) or (bodily and not self._known)
+        named = wordnet.may_be_person(token.lemma_.lower()) and not self._is_of_fable(token)
+        return named or (bodily and not self._known)
+
+    def _is_of_fable(self, token: Token) -> bool:
+        """True for the subject of "a dragon eats the moon": neither of two people does so to a thing."""
+        nouns = [c.lemma_.lower() for c in token.head.children if c.dep_ == "dobj" and c.pos_ == "NOUN"]
+        new = any(c.lower_ in ("a", "an") for c in token.children)
+        things = (noun for noun in nouns if not (self._words.part(noun) or self._words.is_person(noun)))
+        return any((new or not kind_of(noun)) and not wordnet.is_animal(noun) for noun in things)
 
     def _is_acting_animal(self, token: Token, lemma: str) -> bool:
         """True for the animals of a fable, which act as people do where nobody else is there to act."""
@@ -208,6 +210,7 @@ class Cast:
         if not free or not wordnet.is_animal(lemma) or self._words.part(lemma):
             return False
         acts = token.dep_ in ("nsubj", "nsubjpass") or any(wordnet.is_animal(w) for w in self.animals)
+        acts = acts and not self._is_of_fable(token)
         if acts:
             self.animals.add(lemma)
         return acts
@@ -319,7 +322,7 @@ class Cast:
                 text = child.lower_
                 if text in ("his", "her"):
                     return self._possessive(PRONOUN_SEX[text], subject)
-                if text in ("their", "our"):
+                if text in ("their", "our", "its"):
                     return "ab" if len(subject) == 2 else ""
                 if text == "your" and not self._has("you"):  # of an order: whoever is addressed
                     return "ab" if len(subject) == 2 else subject
@@ -328,8 +331,6 @@ class Cast:
                     return (self.person(clause.head, "") or "") if clause is not None else ""
                 if text in ("my", "your"):
                     return self._named("i" if text == "my" else "you") or ""
-                if text == "its" and len(subject) == 1:
-                    return self._other(subject)
                 if child.lower_ == "other" and any(c.lower_ in ("each", "one") for c in child.children):
                     return "each"
                 who = self.person(child, subject) or ""

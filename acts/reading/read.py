@@ -36,6 +36,8 @@ _STANDS = frozenset(("stand", "stay", "remain", "pose", "rest", "meet"))
 """Verbs beside which a formation is all that is shown: "they stand back to back"."""
 _BEFORE = frozenset(("to", "toward", "towards", "for", "at", "by", "before", "near"))
 """Prepositions before what people go to, or stand at."""
+_DOUBT = 0.5
+"""Words that another parse may leave over more, and still be as likely."""
 _CANON = "move canon"
 """The formation of those who do something one after the other."""
 
@@ -62,7 +64,20 @@ def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
             unread=(Unread(words=Span(start=0, stop=len(text)), why=foreign),),
             notes=(foreign,),
         )
-    return min(_attempts(text, lexicon(folders)), key=lambda attempt: attempt[0])[1]
+    attempts = sorted(_attempts(text, lexicon(folders)), key=lambda attempt: attempt[0])
+    cost, plan = attempts[0]
+    others = [other for its_cost, other in attempts[1:] if its_cost <= cost + _DOUBT]
+    return plan.model_copy(update={"doubts": tuple(_doubts(plan, others))[:8]}) if others else plan
+
+
+def _doubts(plan: Plan, others: Sequence[Plan]) -> Iterator[Unread]:
+    """What other plans of the same text, which leave as little over, take for acts that a plan does not have."""
+    seen = {act.act for act in plan.acts}
+    for act in (act for other in others for act in other.acts):
+        if act.act not in seen and act.words is not None:
+            seen.add(act.act)
+            why = f"“{plan.text(act.words)[:80]}” may also mean: {act.act.replace('-', ' ')}."
+            yield Unread(words=act.words, why=why, nearest=(act.act,))
 
 
 def _attempts(text: str, known: Lexicon) -> Iterator[tuple[float, Plan]]:
@@ -99,7 +114,8 @@ class _Planner:
         """Events of what is done in turn."""
         self._answers: set[str] = set()
         """Acts that repeat the one before."""
-        self.cost = sum(1.0 for _ in reader.missed())
+        self._missed = list(reader.missed())
+        self.cost = float(len(self._missed) + reader.without_subject())
         """What the plan leaves over, in words."""
 
     def plan(self) -> Plan:
@@ -111,7 +127,7 @@ class _Planner:
         self._acts = related(
             self._acts, self._events, self._of, self._beside, known=self._known, repeated=self._answers
         )
-        self._unknown_words()
+        self._left_over()
         people = self._reader.cast.people()
         things = dict.fromkeys(act.thing for act in self._acts if act.thing)
         notes = []
@@ -162,6 +178,7 @@ class _Planner:
             for whole, cost in completed(number, event, self._events, self._acts, self._known):
                 self.cost += cost
                 if (found := self._matcher.find(whole)) is not None:
+                    event = whole
                     break
         formed = self._found(beside.formations(event, self._formations(number)))
         vague = found is None or event.lemma in vocabulary().verbs["vague"] | vocabulary().verbs["begins"]
@@ -270,14 +287,22 @@ class _Planner:
         self._answers.add(own)
         return True
 
-    def _unknown_words(self) -> None:
-        """Adds the words that no dictionary has to what was not read."""
-        for first, last in self._nonsense:
+    def _left_over(self) -> None:
+        """Adds the words that no dictionary has, and those that no act has taken up, to what was not read."""
+        unknown = {first for first, _ in self._nonsense}
+        left = [(t.idx, t.idx + len(t)) for t in self._missed if t.idx + len(t) + 1 not in unknown]
+        joined = [[first, last] for first, last in left[:1]]
+        for first, last in left[1:]:
+            if first <= joined[-1][1] + 1:
+                joined[-1][1] = last
+            else:
+                joined.append([first, last])
+        reasons = [(each, "These words are not known.") for each in self._nonsense]
+        reasons += [((first, last), "No act takes up these words.") for first, last in joined]
+        for (first, last), why in reasons:
             start, stop = self._prepared.span(first, last)
-            if not any(u.words.start <= start and stop <= u.words.stop for u in self._unread):
-                self._unread.append(
-                    Unread(words=Span(start=start, stop=stop), why="These words are not known.")
-                )
+            if stop > start and not any(u.words.start < stop and start < u.words.stop for u in self._unread):
+                self._unread.append(Unread(words=Span(start=start, stop=stop), why=why))
 
     def _about_another(self, event: Event) -> bool:
         verbs = vocabulary().verbs
@@ -314,7 +339,9 @@ class _Planner:
         refs = [event.object, part, *(ref for _, ref in event.prepositions)]  # "with the left foot"
         parts = [ref for ref in refs if ref is not None and ref.kind == "part" and ref.side]
         own = [ref.side for ref in parts if ref.who in ("", match.agents)]
-        side = event.side or next((side for side in (*own, *(ref.side for ref in parts))), None)
+        side = next(filter(None, (event.side, *own, *(ref.side for ref in parts))), None)
+        if own and event.direction in ("left", "right"):
+            side = own[0]  # "to the left with the right foot"
         patient = match.patient
         entry = self._known.entries[name]
         upwards = entry.thing == "throws" and event.direction == "up"  # to nobody

@@ -92,7 +92,9 @@ def _reference(token: Token, cast: Cast, subject: str) -> Ref:
             c for c in token.conjuncts if c.i > token.i and c.dep_ == "conj" and not begins_clause(c)
         ]
         if len(who) == 1 and any(cast.person(c, who) not in (None, who) for c in conjuncts):
-            return Ref("person", "ab", lemma, first=first, last=last)
+            both = Ref("person", "ab", lemma, first=first, last=last)
+            cast.seen |= {c.i: both for c in conjuncts}
+            return both
         return Ref("person", who, lemma, first=first, last=last)
     if len(cast.third) > thirds:
         return Ref("third", "", lemma, first=first, last=last)

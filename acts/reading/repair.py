@@ -30,6 +30,8 @@ _DO = {"does": "makes", "do": "make", "did": "made"}
 """Forms of "do", and of a verb in the same form that is no part of another."""
 _CROWDS = frozenset(("audience", "crowd", "public", "class", "team", "band", "orchestra", "jury", "family"))
 _JOINS = frozenset(("and", "then", "but", ",", ";", "or"))
+_TAKEN_FOR = frozenset(("NOUN", "PROPN", "ADJ", "INTJ", "X"))
+"""Parts of speech for which the parser takes a verb of a list."""
 _TAGS = {"VBZ": "s", "VBD": "ed", "VBP": "", "VB": ""}
 """Endings of finite verbs by their tags."""
 
@@ -198,7 +200,7 @@ def _coordinated(token: Token, ending: str, last: str, found: Mapping[int, objec
 
     "He yawns and stretches", "they clink glasses and drink" and "grab her and twirl her", beside "bread and drink".
     """
-    if token.pos_ not in ("NOUN", "PROPN") or ending != last or not token.i or not _ends_phrase(token):
+    if token.pos_ not in _TAKEN_FOR or ending != last or not token.i or not _ends_phrase(token):
         return False
     if vocabulary().part(token.lemma_.lower()) and _is_absolute(token):
         return False
@@ -208,6 +210,8 @@ def _coordinated(token: Token, ending: str, last: str, found: Mapping[int, objec
     earlier = token.nbor(-2)
     if vocabulary().part(token.lemma_.lower()) and vocabulary().part(earlier.lemma_.lower()):
         return False  # "on hands and knees"
+    if token.pos_ == "ADJ" and earlier.pos_ in ("ADJ", "ADV") and earlier.lower_ != "other":
+        return False  # "slow and smooth"
     listed = (token.dep_ == "conj" and token.head.pos_ == "VERB") or _before_verb(token)
     listed = listed or (earlier.pos_ == "VERB" and earlier.tag_ in _TAGS)  # "they meet, hug and part"
     if before.text == "," and ending == "" and not listed:
@@ -221,15 +225,9 @@ def _coordinated(token: Token, ending: str, last: str, found: Mapping[int, objec
 
 
 def _before_verb(token: Token) -> bool:
-    """True for the last but one of listed verbs: "run up, hug and then bow"."""
-    rest = (t for t in token.doc[token.i + 2 : token.i + 5] if t.pos_ != "ADV")
-    following, after = _next(token), next(rest, None)
-    return (
-        following is not None
-        and following.pos_ == "CCONJ"
-        and after is not None
-        and after.tag_ in ("VB", "VBP")
-    )
+    """True for the last but one of listed verbs: "run up, hug and then bow", "run up, hug, and bow"."""
+    behind = [t for t in token.doc[token.i + 1 : token.i + 6] if t.pos_ != "ADV" and t.text != ","]
+    return len(behind) > 1 and behind[0].pos_ == "CCONJ" and behind[1].tag_ in ("VB", "VBP")
 
 
 def _is_absolute(token: Token) -> bool:

@@ -200,7 +200,7 @@ class Subjects:
         noun = token.head
         if (known := self._cast.seen.get(noun.i)) is not None:
             return known
-        who = self._cast.person(noun, "") if noun.pos_ in ("NOUN", "PROPN", "PRON", "ADJ", "NUM") else None
-        if who:
-            return Ref("person", who, noun.lemma_.lower(), first=noun.idx, last=noun.idx + len(noun.text))
-        return reference(noun, self._cast, "") if noun.pos_ in ("NOUN", "PROPN") else None
+        if noun.pos_ not in ("NOUN", "PROPN", "PRON", "ADJ", "NUM"):
+            return None
+        ref = reference(noun, self._cast, "")
+        return ref if ref.kind == "person" or noun.pos_ in ("NOUN", "PROPN") else None

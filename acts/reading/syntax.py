@@ -114,7 +114,8 @@ def seems(token: Token) -> bool:
         text = child.lower_
         likened = _LIKENED & {text, *(c.lower_ for c in child.children)}
         says_how = child.dep_ in ("acomp", "oprd") or (
-            child.dep_ in ("attr", "xcomp") and child.pos_ == "ADJ"
+            child.dep_ in ("attr", "xcomp")
+            and (child.pos_ == "ADJ" or any(c.dep_ == "aux" and c.tag_ == "TO" for c in child.children))
         )
         if (says_how and text not in words.directions) or (likened and child.dep_ in _BESIDE):
             found = True

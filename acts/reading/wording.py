@@ -5,6 +5,7 @@ Each change keeps the offsets, so that what was understood can be shown in the t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -25,21 +26,8 @@ _BEFORE_NOUNS = (
     "some any no first second three four five most own same of"
 )
 _DETERMINERS = frozenset(_BEFORE_NOUNS.split())
-_LETTER_BEFORE = frozenset(
-    [
-        "person",
-        "actor",
-        "dancer",
-        "player",
-        "figure",
-        "character",
-        "performer",
-        "partner",
-        "agent",
-        "man",
-        "woman",
-    ]
-)
+_LETTER_BEFORES = "person actor dancer player figure character performer partner agent man woman"
+_LETTER_BEFORE = frozenset(_LETTER_BEFORES.split())
 
 _SUBJECTS = frozenset(
     ("i", "you", "he", "she", "it", "they", "we", "someone", "somebody", "nobody", "everyone", "everybody")
@@ -49,29 +37,20 @@ _TOWARDS = frozenset(("at", "to", "with", "by", "from", "behind", "past", "towar
 _STOPS = frozenset((".", ";", ":", "!", "?"))
 _HEADING = 4
 """Words before a colon that say how what follows is done, at most."""
-_INTENSIFIED = frozenset(
-    (
-        "up",
-        "past",
-        "round",
-        "around",
-        "behind",
-        "through",
-        "into",
-        "across",
-        "by",
-        "over",
-        "down",
-        "out",
-        "back",
-        "there",
-        "here",
-        "beside",
-    )
-)
+_INTENSIFIEDS = "up past round around behind through into across by over down out back there here beside"
+_INTENSIFIED = frozenset(_INTENSIFIEDS.split())
 """Words before which "right" and "way" only make more of a direction."""
+_GOINGS = "is are was were be and while keeps starts begins person man woman"
+_GOING = frozenset(_GOINGS.split())
+"""Words before "using" that make it a verb of its own."""
 _BEHIND_BACK = frozenset(("on", "to", "turned", "towards", "toward"))
 """Words behind "her back" after which it is a part of the body."""
+_TO_SIDES = tuple(
+    tuple(words.format(*sides).split())
+    for words in ("{} and {}", "from {} to {}", "{} to {}", "to the {} and {}", "to the {} and the {}")
+    for sides in (("left", "right"), ("right", "left"))
+)
+"""Words behind a part of the body that say that it moves from side to side."""
 _LIES = ("lie", "lying", "lay", "fall", "fell", "land", "roll", "flat")
 """How verbs begin of which "on her back" says how she lies herself."""
 _NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}
@@ -152,9 +131,13 @@ class _Preparation:
     def _phrase(self, i: int) -> int:
         """Several words that join clauses as one does, as "as soon as"; how many they were, or 0."""
         for phrase, word in self._words.phrases.get(self._lower(i), ()):
-            if all(self._lower(i + k) == part for k, part in enumerate(phrase)):
+            if self._stand_at(i, phrase):
                 self._pieces.append((word, self._tokens[i][1], self._tokens[i + len(phrase) - 1][2]))
                 return len(phrase)
+        if self._part_at(i - 1) and (swung := next((w for w in _TO_SIDES if self._stand_at(i, w)), ())):
+            last = self._tokens[i + len(swung) - 1]
+            self._pieces.append(("sideways", self._tokens[i][1], last[2]))  # "shakes his head left and right"
+            return len(swung)
         if (later := self._later(i)) > 0:
             self._pieces.append(("later", self._tokens[i][1], self._tokens[i + later - 1][2]))
             return later
@@ -182,6 +165,9 @@ class _Preparation:
             return 2
         return 0
 
+    def _stand_at(self, i: int, words: Sequence[str]) -> bool:
+        return all(self._lower(i + k) == word for k, word in enumerate(words))
+
     def _later(self, i: int) -> int:
         """The words of "two counts later" and "half a second later", which the parser takes for a clause; or 0."""
         at = i
@@ -201,6 +187,8 @@ class _Preparation:
             and (owner or _ends_name(self._tokens, i + 2, self._tokens[i + 1][0]))
         ):
             word = (A_NAME if _NUMBERED[letter] else B_NAME) + owner
+        elif self._words.part(lower) and following in ("height", "level") and lower != "eye":
+            word = following  # "to shoulder height", where nobody shoulders anything
         elif lower in ("right", "way") and following in _INTENSIFIED and not self._keeps(i):
             word = "around" if following == "round" else following  # "walks right past him", "way up"
         elif (
@@ -256,6 +244,9 @@ class _Preparation:
     def _supplied(self, i: int) -> list[tuple[str, int, int]]:
         """The article that a bare noun of a person lacks."""
         word, start, _ = self._tokens[i]
+        sided = self._lower(i) in ("left", "right") and self._part_at(i + 1)
+        if sided and self._lower(i - 1) not in _DETERMINERS | {"left", "right", "and", "or", "with"}:
+            return [("the", start, start)]  # "drags left leg", where nobody leaves
         bare = (
             i not in self._letters
             and word.islower()
@@ -269,6 +260,11 @@ class _Preparation:
         ):  # "an unconscious man"
             return []
         return [("the", start, start)] if _begins(self._lower(i - 1)) else []
+
+    def _part_at(self, i: int) -> str:
+        """The family of a part of the body, also of several; "" for other words."""
+        word = {"feet": "foot"}.get(self._lower(i), self._lower(i))
+        return self._words.part(word) or self._words.part(word.removesuffix("s"))
 
     def _is_bare_person(self, i: int) -> bool:
         """True for a usual noun of a person, and for a rarer one before its verb or behind a preposition."""
@@ -298,6 +294,8 @@ class _Preparation:
             return "them"  # which owns nothing
         if lower in self._words.shorthand:
             return self._words.shorthand[lower]
+        if lower == "using" and self._ellipsis.has_acted() and self._lower(i - 1) not in _GOING:
+            return "with"  # "kicks using the left leg"
         if lower in ("low", "high") and self._lower(i - 1) == "her" and not self._is_noun(i + 1):
             return self._words.directions[lower]  # "dips her low", who owns no lows
         if self._leads and lower in ("lead", "follow") and self._names_dancer(i):

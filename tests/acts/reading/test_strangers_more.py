@@ -70,3 +70,66 @@ def test_a_verb_within_a_word_is_no_verb_of_its_own(text: str) -> None:
 def test_verbs_of_distant_meaning_are_left_alone() -> None:
     """Two steps through WordNet lead anywhere: "tucks" to opening something, "lands" to following."""
     assert read("He tucks the letter into his pocket.").acts == ()
+
+
+@pytest.mark.parametrize("joined", ["{}, and {}", "{} and {}"])
+@pytest.mark.parametrize("start", ["Two people walk up to each other", "They walk up"])
+@pytest.mark.parametrize(
+    ("said", "act"),
+    [*((verb, verb) for verb in ("hug", "kiss", "dance", "fight", "talk")), ("high five", "high-five")],
+)  # fmt: skip
+def test_a_list_keeps_its_middle(start: str, said: str, act: str, joined: str) -> None:
+    acts = [name for name, _, _ in told(joined.format(f"{start}, {said}", "walk away."))]
+    assert acts == ["walk-up", act, "walk-away"]
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [
+        # the last of a list, behind "each other"
+        ("They walk up to each other and hug.", [("walk-up", "ab", None), ("hug", "ab", None)]),
+        # both do what two people do
+        ("Two people do jumping jacks.", [("jumping-jacks", "ab", None)]),
+        ("Two women do squats.", [("squats", "ab", None)]),
+        # an object that the parser hangs on the verb before
+        ("B stands behind A and massages A's shoulders.", [("stand-behind", "b", "a"), ("massage", "b", "a")]),
+        ("B stands behind A and rubs A's back.", [("stand-behind", "b", "a"), ("touch", "b", "a")]),
+        # a noun that stands for what is done
+        ("B returns the salute.", [("salute", "b", "a")]),
+        ("She returns the wave.", [("wave", "a", "b")]),
+        ("A throws a ball to B and B hits it back.", [("throw-ball", "a", "b"), ("rackets", "b", None)]),
+        ("Both lean back.", [("lean", "ab", None)]),
+        ("She screams.", [("startle", "a", None)]),
+        ("B raises his arm to shoulder height.", [("raise-arm", "b", None)]),
+        ("A throws a ball underarm to B.", [("throw-ball", "a", "b")]),
+        # neither of the two
+        ("A dragon eats the moon.", []),
+        ("A bear eats the honey.", []),
+        ("He walks a dog.", [("walk-ahead", "a", None)]),
+        ("He hugs a dog.", [("feed-animal", "a", None)]),
+        ("A person shakes his head left and right.", [("shake-head", "a", None)]),
+        # with a part of the body
+        ("A person kicks using the right leg.", [("kick", "a", None)]),
+        ("His right hand picks up something.", [("pick-up-thing", "a", None)]),
+        ("A person drags right leg and waves.", [("move-other", "a", "b"), ("wave", "a", "b")]),
+        ("The man appears to be dancing.", [("dance", "a", None)]),
+        ("The person raises its arms.", [("raise-arm", "a", None)]),
+    ],
+)  # fmt: skip
+def test_no_act_is_lost_and_none_gained(text: str, acts: list[tuple[str, str, str | None]]) -> None:
+    assert told(text) == acts
+
+
+def test_the_foot_with_which_one_steps_to_a_side() -> None:
+    (step,) = read("He steps to the left using his right foot.").acts
+    assert (step.act, step.side, step.direction) == ("step-aside", "right", "left")
+
+
+def test_words_in_no_act_are_said() -> None:
+    plan = read("A jumps to a great height.")
+    assert [plan.text(part.words) for part in plan.unread] == ["great"]
+
+
+def test_another_parse_that_explains_as_much_is_a_doubt() -> None:
+    plans = [read(text) for text in ("They hug.", "A man fishes and cries.")]
+    assert [bool(plan.doubts) for plan in plans] == [False, True]

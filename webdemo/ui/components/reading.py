@@ -162,7 +162,7 @@ def shown(plan: Plan) -> dict[str, Any]:
         "beats": [[act.id for act in group] for group in plan.beats()],
         "said": {act.id: said_act(act) for act in plan.acts},
         "whys": [said(part.why) for part in plan.unread],
-        "notes": [said(note) for note in plan.notes],
+        "notes": [said(note) for note in (*plan.notes, *(doubt.why for doubt in plan.doubts))],
         "nearest": {name: entry_facts(name) for name in nearest},
         "seconds": round(2 * sum(beat.length for beat in beats_of(plan))) / 2,
     }

@@ -1,0 +1,80 @@
+"""How much of what people write about motion is read: ``python -m training.evaluate.reading_coverage CAPTIONS_FILE``.
+
+The file has a caption a line, plain or packed (``.xz``, ``.gz``); 2,000 of them, always the same, are read.
+"""
+
+from __future__ import annotations
+
+import argparse
+import gzip
+import json
+import lzma
+import random
+import time
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from acts import read
+from acts.reading.syntax import parse
+
+SAMPLE = 2000
+"""Captions that are read."""
+_CONTENT = frozenset(("NOUN", "PROPN", "VERB", "ADV", "ADJ", "NUM"))
+
+
+def sampled(file: Path, count: int = SAMPLE) -> list[str]:
+    """Captions of a file, drawn with a fixed seed."""
+    packed = {".xz": lzma.decompress, ".gz": gzip.decompress}.get(file.suffix, bytes)
+    captions = sorted({line.strip() for line in packed(file.read_bytes()).decode().splitlines()} - {""})
+    return random.Random(0).sample(captions, min(count, len(captions)))
+
+
+def coverage(captions: Sequence[str]) -> dict[str, Any]:
+    """The shares of captions, how long one takes, words left over by frequency, and each caption with what is read.
+
+    Returns:
+        ``whole``, the share of which every word with a meaning of its own is read, and an act at least; ``doubtful``,
+        the share of which two parses say different acts; ``milliseconds``, the mean of a caption; ``left``, lemmas
+        with how often they are left over; ``read``, for each caption its acts, what was not read, and the doubts.
+    """
+    read("They wave.")  # loads the parser
+    left, rows, began = Counter[str](), [], time.perf_counter()
+    plans = [read(caption) for caption in captions]
+    seconds = time.perf_counter() - began
+    for caption, plan in zip(captions, plans, strict=True):
+        parts = [plan.text(part.words) for part in plan.unread]
+        left.update(t.lemma_.lower() for part in parts for t in parse(part) if t.pos_ in _CONTENT)
+        acts = [
+            " ".join(filter(None, (*act.agents, act.polarity * (act.polarity == "not"), act.act, act.side)))
+            for act in plan.acts
+        ]
+        doubts = [plan.text(doubt.words) for doubt in plan.doubts]
+        rows.append({"caption": caption, "acts": acts, "unread": parts, "doubts": doubts})
+    count = max(len(rows), 1)
+    return {
+        "whole": sum(bool(row["acts"]) and not row["unread"] for row in rows) / count,
+        "doubtful": sum(bool(row["doubts"]) for row in rows) / count,
+        "milliseconds": 1000 * seconds / count,
+        "left": dict(left.most_common()),
+        "read": rows,
+    }
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """The command."""
+    parser = argparse.ArgumentParser(description="Counts what of people's captions the reader understands.")
+    parser.add_argument("file", type=Path, help="captions, one a line")
+    parser.add_argument("--out", type=Path, help="JSON file for each caption with its acts")
+    args = parser.parse_args(argv)
+    found = coverage(sampled(args.file))
+    if args.out:
+        args.out.write_text(json.dumps(found, indent=1))
+    words = ", ".join(f"{word} {count}" for word, count in list(found["left"].items())[:60])
+    print(f"read whole {found['whole']:.1%}, two parses disagree {found['doubtful']:.1%}, ", end="")
+    print(f"{found['milliseconds']:.0f} ms a caption\nwords left over: {words}")
+
+
+if __name__ == "__main__":
+    main()
