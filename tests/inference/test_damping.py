@@ -1,19 +1,26 @@
 """The regularisers of sampling, on control points of two people who stand still."""
 
+from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
 import torch
 
-from models.intergen.compact import CompactConfig, CompactInterGen, TouchReader
+from models.diffusion import top_timesteps
+from models.intergen.compact import CompactConfig, CompactInterGen, Touch, TouchReader
 from models.motion_tokens import encode, pack
 from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig
 from motion import SMPL22, Duet
 from motion.metrics.quality import penetration
 from motion.skeleton import FEET
 from webdemo.inference import damping
-from webdemo.inference.damping import Beside, Damping, asked_energy
+from webdemo.inference.damping import Beside, Damping, asked_energy, shares
+from webdemo.inference.engine import Engine
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+
+from .people import waver
 
 HANDS = (("right_wrist", "right_wrist"),)
 
@@ -48,14 +55,19 @@ def people(model: CompactInterGen, apart: float = 1.0) -> torch.Tensor:
     return torch.stack([rest, other])[:, None].repeat(1, 61, 1, 1)
 
 
+def settled(space: damping.Space, x: torch.Tensor, touches: Sequence[Touch] = ()) -> torch.Tensor:
+    """What the whole correction, made three times, leaves of a sample of 61 frames."""
+    whole = Damping(space, 1.0, frames=61, timesteps=[0], touches=touches)
+    return whole(whole(whole(x, 0), 0), 0)
+
+
 def damped(model: CompactInterGen, positions: torch.Tensor, *, standing: float = 0.0) -> torch.Tensor:
     """What the shipped weights of the damping make of two people (2, 61, 22, 3), in metres.
 
     standing: predicted contact of all feet.
     """
     x = pack(encode(positions, torch.full((2, 61, 4), standing), model.layout)[None], model.layout)
-    made = Damping(model, 1.0, frames=61, final_steps=60)(x, 0)
-    return model.positions(made)[0][0, :, :61]
+    return model.positions(settled(model, x))[0][0, :, :61]
 
 
 def test_bones_get_the_length_they_should_have(model):
@@ -93,7 +105,7 @@ def test_trembling_is_smoothed(model):
     control = encode(people(model), torch.zeros(2, 61, 4), model.layout)
     control[:, ::2, 0] += 0.03  # every other control point of the pelvis, and all joints with it
     x = pack(control[None], model.layout)
-    made = Damping(model, 1.0, frames=61, final_steps=60)(x, 0)
+    made = settled(model, x)
     jerk = [
         float(model.positions(one)[0][0, :, :61].diff(n=3, dim=1).norm(dim=-1).mean()) for one in (x, made)
     ]
@@ -152,14 +164,14 @@ def gap(model: CompactInterGen, x: torch.Tensor) -> float:
 def test_an_asked_touch_brings_the_hands_together(model, apart):
     x = standing(model, apart)
     assert gap(model, x) == pytest.approx(apart, abs=0.02)
-    met = Damping(model, 1.0, frames=61, final_steps=60, touches=[HANDS])(x, 0)
+    met = settled(model, x, [HANDS])
     assert gap(model, met) < 0.12
 
 
 def test_hands_that_are_not_asked_for_stay_apart(model):
     x = standing(model, 0.4)
     for touches in ((), [()]):
-        assert gap(model, Damping(model, 1.0, frames=61, touches=touches)(x, 0)) > 0.35
+        assert gap(model, Damping(model, 1.0, frames=61, timesteps=[0], touches=touches)(x, 0)) > 0.35
 
 
 def test_a_touch_out_of_reach_is_left_alone(model):
@@ -178,15 +190,26 @@ def test_a_hand_inside_the_other_comes_out(model):
     def depth(x: torch.Tensor) -> float:
         return penetration(Duet.from_positions(model.positions(x)[0][0, :, :61].numpy(), fps=30.0)).mean
 
-    met = Damping(model, 1.0, frames=61, final_steps=60)(x, 0)
+    met = settled(model, x)
     assert depth(x) > 10  # cm
     assert depth(met) < 0.3 * depth(x)
 
 
 def test_without_damping_nothing_is_corrected(model):
     x = standing(model, 0.4)
-    assert Damping(model, 0.0, frames=61, touches=[HANDS])(x, 0) is x
-    assert Damping(model, 0.5, frames=61, touches=[HANDS])(x, 501) is x
+    asked = {"frames": 61, "timesteps": [999, 501, 0], "touches": [HANDS]}
+    assert all(Damping(model, 0.0, **asked)(x, t) is x for t in (999, 501, 0))
+    assert Damping(model, 0.6, **asked)(x, 999) is not x
+    assert Damping(model, 0.5, **asked)(x, 999) is x
+
+
+@pytest.mark.parametrize("steps", [50, 250, 1000])
+def test_with_many_steps_the_threshold_is_that_of_the_paper(steps):
+    """Eq. 15: all where t ≤ t̄·T, nothing above, and a share at the one step that reaches below it."""
+    timesteps = top_timesteps(steps).tolist()
+    found = shares(0.7, timesteps)
+    assert all(found[t] == 1 for t in timesteps[:-1] if t <= 700)
+    assert [t for t in timesteps if t > 700 and found[t]] in ([], [min(t for t in timesteps if t > 700)])
 
 
 def test_beside_a_given_actor_the_reactor_alone_moves(model):
@@ -200,7 +223,7 @@ def test_beside_a_given_actor_the_reactor_alone_moves(model):
     x = (encode(other, torch.ones(61, 4), reactor.layout)[None] - reactor.mean) / reactor.std
     before, contacts = space.positions(x)
     assert before.shape == (1, 2, 61, 22, 3) and contacts.shape == (1, 2, 61, 4)
-    met = Damping(space, 1.0, frames=61, final_steps=60, touches=[HANDS])(x, 0)
+    met = settled(space, x, [HANDS])
     after = space.positions(met)[0]
     wrist = SMPL22.index("right_wrist")
     gaps = [(p[0, 0, :, wrist] - p[0, 1, :, wrist]).norm(dim=-1).min() for p in (before, after)]
@@ -217,7 +240,7 @@ def test_actors_of_one_batch_are_not_mixed(model):
     for apart in (0.3, 0.6):
         actor, other = model.positions(standing(model, apart))[0][0, :, :61]
         x = encode(other, torch.ones(61, 4), reactor.layout)[None]
-        asked.append((Damping(Beside(reactor, actor), 1.0, frames=61, touches=[HANDS]), x))
+        asked.append((Damping(Beside(reactor, actor), 1.0, frames=61, timesteps=[0], touches=[HANDS]), x))
     together = damping.correct_together(asked, 0)
     for (alone, x), made in zip(asked, together, strict=True):
         torch.testing.assert_close(alone(x, 0), made, rtol=0, atol=0)
@@ -254,3 +277,33 @@ def all_pairs(positions: torch.Tensor) -> torch.Tensor:
     a, b = ((positions[..., ends[:, 0], :] + positions[..., ends[:, 1], :]) / 2).unbind(1)
     gap = torch.cdist(a, b, compute_mode="donot_use_mm_for_euclid_dist")
     return (radii[:, None] + radii - gap).clamp_min(0).square().sum((1, 2, 3))
+
+
+@pytest.fixture(scope="module")
+def shipped() -> Engine:
+    """With the shipped weights."""
+    return Engine()
+
+
+def request(model: str, steps: int, threshold: float) -> GenerateRequest | ReactRequest:
+    """Two motions of a second, made by a network alone."""
+    asked: dict[str, Any] = {"model": model, "samples": 2, "steps": steps, "damping": threshold}
+    if model == "regennet":
+        return ReactRequest(actor=waver().cut(0, 31), mode="offline", cleanup=False, **asked)
+    words = "One person walks up to the other and pats them on the shoulder."
+    return GenerateRequest(prompt=words, seconds=1.0, cleanup=False, split=False, planned=False, **asked)
+
+
+@pytest.mark.parametrize("steps", [1, 2, 5, 8, 20, 50])
+@pytest.mark.parametrize("model", ["intergen", "regennet"])
+def test_the_threshold_sets_how_much_is_corrected_at_any_number_of_steps(shipped, model, steps):
+    """Every larger t̄ takes the shipped networks' motions farther from those of the plain sampler."""
+
+    def made(threshold: float) -> np.ndarray:
+        *_, result = shipped.run(request(model, steps, threshold))
+        return np.stack([duet.positions[-1] for duet in result.duets])
+
+    plain = made(0.0)
+    apart = [float(np.linalg.norm(made(t) - plain, axis=-1).mean()) for t in (0.05, 0.2, 0.4, 0.7)]
+    assert apart[0] > 1e-3
+    assert all(after > 1.01 * before for before, after in pairwise(apart))

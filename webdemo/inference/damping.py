@@ -1,17 +1,19 @@
-"""Regularisers without ground truth, and the correction that they make while t ≤ t̄·T.
+"""Regularisers without ground truth, and how much of their correction is made at each timestep.
 
 InterGen's damping (section 4.3, eq. 15) applies the regularisers only at small timesteps. In training they
 compare with the true motion. At inference there is none, so the terms here need none: constant bone lengths,
 feet that stay planted and above the floor, smooth joints, bodies that do not intersect, contact of hands that
-nearly touch, and people who nearly face each other turned to face fully. While t ≤ t̄·T, the predicted clean
-motion takes a few gradient steps on these terms in the network's space of spline control points; a given person
-does not move. If the sentence asks for a touch (:meth:`models.intergen.compact.CompactInterGen.touches`), its
-joints are pulled together at the moment when they are nearest. With t̄ = 0 the sampler is unchanged, bit for bit.
+nearly touch, and people who nearly face each other turned to face fully. At t ≤ t̄·T and at the last timestep the
+predicted clean motion goes towards where a few gradient steps on these terms lead, in the network's space of spline
+control points, and t̄ sets how far (:func:`shares`); a given person does not move. If the sentence asks for a touch
+(:meth:`models.intergen.compact.CompactInterGen.touches`), its joints are pulled together at the moment when they are
+nearest. With t̄ = 0 the sampler is unchanged, bit for bit.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Protocol
 
 import torch
@@ -75,7 +77,9 @@ NEARLY = 0.20
 REACH = 0.9
 """Metres within which joints are pulled together if the sentence asks for a touch."""
 GRADIENT_STEPS = 2
-"""Gradient steps at each timestep."""
+"""Gradient steps of the correction at each timestep but the last."""
+LAST_STEPS = 20
+"""Gradient steps of that at the last timestep, since no network pass follows."""
 STEP = 0.03
 """Length of a gradient step, and the largest move of any number in it."""
 
@@ -232,15 +236,30 @@ class Beside:
         )
 
 
+def shares(threshold: float, timesteps: Sequence[int]) -> dict[int, float]:
+    """The share of the correction that is made at each timestep: continuous in t̄, and growing with it.
+
+    A timestep stands for those down to the next one, and its share is that of them which lies below t̄·T: 1 for
+    t ≤ t̄·T (eq. 15), and 0 if the next one is above t̄·T, too. At the last timestep it is 1 − (1 − t̄)², 0.91 for the
+    default: few steps end at a high timestep (eight at 234), and eq. 15 would then correct all or nothing.
+
+    Args:
+        threshold: t̄ as a fraction of T.
+        timesteps: of the sampler, largest first.
+    """
+    limit = threshold * TRAIN_TIMESTEPS
+    found = {t: min(max((limit - below) / (t - below), 0.0), 1.0) for t, below in pairwise(timesteps)}
+    return found | {timesteps[-1]: 1 - (1 - threshold) ** 2}
+
+
 class Damping:
-    """Corrects the predicted clean motion while t ≤ t̄·T.
+    """Corrects the predicted clean motion, at timesteps t ≤ t̄·T and at the last one.
 
     Args:
         space: decodes positions from the network's space.
         threshold: t̄ as a fraction of T; 0 turns the damping off.
         frames: number of output frames; further frames of the last token are ignored.
-        final_timestep: last timestep of sampling; it takes more steps, since no network pass follows.
-        final_steps: gradient steps at that timestep.
+        timesteps: of the sampler, largest first.
         frozen: (tokens, F) true where a number is given and must not move.
         touches: the touches that the sentence of each motion asks for; none by default.
     """
@@ -251,20 +270,21 @@ class Damping:
         threshold: float,
         *,
         frames: int,
-        final_timestep: int = 0,
-        final_steps: int = 20,
+        timesteps: Sequence[int],
         frozen: Tensor | None = None,
         touches: Sequence[Touch] = (),
     ) -> None:
         self.space, self.frames = space, frames
-        self.last = threshold * TRAIN_TIMESTEPS
-        self.off = threshold == 0
-        self.final_timestep, self.final_steps = final_timestep, final_steps
+        self.shares, self.last = shares(threshold, timesteps), timesteps[-1]
         self.frozen, self.touches = frozen, touches
 
     def due(self, timestep: int) -> bool:
-        """True if anything is corrected at a timestep."""
-        return not self.off and timestep <= self.last
+        """True if anything is corrected at a timestep of the sampler."""
+        return self.shares[timestep] > 0
+
+    def steps(self, timestep: int) -> int:
+        """Gradient steps of a whole correction at a timestep."""
+        return LAST_STEPS if timestep == self.last else GRADIENT_STEPS
 
     def __call__(self, x0: Tensor, timestep: int) -> Tensor:
         """The corrected prediction, (B, tokens, F) as given; the same object if not due."""
@@ -281,9 +301,7 @@ def correct_together(predictions: Sequence[tuple[Damping, Tensor]], timestep: in
     """
     groups: dict[tuple[object, ...], list[int]] = {}
     for i, (damping, x0) in enumerate(predictions):
-        kind = (
-            damping.space.positions, x0.shape[1:], damping.frames, damping.final_timestep, damping.final_steps
-        )  # fmt: skip
+        kind = (damping.space.positions, x0.shape[1:], damping.frames, damping.steps(timestep))
         groups.setdefault(kind, []).append(i)
     corrected: dict[int, Tensor] = {}
     for group in groups.values():
@@ -293,7 +311,7 @@ def correct_together(predictions: Sequence[tuple[Damping, Tensor]], timestep: in
 
 
 def _descend(predictions: Sequence[tuple[Damping, Tensor]], timestep: int) -> Sequence[Tensor]:
-    """Gradient steps on predictions of one space and shape; frozen numbers and touches may differ."""
+    """Gradient steps on predictions of one space and shape; shares, frozen numbers and touches may differ."""
     first, sizes = predictions[0][0], [len(x0) for _, x0 in predictions]
     x0 = torch.cat([x0 for _, x0 in predictions])
     touches = [touch for d, x in predictions for touch in (d.touches or ((),) * len(x))]
@@ -301,8 +319,8 @@ def _descend(predictions: Sequence[tuple[Damping, Tensor]], timestep: int) -> Se
     if any(d.frozen is not None for d, _ in predictions):
         free = torch.zeros(x0.shape[1:], dtype=torch.bool)
         frozen = torch.cat([(free if d.frozen is None else d.frozen).expand_as(x) for d, x in predictions])
-    scale = first.space.scale
-    for _ in range(first.final_steps if timestep == first.final_timestep else GRADIENT_STEPS):
+    scale, before = first.space.scale, x0
+    for _ in range(first.steps(timestep)):
         with torch.enable_grad():
             x = x0.detach().requires_grad_(True)
             positions, contacts = first.space.positions(x)
@@ -316,4 +334,5 @@ def _descend(predictions: Sequence[tuple[Damping, Tensor]], timestep: int) -> Se
         if frozen is not None:
             move = move.masked_fill(frozen, 0.0)
         x0 = x0.detach() - move / scale
-    return x0.split(sizes)
+    share = torch.cat([x.new_full((len(x), 1, 1), d.shares[timestep]) for d, x in predictions])
+    return torch.lerp(before, x0, share).split(sizes)

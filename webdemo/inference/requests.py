@@ -62,8 +62,8 @@ class SamplingRequest:
         samples: number of different motions to generate.
         guidance: scale s of classifier-free guidance, s·conditioned + (1−s)·unconditioned; 1 is none.
         steps: denoising steps; by default the model's own (:attr:`Method.steps`), which is filled in here.
-        damping: t̄ as a fraction of the diffusion's T: while t ≤ t̄·T the regularisers correct the predicted
-            motion; 0 turns the correction off.
+        damping: t̄ as a fraction of the diffusion's T: sets at which timesteps the regularisers correct the predicted
+            motion, and by how much (:func:`.damping.shares`); 0 turns the correction off.
         sampler: "ddim" (η = 0) or "dpm++" (DPM-Solver++ multistep).
         model: the name of a generator in the registry.
         cleanup: project the result onto constant bones and planted feet.

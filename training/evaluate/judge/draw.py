@@ -84,7 +84,7 @@ def draw(
             model,
             sampling.damping,
             frames=frames,
-            final_timestep=int(scheduler.timesteps[-1]),
+            timesteps=scheduler.timesteps.tolist(),
             touches=touches,
         )
         predict = partial(_guided, model.denoiser, condition, sampling.guidance)

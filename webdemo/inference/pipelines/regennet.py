@@ -123,7 +123,7 @@ class ReGenNetPipeline:
             Beside(model, given),
             request.damping,
             frames=frames,
-            final_timestep=int(scheduler.timesteps[-1]),
+            timesteps=scheduler.timesteps.tolist(),
             touches=model.touches(condition) if request.prompt.strip() else (),
         )
         noise = sample_noise(request.seed, request.samples, (model.num_rows(frames), FEATURES))

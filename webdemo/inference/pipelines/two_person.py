@@ -198,7 +198,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             self.model,
             request.damping,
             frames=scene.frames,
-            final_timestep=int(scheduler.timesteps[-1]),
+            timesteps=scheduler.timesteps.tolist(),
             frozen=None if given is None else given.frozen[0],
             touches=(conditioning.touch,) * request.samples,
         )
