@@ -20,7 +20,7 @@ function wanted() {
 }
 
 async function read(name) {
-  const known = globalThis.pasDeDeuxTexts ?? globalThis.gradio_config?.i18n_translations;
+  const known = globalThis.gradio_config?.i18n_translations;
   if (known?.[name]) return known[name];
   const address = new URL(`texts/${name}.json`, import.meta.url);
   if (address.protocol === "file:") { // a test of Node's

@@ -28,6 +28,8 @@ from .smpl import FPS_KEYS, PARAMETER_KEYS, has_parameters, on_floor, read_param
 Array = NDArray[Any]
 
 _SMPL24 = 24
+_LONGEST_MANIFEST = 1_000_000
+"""Characters of JSON, which holds the interpreter while it is read: some 30 ms for so many."""
 _JOINT_COUNTS = "15 (Kinect v1), 17 (CMU), 22 or 24 (SMPL) or 25 (Kinect v2) joints"
 _INTERHUMAN = 492
 """InterHuman's processed frames: 62 joints' positions and 51 joints' rotations, the body's first in both."""
@@ -170,6 +172,10 @@ def _from_arrays(arrays: dict[str, Array], label: str, fps: float | None, everyo
     roles = tuple(str(role)[:40] for role in np.atleast_1d(arrays.get("roles", ("a", "b")))[:2])
     manifest = None
     if "manifest" in arrays:
+        if arrays["manifest"].nbytes > 4 * _LONGEST_MANIFEST:
+            raise InputError(
+                f"{label}: its manifest has over {_LONGEST_MANIFEST:,} characters: save it again."
+            )
         try:
             manifest = json.loads(str(arrays["manifest"]))
         except (ValueError, RecursionError):

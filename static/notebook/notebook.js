@@ -186,7 +186,7 @@ export class Notebook {
       again: one && one.state !== "running", stop: true, favour: Boolean(one),
       compare: done.length > 1 && done.length === chosen.length && done.length <= 9,
       study: done.length > 0 && done.length === chosen.length,
-      publish: done.length > 0 && done.length === chosen.length,
+      publish: one?.state === "done",
       export: done.length > 0 && done.length === chosen.length,
       remove: chosen.length > 0 && chosen.every((entry) => entry.state !== "running" && !entry.favourite),
     };

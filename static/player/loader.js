@@ -39,12 +39,8 @@ export function loadStyles(url) {
   );
 }
 
-/** Bodies by their names, where a page brings them along because none can be fetched: one opened from a folder. */
-export const supplied = {};
-
 /** A body of static/bodies by the name of its file, as motion/looks.py has them, or a smaller one of each. */
 export function loadBody(name) {
-  if (supplied[name]) return load(`body ${name}`, async () => decodeBody(supplied[name]));
   const url = new URL(`../bodies/${name}.json`, import.meta.url).href;
   return load(url, async () => {
     const answer = await fetch(url);

@@ -1,8 +1,5 @@
-// A public page (webdemo/ui/public_html.py): plays its motion, or the thumbnails of a gallery.
-// The same page opens from a folder, where files/offline.js brings along what cannot be fetched.
+// A public page (webdemo/ui/public_html.py): plays its motion.
 
-import { play } from "../notebook/thumbnail.js";
-import { supplied } from "../player/loader.js";
 import { mount } from "../player/main.js";
 import { language, translate } from "../texts.js";
 
@@ -14,8 +11,6 @@ paint();
 
 document.documentElement.lang = language;
 translate(document);
-Object.assign(supplied, globalThis.pasDeDeuxBodies);
-for (const canvas of document.querySelectorAll("canvas[data-thumbnail]")) play(canvas, canvas.dataset.thumbnail);
 
 const motion = document.getElementById("motion");
 if (motion) {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -231,16 +232,16 @@ def test_a_notebook_is_searched_written_in_and_taken_along(
     page.wait_for_selector("#history-status :text('2 runs in one file')")
     with page.expect_download(timeout=SLOW) as download:
         page.click("#history-saved")
-    workspace = tmp_path / "workspace.zip"
-    download.value.save_as(workspace)
+    with zipfile.ZipFile(download.value.path()) as archive:
+        archive.extractall(tmp_path)
     page.click("#history-remove")
     expect(cards).to_have_count(0, timeout=SLOW)
     page.click("#history-restore")
     expect(cards).to_have_count(2, timeout=SLOW)
-    page.click("#history-workspace button >> nth=0")
-    page.set_input_files("#history-import input[type=file]", workspace)
+    page.click("#history-files button >> nth=0")
+    page.set_input_files("#history-import input[type=file]", sorted(tmp_path.glob("*.npz")))
     page.wait_for_selector("#history-status :text('Imported 2 runs')")
-    page.fill("[data-find=words]", "in the rehearsal")
+    page.fill("[data-find=words]", "")
     expect(cards).to_have_count(4, timeout=SLOW)
 
     other = open_page(link)

@@ -20,7 +20,6 @@ from webdemo.server.app import Lab, create_app
 from webdemo.server.serve import make_server
 from webdemo.server.settings import Settings
 from webdemo.server.store.database import Database
-from webdemo.server.store.notebook import Notebook
 
 from .lab import stub_module
 
@@ -147,9 +146,3 @@ def answers(served: tuple[str, int], address: str = "127.0.0.1") -> bool:
     with socket.create_connection(served, timeout=30, source_address=(address, 0)) as one:
         one.sendall(b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
         return read_all(one).startswith((b"HTTP/1.1 200", b"HTTP/1.1 503"))
-
-
-def taken_in(notebook: Notebook, owner: str, file: Path) -> int:
-    """The number of runs that were imported."""
-    *_, (_, total) = notebook.take_in(owner, file)
-    return total

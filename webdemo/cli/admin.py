@@ -22,7 +22,6 @@ def add_admin(commands: Any) -> None:
         "action",
         choices=(
             "list",
-            "invite",
             "make-admin",
             "end-admin",
             "room",
@@ -31,7 +30,6 @@ def add_admin(commands: Any) -> None:
             "sign-out",
             "delete",
             "announce",
-            "audit",
             "jobs",
             "end",
             "health",
@@ -41,17 +39,15 @@ def add_admin(commands: Any) -> None:
         "name", nargs="?", help="of the account; with announce: the line (empty: none); with end: the id"
     )
     parser.add_argument(
-        "--megabytes", type=float, help="with room and invite: the person's room; without it, everybody's"
+        "--megabytes", type=float, help="with room: the person's room; without it, everybody's"
     )
-    parser.add_argument("--days", type=float, default=7.0, help="with invite: how long the link works")
     parser.set_defaults(job=admin)
 
 
 def admin(options: argparse.Namespace) -> dict[str, Any]:
-    """Does one act, audited, in the lab that the settings name; a running server heeds it at once."""
+    """Does one act in the lab that the settings name; a running server heeds it at once."""
     from webdemo.server.accounts.users import Users
     from webdemo.server.activity import Activity
-    from webdemo.server.audit import audited, audited_shell
     from webdemo.server.lab import administration_of
     from webdemo.server.settings import read_settings
     from webdemo.server.store.database import Database, sentences
@@ -59,21 +55,16 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
     settings, name, action = read_settings(), options.name or "", options.action
     if not settings.accounts:
         raise InputError("There are no accounts: set PASDEDEUX_USERS to their file.")
-    if action == "audit":
-        return {"lines": audited(settings.data, 100)}
     if action not in ("list", "announce", "jobs", "health") and not name:
         raise InputError(
             "Give the id: `admin end ID`." if action == "end" else f"Name the account: `admin {action} NAME`."
         )
-    with closing(Database(settings.database_url)) as database, sentences(), audited_shell(settings):
+    with closing(Database(settings.database_url)) as database, sentences():
         if action in ("jobs", "end", "health"):
             return _activity(Activity(database), action, name)
         acts = administration_of(settings, database, Users(settings.users) if settings.users else None)
         if action == "list":
             return {"people": [asdict(row) for row in acts.rows()], "announced": acts.people.announced()}
-        if action == "invite":
-            path = acts.invite(name, megabytes=options.megabytes, days=options.days)
-            return {"done": action, "name": name, "path": settings.root_path + path}
         if action in ("make-admin", "end-admin"):
             acts.set_role(name, admin=action == "make-admin")
         elif action == "room":

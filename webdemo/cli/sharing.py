@@ -6,7 +6,6 @@ import argparse
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
-from pathlib import Path
 from typing import Any
 
 from motion import InputError
@@ -14,7 +13,7 @@ from motion import InputError
 
 def add_share(commands: Any) -> None:
     """Adds ``share`` to the shell's commands."""
-    parser = commands.add_parser("share", help="public pages of this lab: runs, link, list, revoke, export")
+    parser = commands.add_parser("share", help="public pages of this lab: runs, link, list, revoke")
     actions = parser.add_subparsers(required=True, metavar="ACTION", parser_class=type(parser))
     of_owner = argparse.ArgumentParser(add_help=False)
     of_owner.add_argument("--user", help="account whose runs they are; without accounts, leave it out")
@@ -22,14 +21,10 @@ def add_share(commands: Any) -> None:
     listed = actions.add_parser("runs", parents=[of_owner], help="the newest runs with their ids")
     listed.set_defaults(job=runs)
 
-    made = actions.add_parser("link", parents=[of_owner], help="make a page of runs and print its address")
+    made = actions.add_parser("link", parents=[of_owner], help="make a page of a run and print its address")
     made.add_argument(
-        "runs",
-        nargs="+",
-        metavar="RUN",
-        help="id of a run, or how it begins, after -- if with a dash; see `share runs`",
+        "run", metavar="RUN", help="id of a run, or how it begins, after -- if with a dash; see `share runs`"
     )
-    made.add_argument("--title", default="", help="above the results; the run's name by default")
     made.add_argument(
         "--days", type=float, help="days until it ends; the most that the lab allows by default"
     )
@@ -43,21 +38,10 @@ def add_share(commands: Any) -> None:
     ended.add_argument("key", help="of the page, or how it begins; see `share list`")
     ended.set_defaults(job=revoke)
 
-    folder = actions.add_parser(
-        "export", parents=[of_owner], help="write pages that play without a network, as a .zip"
-    )
-    folder.add_argument(
-        "runs", nargs="*", metavar="RUN", help="id of a run, or how it begins; all by default"
-    )
-    folder.add_argument("--out", type=Path, required=True, help=".zip file to write")
-    folder.add_argument("--title", default="Motions of two people", help="of the gallery")
-    folder.set_defaults(job=export)
-
 
 @contextmanager
 def _publishing() -> Iterator[Any]:
     """The public pages of the lab that the settings name."""
-    from webdemo.server.audit import audited_shell
     from webdemo.server.lab import history_of, storage_of
     from webdemo.server.settings import settings_of_history
     from webdemo.server.store.database import Database
@@ -66,18 +50,11 @@ def _publishing() -> Iterator[Any]:
     settings = settings_of_history()
     with closing(Database(settings.database_url)) as database:
         history = history_of(settings, storage_of(settings, database), settings.node)
-        with audited_shell(settings):
-            yield Publishing(history, days=settings.publish_days)
+        yield Publishing(history, days=settings.publish_days)
 
 
 def _owner(options: argparse.Namespace) -> str:
     return f"user {options.user}" if options.user else "local"
-
-
-def _found(publishing: Any, options: argparse.Namespace) -> list[str]:
-    """The ids of the runs that begin as was said."""
-    entries = publishing.history.entries(_owner(options))
-    return [_only(begin, [entry.id for entry in entries], "runs", "share runs") for begin in options.runs]
 
 
 def _only(begin: str, known: Sequence[str], what: str, see: str) -> str:
@@ -101,9 +78,9 @@ def link(options: argparse.Namespace) -> dict[str, Any]:
 
     base = (options.base or read_settings().url).rstrip("/")
     with _publishing() as publishing:
-        page = publishing.publish(
-            _owner(options), _found(publishing, options), title=options.title, days=options.days
-        )
+        runs = [entry.id for entry in publishing.history.entries(_owner(options))]
+        run = _only(options.run, runs, "runs", "share runs")
+        page = publishing.publish(_owner(options), run, days=options.days)
     address = f"{base}/share/{page.key}"
     print(f"{address} until {_moment(page.until)}")
     return _about(page) | {"address": address, "frame": frame_code(f"{base}/embed/{page.key}", page.title)}
@@ -124,21 +101,9 @@ def revoke(options: argparse.Namespace) -> dict[str, Any]:
     return {"revoked": key}
 
 
-def export(options: argparse.Namespace) -> dict[str, Any]:
-    """Writes a folder of pages."""
-    from webdemo.ui.site import write_site
-
-    if options.out.suffix.lower() != ".zip":
-        raise InputError(f"{options.out.name} is no .zip: give --out FILE.zip.")
-    with _publishing() as publishing:
-        results = publishing.results(_owner(options), _found(publishing, options))
-        write_site(results, options.out, title=options.title)
-    return {"runs": len(results), "files": [str(options.out)]}
-
-
 def _about(page: Any) -> dict[str, Any]:
     return {
-        "key": page.key, "title": page.title, "runs": page.runs, "created": _moment(page.created),
+        "key": page.key, "title": page.title, "created": _moment(page.created),
         "until": _moment(page.until),
     }  # fmt: skip
 

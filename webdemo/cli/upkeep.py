@@ -1,4 +1,4 @@
-"""The commands that keep a lab's data: ``database``, ``backup`` and ``restore``."""
+"""The commands that keep a lab's data: ``backup`` and ``restore``."""
 
 from __future__ import annotations
 
@@ -16,13 +16,7 @@ if TYPE_CHECKING:
 
 
 def add_upkeep(commands: Any) -> None:
-    """Adds ``database``, ``backup`` and ``restore`` to the shell's commands."""
-    parser = commands.add_parser("database", help="the database's revision: show it, migrate, or go back")
-    parser.add_argument("action", nargs="?", choices=("show", "upgrade", "downgrade"), default="show")
-    parser.add_argument(
-        "revision", nargs="?", help="with downgrade: the revision of the version to go back to"
-    )
-    parser.set_defaults(job=database)
+    """Adds ``backup`` and ``restore`` to the shell's commands."""
     backup_parser = commands.add_parser(
         "backup", help="copy the lab's database and motions, while people work"
     )
@@ -40,43 +34,15 @@ def add_upkeep(commands: Any) -> None:
     restore_parser.set_defaults(job=restore)
 
 
-def database(options: argparse.Namespace) -> dict[str, Any]:
-    """Shows the revision of the lab's database, brings it to the newest, or takes it back to an earlier one."""
-    from webdemo.server.audit import audit, audited_shell
-    from webdemo.server.settings import settings_of_history
-    from webdemo.server.store.database import engine_of, opening
-    from webdemo.server.store.migrations import NEWEST, REVISIONS, downgrade, revision_of, upgrade
-
-    settings = settings_of_history()
-    if options.action == "downgrade" and not options.revision:
-        raise InputError(f"Name the revision to go back to, one of {', '.join(REVISIONS)}.")
-    with opening():
-        engine = engine_of(settings.database_url)
-        try:
-            if options.action == "upgrade":
-                upgrade(engine)
-            elif options.action == "downgrade":
-                downgrade(engine, options.revision)
-            revision = revision_of(engine)
-            if options.action != "show":
-                with audited_shell(settings):
-                    audit("database", action=options.action, revision=revision)
-        finally:
-            engine.dispose()
-    print(f"The database is at revision {revision or 'none'}; this version of Pas de Deux has {NEWEST}.")
-    return {"revision": revision, "newest": NEWEST, "known": list(REVISIONS)}
-
-
 def backup(options: argparse.Namespace) -> dict[str, Any]:
     """Makes a backup of the lab that the settings name."""
-    from webdemo.server.audit import audited_shell
     from webdemo.server.settings import settings_of_history
     from webdemo.server.store.backup import back_up
 
     settings = settings_of_history()
     if options.keep < 0:
         raise InputError("Give --keep 1 or more, or leave it out to keep all.")
-    with _lab(settings) as lab, audited_shell(settings):
+    with _lab(settings) as lab:
         made = back_up(lab, options.folder, keep=options.keep)
     print(f"The backup is in {made}.")
     return {"backup": str(made)}
@@ -84,7 +50,6 @@ def backup(options: argparse.Namespace) -> dict[str, Any]:
 
 def restore(options: argparse.Namespace) -> dict[str, Any]:
     """Restores a backup into the empty data folder and database that the settings name."""
-    from webdemo.server.audit import audit, audited_shell
     from webdemo.server.settings import read_settings
     from webdemo.server.store.backup import MANIFEST, backups, restore
 
@@ -97,8 +62,6 @@ def restore(options: argparse.Namespace) -> dict[str, Any]:
     settings.data.mkdir(mode=0o700, parents=True, exist_ok=True)
     with _lab(settings) as lab:
         restored = restore(chosen, lab)
-    with audited_shell(settings):
-        audit("restore", name=chosen.name, runs=restored["rows"].get("runs", 0))
     print(f"{restored['rows'].get('runs', 0)} runs were restored from {chosen} to {settings.data}.")
     return {"backup": str(chosen), **restored}
 

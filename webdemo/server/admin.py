@@ -11,7 +11,6 @@ from typing import Any
 from sqlalchemy import delete, func, select
 
 from motion import InputError
-from webdemo.server.accounts.invitations import DAYS, Invitations
 from webdemo.server.accounts.users import Users
 from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit
@@ -105,14 +104,6 @@ class Administration:
                 )
             )  # fmt: skip
         return found
-
-    def invite(self, name: str, *, megabytes: float | None = None, days: float = DAYS) -> str:
-        """The path of a link by which somebody makes an account of this name, once."""
-        if self.users is None:
-            raise InputError("People sign in at the proxy here: there are no accounts to invite anybody to.")
-        path = Invitations(self.database, self.users).invite(name, megabytes=megabytes, days=days)
-        audit("admin-invite", target=name, megabytes=megabytes, days=days)
-        return path
 
     def set_role(self, name: str, *, admin: bool) -> None:
         """Makes a person an administrator, or no longer."""

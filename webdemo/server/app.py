@@ -22,7 +22,6 @@ from starlette.routing import Mount
 
 from acts.lexicon import look_at_own_acts
 from motion import InputError
-from webdemo.server.accounts.invitations import Invitations, invitation_routes
 from webdemo.server.accounts.login import login_routes
 from webdemo.server.accounts.own_account import account_routes
 from webdemo.server.accounts.visitors import Visitors
@@ -111,13 +110,7 @@ def create_app(
     app.include_router(public_routes(settings, lab.publishing))
     if lab.sign_ins is not None:
         app.include_router(login_routes(settings, lab.sign_ins, visitors))
-        if settings.openid_issuer:
-            from webdemo.server.accounts.openid import openid_routes  # Authlib is loaded where it is used
-
-            app.include_router(openid_routes(settings, lab.sign_ins))
         app.include_router(account_routes(settings, lab.sign_ins, visitors))
-        invitations = Invitations(lab.sign_ins.database, lab.sign_ins.users)
-        app.include_router(invitation_routes(settings, lab.sign_ins, invitations))
     if lab.administration is not None:
         app.include_router(admin_routes(lab))
     app.add_middleware(CORSMiddleware)  # no other site may read anything; Gradio's own would let some

@@ -160,7 +160,7 @@ def make_lab(
 
 def administration_of(settings: Settings, database: Database, users: Users | None) -> Administration:
     """The acts of administrators of a lab."""
-    elsewhere = bool(settings.proxy_user or settings.openid_issuer)
+    elsewhere = bool(settings.proxy_user)
     return Administration(database, users, settings.data, settings.person_bytes, elsewhere=elsewhere)
 
 

@@ -22,7 +22,6 @@ from webdemo.server.http.networks import network_of
 from webdemo.server.store.scratch import Scratch
 
 from .app import Lab, create_app
-from .audit import set_up_audit
 from .logs import keep_last_errors, set_up_logs
 from .memory import share_heaps
 from .settings import Settings
@@ -127,13 +126,6 @@ def make_server(settings: Settings, *, scratch: bool = False, **parts: Any) -> S
     With ``scratch`` all files of this process, Gradio's as well, lie in the data folder.
     """
     node = InstanceLock(settings.data, settings.node)
-    set_up_audit(
-        settings.audit,
-        settings.data,
-        node.name,
-        megabytes=settings.audit_megabytes,
-        files=settings.audit_files,
-    )
     keep_last_errors()
     if scratch:
         parts["scratch"] = Scratch(

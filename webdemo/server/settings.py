@@ -81,17 +81,6 @@ class Settings(BaseSettings):
     proxy_groups: str = Field(
         "", pattern=r"^[A-Za-z0-9-]*$", description="header by which it lists the person's groups"
     )
-    openid_issuer: str = Field(
-        "",
-        pattern=r"^(https?://\S+)?$",
-        description="address of an OpenID Connect provider; needs users as well",
-    )
-    openid_client: str = Field("", description="client id that the provider gave this lab")
-    openid_secret: str = Field("", description="client secret that it gave")
-    openid_name: str = Field(
-        "email", description="claim that names a person; email counts if the provider has verified it"
-    )
-    openid_scope: str = Field("openid email profile", description="scopes that are asked for")
     groups: list[str] = Field(
         [], description="groups, of which a person must be in one; empty: anybody may sign in"
     )
@@ -211,12 +200,6 @@ class Settings(BaseSettings):
     address_connections: int = Field(400, ge=1, description="open connections per address")
 
     # ---- logs
-    audit: Literal["file", "log", "off"] = Field(
-        "file", description="where sign-ins, links, imports, deletions and acts of administrators are written down: "
-        "in files in the data folder, in the log, or nowhere",
-    )  # fmt: skip
-    audit_megabytes: float = Field(10, gt=0, description="size at which a file of the audit log is put aside")
-    audit_files: int = Field(10, ge=1, le=1000, description="earlier files of the audit log that are kept")
     log_level: str = Field(
         "info", pattern="^(debug|info|warning|error)$", description="lowest level that is logged"
     )
@@ -285,11 +268,6 @@ class Settings(BaseSettings):
         if (self.groups or self.admin_groups) and self.proxy_user and not self.proxy_groups:
             name = "GROUPS" if self.groups else "ADMIN_GROUPS"
             raise InputError(f"{PREFIX}{name} needs the header that lists them: set {PREFIX}PROXY_GROUPS.")
-        if self.openid_issuer and not (self.openid_client and self.openid_secret and self.users):
-            raise InputError(
-                f"{PREFIX}OPENID_ISSUER needs {PREFIX}OPENID_CLIENT, {PREFIX}OPENID_SECRET and {PREFIX}USERS: set "
-                "all of them."
-            )
         if not self.local and not self.accounts and not self.open:
             raise InputError(
                 f"{self.host} can be reached from other machines and there are no accounts: make some with "
@@ -302,7 +280,6 @@ class Settings(BaseSettings):
         plain["database"] = _without_password(self.database_url)
         plain["person_megabytes"] = self.person_bytes / 2**20
         plain["director"] = {k: "set" if k == "key" else v for k, v in self.director.items()}
-        plain["openid_secret"] = "set" if self.openid_secret else ""
         plain["metrics_token"] = "set" if self.metrics_token else ""
         return plain
 

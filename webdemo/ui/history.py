@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -220,12 +220,7 @@ class HistoryLike(Protocol):
         """Bytes of runs, or of all of them for none given: about those that :meth:`export` writes."""
 
     def export(self, owner: str, runs: Sequence[str], file: Path) -> int:
-        """Writes runs, or all of them for none given, into one file; returns how many."""
+        """Writes the motions of runs, or of all for none given, into one .zip; returns how many runs."""
 
-    def take_in(self, owner: str, file: Path, *, address: str = "") -> Generator[tuple[int, int], None, None]:
-        """Adds the runs of a file of :meth:`export` to the owner's, all or none.
-
-        Yields:
-            how many runs have been read, and of how many. They are there when the iterator has ended; closed before,
-            it leaves nothing.
-        """
+    def take_in(self, owner: str, files: Sequence[Path], *, address: str = "") -> int:
+        """Adds results to the owner's runs, each from its .npz; returns how many."""

@@ -1,7 +1,7 @@
-"""Pages that show results to anybody: a gallery, one result, or the player alone for a frame of another site's.
+"""Pages that show a result to anybody, with facts around it or as the player alone for a frame of another site's.
 
-The server sends them under a public address (:mod:`webdemo.server.http.public_pages`), and a folder of them plays from
-a disk (:mod:`webdemo.ui.site`). What somebody wrote is text in them, and the motion is data that no browser runs.
+The server sends them under a public address (:mod:`webdemo.server.http.public_pages`). What somebody wrote
+is text in them, and the motion is data that no browser runs.
 """
 
 from __future__ import annotations
@@ -10,13 +10,11 @@ import html
 import json
 import re
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
 from webdemo.inference.methods import label_of
 from webdemo.inference.predict_request import PredictResult
-from webdemo.ui.components.notebook import NOTEBOOK_FOLDER
 from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS
 from webdemo.ui.components.prediction_view import prediction_payload
 from webdemo.ui.components.show import result_payload
@@ -28,7 +26,6 @@ SHARE_FOLDER = PLAYER_FOLDER.parent / "share"
 FILES = {
     "plotly.min.js": PLOTLY_JS,
     **{f"share/{name}": SHARE_FOLDER / name for name in ("share.js", "share.css")},
-    "notebook/thumbnail.js": NOTEBOOK_FOLDER / "thumbnail.js",
     "player/player.css": PLAYER_FOLDER / "player.css",
     **{
         f"player/{path.relative_to(PLAYER_FOLDER).as_posix()}": path
@@ -39,7 +36,6 @@ FILES = {
     **{f"texts/{path.name}": path for path in sorted(TEXTS_FOLDER.glob("*.json"))},
 }
 """All that the pages load, by the names under which they do."""
-MODULES = '<script type="module" src="@files@share/share.js"></script>'
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,14 +44,10 @@ class Place:
 
     Attributes:
         files: before the names of :data:`FILES`.
-        scripts: HTML that loads ``share/share.js``; ``@files@`` in it is ``files``.
-        back: address of the gallery that a result is in; empty for none.
         embed: address of the player alone; empty where there is none.
     """
 
     files: str
-    scripts: str = MODULES
-    back: str = ""
     embed: str = ""
 
 
@@ -74,41 +66,10 @@ def caption(entry: Entry) -> str:
     return " · ".join(found)
 
 
-def gallery_html(
-    title: str,
-    entries: Mapping[int, Entry],
-    addresses: Mapping[int, str],
-    place: Place,
-    *,
-    until: float | None,
-) -> str:
-    """A page of cards.
-
-    Args:
-        title: above them.
-        entries: by their numbers.
-        addresses: of their pages, by the same numbers.
-        place: of this page.
-        until: when it ends, in seconds since 1970; None for never.
-    """
-    cards = "\n".join(
-        f'<li><a href="{_text(addresses[number])}"><canvas width="320" height="320" '
-        f'data-thumbnail="{_text(entry.thumbnail)}" aria-hidden="true"></canvas>'
-        f'<div><strong>{_text(entry.title)}</strong><span class="psh-facts">{_text(caption(entry))}</span></div>'
-        "</a></li>"
-        for number, entry in entries.items()
-    )
-    body = f'<main><h1>{_text(title)}</h1>\n<ol class="psh-cards">\n{cards}\n</ol>\n{_end(until)}</main>'
-    return _page("gallery", title, body, place)
-
-
-def player_html(entry: Entry, payload: Payload, place: Place, *, until: float | None) -> str:
-    """A page with one result; ``until`` as in :func:`gallery_html`."""
-    back = ""
-    if place.back:
-        back = f'<a class="psh-back" href="{_text(place.back)}" {_said("share.all_results")}</a>'
+def player_html(entry: Entry, payload: Payload, place: Place, *, until: float) -> str:
+    """A page with one result; ``until`` is when it ends, in seconds since 1970."""
     body = (
-        f'<main><header>{back}<h1>{_text(entry.title)}</h1><p class="psh-facts">{_text(caption(entry))}</p></header>\n'
+        f'<main><header><h1>{_text(entry.title)}</h1><p class="psh-facts">{_text(caption(entry))}</p></header>\n'
         f"{_stage(payload)}\n{_embed_code(entry, place)}{_end(until)}</main>"
     )
     return _page("player", entry.title, body, place)
@@ -148,19 +109,14 @@ def _said(key: str) -> str:
     return f'data-say="{key}">{english(key)}'
 
 
-def _end(until: float | None) -> str:
-    if until is None:
-        return ""
+def _end(until: float) -> str:
     day = time.strftime("%d %B %Y", time.gmtime(until)).lstrip("0")
     return f'<p class="psh-end">Shown until {day}. Made with Pas de Deux.</p>\n'
 
 
 def _page(kind: str, heading: str, body: str, place: Place) -> str:
     files = _text(place.files)
-    parts = {
-        "kind": kind, "heading": _text(heading), "body": body, "files": files,
-        "scripts": place.scripts.replace("@files@", files),
-    }  # fmt: skip
+    parts = {"kind": kind, "heading": _text(heading), "body": body, "files": files}
     return re.sub(
         r"@(\w+)@", lambda found: parts[found[1]], _template()
     )  # once: nothing in a part is replaced

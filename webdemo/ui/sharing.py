@@ -6,26 +6,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from .history import Opened
-
 
 @dataclass(frozen=True, kw_only=True)
 class PublicPage:
-    """A page that shows results to anybody who knows its address.
+    """A page that shows a result to anybody who knows its address.
 
     Attributes:
         key: of its address.
-        title: above the results.
+        title: of its result.
         created: seconds since 1970.
         until: when it ends, in seconds since 1970.
-        runs: how many results it shows.
     """
 
     key: str
     title: str
     created: float
     until: float
-    runs: int
 
 
 class SharingLike(Protocol):
@@ -34,16 +30,11 @@ class SharingLike(Protocol):
     days: float
     """For how many days a page lasts where nothing else is said; also the most."""
 
-    def publish(
-        self, owner: str, runs: Sequence[str], *, title: str = "", days: float | None = None
-    ) -> PublicPage:
-        """Makes a page of the owner's runs, in their order."""
+    def publish(self, owner: str, run: str, *, days: float | None = None) -> PublicPage:
+        """Makes a page of one of the owner's runs."""
 
     def pages(self, owner: str) -> Sequence[PublicPage]:
         """The owner's pages that have not ended, newest first."""
 
     def revoke(self, key: str, owner: str) -> None:
         """Ends a page of the owner's."""
-
-    def results(self, owner: str, runs: Sequence[str]) -> Sequence[Opened]:
-        """Finished runs of the owner's, all of them for none given, for a folder of pages."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import secrets
 import socket
@@ -75,6 +76,11 @@ class Target:
     def log(self) -> str:
         """What the server wrote so far."""
         return (self.folder / "log").read_text()
+
+    def audited(self) -> list[dict[str, Any]]:
+        """The lines about what people did, the newest first."""
+        lines = [json.loads(line) for line in self.log().splitlines() if line.startswith("{")]
+        return [line for line in lines if line["logger"] == "webdemo.server.audit"][::-1]
 
     def healthy(self) -> bool:
         """Whether it answers within ten seconds that it is well."""

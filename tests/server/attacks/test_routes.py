@@ -15,8 +15,7 @@ from .victim import Victim
 
 OPEN = {
     "GET /healthz", "GET /metrics", "GET /login", "POST /login", "POST /login/", "GET /logout", "POST /logout",
-    "GET /share/{key}", "GET /share/{key}/{place}", "GET /embed/{key}", "GET /embed/{key}/{place}",
-    "GET /shown/{name:path}", "GET /login/invited/{key}", "POST /login/invited/{key}",
+    "GET /share/{key}", "GET /embed/{key}", "GET /shown/{name:path}",
 }  # fmt: skip
 """Routes that need no sign-in: /metrics has its own rule, and a public page's key is a secret."""
 THINGS = {
@@ -24,7 +23,7 @@ THINGS = {
     "session_hash": ("{session}", "x"), "event_id": ("{call}", "{session}", "x"), "api_name": ("generate", "x"),
     "path_or_url": ("{upload}", "{canary}", "{here}/healthz"), "url_path": ("{here}/healthz",),
     "run": ("{run}",), "component_id": ("1",), "segment_id": ("x",), "ext": ("ts",), "id": ("1",),
-    "place": ("1", "x"), "name": ("{upload}", "{canary}", "share/page.html"),
+    "name": ("{upload}", "{canary}", "share/page.html"),
     "environment": ("client",), "type": ("component",), "file_name": ("index.js",),
 }  # fmt: skip
 """What stands for each parameter of a path."""

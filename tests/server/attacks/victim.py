@@ -50,7 +50,7 @@ class Victim:
             self.owner, NewStudy(question="Which is longer?", title=SECRET, sets=sets, checks=0)
         )
         history = Notebook(database, target.data / "motions")
-        page = Publishing(history).publish(self.owner, [run], title="To be watched")
+        page = Publishing(history).publish(self.owner, run)
         database.close()
         self.things = {
             "upload": upload, "download": download, "call": call, "session": "adas own", "run": run,
@@ -87,7 +87,7 @@ class Victim:
             self.rows(f"SELECT * FROM {table} WHERE {column} = '{key}'")
             for table, column, key in (
                 ("runs", "id", run), ("links", "run_id", run), ("notes", "run_id", run), ("studies", "id", study),
-                ("published_runs", "run_id", run),
+                ("published", "run_id", run),
             )
         ]  # fmt: skip
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import json
 import time
 import zipfile
 from collections.abc import Callable
@@ -14,8 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from motion import InputError
-from tests.server.clients import taken_in
+from motion import InputError, formats
 from tests.server.lab import stub_module
 from webdemo.inference.plans import KeptPlan, WindowPlan
 from webdemo.inference.requests import GenerateRequest, ReactRequest
@@ -132,142 +129,73 @@ def test_how_a_tab_was_set_comes_back_for_its_owner_alone(notebook: Notebook) ->
     assert notebook.open(run, ME).beside == ()
 
 
-def test_a_workspace_goes_out_and_comes_in_beside_what_is_there(notebook: Notebook, tmp_path: Path) -> None:
-    run = kept(notebook, seed=9, samples=2)
-    notebook.describe(run, ME, title="Kept", tags="a b", note="Look.", frame=3)
-    file = tmp_path / "workspace.zip"
-    assert notebook.export(ME, [], file) == 1
+def taken_out(notebook: Notebook, folder: Path) -> list[Path]:
+    """The files of an export of everything."""
+    assert notebook.export(ME, [], folder / "all.zip")
+    with zipfile.ZipFile(folder / "all.zip") as archive:
+        archive.extractall(folder / "files")
+    return sorted((folder / "files").iterdir())
+
+
+def test_results_go_out_in_one_file_and_come_in_from_theirs(notebook: Notebook, tmp_path: Path) -> None:
+    run = kept(notebook, "Two: people/walk", seed=9, samples=2)
+    files = taken_out(notebook, tmp_path)
+    assert [file.name for file in files] == ["001-Two-people-walk-1.npz", "001-Two-people-walk-2.npz"]
     with pytest.raises(InputError, match="None of these runs"):
         notebook.export(OTHER, [run], tmp_path / "theirs.zip")
-    assert taken_in(notebook, OTHER, file) == 1 and taken_in(notebook, ME, file) == 1
-    (theirs,) = notebook.search(OTHER, Search()).entries
-    assert (theirs.title, theirs.tags, theirs.note, theirs.frame) == ("Kept", ("a", "b"), "Look.", 3)
-    assert theirs.id != run and len(found(notebook)) == 2, "nothing was overwritten"
-    mine, copy = notebook.open(run, ME), notebook.open(theirs.id, OTHER)
-    for a, b in zip(mine.result.duets, copy.result.duets, strict=True):
-        np.testing.assert_array_equal(a.positions, b.positions)
-    assert copy.result.manifest["request"]["seed"] == 9 and copy.result.manifest["plan"] == PLAN.to_dict()
-    assert copy.result.readouts[0]["after"].keys() >= {"foot_skate"}
+    assert notebook.take_in(OTHER, files) == 2 and len(found(notebook)) == 1
+    theirs = notebook.search(OTHER, Search()).entries
+    assert [entry.title for entry in theirs] == ["Two: people/walk"] * 2
+    mine = notebook.open(run, ME).result
+    copies = sorted(
+        (notebook.open(entry.id, OTHER).result for entry in theirs), key=lambda r: r.manifest["sample"]
+    )
+    for one, copy in zip(mine.duets, copies, strict=True):
+        np.testing.assert_array_equal(one.positions, copy.duets[0].positions)
+        assert copy.manifest["request"]["seed"] == 9
+        assert copy.readouts[0]["after"].keys() >= {"foot_skate"}
 
 
-def _changed(file: Path, change: Callable[[dict[str, Any], dict[str, bytes]], None]) -> bytes:
-    """A workspace with its list of runs and its files changed by hand."""
-    with zipfile.ZipFile(file) as archive:
-        files = {name: archive.read(name) for name in archive.namelist()}
-    listing = json.loads(files.pop("workspace.json"))
-    change(listing, files)
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w") as archive:
-        for name, content in files.items():
-            archive.writestr(name, content)
-        archive.writestr("workspace.json", json.dumps(listing))
-    return made.getvalue()
+def _claiming(manifest: object) -> Callable[[Path], None]:
+    walk = stub_module().walking(1.0)
+    return lambda path: formats.write(replace(walk, manifest=manifest), path) and None
 
 
-GRID = {"columns": ["seed 1", "seed 2"], "rows": [""], "names": ["seed 1", "seed 2"], "title": "Two seeds"}
-
-
-def test_a_grid_and_its_cells_go_out_and_come_in_together(notebook: Notebook, tmp_path: Path) -> None:
-    first, second = kept(notebook, "one", seed=1), kept(notebook, "one", seed=2)
-    people = stub_module().walking(1.0).people
-    notebook.keep(first, ME, Kept(controls={"seed": 1, "grid": GRID}, people=people, compared=(second,)))
-    file = tmp_path / "workspace.zip"
-    assert notebook.export(ME, [first], file) == 2, "its cell goes with it"
-    assert taken_in(notebook, OTHER, file) == 2
-    (card,) = notebook.search(OTHER, Search()).entries
-    opened = notebook.open(card.id, OTHER)
-    assert opened.kept.controls == {"seed": 1, "grid": GRID} and len(opened.kept.people) == 2
-    assert [each.entry.request["seed"] for each in opened.beside] == [2]
-    notebook.remove([second], ME)
-    alone = tmp_path / "alone.zip"
-    assert notebook.export(ME, [first], alone) == 1 and taken_in(notebook, OTHER, alone) == 1
-    newest = notebook.search(OTHER, Search()).entries
-    assert "grid" not in notebook.open(next(e.id for e in newest if e.id != card.id), OTHER).kept.controls
-
-
-def _controls(**controls: Any) -> Callable[[dict[str, Any], dict[str, bytes]], None]:
-    return lambda listing, files: listing["runs"][0].update(kept={"controls": controls, "compared": []})
-
-
-HOSTILE: dict[str, Callable[[dict[str, Any], dict[str, bytes]], Any]] = {
-    "no motion": lambda listing, files: files.clear(),
-    "a motion that is none": lambda listing, files: files.update({"0/1.npz": b"PK\x03\x04 nothing"}),
-    "pickled code": lambda listing, files: files.update({"0/1.npz": _pickled()}),
-    "another format": lambda listing, files: listing.update(format="mine"),
-    "runs that are no list": lambda listing, files: listing.update(runs={"0": {}}),
-    "a run that is none": lambda listing, files: listing.update(runs=[[]]),
-    "an unknown kind": lambda listing, files: listing["runs"][0].update(kind="../../x"),
-    "too many runs": lambda listing, files: listing.update(runs=[{}] * 1001),
-    "a grid without names": _controls(grid={"columns": 3}),
-    "a grid of 500 cells": _controls(
-        grid={"columns": ["x"] * 500, "rows": [""], "names": list(map(str, range(500)))}
-    ),
-    "a grid with equal names": _controls(grid={"columns": ["x"] * 2, "rows": [""], "names": ["x", "x"]}),
-    "a part that is not there": lambda listing, files: listing["runs"][0].update(kept={"compared": [7]}),
-    "a part of itself": lambda listing, files: listing["runs"][0].update(kept={"compared": [0]}),
-    "parts that are no numbers": lambda listing, files: listing["runs"][0].update(
-        kept={"compared": ["0", None]}
-    ),
-    "too many parts": lambda listing, files: listing["runs"][0].update(kept={"compared": [0] * 500}),
-    "a plan that is none": lambda listing, files: listing["runs"][0]["outcome"]["manifest"].update(
-        plan={"beats": [], "alone": ["", ""], "notes": [], "windows": [{"place": ["x"]}]}
-    ),
-    "a prediction from nowhere": lambda listing, files: listing["runs"][0]["outcome"].update(
-        prediction={"past_frames": 10**9}
-    ),
+HOSTILE: dict[str, Callable[[Path], Any]] = {
+    "nothing": lambda path: path.write_bytes(b""),
+    "no zip": lambda path: path.write_bytes(b"PK\x03\x04 nothing"),
+    "pickled code": lambda path: np.savez(path, positions=np.array([{"a": 1}], dtype=object)),
+    "no manifest": _claiming({}),
+    "no request": _claiming({"request": [1]}),
+    "an unknown kind": _claiming({"request": {"kind": "../../x"}}),
+    "a kind that is none": _claiming({"request": {"kind": ["scene"]}}),
+    "a scene without a story": _claiming({"request": {"kind": "scene", "beats": 3}}),
+    "millions of numbers": _claiming({"request": {"kind": "generate", "x": [0] * 2_000_000}}),
 }
 
 
-def _pickled() -> bytes:
-    made = io.BytesIO()
-    np.savez(made, positions=np.array([{"a": 1}], dtype=object))
-    return made.getvalue()
-
-
-def test_a_workspace_made_by_hand_is_one_sentence_and_adds_nothing(
-    notebook: Notebook, tmp_path: Path
-) -> None:
+def test_a_file_made_by_hand_is_one_sentence_and_adds_nothing(notebook: Notebook, tmp_path: Path) -> None:
     kept(notebook)
-    file, bad = tmp_path / "workspace.zip", tmp_path / "bad.zip"
-    notebook.export(ME, [], file)
+    (good,) = taken_out(notebook, tmp_path)
     before = sorted(path.name for path in notebook.folder.iterdir())
-    contents = {name: _changed(file, change) for name, change in HOSTILE.items()}
-    contents["no zip"] = b"nothing at all"
-    contents["cut off"] = file.read_bytes()[:-400]
-    for name, content in contents.items():
-        bad.write_bytes(content)
+    for name, make in HOSTILE.items():
+        bad = tmp_path / "bad.npz"
+        make(bad)
         with pytest.raises(InputError) as error:
-            taken_in(notebook, ME, bad)
+            notebook.take_in(ME, [bad, good])
         assert str(error.value).count("\n") == 0 and str(tmp_path) not in str(error.value), name
         assert len(found(notebook)) == 1, name
         assert sorted(path.name for path in notebook.folder.iterdir()) == before, name
+    with pytest.raises(InputError, match="too many at once"):
+        notebook.take_in(ME, [good] * 101)
 
 
-def test_what_a_workspace_claims_is_not_believed(notebook: Notebook, tmp_path: Path) -> None:
+def test_what_a_file_claims_is_not_believed(notebook: Notebook, tmp_path: Path) -> None:
     mine = kept(notebook)
-    file = tmp_path / "workspace.zip"
-    notebook.export(ME, [], file)
-
-    def claim(listing: dict[str, Any], files: dict[str, bytes]) -> None:
-        files["../../../evil.npz"] = files["/etc/evil"] = b"x"
-        listing["runs"][0] |= {
-            "id": mine, "owner": OTHER, "state": "running", "favourite": True, "created": 1e18, "size": -5,
-            "title": "<script>", "readouts": [{"after": {"foot_skate": "<b>", "jerk": 1e999}, "curves": [1]}],
-        }  # fmt: skip
-        listing["runs"][0]["kept"] = {
-            "controls": {"seed": "<b>", "person": ["a"], "steps": 7, "note": "x"},
-            "compared": None,
-        }
-        listing["runs"][0]["request"] |= {"prompt": ["no", "text"], "actor": [1], "seed": {"deep": {"er": 1}}}
-
-    file.write_bytes(_changed(file, claim))
-    assert taken_in(notebook, ME, file) == 1
-    new = next(entry for entry in notebook.search(ME, Search()).entries if entry.id != mine)
-    assert not new.favourite and new.state == "done" and new.created <= time.time()
-    assert "actor" not in new.request and "prompt" not in new.request and new.request["seed"] == {}
-    opened = notebook.open(new.id, ME)
-    assert opened.result.readouts[0]["after"] == {}
-    assert opened.kept.controls == {"steps": 7}
-    assert notebook.search(OTHER, Search()).total == 0
-    assert replace(opened.entry, id="") != replace(notebook.entry(mine, ME), id="")
-    assert not list(tmp_path.rglob("evil*"))
+    claims = {"kind": "generate", "prompt": "<b>" * 1000, "owner": OTHER, "favourite": True, "id": mine}
+    bad = tmp_path / "bad.npz"
+    _claiming({"request": claims, "state": "running", "owner": OTHER})(bad)
+    assert notebook.take_in(ME, [bad]) == 1
+    (new,) = [entry for entry in notebook.search(ME, Search()).entries if entry.id != mine]
+    assert not new.favourite and new.state == "done" and len(new.title) == 500
+    assert notebook.search(OTHER, Search()).total == 0 and notebook.open(new.id, ME).result.duets

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import json
-import zipfile
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from motion import InputError
-from tests.server.clients import taken_in
 from tests.server.lab import stub_module
 from webdemo.inference.requests import ReactRequest
 from webdemo.server.store import originals
 from webdemo.server.store.database import Run
 from webdemo.server.store.notebook import Notebook
-from webdemo.ui.history import Kept, Original, Search, clean_name
+from webdemo.ui.history import Kept, Original, clean_name
 
 ME, OTHER = "user ada", "user eve"
 BYTES = b"HIERARCHY \xff\x00 as it was"
@@ -80,60 +75,6 @@ def test_what_is_too_large_gone_or_a_link_is_not_kept(
     assert notebook.open(reaction(notebook, upload), ME).kept.original is None, "half of the room is used"
     theirs = reaction(notebook, upload, owner=OTHER)
     assert notebook.open(theirs, OTHER).kept.original is not None, "that of others is not"
-
-
-def test_an_upload_goes_along_in_a_workspace(notebook: Notebook, upload: Original, tmp_path: Path) -> None:
-    reaction(notebook, upload)
-    reaction(notebook, None)
-    file = tmp_path / "workspace.zip"
-    notebook.export(ME, [], file)
-    assert taken_in(notebook, OTHER, file) == 2
-    opened = [notebook.open(entry.id, OTHER) for entry in notebook.search(OTHER, Search()).entries]
-    (kept,) = [each.kept for each in opened if each.kept.original is not None]
-    assert kept.original is not None and kept.original.path.read_bytes() == BYTES
-    assert kept.original.name == "My walk (2).bvh" and kept.controls == {"up": "z", "fps": 60}
-    for each in opened:
-        folder = notebook.folder / each.entry.id
-        assert size_of(notebook, each.entry.id) > sum(path.stat().st_size for path in folder.iterdir())
-
-
-@pytest.mark.parametrize(
-    ("name", "kept"),
-    [("../../../etc/cron.d/x.bvh", "x.bvh"), ("x.html", None), (["x.bvh"], None), ("", None), (None, None)],
-)
-def test_names_in_a_workspace_become_no_paths(
-    notebook: Notebook, upload: Original, tmp_path: Path, name: Any, kept: str | None
-) -> None:
-    mine = reaction(notebook, upload)
-    file, changed = tmp_path / "workspace.zip", tmp_path / "changed.zip"
-    notebook.export(ME, [], file)
-    with zipfile.ZipFile(file) as old, zipfile.ZipFile(changed, "w") as new:
-        for each in old.namelist():
-            content = old.read(each)
-            if each == "workspace.json":
-                listing = json.loads(content)
-                listing["runs"][0]["kept"]["file"] = name
-                content = json.dumps(listing).encode()
-            new.writestr(each, content)
-    taken_in(notebook, ME, changed)
-    (entry,) = [entry for entry in notebook.search(ME, Search()).entries if entry.id != mine]
-    original = notebook.open(entry.id, ME).kept.original
-    assert (original.name if original else None) == kept
-    if original is not None:
-        assert original.path == notebook.folder / entry.id / "original"
-
-
-def test_a_workspace_with_a_file_that_is_too_large_adds_nothing(
-    notebook: Notebook, upload: Original, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    reaction(notebook, upload)
-    file = tmp_path / "workspace.zip"
-    notebook.export(ME, [], file)
-    before = sorted(notebook.folder.iterdir())
-    monkeypatch.setattr("webdemo.server.store.workspace.LARGEST_ORIGINAL", 3)
-    with pytest.raises(InputError, match="0/original in the workspace is too large"):
-        taken_in(notebook, ME, file)
-    assert sorted(notebook.folder.iterdir()) == before
 
 
 @pytest.mark.parametrize(

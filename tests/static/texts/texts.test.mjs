@@ -59,12 +59,6 @@ test("elsewhere, the address goes before the browser's language", async () => {
   assert.equal((await inPage({ document, navigator, location: { search: "?lang=en" } }, "address")).language, "en");
 });
 
-test("pages from a folder bring their texts along", async () => {
-  const pasDeDeuxTexts = { de: { "player.front": "Von vorn" }, en: {} };
-  const page = { pasDeDeuxTexts, document: { documentElement: {} }, navigator: { language: "de" }, location: { search: "" } };
-  assert.equal((await inPage(page, "folder")).say("player.front"), "Von vorn");
-});
-
 test("markup is put into the language, and English markup is left alone", async () => {
   const button = () => element({ "data-say": "player.front", title: "Front (2)", "data-say-title": "player.front_title" });
   const english = button();

@@ -19,7 +19,6 @@ from motion.formats.glb_animations import Animations
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_motion, glb_takes
 from tests.ui.tab_events import built, changes
-from webdemo.server.store.kept_settings import plain_controls
 from webdemo.ui.components.actors import Source, offered_animations, rig_of
 from webdemo.ui.components.animations import MOST_OFFERED, animation_labels
 from webdemo.ui.history import Entry, Kept, Opened, Original
@@ -86,13 +85,13 @@ def test_an_opened_run_was_made_from_its_animation(tab: ReactTab, takes: Path) -
     *_, last = run(tab, source, end=2.0)
     result = last["record"].result
     entry = Entry(id="x", kind="react", title="t", state="done", request=result.manifest["request"])
-    controls = plain_controls({"animation": 3.0, "up": "auto"})
+    controls = {"animation": 3.0, "up": "auto"}
     kept = Kept(controls=controls, people=source.people, original=Original(takes, "takes.glb"))
     found = tab.opened(Opened(entry=entry, result=result, kept=kept))
     assert found[tab.animation] == shown(3) and found[tab.source].read_with[4] == 3
     gone = tab.opened(Opened(entry=entry, result=result, kept=replace(kept, original=None)))
     assert gone[tab.animation] == HIDDEN
-    by_hand = replace(kept, controls=plain_controls({"animation": "9" * 400}))
+    by_hand = replace(kept, controls={"animation": "9" * 400})
     assert tab.opened(Opened(entry=entry, result=result, kept=by_hand))[tab.animation] == shown(1)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from contextlib import suppress
 from functools import partial
-from urllib.parse import quote, urlsplit
+from urllib.parse import urlsplit
 
 from fastapi import APIRouter, Form, Request
 from starlette.concurrency import run_in_threadpool
@@ -94,10 +94,7 @@ def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> A
 
 def _card(settings: Settings, wanted: str, name: str, error: str) -> str:
     """The sign-in page's HTML."""
-    root = settings.root_path
-    elsewhere = f"{root}/login/openid?next={quote(wanted, safe='')}" if settings.openid_issuer else ""
-    action = f"{root}/login"
-    return sign_in_card(action=action, wanted=wanted, name=name[:40], error=error, elsewhere=elsewhere)
+    return sign_in_card(action=f"{settings.root_path}/login", wanted=wanted, name=name[:40], error=error)
 
 
 def _note(sign_ins: SignIns, name: str, token: str | None, status: int) -> None:

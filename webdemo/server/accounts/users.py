@@ -26,8 +26,6 @@ NAME = re.compile(r"\A[a-z0-9][a-z0-9._-]{0,39}\Z")
 SHORTEST = 8
 """Characters of a password at least."""
 LONGEST = 256
-OUTSIDE = "outside"
-"""In place of a password's fingerprint, for people who sign in elsewhere; it ends once an account has their name."""
 SUSPENDED = "This account is suspended: ask the person who runs this server."
 COST = 2**14
 """scrypt's n for new passwords: 16 MB and about 50 ms a try. Each line says its own, so this may change."""
@@ -215,24 +213,9 @@ class SignIns:
             found = session.get(SignIn, _digest(token))
         if found is None or found.until < time.time():
             return None
-        entry = self.users.entry(found.person)
-        if found.entry != (entry or OUTSIDE) or self.people.of(found.person).suspended:
+        if found.entry != self.users.entry(found.person) or self.people.of(found.person).suspended:
             return None
         return found.person
-
-    def begin_outside(self, name: str, *, admin: bool | None = None) -> str:
-        """A new session's token for a person signed in elsewhere, without a password here.
-
-        Args:
-            name: theirs.
-            admin: whether their groups make them an administrator; None where groups do not decide that.
-
-        Raises:
-            Suspended: if an administrator has suspended them.
-        """
-        if not self.people.arrive(name, admin=admin):
-            raise Suspended(SUSPENDED)
-        return self._begin(name, OUTSIDE)
 
     def _begin(self, name: str, entry: str) -> str:
         token, now = secrets.token_urlsafe(32), time.time()

@@ -13,10 +13,9 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import RedirectResponse, Response
 
 from motion import InputError
-from webdemo.server.accounts.invitations import DAYS
 from webdemo.server.activity import Item, work_of
 from webdemo.server.admin import Administration, versions
-from webdemo.server.audit import audit, audited
+from webdemo.server.audit import audit
 from webdemo.server.http.error_pages import never_kept
 from webdemo.server.logs import LAST_ERRORS
 from webdemo.server.store.people import ADMIN, MOST_ANNOUNCED
@@ -36,8 +35,6 @@ _DONE = {
     "end-admin": "The account is no administrator any more.",
 }  # fmt: skip
 """The acts, and the sentence after each."""
-_LINES = 30
-"""Lines of the audit log that are shown."""
 
 
 def admin_routes(lab: Lab) -> APIRouter:
@@ -62,9 +59,6 @@ def admin_routes(lab: Lab) -> APIRouter:
         given = {name: value for name, value in form.items() if isinstance(value, str)}
         done = given.get("act", "")
         try:
-            if done == "invite":
-                said = await run_in_threadpool(_invite, lab, given, visitor_of(request).base)
-                return never_kept(_page(lab, said))
             await run_in_threadpool(_act, lab, done, given)
         except InputError as error:
             raise Refused(422, str(error), "admin") from None
@@ -111,14 +105,6 @@ def _end(lab: Lab, act: str, key: str) -> None:
         raise InputError("It has ended already: go back and reload the page.")
 
 
-def _invite(lab: Lab, given: Mapping[str, str], base: str) -> str:
-    """Makes an invitation; returns the sentence that shows its link, which is nowhere else."""
-    assert lab.administration is not None
-    name = given.get("name", "").strip().lower()
-    path = lab.administration.invite(name, megabytes=_megabytes(given.get("megabytes", "")))
-    return f"Send {name} this link, which works once, within {DAYS:g} days: {base}{path.removeprefix('/')}"
-
-
 def _megabytes(text: str) -> float | None:
     try:
         return float(text) if text.strip() else None
@@ -144,12 +130,10 @@ def _page(lab: Lab, done: str) -> str:
     action = f"{lab.settings.root_path}/admin"
     parts = [
         ("People", _people(lab, lab.administration, action)),
-        *([("Invitation", _invitation(action))] if lab.sign_ins is not None else []),
         ("Runs and streams", _runs_and_streams(lab, action)),
         ("Announcement", _announcement(lab, action)),
         ("Health", _health(lab)),
         ("Last errors", _errors()),
-        ("Audit log", _audit(lab)),
     ]
     return page(parts, done=done, home=f"{lab.settings.root_path}/")
 
@@ -206,16 +190,6 @@ def _people(lab: Lab, admin: Administration, action: str) -> str:
         "Acts",
     )
     return table(heads, rows, "no accounts")
-
-
-def _invitation(action: str) -> str:
-    fields = (
-        "<label>Name of the new account "
-        '<input name="name" size="28" maxlength="40" autocapitalize="none" required></label>'
-        "<label>Its room in megabytes; empty: as everybody "
-        '<input name="megabytes" size="12" inputmode="decimal"></label>'
-    )
-    return _button(action, "invite", "Make a link", fields)
 
 
 def _work(lab: Lab) -> list[Item]:
@@ -280,20 +254,3 @@ def _errors() -> str:
         for line in reversed(LAST_ERRORS.lines)
     ]  # fmt: skip
     return table(("Time (UTC)", "Message", "Error", "Request"), rows, "No errors since this process started.")
-
-
-def _audit(lab: Lab) -> str:
-    known = ("time", "act", "ok", "person", "address", "request")
-    rows = [
-        [
-            _moment(line),
-            html.escape(str(line.get("act", ""))),
-            "yes" if line.get("ok") else "<strong>no</strong>",
-        ]
-        + [html.escape(str(line.get(name, ""))) for name in known[3:5]]
-        + [html.escape(", ".join(f"{k}: {v}" for k, v in line.items() if k not in known))]
-        for line in audited(lab.settings.data, _LINES)
-    ]
-    return table(
-        ("Time (UTC)", "Act", "OK", "Person", "Address", "More"), rows, "No lines in this lab's files."
-    )

@@ -86,30 +86,7 @@ def account_card(*, home: str, name: str, error: str = "", done: str = "") -> st
     )
 
 
-def invitation_card(*, action: str, name: str, error: str = "") -> str:
-    """The form by which an invited person chooses a password.
-
-    Args:
-        action: where it is sent.
-        name: of the account.
-        error: what went wrong before.
-    """
-    said = _alert(error)
-    fields = "".join(
-        f'<label>{label}<input name="{key}" type="password" autocomplete="new-password" required></label>'
-        for label, key in (("Password", "new"), ("Password again", "again"))
-    )
-    shown = html.escape(name, quote=True)
-    return card(
-        f"<p>You are invited. Choose a password for your account <strong>{shown}</strong>.</p>{said}"
-        f'<form method="post" action="{html.escape(action, quote=True)}">'
-        f'<input name="username" value="{shown}" autocomplete="username" hidden readonly>'
-        f"{fields}<button>Make the account</button></form>"
-        "<p><small>The link works once. You sign in with this name and password from now on.</small></p>"
-    )
-
-
-def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "", elsewhere: str = "") -> str:
+def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "") -> str:
     """The form by which people sign in.
 
     Args:
@@ -117,7 +94,6 @@ def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "", e
         wanted: the path that is opened then.
         name: who tried before.
         error: what went wrong then.
-        elsewhere: address at which people sign in by another service; empty for none.
     """
     alert = _alert(error)
     why = (
@@ -126,11 +102,6 @@ def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "", e
         else "to vote in the study that you were invited to"
         if wanted.startswith("/study/")
         else "to generate motion of two people"
-    )
-    other = (
-        f'<p><a href="{html.escape(elsewhere, quote=True)}">Sign in with your organisation</a></p>'
-        if elsewhere
-        else ""
     )
     focus = ("", " autofocus") if name else (" autofocus", "")
     fields = "".join(
@@ -144,7 +115,7 @@ def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "", e
     return card(
         f'<p>Sign in {why}.</p>{alert}<form method="post" action="{html.escape(action, quote=True)}">'
         f'<input type="hidden" name="next" value="{html.escape(wanted, quote=True)}">'
-        f"{fields}<button>Sign in</button></form>{other}"
+        f"{fields}<button>Sign in</button></form>"
         "<p><small>No account, or forgotten your password? Ask the person who runs this server."
         "</small></p>"
     )

@@ -14,8 +14,8 @@ from starlette.responses import FileResponse, HTMLResponse, Response
 
 from motion import InputError
 from webdemo.server.settings import Settings
-from webdemo.server.store.publishing import Publishing
-from webdemo.ui.public_html import FILES, Place, embed_html, gallery_html, payload_of, player_html
+from webdemo.server.store.publishing import Publishing, Shown
+from webdemo.ui.public_html import FILES, Place, embed_html, payload_of, player_html
 from webdemo.ui.visitor import visitor_of
 from webdemo.view.payload import Payload
 
@@ -37,17 +37,9 @@ def public_routes(settings: Settings, publishing: Publishing) -> APIRouter:
     def share(key: str, request: Request) -> Response:
         return pages.whole(key, visitor_of(request).base)
 
-    @router.get("/share/{key}/{place}")
-    def share_one(key: str, place: str, request: Request) -> Response:
-        return pages.one(key, _number(place), visitor_of(request).base)
-
     @router.get("/embed/{key}")
     def embed(key: str) -> Response:
-        return pages.player(key, None)
-
-    @router.get("/embed/{key}/{place}")
-    def embed_one(key: str, place: str) -> Response:
-        return pages.player(key, _number(place))
+        return pages.player(key)
 
     @router.get("/shown/{name:path}")
     def file(name: str) -> Response:
@@ -72,68 +64,32 @@ class _Pages:
         self._lock = threading.Lock()
 
     def whole(self, key: str, base: str) -> Response:
-        """A gallery, or the only result."""
+        """The page of a result."""
+        shown, payload = self._read(key)
+        place = Place(files=f"{self.root}/shown/", embed=f"{base}embed/{quote(key)}")
+        return _sent(player_html(shown.entry, payload, place, until=shown.until))
+
+    def player(self, key: str) -> Response:
+        """The player alone."""
+        shown, payload = self._read(key)
+        return _sent(embed_html(shown.entry, payload, Place(files=f"{self.root}/shown/")))
+
+    def _read(self, key: str) -> tuple[Shown, Payload]:
+        """What a page shows, and its motion; raises Refused where it shows nothing, kept or not."""
         try:
             shown = self.publishing.shown(key)
+            with self._lock:
+                if (kept := self._payloads.get(shown.entry.id)) is not None:
+                    self._payloads.move_to_end(shown.entry.id)
+                    return shown, kept
+            payload = payload_of(self.publishing.open(key))
         except InputError as error:
-            raise _gone(error) from None
-        if len(shown.entries) == 1:
-            return self.one(key, next(iter(shown.entries)), base)
-        addresses = {number: self._path("share", key, number) for number in shown.entries}
-        return _sent(gallery_html(shown.title, shown.entries, addresses, self._place(), until=shown.until))
-
-    def one(self, key: str, number: int, base: str) -> Response:
-        """The page of one result."""
-        try:
-            shown = self.publishing.shown(key)
-            payload = self._payload(key, number)
-        except InputError as error:
-            raise _gone(error) from None
-        several = len(shown.entries) > 1
-        place = Place(
-            files=self._place().files, back=self._path("share", key) if several else "",
-            embed=f"{base}embed/{quote(key)}{f'/{number}' if several else ''}",
-        )  # fmt: skip
-        return _sent(player_html(shown.entries[number], payload, place, until=shown.until))
-
-    def player(self, key: str, number: int | None) -> Response:
-        """The player alone, of a result or of the first one."""
-        try:
-            shown = self.publishing.shown(key)
-            number = next(iter(shown.entries)) if number is None else number
-            payload = self._payload(key, number)
-        except InputError as error:
-            raise _gone(error) from None
-        return _sent(embed_html(shown.entries[number], payload, self._place()))
-
-    def _payload(self, key: str, number: int) -> Payload:
-        """The motion of a result; raises InputError where the page does not show it, kept or not."""
-        run = self.publishing.run_of(key, number)
+            raise Refused(404, str(error), "public") from None
         with self._lock:
-            if run in self._payloads:
-                self._payloads.move_to_end(run)
-                return self._payloads[run]
-        payload = payload_of(self.publishing.open(key, number))
-        with self._lock:
-            self._payloads[run] = payload
+            self._payloads[shown.entry.id] = payload
             while len(self._payloads) > KEPT:
                 self._payloads.popitem(last=False)
-        return payload
-
-    def _path(self, kind: str, key: str, number: int | None = None) -> str:
-        return f"{self.root}/{kind}/{quote(key)}{'' if number is None else f'/{number}'}"
-
-    def _place(self) -> Place:
-        return Place(files=f"{self.root}/shown/")
-
-
-def _number(place: str) -> int:
-    """A place on a page; 0, where nothing is, for anything but a short number."""
-    return int(place) if place.isascii() and place.isdigit() and len(place) < 6 else 0
-
-
-def _gone(error: InputError) -> Refused:
-    return Refused(404, str(error), "public")
+        return shown, payload
 
 
 def _sent(page: str) -> Response:

@@ -1,7 +1,7 @@
 """Backups of a lab: its database and its motions together, made while people work, and put back elsewhere.
 
 A backup is a folder: ``rows.jsonl`` (all rows, in the same form for every kind of database), ``motions``, ``studies``,
-``audit``, the accounts, and ``manifest.json`` with the SHA-256 of each file. The rows are read in one transaction and
+the accounts, and ``manifest.json`` with the SHA-256 of each file. The rows are read in one transaction and
 the files copied after it. A finished run has its files before its row, and loses its row before its files, so what is
 missing then was deleted meanwhile: its row is left out.
 """
@@ -24,18 +24,16 @@ from sqlalchemy import Connection, Engine, MetaData, inspect, text
 
 from motion import InputError
 from motion.formats.files import replacing
-from webdemo.server.audit import FOLDER as AUDIT
 from webdemo.server.audit import audit
 
-from .migrations import NEWEST, REVISIONS, migrate, revision_of, upgrade
+from .migrations import NEWEST, REVISIONS, revision_of, upgrade
 
 FORMAT = "pas-de-deux-backup-1"
 PREFIX = "pas-de-deux-"
 ROWS, MANIFEST, ACCOUNTS = "rows.jsonl", "manifest.json", "users"
-LEFT_OUT = {"alembic_version", "places", "processes", "endings", "sessions", "sign_ins", "invitations"}
-"""Tables of the moment. Sign-ins and invitations are left out so that none comes back that was ended: people sign
-in again."""
-_FOLDERS = ("motions", "studies", AUDIT)
+LEFT_OUT = {"alembic_version", "places", "processes", "endings", "sessions"}
+"""Tables of the moment. Sign-ins are left out so that none comes back that was ended: people sign in again."""
+_FOLDERS = ("motions", "studies")
 _ROWS_OF = {"motions": "runs", "studies": "studies"}
 
 
@@ -86,7 +84,7 @@ def back_up(lab: Lab, folder: Path, *, keep: int = 0) -> Path:
         raise InputError(
             f"The backup cannot be written to {folder} ({error.strerror or error}): choose another, or make room."
         ) from None
-    audit("backup", name=name, runs=runs)
+    audit("backup", folder=name, runs=runs)
     return folder / name
 
 
@@ -124,7 +122,7 @@ def restore(backup: Path, lab: Lab) -> dict[str, Any]:
         )
     if (backup / ACCOUNTS).is_file() and lab.users is not None and lab.users.exists():
         raise InputError(f"There is a file of accounts {lab.users} already: move it away first.")
-    migrate(lab.engine, manifest["revision"])
+    upgrade(lab.engine, manifest["revision"])
     try:
         counts = _fill(lab.engine, backup / ROWS)
     except BaseException:

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Engine, ForeignKey, Text, UniqueConstraint, create_engine, event, select, update
+from sqlalchemy import Engine, ForeignKey, Text, UniqueConstraint, create_engine, event, select
 from sqlalchemy.exc import ArgumentError, DatabaseError, NoSuchModuleError, SQLAlchemyError
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship, sessionmaker
 
@@ -62,9 +62,9 @@ class Run(Table):
     outcome: Mapped[str] = mapped_column(Text, default="")
     message: Mapped[str] = mapped_column(Text, default="")
     created: Mapped[float] = mapped_column(default=time.time, index=True)
-    stored: Mapped[float] = mapped_column(default=0.0, server_default="0", index=True)
+    stored: Mapped[float] = mapped_column(default=0.0, index=True)
     size: Mapped[int] = mapped_column(default=0)
-    address: Mapped[str] = mapped_column(default="", server_default="", index=True)
+    address: Mapped[str] = mapped_column(default="", index=True)
     favourite: Mapped[bool] = mapped_column(default=False)
     node: Mapped[str] = mapped_column(default="")
     links: Mapped[list[Link]] = relationship(back_populates="run", cascade="all, delete-orphan")
@@ -110,12 +110,11 @@ class Link(Table):
 
 
 class Published(Table):
-    """A page that shows results to anybody, until it expires or is revoked.
+    """A page that shows a run to anybody, until it expires or is revoked.
 
     Attributes:
         key: unguessable; the page's address.
-        owner: whose results they are.
-        title: above the results.
+        owner: whose run it is.
         until: when it ends.
     """
 
@@ -123,26 +122,9 @@ class Published(Table):
 
     key: Mapped[str] = mapped_column(primary_key=True)
     owner: Mapped[str] = mapped_column(index=True)
-    title: Mapped[str] = mapped_column(Text)
+    run_id: Mapped[str] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"), index=True)
     created: Mapped[float] = mapped_column(default=time.time)
     until: Mapped[float]
-    runs: Mapped[list[PublishedRun]] = relationship(
-        order_by="PublishedRun.place", cascade="all, delete-orphan", passive_deletes=True
-    )
-
-
-class PublishedRun(Table):
-    """A run on a published page.
-
-    Attributes:
-        place: on the page, from 1; it stays where another run is removed.
-    """
-
-    __tablename__ = "published_runs"
-
-    key: Mapped[str] = mapped_column(ForeignKey("published.key", ondelete="CASCADE"), primary_key=True)
-    place: Mapped[int] = mapped_column(primary_key=True)
-    run_id: Mapped[str] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"), index=True)
     run: Mapped[Run] = relationship()
 
 
@@ -158,22 +140,6 @@ class SignIn(Table):
     digest: Mapped[str] = mapped_column(primary_key=True)
     person: Mapped[str] = mapped_column(index=True)
     entry: Mapped[str]
-    until: Mapped[float]
-
-
-class Invitation(Table):
-    """A link by which somebody makes an account, known by the hash of its key.
-
-    Attributes:
-        name: of the account.
-        megabytes: its room; None: as everybody's.
-    """
-
-    __tablename__ = "invitations"
-
-    digest: Mapped[str] = mapped_column(primary_key=True)
-    name: Mapped[str]
-    megabytes: Mapped[float | None] = mapped_column(default=None)
     until: Mapped[float]
 
 
@@ -211,7 +177,7 @@ class Study(Table):
     closed: Mapped[bool] = mapped_column(default=False)
     created: Mapped[float] = mapped_column(default=time.time)
     size: Mapped[int] = mapped_column(default=0)
-    address: Mapped[str] = mapped_column(default="", server_default="", index=True)
+    address: Mapped[str] = mapped_column(default="", index=True)
 
 
 class Rater(Table):
@@ -270,15 +236,13 @@ class Database:
         with opening():
             self.engine = engine_of(url)
             upgrade(self.engine)
-            with self.engine.begin() as connection:  # rows of an earlier version
-                connection.execute(update(Run).where(Run.stored == 0).values(stored=Run.created))
         self._sound_until = 0.0
         self.session = sessionmaker(self.engine, expire_on_commit=False)
 
     def check(self) -> None:
         """Raises SQLAlchemyError if the database does not answer, or what people need cannot be read."""
         with self.engine.connect() as connection:
-            for table in (Run, Note, Link, Published, PublishedRun, SignIn, Study, Rater, Ballot):
+            for table in (Run, Note, Link, Published, SignIn, Study, Rater, Ballot):
                 connection.execute(select(table).limit(CHECKED_ROWS)).all()
             if self.engine.dialect.name == "sqlite" and time.monotonic() > self._sound_until:
                 (found,) = connection.exec_driver_sql("PRAGMA quick_check(1)").one()

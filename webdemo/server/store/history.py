@@ -19,7 +19,7 @@ from sqlalchemy import CursorResult, delete, func, select, update
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, selectinload
 
-from motion import InputError, formats
+from motion import Duet, InputError, formats
 from webdemo.inference.predict_request import PredictResult
 from webdemo.inference.requests import Result
 from webdemo.server.accounts.visitors import digest
@@ -28,7 +28,6 @@ from webdemo.ui.history import Entry, Opened
 
 from .database import Database, Link, Note, Run, sentence_of, sentences
 from .entries import entry_of, fields_of, is_removed
-from .intake import IMPORT, listed, node_of
 from .ledger import DAY, LabClock, locked
 from .storage import ROW_BYTES, RUN_BYTES, Storage, forget, weight_of
 
@@ -202,28 +201,20 @@ class History:
             )
         for run in lost:
             shutil.rmtree(self.folder / run, ignore_errors=True)
-        self._sweep(dead)
+        self._sweep()
         return len(lost)
 
-    def _sweep(self, dead: Callable[[Sequence[str]], Sequence[str]] | None) -> None:
-        """Removes files that belong to no run: those of killed imports, and of runs that a process was removing.
+    def _sweep(self) -> None:
+        """Removes files that belong to no run, such as those of runs that a killed process was removing.
 
-        A run has its row before it has files. The runs of an import have theirs later, but are listed in its folder.
+        A run has its row before it has files.
         """
         there = [path for path in self.folder.iterdir() if path.is_dir()]
-        coming: set[str] = set()
-        for folder in (path for path in there if path.name.startswith(IMPORT)):
-            node = node_of(folder)
-            if node == self.node or (dead is not None and dead([node])):
-                shutil.rmtree(folder, ignore_errors=True)
-            else:
-                coming |= listed(folder)
         with self.database.session() as session:
             rows = session.execute(select(Run.id, Run.state)).tuples().all()
-        running = {f".{run}" for run, state in rows if state == "running"}
-        known = {run for run, _ in rows} | running | coming
+        known = {run for run, _ in rows} | {f".{run}" for run, state in rows if state == "running"}
         for path in there:
-            if path.name not in known and not path.name.startswith(IMPORT):
+            if path.name not in known:
                 shutil.rmtree(path, ignore_errors=True)
 
     # ---- finding them again ----------------------------------------------------------------------
@@ -324,9 +315,7 @@ class History:
             if trusted:
                 session.execute(delete(Link).where(Link.until < time.time()))
                 old = Run.stored < now - self.keep_days * DAY
-                gone += session.scalars(
-                    select(Run.id).where(old, Run.stored > 0, ~Run.favourite, Run.state != "running")
-                )
+                gone += session.scalars(select(Run.id).where(old, ~Run.favourite, Run.state != "running"))
             gone = [run for run in dict.fromkeys(gone) if forget(session, run)]
         self.storage.drop(gone)
         return len(gone)
@@ -345,6 +334,8 @@ class History:
         try:
             half.mkdir(mode=0o700)
             for i, duet in enumerate(result.duets):
+                if isinstance(duet, Duet) and not duet.manifest:  # by which the file opens again elsewhere
+                    duet = replace(duet, manifest={**result.manifest, "sample": i})
                 formats.write(duet, half / f"{i + 1}.npz")
             if isinstance(result, PredictResult) and result.truth is not None:
                 formats.write(result.truth, half / _TRUTH)

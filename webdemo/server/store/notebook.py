@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import logging
-import threading
-from collections.abc import Generator, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
-from dataclasses import replace
+import re
+import zipfile
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,10 @@ from sqlalchemy import ColumnElement, func, or_, select, update
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, selectinload
 
-from motion import Clip, InputError, formats
+from motion import Clip, Duet, InputError, formats
+from motion.metrics import compare
 from webdemo.inference.requests import Result
+from webdemo.inference.story import SceneRequest
 from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit
 from webdemo.ui.history import Entry, Found, Kept, Opened, Search, Usage
@@ -26,12 +29,9 @@ from webdemo.view.thumbnail import thumbnail
 from .database import Note, Run, sentences
 from .entries import entry_of, fields_of
 from .history import History
-from .intake import announce, intake
-from .kept_settings import MOST_BESIDE
 from .ledger import locked
 from .originals import LARGEST_SHARE, ORIGINAL, keep_original, kept_original
 from .storage import weight_of
-from .workspace import Packed, Taken, pack, unpack
 
 log = logging.getLogger(__name__)
 
@@ -39,17 +39,17 @@ LONGEST_TITLE, LONGEST_NOTE, LONGEST_TAGS = 200, 4000, 300
 LONGEST_PERSON = 60.0
 """Seconds of a chosen file that are kept with a run."""
 MOST_PEOPLE = 6
+MOST_BESIDE = 8
+"""Runs of a grid beside its first."""
+MOST_TAKEN = 100
+"""Files of one import."""
+_KINDS = ("generate", "scene", "react", "predict")
 LARGEST_KEPT = 20_000
 """Characters of the settings of a tab."""
 
 
 class Notebook(History):
     """A history whose owners can search it, write in it, and take it along; see :class:`History`."""
-
-    def __init__(self, *args: Any, **more: Any) -> None:
-        super().__init__(*args, **more)
-        self._importing: set[str] = set()
-        self._lock = threading.Lock()
 
     # ---- finding ---------------------------------------------------------------------------------
 
@@ -244,84 +244,80 @@ class Notebook(History):
 
     @sentences()
     def export(self, owner: str, runs: Sequence[str], file: Path) -> int:
-        """Writes finished runs, or all of them for none given, into one file; returns how many."""
+        """Writes the motions of finished runs, or of all for none given, into one .zip; returns how many runs."""
         query = (
-            select(Run).outerjoin(Note).options(selectinload(Run.note))
+            select(Run).outerjoin(Note).options(selectinload(Run.note), selectinload(Run.links))
             .where(Run.owner == owner, Run.owner != "", Run.state == "done", Note.removed.is_(None))
             .order_by(Run.created)
         )  # fmt: skip
         if runs:
             query = query.where(or_(Run.id.in_(list(runs)), Note.part_of.in_(list(runs))))
         with self.database.session() as session:
-            found = [_packed(run, self.folder / run.id) for run in session.scalars(query)]
+            found = [entry_of(run) for run in session.scalars(query)]
         if not found:
             raise InputError("None of these runs has a result to export.")
-        pack(found, file)
+        with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:  # they are packed already
+            for number, entry in enumerate(found, 1):
+                motions = sorted((self.folder / entry.id).glob("[0-9]*.npz"))
+                if not motions:
+                    raise InputError(f"The files of “{entry.title[:60]}” are gone: remove that run first.")
+                name = re.sub(r"[^\w-]+", "-", entry.title)[:60].strip("-")
+                for path in motions:
+                    archive.write(path, f"{number:03d}-{name}-{path.name}")
         return len(found)
 
-    def take_in(self, owner: str, file: Path, *, address: str = "") -> Generator[tuple[int, int], None, None]:
-        """Adds the runs of a file of :meth:`export` to the owner's, under ids of their own: all, or none.
-
-        Nothing of it is believed: every motion is read with the limits of an upload and written anew. Only runs that
-        the owner has removed already make way for it.
+    def take_in(self, owner: str, files: Sequence[Path], *, address: str = "") -> int:
+        """Adds results to the owner's runs, each from its .npz, which holds its request; returns how many.
 
         Args:
-            owner: whose runs they become; one import goes on at a time.
-            file: the workspace.
-            address: that it comes from, where strangers are known by cookies that they could throw away.
-
-        Yields:
-            how many runs have been read, and of how many. They are there when the iterator has ended; closed before,
-            it leaves nothing.
+            owner: whose runs they become.
+            files: the results, read with the limits of an upload.
+            address: that they come from, as for :meth:`begin`.
 
         Raises:
-            InputError: if anything in the file is not as :meth:`export` writes it, or there is too little room.
+            InputError: for the first that is no result, or does not fit into the owner's room. Those before it stay.
         """
         if not owner:
             raise InputError("There is no history here to import into: sign in or allow cookies first.")
-        self._check_disk()
-        with self._alone(owner), intake(self.folder, self.node) as folder:
-            address = digest(address) if address else ""
-            taken = yield from unpack(file, folder, self.storage.importable(owner, address))
-            with sentences():
-                gone = self._enter_all(owner, address, taken, folder)
-        self.storage.drop(gone)
-        audit("import", count=len(taken), made_way=len(gone))
+        if len(files) > MOST_TAKEN:
+            raise InputError(f"{len(files)} files are too many at once: choose {MOST_TAKEN}.")
+        for number, file in enumerate(files):
+            try:
+                room = self.storage.importable(owner, digest(address) if address else "")
+                if file.stat().st_size > room:
+                    raise InputError("your room is used up: remove runs of yours first")
+                self._take_in(owner, file, address)
+            except InputError as error:
+                raise InputError(
+                    f"{number} of {len(files)} imported, then {file.name[:60]}: {error}"
+                ) from None
+        audit("import", count=len(files))
+        return len(files)
 
-    @contextmanager
-    def _alone(self, owner: str) -> Iterator[None]:
-        """Holds a person's only import here."""
-        with self._lock:
-            if owner in self._importing:
-                raise InputError("You are importing a workspace already: wait for it, or cancel it.")
-            self._importing.add(owner)
-        try:
-            yield
-        finally:
-            with self._lock:
-                self._importing.discard(owner)
+    def _take_in(self, owner: str, file: Path, address: str) -> None:
+        duet = formats.read(file)
+        manifest = duet.manifest if isinstance(duet, Duet) else None
+        asked = (manifest or {}).get("request")
+        kind = asked.get("kind", "generate") if isinstance(asked, dict) else ""
+        if not isinstance(duet, Duet) or not isinstance(asked, dict) or kind not in _KINDS:
+            raise InputError("it holds no result of Pas de Deux: save one as Motion .npz.")
+        if kind == "scene":
+            SceneRequest.from_dict(asked, duet if "motion" in asked else None)
+        title = str(asked.get("prompt") or file.stem)[:500]
+        run = self.begin(owner, _Asked({**asked, "kind": kind}), title, address=address)
+        self.finish(
+            run, Result((duet,), manifest or {}, readouts=(compare(None, duet),), timings={}, notes=())
+        )
 
-    def _enter_all(self, owner: str, address: str, taken: Sequence[Taken], folder: Path) -> list[str]:
-        """Makes imported runs part of the history; returns the removed ones that made way."""
-        now = self.clock.now()
-        announce(folder, [run.row["id"] for run in taken])
-        try:
-            with self.database.session.begin() as session:
-                locked(session)
-                size = sum(run.row["size"] for run in taken)
-                gone = self.storage.make_room(session, owner, address, size, only_removed=True)
-                for run in taken:
-                    session.add(
-                        Run(owner=owner, state="done", node="", stored=now, address=address, **run.row)
-                    )
-                    session.flush()
-                    session.add(Note(run_id=run.row["id"], **run.note))
-                for run in taken:
-                    run.folder.rename(self.folder / run.row["id"])
-        except BaseException:
-            self.storage.drop([run.row["id"] for run in taken])
-            raise
-        return gone
+
+@dataclass(frozen=True)
+class _Asked:
+    """A request as a file holds it."""
+
+    fields: dict[str, Any]
+
+    def to_dict(self) -> dict[str, Any]:
+        return self.fields
 
 
 _ALONE = or_(Note.part_of.is_(None), Note.part_of == "")
@@ -358,14 +354,3 @@ def _note(session: Session, run: str) -> Note:
         found = Note(run_id=run)
         session.add(found)
     return found
-
-
-def _packed(run: Run, folder: Path) -> Packed:
-    entry = entry_of(run)
-    row = {
-        "kind": run.kind, "title": run.title, "created": run.created, "favourite": run.favourite,
-        "request": entry.request, "outcome": fields_of(run.outcome),
-    }  # fmt: skip
-    note = run.note
-    written = {"title": note.title, "tags": note.tags, "text": note.text, "frame": note.frame} if note else {}
-    return Packed(row, written, folder, fields_of(note.kept) if note else {})

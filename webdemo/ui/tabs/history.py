@@ -23,11 +23,11 @@ from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import cancelled_line, error_line, link_line, progress_line, text
 from webdemo.ui.visitor import Visitor, visitor
 
+from .history_files import FilesPanel, room_html, runs_line
 from .job import QUIET, JobTab, Updates
 from .sharing import SharingPanel
 from .study import StudyPanel
 from .sweeps import grid_shown
-from .workspace import WorkspacePanel, room_html, runs_line
 
 LABEL = "History"
 EMPTY, NOTHING_FOUND = "notebook.empty", "notebook.nothing_found"
@@ -54,7 +54,7 @@ class HistoryTab:
             raise ValueError("The page has no history.")
         self.page, self.jobs, self.tabs = page, jobs, tabs
         self.history: HistoryLike = page.history
-        self.workspace = WorkspacePanel(page, self.history, self.refresh)
+        self.files = FilesPanel(page, self.history, self.refresh)
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -81,7 +81,7 @@ class HistoryTab:
             if self.sharing is not None:
                 self.sharing.build()
             self.view = NotebookView(elem_id="history-notebook")
-            self.workspace.build()
+            self.files.build()
         self.removed = gr.State([])
         self._wire(demo, tab, record)
 
@@ -91,7 +91,7 @@ class HistoryTab:
         shown = [self.view, self.who, self.line, self.address, self.saved, self.removed]
         tab.select(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
         self.view.select(self.act, inputs=self.removed, outputs=shown, **quick)
-        self.workspace.wire(demo, shown[:2], self.line, self.saved, self.removed)
+        self.files.wire(shown[:2], self.line, self.saved, self.removed)
         again = self.view.retry(
             self.again, outputs=[self.line], concurrency_limit=None, trigger_mode="once", **QUIET
         )
@@ -164,7 +164,7 @@ class HistoryTab:
                 link, until = self._link(action.one, owner)
                 line, address = status(until, tone="done"), gr.update(value=link, visible=True)
             elif action.act == "export":
-                line, saved = self.workspace.export(action.ids)
+                line, saved = self.files.export(action.ids)
             elif action.act == "remove":
                 count, removed = self.history.remove(action.ids, owner), action.ids
                 line = status(
