@@ -22,8 +22,8 @@ from motion.rigs import RigMotion
 from motion.skeleton import SMPL22
 
 from .bvh_hierarchy import Joint, parse_hierarchy, trees
-from .bvh_numbers import MAX_NUMBERS, Motion, find_motion
-from .files import ascii_bytes, read_bytes
+from .bvh_numbers import Motion, find_motion
+from .files import MAX_NUMBERS, ascii_bytes, read_bytes
 
 Array = NDArray[np.floating]
 

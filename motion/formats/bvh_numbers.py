@@ -14,11 +14,10 @@ from numpy.typing import NDArray
 from motion.errors import InputError
 
 from .bvh_hierarchy import Joint
-from .files import check_duration
+from .files import MAX_NUMBERS, check_duration
 
 Array = NDArray[np.floating]
 
-MAX_NUMBERS = 20_000_000
 _PIECE = 2**20
 _LARGEST = 1e7
 _BLANK = re.compile(rb"\s*+")

@@ -60,7 +60,8 @@ def read_c3d(
         raise InputError(f"{label} is not a whole C3D file, or it is damaged: export it again.") from None
     if unit not in _UNITS:
         raise InputError(f"{label}: the unit {unit!r:.20} is not known: use {', '.join(_UNITS)}.")
-    return gathered(people_of(names, points * _UNITS[unit], rate, label), label, everyone=everyone)
+    points *= _UNITS[unit]
+    return gathered(people_of(names, points, rate, label), label, everyone=everyone)
 
 
 def _points(data: bytes, label: str) -> tuple[list[str], Array, float, str]:
@@ -81,10 +82,14 @@ def _points(data: bytes, label: str) -> tuple[list[str], Array, float, str]:
         raise InputError(
             f"{label} holds {frames:,} frames of {count} points: cut it or lower its frame rate."
         )
-    found = [points[:, :4].astype(np.float64) for _, points, _ in reader.read_frames(copy=True)][:frames]
-    stacked = np.stack(found)
-    unseen = stacked[..., 3] < 0  # the residual of a point that no camera saw
-    places = np.where(unseen[..., None], np.nan, stacked[..., :3])
+    places, filled = np.empty((frames, count, 3), dtype=np.float32), 0
+    for place, (_, points, _) in zip(places, reader.read_frames(copy=False), strict=False):
+        place[:] = points[:, :3]
+        place[points[:, 3] < 0] = np.nan  # the residual of a point that no camera saw
+        filled += 1
+    if not filled:
+        raise ValueError("no frames")
+    places = places[:filled]
     names = [str(label_).strip() for label_ in reader.point_labels][:count]
     names += [f"point {number}" for number in range(len(names), count)]
     units = reader.get("POINT:UNITS")

@@ -18,6 +18,8 @@ MAX_SECONDS = 600.0
 _PIECE = 2**20
 MAX_FRAMES = 72_000
 """Ten minutes at 120 frames a second."""
+MAX_NUMBERS = 20_000_000
+"""Numbers of a motion, 80 MB: more than 60 joints in so many frames."""
 
 
 def read_bytes(

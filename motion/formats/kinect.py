@@ -21,7 +21,7 @@ from motion.errors import InputError
 from motion.skeleton import NTU25, SBU15, Skeleton
 
 from .crowd import Motion, gathered
-from .files import check_duration, decode_text, read_bytes
+from .files import MAX_FRAMES, check_duration, decode_text, read_bytes
 
 Array = NDArray[np.floating]
 
@@ -103,16 +103,18 @@ def _motion(people: list[Array], fps: float, skeleton: Skeleton, label: str, eve
 
 
 def _read_sbu(text: str, label: str, fps: float) -> list[Array]:
-    rows: list[Array] = []
+    rows = np.empty((min(text.count("\n" if "\n" in text else "\r"), MAX_FRAMES) + 1, 90), dtype=np.float32)
+    frames = 0
     for number, line in _lines(text, label):
-        check_duration(len(rows) + 1, fps, label)
+        check_duration(frames + 1, fps, label)
         words = line.split(",")
         if len(words) not in (90, 91):
             raise InputError(
                 f"{label}, line {number}: {len(words)} numbers where a frame's number and 90 are needed."
             )
-        rows.append(_numbers(words[-90:], f"{label}, line {number}"))
-    x, y, z = np.array(rows).reshape(-1, 2, 15, 3).transpose(3, 1, 0, 2)
+        rows[frames] = _numbers(words[-90:], f"{label}, line {number}")
+        frames += 1
+    x, y, z = rows[:frames].reshape(-1, 2, 15, 3).transpose(3, 1, 0, 2)
     metres = np.stack([(1280 - 2560 * x) / 1000, (960 - 1920 * y) / 1000, 10 * z / 7.8125], axis=-1)
     # A body that is not tracked is all zeros in the file.
     return [person for person, seen in zip(metres, (x != 0).any((1, 2)), strict=True) if seen] or [metres[0]]

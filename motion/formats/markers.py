@@ -72,7 +72,9 @@ def people_of(names: Sequence[str], points: Array, fps: float, label: str) -> tu
     Raises:
         InputError: if nobody has the markers of a whole body, or places are not possible.
     """
-    if np.nanmax(np.abs(points), initial=0.0) > _FARTHEST or np.isinf(points).any():
+    if (
+        max(-np.fmin.reduce(points, axis=None), np.fmax.reduce(points, axis=None)) > _FARTHEST
+    ):  # NaN is left out
         raise InputError(f"{label} holds points more than {_FARTHEST:g} m away: is its unit right?")
     people, missing = [], ""
     for markers in _by_person(names, points):

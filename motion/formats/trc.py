@@ -7,6 +7,8 @@ cells are markers that were not seen.
 
 from __future__ import annotations
 
+from array import array
+from itertools import repeat
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +17,7 @@ from numpy.typing import NDArray
 from motion.errors import InputError
 
 from .crowd import Motion, gathered
-from .files import check_duration, decode_text, read_bytes
+from .files import MAX_NUMBERS, check_duration, decode_text, read_bytes
 from .markers import people_of
 
 Array = NDArray[np.floating]
@@ -56,7 +58,8 @@ def read_trc(
         raise InputError(f"{label}: the unit {unit!r:.20} is not known: use {', '.join(_UNITS)}.")
     names = _marker_names(head[3], label)
     values = _rows(text, start, len(names), rate, label)
-    return gathered(people_of(names, values * _UNITS[unit], rate, label), label, everyone=everyone)
+    values *= _UNITS[unit]
+    return gathered(people_of(names, values, rate, label), label, everyone=everyone)
 
 
 def _cells(line: str) -> list[str]:
@@ -89,7 +92,7 @@ def _rows(text: str, start: int, markers: int, rate: float, label: str) -> Array
     """(T, markers, 3) as in the file; NaN where a marker was not seen."""
     width = 2 + 3 * markers
     longest = 40 * width
-    rows: list[list[float]] = []
+    found, frames = array("f"), 0
     number = 5
     while start < len(text):
         stop = text.find("\n", start)
@@ -102,12 +105,24 @@ def _rows(text: str, start: int, markers: int, rate: float, label: str) -> Array
         line, start = text[start:stop].strip("\r\n"), stop + 1
         if not line.strip():
             continue
-        check_duration(len(rows) + 1, rate, label)
-        values = [_value(cell, label, number) for cell in _cells(line)[2:width]]
-        rows.append(values + [np.nan] * (3 * markers - len(values)))
-    if not rows:
+        frames += 1
+        check_duration(frames, rate, label)
+        found.extend(_values(_cells(line)[2:width], label, number))
+        found.extend(repeat(np.nan, 3 * markers * frames - len(found)))
+        if len(found) > MAX_NUMBERS:
+            raise InputError(
+                f"{label} holds {markers} markers in more than {frames:,} frames: cut it or lower its frame rate."
+            )
+    if not frames:
         raise InputError(f"{label} holds no frames: export it again.")
-    return np.array(rows).reshape(len(rows), markers, 3)
+    return np.frombuffer(found, np.float32).reshape(frames, markers, 3)
+
+
+def _values(cells: list[str], label: str, number: int) -> list[float]:
+    try:
+        return [float(cell or "nan") for cell in cells]
+    except ValueError:
+        return [_value(cell, label, number) for cell in cells]
 
 
 def _value(cell: str, label: str, number: int) -> float:

@@ -12,6 +12,7 @@ import pytest
 from motion import InputError
 from tests.server.lab import ROOT
 from webdemo.benchmark import batching, load, served
+from webdemo.benchmark.attackers import ATTACKERS
 from webdemo.benchmark.live import Person
 from webdemo.benchmark.load import Tally, attacked_figures
 from webdemo.cli import main
@@ -66,7 +67,7 @@ def test_shares_are_compared_by_work() -> None:
 
 
 def test_what_attackers_leave_is_compared_with_a_fair_share() -> None:
-    """Two attackers beside two people are entitled to half, so that waits twice as long are fair."""
+    """As many attackers as people are entitled to half, so that waits twice as long are fair."""
     calm = Tally(kinds={0: {"generate": [(1.0, 1.0)], "render": [(4.0, 1.0)]}, 1: {"generate": [(3.0, 1.0)]}})
     attacked = Tally(
         kinds={
@@ -76,13 +77,13 @@ def test_what_attackers_leave_is_compared_with_a_fair_share() -> None:
     )
     calm.live = Person(delays=[0.2, 0.1, 0.3], frames=60, seconds=2.0)
     attacked.live = Person(delays=[1.2], frames=30, seconds=2.0)
-    figures = attacked_figures(calm, attacked, 2)
+    figures = attacked_figures(calm, attacked, ATTACKERS)
     assert figures["attacked_waits_over_fair_share"] == [1.0, 4.0]
     assert figures["attacked_longest_wait_over_fair_share"] == 4.0
     assert figures["attacked_live_wait_over_fair_share"] == pytest.approx(2.0)
     assert figures["attacked_live_frames_over_fair_share"] == 1.0
     calm.live = Person(refused="The server is too busy.")
-    figures = attacked_figures(calm, attacked, 2)
+    figures = attacked_figures(calm, attacked, ATTACKERS)
     assert "attacked_live_wait_over_fair_share" not in figures
     assert figures["live_refused"] == ["The server is too busy."]
 

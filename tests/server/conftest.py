@@ -11,9 +11,9 @@ from fastapi.testclient import TestClient
 from tests.inference.conftest import weights
 from webdemo.server import app
 from webdemo.server.accounts import users as accounts
-from webdemo.server.accounts.users import Users
 
 from .clients import client_of, served_on_loopback, settings_for
+from .lab import add_accounts
 
 __all__ = ["weights"]
 OFTEN = 100_000
@@ -34,8 +34,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     folder = tmp_path_factory.mktemp("shared")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(accounts, "COST", 2**4)
-        for name in ("ada", "eve"):
-            Users(folder / "users").add(name, f"password of {name}")
+        add_accounts(folder / "users", "ada", "eve")
         settings = settings_for(
             folder, users=folder / "users", host="0.0.0.0", hosts=["127.0.0.1"], rate=OFTEN
         )
@@ -51,8 +50,7 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient,
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(accounts, "COST", 2**4)
         patch.setattr(app, "SHARE_EVERY", 0.05)
-        for name in ("ada", "eve"):
-            Users(folder / "users").add(name, f"password of {name}")
+        add_accounts(folder / "users", "ada", "eve")
         common = {"users": folder / "users", "host": "0.0.0.0", "hosts": ["127.0.0.1"]}
         common |= {"running": 1, "waiting": 1}
         one, two = (
@@ -67,6 +65,6 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]
     """Where a server listens that waits a second for heads and bodies, and bounds connections."""
     folder = tmp_path_factory.mktemp("served")
     with served_on_loopback(
-        folder, header_seconds=1, body_seconds=1, connections=60, address_connections=50
+        folder, header_seconds=1, body_seconds=1, answer_seconds=3, connections=60, address_connections=50
     ) as address:
         yield address

@@ -55,6 +55,42 @@ def test_a_flood_from_many_addresses_leaves_the_page_up(served: tuple[str, int])
     wait_for(lambda: answers(served))
 
 
+def forwarded(served: tuple[str, int], address: str, times: int = 1, path: str = "/healthz") -> socket.socket:
+    """A connection of the proxy on this machine, with requests of a stranger of that address."""
+    connection = connect(served)
+    head = f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Forwarded-For: {address}\r\n\r\n"
+    connection.sendall(head.encode() * times)
+    return connection
+
+
+def test_behind_a_proxy_each_connection_counts_for_its_stranger(served: tuple[str, int]) -> None:
+    with ExitStack() as flood:
+        mine = [flood.enter_context(forwarded(served, "203.0.113.7")) for _ in range(50)]
+        for connection in mine:
+            assert answer_to(connection).startswith(b"HTTP/1.1 ")
+        one_more = flood.enter_context(forwarded(served, "203.0.113.7"))
+        one_more.settimeout(20)
+        assert one_more.recv(65536) == b""
+        others = [flood.enter_context(forwarded(served, f"203.0.113.{i + 100}")) for i in range(9)]
+        for connection in others:
+            assert answer_to(connection).startswith(b"HTTP/1.1 ")
+    wait_for(lambda: answers(served))
+
+
+def test_answers_that_nobody_reads_are_ended(served: tuple[str, int]) -> None:
+    """More than the system buffers; a reader of 5 kB a second is as slow as none."""
+    with socket.socket() as slow:
+        slow.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        slow.settimeout(60)
+        slow.connect(served)
+        slow.sendall(b"GET /config HTTP/1.1\r\nHost: 127.0.0.1\r\nAccept-Encoding: identity\r\n\r\n" * 100)
+        until = time.monotonic() + 60
+        with pytest.raises(ConnectionError):
+            while slow.recv(1000):
+                assert time.monotonic() < until
+                time.sleep(0.2)
+
+
 def test_broken_http_is_refused(served: tuple[str, int]) -> None:
     for text in (b"NOT HTTP AT ALL\r\n\r\n", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: a\r\n b\x00\r\n\r\n"):
         with socket.create_connection(served, timeout=30) as broken:

@@ -172,11 +172,16 @@ def clock(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def user(options: argparse.Namespace) -> dict[str, Any]:
-    """Adds, removes or lists accounts; a password is asked for, or read from a pipe."""
+    """Adds, removes or lists accounts; a password is asked for, or read from a pipe.
+
+    An account of the lab that the settings name is removed with everything that is its person's.
+    """
     import getpass
 
     from webdemo.server.accounts.users import Users
+    from webdemo.server.lab import administration_of
     from webdemo.server.settings import read_settings
+    from webdemo.server.store.database import Database, sentences
 
     settings = read_settings()
     path = options.users or settings.users
@@ -188,7 +193,11 @@ def user(options: argparse.Namespace) -> dict[str, Any]:
     if not options.name:
         raise InputError(f"Give a name: `user {options.action} NAME`.")
     if options.action == "remove":
-        users.remove(options.name)
+        if path == settings.users and (settings.database or (settings.data / "history.db").is_file()):
+            with closing(Database(settings.database_url)) as database, sentences():
+                administration_of(settings, database, users).delete(options.name)
+        else:
+            users.remove(options.name)
         return {"removed": options.name}
     terminal = sys.stdin.isatty()
     password = getpass.getpass("Password: ") if terminal else sys.stdin.readline().rstrip("\n")

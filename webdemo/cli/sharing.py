@@ -54,7 +54,13 @@ def _publishing() -> Iterator[Any]:
 
 
 def _owner(options: argparse.Namespace) -> str:
-    return f"user {options.user}" if options.user else "local"
+    from webdemo.server.accounts.users import Users
+    from webdemo.server.settings import read_settings
+
+    if not options.user:
+        return "local"
+    file = read_settings().users
+    return f"user {(Users(file).key(options.user) if file is not None else None) or options.user}"
 
 
 def _only(begin: str, known: Sequence[str], what: str, see: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -72,7 +73,15 @@ class Administration:
     @property
     def names(self) -> list[str]:
         """Everybody with an account, and everybody who has signed in elsewhere."""
-        return sorted({*self._accounts, *(self.people.all() if self.elsewhere else ())})
+        return sorted({*self._accounts, *self._elsewhere(self.people.all())})
+
+    def _elsewhere(self, known: Collection[str]) -> list[str]:
+        """The names of those who have signed in elsewhere: the keys without an id."""
+        return [key for key in known if "#" not in key] if self.elsewhere else []
+
+    def key(self, name: str) -> str:
+        """The key to which everything of a person belongs."""
+        return (self.users.key(name) if self.users is not None else None) or name
 
     @property
     def _accounts(self) -> list[str]:
@@ -90,8 +99,9 @@ class Administration:
                     sizes[owner] = sizes.get(owner, 0.0) + (size or 0)
         known, computed = self.people.all(), self.people.computed()
         found = []
-        for name in sorted({*self._accounts, *(known if self.elsewhere else ())}):
-            owner, row = f"user {name}", known.get(name)
+        for name in sorted({*self._accounts, *self._elsewhere(known)}):
+            key = self.key(name)
+            owner, row = f"user {key}", known.get(key)
             room = row.megabytes if row is not None else None
             allowed = self.person_bytes / 2**20 if room is None else room
             kept, megabytes = (1 - SET_ASIDE) * allowed, sizes.get(owner, 0.0) / 2**20
@@ -108,7 +118,7 @@ class Administration:
     def set_role(self, name: str, *, admin: bool) -> None:
         """Makes a person an administrator, or no longer."""
         self._check(name)
-        self.people.set(name, role=ADMIN if admin else "")
+        self.people.set(self.key(name), role=ADMIN if admin else "")
         audit("admin-role", target=name, role=ADMIN if admin else "none")
 
     def set_room(self, name: str, megabytes: float | None) -> None:
@@ -116,30 +126,31 @@ class Administration:
         self._check(name)
         if megabytes is not None and not 1 <= megabytes <= 1e9:
             raise InputError("Give a room of 1 MB or more, or none to lift it.")
-        self.people.set(name, megabytes=megabytes)
+        self.people.set(self.key(name), megabytes=megabytes)
         audit("admin-room", target=name, megabytes=megabytes)
 
     def suspend(self, name: str, *, suspended: bool) -> None:
         """Signs a person out and keeps them out, or lets them in again."""
         self._check(name)
-        self.people.set(name, suspended=suspended)
+        self.people.set(self.key(name), suspended=suspended)
         if suspended:
-            self.people.sign_out(name)
+            self.people.sign_out(self.key(name))
         audit("admin-suspend" if suspended else "admin-let-in", target=name)
 
     def sign_out(self, name: str) -> int:
         """Ends all of a person's sessions; returns how many there were."""
         self._check(name)
-        ended = self.people.sign_out(name)
+        ended = self.people.sign_out(self.key(name))
         audit("admin-sign-out", target=name, sessions=ended)
         return ended
 
     def delete(self, name: str) -> int:
         """Deletes an account with its runs, studies and files; returns the number of runs."""
         self._check(name)
+        key = self.key(name)
+        owner = f"user {key}"
         if self.users is not None and name in self._accounts:
             self.users.remove(name)
-        owner = f"user {name}"
         with self.database.session.begin() as session:
             runs = list(session.scalars(select(Run.id).where(Run.owner == owner)))
             for run in runs:
@@ -153,7 +164,7 @@ class Administration:
                 shutil.rmtree(self.data / folder / each, ignore_errors=True)
         for scratch in (self.data / "scratch").glob(f"*/uploads/{digest(owner)}"):
             shutil.rmtree(scratch, ignore_errors=True)
-        self.people.forget(name)
+        self.people.forget(key)
         audit("admin-delete", target=name, runs=len(runs), studies=len(studies))
         return len(runs)
 

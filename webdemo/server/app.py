@@ -49,7 +49,7 @@ from webdemo.ui.visitor import visitor
 
 from .memory import collect_again, give_back
 from .settings import Settings
-from .watchdog import watch
+from .watchdog import Apart, watch
 
 log = logging.getLogger(__name__)
 
@@ -145,13 +145,15 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
 
 
 def _add_routes(app: FastAPI, lab: Lab) -> None:
+    health = Apart(lab.health.report)
+
     @app.get("/healthz")
-    def healthz() -> Response:
-        whole, report = lab.health.report()
+    async def healthz() -> Response:
+        whole, report = await health()
         return JSONResponse(report, status_code=200 if whole else 503, headers={"Cache-Control": "no-store"})
 
     @app.get("/metrics")
-    def metrics(request: Request) -> Response:
+    async def metrics(request: Request) -> Response:
         address = request.client.host if request.client else ""
         if not may_read_figures(lab.settings, address, request.headers.get("authorization", "")):
             return JSONResponse({"detail": "These figures are not public."}, status_code=403)

@@ -196,8 +196,13 @@ class Settings(BaseSettings):
     body_megabytes: float = Field(2, gt=0, description="largest body of any other request")
     body_seconds: float = Field(60, gt=0, description="time for a request's body to arrive")
     header_seconds: float = Field(10, gt=0, description="time for a request's headers to arrive")
+    answer_seconds: float = Field(
+        20, gt=0, description="time in which the next 48 kB of an answer must be read, or what is left of it"
+    )
     connections: int = Field(1000, ge=1, description="open connections")
-    address_connections: int = Field(400, ge=1, description="open connections per address")
+    address_connections: int = Field(
+        400, ge=1, description="open connections per address, behind a trusted proxy of the one it forwards"
+    )
 
     # ---- logs
     log_level: str = Field(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import uuid
 from collections.abc import Callable
 from pathlib import Path
@@ -30,6 +29,7 @@ from webdemo.ui.text.classes import class_method
 from webdemo.ui.text.words import error_line, progress_line
 
 from .context import PageContext
+from .places import READING
 
 Answer = tuple[dict[str, Any], list[str]]
 Given = tuple[Path, str | None]
@@ -38,10 +38,6 @@ RATE = "frames a second of a file that does not give its rate; 0 for the usual r
 WHICH = "of a .glb with several animations, the name or the number (from 1) of one; empty for the first"
 PROGRESS = gr.Progress()
 """A default value that makes Gradio report a job's progress in ``job.status()``."""
-
-
-READING = threading.BoundedSemaphore(4)
-"""Files that are read at once, as many as of the page's own: a large one takes seconds and 100 MB."""
 
 
 class Endpoint:
@@ -97,7 +93,7 @@ class Endpoint:
         the notes say which animation was taken.
         """
         try:
-            with READING:
+            with READING.place():
                 request = make()
                 notes = [animation_note(*given)] if given is not None else []
                 notes += reading_notes(request)

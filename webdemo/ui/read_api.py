@@ -7,9 +7,10 @@ from typing import Any
 import gradio as gr
 
 from acts.reading.director import directed
+from webdemo.ui.components.reading import READERS, READING_EVENTS
 from webdemo.ui.text.words import error_line
 
-from .api import READING, Endpoint
+from .api import Endpoint
 
 
 class ReadEndpoint(Endpoint):
@@ -21,7 +22,12 @@ class ReadEndpoint(Endpoint):
             text = gr.Textbox(label="English text, at most 2,000 characters")
             plan = gr.JSON(label="plan: people, things, acts, and what was not understood")
             gr.Button().click(
-                self.read, inputs=[text], outputs=[plan], api_name="read", concurrency_limit=None
+                self.read,
+                inputs=[text],
+                outputs=[plan],
+                api_name="read",
+                concurrency_limit=READERS,
+                concurrency_id=READING_EVENTS,
             )
 
     def read(self, text: str | None) -> dict[str, Any]:
@@ -30,7 +36,6 @@ class ReadEndpoint(Endpoint):
         Returns the plan as JSON (docs/acts.md). An error is one sentence that says what to change.
         """
         try:
-            with READING:
-                return directed(text or "").model_dump(mode="json")
+            return directed(text or "").model_dump(mode="json")
         except Exception as error:
             raise gr.Error(error_line(error), print_exception=False) from None

@@ -24,8 +24,9 @@ from webdemo.view.sheet import SUFFIXES as SHEETS
 from webdemo.view.sheet import write_sheet
 from webdemo.view.stage import LOOKS, Pane, Style
 
-from .api import RATE, READING, WHICH
+from .api import RATE, WHICH
 from .context import PageContext
+from .places import READING
 
 
 class RenderEndpoint:
@@ -84,7 +85,7 @@ class RenderEndpoint:
             )
             if width > 1920 or height > 1080:
                 raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
-            with READING:
+            with READING.place():
                 found = read(Path(motion), fps=file_fps or None, longest=LONGEST, animation=animation or None)
                 body = character_body(read_character(Path(character))) if character else None
             name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import re
 import time
 import tracemalloc
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 
 from motion import InputError
+from motion.formats import read_everyone
 from motion.formats.files import MAX_BYTES
 from motion.formats.importing import import_motion
 from tests.motion.bodies import marching
 
 from .rigs import RIGS, bvh_text
-from .test_markers import keypoints, trc_text
+from .test_markers import c3d_bytes, keypoints, trc_text
 
 MEGABYTE = 2**20
 FULL = MAX_BYTES - 1000
@@ -99,6 +104,65 @@ def test_ten_minutes_at_120_a_second_are_read_soon_and_within_twice_the_limit() 
     finally:
         tracemalloc.stop()
     assert len(data) + peak < 2 * MAX_BYTES
+
+
+def _markers(count: int, frames: int) -> bytes:
+    """A .trc file of so many markers: a still body, and points beside it."""
+    points = {name: places[:1] for name, places in keypoints().items()}
+    points |= {f"P{i}": np.ones((1, 3)) for i in range(count - len(points))}
+    *head, row, _ = trc_text(points, rate=60).split("\n")
+    short = re.sub(r"(\.\d)\d+", r"\1", re.sub(r"\.0+(?=\t|$)", "", row))
+    return "\n".join([*head, *([short] * frames)]).encode()
+
+
+def _recorded(count: int, frames: int) -> bytes:
+    """A .c3d file likewise, whose one frame is written again and again."""
+    points = {name: places[:2] for name, places in keypoints().items()}
+    points |= {f"P{i}": np.ones((2, 3)) for i in range(count - len(points))}
+    data = bytearray(c3d_bytes(points))
+    row = 16 * count
+    start = 512 * (int.from_bytes(data[16:18], "little") - 1)
+    data[8:10] = frames.to_bytes(2, "little")
+    at = data.find(b"FRAMES")
+    assert at > 0
+    data[at + 10 : at + 12] = frames.to_bytes(2, "little")
+    return bytes(data[:start] + data[start : start + row] * frames)
+
+
+VALID: dict[str, Callable[[], bytes]] = {
+    "full.trc": lambda: _markers(188, 35_400),
+    "full.c3d": lambda: _recorded(250, 16_000),
+    "full.txt": lambda: b"\n".join([b"1," + b",".join([b"0.4", b"0.5", b"0.6"] * 30)] * 9_000),
+    "full.npy": lambda: _saved(
+        np.linspace(0, 1, 2 * 36_000 * 22 * 3, dtype=np.float32).reshape(2, -1, 22, 3)
+    ),
+}
+
+
+def _saved(array: np.ndarray) -> bytes:
+    made = io.BytesIO()
+    np.save(made, array)
+    return made.getvalue()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", VALID)
+def test_the_largest_valid_file_of_a_reader_takes_five_times_the_limit_at_most(name: str) -> None:
+    data = VALID[name]()
+    assert len(data) <= MAX_BYTES
+    tracemalloc.start()
+    try:
+        with contextlib.suppress(InputError):  # what is said of its body comes after its numbers
+            read_everyone(data, name=name, fps=60.0)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert len(data) + peak < 5 * MAX_BYTES
+
+
+def test_more_numbers_than_a_motion_may_have_are_refused_before_they_are_kept() -> None:
+    with pytest.raises(InputError, match="196 markers in more than"):
+        read_everyone(_markers(196, 35_900), name="many.trc")
 
 
 @pytest.mark.parametrize("ending", [b" ", b"\r"])

@@ -7,6 +7,7 @@ import hashlib
 import io
 import json
 import os
+import re
 import stat
 import time
 from pathlib import Path
@@ -18,13 +19,16 @@ from starlette.responses import Response
 
 from motion import InputError
 from webdemo.cli import main
+from webdemo.inference.requests import GenerateRequest
 from webdemo.server.accounts import throttle
 from webdemo.server.accounts import users as accounts
 from webdemo.server.accounts.throttle import Throttle, TooManyTries
 from webdemo.server.accounts.users import SignIns, Users
+from webdemo.server.admin import Administration
 from webdemo.server.http.cookies import set_cookie
 from webdemo.server.settings import Settings, read_settings
 from webdemo.server.store.database import Database, SignIn
+from webdemo.server.store.history import History
 
 
 class Clock:
@@ -47,7 +51,7 @@ def users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Users:
 def test_passwords_are_kept_as_salted_hashes(users: Users) -> None:
     users.add("eve", "correct horse")
     text = users.path.read_text()
-    lines = dict(line.split(":", 1) for line in text.splitlines() if not line.startswith("#"))
+    lines = dict(re.split("#[0-9a-f]{8}:", line) for line in text.splitlines() if not line.startswith("#"))
     assert "correct horse" not in text and lines["ada"] != lines["eve"]
     assert stat.S_IMODE(users.path.stat().st_mode) == 0o600
     assert users.knows("ada", "correct horse") and not users.knows("ada", "wrong horse")
@@ -306,3 +310,29 @@ def test_a_stranger_with_a_hundred_addresses_has_fewer_guesses() -> None:
     with pytest.raises(TooManyTries):
         for i in range(100):
             throttle.take("ada", f"10.0.0.{i}")
+
+
+def test_nobody_inherits_from_an_earlier_account_of_the_same_name(
+    users: Users, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Neither by the shell, which removes what was theirs, nor where a line was deleted by hand."""
+    database = Database(f"sqlite:///{tmp_path / 'history.db'}")
+    admin = Administration(database, users, tmp_path, 1e6)
+    first, owner = users.key("ada"), f"user {users.key('ada')}"
+    admin.set_role("ada", admin=True)
+    history = History(database, tmp_path / "motions")
+    run = history.begin(owner, GenerateRequest(prompt="They bow."), "They bow.")
+    assert not users.add("ada", "another password") and users.key("ada") == first, "the same person"
+    users.remove("ada")
+    users.add("ada", "battery staple")
+    assert users.key("ada") != first and not history.entries(f"user {users.key('ada')}")
+    assert admin.people.of(admin.key("ada")).role == "" and history.entries(owner)[0].id == run
+    admin.set_role("ada", admin=True)
+    mine = f"user {users.key('ada')}"
+    history.begin(mine, GenerateRequest(prompt="They hug."), "They hug.")
+    monkeypatch.setenv("PASDEDEUX_USERS", str(users.path))
+    monkeypatch.setenv("PASDEDEUX_DATA", str(tmp_path))
+    assert main(["user", "remove", "ada"]) == 0
+    assert not history.entries(mine) and not Users(users.path).names
+    assert admin.people.of(mine.removeprefix("user ")).role == ""
+    database.close()

@@ -17,9 +17,7 @@ from typing import Any
 
 import httpx
 
-from webdemo.server.accounts.users import Users
-
-from ..lab import ROOT
+from ..lab import ROOT, add_accounts
 
 CANARY = "the canary that nobody may read"
 
@@ -45,8 +43,7 @@ class Target:
         given: dict[str, Any] = {"node": "target", "free_megabytes": 0, "rate": 100_000, "grace_seconds": 1}
         if accounts:
             given |= {"users": folder / "users", "host": "0.0.0.0", "hosts": '["127.0.0.1"]'}
-            for name in ("ada", "eve"):
-                Users(folder / "users").add(name, f"password of {name}")
+            add_accounts(folder / "users", "ada", "eve")
         else:
             given |= {"open": 1}
         self.env = {f"PASDEDEUX_{name.upper()}": str(value) for name, value in {**given, **settings}.items()}

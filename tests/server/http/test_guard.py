@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import asyncio
+import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from starlette.concurrency import run_in_threadpool
 
 from tests.server.clients import HERE, HTML, JOIN, client_of, lab_of, settings_for
 from webdemo.server.app import PAGES
+from webdemo.server.http import guard
 from webdemo.server.http.page_html import PageCache
 from webdemo.server.http.rate_limit import RateLimit
 from webdemo.server.http.refused import Refused
@@ -33,7 +38,7 @@ def test_the_page_and_its_headers(local: TestClient) -> None:
         "/gradio_api/file=/proc/self/environ", "/gradio_api/file=https://example.com/x",
         "/gradio_api/proxy=https://example.com/", "/monitoring", "/gradio_api/vibe-edit/", "/docs",
         "/openapi.json", "/gradio_api/file=app.py", "/a%00b", "/..%5c..%5cx", "/static/../app.py",
-        "/gradio_api/dev/reload", "/gradio_api/deep_link",
+        "/gradio_api/dev/reload", "/gradio_api/deep_link", "/static//x", f"{HERE}//", f"{HERE}//config",
     ],
 )  # fmt: skip
 def test_paths_lead_nowhere(local: TestClient, path: str) -> None:
@@ -166,11 +171,62 @@ def test_a_kept_page_is_not_made_again() -> None:
         await send({"type": "http.response.body", "body": b"page"})
 
     client = TestClient(PageCache(page))
-    assert [client.get(path).text for path in ("/", "/", "/?run=1", "/")] == ["page"] * 4
+    for path in ("/", "/", "/?run=1", *(f"/?x={i}" for i in range(20))):
+        for encoding in ("gzip", "gzip;q=0.9, br", "deflate, gzip"):
+            assert client.get(path, headers={"accept-encoding": encoding}).text == "page"
     assert made == ["/"]
-    for path in ("/other", "/?theme=dark"):
+    for path in ("/other", "/config", "/config?x=1"):
         client.get(path)
-    assert made == ["/", "/other", "/"]
+    assert made == ["/", "/other", "/config"]
+
+
+def test_many_who_come_at_once_wait_for_one_page() -> None:
+    made: list[str] = []
+
+    async def page(scope: Any, receive: Any, send: Any) -> None:
+        made.append(scope["path"])
+        await asyncio.sleep(0.05)
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        await send({"type": "http.response.body", "body": b"page"})
+
+    async def come() -> None:
+        cache, sent = PageCache(page), []
+        scope = {"type": "http", "method": "GET", "path": "/", "scheme": "http", "headers": []}
+
+        async def send(message: Any) -> None:
+            sent.append(message)
+
+        await asyncio.gather(*(cache(scope, asyncio.sleep, send) for _ in range(40)))
+        assert len(sent) == 80
+
+    asyncio.run(come())
+    assert made == ["/"]
+
+
+def test_an_address_that_asks_for_page_after_page_waits(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(guard, "_GETS", 200)
+    with client_of(settings_for(tmp_path, rate=100)) as client:
+        assert [client.get("/config").status_code for _ in range(22)].count(429) == 2
+        assert client.get("/healthz").status_code in (200, 503), "those who watch the server are let through"
+
+
+def test_health_is_told_while_every_thread_waits(local: TestClient) -> None:
+    gate = threading.Event()
+
+    async def hold() -> None:
+        await asyncio.gather(*(run_in_threadpool(gate.wait, 60) for _ in range(200)))
+
+    assert local.portal is not None
+    held = local.portal.start_task_soon(hold)
+    try:
+        began = time.monotonic()
+        assert local.get("/healthz").status_code in (200, 503)
+        assert time.monotonic() - began < 20
+    finally:
+        gate.set()
+        held.result(timeout=60)
 
 
 def test_the_page_is_sent_compressed(local: TestClient) -> None:

@@ -68,3 +68,19 @@ def test_several_processes_migrate_at_once(tmp_path: Path) -> None:
     for process in processes:
         process.join()
     assert [process.exitcode for process in processes] == [0, 0, 0]
+
+
+def test_one_damaged_page_ends_the_start_in_a_sentence(tmp_path: Path) -> None:
+    file = tmp_path / "history.db"
+    Database(f"sqlite:///{file}").close()
+    whole = bytearray(file.read_bytes())
+    size = int.from_bytes(whole[16:18], "big")
+    refused = 0
+    for page in range(len(whole) // size):
+        file.write_bytes(whole[: page * size] + b"\xff" * size + whole[(page + 1) * size :])
+        try:
+            Database(f"sqlite:///{file}").close()
+        except InputError as error:
+            refused += 1
+            assert "restore a backup" in str(error) and "\n" not in str(error)
+    assert refused > 20

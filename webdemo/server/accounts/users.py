@@ -1,4 +1,8 @@
-"""Accounts: a file of names with salted hashes, and sign-ins that end."""
+"""Accounts: a file of names with salted hashes, and sign-ins that end.
+
+What belongs to a person belongs to their key: their name and, after a ``#``, an id that the account got when it was
+made. So nobody inherits from an earlier account of the same name.
+"""
 
 from __future__ import annotations
 
@@ -31,21 +35,22 @@ COST = 2**14
 """scrypt's n for new passwords: 16 MB and about 50 ms a try. Each line says its own, so this may change."""
 _COSTS = {2**power for power in range(4, 18)}
 _HEADER = (
-    "# Accounts of Pas de Deux: a name, then scrypt's n, salt and hash. `python -m webdemo user` edits it.\n"
+    "# Accounts of Pas de Deux: name#id, then scrypt's n, salt and hash. `python -m webdemo user` edits it.\n"
 )
 
 
 class _Password(NamedTuple):
-    """The stored form of a password: scrypt's n, its salt and its hash."""
+    """The stored form of a password: scrypt's n, its salt and its hash; and the account's key."""
 
+    key: str
     cost: int
     salt: bytes
     digest: bytes
 
     @classmethod
-    def of(cls, password: str) -> _Password:
+    def of(cls, key: str, password: str) -> _Password:
         salt = secrets.token_bytes(16)
-        return cls(COST, salt, _scrypt(password.encode(), COST, salt, 32))
+        return cls(key, COST, salt, _scrypt(password.encode(), COST, salt, 32))
 
     def fits(self, password: str) -> bool:
         """True if it is this password."""
@@ -56,7 +61,8 @@ class _Password(NamedTuple):
 class Users:
     """The file of accounts, read anew when it changes.
 
-    One line a person: ``name:n:salt:hash``, salt and hash in base64. Older lines have no n, and mean 2**14.
+    One line a person: ``name#id:n:salt:hash``, salt and hash in base64. A line made by hand may lack the id, and n,
+    which is 2**14 then.
 
     Args:
         path: the file.
@@ -68,7 +74,7 @@ class Users:
         self._known: dict[str, _Password] = {}
         self._lock = threading.Lock()
         self._hashing = threading.Semaphore(2)  # so that guesses cannot take all memory and cores
-        self._nobody = _Password.of("nobody")
+        self._nobody = _Password.of("", "nobody")
 
     @property
     def names(self) -> list[str]:
@@ -80,7 +86,8 @@ class Users:
         self.check(name, password)
         entries = self._entries() if self.path.exists() else {}
         new = name not in entries
-        self._write(entries | {name: _Password.of(password)})
+        key = f"{name}#{secrets.token_hex(4)}" if new else entries[name].key
+        self._write(entries | {name: _Password.of(key, password)})
         return new
 
     def check(self, name: str, password: str) -> None:
@@ -106,6 +113,11 @@ class Users:
             fits = entries.get(name, self._nobody).fits(password)
         return fits and name in entries
 
+    def key(self, name: str) -> str | None:
+        """The key of a person, to whom their runs belong; None if there is no such account."""
+        found = self._entries().get(name)
+        return None if found is None else found.key
+
     def entry(self, name: str) -> str | None:
         """A fingerprint of a person's password, which changes with it; None if there is no such person."""
         found = self._entries().get(name)
@@ -128,8 +140,8 @@ class Users:
 
     def _write(self, entries: dict[str, _Password]) -> None:
         lines = [
-            f"{name}:{known.cost}:{_base64(known.salt)}:{_base64(known.digest)}"
-            for name, known in sorted(entries.items())
+            f"{known.key}:{known.cost}:{_base64(known.salt)}:{_base64(known.digest)}"
+            for _, known in sorted(entries.items())
         ]
         write_text(self.path, _HEADER + "".join(f"{line}\n" for line in lines))
         os.chmod(self.path, 0o600)
@@ -147,12 +159,12 @@ def _parse(text: str) -> dict[str, _Password]:
     entries = {}
     for line in text.splitlines():
         if line.strip() and not line.startswith("#"):
-            name, *costs, salt, digest = line.strip().split(":")
+            key, *costs, salt, digest = line.strip().split(":")
             (cost,) = costs or [str(2**14)]
             if int(cost) not in _COSTS:
                 raise ValueError(cost)
             parts = (base64.b64decode(part, validate=True) for part in (salt, digest))
-            entries[name] = _Password(int(cost), *parts)
+            entries[key.partition("#")[0]] = _Password(key, int(cost), *parts)
     return entries
 
 
@@ -197,12 +209,13 @@ class SignIns:
             return None
         with self._lock:
             self._throttle.give_back(*counted)
-        if self.people.of(name).suspended:
+        key = self.users.key(name) or ""
+        if self.people.of(key).suspended:
             raise Suspended(SUSPENDED)
-        return self._begin(name, entry)
+        return self._begin(key, entry)
 
     def person(self, token: str) -> str | None:
-        """The owner of a session; None if it is unknown, has expired, or belongs to an earlier password.
+        """The name of a session's owner; None if it is unknown, has expired, or belongs to an earlier password.
 
         Raises:
             InputError: if the accounts cannot be read.
@@ -213,15 +226,15 @@ class SignIns:
             found = session.get(SignIn, _digest(token))
         if found is None or found.until < time.time():
             return None
-        if found.entry != self.users.entry(found.person) or self.people.of(found.person).suspended:
-            return None
-        return found.person
+        name = found.person.partition("#")[0]
+        same = self.users.key(name) == found.person and found.entry == self.users.entry(name)
+        return name if same and not self.people.of(found.person).suspended else None
 
-    def _begin(self, name: str, entry: str) -> str:
+    def _begin(self, key: str, entry: str) -> str:
         token, now = secrets.token_urlsafe(32), time.time()
         with self.database.session.begin() as session:
             session.execute(delete(SignIn).where(SignIn.until < now))
-            session.add(SignIn(digest=_digest(token), person=name, entry=entry, until=now + self.seconds))
+            session.add(SignIn(digest=_digest(token), person=key, entry=entry, until=now + self.seconds))
         return token
 
     def change(self, name: str, password: str, new: str, address: str) -> str | None:
@@ -252,7 +265,7 @@ class SignIns:
 
     def end_all(self, name: str) -> int:
         """Ends all sessions of an account; returns how many there were."""
-        return People(self.database).sign_out(name)
+        return self.people.sign_out(self.users.key(name) or name)
 
     def end(self, token: str) -> None:
         """Signs a session out."""

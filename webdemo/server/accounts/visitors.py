@@ -68,15 +68,17 @@ class Visitors:
                 at its proxy alone.
         """
         if by_proxy:
-            self._arrive(by_proxy, admin)
-            name = f"user {by_proxy}"
-            return Visitor(name, name, reference, base, by_proxy)
+            owner = self._owner(by_proxy)
+            self._arrive(owner.removeprefix("user "), admin)
+            return Visitor(owner, owner, reference, base, by_proxy)
         if self.sign_ins is None and self.settings.proxy_user:
             raise not_by_proxy()
         if self.sign_ins is not None:
             person = self._signed_in(cookies.get(SESSION_COOKIE, ""))
-            name = f"user {person}"
-            return None if person is None else Visitor(name, name, reference, base, person)
+            if person is None:
+                return None
+            owner = self._owner(person)
+            return Visitor(owner, owner, reference, base, person)
         local = is_loopback(address)
         if not local and not self.settings.open:
             raise Refused(
@@ -91,6 +93,14 @@ class Visitors:
             return Visitor(browser or f"address {network}", browser, reference, base, address=network)
         return Visitor(browser or "local", "local", reference, base)
 
+    def _owner(self, name: str) -> str:
+        """The owner of the runs of a person who has signed in: their account's key, or the name that a proxy gives."""
+        try:
+            key = self.sign_ins.users.key(name) if self.sign_ins is not None else None
+        except InputError:
+            raise Refused(503, NO_ACCOUNTS, "accounts") from None
+        return f"user {key or name}"
+
     def forget(self, token: str) -> None:
         """Drops a signed-out session from the cache."""
         with self._lock:
@@ -102,13 +112,13 @@ class Visitors:
             for key in [key for key, (person, _) in self._known.items() if person == name]:
                 del self._known[key]
 
-    def _arrive(self, name: str, admin: bool | None) -> None:
-        """Notes a person named by a proxy; raises Refused if they are suspended."""
-        key, now = f"proxy {admin} {name}", time.monotonic()
+    def _arrive(self, person: str, admin: bool | None) -> None:
+        """Notes a person named by a proxy, by their key; raises Refused if they are suspended."""
+        key, now = f"proxy {admin} {person}", time.monotonic()
         with self._lock:
             known = self._known.get(key)
         if known is None or known[1] <= now:
-            known = (name if self.people.arrive(name, admin=admin) else None, now + _REMEMBERED)
+            known = (person if self.people.arrive(person, admin=admin) else None, now + _REMEMBERED)
             self._remember(key, known)
         if known[0] is None:
             raise Refused(403, SUSPENDED, "suspended")

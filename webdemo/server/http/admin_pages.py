@@ -70,7 +70,7 @@ def admin_routes(lab: Lab) -> APIRouter:
 def _check_admin(lab: Lab, request: Request) -> None:
     """Raises Refused for everybody but administrators."""
     who = visitor_of(request)
-    if not who.account or lab.people.of(who.account).role != ADMIN:
+    if not who.account or lab.people.of(who.owner.removeprefix("user ")).role != ADMIN:
         audit("admin-page", ok=False)
         raise Refused(403, "This page is for administrators.", "admin")
 
@@ -116,7 +116,7 @@ def _delete(lab: Lab, admin: Administration, name: str, confirm: str) -> None:
     if confirm != name:
         raise InputError(f"Type the name {name!r:.60} into the field beside Delete to confirm.")
     for item in (*work_of(lab.name, lab.queue, lab.streams), *_elsewhere(lab)):
-        if item.person == f"user {name}" and not lab.end(item.id):
+        if item.person == f"user {admin.key(name)}" and not lab.end(item.id):
             lab.activity.ask(item.id)
     admin.delete(name)
 
@@ -154,7 +154,7 @@ def _people(lab: Lab, admin: Administration, action: str) -> str:
     streams = [item.person for item in work if item.state == "open"]
     rows = []
     for row in admin.rows():
-        name, owner = html.escape(row.name), f"user {row.name}"
+        name, owner = html.escape(row.name), f"user {admin.key(row.name)}"
         room = (
             f'<input name="megabytes" inputmode="decimal" size="6" aria-label="Room of {name} in megabytes" '
             f'placeholder="default" value="{f"{row.room:g}" if row.own_room else ""}">'
@@ -215,7 +215,7 @@ def _runs_and_streams(lab: Lab, action: str) -> str:
 
 def _name(person: str) -> str:
     """A person as the table of people names them."""
-    return html.escape(person.removeprefix("user "))
+    return html.escape(person.removeprefix("user ").partition("#")[0])
 
 
 def _moment(line: Mapping[str, Any]) -> str:

@@ -53,8 +53,15 @@ _ANSWERS = frozenset(f"{API}{name}" for name in ("queue/data", "call", "run", "a
 """Paths that send the results of runs."""
 _CALLS = frozenset(f"{API}{name}" for name in ("queue/join", "call"))
 """Paths whose responses hold the id of a call, with which its result is fetched."""
+_WATCHED = ("/healthz", "/metrics")
+"""Paths for those who watch the server, which have rules of their own and say what is wrong."""
 _LIVE_WEIGHT = 0.05
 """The number of requests that a message of a live stream counts as: some fifteen come in a second."""
+_GETS = 1500
+"""GETs of one person in a minute: the page with all of its files takes about 150."""
+_DEAR = frozenset(("/", "/config", f"{API}info", f"{API}startup-events"))
+_DEAR_WEIGHT = 10.0
+"""The number of GETs that one of these counts as: they are long, or made anew for a name of the server's."""
 _MOST_FIELDS = 50
 """Parameters of an address."""
 
@@ -98,6 +105,8 @@ class Guard:
         self.bindings = Bindings()
         self.rate_limit = RateLimit(settings.rate)
         self.address_rate_limit = RateLimit(settings.rate * settings.address_people)
+        gets = max(_GETS, settings.rate)
+        self.gets, self.address_gets = RateLimit(gets), RateLimit(gets * settings.address_people)
         self.hosts = {name.lower() for name in settings.hosts}
         if self.hosts or settings.local:  # its own health check, and tunnels to it, name the loopback
             self.hosts |= {"localhost", "127.0.0.1", "::1"}
@@ -217,27 +226,34 @@ class Guard:
         path, address = scope["path"], (scope.get("client") or ("127.0.0.1", 0))[0]
         host = headers.get(b"host", b"").decode("latin-1").lower()
         base = f"{scope['scheme']}://{host}{self.settings.root_path}/"
+        nobody = Visitor(f"address {network_of(address)}", "", exchange.reference, base)
+        if path in _WATCHED:  # they answer while everything else waits
+            return nobody
         try:
             visitor = await run_in_threadpool(
                 self.visitors.of, read_cookies(headers), address, reference=exchange.reference, base=base,
                 by_proxy=person_by_proxy(self.settings, scope), admin=admin_by_proxy(self.settings, scope),
             )  # fmt: skip
         except (Refused, SQLAlchemyError) as error:
-            outside = isinstance(error, Refused) and error.reason == "proxy" and needs_no_sign_in(path)
-            if path not in ("/healthz", "/metrics") and not outside:  # those two say what is wrong
+            if not (isinstance(error, Refused) and error.reason == "proxy" and needs_no_sign_in(path)):
                 raise
             visitor = None
-        nobody = Visitor(f"address {network_of(address)}", "", exchange.reference, base)
         if visitor is None and needs_no_sign_in(path):
             visitor = nobody
         if scope["method"] in _CHANGING or is_public_page(path):  # a motion is read for each of these
-            self._take(visitor or nobody, self._weight(scope, headers))
+            self._take(
+                visitor or nobody, self._weight(scope, headers), self.rate_limit, self.address_rate_limit
+            )
+        else:
+            dear = _DEAR_WEIGHT if path in _DEAR else 1.0
+            self._take(visitor or nobody, dear, self.gets, self.address_gets)
         return visitor
 
-    def _take(self, visitor: Visitor, weight: float) -> None:
-        self.rate_limit.take(visitor.person, weight)
+    @staticmethod
+    def _take(visitor: Visitor, weight: float, person: RateLimit, address: RateLimit) -> None:
+        person.take(visitor.person, weight)
         if visitor.address:  # deleting the cookie does not make a new visitor
-            self.address_rate_limit.take(visitor.address, weight)
+            address.take(visitor.address, weight)
 
     def _visitor_cookie(self, scope: Scope) -> str:
         response = Response()

@@ -1,18 +1,16 @@
-"""Caches the page's HTML: Gradio would copy and traverse its whole configuration for every visitor."""
+"""Caches what opens the page: Gradio would copy and traverse its whole configuration for every visitor."""
 
 from __future__ import annotations
 
+import asyncio
 from collections import OrderedDict
-from urllib.parse import parse_qs
 
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 KEPT = 16
-"""Most cached variants: they differ by host name, scheme and encoding of the request."""
-_VARIES_WITH = (b"host", b"x-forwarded-host", b"x-forwarded-proto", b"accept-encoding")
-_NOT_READ = {"run", "lang"}
-"""Parameters of the page's address that its HTML does not depend on; its scripts read them."""
+"""Most cached variants: they differ by host name, scheme and whether the answer may be packed."""
+PATHS = ("/", "/config")
 _ASKED = b"""<script>{
   const asked = new URLSearchParams(location.search).get("lang");
   if (/^[a-z]{2,3}(-[a-z0-9]+)*$/i.test(asked ?? "")) Object.defineProperty(navigator, "language", { value: asked });
@@ -21,10 +19,10 @@ _ASKED = b"""<script>{
 
 
 class PageCache:
-    """An ASGI middleware that answers ``GET /`` from memory, compressed; it runs inside the access checks.
+    """An ASGI middleware that answers GET of :data:`PATHS` from memory, compressed; it runs inside the access checks.
 
-    The HTML is the same for all visitors: personal content arrives through events. So it holds no secret that its
-    compressed size could give away.
+    The answers are the same for all visitors and whatever the query, which scripts read: personal content arrives
+    through events. So they hold no secret that their compressed size could give away.
 
     Args:
         app: renders the page.
@@ -34,32 +32,39 @@ class PageCache:
         self.app = app
         self._page = GZipMiddleware(_Asked(app))
         self._kept: OrderedDict[tuple[object, ...], list[Message]] = OrderedDict()
+        self._making = asyncio.Lock()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answers a request for the page; passes every other one on."""
-        if scope["type"] != "http" or scope["method"] != "GET" or scope["path"] != "/":
+        if scope["type"] != "http" or scope["method"] != "GET" or scope["path"] not in PATHS:
             await self.app(scope, receive, send)
             return
-        if not parse_qs(scope.get("query_string", b"").decode("latin-1")).keys() <= _NOT_READ:
-            await self._page(scope, receive, send)
-            return
-        key = (scope["scheme"], *(pair for pair in scope["headers"] if pair[0] in _VARIES_WITH))
-        if (kept := self._kept.get(key)) is not None:
-            self._kept.move_to_end(key)
-            for message in kept:
-                await send(_copy(message))
-            return
+        sent = dict(scope["headers"])
+        packed = b"gzip" in sent.get(b"accept-encoding", b"")
+        heard = [pair for pair in scope["headers"] if pair[0] not in (b"accept-encoding", b"cookie")]
+        heard += [(b"accept-encoding", b"gzip")] if packed else []
+        scope = {**scope, "headers": heard, "query_string": b""}
+        key = (scope["path"], scope["scheme"], sent.get(b"host"), packed)
+        if (kept := self._kept.get(key)) is None:
+            async with self._making:  # whoever comes meanwhile waits for what is being made
+                if (kept := self._kept.get(key)) is None:
+                    kept = await self._made(key, scope, receive)
+        for message in kept:
+            await send(_copy(message))
+
+    async def _made(self, key: tuple[object, ...], scope: Scope, receive: Receive) -> list[Message]:
+        """The messages of an answer, which is kept if it is whole."""
         made: list[Message] = []
 
         async def keep(message: Message) -> None:
             made.append(_copy(message))
-            await send(message)
 
         await self._page(scope, receive, keep)
         if made and made[0].get("status") == 200:
             self._kept[key] = made
             while len(self._kept) > KEPT:
                 self._kept.popitem(last=False)
+        return made
 
 
 class _Asked:

@@ -58,7 +58,7 @@ def path_below(root: str, path: str, query: bytes) -> str:
         raise Refused(414, "The address is too long.", "bad path")
     if root and (path == root or path.startswith(f"{root}/")):
         path = path[len(root) :] or "/"
-    if "\0" in path or "\\" in path or ".." in path.split("/") or not path.isprintable():
+    if "\0" in path or "\\" in path or "//" in path or ".." in path.split("/") or not path.isprintable():
         raise Refused(404, _NOTHING, "bad path")
     if _CLOSED.match(path):
         raise Refused(404, _NOTHING, "closed")

@@ -236,8 +236,9 @@ class Database:
         with opening():
             self.engine = engine_of(url)
             upgrade(self.engine)
-        self._sound_until = 0.0
-        self.session = sessionmaker(self.engine, expire_on_commit=False)
+            self.session = sessionmaker(self.engine, expire_on_commit=False)
+            self._sound_until = 0.0
+            self.check()  # rather than in the middle of a start
 
     def check(self) -> None:
         """Raises SQLAlchemyError if the database does not answer, or what people need cannot be read."""
@@ -279,7 +280,8 @@ def opening() -> Iterator[None]:
     except (SQLAlchemyError, OSError) as error:
         reason = str(getattr(error, "orig", None) or error).partition("\n")[0]
         raise InputError(
-            f"The database cannot be opened ({reason}): check its URL, or move the damaged file away."
+            f"The database cannot be opened ({reason}): check its URL, or move the damaged file away "
+            "and restore a backup."
         ) from None
 
 

@@ -302,11 +302,17 @@ class Notebook(History):
         if not isinstance(duet, Duet) or not isinstance(asked, dict) or kind not in _KINDS:
             raise InputError("it holds no result of Pas de Deux: save one as Motion .npz.")
         if kind == "scene":
-            SceneRequest.from_dict(asked, duet if "motion" in asked else None)
+            try:
+                SceneRequest.from_dict(asked, duet if "motion" in asked else None)
+            except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+                raise InputError("its scene has no story: save it again.") from None
         title = str(asked.get("prompt") or file.stem)[:500]
         run = self.begin(owner, _Asked({**asked, "kind": kind}), title, address=address)
         self.finish(
-            run, Result((duet,), manifest or {}, readouts=(compare(None, duet),), timings={}, notes=())
+            run,
+            Result(
+                duets=(duet,), manifest=manifest or {}, readouts=(compare(None, duet),), timings={}, notes=()
+            ),
         )
 
 

@@ -20,7 +20,7 @@ class Person(Table):
     """An account's role and limits; a person without a row has the ordinary ones.
 
     Attributes:
-        name: of the account.
+        key: of the account, or the name that a proxy gives.
         role: "admin" or empty.
         suspended: cannot sign in.
         megabytes: room of their own; None: as everybody.
@@ -28,7 +28,7 @@ class Person(Table):
 
     __tablename__ = "people"
 
-    name: Mapped[str] = mapped_column(primary_key=True)
+    key: Mapped[str] = mapped_column(primary_key=True)
     role: Mapped[str] = mapped_column(default="")
     suspended: Mapped[bool] = mapped_column(default=False)
     megabytes: Mapped[float | None] = mapped_column(default=None)
@@ -65,46 +65,46 @@ class People:
         self._added: dict[str, tuple[int, float]] = {}
         self._lock = threading.Lock()
 
-    def of(self, name: str) -> Person:
+    def of(self, key: str) -> Person:
         """The settings of an account."""
         with self.database.session() as session:
-            return session.get(Person, name) or Person(name=name, role="", suspended=False, megabytes=None)
+            return session.get(Person, key) or Person(key=key, role="", suspended=False, megabytes=None)
 
     def all(self) -> dict[str, Person]:
         """All accounts for which anything is set."""
         with self.database.session() as session:
-            return {person.name: person for person in session.scalars(select(Person))}
+            return {person.key: person for person in session.scalars(select(Person))}
 
-    def set(self, name: str, **values: Any) -> None:
+    def set(self, key: str, **values: Any) -> None:
         """Changes what is set for an account."""
         with self.database.session.begin() as session:
-            row = session.get(Person, name)
+            row = session.get(Person, key)
             if row is None:
-                row = Person(name=name)
+                row = Person(key=key)
                 session.add(row)
             for field, value in values.items():
                 setattr(row, field, value)
 
-    def arrive(self, name: str, *, admin: bool | None = None) -> bool:
+    def arrive(self, key: str, *, admin: bool | None = None) -> bool:
         """Notes a person signing in elsewhere, so that administrators see them.
 
         Args:
-            name: theirs.
+            key: theirs.
             admin: whether their groups make them an administrator; None where groups do not decide that.
 
         Returns:
             False if they are suspended.
         """
         try:
-            return self._arrive(name, admin)
+            return self._arrive(key, admin)
         except IntegrityError:  # they came by two requests at once
-            return self._arrive(name, admin)
+            return self._arrive(key, admin)
 
-    def _arrive(self, name: str, admin: bool | None) -> bool:
+    def _arrive(self, key: str, admin: bool | None) -> bool:
         with self.database.session.begin() as session:
-            row = session.get(Person, name)
+            row = session.get(Person, key)
             if row is None:
-                row = Person(name=name, role="", suspended=False)
+                row = Person(key=key, role="", suspended=False)
                 session.add(row)
             if admin is not None:
                 row.role = ADMIN if admin else ""
@@ -117,18 +117,18 @@ class People:
         megabytes = self.of(owner.removeprefix("user ")).megabytes
         return None if megabytes is None else megabytes * 2**20
 
-    def sign_out(self, name: str) -> int:
+    def sign_out(self, key: str) -> int:
         """Ends all sessions of an account; returns how many there were."""
         with self.database.session.begin() as session:
-            ended = session.execute(delete(SignIn).where(SignIn.person == name))
+            ended = session.execute(delete(SignIn).where(SignIn.person == key))
             return cast(CursorResult[Any], ended).rowcount
 
-    def forget(self, name: str) -> None:
+    def forget(self, key: str) -> None:
         """Removes all that is set or counted for an account."""
-        self.sign_out(name)
+        self.sign_out(key)
         with self.database.session.begin() as session:
-            session.execute(delete(Person).where(Person.name == name))
-            session.execute(delete(Computed).where(Computed.person == f"user {name}"))
+            session.execute(delete(Person).where(Person.key == key))
+            session.execute(delete(Computed).where(Computed.person == f"user {key}"))
 
     # ---- computed seconds ------------------------------------------------------------------------
 

@@ -23,6 +23,7 @@ from webdemo.inference.method import Variant
 from webdemo.inference.methods import AUTOMATIC, automatic, installed, variants
 from webdemo.inference.requests import Result
 from webdemo.ui.history import Original, clean_name
+from webdemo.ui.places import READING
 from webdemo.view.payload import Payload, player_payload
 
 from .animations import animation_labels, animation_list, labels_of_file
@@ -211,7 +212,8 @@ class Found:
 def read_source(path: str | Path, name: str | None = None, read_with: ReadWith | None = None) -> Source:
     """A motion file as a source; raises InputError where it cannot be read."""
     path = Path(path)
-    found = import_motion(path, choices=import_choices(*read_with) if read_with else None)
+    with READING.place():
+        found = import_motion(path, choices=import_choices(*read_with) if read_with else None)
     return Source(
         name or path.name,
         tuple(at_30_fps(person) for person in found.people),

@@ -34,6 +34,7 @@ from motion.formats.one_person import SUFFIXES
 from motion.formats.spreadsheet import safe_cell
 from webdemo.inference.actor import ROLES
 from webdemo.inference.requests import Result
+from webdemo.ui.places import READING
 from webdemo.view.sheet import write_grid_sheet, write_sheet
 from webdemo.view.stage import Style
 
@@ -112,7 +113,8 @@ class Worn:
         Raises:
             InputError: for a file that is no character, or one whose skeleton cannot be moved.
         """
-        body = character_body(read_character(path))
+        with READING.place():
+            body = character_body(read_character(path))
         still = Clip(SMPL22.rest_positions()[None].astype(np.float32), 30.0)
         glb_wearing(Duet(still, still), path)
         return cls(body, Path(shutil.copyfile(path, folder / path.name)))

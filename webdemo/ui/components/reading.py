@@ -31,7 +31,9 @@ READING_FOLDER = STATIC / "reading"
 
 
 READERS = 2
-"""Texts that are read at once; further ones wait."""
+"""Texts that are read at once; further ones wait in the fair queue of events, those of programs as well."""
+READING_EVENTS = "reading"
+"""Their group of events."""
 
 _TYPED = """(text) => ({ __type__: "update", props: { text: text ?? "" } })"""
 """JavaScript that tells the component what is typed; it waits for a pause and asks."""
@@ -95,7 +97,7 @@ class Reading(Part):
         prompt.change(None, inputs=prompt, outputs=self, js=_TYPED, **quiet)
         self.input(
             reread, inputs=self, outputs=self, trigger_mode="always_last",
-            concurrency_limit=READERS, concurrency_id="reading", **quiet,
+            concurrency_limit=READERS, concurrency_id=READING_EVENTS, **quiet,
         )  # fmt: skip
 
 

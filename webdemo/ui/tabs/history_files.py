@@ -10,6 +10,7 @@ import gradio as gr
 
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import HistoryLike, Usage
+from webdemo.ui.places import READING
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.said import said
 from webdemo.ui.text.texts import say
@@ -79,7 +80,10 @@ class FilesPanel:
         """Adds results to the history."""
         who = visitor()
         try:
-            count = self.history.take_in(who.owner, [Path(file) for file in files or ()], address=who.address)
+            with READING.place():
+                count = self.history.take_in(
+                    who.owner, [Path(file) for file in files or ()], address=who.address
+                )
             line = status(f"Imported {runs_line(count)}.", tone="done")
         except Exception as error:
             line = status(error_line(error), tone="error")

@@ -46,7 +46,7 @@ def upgrade() -> None:
     )  # fmt: skip
     sa.Table("sessions", tables, _id("digest"), _text("person", index=True), _text("entry"), _number("until"))
     sa.Table(
-        "people", tables, _id("name"), _text("role"), _number("suspended", sa.Boolean),
+        "people", tables, _id("key"), _text("role"), _number("suspended", sa.Boolean),
         sa.Column("megabytes", sa.Double),
     )  # fmt: skip
     sa.Table("computed", tables, _id("person"), _number("runs", sa.Integer), _number("seconds"))

@@ -1,0 +1,73 @@
+"""Places for reading what people send: a large file takes seconds and 200 MB."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from .visitor import visitor
+
+AT_ONCE = 2
+"""Files that are read at a time, of all people together; so many times the memory of one is what they take."""
+_REMEMBERED = 60.0
+"""Seconds after which half of what somebody has used is forgotten."""
+
+
+class Places:
+    """One place a person, and for all of them few: whoever has used the fewest seconds lately goes first.
+
+    Strangers who can throw their cookies away count by their address.
+
+    Args:
+        at_once: how many there are.
+    """
+
+    def __init__(self, at_once: int = AT_ONCE) -> None:
+        self.at_once = at_once
+        self._change = threading.Condition()
+        self._inside: set[str] = set()
+        self._waiting: list[str] = []
+        self._used: dict[str, tuple[float, float]] = {}
+
+    @contextmanager
+    def place(self) -> Iterator[None]:
+        """Waits for a place and holds it."""
+        who = visitor()
+        person = who.address or who.person
+        with self._change:
+            self._waiting.append(person)
+            try:
+                self._change.wait_for(lambda: self._next() == person)
+                self._inside.add(person)
+            finally:
+                self._waiting.remove(person)
+                self._change.notify_all()
+        began = time.monotonic()
+        try:
+            yield
+        finally:
+            with self._change:
+                self._inside.discard(person)
+                now = time.monotonic()
+                self._used[person] = (self._seconds(person, now) + now - began, now)
+                self._used = {
+                    name: used for name, used in self._used.items() if self._seconds(name, now) > 0.01
+                }
+                self._change.notify_all()
+
+    def _next(self) -> str | None:
+        """The person who takes the next place; None while there is none or nobody may."""
+        if len(self._inside) >= self.at_once:
+            return None
+        now = time.monotonic()
+        able = [person for person in dict.fromkeys(self._waiting) if person not in self._inside]
+        return min(able, key=lambda person: self._seconds(person, now), default=None)
+
+    def _seconds(self, person: str, now: float) -> float:
+        used, when = self._used.get(person, (0.0, now))
+        return used * 0.5 ** ((now - when) / _REMEMBERED)
+
+
+READING = Places()
