@@ -1,13 +1,13 @@
 // The texts of the page in one language: static/texts holds a file a language (webdemo/ui/text/texts.py).
 // The lab's page carries all texts in Gradio's configuration, and a page without one fetches the file of its language.
 
-const LANGUAGES = ["de", "en"]; // the names of the files
+const LANGUAGES = ["en"]; // the names of the files
 const ENGLISH = "en";
 const ATTRIBUTES = ["title", "aria-label", "placeholder"];
 const MARK = /__i18n__(\{[^}]*\})/;
 
 /** The language that is nearest to what a browser wants, by Gradio's rule: "de-AT" is German, an unknown one English. */
-export function nearest(wanted, known = LANGUAGES) {
+export function nearest(wanted, known) {
   return [wanted, wanted?.split("-")[0]].find((name) => known.includes(name)) ?? ENGLISH;
 }
 
@@ -19,9 +19,10 @@ function wanted() {
   return asked || globalThis.navigator?.language || ENGLISH;
 }
 
+const bundled = globalThis.gradio_config?.i18n_translations;
+
 async function read(name) {
-  const known = globalThis.gradio_config?.i18n_translations;
-  if (known?.[name]) return known[name];
+  if (bundled?.[name]) return bundled[name];
   const address = new URL(`texts/${name}.json`, import.meta.url);
   if (address.protocol === "file:") { // a test of Node's
     const files = "node:fs/promises"; // no module of a page
@@ -32,7 +33,7 @@ async function read(name) {
   return answer.json();
 }
 
-export const language = nearest(globalThis.document ? wanted() : ENGLISH);
+export const language = nearest(globalThis.document ? wanted() : ENGLISH, bundled ? Object.keys(bundled) : LANGUAGES);
 const texts = await read(language);
 
 /** The text of a key with values in the place of the names in braces; a key that no text has is given back. */

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
 from gradio.context import LocalContext
-from starlette.requests import HTTPConnection, Request
+from starlette.requests import Request
 
 
 @dataclass(frozen=True)
@@ -46,18 +45,3 @@ def visitor_of(request: Request) -> Visitor:
     """The person who sent a request, as the guard found them."""
     found = request.scope.get("state", {}).get("visitor")
     return found if isinstance(found, Visitor) else LOCAL
-
-
-def wanted_language() -> str:
-    """The language of the page whose event is being answered, such as "de": its address's or its browser's."""
-    request = getattr(LocalContext.request.get(None), "request", None)
-    return "en" if request is None else language_of(request)
-
-
-def language_of(request: HTTPConnection) -> str:
-    """The language of the page that sent a request: its own ``?lang=``, the page's or the browser's first language."""
-    page = re.search(r"[?&]lang=([\w-]+)", request.headers.get("referer", ""))
-    wanted = (
-        request.query_params.get("lang") or (page and page[1]) or request.headers.get("accept-language", "")
-    )
-    return re.split(r"[-_,;]", wanted.strip().lower(), maxsplit=1)[0] or "en"

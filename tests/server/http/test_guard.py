@@ -117,16 +117,6 @@ def test_bodies_have_limits(local: TestClient) -> None:
     assert local.get("/" + "a" * 5000).status_code == 414
 
 
-def test_a_refusal_is_german_on_a_german_page_alone(local: TestClient) -> None:
-    headers = {"sec-fetch-site": "cross-site"}
-    english = local.post(JOIN, content=b"{}", headers=headers).json()["detail"]
-    german = local.post(JOIN, content=b"{}", headers={**headers, "referer": f"{HERE}/?lang=de"}).json()[
-        "detail"
-    ]
-    assert english == "Another site's page cannot do this: open the page itself."
-    assert german == "Die Seite eines anderen Anbieters darf das nicht: die Seite selbst öffnen."
-
-
 def test_too_many_requests() -> None:
     rates = RateLimit(5)
     for _ in range(5):

@@ -9,7 +9,6 @@ from fastapi.testclient import TestClient
 
 from tests.server.clients import lab_of, sign_in
 from webdemo.server.http.guard import _LIVE_WEIGHT
-from webdemo.server.live.routes import _said
 from webdemo.view.payload import unpack_positions
 
 from .test_streams import poses
@@ -53,14 +52,6 @@ def test_what_cannot_be_done_is_answered_with_a_sentence(client: TestClient) -> 
     assert client.post(f"/live/{key}", content=b"[1]").status_code == 422
     assert client.post("/live/unknown", content=b"{}").status_code == 404
     assert client.get(f"/live/{key}").status_code in (404, 405)
-
-
-def test_a_german_page_gets_german_sentences(client: TestClient) -> None:
-    german = {"accept-language": "de-DE,de;q=0.9", "referer": "http://lab.example/"}
-    belief = {"state": "watches", "text": "The agent watches.", "chances": []}
-    assert _said({"frames": 4, "belief": belief}, "de")["belief"]["text"] == "Der Agent schaut zu."
-    refused = client.post("/live", json={**WANTED, "lens": 7}, headers=german).json()["detail"]
-    assert refused.startswith("Ein Bildwinkel von 7° geht nicht")
 
 
 def test_another_sites_page_cannot_open_one(client: TestClient) -> None:

@@ -68,11 +68,6 @@ def test_every_language_has_all_texts_with_the_same_names_in_braces(language: st
         assert spaces[0] == spaces[1], f"{key}: the spaces at its ends join it to other texts"
 
 
-def test_a_second_language_is_not_english() -> None:
-    same = [key for key, text in languages()["de"].items() if text == english(key)]
-    assert len(same) < 0.08 * len(languages()["de"]), same
-
-
 def test_scripts_know_the_languages() -> None:
     (listed,) = re.findall(r"const LANGUAGES = (\[.*?\]);", (ROOT / "static" / "texts.js").read_text())
     assert json.loads(listed) == sorted(languages()) == [path.stem for path in sorted(TEXTS_FOLDER.iterdir())]
@@ -218,7 +213,6 @@ def test_a_text_for_a_component_is_a_mark_that_gradio_resolves() -> None:
     filled = say("scene.futures", count=3)
     key = json.loads(filled.removeprefix("__i18n__"))["key"]
     assert translations()["en"][key] == "3 continuations from here"
-    assert translations()["de"][key] == languages()["de"]["scene.futures"].replace("{count}", "3")
     with pytest.raises(KeyError):
         say("files.nothing")
 

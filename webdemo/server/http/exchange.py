@@ -8,13 +8,10 @@ import uuid
 from collections.abc import Callable, Sequence
 
 from starlette.datastructures import MutableHeaders
-from starlette.requests import HTTPConnection
 from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.types import Message, Scope, Send
 
 from webdemo.server.settings import on_a_space
-from webdemo.ui.text.said import said
-from webdemo.ui.visitor import language_of
 
 from .body_limits import BoundedBody
 from .error_pages import message_card
@@ -152,8 +149,7 @@ class Exchange:
         if self.in_browser:
             page = message_card(refused.sentence, home=f"{self._root}/", reference=self.reference)
             return HTMLResponse(page, status_code=refused.status)
-        sentence = said(refused.sentence, language=language_of(HTTPConnection(self.scope)))
-        content = {"detail": sentence, "request": self.reference}
+        content = {"detail": refused.sentence, "request": self.reference}
         return JSONResponse(content, status_code=refused.status)
 
 

@@ -15,7 +15,7 @@ _ASKED = b"""<script>{
   const asked = new URLSearchParams(location.search).get("lang");
   if (/^[a-z]{2,3}(-[a-z0-9]+)*$/i.test(asked ?? "")) Object.defineProperty(navigator, "language", { value: asked });
 }</script>"""
-"""Stands before Gradio's scripts, which take the browser's language: ``?lang=de`` in the address goes before it."""
+"""Stands before Gradio's scripts, which take the browser's language: ``?lang=fr`` in the address goes before it."""
 
 
 class PageCache:

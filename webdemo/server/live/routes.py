@@ -18,8 +18,7 @@ from starlette.responses import JSONResponse, Response
 from motion import SMPL22, Clip, InputError
 from motion.video.packed import camera_number
 from webdemo.inference.actor import FPS
-from webdemo.ui.text.said import said
-from webdemo.ui.visitor import Visitor, language_of, visitor_of
+from webdemo.ui.visitor import Visitor, visitor_of
 from webdemo.view.payload import player_payload
 
 from .messages import read_fields
@@ -67,18 +66,7 @@ async def _answered(request: Request, job: Callable[[], dict[str, Any] | Future[
         status, answer = 409, {"detail": str(error)}
     except InputError as error:
         status, answer = 422, {"detail": str(error)}
-    content = _said(answer, language_of(request))
-    return JSONResponse(content, status_code=status, headers={"Cache-Control": "no-store"})
-
-
-def _said(answer: dict[str, Any], language: str) -> dict[str, Any]:
-    """An answer whose sentences are in the language of its page."""
-    found: dict[str, Any] = {
-        name: said(answer[name], language=language) for name in ("detail", "hint") if name in answer
-    }
-    if belief := answer.get("belief"):
-        found["belief"] = {**belief, "text": said(belief["text"], language=language)}
-    return {**answer, **found}
+    return JSONResponse(answer, status_code=status, headers={"Cache-Control": "no-store"})
 
 
 def _begin(streams: Streams, visitor: Visitor, body: bytes) -> dict[str, Any]:

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from webdemo.inference.requests import Result
-from webdemo.ui.text.said import said
 from webdemo.view.payload import Payload, build_payload
 
 from .show import result_payload
@@ -24,18 +23,18 @@ def comparison_payload(results: Mapping[str, Result], *, title: str = "") -> Pay
     left, right = (result_payload(result)["samples"] for result in results.values())
     samples = [_side_by_side(pair, tuple(results)) for pair in zip(left, right, strict=True)]
     first = next(iter(results.values()))
-    return build_payload(samples, skeleton=first.duets[0].skeleton, title=said(title))
+    return build_payload(samples, skeleton=first.duets[0].skeleton, title=title)
 
 
 def _side_by_side(pair: tuple[dict[str, Any], dict[str, Any]], names: tuple[str, ...]) -> dict[str, Any]:
     """Both under one strip: how far apart the people are in each, and the contacts of both."""
     mine, other = pair
     curves = [
-        {**sample["curves"][0], "label": said(f"{sample['curves'][0]['label']}, {side}")}
+        {**sample["curves"][0], "label": f"{sample['curves'][0]['label']}, {side}"}
         for side, sample in zip(SIDES, pair, strict=True)
     ]
     contacts = [
-        {**contact, "label": f"{said(side).capitalize()}: {contact['label']}"}
+        {**contact, "label": f"{side.capitalize()}: {contact['label']}"}
         for side, sample in zip(SIDES, pair, strict=True)
         for contact in sample["contacts"]
     ]

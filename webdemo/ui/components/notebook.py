@@ -12,7 +12,6 @@ from pydantic import TypeAdapter
 from motion import InputError
 from webdemo.inference.methods import label_of, methods, variants
 from webdemo.ui.history import Entry, Found, Search
-from webdemo.ui.text.said import said
 
 from .accepts import Finite, Flag, Sent, Text
 from .part import MOUNT, STATIC, Part, on_load
@@ -94,7 +93,7 @@ def shown(found: Found, *, empty: str, removed: int = 0, search: Search | None =
         "total": found.total,
         "tags": list(found.tags),
         "models": [[name, label_of(name)] for name in found.models],
-        "empty": said(empty),
+        "empty": empty,
         "removed": removed,
         "step": STEP,
         "search": {name: asked[name] for name in asked if name not in ("limit", "offset")},
@@ -103,11 +102,11 @@ def shown(found: Found, *, empty: str, removed: int = 0, search: Search | None =
 
 def _card(entry: Entry) -> dict[str, Any]:
     return {
-        "id": entry.id, "kind": entry.kind, "title": said(entry.title), "state": entry.state,
-        "message": said(entry.message or ""),
+        "id": entry.id, "kind": entry.kind, "title": entry.title, "state": entry.state,
+        "message": entry.message or "",
         "favourite": entry.favourite, "links": entry.links, "tags": list(entry.tags), "note": entry.note,
         "frame": entry.frame, "thumbnail": entry.thumbnail, "facts": facts(entry),
-        "settings": [list(map(said, pair)) for pair in settings(entry)],
+        "settings": [list(pair) for pair in settings(entry)],
     }  # fmt: skip
 
 
@@ -120,7 +119,7 @@ def facts(entry: Entry) -> str:
     found.append(time.strftime("%d %b %Y %H:%M", time.localtime(entry.created)))
     found += [_MARKS[entry.state]] if entry.state in _MARKS else []
     found += [f"{entry.links} link{'s' if entry.links > 1 else ''}"] if entry.links else []
-    return " · ".join(map(said, found))
+    return " · ".join(found)
 
 
 def settings(entry: Entry) -> list[list[str]]:

@@ -14,7 +14,6 @@ import gradio as gr
 
 from motion.body import Body
 from motion.character import packed_body
-from webdemo.ui.text.said import said
 from webdemo.ui.text.texts import TEXTS_FOLDER, TEXTS_JS
 from webdemo.view.payload import Payload, player_payload
 
@@ -72,7 +71,7 @@ def busy(text: str = "", *, progress: float | None = None) -> dict[str, Any]:
         text: in English, such as ``"Step 12 of 50"``; the visitor gets it in their language.
         progress: 0 to 1 for the bar under it, None for none.
     """
-    return gr.update(busy=said(text), progress=progress)
+    return gr.update(busy=text, progress=progress)
 
 
 def show(payload: Payload | None) -> dict[str, Any]:

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from motion import Clip, Duet, stacked_positions
 from webdemo.inference.methods import label_of, methods
 from webdemo.inference.predict_request import PredictResult, with_people
-from webdemo.ui.text.said import said
 from webdemo.view.curves import Curve
 from webdemo.view.payload import Payload, build_payload, sample_payload
 
@@ -37,7 +36,7 @@ def prediction_payload(*results: PredictResult, title: str = "") -> Payload:
     if len(results) == 1 and len(results[0].duets) > 1:
         made = [_sample(results[0], place) for place in range(len(results[0].duets))]
         return {
-            **build_payload(made, skeleton=motion.skeleton, title=said(title)),
+            **build_payload(made, skeleton=motion.skeleton, title=title),
             "futures": results[0].past_frames,
         }
     samples = [_sample(result) for result in results]
@@ -50,14 +49,14 @@ def prediction_payload(*results: PredictResult, title: str = "") -> Payload:
         names = [method_name(result) for result in results]
         beside = {**samples[1], "caption": names[1]}
         first = {**first, "curves": curves, "caption": names[0], "beside": beside}
-    return build_payload([first], skeleton=motion.skeleton, title=said(title))
+    return build_payload([first], skeleton=motion.skeleton, title=title)
 
 
 def _sample(result: PredictResult, place: int = 0) -> dict[str, Any]:
     motion = with_shown_roles(without_name(result.duets[place]), result.manifest)
     curves = [
         Curve("error", "Error", "m", _padded(result.error, motion.num_frames, result.past_frames)),
-        Curve("speed", said("Speed"), "m/s", _speed(motion)),
+        Curve("speed", "Speed", "m/s", _speed(motion)),
     ]
     return sample_payload(
         motion, label=str(place + 1), curves=curves if result.error else curves[1:], ghost=ghost_of(motion, result),
@@ -115,9 +114,7 @@ def curves_figure(*results: PredictResult) -> go.Figure:
     fps = first.duets[0].fps
     known = len(first.error)
     times = np.arange(1, len(first.speed) + 1) / fps
-    titles = [
-        said(each) for each in (("Error, mm", "Speed, m/s") if known else (f"Speed, m/s. {_NO_TRUTH}",))
-    ]
+    titles = ["Error, mm", "Speed, m/s"] if known else [f"Speed, m/s. {_NO_TRUTH}"]
     # One above the other: side by side they are too narrow on a phone.
     figure = make_subplots(rows=len(titles), cols=1, subplot_titles=titles, vertical_spacing=0.22)
 
@@ -141,9 +138,9 @@ def curves_figure(*results: PredictResult) -> go.Figure:
     if known:
         baselines = {method.name for method in methods("predict") if method.weights is None}
         if all(result.manifest.get("model") not in baselines for result in results):
-            line(1, still_error(first), said("Last pose held"), _GREY, "dot")
-        line(len(titles), np.asarray(first.true_speed) * metres, said("What really followed"), _ORANGE)
-    figure.update_xaxes(title_text=said("s after the marker"), rangemode="tozero")
+            line(1, still_error(first), "Last pose held", _GREY, "dot")
+        line(len(titles), np.asarray(first.true_speed) * metres, "What really followed", _ORANGE)
+    figure.update_xaxes(title_text="s after the marker", rangemode="tozero")
     figure.update_yaxes(rangemode="tozero")
     figure.update_layout(
         height=70 + 190 * len(titles), margin={"l": 48, "r": 12, "t": 36, "b": 44}, template="plotly_white",

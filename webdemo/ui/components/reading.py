@@ -14,14 +14,12 @@ import gradio as gr
 from pydantic import TypeAdapter
 
 from acts import Act, Plan, lexicon
-from acts.captions import worded
+from acts.captions import short, worded
 from acts.plan import plan_of
 from acts.reading.director import directed
 from motion import InputError
 from webdemo.inference.paths import FloorPath, path_of
 from webdemo.inference.story.scripting import beats_of
-from webdemo.ui.text.said import said
-from webdemo.ui.text.said_acts import phrases_of, said_act
 from webdemo.ui.text.words import error_line
 
 from .accepts import Finite, Flag, Sent, SentPaths, Text
@@ -110,7 +108,7 @@ def reread(sent: Any) -> dict[str, Any]:
         plan = edited_plan(sent, text) or directed(text, ask=False)
         found = shown(plan)
     except Exception as error:
-        found = {"error": said(error_line(error))}
+        found = {"error": error_line(error)}
     if fields.get("list"):
         return gr.update(shown=asked | found, acts=known_acts())
     return gr.update(shown=asked | found)
@@ -152,7 +150,7 @@ def shown(plan: Plan) -> dict[str, Any]:
     """A plan as the component draws it.
 
     Returns:
-        ``plan`` as JSON; ``beats``, the ids of its acts, one list for each; in the visitor's language ``said``, each
+        ``plan`` as JSON; ``beats``, the ids of its acts, one list for each; ``said``, each
         act in a few words by its id, ``whys`` of what was not understood, and ``notes``; ``nearest``, the facts of each
         act that is offered for words that were not understood, by its name; ``seconds``, what all its beats take, in
         halves of a second.
@@ -162,9 +160,9 @@ def shown(plan: Plan) -> dict[str, Any]:
     return {
         "plan": plan.model_dump(mode="json"),
         "beats": [[act.id for act in group] for group in plan.beats()],
-        "said": {act.id: said_act(act) for act in plan.acts},
-        "whys": [said(part.why) for part in plan.unread],
-        "notes": [said(note) for note in (*plan.notes, *(doubt.why for doubt in plan.doubts))],
+        "said": {act.id: short(act, entries.get(act.act)) for act in plan.acts},
+        "whys": [part.why for part in plan.unread],
+        "notes": [*plan.notes, *(doubt.why for doubt in plan.doubts)],
         "nearest": {name: entry_facts(name) for name in nearest},
         "seconds": round(2 * sum(beat.length for beat in beats_of(plan))) / 2,
     }
@@ -188,7 +186,7 @@ def entry_facts(name: str) -> dict[str, Any]:
     caption = worded(act, entry.caption[0]) if entry.caption else ""
     return {
         "name": name,
-        "said": said_act(act),
+        "said": short(act, entry),
         "caption": caption.replace("person A ", "").replace("person B", "the other"),
         "patient": any("{b" in text for text in (*entry.caption, *entry.frames)),
         "mutual": entry.mutual,
@@ -204,13 +202,12 @@ def checked(text: str, plan: Plan, manifest: Mapping[str, Any]) -> dict[str, Any
         manifest: of the result, or of its first sample; ``checked`` has a row for each act, in the plan's order, with
             the ``act``, whether it is ``done`` or None, and a ``measure`` in words.
     """
-    phrases = phrases_of(manifest)
     acts = [
         {
             "id": act.id,
             "act": act.act,
             "done": row.get("done"),
-            "measure": said(row.get("measure") or "", phrases),
+            "measure": row.get("measure") or "",
         }
         for act, row in zip(plan.acts, manifest.get("checked") or (), strict=False)
         if row.get("act") == act.act

@@ -16,8 +16,6 @@ from motion.formats import read
 from motion.metrics import Contact
 from webdemo.inference.requests import GenerateRequest, Result
 from webdemo.ui.text.classes import takes_class
-from webdemo.ui.text.said import said
-from webdemo.ui.text.said_acts import said_told
 from webdemo.view.curves import Curve
 from webdemo.view.payload import Payload, build_payload, player_payload, sample_payload
 
@@ -58,13 +56,6 @@ def with_shown_roles(motion: Duet | Clip, manifest: Mapping[str, Any]) -> Duet |
     return replace(motion, roles=shown_roles(manifest)) if isinstance(motion, Duet) else motion
 
 
-def with_said(motion: Duet | Clip, manifest: Mapping[str, Any]) -> Duet | Clip:
-    """A sample of a result whose description is in the visitor's language."""
-    if not isinstance(motion, Duet) or not (own := motion.manifest or {}).get("told"):
-        return motion
-    return replace(motion, manifest={**own, "told": said_told({**manifest, **own})})
-
-
 def result_payload(result: Result, *, title: str = "") -> Payload:
     """The player's value for a result: every sample with the curves and contacts of its read-outs.
 
@@ -72,13 +63,13 @@ def result_payload(result: Result, *, title: str = "") -> Payload:
     """
     samples = [
         sample_payload(
-            with_said(with_shown_roles(duet, result.manifest), result.manifest),
+            with_shown_roles(duet, result.manifest),
             label=str(i + 1),
             **_strip(duet, result.readouts[i : i + 1]),
         )
         for i, duet in enumerate(result.duets)
     ]
-    return build_payload(samples, skeleton=result.duets[0].skeleton, title=said(title))
+    return build_payload(samples, skeleton=result.duets[0].skeleton, title=title)
 
 
 def _strip(duet: Duet | Clip, readouts: tuple[Mapping[str, Any], ...]) -> dict[str, Any]:
@@ -89,7 +80,7 @@ def _strip(duet: Duet | Clip, readouts: tuple[Mapping[str, Any], ...]) -> dict[s
     if curves and all(len(curves.get(key, ())) == duet.num_frames for key, *_ in _CURVES):
         found["curves"] = [Curve(key, label, unit, np.asarray(curves[key])) for key, label, unit in _CURVES]
     if contacts is not None:
-        found["contacts"] = [Contact(c["start"], c["stop"], c["kind"], said(c["label"])) for c in contacts]
+        found["contacts"] = [Contact(c["start"], c["stop"], c["kind"], c["label"]) for c in contacts]
     return found
 
 

@@ -10,7 +10,6 @@ from motion import Duet, InputError
 from webdemo.study import Stimulus
 from webdemo.study.pairs import MOST_SETS
 from webdemo.ui.history import Opened
-from webdemo.ui.text.said import said
 
 from .actors import read_source
 from .notebook import settings
@@ -69,10 +68,9 @@ def ways(found: Sequence[Candidate]) -> list[tuple[str, str]]:
     for name in names:
         made = sets_by(found, name)
         if 2 <= len(made) <= MOST_SETS:
-            against = f" {said('against')} "
-            counts = against.join(f"{label[:40]} ({len(each)})" for label, each in made.items())
-            offered.append((f"{said(name)}: {counts}", name))
-    one_set = said(f"One set of all chosen motions ({len(found)}), against uploaded ones")
+            counts = " against ".join(f"{label[:40]} ({len(each)})" for label, each in made.items())
+            offered.append((f"{name}: {counts}", name))
+    one_set = f"One set of all chosen motions ({len(found)}), against uploaded ones"
     return [*offered, (one_set, ONE_SET)]
 
 

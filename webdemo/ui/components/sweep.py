@@ -13,7 +13,6 @@ from motion.metrics import MEASURES
 from webdemo.inference.predict_request import PredictResult
 from webdemo.inference.requests import Result
 from webdemo.ui.text.panels import sides
-from webdemo.ui.text.said import said
 from webdemo.ui.text.words import number, text
 from webdemo.view.payload import Payload, build_payload, grid_sample
 
@@ -162,7 +161,7 @@ def grid_payload(grid: Grid, results: Sequence[Result], *, title: str = "") -> P
         {**_first_sample(result), "caption": name} for result, name in zip(results, grid.names, strict=True)
     ]
     whole_grid = grid_sample(cells, grid.columns, grid.rows)
-    return build_payload([whole_grid], skeleton=results[0].duets[0].skeleton, title=said(title))
+    return build_payload([whole_grid], skeleton=results[0].duets[0].skeleton, title=title)
 
 
 def _first_sample(result: Result) -> dict[str, Any]:
@@ -183,7 +182,7 @@ def grid_table(results: Mapping[str, Result]) -> str:
     if not measures:
         return ""
     heads = "".join(
-        f'<th scope="col" title="{text(said(m.meaning))}">{text(said(m.label))} <small>{text(m.unit)}</small></th>'
+        f'<th scope="col" title="{text(m.meaning)}">{text(m.label)} <small>{text(m.unit)}</small></th>'
         for m in measures
     )
     rows = ""
@@ -194,7 +193,7 @@ def grid_table(results: Mapping[str, Result]) -> str:
         rows += f'<tr><th scope="row">{text(name)}</th>{marked}</tr>'
     return (
         '<div class="pd-readouts"><div class="pd-table pd-grid-table"><table>'
-        f"<caption>{said('Read-outs of the grid, the best in green and the worst in red')}</caption>"
+        f"<caption>Read-outs of the grid, the best in green and the worst in red</caption>"
         f"<thead><tr><td></td>{heads}</tr></thead><tbody>{rows}</tbody></table></div></div>"
     )
 

@@ -18,7 +18,6 @@ from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Found, HistoryLike, Opened, Search
 from webdemo.ui.text.panels import status
-from webdemo.ui.text.said import said
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import cancelled_line, error_line, link_line, progress_line, text
 from webdemo.ui.visitor import Visitor, visitor
@@ -336,8 +335,8 @@ def _signed_in(who: Visitor) -> str:
         return ""
     return (
         f'<form class="pd-status pd-account" method="post" action="{text(who.base)}logout">'
-        f"{text(said(f'Signed in as {who.account}'))} ·\u2002<button>{said('Sign out')}</button>"
-        f'\u2002<a href="{text(who.base)}account">{said("Your account")}</a></form>'
+        f"{text(f'Signed in as {who.account}')} ·\u2002<button>Sign out</button>"
+        f'\u2002<a href="{text(who.base)}account">Your account</a></form>'
     )
 
 

@@ -12,7 +12,6 @@ from webdemo.ui.context import PageContext
 from webdemo.ui.history import HistoryLike, Usage
 from webdemo.ui.places import READING
 from webdemo.ui.text.panels import status
-from webdemo.ui.text.said import said
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line, text
 from webdemo.ui.visitor import visitor
@@ -115,7 +114,7 @@ def room_html(usage: Usage) -> str:
     line = f"{_megabytes(usage.used)} of {_megabytes(usage.allowed)} MB used{what}.{full}"
     return (
         f'<p class="pd-status pd-room"><meter min="0" max="{usage.allowed:.0f}" high="{0.7 * usage.allowed:.0f}" '
-        f'value="{usage.used:.0f}" aria-label="{said("Room used")}"></meter><span>{text(said(line))}</span></p>'
+        f'value="{usage.used:.0f}" aria-label="Room used"></meter><span>{text(line)}</span></p>'
     )
 
 

@@ -13,7 +13,6 @@ from webdemo.ui.context import PageContext
 from webdemo.ui.public_html import frame_code
 from webdemo.ui.sharing import PublicPage, SharingLike
 from webdemo.ui.text.panels import status
-from webdemo.ui.text.said import said
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line
 from webdemo.ui.visitor import visitor
@@ -82,7 +81,7 @@ class SharingPanel:
         try:
             mine = {page.key: page for page in self.sharing.pages(who.owner)}
         except InputError as error:
-            return gr.update(visible=True), gr.skip(), said(error_line(error)), ""
+            return gr.update(visible=True), gr.skip(), error_line(error), ""
         if not mine:
             return gr.update(visible=False), gr.update(choices=[], value=None), "", ""
         found = mine.get(key or "") or next(iter(mine.values()))
@@ -106,7 +105,7 @@ class SharingPanel:
 
 
 def _about(page: PublicPage) -> str:
-    return f"{page.title[:60]} ({said(f'until {_day(page.until)}')})"
+    return f"{page.title[:60]} (until {_day(page.until)})"
 
 
 def _day(moment: float) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from acts import Lexicon
 
 from .panels import status
-from .said import said
 from .words import text
 
 MOST_LISTED = 200
@@ -22,10 +21,10 @@ def own_acts(known: Lexicon) -> str:
         cells = (name.replace("-", " "), entry.reads[0], f"{entry.group}.toml")
         rows.append("<tr>" + "".join(f"<td>{text(cell)}</td>" for cell in cells) + "</tr>")
     left_out = "".join(status(f"Left out: {problem}", tone="warning") for problem in known.problems)
-    heads = "".join(f"<th>{said(head)}</th>" for head in ("Act", "For example", "File"))
+    heads = "".join(f"<th>{head}</th>" for head in ("Act", "For example", "File"))
     table = f"<table><thead><tr>{heads}</tr></thead>"
     listed = f"{table}<tbody>{''.join(rows)}</tbody></table>" if rows else ""
     head = f"This lab's own acts: {len(known.own)}"
     if known.problems:
         head += f" (left out: {len(known.problems)})"
-    return f'<details class="pd-own"><summary>{text(said(head))}</summary>{left_out}{listed}</details>'
+    return f'<details class="pd-own"><summary>{text(head)}</summary>{left_out}{listed}</details>'

@@ -10,8 +10,6 @@ from webdemo.inference.methods import label_of
 from webdemo.inference.requests import Result
 
 from .plain import legend, lines_in_words
-from .said import said
-from .said_acts import phrases_of
 from .texts import say, worded
 from .words import number, seconds, text
 
@@ -21,7 +19,7 @@ QUALITY = tuple(measure for measure in MEASURES if measure.better)
 RELATION = tuple(measure for measure in MEASURES if not measure.better)
 _NO_WARNINGS = ("This was made as ", "From the words: ", "Read as ")
 """Beginnings of notes that say how a sentence was understood."""
-_SAME = '<td class="pd-same">{}</td>'
+_SAME = '<td class="pd-same">same</td>'
 _MOST_IN_WORDS = 4
 """Samples: more than these are not described in words."""
 
@@ -36,13 +34,12 @@ def status(line: str = "", *, tone: str = "quiet") -> str:
     if not line:
         return ""
     role = "alert" if tone == "error" else "status"
-    return f'<p class="pd-status pd-{tone}" role="{role}">{text(said(line))}</p>'
+    return f'<p class="pd-status pd-{tone}" role="{role}">{text(line)}</p>'
 
 
 def notes_lines(result: Result) -> str:
     """The notes of a result, which stand right beside "Done"."""
-    phrases = phrases_of(result.manifest)
-    return "".join(status(said(note, phrases), tone=_note_tone(note)) for note in result.notes)
+    return "".join(status(note, tone=_note_tone(note)) for note in result.notes)
 
 
 def _note_tone(note: str) -> str:
@@ -65,7 +62,7 @@ def model_state(state: str, error: str | None = None) -> str:
     words = {
         "loading": say("page.loading"),
         "ready": say("page.ready"),
-        "failed": text(said(error)) if error else say("page.failed"),
+        "failed": text(error) if error else say("page.failed"),
     }
     return f'<p class="pd-model pd-model-{text(state)}" role="status">{words[state]}</p>'
 
@@ -103,16 +100,14 @@ def comparison_panel(results: Mapping[str, Result]) -> str:
 
 def _panel(in_words: str, parts: Sequence[str]) -> str:
     """Read-outs: the result in words, and behind a line all figures."""
-    figures = (
-        f'<details class="pd-figures"><summary>{said("All figures")}</summary>{"".join(parts)}</details>'
-    )
+    figures = f'<details class="pd-figures"><summary>All figures</summary>{"".join(parts)}</details>'
     return f'<div class="pd-readouts">{in_words}{figures}</div>'
 
 
 def prediction_lines(lines: Mapping[str, str]) -> str:
     """A line on the error of each prediction, after its name if there are several."""
     return "".join(
-        f'<p class="pd-in-words">{f"<b>{text(name)}</b> " if name else ""}{text(said(line))}</p>'
+        f'<p class="pd-in-words">{f"<b>{text(name)}</b> " if name else ""}{text(line)}</p>'
         for name, line in lines.items()
     )
 
@@ -129,7 +124,7 @@ def _in_words(samples: Sequence[tuple[Summary | None, Summary]], heads: Sequence
 
 
 def _heads(count: int) -> list[str]:
-    return [said(f"Sample {i + 1}") for i in range(count)]
+    return [f"Sample {i + 1}" for i in range(count)]
 
 
 def sides(readout: Mapping[str, Any]) -> tuple[Summary | None, Summary]:
@@ -153,10 +148,10 @@ def _asked(result: Result, name: str | None = None) -> str:
         ("Steps", request.get("steps")),
         ("Damping", _plain(request.get("damping"))),
         ("Tries", tries if (tries := request.get("tries", 1)) != 1 else None),
-        ("Plan from the words", said("off") if request.get("planned") is False else None),
+        ("Plan from the words", "off" if request.get("planned") is False else None),
     ]
     items = "".join(
-        f"<div><dt>{text(said(label))}</dt><dd>{text(value)}</dd></div>"
+        f"<div><dt>{text(label)}</dt><dd>{text(value)}</dd></div>"
         for label, value in shown
         if value is not None
     )
@@ -207,13 +202,13 @@ def _change(measure: Measure, before: Summary, after: Summary) -> str:
     if old is None or new is None:
         return "<td>–</td>"
     if _value(measure, before) == _value(measure, after):
-        return _SAME.format(said("same"))
+        return _SAME
     tone = "pd-better" if new < old else "pd-worse"
     if old < smallest:
         return f'<td class="{tone}">+{number(new - old, measure.digits)}</td>'
     percent = f"{100 * (new - old) / old:+.0f}".replace("-", "−")
     if percent in ("+0", "−0"):
-        return _SAME.format(said("same"))
+        return _SAME
     return f'<td class="{tone}">{percent} %</td>'
 
 
@@ -234,13 +229,13 @@ def _contacts(sample: int, result: Result, head: Sequence[str]) -> str:
     if found is None:
         return ""
     fps = result.duets[sample].fps
-    title = said("Contacts") + (f", {head[sample]}" if len(result.duets) > 1 else "")
+    title = "Contacts" + (f", {head[sample]}" if len(result.duets) > 1 else "")
     items = "".join(
         f'<li class="pd-{text(contact["kind"])}">'
-        f"<b>{_span(contact['start'] / fps, contact['stop'] / fps)} s</b> {text(said(contact['label']))}</li>"
+        f"<b>{_span(contact['start'] / fps, contact['stop'] / fps)} s</b> {text(contact['label'])}</li>"
         for contact in found
     )
-    items = items or f"<li>{said('none')}</li>"
+    items = items or "<li>none</li>"
     return f'<div class="pd-contacts"><h4>{text(title)}</h4><ul>{items}</ul></div>'
 
 
@@ -254,7 +249,7 @@ def _timings(timings: Mapping[str, float], name: str | None = None) -> str:
     if not timings:
         return ""
     whose = f"<b>{text(name)}</b> " if name else ""
-    items = " · ".join(f"{text(said(stage))} {seconds(spent)}" for stage, spent in timings.items())
+    items = " · ".join(f"{text(stage)} {seconds(spent)}" for stage, spent in timings.items())
     return f'<p class="pd-timings">{whose}{items}</p>'
 
 
@@ -265,14 +260,14 @@ def _value(measure: Measure, values: Summary) -> str:
 
 def _row(measure: Measure, cells: str) -> str:
     unit = f" <small>{text(measure.unit)}</small>" if measure.unit else ""
-    meaning, label = said(measure.meaning), said(measure.label)
+    meaning, label = measure.meaning, measure.label
     return f'<tr title="{text(meaning)}"><th scope="row">{text(label)}{unit}</th>{cells}</tr>'
 
 
 def _table(caption: str, head: Sequence[str], rows: str) -> str:
-    cells = "".join(f'<th scope="col">{text(said(label))}</th>' for label in head)
+    cells = "".join(f'<th scope="col">{text(label)}</th>' for label in head)
     return (
-        f'<div class="pd-table"><table><caption>{text(said(caption))}</caption>'
+        f'<div class="pd-table"><table><caption>{text(caption)}</caption>'
         f"<thead><tr><td></td>{cells}</tr></thead><tbody>{rows}</tbody></table></div>"
     )
 

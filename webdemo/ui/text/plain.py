@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 
 from motion.metrics import MEASURES
 
-from .said import said
 from .words import number, text
 
 _FEET = (
@@ -27,7 +26,7 @@ about 12 cm/s and a jerk of 31 m/s³ (docs/scores.md)."""
 
 def in_words(values: Mapping[str, float]) -> str:
     """A summary of :data:`motion.metrics.MEASURES` in the visitor's words; "" where nothing of it is known."""
-    sentences = [said(_between(values)), _quality(values)]
+    sentences = [_between(values), _quality(values)]
     return " ".join(sentence for sentence in sentences if sentence)
 
 
@@ -44,10 +43,9 @@ def lines_in_words(summaries: Mapping[str, Mapping[str, float]]) -> str:
 def legend() -> str:
     """A folded legend of the figures."""
     items = "".join(
-        f"<div><dt>{text(said(measure.label))}</dt><dd>{text(said(measure.meaning))}</dd></div>"
-        for measure in MEASURES
+        f"<div><dt>{text(measure.label)}</dt><dd>{text(measure.meaning)}</dd></div>" for measure in MEASURES
     )
-    head = said("What the figures mean")
+    head = "What the figures mean"
     return f'<details class="pd-legend"><summary>{head}</summary><dl>{items}</dl></details>'
 
 
@@ -61,7 +59,7 @@ def _between(values: Mapping[str, float]) -> str:
 
 
 def _quality(values: Mapping[str, float]) -> str:
-    parts = [said(_verdict(values[key], levels)) for key, levels in _VERDICTS if key in values]
+    parts = [_verdict(values[key], levels) for key, levels in _VERDICTS if key in values]
     line = ", ".join(parts)
     return f"{line[:1].upper()}{line[1:]}." if line else ""
 

@@ -2,7 +2,7 @@
 
 Gradio carries the texts of all languages in the page's configuration and puts them where a component names a key; the
 page's own scripts read them from there, see ``static/texts.js``. A sentence that the server makes for an event, such as
-progress, errors and read-outs, is no part of them: :mod:`webdemo.ui.text.said` puts it into the visitor's language.
+progress, errors and read-outs, is English and no part of them.
 """
 
 from __future__ import annotations

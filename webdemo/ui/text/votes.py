@@ -6,7 +6,6 @@ from webdemo.study import Comparison, StudyResult
 from webdemo.ui.studies import StudyEntry
 
 from .panels import status
-from .said import said
 from .words import text
 
 
@@ -20,7 +19,7 @@ def result_html(study: StudyEntry, result: StudyResult) -> str:
     checks = count(study.checks, "attention check") if study.checks else "no attention checks"
     state = "The voting has ended" if study.closed else "The voting goes on"
     pairs = count(study.pairs, "pair")
-    lines = [f"“{study.question}” {said(pairs)}, {said(checks)}. {said(state)}."]
+    lines = [f"“{study.question}” {pairs}, {checks}. {state}."]
     if not study.votes:
         return status(f"{lines[0]} Nobody has voted yet.")
     left_out = f", {result.excluded} more left out by the attention checks" if result.excluded else ""
@@ -28,7 +27,7 @@ def result_html(study: StudyEntry, result: StudyResult) -> str:
     lines.append(_agreement(result))
     rows = "".join(_row(each) for each in result.comparisons)
     heads = "".join(
-        f'<th scope="col" title="{said(title)}">{said(head)}</th>'
+        f'<th scope="col" title="{title}">{head}</th>'
         for head, title in (
             ("Wins", "Votes for the first"), ("Losses", "Votes for the second"), ("Ties", "Votes for neither"),
             ("Skipped", "Answers withheld"), ("Share", "Wins among wins and losses"),
@@ -66,5 +65,5 @@ def _row(each: Comparison) -> str:
         )
         p = "&lt; 0.001" if each.p_value < 0.001 else f"{each.p_value:.3f}"
         rest = f"<td><b>{share:.0%}</b></td><td>{low:.0%} to {high:.0%}</td><td>{p}</td><td>{bar}</td>"
-    sides = said(f"{each.sets[0]} against {each.sets[1]}")
+    sides = f"{each.sets[0]} against {each.sets[1]}"
     return f'<tr><th scope="row">{text(sides)}</th>{counts}{rest}</tr>'
