@@ -9,6 +9,7 @@ from models.intergen.compact import CaptionBank, CompactConfig, CompactInterGen,
 from models.motion_tokens import encode
 from models.text import MiniLM
 from motion import SMPL22
+from webdemo.cli.judging import silence
 from webdemo.inference.engine import Engine
 
 CAPTIONS = ("Two people shake hands.", "One person waves.", "They walk away from each other.")
@@ -55,5 +56,28 @@ def either_engine(request: pytest.FixtureRequest) -> Engine:
 
 
 @pytest.fixture(scope="session")
-def engine(weights: Path) -> Engine:
-    return Engine(weights)
+def engine(request: pytest.FixtureRequest, weights: Path) -> Engine:
+    """With an untrained network; where planned motion is tested also with zeros in its place."""
+    made = Engine(weights)
+    if getattr(request, "param", None) == "zeros":
+        silence(made.pipeline("intergen"))
+    return made
+
+
+OF_THE_NETWORK = {
+    "test_a_hand_waves_on_the_way",
+    "test_a_person_types_with_moving_hands_on_a_seat",
+    "test_an_arm_around_somebody_lies_on_their_far_shoulder_behind_them",
+    "test_who_is_pulled_up_has_their_hand_held_while_they_are_down",
+}
+"""Promises that the plan alone does not keep."""
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """What only the plan does is so without a network as well."""
+    planned = metafunc.module.__name__.rpartition(".")[2].startswith("test_planned_")
+    if planned and "engine" in metafunc.fixturenames:
+        needs = metafunc.function.__name__ in OF_THE_NETWORK
+        marks = [pytest.mark.xfail(strict=True, reason="needs a network")] if needs else []
+        networks = ["untrained", pytest.param("zeros", marks=marks)]
+        metafunc.parametrize("engine", networks, indirect=True, scope="session")

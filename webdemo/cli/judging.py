@@ -36,6 +36,7 @@ class Scoring:
         model: its name.
         steps, guidance, damping: as in :class:`SamplingRequest`.
         plain: sentences are given to the network as they are, neither split nor planned.
+        zeros: the network's predictions are zeros, see :func:`silence`.
     """
 
     model: str
@@ -43,12 +44,13 @@ class Scoring:
     guidance: float
     damping: float
     plain: bool = False
+    zeros: bool = False
 
     def request(self, sentence: Sentence, seed: int, actor: Duet | None) -> GenerateRequest | ReactRequest:
         """The request for both people, or for the partner of an actor."""
         found = method(self.model)
         fields: dict[str, Any] = asdict(self) | {"seed": seed}
-        plain = fields.pop("plain")
+        plain, _ = fields.pop("plain"), fields.pop("zeros")
         if actor is None:
             shortest, longest = found.seconds
             seconds = min(max(sentence.seconds, shortest), longest)
@@ -68,6 +70,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         found.default("guidance", SamplingRequest.guidance) if options.guidance is None else options.guidance,
         options.damping,
         options.plain,
+        options.zeros,
     )
     sentences = _chosen(options)
     if not SEEDS[0] <= options.seeds <= SEEDS[1]:
@@ -77,6 +80,8 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
 
     engine = Engine()
     digest = engine.pipeline(found.name).digest
+    if options.zeros:
+        silence(engine.pipeline(found.name))
     kept = _folder(options.motions, scoring, digest)
     duets = [[_motion(engine, scoring, s, seed, kept) for seed in range(options.seeds)] for s in sentences]
     print(file=sys.stderr)
@@ -91,7 +96,8 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         f"{found.label}: {len(sentences)} sentences, {len(ruled)} of them with a rule, seeds 0 to "
         f"{options.seeds - 1}; {scoring.steps} steps, guidance {scoring.guidance:g}, "
         f"damping {scoring.damping:g}, weights {weights}"
-        f"{'; sentences neither split nor planned' if scoring.plain else ''}."
+        f"{'; sentences neither split nor planned' if scoring.plain else ''}"
+        f"{'; zeros in place of the network' if scoring.zeros else ''}."
     )
     print(table(scores))
     if options.out is not None:
@@ -102,6 +108,18 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         "judged": count, "tags": scores["tags"], "any": scores["any"], "conditions": scores["conditions"],
         "physical": scores["physical"], "files": [] if options.out is None else [str(options.out)],
     }  # fmt: skip
+
+
+def silence(pipeline: Any) -> None:
+    """Puts zeros, a network's mean pose, in the place of all that a diffusion network predicts from now on.
+
+    Raises:
+        InputError: for a method that has none.
+    """
+    network = getattr(model := getattr(pipeline, "model", None), "denoiser", model)
+    if not hasattr(network, "guided"):
+        raise InputError(f"{pipeline.name} has no network that denoises: leave --zeros out.")
+    network.guided = lambda x, *_, **__: x.new_zeros(x.shape)
 
 
 def _chosen(options: argparse.Namespace) -> Sequence[Sentence]:

@@ -32,6 +32,11 @@ def add_score(commands: Any) -> None:
         action="store_true",
         help="give the sentences to the network as they are: no beats, no plan",
     )
+    parser.add_argument(
+        "--zeros",
+        action="store_true",
+        help="put zeros in the place of all that the network makes: what is left is done by the plan alone",
+    )
     parser.add_argument("--motions", type=Path, help="folder that keeps the motions, so that a run can go on")
     parser.add_argument("--out", type=Path, help="JSON file for all verdicts")
     parser.set_defaults(job=score)
