@@ -142,7 +142,7 @@ class Subjects:
                     return found
                 if child.tag_ in ("VBZ", "VBD") and (known := self._found.get(child.i)) is not None:
                     return known  # "she leans back, then kicks"
-                ref = reference(child, self._cast, "")
+                ref = self._cast.seen.get(child.i) or reference(child, self._cast, "")
                 if child.lower_ in ("nobody", "neither", "none") or (
                     child.lower_ == "one" and "no" in {c.lower_ for c in child.children}
                 ):

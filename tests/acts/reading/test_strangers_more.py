@@ -113,6 +113,7 @@ def test_a_list_keeps_its_middle(start: str, said: str, act: str, joined: str) -
         ("His right hand picks up something.", [("pick-up-thing", "a", None)]),
         ("A person drags right leg and waves.", [("move-other", "a", "b"), ("wave", "a", "b")]),
         ("The man appears to be dancing.", [("dance", "a", None)]),
+        ("A person who is standing takes two steps.", [("stand-still", "a", None), ("step-forward", "a", None)]),
         ("The person raises its arms.", [("raise-arm", "a", None)]),
     ],
 )  # fmt: skip
