@@ -307,3 +307,10 @@ def test_the_threshold_sets_how_much_is_corrected_at_any_number_of_steps(shipped
     apart = [float(np.linalg.norm(made(t) - plain, axis=-1).mean()) for t in (0.05, 0.2, 0.4, 0.7)]
     assert apart[0] > 1e-3
     assert all(after > 1.01 * before for before, after in pairwise(apart))
+
+
+def test_only_who_turns_is_moved_by_facing_and_not_who_is_faced(model):
+    one, other = (person[None].clone().requires_grad_(True) for person in people(model))
+    turned = one @ rotation_y(0.2).T
+    damping._turned_away(turned, other).sum().backward()
+    assert one.grad is not None and one.grad.abs().max() > 0 and other.grad is None

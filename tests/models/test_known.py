@@ -170,3 +170,9 @@ def test_a_bend_meets_the_past_with_less_of_a_jolt_than_the_least_move():
     assert jolts[1] < 0.7 * jolts[0]
     moved = bent - positions(x)[0]
     assert moved[:, -1].abs().max() < 0.2 * moved.abs().max(), "far from what is known the motion stays"
+
+
+def test_a_single_pose_says_nothing_of_planted_feet() -> None:
+    known = Known.nothing(8)
+    known.add_person(0, torch.zeros(1, 22, 3), [3])
+    assert known.mask[0, 0, 3, :-4].all() and not known.mask[..., -4:].any()
