@@ -2,7 +2,8 @@
 
 A rule is a condition of :mod:`motion.metrics.sentences` in which these names stand for an act's own values: ``who`` is
 its agent and ``whom`` the other; ``side`` and ``way`` are "any" and ``part`` (of the body) is "body" where the words
-name none; ``n`` is how often, 1 where they do not say.
+name none; ``hands`` is "both" or "any"; ``n`` is how often, 1 where they do not say, and ``times(…, n)`` asks for no
+more where they do.
 """
 
 from __future__ import annotations
@@ -16,9 +17,11 @@ from typing import Any
 from acts.plan import other_of
 from motion import SMPL22, Duet
 from motion.metrics.sentences.joints import Motion
-from motion.metrics.sentences.language import check, masks, measured
+from motion.metrics.sentences.language import check, mask_of, masks, measured
+from motion.metrics.sentences.stretches import stretches
 from motion.metrics.sentences.touches import BODY
 
+from .accounting import OTHER_THING, plain, qualifiers
 from .captions import naming, with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import Act, Plan
@@ -32,8 +35,9 @@ ONLY = {
 }
 """The reason why an act that is not told cannot be judged, by its modality."""
 
-WAYS = frozenset(("forward", "back", "left", "right"))
-"""Directions that a rule may ask for."""
+WAYS = {"forward": "forward", "back": "back", "left": "left", "right": "right", "clockwise": "right",
+        "counterclockwise": "left"}  # fmt: skip
+"""Directions that a rule may ask for; those of the clock are seen from above."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +51,8 @@ class Verdict:
         done: None where it cannot be judged.
         measure: what was measured, such as "hand 34 cm from the shoulder"; "" where the rule has no measure; why it
             cannot be judged, where it cannot.
+        unchecked: the kinds of its qualifiers that nothing measures, such as "how often"; the words of an act that is
+            done leave them out.
     """
 
     id: str
@@ -54,10 +60,12 @@ class Verdict:
     words: str
     done: bool | None
     measure: str = ""
+    unchecked: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """As it stands in a manifest."""
-        return {"act": self.act, "words": self.words, "done": self.done, "measure": self.measure}
+        found = {"act": self.act, "words": self.words, "done": self.done, "measure": self.measure}
+        return found | ({"unchecked": list(self.unchecked)} if self.unchecked else {})
 
 
 def checked(plan: Plan, motion: Duet | Motion, known: Lexicon | None = None) -> tuple[Verdict, ...]:
@@ -93,18 +101,26 @@ def _in_order(plan: Plan) -> Iterator[Act]:
 
 def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mapping[str, Verdict]) -> Verdict:
     entry = known.entries.get(act.act)
-    words = _words(act, entry)
     if why := _unjudged(act, entry):
-        return Verdict(act.id, act.act, words, None, why)
+        return Verdict(act.id, act.act, _words(act, entry), None, why)
     assert entry is not None
     casts = [rule for who in act.agents for rule in rules_of(act, entry, who)]
-    failed = [rule for rule in casts if not check(rule, motion)]
     if act.polarity == "not":
-        seen = not failed
-        return Verdict(act.id, act.act, words, not seen, _measure([], casts, motion))
-    if not failed and (late := _too_early(act, plan, motion, known, before)):
-        return Verdict(act.id, act.act, words, False, late)
-    return Verdict(act.id, act.act, words, not failed, _measure(failed, casts, motion))
+        seen = all(check(rule, motion) for rule in casts)
+        return Verdict(act.id, act.act, _words(act, entry), not seen, _measure([], casts, motion))
+    unchecked: dict[str, None] = {}
+    for who in act.agents:
+        mask = next((mask for rule in rules_of(act, entry, who) for mask in masks(rule)[:1]), "")
+        for kind, rule in qualifiers(act, entry, who, mask, plan.text(act.words) if act.words else ""):
+            casts += [rule] if rule else []
+            unchecked |= {} if rule else {kind: None}
+    failed = [rule for rule in casts if not check(rule, motion)]
+    if not failed and OTHER_THING in unchecked:
+        return Verdict(act.id, act.act, _words(act, entry), None, OTHER_THING)
+    late = "" if failed else _too_early(act, plan, motion, known, before)
+    done = not failed and not late
+    words = _words(plain(act, frozenset(unchecked)) if done else act, entry)
+    return Verdict(act.id, act.act, words, done, late or _measure(failed, casts, motion), tuple(unchecked))
 
 
 def _unjudged(act: Act, entry: Entry | None) -> str:
@@ -114,7 +130,7 @@ def _unjudged(act: Act, entry: Entry | None) -> str:
     if act.modality != "told":
         return ONLY[act.modality]
     if not entry.rule:
-        return "bodies of 22 joints do not show it" if entry.shown else "no body shows it"
+        return "nothing measures it" if entry.shown else "no body shows it"
     return ""
 
 
@@ -124,24 +140,34 @@ def _measure(failed: list[str], rules: list[str], motion: Motion) -> str:
 
 # ---- order -----------------------------------------------------------------------------------------------
 def _too_early(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mapping[str, Verdict]) -> str:
-    """Names the act that an act wrongly comes before, or ""."""
+    """Names the act that an act wrongly comes before, or "".
+
+    It does where all that shows it is over before the middle of the first stretch that shows the other, or before the
+    first second of it, where that lasts: two that overlap are in order.
+    """
     acts = {other.id: other for other in plan.acts}
     earlier = [acts[name] for name in _chain(act, plan) if name in before and before[name].done]
-    mine = _seen(act, known)
-    told = [(other, _seen(other, known)) for other in earlier if other.polarity == "done"]
-    for other, theirs in told:
-        if _follows(act, other, known):
-            theirs = [f"begins({mask})" for mask in theirs]
-        else:
-            theirs = [_over(mask, motion) for mask in theirs]
-        if theirs and mine and not any(check(f"then({x}, {y})", motion) for x in theirs for y in mine):
+    told = [other for other in earlier if other.polarity == "done"]
+    mine = _last(act, motion, known)
+    for other in told:
+        first = [each for mask in _seen(other, known) for each in _stretches(mask, motion)[:1]]
+        theirs = [min((i + j) / 2, i + motion.fps) for i, j in first]
+        if theirs and mine is not None and mine < min(theirs):
             return f"comes before “{before[other.id].words}”"
-    same = [other for other, _ in told if (other.act, other.agents) == (act.act, act.agents)]
-    if same and mine:  # done again: as many times as it is said
-        sequence = [mask for other, theirs in reversed(told) for mask in theirs[:1]]
-        if len(set(sequence)) > 1 and not check(f"then({', '.join((*sequence, mine[0]))})", motion):
-            return "is not done again"
+    same = [other for other in told if (other.act, other.agents) == (act.act, act.agents)]
+    if same and any(len(_stretches(mask, motion)) <= len(same) for mask in _seen(act, known)):
+        between = [other for other in told if other not in same]  # done again: as many times as it is said
+        return "is not done again" if between else ""
     return ""
+
+
+def _stretches(mask: str, motion: Motion) -> list[tuple[int, int]]:
+    return stretches(mask_of(mask, motion), motion.fps)
+
+
+def _last(act: Act, motion: Motion, known: Lexicon) -> int | None:
+    """The last frame that shows an act; None for one that is true all along, or that nothing shows."""
+    return max((j for mask in _seen(act, known) for _, j in _stretches(mask, motion)), default=None)
 
 
 def _chain(act: Act, plan: Plan) -> list[str]:
@@ -163,22 +189,11 @@ def _chain(act: Act, plan: Plan) -> list[str]:
     return found
 
 
-def _follows(act: Act, other: Act, known: Lexicon) -> bool:
-    """True for an act that goes after who does the other one, and begins before that ends: "runs, and she follows"."""
-    after = any(shape.do == "go" and shape.way == "after" for shape in known.entries[act.act].stage)
-    return after and set(act.agents).isdisjoint(other.agents)
-
-
 def _seen(act: Act, known: Lexicon) -> list[str]:
     """The predicates by which an act is seen, one for each agent; none for one that is true all along."""
     entry = known.entries[act.act]
     found = [mask for who in act.agents for rule in rules_of(act, entry, who)[:1] for mask in masks(rule)[:1]]
     return [mask for mask in found if not mask.startswith("stays(")]
-
-
-def _over(mask: str, motion: Motion) -> str:
-    """A predicate for an earlier act: of one that still holds at the end, such as sitting, where it begins."""
-    return f"begins({mask})" if check(f"end({mask})", motion) else mask
 
 
 # ---- rules -----------------------------------------------------------------------------------------------
@@ -188,16 +203,22 @@ def rules_of(act: Act, entry: Entry, who: str) -> list[str]:
     named = act.part or ""
     part = named if named in BODY else vocabulary().part(named)
     part = part if part in BODY else "body"
-    way = act.direction if act.direction in WAYS else "any"
-    return [
-        cast(rule, who, whom, side=act.side or "any", part=part, way=way, n=act.times or 1)
-        for rule in entry.rule
-    ]
+    way = WAYS.get(act.direction or "", "any")
+    values = {"side": act.side or "any", "part": part, "way": way}
+    return [cast(rule, who, whom, **values, n=act.times or 1, counted=bool(act.times)) for rule in entry.rule]
 
 
 @lru_cache(maxsize=4096)
 def cast(
-    rule: str, who: str, whom: str, *, side: str = "any", part: str = "body", way: str = "any", n: int = 1
+    rule: str,
+    who: str,
+    whom: str,
+    *,
+    side: str = "any",
+    part: str = "body",
+    way: str = "any",
+    n: int = 1,
+    counted: bool = False,
 ) -> str:
     """A rule of the lexicon with an act's own values in the place of their names.
 
@@ -209,11 +230,13 @@ def cast(
         part: a part of the body, as predicates know it.
         way: "forward", "back", "left", "right" or "any".
         n: how often.
+        counted: the words say how often, so that ``times(…, n)`` is "exactly".
     """
     values: dict[str, ast.expr] = {
         "who": ast.Name(who),
         "whom": ast.Name(whom),
         "side": ast.Constant(side),
+        "hands": ast.Constant("both" if side == "both" else "any"),
         "part": ast.Constant(part),
         "way": ast.Constant(way),
         "n": ast.Constant(n),
@@ -222,6 +245,14 @@ def cast(
     class Cast(ast.NodeTransformer):
         def visit_Name(self, node: ast.Name) -> ast.expr:
             return values.get(node.id, node)
+
+        def visit_Call(self, node: ast.Call) -> ast.expr:
+            count = isinstance(node.func, ast.Name) and node.func.id == "times"
+            said = count and any(isinstance(each, ast.Name) and each.id == "n" for each in node.args)
+            self.generic_visit(node)
+            if said and counted:
+                node.func = ast.Name("exactly")
+            return node
 
     try:
         return ast.unparse(Cast().visit(ast.parse(rule, mode="eval")))

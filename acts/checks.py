@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from motion.metrics.sentences.joints import Motion
-from motion.metrics.sentences.language import RuleError, check
+from motion.metrics.sentences.language import RuleError, check, measured
 
 from .checking import cast
 from .lexicon import OURS, Entry, files, read_file
@@ -41,8 +41,10 @@ def check_entry(name: str, entry: Entry, folders: tuple[Path, ...] = ()) -> Iter
     for sentence in entry.ignores:
         if any(act.act == name and act.happens for act in read(sentence, folders).acts):
             yield f"{where}: “{sentence}” is read as {name}, which it should not be."
+    noise = Motion(np.random.default_rng(0).normal(size=(2, 30, 22, 3)))
     for rule in entry.rule:
         try:
-            check(cast(rule, "a", "b"), Motion(np.random.default_rng(0).normal(size=(2, 30, 22, 3))))
+            check(cast(rule, "a", "b"), noise)
+            measured(cast(rule, "a", "b"), noise)
         except RuleError as error:
             yield f"{where}: {error}"

@@ -1,7 +1,7 @@
 """A plan and the verdicts on its motion → what happens, in words for people who cannot see it.
 
-"A walks up to B and taps B on the right shoulder; B turns to A." An act that was asked for but not seen is not told as
-if it were: it is named at the end.
+"A walks up to B and taps B on the right shoulder; B turns to A." An act that was asked for but not seen, or that
+nothing measures, is not told as if it were: it is named at the end.
 """
 
 from __future__ import annotations
@@ -27,11 +27,13 @@ def told(plan: Plan, verdicts: Sequence[Verdict], known: Lexicon | None = None) 
     known = lexicon() if known is None else known
     by_id = {verdict.id: verdict for verdict in verdicts}
     acts = [act for group in plan.beats() for act in group if act.act in known.entries and act.id in by_id]
-    done = [act for act in acts if act.happens and by_id[act.id].done is not False]
+    done = [act for act in acts if act.happens and by_id[act.id].done]
+    open_ = [act for act in acts if act.happens and by_id[act.id].done is None]
     missed = [act for act in acts if act.happens and by_id[act.id].done is False]
     denied = [act for act in acts if act.polarity == "not" and by_id[act.id].done is False]
     parts = [
-        _joined(_clauses([act for act in done if known.entries[act.act].shown], known)),
+        _joined(_clauses(done, known)),
+        _listed("Asked for and not measured", [act for act in open_ if known.entries[act.act].shown], known),
         _listed("Asked for but not seen", missed, known),
         _listed("Seen although the words rule it out", denied, known),
     ]

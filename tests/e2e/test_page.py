@@ -85,7 +85,7 @@ def test_a_motion_plays_before_anything_is_asked(page: Page) -> None:
 
 def test_a_prompt_becomes_two_moving_people(page: Page, server: SimpleNamespace) -> None:
     ask(page, "two people walk up to each other")
-    assert status(page, "done").startswith("Done in")
+    assert status(page, "done").startswith("Made in")
     page.wait_for_function("window.__pasdedeux?.positions?.length === 2")
     first = page.evaluate("window.__pasdedeux.positions")
     pose = "window.__pasdedeux.positions[person]"

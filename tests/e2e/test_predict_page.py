@@ -44,7 +44,7 @@ def upload(page: Page, file: Path) -> None:
 
 def predict(page: Page) -> None:
     page.click("button#predict-generate")
-    expect(page.locator("#predict-status .pd-done")).to_contain_text("Done", timeout=SLOW)
+    expect(page.locator("#predict-status .pd-done")).to_contain_text("Made", timeout=SLOW)
 
 
 def damaged(kind: str) -> np.ndarray:
@@ -128,7 +128,7 @@ def test_two_people_have_several_futures_by_a_seed(page: Page, tmp_path: Path) -
     expect(seed).to_be_visible()
     seed.locator("input").fill("7")
     page.click("button#predict-generate")
-    expect(page.locator("#predict-status .pd-done")).to_contain_text("3 samples done", timeout=SLOW)
+    expect(page.locator("#predict-status .pd-done")).to_contain_text("3 samples made", timeout=SLOW)
     page.wait_for_function("window.__pasdedeux.player.futures.samples.length === 3")
     assert page.evaluate("window.__pasdedeux.player.futures.from") == 45
     expect(page.locator("#predict-curves .legendtext", has_text="InterGen")).to_be_visible(timeout=SLOW)

@@ -81,7 +81,7 @@ def test_a_motion_is_as_long_as_its_acts_where_enter_follows_the_last_letter(pag
         prompt.fill(sentence)
         prompt.press("Enter")
         prompt.press("Enter")  # dropped, as one is while a run goes on
-        expect(page.locator("#status")).to_contain_text("Done", timeout=SLOW)
+        expect(page.locator("#status")).to_contain_text("Made", timeout=SLOW)
         expect(seconds).to_have_value(str(length))
         expect(page.locator("#readouts")).to_contain_text(f"{length}.0 s")
         expect(page.locator("#changed")).to_be_empty()

@@ -57,7 +57,7 @@ def _finished(best: Judged, request: Any, timer: StageTimer, tries: dict[str, An
         tries["seed"] = _seed(request.seed, tries["won"] - 1)
         timings = {**result.timings, **timer.stages, "total": round(timer.elapsed, 4)}
         result = replace(result, manifest={**result.manifest, "tries": tries}, timings=timings)
-    said = note(best.rows, tries)
+    said = note(best.rows, tries, best.unread)
     return replace(result, notes=(*result.notes, said)) if said else result
 
 

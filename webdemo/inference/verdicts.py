@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from acts import Plan
+from acts.accounting import unread_words
 from acts.checking import checked
 from acts.telling import told
 from motion import SMPL22, Clip, Duet
@@ -33,10 +34,12 @@ class Judged:
     Attributes:
         result: with ``checked`` and ``told`` in the manifests, of the first sample in that of all.
         rows: of each sample; () where the request has no words that can be read.
+        unread: stretches of the words that are in no act.
     """
 
     result: Result
     rows: tuple[Rows, ...] = ()
+    unread: tuple[str, ...] = ()
 
     @property
     def counts(self) -> tuple[int, int]:
@@ -55,12 +58,14 @@ def judged(request: Any, result: Result) -> Judged:
     """A result with the verdicts on the acts of its request's words; unchanged where there are none to judge."""
     plans = list(plans_of(request))
     lengths = lengths_of(result.manifest)
+    unread = tuple(dict.fromkeys(words for plan, *_ in plans for words in unread_words(plan)))
     found = [_judged_sample(plans, duet, lengths) for duet in result.duets] if plans else []
     rows = tuple(own["checked"] for own in found)
     if not any(rows):
-        return Judged(result)
+        return Judged(result, (), unread)
+    found = [own | ({"unread": list(unread)} if unread else {}) for own in found]
     duets = tuple(_with(duet, own) for duet, own in zip(result.duets, found, strict=True))
-    return Judged(replace(result, manifest=result.manifest | found[0], duets=duets), rows)
+    return Judged(replace(result, manifest=result.manifest | found[0], duets=duets), rows, unread)
 
 
 def _with(duet: Duet | Clip, own: Mapping[str, Any]) -> Duet | Clip:
@@ -70,7 +75,7 @@ def _with(duet: Duet | Clip, own: Mapping[str, Any]) -> Duet | Clip:
 def kept_rows(duet: Duet) -> dict[str, Any]:
     """The part of a sample's manifest that is its own: its verdicts, what happens in words, and its things."""
     manifest = duet.manifest or {}
-    return {key: manifest[key] for key in ("checked", "told", "things") if key in manifest}
+    return {key: manifest[key] for key in ("checked", "told", "unread", "things") if key in manifest}
 
 
 def _judged_sample(
@@ -92,37 +97,56 @@ def _judged_sample(
 
 
 # ---- the note --------------------------------------------------------------------------------------------
-def note(rows: Sequence[Rows], tries: Mapping[str, Any] | None = None) -> str:
-    """The sentence under a result: what is done of its words, what is not, and in how many tries; "" for nothing.
+def note(rows: Sequence[Rows], tries: Mapping[str, Any] | None = None, unread: Sequence[str] = ()) -> str:
+    """The verdict under a result; "" for nothing.
+
+    What of its words is not understood, what nothing measures, what is not seen, and then what is done. "Done" stands
+    alone where all of the words are acts, with all that is said of them, and all are measured and seen.
 
     Args:
         rows: of each sample; with several, an act counts how often it is done.
         tries: as the manifest holds them.
+        unread: stretches of the words that are in no act.
     """
-    acts = [[row for row in column if row["done"] is not None] for column in zip(*rows, strict=True)]
-    acts = [column for column in acts if column]
-    if not acts:
-        return ""
-    done = [column[0]["words"] for column in acts if all(row["done"] for row in column)]
-    missed = [_missed(column) for column in acts if not all(row["done"] for row in column)]
-    parts = [f"Done: {_listed(done)}."] if done else []
-    if missed:
-        parts.append(f"Not seen: {_listed(missed)}.")
-    if tries is None:
+    acts = [list(column) for column in zip(*rows, strict=True)]
+    judged = [column for column in acts if any(row["done"] is not None for row in column)]
+    done = [column[0]["words"] for column in judged if all(row["done"] for row in column)]
+    missed = [_missed(column) for column in judged if not all(row["done"] for row in column)]
+    open_ = [
+        _with_why(str(column[0]["words"]), column[0]["measure"]) for column in acts if column not in judged
+    ]
+    open_ += [
+        _with_why(str(column[0]["words"]), "; ".join(column[0]["unchecked"]))
+        for column in judged
+        if column[0].get("unchecked") and column[0]["done"]
+    ]
+    quoted = _listed([f"“{words}”" for words in unread])
+    parts = [f"Not understood: {quoted}."] if unread else []
+    parts += [f"Not checked: {_listed(open_)}."] if open_ else []
+    parts += [f"Not seen: {_listed(missed)}."] if missed else []
+    parts += [f"Done: {_listed(done)}."] if done else []
+    if tries is None or not judged:
         return " ".join(parts)
     if missed:
-        met = sum(row["done"] for column in acts for row in column)
-        return f"Best of {tries['made']} tries, {met} of {sum(map(len, acts))} acts. {' '.join(parts)}"
-    return f"Done at the {_ORDINALS[tries['won'] - 1]} of {tries['asked']} tries: {_listed(done)}."
+        met = sum(bool(row["done"]) for column in judged for row in column)
+        return f"Best of {tries['made']} tries, {met} of {sum(map(len, judged))} acts. {' '.join(parts)}"
+    won = _ORDINALS[tries["won"] - 1]
+    if len(parts) > 1:
+        return f"This is the {won} of {tries['asked']} tries. {' '.join(parts)}"
+    return f"Done at the {won} of {tries['asked']} tries: {_listed(done)}."
+
+
+def _with_why(words: str, why: str) -> str:
+    return f"{words} ({why})" if why else words
 
 
 def _missed(column: Sequence[Mapping[str, Any]]) -> str:
     """An act that is not done, with what was measured; of several samples with the number of those that show it."""
     words = str(column[0]["words"])
     if len(column) > 1:
-        met = sum(row["done"] for row in column)
+        met = sum(bool(row["done"]) for row in column)
         return f"{words} (in {met} of {len(column)} samples)"
-    return f"{words} ({column[0]['measure']})" if column[0]["measure"] else words
+    return _with_why(words, column[0]["measure"])
 
 
 def _listed(words: Sequence[str]) -> str:

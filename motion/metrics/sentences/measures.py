@@ -93,14 +93,24 @@ def _faces(m: Motion, who: int, degrees: float = 0.0) -> str:
 
 
 @measure("orbits")
-def _orbits(m: Motion, who: int, degrees: float = 0.0) -> str:
+def _orbits(m: Motion, who: int, *_: object) -> str:
     line = m.roots[who] - m.roots[1 - who]
     angle = np.degrees(np.unwrap(np.arctan2(line[:, 0], line[:, 1])))
     return f"{_NAMES[who]} goes {np.ptp(angle):.0f}° around"
 
 
 # ---- ways ------------------------------------------------------------------------------------------------
-@measure("walks", "goes_at", "goes_ahead", "sidesteps", "passes", "follows")
+@measure(
+    "walks",
+    "goes_at",
+    "goes_ahead",
+    "goes_way",
+    "goes_metres",
+    "sidesteps",
+    "steps_aside",
+    "passes",
+    "follows",
+)
 def _walks(m: Motion, who: int, *_: object, **__: object) -> str:
     return f"{_NAMES[who]} goes {_gone(m, m.speeds[who]):.1f} m"
 
@@ -134,7 +144,7 @@ def _stays(m: Motion, who: int, metres: float = 0.0) -> str:
     return f"{_NAMES[who]} gets {_cm(float(away))} away from where they began"
 
 
-@measure("turns", "turns_to", "turns_away", "turns_way", "turned")
+@measure("turns", "turns_to", "turns_away", "turns_way", "turned", "revolves")
 def _turns(m: Motion, who: int, *_: object, **__: object) -> str:
     return f"{_NAMES[who]} turns by {np.ptp(m.headings[who]):.0f}°"
 

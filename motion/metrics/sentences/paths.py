@@ -70,6 +70,44 @@ def sidesteps(m: Motion, who: int, metres: float = 0.3) -> Mask:
 
 
 @predicate
+def steps_aside(m: Motion, who: int, way: str = "any", metres: float = 0.25) -> Mask:
+    """Goes by ``metres`` or more to the body's own "left" or "right", or to either ("any"), and not ahead."""
+    x, z = m.forward[who].T
+    left = np.sum(m.velocities[who] * np.stack([z, -x], axis=-1), axis=-1)
+    ahead = np.abs(np.sum(m.velocities[who] * m.forward[who], axis=-1))
+    rates = {"left": left, "right": -left}
+    found = [
+        _gained(m, np.where(rate > ahead, rate, 0.0), metres, 0.12)
+        for name, rate in rates.items()
+        if way in ("any", name)
+    ]
+    return np.logical_or.reduce(found or [np.zeros(m.frames, dtype=bool)])
+
+
+@predicate
+def goes_way(m: Motion, who: int, way: str, metres: float = 0.3) -> Mask:
+    """Goes by ``metres`` or more to the "left" or "right" of where the person first faced."""
+    x, z = m.forward[who][0]
+    sign = {"left": 1.0, "right": -1.0}[way]
+    return _gained(m, sign * (m.velocities[who] @ np.array([z, -x])), metres, 0.12)
+
+
+@predicate
+def goes_metres(m: Motion, who: int, least: float, most: float) -> Mask:
+    """One way of ``least`` to ``most`` metres."""
+    speed = m.speeds[who]
+    return keep(speed > 0.15, m.fps, lambda i, j: least <= speed[i:j].sum() / m.fps <= most, pause=0.4)
+
+
+@predicate
+def wanders(m: Motion, who: int, metres: float = 0.6) -> Mask:
+    """On the way for ``metres`` or more, and back to within half of the way from where it began: all or none."""
+    gone = m.speeds[who][m.speeds[who] > WALK].sum() / m.fps
+    net = np.linalg.norm(m.roots[who][-1] - m.roots[who][0])
+    return np.full(m.frames, bool(gone >= metres and net < 0.5 * gone))
+
+
+@predicate
 def passes(m: Motion, who: int, metres: float = 0.4) -> Mask:
     """One walk that comes ``metres`` nearer to the other and then as far away again."""
 
@@ -110,12 +148,20 @@ def beside(m: Motion) -> Mask:
 
 
 @predicate
-def orbits(m: Motion, who: int, degrees: float = 180.0) -> Mask:
-    """Goes around the other: their line turns by ``degrees`` or more while this one walks."""
+def orbits(m: Motion, who: int, degrees: float = 180.0, way: str = "any") -> Mask:
+    """Goes around the other: their line turns by ``degrees`` or more while this one walks.
+
+    Counter-clockwise, seen from above, is "left".
+    """
     line = m.roots[who] - m.roots[1 - who]
     angle = np.degrees(np.unwrap(np.arctan2(line[:, 0], line[:, 1])))
     moving = (m.speeds[who] > 0.15) & (m.distance > 0.15)
-    return keep(moving, m.fps, lambda i, j: abs(angle[j - 1] - angle[i]) >= degrees, pause=0.5)
+    signs = {"left": (1.0,), "right": (-1.0,)}.get(way, (1.0, -1.0))
+
+    def around(i: int, j: int) -> bool:
+        return any(sign * (angle[j - 1] - angle[i]) >= degrees for sign in signs)
+
+    return keep(moving, m.fps, around, pause=0.5)
 
 
 # ---- where they are and where they look ------------------------------------------------------------------
@@ -165,6 +211,18 @@ def turns(m: Motion, who: int, degrees: float = 90.0) -> Mask:
         return abs(heading[j - 1] - heading[i]) >= degrees
 
     return keep(left, m.fps, far, pause=0.4) | keep(right, m.fps, far, pause=0.4)
+
+
+@predicate
+def revolves(m: Motion, who: int, rounds: int = 1, way: str = "any") -> Mask:
+    """Turns all the way around ``rounds`` times, give or take a third of a turn, to the "left", "right" or "any"."""
+    left, right, heading = _turning(m, who)
+    turning = {"left": left, "right": right}.get(way, left | right)
+
+    def around(i: int, j: int) -> bool:
+        return bool(abs(abs(heading[j - 1] - heading[i]) / 360 - rounds) < 0.34)
+
+    return keep(turning, m.fps, around, pause=0.5)
 
 
 @predicate

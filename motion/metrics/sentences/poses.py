@@ -73,6 +73,37 @@ def jumps(m: Motion, who: int, rise: float = 0.06) -> Mask:
     return keep(air & (m.height(who) > 0.8), m.fps, lambda i, j: j - i >= 0.1 * m.fps, pause=0.05)
 
 
+@predicate
+def hops(m: Motion, who: int, rise: float = 0.05) -> Mask:
+    """One of two or more moments at which no foot is on the floor: the pelvis goes up and down by ``rise`` in each."""
+    feet = np.minimum(
+        m.pair(who, "foot")[..., 1].min(axis=0), m.pair(who, "ankle")[..., 1].min(axis=0) - 0.06
+    )
+    up = feet > np.percentile(feet, 10) + 0.03
+    bobs = scipy.signal.find_peaks(m.joint(who, "pelvis")[:, 1], prominence=rise)[0]
+    found = np.zeros(m.frames, dtype=bool)
+    reach = round(0.2 * m.fps)
+    for peak in bobs:
+        found[max(0, peak - reach) : peak + reach + 1] = up[max(0, peak - reach) : peak + reach + 1].any()
+    return found
+
+
+@predicate
+def inverted(m: Motion, who: int) -> Mask:
+    """Upside down: both ankles are higher than the head."""
+    return m.pair(who, "ankle")[..., 1].min(axis=0) > m.joint(who, "head")[:, 1]
+
+
+@predicate
+def limps(m: Motion, who: int, share: float = 0.25) -> Mask:
+    """Walks with one foot lifted less than ``1 - share`` of the other's height, or bobs with every other step."""
+    going = keep(m.speeds[who] > 0.2, m.fps, lambda i, j: m.speeds[who][i:j].sum() / m.fps >= 0.6, pause=0.4)
+    if not going.any():
+        return going
+    lifts = np.ptp(m.pair(who, "ankle")[:, going, 1], axis=1)
+    return going & bool(lifts.min() < (1.0 - share) * lifts.max())
+
+
 # ---- arms ------------------------------------------------------------------------------------------------
 def _lift(m: Motion, who: int) -> Array:
     """(2, T) metres of the left and right wrist over their shoulder."""

@@ -6,6 +6,7 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 
 from .joints import Array, Motion
+from .poses import _lift, _of_side
 from .shapes import _flat, _left
 from .stretches import Mask, keep
 from .vocabulary import predicate
@@ -52,11 +53,56 @@ def head_up(m: Motion, who: int, degrees: float = 8.0) -> Mask:
 
 @predicate
 def head_aside(m: Motion, who: int, degrees: float = 10.0) -> Mask:
-    """The head leans to a side by ``degrees`` or more, against the trunk."""
+    """The head leans to a side by ``degrees`` more than it mostly does, against the trunk."""
     left = _left(m, who)
     parts = (m.joint(who, "head") - m.joint(who, "neck"), m.joint(who, "neck") - m.joint(who, "pelvis"))
     angles = [np.degrees(np.arctan2(_flat(part, left), part[:, 1])) for part in parts]
-    return np.abs(angles[0] - angles[1]) > degrees
+    aside = angles[0] - angles[1]
+    return np.abs(aside - np.median(aside)) > degrees
+
+
+@predicate
+def beats(
+    m: Motion, who: int, side: str = "any", strokes: int = 3, metres: float = 0.05, over: float = -0.6
+) -> Mask:
+    """A hand goes to and fro ``strokes`` times within 2 s, by ``metres`` or more each time.
+
+    Args:
+        m: the motion.
+        who: the person.
+        side: "left", "right", "both" or "any".
+        strokes: turns of the hand, two for once to and fro.
+        metres: of each stroke, against the shoulder.
+        over: least height of the wrist over the shoulder, metres.
+    """
+    found = []
+    for path, lift in zip(m.pair(who, "wrist") - m.pair(who, "shoulder"), _lift(m, who), strict=True):
+        busy = np.zeros(m.frames, dtype=bool)
+        for axis in path.T:
+            peaks = np.sort(
+                np.concatenate(
+                    [scipy.signal.find_peaks(sign * axis, prominence=metres)[0] for sign in (1, -1)]
+                )
+            )
+            for i, j in zip(peaks, peaks[strokes - 1 :], strict=False):
+                if j - i <= 2.0 * m.fps and np.all(lift[i : j + 1] > over):
+                    busy[i : j + 1] = True
+        found.append(busy)
+    return _of_side(np.stack(found), side)
+
+
+@predicate
+def palms_strike(m: Motion, who: int, metres: float = 0.2, opens: float = 0.05) -> Mask:
+    """The palms of one person strike each other: within ``metres``, and ``opens`` more apart just before and after."""
+    left, right = m.palms[who]
+    gap = np.linalg.norm(left - right, axis=-1)
+    found = np.zeros(m.frames, dtype=bool)
+    for peak in scipy.signal.find_peaks(-gap, prominence=opens)[0]:
+        reach = round(0.5 * m.fps)
+        around = gap[max(0, peak - reach) : peak], gap[peak + 1 : peak + reach + 1]
+        if gap[peak] < metres and all(part.size and part.max() > gap[peak] + opens for part in around):
+            found[max(0, peak - 1) : peak + 2] = True
+    return found
 
 
 @predicate
@@ -75,24 +121,24 @@ def twists(m: Motion, who: int, degrees: float = 20.0) -> Mask:
 
 
 @predicate
-def sways(m: Motion, who: int, metres: float = 0.04) -> Mask:
-    """The trunk or the hips go from side to side over the feet, twice and by ``metres`` or more: all or none."""
+def sways(m: Motion, who: int, metres: float = 0.04, strokes: int = 2) -> Mask:
+    """The trunk or the hips go to a side over the feet, ``strokes`` times by ``metres`` or more: all or none."""
     feet = m.pair(who, "ankle").mean(axis=0)
     left = _left(m, who)
     aside = [_flat(m.joint(who, name) - feet, left) for name in ("neck", "pelvis")]
-    swung = max(_strokes(path, metres) for path in aside) >= 2
+    swung = max(_strokes(path, metres) for path in aside) >= strokes
     return np.full(m.frames, swung) & (m.speeds[who] < 0.5)
 
 
 @predicate
 def hands_on_hips(m: Motion, who: int, side: str = "both") -> Mask:
-    """The wrists are at the waist and the elbows out to the sides; "any": one of them."""
+    """The wrists are at the sides of the waist and the elbows further out; "any": one of them."""
     wrists, elbows, shoulders = (m.pair(who, part) for part in ("wrist", "elbow", "shoulder"))
     pelvis, left = m.joint(who, "pelvis"), _left(m, who)
     at_waist = np.linalg.norm(wrists - pelvis, axis=-1) < 0.32
     signs = np.array([1.0, -1.0])[:, None]
     out = [signs * _flat(points - pelvis, left) for points in (elbows, shoulders, wrists)]
-    mask = at_waist & (out[0] > out[1] + 0.06) & (out[0] > out[2] + 0.06)
+    mask = at_waist & (out[0] > out[1] + 0.06) & (out[0] > out[2] + 0.06) & (out[2] > 0.15)
     return np.any(mask, axis=0) if side == "any" else np.all(mask, axis=0)
 
 

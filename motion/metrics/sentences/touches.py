@@ -16,6 +16,8 @@ BODY = {
               "right_shoulder"),
     "chest": ("spine2", "spine3", "left_collar", "right_collar"),
     "head": ("head", "neck"),
+    "face": ("head",),
+    "breast": ("spine3", "left_collar", "right_collar"),
     "hand": ("left_wrist", "right_wrist"),
     "arm": ("left_elbow", "right_elbow", "left_wrist", "right_wrist"),
     "elbow": ("left_elbow", "right_elbow"),
@@ -85,14 +87,16 @@ def to_joints(m: Motion, points: Array, who: int, part: str) -> Array:
 
 @predicate
 def hand_on(m: Motion, who: int, part: str, side: str = "any", gap: float = ON_JOINT) -> Mask:
-    """A hand (wrist or palm) is on a part of the other's body."""
+    """A hand (wrist or palm) is on a part of the other's body; "both": each hand is."""
+    if side == "both":
+        return hand_on(m, who, part, "left", gap) & hand_on(m, who, part, "right", gap)
     return to_joints(m, m.hands(who, side), 1 - who, part).min(axis=0) < gap
 
 
 @predicate
 def both_hands_on(m: Motion, who: int, part: str, gap: float = 0.22) -> Mask:
     """Both hands are on a part of the other's body."""
-    return hand_on(m, who, part, "left", gap) & hand_on(m, who, part, "right", gap)
+    return hand_on(m, who, part, "both", gap)
 
 
 @predicate
@@ -103,7 +107,9 @@ def foot_on(m: Motion, who: int, part: str, gap: float = ON_JOINT) -> Mask:
 
 @predicate
 def hand_to_own(m: Motion, who: int, part: str, side: str = "any", gap: float = ON_JOINT) -> Mask:
-    """A hand is on a part of the person's own body."""
+    """A hand is on a part of the person's own body; "both": each hand is."""
+    if side == "both":
+        return hand_to_own(m, who, part, "left", gap) & hand_to_own(m, who, part, "right", gap)
     return to_joints(m, m.hands(who, side), who, part).min(axis=0) < gap
 
 

@@ -66,7 +66,7 @@ def test_a_prediction_marks_the_past_and_shows_the_truth_as_a_ghost(tab: Predict
     assert [curve["key"] for curve in sample["curves"]] == ["error", "speed"]
     assert sample["curves"][0]["values"][89:92] == [0.0, 0.01, 0.02]
     assert done["curves"]["visible"] and len(done["plot"].data) == 4
-    assert "Done" in done["line"] and isinstance(done["record"], Record)
+    assert "Made" in done["line"] and isinstance(done["record"], Record)
 
 
 def test_the_last_result_is_continued_from_its_end(tab: PredictTab, pair: Path) -> None:

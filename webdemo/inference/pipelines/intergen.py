@@ -80,7 +80,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
                 if split is None and request.cleanup:
                     finish = plan.finishes[0] if plan.finishes else BeatFinish()
                     event = replace(event, duets=tuple(_in_touch(duet, finish) for duet in event.duets))
-                own, said = plan.to_dict(), understood.notes(plan.acts[0])
+                own, said = plan.to_dict(), plan.acts[0].notes
                 whole = {name: own[name] for name in ("acts", "beats")}
                 kept = own | event.manifest.get("plan", {}) | whole
                 event = replace(

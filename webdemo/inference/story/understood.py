@@ -8,9 +8,6 @@ from motion import InputError
 
 from .staging import staged
 
-MOST_NAMED = 3
-"""Parts of a sentence that a note quotes, at most."""
-
 
 def understood(text: str) -> Plan:
     """The plan of a text; an empty one where it says nothing, is too long, or no parser is installed."""
@@ -23,16 +20,6 @@ def understood(text: str) -> Plan:
 def is_understood(plan: Plan) -> bool:
     """True if people's ways, postures or touches are planned from a plan, or its text has nothing but known acts."""
     return bool(plan.acts) and (not plan.unread or staged(plan.acts).is_planned)
-
-
-def notes(plan: Plan) -> tuple[str, ...]:
-    """Sentences on what of the words is not shown; only those on the whole text where the words were planned."""
-    found = list(plan.notes)
-    parts = [plan.text(unread.words) for unread in plan.unread][:MOST_NAMED]
-    if parts and not staged(plan.acts).is_planned:
-        quoted = ", ".join(f"“{part}”" for part in parts)
-        found.append(f"Not understood: {quoted}. Say it in plainer words, or as what the two bodies do.")
-    return tuple(found)
 
 
 def of_each(plan: Plan) -> tuple[str, str]:

@@ -206,8 +206,8 @@ def checked(text: str, plan: Plan, manifest: Mapping[str, Any]) -> dict[str, Any
         {
             "id": act.id,
             "act": act.act,
-            "done": row.get("done"),
-            "measure": row.get("measure") or "",
+            "done": None if row.get("done") and row.get("unchecked") else row.get("done"),
+            "measure": "; ".join(row.get("unchecked") or ()) or row.get("measure") or "",
         }
         for act, row in zip(plan.acts, manifest.get("checked") or (), strict=False)
         if row.get("act") == act.act

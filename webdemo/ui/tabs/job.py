@@ -329,7 +329,7 @@ class JobTab(SamplingTab, ABC):
         spent = total(result)
         count = len(result.duets)
         time_spent = f" in {seconds(spent)}" if spent else ""
-        made = f"Done{time_spent}." if count == 1 else f"{count} samples done{time_spent}."
+        made = f"Made{time_spent}." if count == 1 else f"{count} samples made{time_spent}."
         return {
             "player": show(result_payload(result, title=title)),
             "line": status(made, tone="done") + notes_lines(result),

@@ -38,13 +38,13 @@ def status(line: str = "", *, tone: str = "quiet") -> str:
 
 
 def notes_lines(result: Result) -> str:
-    """The notes of a result, which stand right beside "Done"."""
+    """The notes of a result, which stand right beside how long it took."""
     return "".join(status(note, tone=_note_tone(note)) for note in result.notes)
 
 
 def _note_tone(note: str) -> str:
     """The tone of a note: what was not done is a warning; how the sentence was read, and what was done, is not."""
-    if "Not seen:" in note:
+    if any(head in note for head in ("Not understood:", "Not checked:", "Not seen:")):
         return "warning"
     if note.startswith("Done"):
         return "quiet"

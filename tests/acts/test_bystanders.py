@@ -1,0 +1,68 @@
+"""No rule of the lexicon holds on two recorded people who idle, talk or walk by."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from acts import lexicon
+from acts.checking import cast
+from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.language import check
+from motion.transforms import facing
+
+RECORDED = Path(__file__).parents[1] / "data" / "bystanders" / "bystanders.npz"
+STANDS = {"stand-still", "freeze", "keep-distance"}
+TALKS = {"talk", "argue", "nod", "bend-arm", "look-up", "lift-head"}
+"""What a person does who talks with hands and head."""
+WALKS = {
+    "walk-up", "walk-away", "walk-past", "walk-ahead", "move-about", "step-forward", "part",
+    "step-over", "cross-way", "return", "go-back", "exit", "enter", "back-turned", "copy", "mirror",
+}  # fmt: skip
+"""What two people do who walk past each other: come near, go away, leave the other behind, step alike."""
+PAIRS = {
+    "idle": [
+        ("idle_1", "idle_2", 1.3),
+        ("idle_3", "idle_4", 0.9),
+        ("idle_5", "idle_6", 1.8),
+        ("idle_7", "idle_8", 1.1),
+    ],
+    "talk": [("talk_1", "idle_2", 1.3), ("talk_2", "talk_3", 1.1), ("talk_3", "idle_7", 1.0)],
+    "walk by": [("walk_1", "idle_4", 2.0), ("walk_2", "idle_1", 2.0), ("walk_1", "walk_2", 4.0)],
+}
+"""The names of a and b, and metres between them where they begin, by what they do."""
+
+
+def person(name: str) -> np.ndarray:
+    """(120, 22, 3) metres, from the origin and facing, or walking, along Z."""
+    with np.load(RECORDED) as kept:
+        joints = np.cumsum(kept[name], axis=0, dtype=np.int32) / 1000.0
+    way = joints[-1, 0] - joints[0, 0] if name.startswith("walk") else facing(joints[:1])[0]
+    angle = -np.arctan2(way[0], way[2])
+    cos, sin = np.cos(angle), np.sin(angle)
+    return joints @ np.array([[cos, 0, sin], [0, 1, 0], [-sin, 0, cos]]).T
+
+
+def pair(a: str, b: str, gap: float) -> Motion:
+    """Two people who face each other; one who walks passes the other a metre to the side."""
+    first, second = person(a), person(b) * [-1, 1, -1] + [0, 0, gap]
+    first[..., 0] += 1.0 if a.startswith("walk") else 0.0
+    return Motion(np.stack([first, second]), 30.0)
+
+
+@pytest.mark.parametrize("kind", PAIRS)
+def test_no_rule_holds_on_bystanders_but_for_what_they_do(kind: str) -> None:
+    does = {"idle": STANDS, "talk": STANDS | TALKS, "walk by": STANDS | WALKS}[kind]
+    motions = [pair(*each) for each in PAIRS[kind]]
+    found = {
+        f"{name}: {' and '.join(entry.rule)}"
+        for name, entry in lexicon().entries.items()
+        for motion in motions
+        for who, whom in (("a", "b"), ("b", "a"))
+        if entry.rule
+        and name not in does
+        and all(check(cast(rule, who, whom), motion) for rule in entry.rule)
+    }
+    assert not found
