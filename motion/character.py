@@ -18,7 +18,7 @@ from .errors import InputError
 from .formats.glb_reader import Character
 from .kinematics import swing
 from .retarget import leg_scale, retarget, up_rotation
-from .rigs import RigMotion, match_joints, pairs_of
+from .rigs import RigMotion, pairs_of
 from .skeleton import SMPL22
 
 Array = NDArray[np.floating]
@@ -63,8 +63,7 @@ def character_body(character: Character) -> Body:
         InputError: if no human body is found among its joints, or its mesh is nowhere near it.
     """
     rig = _rig(character)
-    parts = match_joints(rig)
-    upright = up_rotation(rig, parts) * leg_scale(rig)
+    upright = up_rotation(rig) * leg_scale(rig)
     ours = pairs_of(rig)
     owner = np.array([_owner(rig, joint, ours) for joint in range(len(rig.parents))])
     joints = rig.positions[0] @ upright.T

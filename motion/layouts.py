@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InputError
-from .skeleton import CMU17, K3HI15, NTU25, POINTS17, SBU15, SMPL22, Skeleton
+from .skeleton import CMU17, COCO17, H36M17, K3HI15, NTU25, POINTS17, SBU15, SMPL22, Skeleton
 
 Array = NDArray[np.floating]
 
@@ -95,6 +95,8 @@ LAYOUTS: dict[str, Layout] = {
     "k3hi15": _layout(K3HI15, _OPENNI_NAMES, _OPENNI, 0.1),
     "ntu25": _layout(NTU25, _KINECT2_NAMES, _KINECT2, 0.15),
     "cmu17": _layout(CMU17, {}, {}),
+    "h36m17": _layout(H36M17, {}, {}),
+    "coco17": _layout(COCO17, {"nose": "head"}, {"head": (0.0, 0.09, 0.13)}),
     "points17": _layout(POINTS17, {}, {}),
     "smpl22": _layout(SMPL22, {}, {}),
 }

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from .kinematics import fit_rotations
 from .skeleton import FEET
-from .transforms import canonicalize, heading, put_on_floor, turn
+from .transforms import canonicalize, heading, heading_matrix, put_on_floor, turn
 from .vectors import unit
 
 Array = NDArray[np.floating]
@@ -163,6 +163,24 @@ def decode_positions(features: Array, *, restore_last: bool = True) -> Array:
         return positions
     last = positions[-1] + features[-1, VELOCITIES].reshape(22, 3)
     return np.concatenate([positions, last[None]])
+
+
+def decode_humanml3d(features: Array) -> Array:
+    """(T, 22, 3) metres, Y up, of HumanML3D's features (T, 263), which T2M-GPT and MDM share (Guo et al. 2022).
+
+    They hold the root's turn about Y (radians a frame), its velocity in its own heading (x, z), its height, and the
+    places of the other 21 joints against it in that heading; what follows is not needed.
+    """
+    features = np.asarray(features, dtype=np.float64)
+    half = np.concatenate([[0.0], np.cumsum(features[:-1, 0])])  # a quaternion's angle
+    turns = heading_matrix(-2 * half)
+    root = np.zeros((len(features), 3))
+    steps = features[:-1, [1, 3, 2]] * [1.0, 0.0, 1.0]
+    root[1:] = np.cumsum(np.einsum("tij,tj->ti", turns[1:], steps), axis=0)
+    root[:, 1] = features[:, 3]
+    local = features[:, 4:67].reshape(-1, 21, 3)
+    joints = local @ np.swapaxes(turns, -1, -2) + root[:, None] * [1.0, 0.0, 1.0]
+    return np.concatenate([root[:, None], joints], axis=1)
 
 
 def to_6d(rotations: Array) -> Array:

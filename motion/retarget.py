@@ -21,7 +21,8 @@ from .ik import body_scale, fit_skeleton
 from .kinematics import project_to_skeleton
 from .rigs import BodyParts, RigMotion, match_joints
 from .skeleton import SMPL22
-from .transforms import axis_to_y, resample
+from .transforms import resample
+from .up import axis_of, find_up, places_of, turn_of
 from .vectors import square_frame, unit
 
 Array = NDArray[np.floating]
@@ -63,7 +64,7 @@ def retarget(rig: RigMotion, *, fps: float = 30.0, plant: bool = True) -> Clip:
     """
     positions = _on_smpl(rig, fps, leg_scale(rig))
     positions[..., 1] -= _floor_height(positions)
-    return _finished(positions, fps, rig.name, plant)
+    return replace(_finished(positions, fps, rig.name, plant), notes=rig.notes)
 
 
 def retarget_duet(
@@ -79,7 +80,9 @@ def retarget_duet(
     frames = min(len(person) for person in people)
     floor = min(_floor_height(person) for person in people)
     clips = [
-        _finished(person[:frames] - np.array([0.0, floor, 0.0]), fps, rig.name, plant)
+        replace(
+            _finished(person[:frames] - np.array([0.0, floor, 0.0]), fps, rig.name, plant), notes=rig.notes
+        )
         for person, rig in zip(people, (a, b), strict=True)
     ]
     return Duet(clips[0], clips[1], roles)
@@ -136,7 +139,7 @@ def leg_scale(rig: RigMotion) -> float:
 def _on_smpl(rig: RigMotion, fps: float, scale: float) -> Array:
     """(T, 22, 3) Y-up positions on SMPL22's bones at the new frame rate; the floor is the file's, scaled."""
     parts = match_joints(rig)
-    source = _bodies(rig.positions, rig, parts, up_rotation(rig, parts))
+    source = _bodies(rig.positions, rig, parts, up_rotation(rig))
     positions = _transfer(source, _standing_rest(rig, parts), scale)
     if rig.fps == fps:
         return positions
@@ -160,47 +163,32 @@ def _finished(positions: Array, fps: float, name: str, plant: bool) -> Clip:
     return Clip(positions, fps, SMPL22, rotations, name)
 
 
-def up_rotation(rig: RigMotion, parts: BodyParts | None = None) -> Array:
-    """(3, 3) rotation that turns the file's up axis to Y.
+def up_axis(*rigs: RigMotion) -> str:
+    """The axis of :data:`~motion.up.AXES` that is up for rigs of one world, as they say or :func:`find_up` finds.
 
-    An axis that the rig names is used; the body shows which end of it is up. In a BVH, Y is up unless the rest pose
-    stands along another axis: its people may lie or crawl all the time. Elsewhere people stand most of the time, so
-    up is the axis along which ankles and head are furthest apart, and where the motion does not show it clearly, the
-    rest pose decides.
+    The usual axis is the one along which the rest pose stands; in a BVH its people may lie or crawl all the time.
     """
-    parts = parts or match_joints(rig)
-    if rig.up is None and rig.y_up:
-        return _rest_up(rig, parts)
-    heads = [joint for joint in (parts.head, parts.neck, parts.spine[-1]) if joint is not None]
-    ankles = [joint for joint in (parts.left["ankle"], parts.right["ankle"]) if joint is not None]
-    tall = np.median(rig.positions[:, heads[0]] - rig.positions[:, ankles].mean(axis=1), axis=0)
-    tall_rest = _rest_positions(rig)[heads[0]] - _rest_positions(rig)[ankles].mean(axis=0)
-    if rig.up is not None:
-        axis = "xyz".index(rig.up)
-        return axis_to_y(axis, -1.0 if tall[axis] < -0.5 * np.linalg.norm(tall) else 1.0)
-    for vector in (tall, tall_rest):
-        axis = int(np.argmax(np.abs(vector)))
-        if abs(vector[axis]) > 0.8 * np.linalg.norm(vector) and np.linalg.norm(vector) > 0.7:
-            return axis_to_y(axis, float(np.sign(vector[axis])))
-    return np.eye(3)
+    first = rigs[0]
+    if first.up is not None:
+        return first.up
+    return find_up([places_of(rig) for rig in rigs], rest_axis(first) or "y", firm=first.y_up)
 
 
-def _rest_up(rig: RigMotion, parts: BodyParts) -> Array:
-    """(3, 3) rotation that turns the axis along which the rest pose stands to Y; of one that does not stand, none."""
-    rest = _bodies(_rest_positions(rig)[None], rig, parts, np.eye(3))
+def up_rotation(rig: RigMotion) -> Array:
+    """(3, 3) rotation that turns the file's up axis to Y."""
+    return turn_of(up_axis(rig))
+
+
+def rest_axis(rig: RigMotion) -> str:
+    """The axis along which a rig's rest pose stands; empty for one that does not stand."""
+    rest = _bodies(_rest_positions(rig)[None], rig, match_joints(rig), np.eye(3))
     tall = np.mean([rest["neck"] - rest[f"{side}_ankle"] for side in ("left", "right")], axis=(0, 1))
     legs = np.mean([
         np.linalg.norm(rest[f"{side}_{upper}"] - rest[f"{side}_{lower}"])
         for side in ("left", "right") for upper, lower in (("hip", "knee"), ("knee", "ankle"))
     ])  # fmt: skip
-    axis = int(np.argmax(np.abs(tall)))
-    stands = abs(tall[axis]) > max(_STRAIGHT * np.linalg.norm(tall), _TALL * 2 * legs)
-    return axis_to_y(axis, float(np.sign(tall[axis]))) if stands and axis != 1 else np.eye(3)
-
-
-def up_axis(rig: RigMotion) -> str:
-    """The file's axis that is taken to be up: "x", "y" or "z"."""
-    return "xyz"[int(np.argmax(np.abs(up_rotation(rig)[1])))]
+    stands = np.abs(tall).max() > max(_STRAIGHT * np.linalg.norm(tall), _TALL * 2 * legs)
+    return axis_of(tall) if stands else ""
 
 
 def _bodies(positions: Array, rig: RigMotion, parts: BodyParts, upright: Array) -> dict[str, Array]:
@@ -238,12 +226,11 @@ def _standing_rest(rig: RigMotion, parts: BodyParts) -> dict[str, Array] | None:
     bodies = _bodies(rest, rig, parts, np.eye(3))
     ankles = (bodies["left_ankle"] + bodies["right_ankle"]) / 2
     tall = (bodies["neck"] - ankles)[0]
-    axis = int(np.argmax(np.abs(tall)))
-    straight = abs(tall[axis]) > 0.97 * np.linalg.norm(tall) and np.linalg.norm(tall) > 0.7
+    straight = np.abs(tall).max() > 0.97 * np.linalg.norm(tall) and np.linalg.norm(tall) > 0.7
     across = (bodies["left_hip"] - bodies["right_hip"])[0]
     if not straight or np.linalg.norm(across) < 0.05:
         return None
-    bodies = _bodies(rest, rig, parts, axis_to_y(axis, float(np.sign(tall[axis]))))
+    bodies = _bodies(rest, rig, parts, turn_of(axis_of(tall)))
     frame = square_frame(np.array([[0.0, 1.0, 0.0]]), bodies["left_hip"] - bodies["right_hip"])[0]
     bodies = {name: place @ frame for name, place in bodies.items()}
     legs_down = all(

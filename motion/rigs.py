@@ -32,10 +32,11 @@ class RigMotion:
         fps: frames a second.
         metres_per_unit: what the file's lengths were multiplied by.
         name: the file's name, for messages.
-        up: the axis that points up ("x", "y" or "z"), where it is known; it is found from the body otherwise.
+        up: the axis that points up, of :data:`motion.up.AXES`, where it is known; it is found from the body otherwise.
         every: of how many frames of the file one is here.
         y_up: Y is up unless the rest pose stands along another axis, as in a BVH.
         mirrored: the world shows what is named left on the right.
+        notes: sentences on how well its file could be read.
     """
 
     joint_names: tuple[str, ...]
@@ -50,6 +51,7 @@ class RigMotion:
     every: int = 1
     y_up: bool = False
     mirrored: bool = False
+    notes: tuple[str, ...] = field(default=(), repr=False)
 
     @property
     def num_frames(self) -> int:

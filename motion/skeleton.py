@@ -203,6 +203,30 @@ CMU17 = _topology(
 )  # fmt: skip
 """The 17 joints that motion-prediction papers keep of CMU MoCap, in their order."""
 
+H36M17 = _topology(
+    "h36m17",
+    [
+        ("pelvis", None), ("right_hip", "pelvis"), ("right_knee", "right_hip"), ("right_ankle", "right_knee"),
+        ("left_hip", "pelvis"), ("left_knee", "left_hip"), ("left_ankle", "left_knee"),
+        ("spine1", "pelvis"), ("spine3", "spine1"), ("neck", "spine3"), ("head", "neck"),
+        ("left_shoulder", "spine3"), ("left_elbow", "left_shoulder"), ("left_wrist", "left_elbow"),
+        ("right_shoulder", "spine3"), ("right_elbow", "right_shoulder"), ("right_wrist", "right_elbow"),
+    ],
+)  # fmt: skip
+"""The 17 joints of Human3.6M in the order of pose estimators (VideoPose3D): legs right first, arms left first."""
+
+COCO17 = _topology(
+    "coco17",
+    [
+        ("nose", None), ("left_eye", "nose"), ("right_eye", "nose"), ("left_ear", "nose"), ("right_ear", "nose"),
+        ("left_shoulder", "nose"), ("right_shoulder", "nose"), ("left_elbow", "left_shoulder"),
+        ("right_elbow", "right_shoulder"), ("left_wrist", "left_elbow"), ("right_wrist", "right_elbow"),
+        ("left_hip", "left_shoulder"), ("right_hip", "right_shoulder"), ("left_knee", "left_hip"),
+        ("right_knee", "right_hip"), ("left_ankle", "left_knee"), ("right_ankle", "right_knee"),
+    ],
+)  # fmt: skip
+"""The 17 key points of COCO, in metres."""
+
 POINTS17 = _topology(
     "points17",
     [
@@ -215,4 +239,6 @@ POINTS17 = _topology(
 )  # fmt: skip
 """Joint centres that are found from markers or key points (:mod:`motion.formats.markers`)."""
 
-SKELETONS: dict[str, Skeleton] = {s.name: s for s in (SMPL22, SBU15, K3HI15, NTU25, CMU17, POINTS17)}
+SKELETONS: dict[str, Skeleton] = {
+    s.name: s for s in (SMPL22, SBU15, K3HI15, NTU25, CMU17, H36M17, COCO17, POINTS17)
+}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, Clip, Duet, InputError
-from motion.formats import read, write
+from motion.formats import ImportChoices, read, write
 from motion.kinematics import forward_kinematics
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_takes
@@ -285,7 +285,9 @@ def test_other_commands_choose_an_animation_too(
 
     monkeypatch.setattr(generation, "run", stop)
     assert cli.main(words) == 2
-    np.testing.assert_array_equal(requests[0].motion.positions, read(file, animation="glide").positions)
+    np.testing.assert_array_equal(
+        requests[0].motion.positions, read(file, choices=ImportChoices(animation="glide")).positions
+    )
     for wrong, says in (
         (["render", str(file), str(file), "--animation", "1"], "chooses within one file"),
         (

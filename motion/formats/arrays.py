@@ -23,6 +23,11 @@ _MAX_HEADER = 4096
 _NO_RATE = (
     "{} does not give its frame rate: {:g} frames a second are assumed. Give the true rate if it differs."
 )
+_PICKLED = (
+    "{} holds pickled Python objects, which could run code and are never opened: where you trust the file, save its "
+    'numbers alone, for MDM\'s results with `d = numpy.load("results.npy", allow_pickle=True).item()` and '
+    '`numpy.save("motion.npy", d["motion"][0].transpose(2, 0, 1))`.'
+)
 ZIP_ERRORS = (
     zipfile.BadZipFile, zlib.error, struct.error, lzma.LZMAError, EOFError, NotImplementedError, RuntimeError,
     OSError, ValueError, OverflowError, IndexError, KeyError,
@@ -72,7 +77,7 @@ def load_array(stream: IO[bytes], size: int, label: str) -> Array:
             f"{label} is not a NumPy array file: save it with numpy.save or numpy.savez."
         ) from None
     if dtype.hasobject:
-        raise InputError(f"{label} holds Python objects, which are not read: save plain numbers.")
+        raise InputError(_PICKLED.format(label))
     count = 1
     for length in shape:
         count *= int(length)
@@ -97,12 +102,12 @@ def numbers(array: Array, label: str) -> Array:
 
 
 def frame_rate(stored: Array | None, given: float | None, label: str, *, usual: float = 30.0) -> float:
-    """Frames a second that a file stores, or else the given rate, or else the ``usual`` one.
+    """Frames a second that are given, or else those that a file stores, or else the ``usual`` ones.
 
     Raises:
         InputError: if what is stored is no rate.
     """
-    if stored is None:
+    if given or stored is None:
         return given or usual
     try:
         rate = float(np.asarray(stored).reshape(()))
@@ -111,6 +116,25 @@ def frame_rate(stored: Array | None, given: float | None, label: str, *, usual: 
     if not 1.0 <= rate <= 1000.0:
         raise InputError(f"{label}: a frame rate of {rate:g} is not possible: save frames a second.")
     return rate
+
+
+def filled(positions: Array, label: str) -> Array:
+    """(T, J, 3) in which joints that are NaN are interpolated over time, and held at the ends.
+
+    Raises:
+        InputError: for a joint that is never there.
+    """
+    lost = np.asarray(~np.isfinite(positions).all(axis=-1))
+    if not lost.any():
+        return positions
+    if lost.all(axis=0).any():
+        raise InputError(f"{label} holds a joint that is NaN in every frame: export it again.")
+    found, times = np.array(positions), np.arange(len(positions))
+    for joint in np.flatnonzero(lost.any(axis=0)):
+        seen = np.flatnonzero(~lost[:, joint])
+        for axis in range(3):
+            found[:, joint, axis] = np.interp(times, seen, positions[seen, joint, axis])
+    return found
 
 
 def no_rate(label: str, assumed: float) -> str:

@@ -79,9 +79,9 @@ def read_bvh_people(
     Raises:
         InputError: as :func:`read_bvh`, and for more than six people.
     """
-    joints, motion, label = _opened(source, name)
+    joints, motion, label = _opened(source, name, file_fps)
     own = any(_is_own(joints[first:stop]) for first, stop in trees(joints, label))
-    every = 1 if own or fps is None else _stride(file_fps or _frame_rate(motion.frame_time), fps)
+    every = 1 if own or fps is None else _stride(motion.fps, fps)
     return _placed(motion, every)
 
 
@@ -110,7 +110,9 @@ def read_rotations(
     return joints, rotations, values
 
 
-def _opened(source: str | Path | bytes, name: str | None) -> tuple[list[Joint], Motion, str]:
+def _opened(
+    source: str | Path | bytes, name: str | None, file_fps: float | None = None
+) -> tuple[list[Joint], Motion, str]:
     """A file's joints and where its numbers are, and what to call it."""
     data, label = read_bytes(source, name)
     data = ascii_bytes(data, label, "a BVH file")
@@ -123,7 +125,7 @@ def _opened(source: str | Path | bytes, name: str | None) -> tuple[list[Joint], 
             raise InputError(f"{label} has no MOTION part within its first megabyte: is it of another kind?")
         raise InputError(f"{label} has no MOTION part and may be cut short: export it again.")
     joints = parse_hierarchy(_decoded(data[: head.start()]), label)
-    return joints, find_motion(data, head.end(), joints, label), label
+    return joints, find_motion(data, head.end(), joints, label, file_fps), label
 
 
 def _decoded(hierarchy: bytes) -> str:
@@ -159,6 +161,8 @@ def _placed(motion: Motion, every: int) -> tuple[RigMotion, ...]:
     rotations = np.empty((kept, len(joints), 3, 3), dtype=np.float32) if own else None
     done = 0
     for values, begun in _every_nth(motion, every):
+        if not done:
+            _forget_empty(joints, values)
         _place(joints, values.T, positions[begun : begun + len(values)])
         if rotations is not None:
             _turn(joints, values.T, rotations[begun : begun + len(values)])
@@ -173,7 +177,7 @@ def _placed(motion: Motion, every: int) -> tuple[RigMotion, ...]:
             np.array([joint.offset for joint in joints[first:stop]]) * scale,
             positions[:, first:stop],
             None if rotations is None else rotations[:, first:stop],
-            _frame_rate(motion.frame_time) / every,
+            motion.fps / every,
             scale,
             label,
             every=every,
@@ -192,6 +196,16 @@ def _every_nth(motion: Motion, every: int) -> Iterator[tuple[Array, int]]:
         frame += len(block)
 
 
+def _forget_empty(joints: list[Joint], values: Array) -> None:
+    """Position channels (n, width) below the root that are all zero mean that a joint stays at its OFFSET."""
+    column = 0
+    for joint in joints:
+        its = values[:, column : column + len(joint.channels)]
+        places = [kind == "position" for kind, _ in joint.channels]
+        joint.keeps_offset = joint.parent >= 0 and not its[:, places].any()
+        column += len(joint.channels)
+
+
 def _place(joints: list[Joint], values: Array, positions: Array) -> None:
     """Writes the joints' places (n, J, 3), in the file's unit, for channels (width, n).
 
@@ -206,7 +220,7 @@ def _place(joints: list[Joint], values: Array, positions: Array) -> None:
         turns = []
         for kind, axis in joint.channels:
             if kind == "position":
-                local[axis] = values[column]
+                local[axis] = joint.offset[axis] if joint.keeps_offset else values[column]
             else:
                 turns.append((axis, values[column]))
             column += 1
@@ -252,12 +266,6 @@ def _turned(rotation: Array, turns: list[tuple[int, Array]]) -> Array:
     return rotation
 
 
-def _frame_rate(frame_time: float) -> float:
-    """Frames a second; files round the frame time, so a rate within 0.05 % of a whole one is that one."""
-    rate = 1.0 / frame_time
-    return float(round(rate)) if abs(rate - round(rate)) < 5e-4 * rate else round(rate, 4)
-
-
 def _metres_per_unit(positions: Array, joints: list[Joint], label: str) -> float:
     """The file's unit in metres, from the longest chain of bones that leaves the tree's first fork.
 
@@ -267,7 +275,11 @@ def _metres_per_unit(positions: Array, joints: list[Joint], label: str) -> float
     parents = [joint.parent for joint in joints]
     bones = np.zeros(len(parents))
     for index, joint in enumerate(joints):
-        if joint.parent >= 0 and any(kind == "position" for kind, _ in joint.channels):
+        if (
+            joint.parent >= 0
+            and not joint.keeps_offset
+            and any(kind == "position" for kind, _ in joint.channels)
+        ):
             bone = positions[:, index] - positions[:, joint.parent]
             bones[index] = np.median(np.linalg.norm(bone, axis=-1))
         elif joint.parent >= 0:

@@ -26,6 +26,8 @@ class Joint:
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     channels: list[tuple[str, int]] = field(default_factory=list)
     is_end: bool = False
+    keeps_offset: bool = False
+    """Its position channels say nothing."""
 
 
 def parse_hierarchy(text: str, label: str) -> list[Joint]:

@@ -35,14 +35,14 @@ class Motion:
         data: the file, in an encoding that writes numbers as ASCII does.
         start: of the numbers.
         frames: of ``width`` numbers each.
-        frame_time: seconds.
+        fps: frames a second.
     """
 
     data: bytes
     start: int
     frames: int
     width: int
-    frame_time: float
+    fps: float
     joints: list[Joint]
     label: str
 
@@ -100,8 +100,10 @@ class Motion:
         return f"{self.label}, line {number}: something here is not a number: export it again."
 
 
-def find_motion(data: bytes, start: int, joints: list[Joint], label: str) -> Motion:
-    """The MOTION part whose head is at ``start``.
+def find_motion(
+    data: bytes, start: int, joints: list[Joint], label: str, file_fps: float | None = None
+) -> Motion:
+    """The MOTION part whose head is at ``start``; a given rate stands for the file's, whatever that says.
 
     Raises:
         InputError: if the head is missing or says what cannot be.
@@ -120,15 +122,24 @@ def find_motion(data: bytes, start: int, joints: list[Joint], label: str) -> Mot
         raise InputError(f"{label}: Frames {count!r} or Frame Time {seconds!r} is not a number.") from None
     if frames < 1:
         raise InputError(f"{label} holds no frames: export it again.")
-    if not 1e-4 < frame_time <= 1.0:
-        raise InputError(f"{label}: a Frame Time of {frame_time:g} s is not possible, 0.0333 is usual.")
-    check_duration(frames, 1 / frame_time, label)
+    if file_fps is None and not 1e-4 < frame_time <= 1.0:
+        raise InputError(
+            f"{label}: a Frame Time of {frame_time:g} s is not possible, 0.0333 is usual: give its true rate."
+        )
+    fps = file_fps or _frame_rate(frame_time)
+    check_duration(frames, fps, label)
     width = sum(len(joint.channels) for joint in joints)
     if width == 0:
         raise InputError(f"{label}: no joint has CHANNELS, so nothing moves: export it with its animation.")
     if frames * width > MAX_NUMBERS:
         raise InputError(f"{label} holds {frames * width:,} numbers, too many: lower its frame rate.")
-    return Motion(data, head.end(), frames, width, frame_time, joints, label)
+    return Motion(data, head.end(), frames, width, fps, joints, label)
+
+
+def _frame_rate(frame_time: float) -> float:
+    """Frames a second; files round the frame time, so a rate within 0.05 % of a whole one is that one."""
+    rate = 1.0 / frame_time
+    return float(round(rate)) if abs(rate - round(rate)) < 5e-4 * rate else round(rate, 4)
 
 
 def _numbers(piece: bytes, width: int) -> Array:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from motion.body import bone_rotations
 from motion.clip import Clip
 from motion.retarget import floor_on_smpl, retarget, up_rotation
-from motion.rigs import RigMotion, match_joints, matched_names
+from motion.rigs import RigMotion, matched_names
 from motion.skeleton import SMPL22
 
 from .bvh import read_bvh, read_rotations
@@ -52,7 +52,7 @@ def bvh_on_rig(clip: Clip, reference: str | Path | bytes, *, name: str | None = 
     frames = len(turned)
     rig = replace(rig, positions=rig.positions[:frames], rotations=None)
     rig = replace(rig, offsets=_bones(rig, _world(turned, rig.parents)))
-    upright = up_rotation(rig, match_joints(rig))
+    upright = up_rotation(rig)
     pairs = {rig.joint_names.index(theirs): SMPL22.index(ours) for theirs, ours in matched_names(rig)}
     constants = _learned(rig, turned, upright, pairs)
     # Fingers and the like stay as they are on average.

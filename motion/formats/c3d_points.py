@@ -1,15 +1,13 @@
-"""C3D files, the standard of laboratories: points in space with their names, read by the package ``c3d``.
+"""C3D files, the standard of laboratories: points in space with their names.
 
-That package is pure Python. The better known ``ezc3d`` is C++ that a damaged file can send into an endless loop or
-out of memory, so it may not read what strangers upload.
+A header of 512 bytes, parameters in groups, and for each frame four numbers a point (x, y, z and how well it was seen)
+before as many of analog channels as the header says, which are passed over.
 """
 
 from __future__ import annotations
 
-import io
-import warnings
-from importlib.util import find_spec
-from pathlib import Path
+import struct
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -17,60 +15,55 @@ from numpy.typing import NDArray
 
 from motion.errors import InputError
 
-from .crowd import Motion, gathered
-from .files import MAX_FRAMES, check_duration, read_bytes
+from .choices import ImportChoices
+from .crowd import Recording
+from .files import check_duration
 from .markers import people_of
 
 Array = NDArray[np.floating]
 
+_BLOCK = 512
 _UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 _MOST_POINTS = 1000
 _MOST_VALUES = 16 * 2**20
+_DEC, _MIPS = 85, 86
+_TYPES = {-1: "S1", 1: "u1", 2: "i2", 4: "f4"}
 
 
-def read_c3d(
-    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False
-) -> Motion:
-    """Reads the people of a .c3d file.
-
-    Args:
-        source: a path, or the file's bytes.
-        name: its name in messages.
-        fps: unused: the file gives its rate.
-        everyone: return all people instead of the first two.
-
-    Returns:
-        a person, two or more on the joints of :data:`~motion.skeleton.POINTS17`, in metres and Y up.
+def read_c3d(data: bytes, label: str, choices: ImportChoices) -> Recording:
+    """The people of a .c3d file, on the joints of :data:`~motion.skeleton.POINTS17`, in metres.
 
     Raises:
         InputError: one sentence saying what is wrong with the file.
     """
-    data, label = read_bytes(source, name)
-    if find_spec("c3d") is None:
-        raise InputError("C3D files need the package c3d: install it with pip.")
     if data[1:2] != b"\x50":
         raise InputError(f"{label} is not a C3D file: export it again.")
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            names, points, rate, unit = _points(data, label)
-    except InputError:
-        raise
-    except Exception:  # the package raises anything over damaged files
+        names, points, rate, unit = _points(data, label, choices.fps)
+    except (struct.error, IndexError, ValueError, OverflowError, TypeError) as error:
+        if isinstance(error, InputError):
+            raise
         raise InputError(f"{label} is not a whole C3D file, or it is damaged: export it again.") from None
     if unit not in _UNITS:
         raise InputError(f"{label}: the unit {unit!r:.20} is not known: use {', '.join(_UNITS)}.")
-    points *= _UNITS[unit]
-    return gathered(people_of(names, points, rate, label), label, everyone=everyone)
+    points *= np.float32(_UNITS[unit])
+    return Recording(people_of(names, points, rate, label), "")
 
 
-def _points(data: bytes, label: str) -> tuple[list[str], Array, float, str]:
-    """Names, (T, P, 3) with NaN where a point was not seen, frames a second and the unit's name."""
-    import c3d
-
-    reader: Any = c3d.Reader(io.BytesIO(data))
-    rate, count = float(reader.point_rate), int(reader.point_used)
-    frames = int(reader.last_frame) - int(reader.first_frame) + 1
+def _points(data: bytes, label: str, fps: float | None) -> tuple[list[str], Array, float, str]:
+    """Names, (T, P, 3) float32 with NaN where a point was not seen, frames a second and the unit's name."""
+    parameters = _BLOCK * (max(data[0], 1) - 1)
+    machine = data[parameters + 3]
+    order = ">" if machine == _MIPS else "<"
+    used, analog, first, last, _, _, start, _ = struct.unpack_from(f"{order}5H4s2H", data, 2)
+    found = dict(_parameters(data, parameters + 4, machine))
+    rate = fps or float(found["POINT:RATE"][0] if "POINT:RATE" in found else _floats(data[20:24], machine)[0])
+    count = int(found["POINT:USED"][0]) if "POINT:USED" in found else used
+    scale = float(found["POINT:SCALE"][0] if "POINT:SCALE" in found else _floats(data[12:16], machine)[0])
+    if last == 0xFFFF and "TRIAL:ACTUAL_END_FIELD" in found:  # two words, as 16 bits are not enough
+        low, high = (int(word) % 2**16 for word in found["TRIAL:ACTUAL_END_FIELD"][:2])
+        last = low + 2**16 * high
+    frames = last - first + 1
     if not 1.0 <= rate <= 1000.0:
         raise InputError(f"{label}: a frame rate of {rate:g} is not possible: export it again.")
     if not 1 <= count <= _MOST_POINTS:
@@ -78,20 +71,74 @@ def _points(data: bytes, label: str) -> tuple[list[str], Array, float, str]:
     if frames < 1:
         raise InputError(f"{label} holds no frames: export it again.")
     check_duration(frames, rate, label)
-    if 4 * count * frames > _MOST_VALUES or frames > MAX_FRAMES:
+    if 4 * count * frames > _MOST_VALUES:
         raise InputError(
             f"{label} holds {frames:,} frames of {count} points: cut it or lower its frame rate."
         )
-    places, filled = np.empty((frames, count, 3), dtype=np.float32), 0
-    for place, (_, points, _) in zip(places, reader.read_frames(copy=False), strict=False):
-        place[:] = points[:, :3]
-        place[points[:, 3] < 0] = np.nan  # the residual of a point that no camera saw
-        filled += 1
-    if not filled:
-        raise ValueError("no frames")
-    places = places[:filled]
-    names = [str(label_).strip() for label_ in reader.point_labels][:count]
-    names += [f"point {number}" for number in range(len(names), count)]
-    units = reader.get("POINT:UNITS")
-    unit = str(units.string_value).strip().lower() if units is not None else "mm"
-    return names, places, rate, unit or "mm"
+    dtype = np.dtype(f"{order}f4" if scale < 0 else f"{order}i2")
+    row, begin = dtype.itemsize * (4 * count + analog), _BLOCK * (start - 1)
+    if begin < _BLOCK or begin + frames * row > len(data):
+        raise ValueError
+    raw = np.ndarray((frames, count, 4), dtype, data, begin, (row, 4 * dtype.itemsize, dtype.itemsize))
+    values = _floats(np.ascontiguousarray(raw).tobytes(), machine).reshape(raw.shape) if scale < 0 else raw
+    places = values[..., :3].astype(np.float32)
+    places *= np.float32(1.0 if scale < 0 else scale)
+    places[~(values[..., 3] >= 0)] = np.nan  # no camera saw it
+    unit = _texts(found.get("POINT:UNITS"))[:1]
+    return _names(found, count), places, rate, (unit[0].lower() if unit else "") or "mm"
+
+
+def _names(found: dict[str, Any], count: int) -> list[str]:
+    """Of all points: a parameter holds 255 labels, and LABELS2, LABELS3 … hold those after them."""
+    names: list[str] = []
+    for number in range(1, 2 + count // 255):
+        names += _texts(found.get(f"POINT:LABELS{number if number > 1 else ''}"))
+    return [*names[:count], *(f"point {number}" for number in range(len(names), count))]
+
+
+def _parameters(data: bytes, at: int, machine: int) -> Iterator[tuple[str, Any]]:
+    """ "GROUP:NAME" and values of each parameter; texts are arrays of bytes."""
+    order = ">" if machine == _MIPS else "<"
+    groups: dict[int, str] = {}
+    later: list[tuple[int, str, int]] = []
+    while at + 4 < len(data):
+        length, group = struct.unpack_from("bb", data, at)
+        length = abs(length)
+        name = data[at + 2 : at + 2 + length].decode("latin-1").strip().upper()
+        (step,) = struct.unpack_from(f"{order}H", data, at + 2 + length)
+        if length == 0:
+            break
+        if group < 0:
+            groups[-group] = name
+        else:
+            later.append((group, name, at + 4 + length))
+        if step == 0:
+            break
+        at += 2 + length + step
+    for group, name, place in later:
+        kind, count = struct.unpack_from("bB", data, place)
+        sizes = data[place + 2 : place + 2 + count]
+        dtype = np.dtype(order + _TYPES.get(kind, "u1"))
+        total = int(np.prod([int(size) for size in sizes], dtype=np.int64))  # 1 for a scalar
+        raw = data[place + 2 + count : place + 2 + count + total * dtype.itemsize]
+        if len(raw) == total * dtype.itemsize and total:
+            values = _floats(raw, machine) if kind == 4 else np.frombuffer(raw, dtype)
+            yield (
+                f"{groups.get(group, '')}:{name}",
+                values.reshape(-1, sizes[0] if kind == -1 and sizes else 1) if kind == -1 else values,
+            )
+
+
+def _texts(values: Any) -> list[str]:
+    """The rows of a text parameter."""
+    if values is None or getattr(values, "dtype", None) != np.dtype("S1"):
+        return []
+    return [row.tobytes().decode("latin-1").strip(" \0") for row in values]
+
+
+def _floats(raw: bytes, machine: int) -> Array:
+    """Numbers of 32 bits as this kind of machine writes them."""
+    if machine != _DEC:
+        return np.frombuffer(raw, ">f4" if machine == _MIPS else "<f4")
+    words = np.frombuffer(raw, "<u2").reshape(-1, 2)[:, ::-1]
+    return np.ascontiguousarray(words).view("<f4")[:, 0] / 4  # its exponents are larger by two

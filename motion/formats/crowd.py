@@ -1,13 +1,39 @@
-"""Several people in one file, of whom one or two are chosen."""
+"""Recordings, as readers find them in a file: everybody, as the file has them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
+from motion.rigs import RigMotion
+
+if TYPE_CHECKING:
+    from .glb_animations import Animations
 
 MAX_PEOPLE = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """Everybody in a file, in its own axes.
+
+    Attributes:
+        people: on joints that are known, or on rigs of their own; up to :data:`MAX_PEOPLE`, who share one clock.
+        usual_up: the axis that points up in such files, if there is one: it is taken unless the people stand along
+            another.
+        on_floor: heights count from nowhere, so that the lowest joint of all people is put on the floor.
+        animations: those of a .glb file, and which of them this is.
+        beside: what a duet holds beside two people: roles, manifest, things, grips and looks.
+    """
+
+    people: tuple[Clip, ...] | tuple[RigMotion, ...]
+    usual_up: str = "y"
+    on_floor: bool = False
+    animations: Animations | None = None
+    beside: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +46,9 @@ class Crowd:
 Motion = Clip | Duet | Crowd
 
 
-def gathered(people: tuple[Clip, ...], label: str, *, everyone: bool) -> Motion:
+def gathered(
+    people: tuple[Clip, ...], label: str, *, everyone: bool, beside: Mapping[str, Any] | None = None
+) -> Motion:
     """One person as a clip, two as a duet, more as a crowd.
 
     Raises:
@@ -34,7 +62,7 @@ def gathered(people: tuple[Clip, ...], label: str, *, everyone: bool) -> Motion:
         )
     if len(people) > 2:
         return Crowd(people)
-    return Duet(*people) if len(people) == 2 else people[0]
+    return Duet(*people, **(beside or {})) if len(people) == 2 else people[0]
 
 
 def clips_of(motion: Motion) -> tuple[Clip, ...]:

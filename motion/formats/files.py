@@ -73,7 +73,7 @@ def decode_text(data: bytes, label: str, kind: str) -> str:
     text = data.decode(encoding if _is_text(data, encoding) else "latin-1")
     if "\0" in text:
         raise InputError(f"{label} is not {kind}: it holds binary data.")
-    return text
+    return text if "\n" in text else text.replace("\r", "\n")
 
 
 def ascii_bytes(data: bytes, label: str, kind: str) -> bytes:
@@ -86,7 +86,7 @@ def ascii_bytes(data: bytes, label: str, kind: str) -> bytes:
         return decode_text(data, label, kind).encode("utf-8")
     if b"\0" in data:
         raise InputError(f"{label} is not {kind}: it holds binary data.")
-    return data.removeprefix(codecs.BOM_UTF8)
+    return (data if b"\n" in data else data.replace(b"\r", b"\n")).removeprefix(codecs.BOM_UTF8)
 
 
 def _is_text(data: bytes, encoding: str) -> bool:
@@ -105,7 +105,8 @@ def check_duration(frames: int, fps: float, label: str) -> None:
     """Raises InputError for motions longer than ten minutes, or of more frames than :data:`MAX_FRAMES`."""
     if fps > 0 and frames / fps > MAX_SECONDS:
         raise InputError(
-            f"{label} lasts {math.ceil(frames / fps)} s, more than the {MAX_SECONDS:.0f} s allowed: cut it."
+            f"{label} lasts {math.ceil(frames / fps)} s, more than the {MAX_SECONDS:.0f} s allowed: cut it "
+            "or give its true rate."
         )
     if frames > MAX_FRAMES:
         raise InputError(

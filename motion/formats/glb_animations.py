@@ -8,11 +8,10 @@ from typing import Any
 
 from motion.errors import InputError
 
+from .choices import Animation, check_animation
 from .glb_file import GlbFile
 from .glb_nodes import moves
 
-Animation = int | str
-"""A choice: the number of an animation, from 1, or its name."""
 _LONGEST = 40
 """Characters of a name that are shown."""
 _LISTED = 5
@@ -43,16 +42,6 @@ class Animations:
             f"Of the {len(self.names):,} animations in {self.label}, {took} "
             f"{'was' if len(self.taken) == 1 else 'were'} taken; "
             f"the {'other is' if len(others) == 1 else 'others are'} {_listed(self.names, others, 'and')}."
-        )
-
-
-def check_animation(animation: Animation | None) -> None:
-    """Raises InputError for a choice that is neither a name nor a number from 1."""
-    if animation is None or (type(animation) is int and animation >= 1):
-        return
-    if not isinstance(animation, str) or not animation.strip():
-        raise InputError(
-            f"Animation {animation!r:.40} is neither a name nor a number from 1: give one of them."
         )
 
 

@@ -10,6 +10,7 @@ import json
 import struct
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
@@ -256,8 +257,22 @@ class GlbFile:
         return found
 
     def joint_name(self, node: int) -> str:
-        """The name of a node, or one made of its number."""
-        return str(self.document["nodes"][node].get("name", f"joint_{node}"))[:100]
+        """The name of a node: the bone that VRM says it is, its name, or one made of its number."""
+        named = self._human_bones.get(node) or self.document["nodes"][node].get("name", f"joint_{node}")
+        return str(named)[:100]
+
+    @cached_property
+    def _human_bones(self) -> dict[int, str]:
+        """The bones of a VRM character or animation by their nodes: "leftUpperArm" …"""
+        found: dict[int, str] = {}
+        for kind in ("VRM", "VRMC_vrm", "VRMC_vrm_animation"):
+            bones = (
+                self.document.get("extensions", {}).get(kind, {}).get("humanoid", {}).get("humanBones", {})
+            )
+            if isinstance(bones, list):  # of VRM 0
+                bones = {each["bone"]: each for each in bones}
+            found |= {each["node"]: str(bone) for bone, each in bones.items()}
+        return found
 
 
 def packed(document: Mapping[str, Any], blob: bytes) -> bytes:

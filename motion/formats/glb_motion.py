@@ -15,8 +15,9 @@ from motion.retarget import leg_scale
 from motion.rigs import RigMotion, match_joints
 
 from .bvh_numbers import MAX_NUMBERS
+from .choices import Animation
 from .files import check_duration
-from .glb_animations import Animation, Animations, chosen
+from .glb_animations import Animations, chosen
 from .glb_file import GlbFile, opened
 from .glb_nodes import Channel, Rig, bind_pose, channels, people, placed, with_those_above
 
@@ -109,7 +110,9 @@ class _Person:
         self.nodes = with_those_above(rig.nodes, parents)
         self.names = tuple(file.joint_name(node) for node in rig.nodes)
         self.problem: InputError | None = None
-        rest = self._joints(placed(file, self.nodes, parents), 1)
+        world = placed(file, self.nodes, parents)
+        self.mirrored = bool(np.linalg.det(world[rig.nodes[0]][0, :3, :3]) < 0)
+        rest = self._joints(world, 1)
         try:
             match_joints(self.motion(rest, _RATE))
         except InputError as error:
@@ -118,11 +121,13 @@ class _Person:
     def motion(self, positions: Array, fps: float, scale: float = 1.0, every: int = 1) -> RigMotion:
         """Its joints where they are (T, J, 3), with the pose of binding as their rest pose."""
         bound = bind_pose(self.file, self.rig)
-        rest = positions[0] if bound is None else bound[:, :3, 3]
+        across = np.array([-1.0 if self.mirrored else 1.0, 1.0, 1.0])
+        rest = positions[0] if bound is None else bound[:, :3, 3] * across
         above = np.array(self.rig.above)
         found = RigMotion(
             self.names, self.rig.above, rest - np.where(above[:, None] < 0, 0.0, rest[np.maximum(above, 0)]),
             positions, None, fps, scale, self.file.label, every=every,
+            mirrored=self.mirrored,
         )  # fmt: skip
         lengths = np.linalg.norm(found.offsets[above >= 0], axis=-1).sum()
         longer = found.bone_lengths.sum() / lengths if lengths > 1e-9 else 1.0

@@ -24,7 +24,7 @@ from motion.rigs import RigMotion, match_joints, pairs_of
 from motion.skeleton import SMPL22
 
 from ..easing import smoothstep
-from .glb_animations import Animation
+from .choices import Animation
 from .glb_file import GlbFile, opened, packed
 from .glb_motion import MESHES, metres_per_unit, read_glb_people
 from .glb_nodes import Rig, bind_pose, people, placed, quaternions, split, with_those_above

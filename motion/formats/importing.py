@@ -1,73 +1,44 @@
 """Imports a motion file and reports its joints, up axis, unit and frame rate, each of which can be overridden.
 
-:func:`motion.formats.read` finds these automatically; here they are reported, and given ones take precedence.
+A reader gives everybody as the file has them; here they are brought upright, to metres and onto the floor.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SKELETONS, SMPL22, Clip, Duet, InputError
+from motion.clip import Clip, Duet
+from motion.errors import InputError
+from motion.joint_names import without_beginning
 from motion.layouts import LAYOUTS
-from motion.retarget import retarget, retarget_duet, to_smpl, up_axis
+from motion.retarget import rest_axis, retarget, retarget_duet, to_smpl, up_axis
 from motion.rigs import RigMotion, matched_names
+from motion.skeleton import SMPL22
+from motion.up import Places, find_up, places_of, turn_of
 
-from . import NO_ANIMATIONS, RIGS, own_clip, read_everyone, read_rigs
 from .arrays import says_no_rate
-from .crowd import clips_of
-from .files import MAX_SECONDS
-from .glb_animations import Animation, Animations, check_animation
-from .glb_motion import read_glb
+from .calibration import calibration_frames
+from .choices import ORDERS, UNITS, ImportChoices
+from .crowd import Recording
+from .files import check_duration
+from .glb_animations import Animations
+from .registry import RIG_FPS, recordings
 
 Array = NDArray[np.floating]
 
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
-"""Metres of each unit."""
-AXES = ("x", "y", "z")
-RATES = (1.0, 1000.0)
-ORDERS = {"sbu15": "SBU", "k3hi15": "K3HI"}
-"""Display names of joint orders that share a number of joints."""
-_FPS = 30.0
-# Metres from ankles to head: the smallest and the tallest person.
 _TALL = (0.9, 2.0)
-
-
-@dataclass(frozen=True)
-class ImportChoices:
-    """Known facts about a file; a field that is None is found from its contents.
-
-    Attributes:
-        up: the axis that points up: "x", "y" or "z".
-        unit: "m", "cm", "mm" or "inch".
-        fps: frames a second; overrides the file.
-        order: order of joints without names: a key of :data:`~motion.SKELETONS`, such as
-            "sbu15" or "k3hi15".
-        animation: the name or the number, from 1, of the one to read of a .glb with several.
-    """
-
-    up: str | None = None
-    unit: str | None = None
-    fps: float | None = None
-    order: str | None = None
-    animation: Animation | None = None
-
-    def __post_init__(self) -> None:
-        check_animation(self.animation)
-        if self.up is not None and self.up not in AXES:
-            raise InputError(f"Up axis {self.up!r:.20} is not known: choose x, y or z.")
-        if self.unit is not None and self.unit not in UNITS:
-            raise InputError(f"Unit {self.unit!r:.20} is not known: choose one of {', '.join(UNITS)}.")
-        if self.fps is not None and not RATES[0] <= self.fps <= RATES[1]:
-            raise InputError(f"A frame rate of {self.fps:g} is not possible: give {RATES[0]:g} to 1,000.")
-        if self.order is not None and self.order not in SKELETONS:
-            raise InputError(
-                f"Joint order {self.order!r:.20} is not known: choose one of {', '.join(SKELETONS)}."
-            )
+"""Metres from ankles to head: the smallest and the tallest person."""
+_NEAR_FLOOR = (-0.05, 0.15)
+"""Metres: people whose lowest joint is between these are left at their height."""
+_UP_TAKEN = "{}: {} was taken as up, by how the body stands, and not {} as is usual: choose the up axis if it is wrong."
+_CALIBRATION = "{}: the first {} left out, a calibration pose from which the joints jump."
 
 
 @dataclass(frozen=True)
@@ -77,13 +48,14 @@ class Imported:
     Attributes:
         people: all people in the file, in metres, Y up. Joints that must be fitted, as a Kinect's, are the
             file's own. The two of a pair come first.
-        up: the file's axis that points up.
+        up: what points up in the file, of :data:`motion.up.AXES`.
         unit: its unit; "none" if its lengths were scaled to an average person.
         fps: its frames a second.
         joints: (joint of the file, joint of SMPL22).
         order: joint order of an array, if several orders have that number of joints.
         animations: those of a .glb file, and which of them this is; None for any other file.
-        asks_rate: True if the file does not give its frame rate, and nobody did.
+        asks: True if a thing was assumed that nobody said: the frame rate, an unusual up axis, the joints' order.
+        beside: what a duet holds beside its people, as :class:`~motion.formats.crowd.Recording`.
     """
 
     people: tuple[Clip, ...]
@@ -93,7 +65,8 @@ class Imported:
     joints: tuple[tuple[str, str], ...] = field(repr=False)
     order: str | None = None
     animations: Animations | None = None
-    asks_rate: bool = False
+    asks: bool = False
+    beside: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -120,10 +93,11 @@ class Imported:
 def import_motion(
     source: str | Path | bytes, *, name: str | None = None, choices: ImportChoices | None = None
 ) -> Imported:
-    """Reads a motion file as :func:`motion.formats.read` does, and says how.
+    """Reads a motion file and says how.
 
     Args:
-        source: the file, or its bytes; then ``name`` must end in its suffix.
+        source: the file, or a folder with one of each of two people; or the file's bytes, and then ``name`` must end
+            in its suffix.
         name: what to call it in messages.
         choices: what is known of the file.
 
@@ -131,122 +105,146 @@ def import_motion(
         InputError: one sentence saying what is wrong with the file or with a choice.
     """
     choices = choices or ImportChoices()
-    label = name or Path(str(source)).name
-    if Path(label).suffix.lower() == ".glb":
-        people_in, animations = read_glb(source, name=name, animation=choices.animation)
-        return replace(_import_rigs(people_in, choices), animations=animations)
-    if choices.animation is not None:
-        raise InputError(NO_ANIMATIONS.format(label))
-    if Path(label).suffix.lower() in RIGS:
-        rigs = read_rigs(source, name=name, fps=_FPS, file_fps=choices.fps)
-        return _import_rigs(rigs, choices)
-    people = tuple(
-        _ordered(clip, choices.order, label) for clip in clips_of(read_everyone(source, name=name))
+    found, label = recordings(source, name, choices)
+    return _imported(found[0] if len(found) == 1 else _together(found), label, choices)
+
+
+def import_pair(a: str | Path, b: str | Path, *, choices: ImportChoices | None = None) -> Imported:
+    """Reads two files of one person each who share one world, as :func:`import_motion` does one."""
+    choices = choices or ImportChoices()
+    found = [recordings(source, None, choices)[0][0] for source in (a, b)]
+    return _imported(_together(found), f"{Path(a).name} and {Path(b).name}", choices)
+
+
+def _together(found: Sequence[Recording]) -> Recording:
+    """Two recordings of one person each as one of two."""
+    for recording in found:
+        if len(recording.people) != 1:
+            raise InputError(f"{recording.people[0].name} already holds two people: give it alone.")
+    first, second = (recording.people[0] for recording in found)
+    if isinstance(first, RigMotion) and isinstance(second, RigMotion):
+        return replace(found[0], people=(first, second))
+    alone = [_imported(recording, recording.people[0].name, ImportChoices()).motion for recording in found]
+    if isinstance(first, RigMotion) or isinstance(second, RigMotion):
+        first, second = (clip for clip in alone if isinstance(clip, Clip))
+    frames = min(first.num_frames, second.num_frames)
+    return replace(found[0], people=(first.cut(0, frames), second.cut(0, frames)))
+
+
+def _imported(recording: Recording, label: str, choices: ImportChoices) -> Imported:
+    people = [without_calibration(person) for person in recording.people]
+    rigs = [person for person in people if isinstance(person, RigMotion)]
+    clips = [person for person in people if isinstance(person, Clip)]
+    found = _import_rigs(rigs, label, choices) if rigs else _import_clips(clips, recording, label, choices)
+    asks = any(says_no_rate(note) or note.endswith(" if it is wrong.") for note in found.notes)
+    return replace(found, animations=recording.animations, beside=recording.beside, asks=asks)
+
+
+def without_calibration(person: Any) -> Any:
+    """A person (a clip or a rig's motion) without the frames of a calibration pose at the beginning."""
+    count = calibration_frames(places_of(person), person.fps)
+    if count == 0:
+        return person
+    note = _CALIBRATION.format(person.name, "frame was" if count == 1 else f"{count} frames were")
+    rotations = None if person.rotations is None else person.rotations[count:]
+    return replace(
+        person, positions=person.positions[count:], rotations=rotations, notes=(*person.notes, note)
     )
-    if choices.fps is not None:
-        people = tuple(_without_rate_note(clip) for clip in people)
-    asks_rate = any(says_no_rate(note) for clip in people for note in clip.notes)
-    up = choices.up or _up_of(people[0])
-    unit = choices.unit or _unit_of(people[0], "xyz".index(up))
-    people = tuple(_upright(clip, up, UNITS[unit], choices.fps or clip.fps) for clip in people)
-    _check_length(people[0], label)
+
+
+def _with_note(people: Sequence[Any], up: str, usual: str, label: str, choices: ImportChoices) -> list[Any]:
+    """People with a sentence on the up axis where that is not the usual one and nobody chose it."""
+    if choices.up is not None or up == (usual or up):
+        return list(people)
+    note = _UP_TAKEN.format(label, up.upper(), usual.upper())
+    return [replace(person, notes=(*person.notes, note)) for person in people]
+
+
+# ---- rigs --------------------------------------------------------------------------------------------
+
+
+def own_clip(rig: RigMotion) -> Clip | None:
+    """A file whose joints are SMPL22's needs no retargeting: it keeps its frame rate, bones and place."""
+    names = without_beginning(rig.joint_names)
+    if not set(SMPL22.joint_names) <= set(names) or rig.metres_per_unit != 1.0:
+        return None
+    order = [names.index(name) for name in SMPL22.joint_names]
+    rotations = None if rig.rotations is None else rig.rotations[:, order]
+    return Clip(rig.positions[:, order], rig.fps, SMPL22, rotations, rig.name, rig.notes)
+
+
+def _import_rigs(rigs: list[RigMotion], label: str, choices: ImportChoices) -> Imported:
+    first = rigs[0]
+    check_duration(first.num_frames, first.fps, label)
+    scale = 1.0 if choices.unit is None else UNITS[choices.unit] / first.metres_per_unit
+    if scale != 1.0:
+        rigs = [
+            replace(
+                rig,
+                positions=rig.positions * scale,
+                offsets=rig.offsets * scale,
+                metres_per_unit=UNITS[choices.unit or "m"],
+            )
+            for rig in rigs
+        ]
+    own = [own_clip(rig) for rig in rigs]
+    up = choices.up or up_axis(*rigs)
+    rigs = [replace(rig, up=up) for rig in _with_note(rigs, up, rest_axis(first) or "y", label, choices)]
+    if up == "y" and scale == 1.0 and all(own):
+        people = tuple(clip for clip in own if clip is not None)
+    elif len(rigs) > 1:
+        people = (
+            *retarget_duet(rigs[0], rigs[1], fps=RIG_FPS).people,
+            *(retarget(rig, fps=RIG_FPS) for rig in rigs[2:]),
+        )
+    else:
+        people = (retarget(rigs[0], fps=RIG_FPS),)
+    unit = next((n for n, metres in UNITS.items() if np.isclose(metres, rigs[0].metres_per_unit)), "none")
+    return Imported(people, up, unit, first.fps * first.every, tuple(matched_names(rigs[0])))
+
+
+# ---- clips -------------------------------------------------------------------------------------------
+
+
+def _import_clips(clips: list[Clip], recording: Recording, label: str, choices: ImportChoices) -> Imported:
+    places = [places_of(clip) for clip in clips]
+    up = choices.up or find_up(places, recording.usual_up or "y")
+    unit = choices.unit or _unit_of(places[0], up)
+    turn, metres = turn_of(up), UNITS[unit]
+    people = [
+        _turned(clip, turn, metres) for clip in _with_note(clips, up, recording.usual_up, label, choices)
+    ]
+    lowest = min(float(clip.positions[..., 1].min()) for clip in people)
+    changed = people[0].positions is not clips[0].positions
+    if (recording.on_floor and len(people) == 1) or (
+        (recording.on_floor or changed) and not _NEAR_FLOOR[0] <= lowest <= _NEAR_FLOOR[1]
+    ):
+        down = np.array([0.0, lowest, 0.0], dtype=np.float32)
+        people = [replace(clip, positions=clip.positions - down) for clip in people]
+    check_duration(people[0].num_frames, people[0].fps, label)
     skeleton = people[0].skeleton
-    layout = LAYOUTS[skeleton.name]
     joints = tuple(
         (theirs, SMPL22.joint_names[ours])
-        for theirs, ours in zip(skeleton.joint_names, layout.joints, strict=True)
+        for theirs, ours in zip(skeleton.joint_names, LAYOUTS[skeleton.name].joints, strict=True)
         if ours >= 0
     )
     order = skeleton.name if skeleton.name in ORDERS else None
-    return Imported(people, up, unit, people[0].fps, joints, order, asks_rate=asks_rate)
+    return Imported(tuple(people), up, unit, people[0].fps, joints, order)
 
 
-def _without_rate_note(clip: Clip) -> Clip:
-    return replace(clip, notes=tuple(note for note in clip.notes if not says_no_rate(note)))
-
-
-def _ordered(clip: Clip, order: str | None, label: str) -> Clip:
-    """The clip with its joints taken in the order that is known of them."""
-    if order is None or order == clip.skeleton.name:
-        return clip
-    wanted = SKELETONS[order]
-    if wanted.num_joints != clip.skeleton.num_joints:
-        raise InputError(
-            f"{label} has {clip.skeleton.num_joints} joints a frame, but the order of "
-            f"{ORDERS.get(order, order)} has {wanted.num_joints}: leave the order on automatic."
-        )
-    return replace(clip, skeleton=wanted)
-
-
-def _import_rigs(rigs: tuple[RigMotion, ...], choices: ImportChoices) -> Imported:
-    found = [_import_rig(rig, choices) for rig in rigs]
-    if len(rigs) > 1 and not any(own_clip(rig) for rig in rigs):
-        known = [_with_choices(rig, choices) for rig in rigs]
-        pair = retarget_duet(known[0], known[1])
-        return replace(found[0], people=(*pair.people, *(one.people[0] for one in found[2:])))
-    return replace(found[0], people=tuple(one.people[0] for one in found))
-
-
-def _import_rig(rig: RigMotion, choices: ImportChoices) -> Imported:
-    own = own_clip(rig)
-    rig = _with_choices(rig, choices)
-    _check_length(rig, rig.name)
-    joints = tuple(matched_names(rig))
-    unit = next((n for n, metres in UNITS.items() if np.isclose(metres, rig.metres_per_unit)), "none")
-    keep = own is not None and (choices.up, choices.unit, choices.fps) == (None, None, None)
-    clip = own if keep and own else retarget(rig, fps=_FPS)
-    return Imported((clip,), up_axis(rig), unit, rig.fps * rig.every, joints)
-
-
-def _with_choices(rig: RigMotion, choices: ImportChoices) -> RigMotion:
-    if choices.unit is not None:
-        scale = UNITS[choices.unit] / rig.metres_per_unit
-        rig = replace(
-            rig,
-            positions=rig.positions * scale,
-            offsets=rig.offsets * scale,
-            metres_per_unit=UNITS[choices.unit],
-        )
-    return replace(rig, up=choices.up, fps=choices.fps / rig.every if choices.fps else rig.fps)
-
-
-def _check_length(motion: Clip | RigMotion, label: str) -> None:
-    seconds = motion.num_frames / motion.fps
-    if seconds > MAX_SECONDS:
-        raise InputError(
-            f"At {motion.fps:g} frames a second {label} lasts {seconds:.0f} s, more than {MAX_SECONDS:.0f} s "
-            "allowed: cut it or give its true rate."
-        )
-
-
-def _tall(clip: Clip) -> Array:
-    """(3,) the median way from the ankles to the head, in the file's axes and unit."""
-    layout = LAYOUTS[clip.skeleton.name]
-    column = {SMPL22.joint_names[ours]: theirs for theirs, ours in enumerate(layout.joints) if ours >= 0}
-    ankles = [column["left_ankle"], column["right_ankle"]]
-    return np.median(clip.positions[:, column["head"]] - clip.positions[:, ankles].mean(axis=1), axis=0)
-
-
-def _up_of(clip: Clip) -> str:
-    """The axis along which people are tall, if it is clear; arrays are Y up by our own contract."""
-    tall = np.abs(_tall(clip))
-    axis = int(np.argmax(tall))
-    return "xyz"[axis] if tall[axis] > 0.9 * np.linalg.norm(tall) else "y"
-
-
-def _unit_of(clip: Clip, axis: int) -> str:
+def _unit_of(places: Places, up: str) -> str:
     """The unit in which a standing person is as tall as people are; metres where none fits."""
-    tall = abs(float(_tall(clip)[axis]))
+    ankles = (places["left_ankle"] + places["right_ankle"]) / 2
+    tall = abs(float(np.median(places["head"] - ankles, axis=0)["xyz".index(up[-1])]))
     return next((unit for unit, metres in UNITS.items() if _TALL[0] <= tall * metres <= _TALL[1]), "m")
 
 
-def _upright(clip: Clip, up: str, metres: float, fps: float) -> Clip:
+def _turned(clip: Clip, turn: Array, metres: float) -> Clip:
     """The clip in metres, Y up; the very same positions where nothing is to be changed."""
-    if up == "y" and metres == 1.0:
-        return clip if fps == clip.fps else replace(clip, fps=fps)
-    positions = clip.positions.astype(np.float64) * metres
-    if up == "z":
-        positions = positions[..., [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
-    elif up == "x":
-        positions = positions[..., [1, 0, 2]] * np.array([-1.0, 1.0, 1.0])
-    return Clip(positions.astype(np.float32), fps, clip.skeleton, name=clip.name, notes=clip.notes)
+    if metres == 1.0 and (turn == np.eye(3)).all():
+        return clip
+    positions = (clip.positions.astype(np.float64) * metres) @ turn.T
+    rotations = None if clip.rotations is None else np.array(clip.rotations)
+    if rotations is not None:
+        rotations[:, 0] = turn @ rotations[:, 0]
+    return replace(clip, positions=positions.astype(np.float32), rotations=rotations)

@@ -11,19 +11,22 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion.clip import Clip
 from motion.errors import InputError
-from motion.skeleton import NTU25, SBU15, Skeleton
+from motion.skeleton import NTU25, SBU15
 
-from .crowd import Motion, gathered
-from .files import MAX_FRAMES, check_duration, decode_text, read_bytes
+from .arrays import filled
+from .choices import ImportChoices
+from .crowd import Recording
+from .files import MAX_FRAMES, check_duration, decode_text
 
 Array = NDArray[np.floating]
+Track = dict[int, Array]
+"""(25, 3) joints of a body by frame."""
 
 SKELETON_FPS = 30.0
 SBU_FPS = 15.0
@@ -33,49 +36,50 @@ _LONGEST_LINE = 4000
 _MOST_LINES = 4_000_000
 _MOST_IDENTITIES = 200
 _FARTHEST = 100.0  # metres
+_NEAR = 2.0
+"""Metres between the places where a body is lost and where it is found again, at most."""
+_MENTIONED = 0.25
+"""Seconds; a body that is not seen for longer is mentioned."""
 
 
-def read_kinect(
-    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False
-) -> Motion:
-    """Reads either kind of Kinect text; the contents show which.
+def read_kinect(data: bytes, label: str, choices: ImportChoices) -> Recording:
+    """The people of either kind of Kinect text, those seen longest first, in metres; the contents show which kind.
 
-    Args:
-        source: a path, or the file's bytes.
-        name: its name in messages.
-        fps: frames a second; 30 for ``.skeleton`` and 15 for SBU's text by default, as the files have none.
-        everyone: return all people instead of the two seen longest.
-
-    Returns:
-        the person, or the two who are seen longest (or everybody, the longest first), in metres and Y up;
-        frames in which one of them is not seen are interpolated.
+    Frames in which a body or a joint is not seen are interpolated; a body that is lost and found again under another
+    number is one. Notes say so. The rate is 30 frames a second for ``.skeleton`` and 15 for SBU's text, which do not
+    give it.
 
     Raises:
         InputError: one sentence with the line where the file is wrong.
     """
-    data, label = read_bytes(source, name)
     text = decode_text(data, label, "Kinect text")
     del data
     first = next((line for _, line in _lines(text, label)), "")
     if "," in first:
-        positions = _read_sbu(text, label, fps or SBU_FPS)
-        return _motion(positions, fps or SBU_FPS, SBU15, label, everyone)
-    if re.fullmatch(r"\s*\d{1,9}\s*", first):
-        positions = _read_skeleton(text, label, fps or SKELETON_FPS)
-        return _motion(positions if everyone else positions[:2], fps or SKELETON_FPS, NTU25, label, everyone)
-    raise InputError(
-        f"{label} is not Kinect text: it begins neither with a count of frames (.skeleton) nor with SBU's "
-        "numbers between commas."
-    )
+        fps, skeleton = choices.fps or SBU_FPS, SBU15
+        people: list[tuple[Array, tuple[str, ...]]] = [(its, ()) for its in _read_sbu(text, label, fps)]
+    elif re.fullmatch(r"\s*\d{1,9}\s*", first):
+        fps, skeleton = choices.fps or SKELETON_FPS, NTU25
+        people = _read_skeleton(text, label, fps)
+    else:
+        raise InputError(
+            f"{label} is not Kinect text: it begins neither with a count of frames (.skeleton) nor with SBU's "
+            "numbers between commas."
+        )
+    if any(np.abs(positions).max() > _FARTHEST for positions, _ in people):
+        raise InputError(f"{label} holds joints more than {_FARTHEST:g} m away: is it of another kind?")
+    try:
+        return Recording(tuple(Clip(its, fps, skeleton, name=label, notes=notes) for its, notes in people))
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None
 
 
 def _lines(text: str, label: str) -> Iterator[tuple[int, str]]:
     """(number from 1, line) of the lines that hold something, cut out one at a time."""
-    ending = "\n" if "\n" in text else "\r"
     start, number = 0, 0
     while start < len(text):
         number += 1
-        stop = text.find(ending, start)
+        stop = text.find("\n", start)
         stop = len(text) if stop < 0 else stop
         if stop - start > _LONGEST_LINE:
             raise InputError(
@@ -89,21 +93,11 @@ def _lines(text: str, label: str) -> Iterator[tuple[int, str]]:
             yield number, line
 
 
-def _motion(people: list[Array], fps: float, skeleton: Skeleton, label: str, everyone: bool) -> Motion:
-    if any(np.abs(person).max() > _FARTHEST for person in people):
-        raise InputError(f"{label} holds joints more than {_FARTHEST:g} m away: is it of another kind?")
-    try:
-        clips = tuple(Clip(person, fps, skeleton, name=label) for person in people)
-    except InputError as error:
-        raise InputError(f"{label}: {error}") from None
-    return gathered(clips, label, everyone=everyone)
-
-
 # ---- SBU ---------------------------------------------------------------------------------------------
 
 
 def _read_sbu(text: str, label: str, fps: float) -> list[Array]:
-    rows = np.empty((min(text.count("\n" if "\n" in text else "\r"), MAX_FRAMES) + 1, 90), dtype=np.float32)
+    rows = np.empty((min(text.count("\n"), MAX_FRAMES) + 1, 90), dtype=np.float32)
     frames = 0
     for number, line in _lines(text, label):
         check_duration(frames + 1, fps, label)
@@ -161,7 +155,7 @@ class _Lines:
         return line.split(None, most)
 
     def joints(self) -> Array:
-        """(25, 3) float32: the first three numbers of as many lines."""
+        """(25, 3) float32: the first three numbers of as many lines, NaN for those that are not finite."""
         rows: list[tuple[int, list[str]]] = []
         try:
             for _ in range(25):
@@ -169,10 +163,8 @@ class _Lines:
                 if len(words) < 3:
                     raise InputError(f"{self.where}: a joint needs x, y and z.")
                 rows.append((self.number, words))
-            places = np.array([[float(x), float(y), float(z)] for _, (x, y, z) in rows])
-            if not np.isfinite(places).all():
-                raise ValueError
-            return places.astype(np.float32)
+            places = np.array([[float(x), float(y), float(z)] for _, (x, y, z) in rows], dtype=np.float32)
+            return np.where(np.isfinite(places), places, np.float32("nan"))
         except ValueError:  # includes InputError; report the first error in the file
             for number, words in rows:
                 _numbers(words, f"{self.label}, line {number}")
@@ -189,14 +181,14 @@ class _Lines:
         return int(words[0])
 
 
-def _read_skeleton(text: str, label: str, fps: float) -> list[Array]:
-    """(T, 25, 3) of every body that is seen at least half as long as the longest, which comes first."""
+def _read_skeleton(text: str, label: str, fps: float) -> list[tuple[Array, tuple[str, ...]]]:
+    """(T, 25, 3) and notes of every body that is seen at least half as long as the longest, which comes first."""
     reader = _Lines(text, label)
     frames = reader.count("frames", 999_999_999)
     if frames < 1:
         raise InputError(f"{label} holds no frames: export it again.")
     check_duration(frames, fps, label)
-    bodies: dict[str, dict[int, Array]] = defaultdict(dict)
+    bodies: dict[str, Track] = defaultdict(dict)
     for frame in range(frames):
         for _ in range(reader.count("bodies", _MAX_BODIES)):
             identity = (reader.words() or [""])[0]
@@ -208,15 +200,40 @@ def _read_skeleton(text: str, label: str, fps: float) -> list[Array]:
             bodies[identity][frame] = joints
     if not bodies:
         raise InputError(f"{label} holds no body in any of its frames: record it again.")
-    longest = sorted(bodies.values(), key=len, reverse=True)[:_MAX_BODIES]
+    longest = sorted(_joined(list(bodies.values())), key=len, reverse=True)
     # A second body that is seen for a moment is a chair or a ghost.
-    kept = [body for body in longest if len(body) >= 0.5 * len(longest[0])]
-    return [_filled(body, frames) for body in kept]
+    kept = [body for body in longest[:_MAX_BODIES] if len(body) >= 0.5 * len(longest[0])]
+    left_out = [len(body) / fps for body in longest[len(kept) :] if len(body) / fps > _MENTIONED]
+    more = (f"{label}: a body seen for only {left_out[0]:.1f} s was left out.",) if left_out else ()
+    people = []
+    for letter, body in zip("ABCDEF", kept, strict=False):
+        positions = np.full((frames, 25, 3), np.nan, dtype=np.float32)
+        positions[list(body)] = list(body.values())
+        people.append(
+            (filled(positions, label), (*_gap(body, frames, fps, f"{label}: person {letter}"), *more))
+        )
+    return people
 
 
-def _filled(body: dict[int, Array], frames: int) -> Array:
-    """(frames, 25, 3) with frames that lack the body interpolated, and held at the ends."""
-    seen = np.array(sorted(body))
-    known = np.stack([body[frame] for frame in seen]).reshape(len(seen), -1)
-    columns = [np.interp(np.arange(frames), seen, column) for column in known.T]
-    return np.stack(columns, axis=1).reshape(frames, 25, 3)
+def _joined(tracks: list[Track]) -> list[Track]:
+    """The tracks of bodies; those that follow one another at one place are one, which was lost and found again."""
+    people: list[Track] = []
+    for track in sorted(tracks, key=min):
+        before = [one for one in people if max(one) < min(track)]
+        away = [float(np.linalg.norm(one[max(one)][0] - track[min(track)][0])) for one in before]
+        if before and min(away) < _NEAR:
+            before[int(np.argmin(away))].update(track)
+        else:
+            people.append(dict(track))
+    return people
+
+
+def _gap(body: Track, frames: int, fps: float, who: str) -> tuple[str, ...]:
+    """A sentence on the longest time for which a body is not seen, if it is long enough to be noticed."""
+    seen = np.array([-1, *sorted(body), frames])
+    longest = int(np.argmax(np.diff(seen)))
+    begin, end = int(seen[longest]) + 1, int(seen[longest + 1])
+    if (end - begin) / fps < _MENTIONED:
+        return ()
+    there = "held still" if begin == 0 or end == frames else "interpolated"
+    return (f"{who} is not seen from {begin / fps:.1f} to {end / fps:.1f} s and is {there} there.",)

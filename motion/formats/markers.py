@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from motion.clip import Clip
 from motion.errors import InputError
 from motion.skeleton import POINTS17
-from motion.transforms import axis_to_y
 from motion.vectors import unit
+
+from .arrays import filled
 
 Array = NDArray[np.floating]
 Points = Mapping[str, Array]
@@ -62,16 +63,17 @@ def people_of(names: Sequence[str], points: Array, fps: float, label: str) -> tu
 
     Args:
         names: of P markers.
-        points: (T, P, 3) metres, NaN where a marker was not seen; any axis may be up.
+        points: (T, P, 3) metres, NaN or all zeros where a marker was not seen; any axis may be up.
         fps: frames a second.
         label: the file's name in messages.
 
     Returns:
-        clips on :data:`~motion.skeleton.POINTS17`, Y up; joints are interpolated while they were not seen.
+        clips on :data:`~motion.skeleton.POINTS17`; joints are interpolated while they were not seen.
 
     Raises:
         InputError: if nobody has the markers of a whole body, or places are not possible.
     """
+    points[(points == 0).all(axis=-1)] = np.nan
     if (
         max(-np.fmin.reduce(points, axis=None), np.fmax.reduce(points, axis=None)) > _FARTHEST
     ):  # NaN is left out
@@ -89,8 +91,7 @@ def people_of(names: Sequence[str], points: Array, fps: float, label: str) -> tu
             f"{label} has no marker or key point for {missing.replace('_', ' ') or 'a body'} among {shown}, …: use "
             "names such as LKNE, LKnee or LKJC."
         )
-    upright = _upright(people)
-    return tuple(_clip(joints, upright, fps, label) for joints in people)
+    return tuple(_clip(joints, fps, label) for joints in people)
 
 
 def _by_person(names: Sequence[str], points: Array) -> list[dict[str, Array]]:
@@ -149,19 +150,10 @@ def _add_hips(found: dict[str, Array], markers: Points) -> None:
         return
 
 
-def _upright(people: Sequence[Mapping[str, Array]]) -> Array:
-    """(3, 3) rotation that turns the axis along which the first person stands to +Y."""
-    first = people[0]
-    top = (first["left_shoulder"] + first["right_shoulder"]) / 2
-    tall = np.nanmedian(top - (first["left_ankle"] + first["right_ankle"]) / 2, axis=0)
-    axis = int(np.argmax(np.abs(np.nan_to_num(tall))))
-    return axis_to_y(axis, -1.0 if tall[axis] < 0 else 1.0)
-
-
-def _clip(joints: Mapping[str, Array], upright: Array, fps: float, label: str) -> Clip:
+def _clip(joints: Mapping[str, Array], fps: float, label: str) -> Clip:
     """The joints that were found with those that follow from them, without gaps."""
     unseen = {name: float(np.mean(~np.isfinite(place).all(-1))) for name, place in joints.items()}
-    places = {name: _filled(place) @ upright.T for name, place in joints.items()}
+    places = {name: filled(place[:, None], label)[:, 0] for name, place in joints.items()}
     hips, shoulders = ((places[f"left_{part}"] + places[f"right_{part}"]) / 2 for part in ("hip", "shoulder"))
     trunk = unit(shoulders - hips)
     across = unit(places["left_hip"] - places["right_hip"])
@@ -169,9 +161,9 @@ def _clip(joints: Mapping[str, Array], upright: Array, fps: float, label: str) -
     places.setdefault("neck", shoulders + 0.03 * trunk)
     places.setdefault("head", places["neck"] + 0.1 * trunk)
     for side in ("left", "right"):
-        ahead = np.cross(across, unit(places[f"{side}_knee"] - places[f"{side}_ankle"]))
+        shank = unit(places[f"{side}_knee"] - places[f"{side}_ankle"])
         places.setdefault(
-            f"{side}_foot", places[f"{side}_ankle"] + 0.13 * ahead + np.array([0.0, -0.06, 0.0])
+            f"{side}_foot", places[f"{side}_ankle"] + 0.13 * np.cross(across, shank) - 0.06 * shank
         )
     positions = np.stack([places[name] for name in POINTS17.joint_names], axis=1)
     often = [name.replace("_", " ") for name, share in unseen.items() if share > _OFTEN_UNSEEN]
@@ -180,10 +172,3 @@ def _clip(joints: Mapping[str, Array], upright: Array, fps: float, label: str) -
         return Clip(positions, fps, POINTS17, name=label, notes=(note,) if often else ())
     except InputError as error:
         raise InputError(f"{label}: {error}") from None
-
-
-def _filled(place: Array) -> Array:
-    """(T, 3) with frames that lack the joint interpolated, and held at the ends."""
-    seen = np.flatnonzero(np.isfinite(place).all(-1))
-    times = np.arange(len(place))
-    return np.stack([np.interp(times, seen, column[seen]) for column in place.T], axis=1)

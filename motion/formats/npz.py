@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import io
 import json
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,28 +17,45 @@ from numpy.typing import NDArray
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
-from motion.representation import NUM_FEATURES, RAW_FEATURES, decode_positions, read_raw
+from motion.representation import NUM_FEATURES, RAW_FEATURES, decode_humanml3d, decode_positions, read_raw
+from motion.rigs import RigMotion
 from motion.skeleton import SKELETONS, SMPL22, Skeleton
 
 from . import npz_things
 from .arrays import frame_rate, load_array, load_members, no_rate, numbers
-from .crowd import MAX_PEOPLE, Motion, gathered
-from .files import check_duration, read_bytes, write_files
+from .choices import ORDERS, ImportChoices
+from .crowd import MAX_PEOPLE, Recording
+from .files import check_duration, write_files
 from .joint_order import likely_skeleton
-from .smpl import FPS_KEYS, PARAMETER_KEYS, has_parameters, on_floor, read_parameters
+from .smpl import FPS_KEYS, PARAMETER_KEYS, has_parameters, read_parameters
 
 Array = NDArray[Any]
 
 _SMPL24 = 24
 _LONGEST_MANIFEST = 1_000_000
 """Characters of JSON, which holds the interpreter while it is read: some 30 ms for so many."""
-_JOINT_COUNTS = "15 (Kinect v1), 17 (CMU), 22 or 24 (SMPL) or 25 (Kinect v2) joints"
+_JOINT_COUNTS = (
+    "15 (Kinect v1), 17 (CMU, Human3.6M, COCO), 22 or 24 (SMPL), 25 (Kinect v2), 30 or 77 joints (SOMA)"
+)
 _INTERHUMAN = 492
 """InterHuman's processed frames: 62 joints' positions and 51 joints' rotations, the body's first in both."""
 _BODY_POSITIONS, _BODY_ROTATIONS = slice(0, 66), slice(186, 312)
-_COLUMNS = (NUM_FEATURES, 2 * NUM_FEATURES, RAW_FEATURES, _INTERHUMAN)
+_HUMANML3D, _HUMANML3D_FPS = 263, 20.0
+_SOMA_NAMES = (
+    "Hips", "LeftLeg", "RightLeg", "Spine1", "LeftShin", "RightShin", "Spine2", "LeftFoot", "RightFoot", "Chest",
+    "LeftToeBase", "RightToeBase", "Neck1", "LeftShoulder", "RightShoulder", "Head", "LeftArm", "RightArm",
+    "LeftForeArm", "RightForeArm", "LeftHand", "RightHand",
+)  # fmt: skip
+"""The joints of SOMA's skeleton that SMPL22 has too, in its order, so that its parents are theirs."""
+_SOMA = {
+    30: [0, 22, 26, 1, 23, 27, 2, 24, 28, 3, 25, 29, 4, 10, 16, 6, 11, 17, 12, 18, 13, 19],
+    77: [0, 67, 72, 1, 68, 73, 2, 69, 74, 3, 70, 75, 4, 11, 39, 6, 12, 40, 13, 41, 14, 42],
+}
+"""Where they are among the 30 or 77 of Kimodo's ``posed_joints``."""
+_COUNTS = {_SMPL24, *_SOMA, *(skeleton.num_joints for skeleton in SKELETONS.values())}
+_POSITIONS = ("positions", "posed_joints")
 _KEYS = (
-    "positions",
+    *_POSITIONS,
     "fps",
     "joint_names",
     "parents",
@@ -76,99 +95,144 @@ def write_npy(duet: Duet, path: str | Path) -> list[Path]:
     return write_files({Path(path): buffer.getvalue()})
 
 
-def read_npz(
-    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False,
-    floor: bool = True,
-) -> Motion:  # fmt: skip
-    """Reads our .npz (one person or two), AMASS' or Inter-X' (one person a file).
-
-    Args:
-        source: a path, or the file's bytes.
-        name: its name in messages.
-        fps: frame rate where the file gives none; 30 by default, 120 for Inter-X, as its authors say.
-        everyone: return all people instead of the first two.
-        floor: put a person of SMPL's parameters on the floor; where two share a world, they are put on it together.
+def read_npz(data: bytes, label: str, choices: ImportChoices) -> Recording:
+    """Our .npz (one person or two), positions with names of any rig, Kimodo's, and parameters of SMPL's bodies.
 
     Raises:
         InputError: one sentence saying what is wrong with the file.
     """
-    data, label = read_bytes(source, name)
     arrays = load_members(data, label, (*_KEYS, *PARAMETER_KEYS, *FPS_KEYS))
-    if "positions" in arrays:
-        return _from_arrays(arrays, label, fps, everyone)
-    if has_parameters(arrays):
-        person = read_parameters(arrays, label, fps)
-        return on_floor(person)[0] if floor else person
-    raise InputError(
-        f"{label} holds none of 'positions' (2, frames, 22, 3), AMASS' 'poses' and 'trans', and Inter-X' 'pose_body', "
-        "'root_orient' and 'trans': save it so."
+    key = next((key for key in _POSITIONS if key in arrays), None)
+    if key is None and has_parameters(arrays):
+        return read_parameters(arrays, label, choices.fps)
+    if key is None:
+        raise InputError(
+            f"{label} holds none of 'positions' (2, frames, 22, 3), Kimodo's 'posed_joints', AMASS' 'poses' and "
+            "'trans', and 'global_orient', 'body_pose' and 'transl': save it so."
+        )
+    rate = frame_rate(arrays.get("fps"), choices.fps, label)
+    notes = () if choices.fps or "fps" in arrays else (no_rate(label, rate),)
+    found = _recording(arrays[key], rate, label, choices, notes, arrays)
+    return replace(found, beside=_beside(arrays, found, label)) if key == "positions" else found
+
+
+def read_npy(data: bytes, label: str, choices: ImportChoices) -> Recording:
+    """A single array: positions of one person or more, features of InterGen or HumanML3D, or InterHuman's frames.
+
+    InterGen's features are (T, 262) or (T, 524), HumanML3D's (T, 263). InterHuman's processed files, one person each,
+    are (T, 492): 62 joints' positions, Z up, and 51 joints' rotations. Of these the 22 of the body are read, as they
+    are of the (T, 192) that InterGen's loader cuts out of them.
+
+    Raises:
+        InputError: one sentence saying what is wrong with the file.
+    """
+    array = load_array(io.BytesIO(data), len(data), label)
+    columns = array.shape[-1] if array.ndim == 2 and len(array) else 0
+    rate = choices.fps or (_HUMANML3D_FPS if columns == _HUMANML3D else 30.0)
+    notes = () if choices.fps else (no_rate(label, rate),)
+    if columns not in (NUM_FEATURES, 2 * NUM_FEATURES, RAW_FEATURES, _INTERHUMAN, _HUMANML3D):
+        return _recording(array, rate, label, choices, notes)
+    check_duration(len(array), rate, label)
+    array = numbers(array, label)
+    if columns == _INTERHUMAN:
+        array = np.concatenate([array[:, _BODY_POSITIONS], array[:, _BODY_ROTATIONS]], axis=-1)
+    if columns == _HUMANML3D:
+        positions = numbers(decode_humanml3d(array), label)
+    else:
+        raw = columns in (RAW_FEATURES, _INTERHUMAN)
+        positions = read_raw(array)[0] if raw else decode_positions(array)
+    people = positions if positions.ndim > 3 else positions[None]
+    clips = tuple(Clip(person, rate, name=label, notes=notes) for person in people)
+    return Recording(clips, on_floor=columns in (RAW_FEATURES, _INTERHUMAN))
+
+
+def _recording(
+    array: Array, rate: float, label: str, choices: ImportChoices, notes: tuple[str, ...],
+    named: Mapping[str, Array] | None = None,
+) -> Recording:  # fmt: skip
+    """Positions (T, J, 3) or (people, T, J, 3), on known joints or a rig's; MDM's (J, 3, T) are turned round."""
+    if array.ndim in (3, 4) and array.shape[-1] != 3 == array.shape[-2] and array.shape[-3] in _COUNTS:
+        array = np.moveaxis(array, -1, -3)
+    if array.ndim not in (3, 4) or array.shape[-1] != 3:
+        raise InputError(
+            f"{label} has the shape {array.shape}: give positions (2, frames, 22, 3) or (frames, 22, 3), a person of "
+            f"InterHuman (frames, {_INTERHUMAN}) or HumanML3D (frames, {_HUMANML3D})."
+        )
+    people = array if array.ndim > 3 else array[None]
+    if not 1 <= len(people) <= MAX_PEOPLE:
+        raise InputError(f"{label} holds {len(people)} people: give 1 to {MAX_PEOPLE} a file.")
+    check_duration(people.shape[1], rate, label)
+    people = numbers(people, label)
+    names = _names(named or {}, people.shape[-2])
+    if names is None and people.shape[-2] in _SOMA:
+        people, names = people[:, :, _SOMA[people.shape[-2]]], (_SOMA_NAMES, SMPL22.parents)
+    try:
+        if names is not None:
+            still = np.zeros((len(names[0]), 3))
+            return Recording(
+                tuple(
+                    RigMotion(*names, still, person, None, rate, name=label, notes=notes) for person in people
+                )
+            )
+        skeleton, more = _skeleton(named or {}, people, label, choices.order)
+        people = people[:, :, : skeleton.num_joints]  # the hands of SMPL's 24 come last
+        return Recording(
+            tuple(Clip(its, rate, skeleton, name=label, notes=(*notes, *more)) for its in people)
+        )
+    except InputError as error:
+        raise InputError(f"{label}: {str(error).removeprefix(f'{label} ')}") from None
+
+
+def _names(arrays: Mapping[str, Array], joints: int) -> tuple[tuple[str, ...], tuple[int, ...]] | None:
+    """Names and parents of a rig's joints that a file gives; None for known joints or a file without parents."""
+    if "joint_names" not in arrays or "parents" not in arrays:
+        return None
+    names = tuple(str(name)[:80] for name in np.atleast_1d(arrays["joint_names"]).reshape(-1))
+    parents = arrays["parents"]
+    known = any(names == skeleton.joint_names for skeleton in SKELETONS.values())
+    if known or len(names) != joints or parents.shape != (joints,) or parents.dtype.kind not in "iu":
+        return None
+    above = tuple(int(parent) for parent in parents)
+    return (names, above) if all(-1 <= parent < joint for joint, parent in enumerate(above)) else None
+
+
+def _skeleton(
+    arrays: Mapping[str, Array], people: Array, label: str, order: str | None
+) -> tuple[Skeleton, tuple[str, ...]]:
+    """The known joints that positions are of, by their names or number and places, and a note where it is unsure."""
+    if "joint_names" in arrays and arrays["joint_names"].ndim == 1:
+        names = tuple(str(name) for name in arrays["joint_names"])
+        for skeleton in SKELETONS.values():
+            if names == skeleton.joint_names:
+                return skeleton, ()
+        raise InputError(
+            f"{label} has joints that are not known ({', '.join(names[:4])}, …): save their 'parents' as well, or use "
+            f"the joints of {' or '.join(SKELETONS)}."
+        )
+    count = people.shape[-2]
+    if order is not None:
+        if count != SKELETONS[order].num_joints:
+            raise InputError(
+                f"{label} has {count} joints a frame, but the order of {ORDERS.get(order, order)} has "
+                f"{SKELETONS[order].num_joints}: leave the order on automatic."
+            )
+        return SKELETONS[order], ()
+    body = people[..., : SMPL22.num_joints, :] if count == _SMPL24 else people
+    found, other = likely_skeleton(body)
+    if found is None:
+        raise InputError(f"{label} has {count} joints a frame: give {_JOINT_COUNTS}.")
+    if other is None:
+        return found, ()
+    return found, (
+        f"{label} has {count} joints without names: the order of {ORDERS[found.name]} was taken, but it may be that of "
+        f"{ORDERS[other.name]}. Choose the order if it is wrong.",
     )
 
 
-def read_npy(
-    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False,
-    floor: bool = True,
-) -> Motion:  # fmt: skip
-    """Reads a single array: positions (2, T, J, 3) or (T, J, 3), InterGen's features, or InterHuman's frames.
-
-    Features are (T, 262) or (T, 524). InterHuman's processed files, one person each, are (T, 492): 62 joints'
-    positions, Z up, and 51 joints' rotations. Of these the 22 of the body are read, as they are of the (T, 192) that
-    InterGen's loader cuts out of them.
-
-    Args:
-        source: a path, or the file's bytes.
-        name: its name in messages.
-        fps: frame rate; 30 by default, as the file has none.
-        everyone: return all people instead of the first two.
-        floor: put a person of InterHuman's on the floor; where two share a world, they are put on it together.
-
-    Raises:
-        InputError: one sentence saying what is wrong with the file.
-    """
-    data, label = read_bytes(source, name)
-    array = load_array(io.BytesIO(data), len(data), label)
-    rate = fps or 30.0
-    notes = () if fps else (no_rate(label, rate),)
-    if array.ndim == 2 and array.shape[-1] in _COLUMNS and len(array):
-        check_duration(len(array), rate, label)
-        if array.shape[-1] in (RAW_FEATURES, _INTERHUMAN):
-            person = Clip(read_raw(numbers(_body_columns(array), label))[0], rate, name=label, notes=notes)
-            return on_floor(person)[0] if floor else person
-        return _motion(decode_positions(numbers(array, label)), rate, SMPL22, label, notes=notes)
-    if array.ndim not in (3, 4):
-        raise InputError(
-            f"{label} has the shape {array.shape}: give positions (2, frames, 22, 3) or (frames, 22, 3), or a person "
-            f"of InterHuman (frames, {_INTERHUMAN})."
-        )
-    array = numbers(_body(array), label)
-    _check_people(array, rate, label)
-    skeleton = likely_skeleton(array)
-    if skeleton is None:
-        raise InputError(f"{label} has {array.shape[-2]} joints a frame: give {_JOINT_COUNTS}.")
-    return _motion(array, rate, skeleton, label, everyone=everyone, notes=notes)
-
-
-def _body_columns(raw: Array) -> Array:
-    """(T, 192) of InterHuman's (T, 492); (T, 192) as it is."""
-    if raw.shape[-1] == RAW_FEATURES:
-        return raw
-    return np.concatenate([raw[:, _BODY_POSITIONS], raw[:, _BODY_ROTATIONS]], axis=-1)
-
-
-def _body(positions: Array) -> Array:
-    """Drops the hands, the last two of SMPL's 24 joints; leaves any other count unchanged."""
-    is_smpl = positions.ndim in (3, 4) and positions.shape[-2] == _SMPL24
-    return positions[..., : SMPL22.num_joints, :] if is_smpl else positions
-
-
-def _from_arrays(arrays: dict[str, Array], label: str, fps: float | None, everyone: bool) -> Motion:
-    rate = frame_rate(arrays.get("fps"), fps, label)
-    notes = () if fps or "fps" in arrays else (no_rate(label, rate),)
-    _check_people(arrays["positions"], rate, label)
-    positions = numbers(arrays["positions"], label)
-    if "joint_names" not in arrays:
-        positions = _body(positions)
-    skeleton = _skeleton(arrays, positions, label)
+def _beside(arrays: dict[str, Array], found: Recording, label: str) -> dict[str, Any]:
+    """Parts of our own file beside two people's positions."""
+    if len(found.people) != 2:
+        return {}
     roles = tuple(str(role)[:40] for role in np.atleast_1d(arrays.get("roles", ("a", "b")))[:2])
     manifest = None
     if "manifest" in arrays:
@@ -180,49 +244,10 @@ def _from_arrays(arrays: dict[str, Array], label: str, fps: float | None, everyo
             manifest = json.loads(str(arrays["manifest"]))
         except (ValueError, RecursionError):
             raise InputError(f"{label}: its manifest is not JSON text: save it again.") from None
-    made = _motion(positions, rate, skeleton, label, everyone=everyone, notes=notes)
-    if not isinstance(made, Duet):
-        return made
-    known = manifest if isinstance(manifest, dict) and manifest else None
-    named = (roles[0], roles[1]) if len(roles) == 2 else ("a", "b")
-    things = npz_things.things_of(arrays, made.num_frames, label)
-    grips, looks = npz_things.grips_in(arrays, label), npz_things.looks_in(arrays, label)
-    return Duet(made.a, made.b, named, known, things, grips, looks)
-
-
-def _motion(
-    positions: Array, fps: float, skeleton: Skeleton, label: str, *, everyone: bool = False,
-    notes: tuple[str, ...] = (),
-) -> Motion:  # fmt: skip
-    """(T, J, 3) or (people, T, J, 3) as clips."""
-    people = positions[None] if positions.ndim < 4 else positions
-    check_duration(people.shape[1] if people.ndim > 3 else 0, fps, label)
-    try:
-        clips = tuple(Clip(person, fps, skeleton, name=label, notes=notes) for person in people)
-    except InputError as error:
-        raise InputError(f"{label}: {error}") from None
-    return gathered(clips, label, everyone=everyone)
-
-
-def _check_people(positions: Array, fps: float, label: str) -> None:
-    """Checks length and number of people by the shape, before the values are used."""
-    if positions.ndim == 4 and not 1 <= len(positions) <= MAX_PEOPLE:
-        raise InputError(f"{label} holds {len(positions)} people: give 1 to {MAX_PEOPLE} a file.")
-    check_duration(positions.shape[-3] if positions.ndim > 2 else 0, fps, label)
-
-
-def _skeleton(arrays: dict[str, Array], positions: Array, label: str) -> Skeleton:
-    if "joint_names" in arrays and arrays["joint_names"].ndim == 1:
-        names = tuple(str(name) for name in arrays["joint_names"])
-        for skeleton in SKELETONS.values():
-            if names == skeleton.joint_names:
-                return skeleton
-        raise InputError(
-            f"{label} has joints that are not known ({', '.join(names[:4])}, …): use the joints of "
-            f"{' or '.join(SKELETONS)}, or save it as BVH, where any rig is understood."
-        )
-    joints = positions.shape[-2] if positions.ndim > 1 else 0
-    found = likely_skeleton(positions)
-    if found is None:
-        raise InputError(f"{label} has {joints} joints a frame and no joint_names: give {_JOINT_COUNTS}.")
-    return found
+    return {
+        "roles": (roles[0], roles[1]) if len(roles) == 2 else ("a", "b"),
+        "manifest": manifest if isinstance(manifest, dict) and manifest else None,
+        "things": npz_things.things_of(arrays, found.people[0].num_frames, label),
+        "grips": npz_things.grips_in(arrays, label),
+        "looks": npz_things.looks_in(arrays, label),
+    }

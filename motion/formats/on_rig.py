@@ -7,10 +7,10 @@ from pathlib import Path
 from motion.clip import Clip
 from motion.errors import InputError
 
-from . import RIGS, read_rigs
 from .bvh_rig import bvh_on_rig
-from .glb_animations import Animation
+from .choices import Animation
 from .glb_rig import glb_on_rig
+from .registry import GLBS, RIGS, read_rigs
 
 
 def on_rig(clip: Clip, reference: Path, *, animation: Animation | None = None) -> bytes:
@@ -25,7 +25,7 @@ def on_rig(clip: Clip, reference: Path, *, animation: Animation | None = None) -
         InputError: as :func:`check_rig`, and where the rig cannot be moved.
     """
     _check_kind(reference)
-    if reference.suffix.lower() == ".glb":
+    if reference.suffix.lower() in GLBS:
         return glb_on_rig(clip, reference, animation=animation)
     return bvh_on_rig(clip, reference)
 
@@ -33,7 +33,7 @@ def on_rig(clip: Clip, reference: Path, *, animation: Animation | None = None) -
 def check_rig(reference: Path) -> None:
     """Raises InputError for a file that is no .bvh or .glb of one person, before a partner is made."""
     _check_kind(reference)
-    if (count := len(read_rigs(reference, fps=30.0))) > 1:
+    if (count := len(read_rigs(reference))) > 1:
         raise InputError(f"A partner is taken on the rig of one person, and {reference.name} holds {count}.")
 
 

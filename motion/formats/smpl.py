@@ -1,15 +1,14 @@
-"""Parameters of SMPL bodies: AMASS' and Inter-X' .npz in, AMASS' out.
+"""Parameters of SMPL bodies: the .npz of AMASS, Inter-X and of estimators of bodies in, AMASS' out.
 
-A person is a rotation vector (axis × angle) of each joint against its parent, the root's against the world, and a
-path ``trans``. SMPL's body model, which would make joints of them, may not be shipped: the bones are those of
-:data:`~motion.SMPL22`, an average adult's. A file that gives its person's shape as ``betas`` is read without it.
+A person is a rotation of each joint against its parent, the root's against the world, and a path. SMPL's body model,
+which would make joints of them, may not be shipped: the bones are those of :data:`~motion.SMPL22`, an average adult's.
+A file that gives its person's shape as ``betas`` is read without it.
 """
 
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,13 +24,20 @@ from motion.sizes import of_adults
 from motion.skeleton import SMPL22
 
 from .arrays import frame_rate, no_rate, numbers
+from .crowd import Recording
 from .files import check_duration, write_files
 
 Array = NDArray[Any]
 
 SUFFIX = ".smpl.npz"
-FPS_KEYS = ("mocap_framerate", "mocap_frame_rate", "fps")
-PARAMETER_KEYS = ("poses", "pose_body", "root_orient", "trans", "betas", *FPS_KEYS)
+FPS_KEYS = ("mocap_framerate", "mocap_frame_rate", "frame_rate", "fps")
+_WHOLE, _ROOT, _BODY_KEYS = (
+    ("poses", "smpl_poses", "pose"),
+    ("root_orient", "global_orient"),
+    ("pose_body", "body_pose"),
+)
+_TRANS = ("trans", "transl", "smpl_trans", "translation")
+PARAMETER_KEYS = (*_WHOLE, *_ROOT, *_BODY_KEYS, *_TRANS, "betas", *FPS_KEYS)
 PELVIS = np.array([-0.00179506, -0.22333382, 0.02821918])
 """Metres: the pelvis of SMPL's neutral body in its own frame. A body's pelvis is at ``trans`` plus this."""
 SHAPE_UNUSED = (
@@ -49,64 +55,75 @@ _Z_UP_TO_Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 
 def has_parameters(arrays: Mapping[str, Array]) -> bool:
-    """True if these are the arrays of a person of AMASS or of Inter-X."""
-    return "trans" in arrays and ("poses" in arrays or {"pose_body", "root_orient"} <= set(arrays))
+    """True if these are the rotations of a person's joints."""
+    return any(key in arrays for key in _WHOLE) or (
+        any(key in arrays for key in _ROOT) and any(key in arrays for key in _BODY_KEYS)
+    )
 
 
-def read_parameters(arrays: Mapping[str, Array], label: str, fps: float | None) -> Clip:
-    """The person of a file, where the file puts them, heights included.
+def read_parameters(arrays: Mapping[str, Array], label: str, fps: float | None) -> Recording:
+    """The person of a file, where the file puts them.
 
     Args:
-        arrays: ``trans`` (T, 3) with AMASS' ``poses`` (T, 66 or more), or with Inter-X' ``root_orient`` (T, 3) and
-            ``pose_body`` (T, 63) or (T, 21, 3); the rate under one of :data:`FPS_KEYS`.
+        arrays: the path, (T, 3) under ``trans`` or ``transl``, with rotations of all joints as ``poses``, or of the
+            root as ``root_orient`` or ``global_orient`` and of the others as ``pose_body`` or ``body_pose``: vectors
+            (T, 3 J), (T, J, 3) or matrices (T, J, 3, 3), of SMPL's 24 joints or more of its kin; the rate under one
+            of :data:`FPS_KEYS`.
         label: the file's name in messages.
-        fps: frame rate where the file gives none; 30 by default, and 120 for Inter-X.
+        fps: the true frame rate; otherwise the file's, or 30, or 120 for Inter-X.
 
     Returns:
-        a clip with rotations, Y up. AMASS is Z up; of Inter-X' files the axis along which the body stands is taken.
+        a clip with rotations. AMASS is Z up, other files usually Y up.
 
     Raises:
         InputError: one sentence saying what is wrong with the arrays.
     """
-    interx = "poses" not in arrays
-    poses, trans = _joined(arrays, label) if interx else _amass(arrays, label)
-    stored = next((arrays[key] for key in FPS_KEYS if key in arrays), None)
+    interx = "pose_body" in arrays and "poses" not in arrays
+    whole, trans = _first(arrays, _WHOLE), _first(arrays, _TRANS)
+    if whole is None:
+        root, body = (_vectors(_first(arrays, keys), label) for keys in (_ROOT, _BODY_KEYS))
+        fits = len(root) == len(body) and root.shape[1] == 3 and body.shape[1] >= _BODY - 3
+        poses = np.concatenate([root, body[:, : _BODY - 3]], axis=1) if fits else root[:, :0]
+    else:
+        poses = _vectors(whole, label)[:, :_BODY]
+    path = np.zeros((len(poses), 3)) if trans is None else numbers(trans, label)
+    path = path[:, 0] if path.ndim == 3 else path
+    if poses.shape[-1] < _BODY or path.shape != (len(poses), 3) or len(poses) == 0:
+        raise InputError(
+            f"{label}: SMPL's rotations must be 'poses' (frames, 66 or more), or 'global_orient' (frames, 3) and "
+            "'body_pose' (frames, 63 or more), and 'trans' (frames, 3), with the same number of frames."
+        )
+    stored = _first(arrays, FPS_KEYS)
     rate = frame_rate(stored, fps, label, usual=INTERX_FPS if interx else 30.0)
     check_duration(len(poses), rate, label)
-    notes = () if fps or stored is not None else (no_rate(label, rate),)
+    notes = [] if fps or stored is not None else [no_rate(label, rate)]
+    if trans is None:
+        notes.append(f"{label} does not give the person's path: they stay in one place.")
     if interx or np.any(numbers(arrays.get("betas", np.zeros(1)), label)):
-        notes = (*notes, SHAPE_UNUSED.format(label))
-    positions, rotations = _posed(numbers(poses, label), numbers(trans, label))
-    if not interx or _stands_along_z(positions):
-        positions = positions @ _Z_UP_TO_Y_UP.T.astype(np.float32)
-        rotations[:, 0] = _Z_UP_TO_Y_UP @ rotations[:, 0]
-    return Clip(positions, rate, SMPL22, rotations, label, notes)
+        notes.append(SHAPE_UNUSED.format(label))
+    positions, rotations = _posed(poses, path)
+    amass = "poses" in arrays and "trans" in arrays
+    clip = Clip(positions, rate, SMPL22, rotations, label, tuple(notes))
+    return Recording((clip,), "z" if amass else "", on_floor=True)
 
 
-def on_floor(*people: Clip) -> list[Clip]:
-    """People of one world, shifted together so that their lowest joint is at height 0."""
-    lowest = min(float(person.positions[..., 1].min()) for person in people)
-    shift = np.array([0.0, lowest, 0.0], dtype=np.float32)
-    return [replace(person, positions=person.positions - shift) for person in people]
+def _first(arrays: Mapping[str, Array], keys: Sequence[str]) -> Array | None:
+    return next((arrays[key] for key in keys if key in arrays), None)
 
 
-def _amass(arrays: Mapping[str, Array], label: str) -> tuple[Array, Array]:
-    poses, trans = arrays["poses"], arrays["trans"]
-    if poses.ndim != 2 or poses.shape[1] < _BODY or trans.shape != (len(poses), 3) or len(poses) == 0:
-        raise InputError(f"{label}: AMASS poses must be (frames, 66 or more) and trans (frames, 3).")
-    return poses[:, :_BODY], trans
-
-
-def _joined(arrays: Mapping[str, Array], label: str) -> tuple[Array, Array]:
-    root, body, trans = (arrays[key] for key in ("root_orient", "pose_body", "trans"))
-    frames = len(trans) if trans.ndim else 0
-    fits = body.shape in ((frames, 63), (frames, 21, 3)) and root.shape == trans.shape == (frames, 3)
-    if not fits or not frames:
-        raise InputError(
-            f"{label}: Inter-X' pose_body must be (frames, 63) or (frames, 21, 3), root_orient and trans (frames, 3), "
-            "with the same number of frames."
-        )
-    return np.concatenate([root, body.reshape(frames, 63)], axis=-1), trans
+def _vectors(rotations: Array | None, label: str) -> Array:
+    """(T, 3 J) rotation vectors of (T, 3 J), (T, J, 3) or (T, J, 3, 3)."""
+    assert rotations is not None
+    found = numbers(rotations, label)
+    if found.ndim < 2 or not found.size:
+        return np.zeros((0, 0))
+    if found.ndim > 2 and found.shape[-2:] == (3, 3):
+        try:
+            turns = scipy.spatial.transform.Rotation.from_matrix(found.reshape(-1, 3, 3))
+        except ValueError:
+            raise InputError(f"{label} holds matrices that are no rotations: save it again.") from None
+        found = turns.as_rotvec()
+    return found.reshape(len(rotations), -1)
 
 
 def _posed(poses: Array, trans: Array) -> tuple[Array, Array]:
@@ -120,13 +137,6 @@ def _posed(poses: Array, trans: Array) -> tuple[Array, Array]:
         positions[part] = forward_kinematics(turns, trans[part] + PELVIS)
         rotations[part] = turns
     return positions, rotations
-
-
-def _stands_along_z(positions: Array) -> bool:
-    """True if head and ankles are farther apart along Z than along Y."""
-    ankles = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
-    tall = np.median(positions[:, SMPL22.index("head")] - positions[:, ankles].mean(axis=1), axis=0)
-    return bool(abs(tall[2]) > abs(tall[1]))
 
 
 def write_smpl(duet: Duet, path: str | Path) -> list[Path]:

@@ -1,23 +1,20 @@
 """Marker trajectories as text, ``.trc`` (Motion Analysis, OpenSim, OpenCap, Pose2Sim).
 
 Five lines of head: a title, names of settings, their values (``DataRate``, ``NumFrames``, ``NumMarkers``, ``Units``),
-``Frame#  Time`` and the markers' names, one above each three columns, and ``X1 Y1 Z1 …``; then a row a frame. Empty
-cells are markers that were not seen.
+``Frame#  Time`` and the markers' names, one above each three columns, and ``X1 Y1 Z1 …``; then a row a frame. Between
+cells stand tabs, or else semicolons, commas or spaces. Empty cells are markers that were not seen.
 """
 
 from __future__ import annotations
-
-from array import array
-from itertools import repeat
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion.errors import InputError
 
-from .crowd import Motion, gathered
-from .files import MAX_NUMBERS, check_duration, decode_text, read_bytes
+from .choices import ImportChoices
+from .crowd import Recording
+from .files import MAX_FRAMES, MAX_NUMBERS, MAX_SECONDS, check_duration, decode_text
 from .markers import people_of
 
 Array = NDArray[np.floating]
@@ -28,43 +25,35 @@ _HEAD = 200_000
 """Characters: the head of a file with so many markers is shorter."""
 
 
-def read_trc(
-    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False
-) -> Motion:
-    """Reads the people of a .trc file.
-
-    Args:
-        source: a path, or the file's bytes.
-        name: its name in messages.
-        fps: unused: the file gives its rate.
-        everyone: return all people instead of the first two.
-
-    Returns:
-        a person, two or more on the joints of :data:`~motion.skeleton.POINTS17`, in metres and Y up.
+def read_trc(data: bytes, label: str, choices: ImportChoices) -> Recording:
+    """The people of a .trc file, on the joints of :data:`~motion.skeleton.POINTS17`, in metres.
 
     Raises:
         InputError: one sentence with the line where the file is wrong.
     """
-    data, label = read_bytes(source, name)
     text = decode_text(data, label, "a .trc file")
     del data
     head, start = _head(text, label)
-    settings = dict(zip(_cells(head[1]), _cells(head[2]), strict=False))
-    rate = _number(settings.get("DataRate") or settings.get("CameraRate"), "DataRate", label)
+    mark = next((mark for mark in "\t;," if mark in head[3]), None)
+    settings = dict(zip(_cells(head[1], mark), _cells(head[2], mark), strict=False))
+    rate = choices.fps or _rate(settings.get("DataRate") or settings.get("CameraRate") or "", label)
     if not 1.0 <= rate <= 1000.0:
         raise InputError(f"{label}: a DataRate of {rate:g} is not possible: give frames a second.")
     unit = settings.get("Units", "mm").strip().lower()
     if unit not in _UNITS:
         raise InputError(f"{label}: the unit {unit!r:.20} is not known: use {', '.join(_UNITS)}.")
-    names = _marker_names(head[3], label)
-    values = _rows(text, start, len(names), rate, label)
-    values *= _UNITS[unit]
-    return gathered(people_of(names, values, rate, label), label, everyone=everyone)
+    names = [cell.strip() for cell in _cells(head[3], mark)[2:] if cell.strip()]
+    if not 1 <= len(names) <= _MOST_MARKERS:
+        raise InputError(f"{label} names {len(names)} markers: give 1 to {_MOST_MARKERS}.")
+    values = _rows(text, start, len(names), mark, rate, label)
+    values *= np.float32(_UNITS[unit])
+    return Recording(people_of(names, values, rate, label), "")
 
 
-def _cells(line: str) -> list[str]:
-    """The cells of a line between tabs, or between spaces where there are no tabs."""
-    return line.split("\t") if "\t" in line else line.split()
+def _cells(line: str, mark: str | None) -> list[str]:
+    """The cells of a line; a comma that is not between them is a decimal one."""
+    cells = line.split(mark)
+    return cells if mark in (",", None) or "," not in line else [cell.replace(",", ".") for cell in cells]
 
 
 def _head(text: str, label: str) -> tuple[list[str], int]:
@@ -81,19 +70,16 @@ def _head(text: str, label: str) -> tuple[list[str], int]:
     return lines, start
 
 
-def _marker_names(line: str, label: str) -> list[str]:
-    names = [cell.strip() for cell in _cells(line)[2:] if cell.strip()]
-    if not 1 <= len(names) <= _MOST_MARKERS:
-        raise InputError(f"{label} names {len(names)} markers: give 1 to {_MOST_MARKERS}.")
-    return names
-
-
-def _rows(text: str, start: int, markers: int, rate: float, label: str) -> Array:
-    """(T, markers, 3) as in the file; NaN where a marker was not seen."""
+def _rows(text: str, start: int, markers: int, mark: str | None, rate: float, label: str) -> Array:
+    """(T, markers, 3) float32 as in the file; NaN where a marker was not seen."""
     width = 2 + 3 * markers
     longest = 40 * width
-    found, frames = array("f"), 0
-    number = 5
+    lines = min(text.count("\n", start) + 1, int(MAX_SECONDS * rate) + 1, MAX_FRAMES)
+    if lines * width > MAX_NUMBERS:
+        raise InputError(
+            f"{label} holds {markers} markers in more than {MAX_NUMBERS // width:,} frames: cut it or lower its rate."
+        )
+    rows, frames, number = np.full((lines, 3 * markers), np.nan, dtype=np.float32), 0, 5
     while start < len(text):
         stop = text.find("\n", start)
         stop = len(text) if stop < 0 else stop
@@ -103,26 +89,15 @@ def _rows(text: str, start: int, markers: int, rate: float, label: str) -> Array
                 f"{label}, line {number} is longer than {markers} markers need: export it again."
             )
         line, start = text[start:stop].strip("\r\n"), stop + 1
-        if not line.strip():
+        if not line.strip("\t ;,"):
             continue
+        check_duration(frames + 1, rate, label)
+        values = [_value(cell, label, number) for cell in _cells(line, mark)[2:width]]
+        rows[frames, : len(values)] = values
         frames += 1
-        check_duration(frames, rate, label)
-        found.extend(_values(_cells(line)[2:width], label, number))
-        found.extend(repeat(np.nan, 3 * markers * frames - len(found)))
-        if len(found) > MAX_NUMBERS:
-            raise InputError(
-                f"{label} holds {markers} markers in more than {frames:,} frames: cut it or lower its frame rate."
-            )
     if not frames:
         raise InputError(f"{label} holds no frames: export it again.")
-    return np.frombuffer(found, np.float32).reshape(frames, markers, 3)
-
-
-def _values(cells: list[str], label: str, number: int) -> list[float]:
-    try:
-        return [float(cell or "nan") for cell in cells]
-    except ValueError:
-        return [_value(cell, label, number) for cell in cells]
+    return rows[:frames].reshape(frames, markers, 3)
 
 
 def _value(cell: str, label: str, number: int) -> float:
@@ -132,8 +107,8 @@ def _value(cell: str, label: str, number: int) -> float:
         raise InputError(f"{label}, line {number}: {cell.strip()!r:.20} is not a number.") from None
 
 
-def _number(word: str | None, what: str, label: str) -> float:
+def _rate(word: str, label: str) -> float:
     try:
-        return float(word or "")
+        return float(word)
     except ValueError:
-        raise InputError(f"{label} does not give its {what} as a number: export it again.") from None
+        raise InputError(f"{label} does not give its DataRate as a number: give its true rate.") from None

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from motion import InputError
-from motion.formats import read_pair
+from motion.formats import ImportChoices, read_pair
 from motion.kinematics import project_to_skeleton
 from motion.transforms import canonicalize, resample
 from training.core.shell import exit_code
@@ -51,7 +51,7 @@ def read_interhuman(data: Path, *, fps: float = FPS) -> Iterator[Scene]:
     for name in names:
         sentences = _sentences(data / "annots" / f"{name}.txt")
         try:
-            duet = read_pair(first / f"{name}.npy", second / f"{name}.npy", fps=fps)
+            duet = read_pair(first / f"{name}.npy", second / f"{name}.npy", choices=ImportChoices(fps=fps))
         except InputError as error:
             print(f"left out: {error}", file=sys.stderr)
             continue

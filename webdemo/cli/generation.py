@@ -19,7 +19,15 @@ from webdemo.inference.methods import AUTOMATIC, automatic, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 
-from .parser import add_animation, add_rate, add_sampling, add_tries, names_of, sampling_fields, with_notes
+from .parser import (
+    add_reading,
+    add_sampling,
+    add_tries,
+    names_of,
+    reading_choices,
+    sampling_fields,
+    with_notes,
+)
 from .running import check_out, run, write_result
 
 MOST_PLAN_BYTES = 200_000
@@ -93,8 +101,7 @@ def add_react(commands: Any) -> None:
     parser = commands.add_parser("react", help="generate a second person for a given one")
     parser.add_argument("--actor", type=Path, required=True, help="the given person: .bvh, .glb, .npz …")
     parser.add_argument("--person", help="which person, a to f, if the file holds several")
-    add_animation(parser, "the actor")
-    add_rate(parser)
+    add_reading(parser, "the actor")
     parser.add_argument("--start", type=float, default=0.0, help="first second of the file to use")
     parser.add_argument("--end", type=float, help="last second of the file to use; the end by default")
     parser.add_argument("--prompt", default=ReactRequest.prompt, help="what the two people do (optional)")
@@ -125,7 +132,7 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
     check_out(options.out)
     actor, pose = read_actor(
         options.actor, person=options.person, start=options.start, end=options.end,
-        keep_start=options.keep_start, animation=options.animation, fps=options.file_fps,
+        keep_start=options.keep_start, choices=reading_choices(options),
     )  # fmt: skip
     mode = options.mode or ("online" if options.stream else ReactRequest.mode)
     if options.model == AUTOMATIC:
@@ -181,8 +188,7 @@ def add_predict(commands: Any) -> None:
     """Adds ``predict`` to the shell's commands."""
     parser = commands.add_parser("predict", help="predict what comes after a motion of one person or two")
     parser.add_argument("--past", type=Path, required=True, help="the motion: .bvh, .glb, .npz …")
-    add_animation(parser, "the past")
-    add_rate(parser)
+    add_reading(parser, "the past")
     parser.add_argument("--marker", type=float, help="second at which the past ends; the end by default")
     parser.add_argument(
         "--seconds", type=float, default=PredictRequest.seconds, help="how many seconds to predict"
@@ -201,7 +207,7 @@ def predict(options: argparse.Namespace) -> dict[str, Any]:
 
     check_out(options.out)
     request = PredictRequest(
-        motion=read(options.past, fps=options.file_fps, longest=LONGEST, animation=options.animation),
+        motion=read(options.past, choices=reading_choices(options), longest=LONGEST),
         marker=options.marker,
         seconds=options.seconds,
         seed=options.seed,

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from motion import Clip, Duet, InputError
+from motion.formats.choices import AXES, ORDERS, ImportChoices
 from webdemo.inference.method import Task
 from webdemo.inference.methods import AUTOMATIC, method, methods
 from webdemo.inference.requests import ReactRequest, SamplingRequest
@@ -28,20 +29,31 @@ def names_of(task: Task) -> str:
     return " or ".join([AUTOMATIC, *names] if task == "react" else names)
 
 
-def add_animation(parser: argparse.ArgumentParser, of: str) -> None:
-    """The option that chooses one of a .glb file's animations; ``of`` is the argument that names the file."""
+def add_reading(parser: argparse.ArgumentParser, of: str) -> None:
+    """The options that say what is known of a motion file; ``of`` is the argument that names it."""
     parser.add_argument(
         "--animation", metavar="NAME", help=f"of a .glb with several, the animation of {of} to read: name or number, "
         "from 1; the first by default",
     )  # fmt: skip
-
-
-def add_rate(parser: argparse.ArgumentParser) -> None:
-    """The option that gives the frame rate of a file that has none."""
     parser.add_argument(
-        "--file-fps", type=float, metavar="FPS", help="frames a second of a file that does not give its rate, such as "
-        "InterHuman's .npy (30 by default) or Inter-X' .npz (120)",
+        "--file-fps", type=float, metavar="FPS", help="true frames a second of a file that gives none, such "
+        "as InterHuman's .npy (30 by default) or Inter-X' .npz (120), or gives a wrong one",
     )  # fmt: skip
+    parser.add_argument(
+        "--file-up",
+        metavar="AXIS",
+        help=f"what points up in the file, where that is not found: {', '.join(AXES)}",
+    )
+    parser.add_argument(
+        "--file-order",
+        metavar="ORDER",
+        help=f"order of joints without names: {', '.join(ORDERS)}; found by default",
+    )
+
+
+def reading_choices(options: argparse.Namespace) -> ImportChoices:
+    """Facts that the options of :func:`add_reading` give of a file."""
+    return ImportChoices(options.file_up, None, options.file_fps, options.file_order, options.animation)
 
 
 def with_notes(

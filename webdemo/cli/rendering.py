@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from motion import Clip, Duet, InputError
+from motion.formats.choices import ImportChoices
 
-from .parser import add_animation, add_rate, with_notes
+from .parser import add_reading, reading_choices, with_notes
 
 
 def add_render(commands: Any) -> None:
@@ -18,8 +19,7 @@ def add_render(commands: Any) -> None:
     )
     parser.add_argument("file", type=Path, help="motion file: .npz, .bvh, .glb …")
     parser.add_argument("second", type=Path, nargs="?", help="the other person, if each has a file")
-    add_animation(parser, "the file")
-    add_rate(parser)
+    add_reading(parser, "the file")
     parser.add_argument(
         "--out", type=Path,
         help="film: .mp4, .webm or .gif; contact sheet: .png, .svg or .pdf; plotly figure: .html; mesh: .ply or .obj; "
@@ -62,7 +62,7 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
     from webdemo.view import film, mesh, plotly_figure, sheet
     from webdemo.view.stage import Pane, Style
 
-    motion = _motion(options.file, options.second, options.animation, options.file_fps)
+    motion = _motion(options.file, options.second, reading_choices(options))
     out = options.out or options.file.with_suffix(".png")
     title = options.file.stem if options.title is None else options.title
     suffix = out.suffix.lower()
@@ -112,17 +112,15 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
     return with_notes(written, options.file, options.animation, motion)
 
 
-def _motion(
-    file: Path, second: Path | None, animation: str | None = None, fps: float | None = None
-) -> Clip | Duet:
+def _motion(file: Path, second: Path | None, choices: ImportChoices | None = None) -> Clip | Duet:
     """The motion of a file, or of a pair of files of which the second may be left to be found."""
     from motion.formats import read, read_pair
     from motion.formats.pairs import partner_file
 
     second = second or partner_file(file)
-    if second is not None and animation is not None:
+    if second is not None and choices is not None and choices.animation is not None:
         raise InputError("--animation chooses within one file: leave it out, or the second file.")
-    return read(file, fps=fps, animation=animation) if second is None else read_pair(file, second, fps=fps)
+    return read(file, choices=choices) if second is None else read_pair(file, second, choices=choices)
 
 
 def _size(words: str) -> tuple[int, int]:

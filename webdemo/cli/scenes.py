@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from motion import Duet, InputError
+from motion.formats.choices import ImportChoices
 from webdemo.inference.requests import SamplingRequest
 from webdemo.inference.story import SceneRequest, read_story, split_sentence
 from webdemo.inference.story.request import MOST_SECONDS
 
-from .parser import add_animation, add_tries, names_of, with_notes
+from .parser import add_reading, add_tries, names_of, reading_choices, with_notes
 from .running import check_out, run, write_result
 
 
@@ -22,7 +23,7 @@ def add_scene(commands: Any) -> None:
     parser.add_argument("story", type=Path, nargs="?", help="TOML file with the story")
     parser.add_argument("--prompt", help="instead of a file: a sentence, which is split into beats")
     parser.add_argument("--motion", type=Path, help="motion of two people that the story goes on from")
-    add_animation(parser, "the motion")
+    add_reading(parser, "the motion")
     parser.add_argument(
         "--start", type=float, help="with --motion: second at which the story begins; the end by default"
     )
@@ -56,9 +57,12 @@ def scene(options: argparse.Namespace) -> dict[str, Any]:
             asked[field.name] = getattr(options, field.name)
     if options.no_plan:
         asked["planned"] = False
-    if options.animation is not None and options.motion is None:
-        raise InputError("--animation chooses within a motion: give --motion as well, or leave it out.")
-    motion = _motion(options.motion, options.animation) if options.motion is not None else None
+    choices = reading_choices(options)
+    if choices != ImportChoices() and options.motion is None:
+        raise InputError(
+            "--animation and --file-… say how a motion is read: give --motion as well, or leave them out."
+        )
+    motion = _motion(options.motion, choices) if options.motion is not None else None
     request = SceneRequest(**asked, motion=motion, start=options.start, end=options.end)
     written = write_result(run(request), options.out)
     return written if options.motion is None else with_notes(written, options.motion, options.animation)
@@ -78,11 +82,11 @@ def _story(options: argparse.Namespace) -> dict[str, Any]:
     return read_story(text, options.story.parent)
 
 
-def _motion(path: Path, animation: str | None) -> Duet:
+def _motion(path: Path, choices: ImportChoices) -> Duet:
     from motion.formats import read
     from motion.retarget import to_smpl
 
-    found = read(path, longest=MOST_SECONDS, animation=animation)
+    found = read(path, longest=MOST_SECONDS, choices=choices)
     if not isinstance(found, Duet):
         raise InputError(f"{path.name} holds one person: a scene goes on from a motion of two.")
     return to_smpl(found)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22, Clip, InputError
-from motion.formats import Animation, read_everyone
+from motion.formats import ImportChoices, read_everyone
 from motion.formats.crowd import clips_of
 from motion.handedness import leading_wrist, names_side
 from motion.retarget import to_smpl
@@ -122,8 +122,7 @@ def read_actor(
     start: float = 0.0,
     end: float | None = None,
     keep_start: bool = False,
-    animation: Animation | None = None,
-    fps: float | None = None,
+    choices: ImportChoices | None = None,
 ) -> tuple[Clip, Array | None]:
     """One person of a motion file, trimmed, on SMPL22 and at 30 fps; only what is used is fitted.
 
@@ -131,14 +130,13 @@ def read_actor(
         path: the file, after which the clip is called.
         person, start, end: as in :func:`choose_actor`.
         keep_start: also give :func:`other_pose`, else None.
-        animation: of a .glb with several, the name or the number, from 1, of the one to read; the first by default.
-        fps: frames a second of a file that does not give its rate.
+        choices: what is known of the file.
 
     Raises:
         InputError: if the file or a choice is wrong, or the part longer than a network takes.
     """
     name = Path(path).name
-    people = clips_of(read_everyone(Path(path), name=name, fps=fps, animation=animation))
+    people = clips_of(read_everyone(Path(path), name=name, choices=choices))
     clip = choose_actor(people, person=person, start=start, end=end, name=name)
     pose = other_pose(people, person=person, start=start, name=name) if keep_start else None
     check_length(clip, SECONDS)

@@ -10,7 +10,7 @@ from typing import Any
 import gradio as gr
 
 from motion import Clip, Duet, InputError
-from motion.formats import animation_note, read
+from motion.formats import ImportChoices, animation_note, read
 from motion.formats.on_rig import check_rig
 from webdemo.inference.acting import acted
 from webdemo.inference.actor import read_actor
@@ -34,10 +34,17 @@ from .places import READING
 Answer = tuple[dict[str, Any], list[str]]
 Given = tuple[Path, str | None]
 """A file that was sent, and which of its animations is wanted."""
-RATE = "frames a second of a file that does not give its rate; 0 for the usual rate of its kind"
+RATE = "true frames a second of a file that gives none or a wrong one; 0 for its own or the usual rate of its kind"
+UP = "what points up in the file: x, y, z, -x, -y or -z; empty to find it"
+ORDER = "order of joints without names, such as h36m17; empty to find it"
 WHICH = "of a .glb with several animations, the name or the number (from 1) of one; empty for the first"
 PROGRESS = gr.Progress()
 """A default value that makes Gradio report a job's progress in ``job.status()``."""
+
+
+def reading_choices(animation: str = "", fps: float = 0.0, up: str = "", order: str = "") -> ImportChoices:
+    """Facts that a program gives of its file; empty texts and 0 leave a thing to be found."""
+    return ImportChoices(up or None, None, fps or None, order or None, animation or None)
 
 
 class Endpoint:
@@ -258,6 +265,8 @@ class ReactEndpoint(Endpoint):
                 ),
                 gr.Textbox("", label=WHICH),
                 gr.Number(0, label=RATE),
+                gr.Textbox("", label=UP),
+                gr.Textbox("", label=ORDER),
             ]
             self._publish(self.react, "react", inputs)
 
@@ -281,6 +290,8 @@ class ReactEndpoint(Endpoint):
         own_rig: bool = False,
         animation: str = "",
         fps: float = 0.0,
+        up: str = "",
+        order: str = "",
         progress: gr.Progress = PROGRESS,
     ) -> Answer:
         """A second person for a given one, who stays exactly as they are (at 30 frames a second).
@@ -296,7 +307,7 @@ class ReactEndpoint(Endpoint):
                 raise InputError("There is no actor: send a motion file, such as a .bvh.")
             clip, pose = read_actor(
                 actor, person=person or None, start=start, end=end or None, keep_start=keep_start,
-                animation=animation or None, fps=fps or None,
+                choices=reading_choices(animation, fps, up, order),
             )  # fmt: skip
             return ReactRequest(
                 actor=clip, prompt=prompt, role=role, seed=seed, samples=samples, guidance=guidance,
@@ -324,12 +335,14 @@ class PredictEndpoint(Endpoint):
                 gr.Textbox("", label=WHICH),
                 gr.Number(0, label=RATE),
                 gr.Number(0, precision=0, label="seed of a method that draws its futures"),
+                gr.Textbox("", label=UP),
+                gr.Textbox("", label=ORDER),
             ]
             self._publish(self.predict, "predict", inputs)
 
     def predict(
         self, past: str, marker: float, seconds: float, model: str, animation: str = "", fps: float = 0.0,
-        seed: int = 0, progress: gr.Progress = PROGRESS,
+        seed: int = 0, up: str = "", order: str = "", progress: gr.Progress = PROGRESS,
     ) -> Answer:  # fmt: skip
         """Predicts what comes after the past of a motion, for one person or two.
 
@@ -342,7 +355,7 @@ class PredictEndpoint(Endpoint):
             if not past:
                 raise InputError("There is no past: send a motion file, such as a .bvh.")
             return PredictRequest(
-                motion=read(Path(past), fps=fps or None, longest=LONGEST, animation=animation or None),
+                motion=read(Path(past), choices=reading_choices(animation, fps, up, order), longest=LONGEST),
                 marker=marker or None, seconds=seconds, seed=seed, model=model,
             )  # fmt: skip
 

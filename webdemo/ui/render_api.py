@@ -24,7 +24,7 @@ from webdemo.view.sheet import SUFFIXES as SHEETS
 from webdemo.view.sheet import write_sheet
 from webdemo.view.stage import LOOKS, Pane, Style
 
-from .api import RATE, WHICH
+from .api import ORDER, RATE, UP, WHICH, reading_choices
 from .context import PageContext
 from .places import READING
 
@@ -62,6 +62,8 @@ class RenderEndpoint:
                 gr.Number(0, label=RATE),
                 gr.Number(0, label="second of the motion that a mesh shows"),
                 gr.Checkbox(False, label="film look: a slow camera and a distance that fades, in a film"),
+                gr.Textbox("", label=UP),
+                gr.Textbox("", label=ORDER),
             ]
             gr.Button().click(
                 self.render, inputs=inputs, outputs=gr.File(label="the film, sheet, figure or mesh"), api_name="render",
@@ -71,7 +73,7 @@ class RenderEndpoint:
     def render(
         self, motion: str, kind: str, look: str, theme: str, view: str, trails: bool, fps: float, width: float,
         height: float, character: str | None = None, animation: str = "", file_fps: float = 0.0, second: float = 0.0,
-        film_look: bool = False,
+        film_look: bool = False, up: str = "", order: str = "",
     ) -> str:  # fmt: skip
         """A film, a contact sheet, a plotly figure or a mesh of a motion file. An error is one sentence."""
         folder = self.page.shelf.folder()
@@ -86,7 +88,9 @@ class RenderEndpoint:
             if width > 1920 or height > 1080:
                 raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
             with READING.place():
-                found = read(Path(motion), fps=file_fps or None, longest=LONGEST, animation=animation or None)
+                found = read(
+                    Path(motion), choices=reading_choices(animation, file_fps, up, order), longest=LONGEST
+                )
                 body = character_body(read_character(Path(character))) if character else None
             name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
             out = folder / f"{file_name(name, {})}{suffix}"

@@ -7,12 +7,12 @@ from pathlib import Path
 import gradio as gr
 
 from motion import Duet, InputError
-from motion.formats import read
+from motion.formats import ImportChoices, read
 from motion.retarget import to_smpl
 from webdemo.inference.story import SceneRequest, in_time, read_words
 from webdemo.inference.story.request import MOST_SECONDS
 
-from .api import PROGRESS, WHICH, Answer, Endpoint
+from .api import ORDER, PROGRESS, RATE, UP, WHICH, Answer, Endpoint, reading_choices
 
 
 class SceneEndpoint(Endpoint):
@@ -35,6 +35,9 @@ class SceneEndpoint(Endpoint):
                 gr.Number(None, label="how many scenes or futures, 1 to 8; the story's own by default"),
                 gr.Number(None, label="seed; the story's own by default"),
                 gr.Textbox("", label=WHICH),
+                gr.Number(0, label=RATE),
+                gr.Textbox("", label=UP),
+                gr.Textbox("", label=ORDER),
             ]
             self._publish(self.scene, "scene", inputs)
 
@@ -47,6 +50,9 @@ class SceneEndpoint(Endpoint):
         samples: float | None = None,
         seed: float | None = None,
         animation: str = "",
+        fps: float = 0.0,
+        up: str = "",
+        order: str = "",
         progress: gr.Progress = PROGRESS,
     ) -> Answer:
         """A scene of several beats, or a span or a continuation of a given motion.
@@ -61,15 +67,15 @@ class SceneEndpoint(Endpoint):
             fields |= {
                 key: value for key, value in (("samples", samples), ("seed", seed)) if value is not None
             }
-            given = _two_people(motion, animation or None) if motion else None
+            given = _two_people(motion, reading_choices(animation, fps, up, order)) if motion else None
             return SceneRequest(**fields, motion=given, start=start or None, end=end or None)
 
         given = (Path(motion), animation or None) if motion else None
         return self._answer(request, story.split("\n", 1)[0][:80] or "A scene", progress, given=given)
 
 
-def _two_people(path: str, animation: str | None) -> Duet:
-    found = read(Path(path), longest=MOST_SECONDS, animation=animation)
+def _two_people(path: str, choices: ImportChoices) -> Duet:
+    found = read(Path(path), longest=MOST_SECONDS, choices=choices)
     if not isinstance(found, Duet):
         raise InputError(f"{Path(path).name} holds one person: a scene goes on from a motion of two.")
     return to_smpl(found)

@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, InputError, formats
 from motion.formats.bvh import read_bvh
-from motion.formats.importing import ImportChoices, import_motion
+from motion.formats.choices import ImportChoices
+from motion.formats.importing import import_motion
 from motion.retarget import retarget
 from motion.rigs import match_joints
 from tests.motion.bodies import marching
@@ -153,6 +154,45 @@ def test_a_helper_at_the_root_never_beats_the_hip(helper):
     )
 
 
+@pytest.mark.parametrize("floor", [0.0, 0.7])
+@pytest.mark.parametrize("up", [None, "z"])
+def test_a_z_up_world_is_seen_although_the_rest_pose_is_y_up(floor, up):
+    tilt = Rotation.from_euler("x", 90, degrees=True).as_matrix()
+    rotations = ROTATIONS.copy()
+    rotations[:, 0] = tilt @ rotations[:, 0]
+    walk = ROOT + np.linspace(0, 1, len(ROOT))[:, None] * [0.0, 0.0, 1.5]
+    text = bvh_text(rotations, (walk + np.array([0, floor, 0])) @ tilt.T, RIGS["mixamo"])
+    found = import_motion(text.encode(), name="x.bvh", choices=ImportChoices(up=up))
+    truth = import_motion(bvh_text(ROTATIONS, walk, RIGS["mixamo"]).encode(), name="x.bvh")
+    assert found.up == "z" and any("Z was taken as up" in note for note in found.notes) == (up is None)
+    np.testing.assert_allclose(found.motion.positions, truth.motion.positions, atol=0.02)
+
+
+def test_position_channels_that_are_all_zero_mean_the_offset():
+    names = RIGS["motionbuilder"]
+    text = bvh_text(ROTATIONS, ROOT, names)
+    head, numbers = text.split("MOTION\n")
+    head = head.replace("CHANNELS 3 ", "CHANNELS 6 Xposition Yposition Zposition ")
+    rows = numbers.splitlines()
+    rows[2:] = [
+        " ".join(
+            [*(w := row.split())[:6], *(x for i in range(6, len(w), 3) for x in ["0 0 0", *w[i : i + 3]])]
+        )
+        for row in rows[2:]
+    ]
+    found = read_bvh("\n".join([head + "MOTION", *rows]).encode())
+    np.testing.assert_allclose(found.positions, read_bvh(text.encode()).positions, atol=1e-6)
+
+
+@pytest.mark.parametrize("frame_time", ["1.0", "60", "0", "1e-9", "nan"])
+def test_a_given_rate_comes_before_what_a_file_says_of_its_own(frame_time):
+    text = bvh_text(np.tile(ROTATIONS, (20, 1, 1, 1)), np.tile(ROOT, (20, 1)), RIGS["mixamo"])
+    text = text.replace("Frame Time: 0.0333333", f"Frame Time: {frame_time}")
+    with pytest.raises(InputError, match="true rate"):
+        formats.read(text.encode(), name="x.bvh")
+    assert formats.read(text.encode(), name="x.bvh", choices=ImportChoices(fps=30)).num_frames == 800
+
+
 def test_one_and_two_rotation_channels():
     text = """HIERARCHY
 ROOT hip
@@ -177,7 +217,7 @@ Frame Time: 0.04
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "latin-1"])
-@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+@pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])
 def test_encodings_and_line_ends(encoding, newline):
     names = {**RIGS["mixamo"], "spine2": "Rücken"}
     data = bvh_text(ROTATIONS, ROOT, names).replace("\n", newline).encode(encoding)

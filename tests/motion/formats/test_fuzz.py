@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from motion import Clip, InputError
 from motion.formats import FORMATS
-from motion.formats.importing import AXES, ORDERS, UNITS, ImportChoices, import_motion
+from motion.formats.choices import AXES, ORDERS, UNITS, ImportChoices
+from motion.formats.importing import import_motion
 from motion.formats.npz_things import arrays_of
 from motion.things import Thing, shape
 from tests.motion.bodies import marching
@@ -58,6 +59,14 @@ VALID = {
     ),
     "22.npy": npy(POSITIONS.astype(np.float32)),
     "15.npy": npy(SKELETONS_15),
+    "17.npy": npy(POSITIONS[:, [0, 2, 5, 8, 1, 4, 7, 3, 9, 12, 15, 16, 18, 20, 17, 19, 21]]),
+    "humanml3d.npy": npy(np.random.default_rng(2).normal(scale=0.2, size=(6, 263))),
+    "wild.npz": npz(
+        global_orient=np.zeros((9, 1, 3)), body_pose=np.zeros((9, 23, 3)), transl=np.zeros((9, 3))
+    ),
+    "kimodo.npz": npz(posed_joints=np.random.default_rng(3).normal(size=(6, 77, 3))),
+    "commas.trc": trc_text(keypoints()).replace("\t", ",").encode(),
+    "bones.vrma": glb_motion(ROTATIONS, POSITIONS[:, 0], skinned=False),
     "take.bvh": BVH.encode(),
     "take-16.bvh": BVH.encode("utf-16"),
     "take-latin.bvh": BVH.replace("mixamorig:Head", "Kopf_é").encode("latin-1"),

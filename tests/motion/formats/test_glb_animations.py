@@ -11,9 +11,10 @@ import pytest
 
 from motion import Clip, InputError
 from motion.formats import animation_note, read, read_everyone
+from motion.formats.choices import ImportChoices
 from motion.formats.glb_animations import Animations
 from motion.formats.glb_motion import animations_in, read_glb
-from motion.formats.importing import ImportChoices, Imported, import_motion
+from motion.formats.importing import Imported, import_motion
 from motion.formats.on_rig import on_rig
 from tests.motion.bodies import marching
 
@@ -85,9 +86,9 @@ def test_every_reader_takes_the_choice(tmp_path: Path) -> None:
     path = tmp_path / "x.glb"
     path.write_bytes(FILE)
     found = (
-        read(path, animation="glide"),
-        read_everyone(path, animation=2),
-        read(FILE, name="x.glb", animation="2"),
+        read(path, choices=ImportChoices(animation="glide")),
+        read_everyone(path, choices=ImportChoices(animation=2)),
+        read(FILE, name="x.glb", choices=ImportChoices(animation="2")),
     )
     for clip in found:
         assert isinstance(clip, Clip)
@@ -101,8 +102,8 @@ def test_other_formats_have_none_to_choose(tmp_path: Path) -> None:
     path.write_text(bvh_text(ROTATIONS, ROOT, RIGS["mixamo"]))
     assert animation_note(path) == ""
     for reading in (
-        lambda: read(path, animation="walk"),
-        lambda: read_everyone(path, animation=1),
+        lambda: read(path, choices=ImportChoices(animation="walk")),
+        lambda: read_everyone(path, choices=ImportChoices(animation=1)),
         lambda: import_motion(path, choices=ImportChoices(animation=1)),
     ):
         with pytest.raises(

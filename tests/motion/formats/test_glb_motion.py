@@ -12,11 +12,13 @@ from scipy.spatial.transform import Rotation
 from motion import SMPL22, Clip, Duet, InputError
 from motion.formats import glb_motion as reader
 from motion.formats import glb_nodes, read, read_everyone, write
+from motion.formats.choices import ImportChoices
 from motion.formats.glb_file import GlbFile, Stored
 from motion.formats.glb_motion import read_glb_people
 from motion.formats.glb_nodes import Channel
-from motion.formats.importing import ImportChoices, import_motion
+from motion.formats.importing import import_motion
 from motion.retarget import retarget
+from motion.transforms import mirrored
 from tests.motion.bodies import marching
 
 from .characters import glb_character, glb_motion, packed, unpacked
@@ -266,3 +268,43 @@ def test_thousands_of_skins_are_refused_before_any_is_looked_at(monkeypatch: pyt
     with pytest.raises(InputError, match="it has 5,000 skins"):
         read_glb_people(packed(document, blob), name="walk.glb")
     assert decoding.rows == 0
+
+
+BONES = {
+    "hip": "UpperLeg", "knee": "LowerLeg", "ankle": "Foot", "foot": "Toes",
+    "collar": "Shoulder", "shoulder": "UpperArm", "elbow": "LowerArm", "wrist": "Hand",
+}  # fmt: skip
+"""VRM's names of the limbs."""
+
+
+@pytest.mark.parametrize("kind", ["VRM", "VRMC_vrm", "VRMC_vrm_animation"])
+def test_vrm_is_glb_whose_bones_are_named_beside_the_nodes(kind: str) -> None:
+    names = {name: f"骨{number}" for number, name in enumerate(SMPL22.joint_names)}
+    document, blob = unpacked(glb_motion(ROTATIONS, ROOT, names, skinned=False))
+    called = {node.get("name"): number for number, node in enumerate(document["nodes"])}
+    bones: dict[str, Any] = {
+        "hips": {"node": called[names["pelvis"]]},
+        "head": {"node": called[names["head"]]},
+    }
+    for name in SMPL22.joint_names:
+        side, _, part = name.rpartition("_")
+        if side:
+            bones[f"{side}{BONES[part]}"] = {"node": called[names[name]]}
+    held = [{"bone": bone, **its} for bone, its in bones.items()] if kind == "VRM" else bones
+    document["extensions"] = {kind: {"humanoid": {"humanBones": held}}}
+    suffix = "vrma" if kind == "VRMC_vrm_animation" else "vrm"
+    clip = read(packed(document, blob), name=f"x.{suffix}")
+    assert isinstance(clip, Clip)
+    assert np.linalg.norm(clip.positions - read(WALK, name="walk.glb").positions, axis=-1).max() < 0.08
+
+
+def test_a_mirrored_armature_walks_forwards() -> None:
+    walk = ROOT + np.linspace(0, 1, len(ROOT))[:, None] * [0.0, 0.0, 1.0]
+    document, blob = unpacked(glb_motion(ROTATIONS, walk))
+    top = [number for scene in document["scenes"] for number in scene["nodes"]]
+    document["nodes"].append({"name": "mirror", "scale": [-1, 1, 1], "children": top})
+    document["scenes"][0]["nodes"] = [len(document["nodes"]) - 1]
+    found = read(packed(document, blob), name="walk.glb")
+    truth = read(glb_motion(ROTATIONS, walk), name="walk.glb")
+    assert isinstance(found, Clip) and isinstance(truth, Clip)
+    np.testing.assert_allclose(found.positions, mirrored(truth.positions), atol=0.02)

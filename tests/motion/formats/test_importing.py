@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, InputError, formats
+from motion.formats.choices import ImportChoices
 from motion.formats.files import decode_text
-from motion.formats.importing import ImportChoices, import_motion
+from motion.formats.importing import import_motion
 from motion.kinematics import forward_kinematics
 from motion.retarget import to_smpl
+from motion.up import AXES, turn_of
 from tests.motion.bodies import marching
 from tests.motion.formats.arrays import npy
 
@@ -38,6 +40,46 @@ def test_up_axis_and_unit_of_arrays_are_found(up: str, unit: str, metres: float)
     found = import_motion(npy(np.stack(turned, axis=-1)), name="a.npy")
     assert (found.up, found.unit) == (up, unit)
     np.testing.assert_allclose(found.motion.positions, standing(), atol=1e-4)
+
+
+@pytest.mark.parametrize("up", AXES)
+@pytest.mark.parametrize("shift", [0.0, 3.0])
+def test_up_has_a_sign_and_what_was_taken_is_said_and_can_be_corrected(up: str, shift: float) -> None:
+    data = npy((standing() + np.array([0.0, shift, 0.0])) @ turn_of(up))
+    found = import_motion(data, name="a.npy")
+    assert found.up == up and any(f"{up.upper()} was taken as up" in note for note in found.notes) == (
+        up != "y"
+    )
+    ankles = found.motion.positions[:, SMPL22.index("left_ankle"), 1]
+    assert (found.motion.positions[:, SMPL22.index("head"), 1] > ankles + 1.2).all() and found.asks
+    for other in AXES:
+        chosen = import_motion(data, name="a.npy", choices=ImportChoices(up=other))
+        assert chosen.up == other and not any("was taken" in note for note in chosen.notes)
+        height = np.ptp(chosen.motion.positions[:, [0, SMPL22.index("neck")], 1], axis=1)
+        assert (height.min() > 0.3) == (other[-1] == up[-1])
+
+
+def test_who_lies_or_stands_on_their_hands_on_the_floor_stays_there() -> None:
+    lying = standing() @ turn_of("z").T - np.array([0.0, 0.0, 2.0])
+    lying[..., 1] -= lying[..., 1].min()
+    on_hands = standing() * [1.0, -1.0, -1.0]
+    on_hands[..., 1] -= on_hands[..., 1].min()
+    for positions in (lying, on_hands):
+        found = import_motion(npy(positions.astype(np.float32)), name="a.npy")
+        assert found.up == "y" and not any("taken" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("held", [1, 20])
+@pytest.mark.parametrize("fps", [30.0, 120.0])
+def test_a_calibration_pose_that_the_motion_jumps_from_is_left_out(held: int, fps: float) -> None:
+    motion = marching(60)[0].astype(np.float32)
+    t_pose = np.repeat(SMPL22.rest_positions()[None] + [0, 0.95, 0], held, axis=0).astype(np.float32)
+    choices = ImportChoices(fps=fps)
+    found = import_motion(npy(np.concatenate([t_pose, motion])), name="a.npy", choices=choices)
+    np.testing.assert_array_equal(found.motion.positions, motion)
+    assert any("a calibration pose" in note for note in found.notes)
+    kept = import_motion(npy(motion), name="a.npy", choices=choices)
+    assert kept.motion.num_frames == 60 and kept.notes == ()
 
 
 def test_what_is_known_is_believed() -> None:

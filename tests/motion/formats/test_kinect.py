@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from motion import SKELETONS, Duet, InputError
 from motion.formats import read
-from motion.formats.kinect import read_kinect
 
 
 def skeleton_text(people: np.ndarray, missing: dict[int, set[int]] | None = None) -> str:
@@ -35,23 +34,48 @@ def bodies() -> np.ndarray:
 
 
 def test_skeleton_files_hold_their_two_people(bodies: np.ndarray) -> None:
-    duet = read_kinect(skeleton_text(bodies).encode(), name="S001.skeleton")
+    duet = read(skeleton_text(bodies).encode(), name="S001.skeleton", keep_skeleton=True)
     assert isinstance(duet, Duet)
     assert duet.fps == 30
     np.testing.assert_allclose(duet.positions, bodies, atol=1e-5)
 
 
 def test_frames_without_a_body_are_interpolated_and_ghosts_left_out(bodies: np.ndarray) -> None:
-    duet = read_kinect(skeleton_text(bodies, {1: {0, 5}}).encode(), name="x.skeleton")
+    duet = read(skeleton_text(bodies, {1: {0, 5}}).encode(), name="x.skeleton", keep_skeleton=True)
     np.testing.assert_allclose(duet.b.positions[5], (bodies[1, 4] + bodies[1, 6]) / 2, atol=1e-5)
     np.testing.assert_allclose(duet.b.positions[0], bodies[1, 1], atol=1e-5)
-    alone = read_kinect(skeleton_text(bodies, {1: set(range(3, 12))}).encode(), name="x.skeleton")
+    alone = read(
+        skeleton_text(bodies, {1: set(range(3, 12))}).encode(), name="x.skeleton", keep_skeleton=True
+    )
     np.testing.assert_allclose(alone.positions, bodies[0], atol=1e-5)
+
+
+def test_a_body_that_is_found_again_is_the_same_one_and_a_gap_is_said() -> None:
+    body = np.random.default_rng(3).normal(scale=0.3, size=(1, 60, 25, 3)).round(4)
+    three = np.concatenate([body, body + 1.0, body + 1.0])
+    lost = {1: set(range(20, 60)), 2: set(range(35))}
+    duet = read(skeleton_text(three, lost).encode(), name="x.skeleton", keep_skeleton=True)
+    assert isinstance(duet, Duet)
+    np.testing.assert_allclose(duet.b.positions[[5, 50]], three[1, [5, 50]], atol=1e-5)
+    assert duet.b.notes == ("x.skeleton: person B is not seen from 0.7 to 1.2 s and is interpolated there.",)
+    end = read(
+        skeleton_text(three[:2], {1: set(range(35, 60))}).encode(), name="x.skeleton", keep_skeleton=True
+    )
+    assert isinstance(end, Duet) and "from 1.2 to 2.0 s and is held still" in end.b.notes[0]
+
+
+def test_a_joint_that_is_nan_for_a_frame_is_interpolated(bodies: np.ndarray) -> None:
+    broken = bodies.copy()
+    broken[0, 4, 7, 1] = np.nan
+    duet = read(skeleton_text(broken).encode(), name="x.skeleton", keep_skeleton=True)
+    expected = bodies.copy()
+    expected[0, 4, 7] = (bodies[0, 3, 7] + bodies[0, 5, 7]) / 2
+    np.testing.assert_allclose(duet.positions, expected, atol=1e-5)
 
 
 def test_sbu_numbers_become_metres() -> None:
     raw = np.random.default_rng(1).uniform(0.1, 0.9, size=(9, 90)).round(6)
-    duet = read_kinect(sbu_text(raw).encode(), name="skeleton_pos.txt")
+    duet = read(sbu_text(raw).encode(), name="skeleton_pos.txt", keep_skeleton=True)
     assert duet.fps == 15
     assert duet.skeleton is SKELETONS["sbu15"]
     x, y, z = raw[4, 45:48]  # the second person's head
@@ -74,7 +98,7 @@ WRONG = {
     "too many bodies": (b"3\n99\n", "number of bodies"),
     "other joints": (b"3\n1\nid\n20\n", "must have 25"),
     "words": (b"1\n1\nid\n25\n0 a 0\n", "line 5: 'a' is not a number"),
-    "nan": (b"1\n1\nid\n25\n0 nan 0\n", "NaN"),
+    "nan": (b"1\n1\nid\n25\n" + b"0 nan 0\n" * 25, "NaN in every frame"),
     "nobody": (b"2\n0\n0\n", "no body"),
     "no frames": (b"0\n", "no frames"),
     "short row": (b"1,0.5,0.5\n", "90 are needed"),
@@ -86,7 +110,7 @@ WRONG = {
 def test_wrong_files_are_refused_in_one_sentence(case: str) -> None:
     data, says = WRONG[case]
     with pytest.raises(InputError, match=says) as error:
-        read_kinect(data, name="clip.skeleton")
+        read(data, name="clip.skeleton")
     assert "\n" not in str(error.value)
 
 
@@ -106,7 +130,7 @@ def test_damaged_files_never_raise_anything_else(kind: str, edits: list[tuple[in
         data[place : place + cut] = new
     began = time.perf_counter()
     try:
-        read_kinect(bytes(data) or b"?", name="clip.txt")
+        read(bytes(data) or b"?", name="clip.txt", keep_skeleton=True)
     except InputError as error:
         assert str(error)
     assert time.perf_counter() - began < 2

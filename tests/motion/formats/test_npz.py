@@ -14,11 +14,15 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from motion import SKELETONS, SMPL22, Clip, Duet, InputError, formats
+from motion.formats.bvh import read_bvh
+from motion.formats.npz import _SOMA
 from motion.formats.smpl import PELVIS
 from motion.kinematics import forward_kinematics
 from motion.representation import decode_positions, encode_pair
 from motion.transforms import turn
 from tests.motion.bodies import marching
+
+from .rigs import RIGS, bvh_text
 
 A, ROTATIONS = marching(20)
 B = turn(marching(20, seed=1)[0], np.pi) + np.array([0, 0, 2.0])
@@ -63,7 +67,7 @@ def test_other_skeletons_come_back(skeleton, tmp_path):
 def test_npy_forms():
     assert isinstance(formats.read(_npy(A), name="a.npy"), Clip)
     assert isinstance(formats.read(_npy(A[None]), name="a.npy"), Clip)
-    duet = formats.read(_npy(DUET.positions), name="a.npy", fps=25)
+    duet = formats.read(_npy(DUET.positions), name="a.npy", choices=formats.ImportChoices(fps=25))
     assert isinstance(duet, Duet) and duet.fps == 25
     features = encode_pair(DUET.a.positions, DUET.b.positions)
     np.testing.assert_allclose(
@@ -136,16 +140,16 @@ def _with_header(shape: str) -> bytes:
         (_npz(positions=np.zeros((9, 5, 22, 3))), "x.npz", "holds 9 people"),
         (_npz(positions=np.zeros((5, 7, 3))), "x.npz", "7 joints"),
         (_npz(positions=np.zeros((5, 22, 2))), "x.npz", "shape"),
-        (_npz(positions=np.zeros(5)), "x.npz", "joints"),
-        (_npz(positions=np.array(3.0)), "x.npz", "joints"),
-        (_npz(positions=np.array([["a"]])), "x.npz", "numbers are needed"),
+        (_npz(positions=np.zeros(5)), "x.npz", "shape"),
+        (_npz(positions=np.array(3.0)), "x.npz", "shape"),
+        (_npz(positions=np.full((2, 22, 3), "a")), "x.npz", "numbers are needed"),
         (_npz(positions=A, fps=np.array(np.nan)), "x.npz", "frame rate"),
         (_npz(positions=A, fps=np.array([1, 2])), "x.npz", "frame rate"),
         (_npz(positions=A, fps=np.array("abc")), "x.npz", "frame rate"),
         (_npz(positions=A, joint_names=np.array(["a"] * 22)), "x.npz", "not known"),
-        (_npz(positions=A, manifest=np.array("{")), "x.npz", "JSON"),
+        (_npz(positions=DUET.positions, manifest=np.array("{")), "x.npz", "JSON"),
         (_npz(positions=np.zeros((20000, 22, 3))), "x.npz", "600 s"),
-        (_npz(poses=np.zeros((5, 10)), trans=np.zeros((5, 3))), "x.npz", "AMASS"),
+        (_npz(poses=np.zeros((5, 10)), trans=np.zeros((5, 3))), "x.npz", "66 or more"),
         (_npz(positions=np.array([_Bomb()], dtype=object)), "x.npz", "Python objects"),
         (_zip_bomb(), "x.npz", "unpack"),
         (_npy(np.array([_Bomb()], dtype=object), allow_pickle=True), "x.npy", "Python objects"),
@@ -212,3 +216,29 @@ def test_other_layouts_are_brought_onto_smpl(layout):
     assert duet.positions[..., 1].min() > -0.05
     wrists = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
     assert np.linalg.norm(duet.positions - DUET.positions, axis=-1)[:, :, wrists].mean() < 0.12
+
+
+@pytest.mark.parametrize("joints", [30, 77])
+def test_kimodos_posed_joints_are_put_on_smpl(joints):
+    positions = np.zeros((20, joints, 3), np.float32)
+    positions[:, _SOMA[joints]] = A
+    clip = formats.read(_npz(posed_joints=positions, fps=np.float64(30)), name="kimodo.npz")
+    assert clip.skeleton is SMPL22 and np.linalg.norm(clip.positions - A, axis=-1).mean() < 0.05
+
+
+def test_positions_with_names_and_parents_of_any_rig_are_read():
+    rig = read_bvh(bvh_text(ROTATIONS, A[:, 0], RIGS["rokoko"]).encode())
+    named = {"joint_names": np.array(rig.joint_names), "parents": np.array(rig.parents)}
+    clip = formats.read(_npz(positions=rig.positions, fps=np.float64(30), **named), name="x.npz")
+    assert np.linalg.norm(clip.positions - A, axis=-1).mean() < 0.05
+
+
+def test_mdms_results_are_read_turned_and_never_unpickled():
+    clip = formats.read(_npy(A.transpose(1, 2, 0)), name="motion.npy")
+    np.testing.assert_allclose(clip.positions, A, atol=1e-6)
+    buffer = io.BytesIO()
+    np.save(buffer, np.array({"motion": _Bomb()}, dtype=object), allow_pickle=True)
+    with pytest.raises(
+        InputError, match=r'`numpy\.save\("motion\.npy", d\["motion"\]\[0\]\.transpose\(2, 0, 1\)\)`'
+    ):
+        formats.read(buffer.getvalue(), name="results.npy")

@@ -11,9 +11,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, Duet, InputError, formats
-from motion.formats.importing import ImportChoices, import_motion
+from motion.formats.choices import ImportChoices
+from motion.formats.importing import import_motion
 from motion.formats.smpl import PELVIS, SHAPE_UNUSED
 from motion.kinematics import fit_rotations
+from motion.transforms import heading_matrix
+from motion.up import turn_of
 from tests.motion.bodies import marching
 from tests.motion.formats.arrays import npy, npz
 
@@ -64,25 +67,25 @@ def test_interx_stands_upright_where_it_was(z_up: bool, flat: bool) -> None:
 
 def test_interx_says_that_rate_and_bones_are_assumed() -> None:
     found = import_motion(npz(**interx(POSITIONS)), name="P1.npz")
-    assert found.asks_rate and found.fps == 120
+    assert found.asks and found.fps == 120
     assert any("120 frames a second are assumed" in note for note in found.notes)
     assert SHAPE_UNUSED.format("P1.npz") in found.notes
     known = import_motion(npz(**interx(POSITIONS)), name="P1.npz", choices=ImportChoices(fps=60))
-    assert not known.asks_rate and known.fps == 60 and len(known.notes) == 1
+    assert not known.asks and known.fps == 60 and len(known.notes) == 1
 
 
 def test_interhuman_is_read_by_its_body_joints() -> None:
     found = import_motion(npy(interhuman(POSITIONS)), name="12.npy")
-    assert found.asks_rate and found.fps == 30
+    assert found.asks and found.fps == 30
     np.testing.assert_allclose(found.motion.positions, POSITIONS - [0, POSITIONS[..., 1].min(), 0], atol=1e-5)
 
 
 @pytest.mark.parametrize(
     ("arrays", "says"),
     [
-        ({"pose_body": np.zeros((4, 60))}, "pose_body must be"),
+        ({"pose_body": np.zeros((4, 60))}, "63 or more"),
         ({"trans": np.zeros((3, 3))}, "same number of frames"),
-        ({"root_orient": np.zeros((4, 4))}, "root_orient"),
+        ({"root_orient": np.zeros((4, 4))}, "must be"),
         ({"trans": np.zeros(())}, "must be"),
         ({"pose_body": np.full((4, 63), np.nan)}, "NaN"),
         ({"trans": np.full((4, 3), 1e9)}, "10 km"),
@@ -96,6 +99,60 @@ def test_wrong_parameters_are_one_sentence(arrays: dict[str, np.ndarray], says: 
     whole = {"root_orient": np.zeros((4, 3)), "pose_body": np.zeros((4, 63)), "trans": np.zeros((4, 3))}
     with pytest.raises(InputError, match=says):
         formats.read(npz(**(whole | arrays)), name="P1.npz")
+
+
+@pytest.mark.parametrize("flat", [True, False])
+@pytest.mark.parametrize("matrices", [True, False])
+def test_dictionaries_of_estimators_are_read_whichever_axis_of_the_camera_is_up(
+    matrices: bool, flat: bool
+) -> None:
+    down = turn_of("-y")
+    whole = interx(POSITIONS, z_up=False, flat=True)
+    turns = (
+        Rotation.from_rotvec(
+            np.concatenate(
+                [whole["root_orient"], whole["pose_body"], np.zeros((len(POSITIONS), 6))], axis=1
+            ).reshape(-1, 3)
+        )
+        .as_matrix()
+        .reshape(-1, 24, 3, 3)
+    )
+    turns[:, 0] = down @ turns[:, 0]
+    vectors = Rotation.from_matrix(turns.reshape(-1, 3, 3)).as_rotvec().reshape(-1, 24, 3)
+    rotations = turns if matrices else vectors.reshape(len(vectors), -1, 3)
+    transl = (whole["trans"] + PELVIS) @ down.T - PELVIS
+    found = {"global_orient": rotations[:, :1], "body_pose": rotations[:, 1:], "transl": transl}
+    if flat:
+        found = {"poses": rotations, "transl": transl}
+    clip = formats.read(npz(**found), name="wild.npz")
+    np.testing.assert_allclose(clip.positions, POSITIONS - [0, POSITIONS[..., 1].min(), 0], atol=1e-5)
+    assert import_motion(npz(**found), name="wild.npz").up == "-y"
+
+
+def test_amass_in_a_y_up_world_stands() -> None:
+    y_up = {
+        "poses": np.zeros((20, 156)),
+        "trans": np.tile([0.0, 1.16, 0.0], (20, 1)),
+        "mocap_framerate": np.float64(60),
+    }
+    found = import_motion(npz(**y_up), name="x.npz")
+    assert found.up == "y" and any("not Z as is usual" in note for note in found.notes)
+    assert found.motion.positions[0, SMPL22.index("head"), 1] > 1.4
+
+
+def test_humanml3d_gives_the_joints_again() -> None:
+    angle = np.linspace(0, 2.0, len(POSITIONS))
+    moved = np.einsum("tij,tkj->tki", heading_matrix(angle), POSITIONS - POSITIONS[:, :1] * [1, 0, 1])
+    moved += np.stack([np.sin(angle), 0 * angle, angle], axis=-1)[:, None]
+    local = np.einsum("tji,tkj->tki", heading_matrix(angle), moved - moved[:, :1] * [1, 0, 1])
+    features = np.zeros((len(moved), 263))
+    features[:-1, 0] = -np.diff(angle) / 2
+    steps = np.einsum("tji,tj->ti", heading_matrix(angle[1:]), np.diff(moved[:, 0], axis=0))
+    features[:-1, [1, 2]], features[:, 3] = steps[:, [0, 2]], moved[:, 0, 1]
+    features[:, 4:67] = local[:, 1:].reshape(len(moved), -1)
+    found = import_motion(npy(features), name="000001.npy")
+    np.testing.assert_allclose(found.motion.positions, moved - moved[:1, :1] * [1, 0, 1], atol=1e-5)
+    assert found.fps == 20 and found.asks
 
 
 def test_wrong_interhuman_is_one_sentence() -> None:
@@ -146,7 +203,7 @@ def test_two_files_keep_one_world(kind: str, packed: bool, tmp_path: Path) -> No
 
 def test_the_page_reads_two_files_of_a_zip() -> None:
     found = import_motion(zipped(pair_of("interx")[0]), name="take.zip")
-    assert len(found.people) == 2 and found.asks_rate
+    assert len(found.people) == 2 and found.asks
     assert found.fps == 120
 
 

@@ -14,7 +14,7 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
 import gradio as gr
 
-from motion.formats import read
+from motion.formats import ImportChoices, read
 from motion.formats.glb_animations import Animations
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_motion, glb_takes
@@ -102,7 +102,9 @@ def test_a_past_is_chosen_likewise(tmp_path: Path, takes: Path) -> None:
     assert offered_animations(source) == shown(1)
     *_, again = [changes(names, u) for u in tab.read_again(source, 2)]
     assert "2 (“glide”) was taken" in again["line"] and "animation" not in again
-    np.testing.assert_array_equal(again["source"].people[0].positions, read(takes, animation=2).positions)
+    np.testing.assert_array_equal(
+        again["source"].people[0].positions, read(takes, choices=ImportChoices(animation=2)).positions
+    )
     *_, wrong = [changes(names, u) for u in tab.read_again(again["source"], 9)]
     assert "no such animation" in wrong["line"] and wrong["animation"] == shown(2)
     assert list(tab.read_again(None, 1)) == []

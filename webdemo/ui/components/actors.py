@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from motion import Clip, Duet, InputError
 from motion.formats import RIGS, write
-from motion.formats.importing import ImportChoices, import_motion
+from motion.formats.choices import ImportChoices
+from motion.formats.importing import import_motion
 from motion.retarget import to_smpl
 from webdemo.inference.actor import LETTERS, SECONDS, at_30_fps, choose_actor, other_pose
 from webdemo.inference.method import Variant
@@ -80,7 +81,7 @@ class Source:
         notes: sentences about how well it could be read.
         read_with: what was known of the file: up axis, unit, rate, order of its joints, and its chosen animation.
         animations: labels of those in the file, where there is one to choose.
-        asks_rate: True if the file does not give its frame rate and nobody did.
+        asks: True if how it was read should be looked at: something was assumed.
         key: differs between any two.
     """
 
@@ -92,7 +93,7 @@ class Source:
     notes: tuple[str, ...] = ()
     read_with: ReadWith = ("auto", "auto", None, "auto", None)
     animations: tuple[str, ...] = ()
-    asks_rate: bool = False
+    asks: bool = False
     key: str = field(default_factory=lambda: uuid.uuid4().hex, compare=False)
     _fitted: dict[Any, tuple[Clip, ...]] = field(default_factory=dict, repr=False, compare=False)
     """What was fitted last, by what was asked."""
@@ -220,7 +221,7 @@ def read_source(path: str | Path, name: str | None = None, read_with: ReadWith |
         path=path,
         found=Found(found.describe(), found.joints),
         notes=found.notes,
-        asks_rate=found.asks_rate,
+        asks=found.asks,
         read_with=read_with or Source.read_with,
         animations=animation_labels(found.animations),
     )

@@ -10,6 +10,7 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
+from motion.formats import GLBS
 from motion.formats.glb_animations import Animations
 from motion.formats.glb_motion import animations_in
 from webdemo.ui.text.texts import say
@@ -43,7 +44,7 @@ def animation_labels(animations: Animations | None) -> tuple[str, ...]:
 
 def labels_of_file(path: Path) -> tuple[str, ...]:
     """The labels of the animations in a file; none for one that is no .glb or cannot be read."""
-    if path.suffix.lower() == ".glb":
+    if path.suffix.lower() in GLBS:
         with suppress(InputError):
             return animation_labels(animations_in(path))
     return ()

@@ -9,7 +9,7 @@ import gradio as gr
 
 from webdemo.ui.text.texts import say, worded
 
-FILE_TYPES = [".bvh", ".glb", ".npz", ".npy", ".c3d", ".trc", ".zip", ".skeleton", ".txt"]
+FILE_TYPES = [".bvh", ".glb", ".vrm", ".vrma", ".npz", ".npy", ".c3d", ".trc", ".zip", ".skeleton", ".txt"]
 
 
 def file_field(key: str, *, elem_id: str) -> gr.File:

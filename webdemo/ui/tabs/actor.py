@@ -9,7 +9,7 @@ from typing import Any
 
 import gradio as gr
 
-from motion.formats.importing import AXES, ORDERS, UNITS
+from motion.formats.choices import AXES, ORDERS, UNITS
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.methods import methods
 from webdemo.ui.again import actor_source
@@ -127,7 +127,7 @@ class ActorTab(SourceTab):
             inputs=self.source, outputs=self.keep, queue=False, **QUIET,
         )  # fmt: skip
         self.source.change(
-            lambda source: gr.update(open=True) if source is not None and source.asks_rate else gr.skip(),
+            lambda source: gr.update(open=True) if source is not None and source.asks else gr.skip(),
             inputs=self.source, outputs=self.reading, queue=False, **QUIET,
         )  # fmt: skip
         trim = [self.source, self.person, self.begin, self.end]

@@ -150,7 +150,7 @@ class ResultsTab:
                         self._figure()
                     if RIG in keys:
                         self.character = gr.UploadButton(
-                            say("result.character"), file_types=[".glb"], size="sm", min_width=0,
+                            say("result.character"), file_types=[".glb", ".vrm"], size="sm", min_width=0,
                             elem_id=self._id("character"), elem_classes="pd-character",
                         )  # fmt: skip
                         self.thing = gr.UploadButton(

@@ -1,0 +1,166 @@
+"""One file a format, one registry: the suffix or the first bytes of a file say how it is read and written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
+from pathlib import Path
+
+from motion.clip import Duet
+from motion.errors import InputError
+from motion.rigs import RigMotion
+
+from .bvh import read_bvh_people
+from .bvh_writer import write_bvh
+from .c3d_points import read_c3d
+from .choices import Animation, ImportChoices
+from .crowd import Recording
+from .files import read_bytes
+from .glb import write_glb
+from .glb_motion import read_glb
+from .kinect import read_kinect
+from .npz import read_npy, read_npz, write_npy, write_npz
+from .pairs import Source, in_folder, in_zip
+from .smpl import write_smpl
+from .trc import read_trc
+from .usd import write_usd
+
+RIG_FPS = 30.0
+"""Frames a second onto which rigs are brought."""
+GLBS = (".glb", ".vrm", ".vrma")
+"""Suffixes of glTF binary files: VRM's characters and animations are such."""
+RIGS = (".bvh", *GLBS)
+"""Suffixes of files that hold rigs of any kind."""
+
+
+@dataclass(frozen=True)
+class Format:
+    """One kind of file.
+
+    Attributes:
+        suffix: with its dot, lower case.
+        label: what people call it.
+        reader: gives what a file's bytes hold, by its name in messages and what is known of it; ``None`` where it is
+            only written.
+        writer: ``writer(duet, path)`` gives the paths it wrote; ``None`` where it is only read.
+        needs: a package that must be installed for writing.
+    """
+
+    suffix: str
+    label: str
+    reader: Callable[[bytes, str, ImportChoices], Recording] | None = None
+    writer: Callable[[Duet, Path], list[Path]] | None = None
+    needs: str | None = None
+
+
+def read_rigs(
+    source: str | Path | bytes, *, name: str | None = None, animation: Animation | None = None
+) -> tuple[RigMotion, ...]:
+    """The people in a file of one of :data:`RIGS`, on their own rigs.
+
+    Raises:
+        InputError: one sentence saying what is wrong with the file.
+    """
+    data, label = read_bytes(source, name)
+    return _rigs(data, label, ImportChoices(animation=animation)).people  # type: ignore[return-value]
+
+
+def _rigs(data: bytes, label: str, choices: ImportChoices) -> Recording:
+    if data[:4] == b"glTF" or Path(label).suffix.lower() in GLBS:
+        people, animations = read_glb(data, name=label, animation=choices.animation)
+        if choices.fps:
+            people = tuple(replace(rig, fps=choices.fps / rig.every) for rig in people)
+        return Recording(people, animations=animations)
+    return Recording(read_bvh_people(data, name=label, fps=RIG_FPS, file_fps=choices.fps))
+
+
+FORMATS: dict[str, Format] = {
+    f.suffix: f
+    for f in (
+        Format(".npz", "NumPy archive", read_npz, write_npz),
+        Format(".bvh", "Biovision BVH", _rigs, write_bvh),
+        Format(".npy", "NumPy array", read_npy, write_npy),
+        Format(".skeleton", "Kinect v2 text", read_kinect),
+        Format(".txt", "Kinect text", read_kinect),
+        Format(".glb", "glTF binary", _rigs, write_glb, needs="pygltflib"),
+        Format(".vrm", "VRM character", _rigs),
+        Format(".vrma", "VRM animation", _rigs),
+        Format(".usda", "USD as text", None, write_usd),
+        Format(".smpl.npz", "SMPL parameters", None, write_smpl),
+        Format(".trc", "Marker trajectories", read_trc),
+        Format(".c3d", "C3D points", read_c3d),
+        Format(".zip", "Two people's files", lambda *_: Recording(())),
+    )
+}
+READABLE = [f.suffix for f in FORMATS.values() if f.reader]
+
+
+def recordings(
+    source: str | Path | bytes, name: str | None, choices: ImportChoices
+) -> tuple[list[Recording], str]:
+    """Reads a file, or two files of one folder or archive; also gives what to call it.
+
+    Raises:
+        InputError: one sentence saying what is wrong with the file.
+    """
+    label = Path(name or str(source)).name if name or not isinstance(source, bytes) else ""
+    sources: list[Source] = [(source, name)]
+    if not isinstance(source, bytes) and Path(source).is_dir():
+        sources, label = in_folder(Path(source), READABLE), Path(source).name
+    elif Path(label).suffix.lower() == ".zip":
+        sources = in_zip(source, READABLE, name=name)
+    return [_recording(*each, choices) for each in sources], label
+
+
+def _recording(source: str | Path | bytes, name: str | None, choices: ImportChoices) -> Recording:
+    label = name or ("" if isinstance(source, bytes) else Path(source).name)
+    suffix = Path(label).suffix.lower()
+    known = FORMATS.get(suffix)
+    if known is None or known.reader is None:
+        raise InputError(unknown(suffix, "read", READABLE))
+    if choices.animation is not None and suffix not in GLBS:
+        raise InputError(
+            f"{Path(label).name} is no .glb file and has no animations to choose from: leave the choice out."
+        )
+    remedy = (
+        "reduce its mesh or leave out its pictures"
+        if suffix in GLBS
+        else "cut the motion or lower its frame rate"
+    )
+    data, label = read_bytes(source, name and Path(name).name, remedy=remedy)
+    return known.reader(data, label, choices)
+
+
+def suffix_of(path: str | Path) -> str:
+    """The suffix by which a path's format is known, lower case: ".smpl.npz" is one, ".tar.gz" is none."""
+    name = Path(path).name.lower()
+    known = [suffix for suffix in FORMATS if name.endswith(suffix)]
+    return max(known, key=len, default=Path(name).suffix)
+
+
+def with_stem(path: Path, added: str) -> Path:
+    """The path with something added to its name before its suffix."""
+    suffix = suffix_of(path)
+    return path.with_name(f"{path.name[: len(path.name) - len(suffix)]}{added}{path.name[-len(suffix) :]}")
+
+
+def can_read(suffix: str) -> bool:
+    """True if files with this suffix (with its dot) are understood."""
+    return suffix.lower() in FORMATS and FORMATS[suffix.lower()].reader is not None
+
+
+def can_write(suffix: str) -> bool:
+    """True if this installation writes files with this suffix (with its dot)."""
+    known = FORMATS.get(suffix.lower())
+    return (
+        known is not None
+        and known.writer is not None
+        and (known.needs is None or find_spec(known.needs) is not None)
+    )
+
+
+def unknown(suffix: str, verb: str, known: list[str]) -> str:
+    """The message on a suffix that is not read or written."""
+    shown = f"Files ending in {suffix!r}" if suffix else "Files without an ending"
+    return f"{shown} cannot be {verb}: use {', '.join(known[:-1])} or {known[-1]}."
