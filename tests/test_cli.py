@@ -266,7 +266,6 @@ def test_benchmark_reports_figures(
         "predict_25_frames_ms",
         "reaction_frame_ms",
         "reaction_whole_seconds",
-        "interformer_48_frames",
     ):
         assert printed[figure] > 0
 

@@ -39,8 +39,6 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
     """
     from models.intergen.compact import load_folder
     from webdemo.benchmark.batching import BATCHED_GOAL, measure_batching
-    from webdemo.benchmark.films import measure_film
-    from webdemo.benchmark.interformer import measure_interformer
     from webdemo.benchmark.parts import measure_busy, measure_parts
     from webdemo.benchmark.reactions import measure_reactions
     from webdemo.inference.engine import Engine
@@ -67,10 +65,8 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
     figures |= measure_classes(replace(request, damping=0.0), repeats)
     figures |= measure_prediction(max(repeats, 5))
     figures |= measure_reactions(repeats)
-    figures |= measure_interformer(max(repeats, 3))
     figures |= measure_batching(steps=steps, repeats=repeats)
     figures["batched_over_serial_throughput_goal"] = BATCHED_GOAL
-    figures |= measure_film()
     if browser:
         from webdemo.benchmark.browser import measure_browser
 
