@@ -94,7 +94,7 @@ def test_a_model_comes_with_its_own_number_of_steps(
 ) -> None:
     words = ["--actor", pair, "--person", "a", "--out", tmp_path / "x.npz"]
     for more, expected in (
-        ([], ("agent", "offline", 8)),
+        ([], ("regennet", "offline", 5)),
         (["--prompt", "They wave."], ("intergen", "offline", 8)),
         (["--mode", "online"], ("regennet", "online", 5)),
         (["--model", "regennet"], ("regennet", "offline", 5)),

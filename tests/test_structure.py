@@ -138,7 +138,7 @@ def test_the_registry_names_pipelines_that_exist() -> None:
     named = [
         place for path in methods for place in re.findall(r'load_pipeline[,(] ?"([^"]+)"', path.read_text())
     ]
-    assert len(named) == 9
+    assert len(named) == 10
     for place in named:
         module, _, name = place.partition(".")
         assert f"\nclass {name}" in FILES[f"webdemo.inference.pipelines.{module}"].read_text()

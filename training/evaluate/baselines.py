@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from models.layers import sinusoids
+from webdemo.inference.pipelines.nearest import Bank
 
 Array = NDArray[np.floating]
 Baseline = Callable[[Array], Array]
@@ -39,25 +40,13 @@ def nearest(train: Sequence[Array]) -> Baseline:
     Args:
         train: pairs (2, T, 22, 3).
     """
-    known = np.stack([_outline(pair) for pair in train])
+    bank = Bank(train)
 
     def react(people: Array) -> Array:
-        apart = np.linalg.norm(known - _outline(people), axis=-1).mean(axis=-1)
-        found = train[int(apart.argmin())][1]
-        moments = np.linspace(0, len(found) - 1, people.shape[1])
-        lower = np.minimum(moments.astype(int), len(found) - 1)
-        upper = np.minimum(lower + 1, len(found) - 1)
-        share = (moments - lower)[:, None, None]
-        stretched = (1 - share) * found[lower] + share * found[upper]
-        return people[1, :1] + stretched - stretched[:1]
+        found = int(bank.answers(people[0], people[1, 0])[0])
+        return bank.reactor(found, people.shape[1], people[1, 0])
 
     return react
-
-
-def _outline(people: Array) -> Array:
-    """(17 · 22, 3): the actor at 16 moments and the reactor's first pose."""
-    moments = np.linspace(0, people.shape[1] - 1, 16).round().astype(int)
-    return np.concatenate([people[0, moments].reshape(-1, 3), people[1, 0]])
 
 
 class PlainTransformer(nn.Module):

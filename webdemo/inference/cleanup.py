@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22
+from motion import SMPL22, Duet
 from motion.cleaning import foot_contacts, open_limb, plant_feet, solve_two_bones, steadied
 from motion.footsteps import stepping
 from motion.ground import above_floor
 from motion.kinematics import project_to_skeleton
+from motion.metrics import compare
 from motion.pivots import pivoting
 from motion.skeleton import ARMS, LEGS
 from motion.smoothing import least_jerk
 from motion.swings import lift_swinging_feet
+from motion.touch.clearance import out_of_the_way
 from motion.transforms import facing
+
+from .actor import ROLES
+from .requests import ReactRequest
+from .results import Result
 
 Array = NDArray[np.floating]
 
@@ -54,6 +62,37 @@ def _calmed(positions: Array) -> Array:
     pelvis = np.asarray(positions[:, :1], dtype=np.float64)
     beside = least_jerk(positions - pelvis, np.full(len(positions), _CALM))
     return np.asarray(least_jerk(pelvis, np.ones(len(positions))) + beside)
+
+
+def standing_clear(result: Result, request: ReactRequest) -> Result:
+    """A reaction whose made person does not stand where the given one walks; see :mod:`motion.touch.clearance`.
+
+    Frame by frame, what comes is not known, and without clean-up nothing is moved.
+    """
+    if request.mode != "offline" or not request.cleanup:
+        return result
+    duets, readouts, farthest = list(result.duets), list(result.readouts), 0.0
+    given = ROLES.index(request.role)
+    for i, duet in enumerate(result.duets):
+        assert isinstance(duet, Duet)  # as every reaction is
+        actor, made = duet.people[given], duet.people[1 - given]
+        begins = request.first_pose is not None
+        way = out_of_the_way(actor.positions, made.positions, duet.fps, first_pose_given=begins)
+        if way is None:
+            continue
+        moved = made.positions + way[:, None].astype(made.positions.dtype)
+        if begins:  # who goes there takes steps
+            moved[1:] = clean_person(moved, duet.fps)[1:]
+        people = [actor, replace(made, positions=moved)]
+        duets[i] = clear = replace(duet, a=people[given], b=people[1 - given])
+        readouts[i : i + 1] = [compare(None, clear)]
+        farthest = max(farthest, float(np.linalg.norm(way, axis=-1).max()))
+    if not farthest:
+        return result
+    said = (
+        f"Person {ROLES[1 - given].upper()} was placed {farthest:.1f} m further off, out of the other's way."
+    )
+    return replace(result, duets=tuple(duets), readouts=tuple(readouts), notes=(*result.notes, said))
 
 
 def on_constant_bones(positions: Array) -> Array:

@@ -23,6 +23,7 @@ from motion import Duet, InputError
 from . import methods
 from .acting import plans_of, with_plan
 from .cancel import CancelToken
+from .cleanup import standing_clear
 from .live import LiveFrame
 from .live_take import LiveTake
 from .method import Pipeline
@@ -185,6 +186,8 @@ def _with_things(events: Iterator[Progress | Result], request: Any) -> Iterator[
     given = getattr(request, "motion", None) is not None
     for event in events:
         if isinstance(event, Result):
+            if isinstance(request, ReactRequest):
+                event = standing_clear(event, request)
             event = furnished(as_given(event, request), list(plans_of(request)), given=given)
         yield event
 

@@ -184,7 +184,7 @@ def kept_plan(manifest: Mapping[str, Any]) -> KeptPlan | None:
 
 
 def kept_acts(manifest: Mapping[str, Any]) -> tuple[Plan, ...]:
-    """What the words of a result were read as, from its manifest; () in those of versions that kept none.
+    """The plans of acts of a result, from its manifest; () in those of versions that kept none.
 
     Raises:
         InputError: if it is damaged.

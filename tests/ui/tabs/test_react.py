@@ -65,7 +65,10 @@ def test_two_people_in_a_file_are_a_choice_and_a_long_file_is_cut(tab: ReactTab,
     assert player["value"]["title"] == "walkers.npz, person B"
     assert player["value"]["samples"][0]["frames"] == 90
     assert "1 s or more" in tab.preview(source, "a", 2.0, 2.5)[0]
-    assert "Choose InterFormer, or take 10 s or less" in tab.preview(source, "a", 0.0, 12.0)[0]
+    assert (
+        "Choose InterFormer or Nearest recorded reaction, or take 10 s or less"
+        in tab.preview(source, "a", 0.0, 12.0)[0]
+    )
     assert 'role="alert"' in tab.preview(source, "a", 5.0, 2.0)[0]
     assert all(update == gr.skip() for update in tab.preview(None, "a", 0, 1))
 

@@ -21,6 +21,7 @@ METHODS: dict[str, dict[str, Any]] = {
     "ReGenNet, offline": _OFFLINE,
     "ReGenNet, online, first pose given": _ONLINE | {"first_pose": True},
     "ReGenNet, offline, first pose given": _OFFLINE | {"first_pose": True},
+    "InterFormer": {"model": "interformer"},
     "InterFormer, first pose given": {"model": "interformer", "first_pose": True},
     "InterGen, person to person": _PERSON_TO_PERSON | {"steps": 20, "guidance": 1.0, "damping": 0.0},
     "Virtual agent": {"model": "agent", "steps": 20, "damping": 0.0},

@@ -30,6 +30,7 @@ from . import (
     intergen_together,
     mawgan,
     motion_mlp,
+    nearest,
     regennet,
     still,
 )
@@ -43,6 +44,7 @@ BUILT_IN = tuple(
         bigraphdiff,
         regennet,
         interformer,
+        nearest,
         agent,
         motion_mlp,
         mawgan,
@@ -87,16 +89,19 @@ def method(name: str, task: Task | None = None) -> Method:
 
 
 def automatic(prompt: str, role: str, mode: str = "offline") -> Method:
-    """The method for a reaction that nobody chose one for.
+    """The method for a reaction that nobody chose one for: the one with the best score in docs/reactions.md.
 
-    Words go to the default method, which follows them. Without words, a person who acts first is answered by the
-    virtual agent, which recognises the gesture itself. Frame by frame, the first method answers that can.
+    Words go to the default method, which follows them (docs/scores.md). Without words, a person who acts first is
+    answered by the nearest recorded reaction where a lab has recordings of its own, and else by ReGenNet. Frame by
+    frame, the first method answers that can.
     """
     found = methods("react")
     if mode != "offline":
         return next((m for m in found if mode in m.modes), found[0])
-    recognises = not prompt.strip() and role == "a" and agent.METHOD.installed(WEIGHTS)
-    return agent.METHOD if recognises else found[0]
+    if prompt.strip() or role != "a":
+        return found[0]
+    best = nearest.METHOD if os.environ.get(nearest.FOLDER_VARIABLE) else regennet.METHOD
+    return best if best.installed(WEIGHTS) else found[0]
 
 
 def label_of(name: str) -> str:

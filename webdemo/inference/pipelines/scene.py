@@ -119,8 +119,7 @@ class SceneMaker:
             InputError: if the request has a plan that is not of this scene.
             Cancelled: within one denoising step; the windows that were finished are kept.
         """
-        listed, kept = windows(request), request.plan
-        kept = kept if kept is not None and kept.of_result else None
+        listed, kept = windows(request), request.plan_of_result
         if kept is not None and len(kept.windows) != len(listed) * request.samples:
             raise InputError(
                 f"The kept plan is of {len(kept.windows)} windows, and this scene has {len(listed) * request.samples}: "
@@ -150,13 +149,11 @@ class SceneMaker:
                 _close(request, scene)
             duets.append(_duet(request, scene, sample))
         said += _distance_note(duets, request)
-        plan = KeptPlan(
-            request.plans, windows=tuple(made_plans), notes=tuple(planning), finishes=finishes(request)
-        )
+        plan = KeptPlan(request.plans, windows=tuple(made_plans), notes=tuple(planning))
         yield timer.progress("finish")
         yield Result(
             duets=tuple(duets),
-            manifest={"plan": plan.to_dict()},
+            manifest={"plan": replace(plan, finishes=finishes(request)).to_dict()},
             readouts=tuple(compare(None, duet) for duet in duets),
             timings={**timer.stages, "total": round(timer.elapsed, 4)},
             notes=tuple(dict.fromkeys(said)),

@@ -212,6 +212,11 @@ class SceneRequest(SamplingRequest):
         """The first frame that is made, and the one after the last."""
         return self.edges[0], self.edges[-1]
 
+    @property
+    def plan_of_result(self) -> KeptPlan | None:
+        """The plan of an earlier result, whose windows are taken as they are; None where the words are planned now."""
+        return self.plan if self.plan is not None and self.plan.of_result else None
+
     @cached_property
     def plans(self) -> tuple[Plan, ...]:
         """The plan of acts of each beat: as it is kept, or as its words are read now."""

@@ -1,4 +1,4 @@
-"""What words are read as: the one place where a request's words become a plan of acts, and what is said of a plan."""
+"""Plans of acts: the one place where a request's words become one, and the notes on what of them is not shown."""
 
 from __future__ import annotations
 

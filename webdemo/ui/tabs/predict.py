@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import gradio as gr
+import numpy as np
 
 from motion import Clip, Duet, InputError
+from webdemo.inference.actor import FPS
 from webdemo.inference.methods import installed, label_of, method
 from webdemo.inference.predict_request import LONGEST, PAST_SECONDS, PredictRequest, PredictResult
 from webdemo.inference.requests import Result
@@ -63,6 +65,22 @@ def given_source(result: PredictResult, name: str) -> Source:
     given = result.given
     named = result.manifest.get("request", {}).get("motion", {}).get("name")
     return Source(named or name, given.people if isinstance(given, Duet) else (given,))
+
+
+def _liveliest(source: Source) -> float:
+    """The second at which most is moving, with two seconds behind it: what comes next is seen best there."""
+    speeds = sum(
+        np.linalg.norm(np.diff(clip.positions, axis=0), axis=-1).mean(axis=1) for clip in source.people
+    )
+    half = round(FPS / 2)
+    moved = np.convolve(np.asarray(speeds), np.ones(half), mode="valid")  # moved[k]: up to frame k + half
+    first = round(PAST_SECONDS * FPS) - half
+    latest = max(round((source.seconds - PredictRequest.seconds) * FPS) - half, first)
+    return (
+        round((first + int(np.argmax(moved[first : latest + 1])) + half) / FPS, 1)
+        if len(moved) > first
+        else PAST_SECONDS
+    )
 
 
 def _last_marker(source: Source) -> float:
@@ -217,7 +235,7 @@ class PredictTab(SourceTab):
     def described(self, source: Source, *, at_end: bool) -> tuple[str, list[Any]]:
         """The line on its people and its length; the marker."""
         last = _last_marker(source)
-        marker = last if at_end else max(PAST_SECONDS, round(last / 2, 1))
+        marker = last if at_end else min(_liveliest(source), last)
         return self._found_line(source), [self._marker(source, marker)]
 
     @staticmethod
