@@ -260,7 +260,7 @@ class Limb(_Shape):
 
 
 class Figure(_Shape):
-    """A figure of the whole body on the spot, by its name in ``webdemo/inference/story/bodies/figures.toml``.
+    """A figure of the whole body on the spot, by its name in ``acts/staging/bodies/figures.toml``.
 
     Attributes:
         figure: which one.

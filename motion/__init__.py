@@ -3,8 +3,8 @@
 This package stands on nothing else of the project and imports no torch.
 """
 
-from .clip import Clip, Duet, stacked_positions
+from .clip import FPS, Clip, Duet, stacked_positions
 from .errors import InputError
 from .skeleton import SKELETONS, SMPL22, Skeleton
 
-__all__ = ["SKELETONS", "SMPL22", "Clip", "Duet", "InputError", "Skeleton", "stacked_positions"]
+__all__ = ["FPS", "SKELETONS", "SMPL22", "Clip", "Duet", "InputError", "Skeleton", "stacked_positions"]

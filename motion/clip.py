@@ -18,6 +18,9 @@ from .things.thing import MOST_THINGS, Thing
 
 Array = NDArray[np.floating]
 
+FPS = 30.0
+"""Frames a second of all generated motion."""
+
 
 @dataclass(frozen=True, eq=False)
 class Clip:

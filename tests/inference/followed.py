@@ -10,16 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from motion import Duet
+from acts.staging.bodies.poses import upright
+from acts.staging.parts import KnownFrames, KnownPath
+from motion import FPS, Duet
 from motion.transforms import heading
-from webdemo.inference.actor import FPS
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.known_parts import KnownFrames, KnownPath
 from webdemo.inference.pipelines.scene import SceneMaker
 from webdemo.inference.pipelines.scene_setting import Setting
 from webdemo.inference.requests import Result
 from webdemo.inference.story import SceneRequest
-from webdemo.inference.story.bodies.poses import upright
 from webdemo.inference.timer import StageTimer
 
 BETWEEN = 40

@@ -16,10 +16,10 @@ from models.predictors import save_predictor
 from models.weights_io import save_network
 from motion import InputError
 from motion.formats import read
+from motion.placement import MEDIAN_START_DISTANCE
 from motion.retarget import to_smpl
 from motion.transforms import facing
 from webdemo.inference import Cancelled, CancelToken, ReactRequest, Result
-from webdemo.inference.actor import MEDIAN_START_DISTANCE
 from webdemo.inference.engine import WEIGHTS, Engine
 from webdemo.inference.pipelines.agent import AgentPipeline, Eye, Look
 from webdemo.inference.pipelines.predictor import PredictorPipeline

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from acts.staging.parts import KnownFrames, KnownPath, Part
 from motion import SMPL22, Duet, InputError
 from motion.transforms import heading_matrix
 from webdemo.inference import Engine, GenerateRequest
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.directed import FADE, Directed, directed, with_given, with_joints
-from webdemo.inference.known_parts import KnownFrames, KnownPath, Part
 from webdemo.inference.timer import StageTimer
 
 FRAMES = 60

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from motion import InputError
+from motion.steering import Goal, Steering
 from motion.transforms import heading, heading_matrix
 from motion.video.gaze import HIDDEN, Gaze
 from webdemo.inference.engine import Engine
@@ -24,7 +25,6 @@ from webdemo.inference.pipelines.live_agent import (
     LiveAgent,
 )
 from webdemo.inference.pipelines.live_partner import ReactingPartner
-from webdemo.inference.pipelines.steering import Goal, Steering
 
 from .people import waver
 from .test_reactor import bones_off, engine, folder

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from acts.staging.bodies.gestures import Gesture, Hand, wrist
 from motion import SMPL22
 from motion.transforms import heading_matrix
 from motion.video.gaze import HIDDEN
@@ -12,7 +13,6 @@ from webdemo.inference.complaints import BRIGHT, COLD, FRAMES, HOT, LOUD, SMELLS
 from webdemo.inference.pipelines.agent import FIRST
 from webdemo.inference.pipelines.live_agent import BESIDE, LiveAgent
 from webdemo.inference.pipelines.live_room import PLACES, STANDS, USES
-from webdemo.inference.story.bodies.gestures import Gesture, Hand, wrist
 
 from .test_live_partner import NOTHING, STANDING, Recorded, Scripted
 

@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from motion import Duet, InputError
+from acts.staging.bodies.poses import upright
+from motion import FPS, Duet, InputError
 from motion.metrics.sentences import load_sentences
 from motion.transforms import heading
 from webdemo.inference import Engine, SceneRequest
-from webdemo.inference.actor import FPS
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose
-from webdemo.inference.story.bodies.poses import upright
 
 from .followed import Follower, speeds
 from .test_scenes import positions, run

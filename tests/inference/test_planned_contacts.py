@@ -7,18 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from motion import SMPL22
+from acts.staging.contacts import Contact, Region
+from acts.staging.floor import Standing
+from acts.staging.given.contacts import coming, meeting
+from acts.staging.moves import Move
+from acts.staging.told import Told
+from acts.staging.ways import Way
+from motion import FPS, SMPL22
 from motion.metrics.naturalness import jerk_percentile
 from motion.transforms import heading
 from webdemo.inference import Engine
-from webdemo.inference.actor import FPS
 from webdemo.inference.engine import WEIGHTS
-from webdemo.inference.pipelines.scene_contacts import coming, meeting
-from webdemo.inference.story.contacts import Contact, Region
-from webdemo.inference.story.floor import Standing
-from webdemo.inference.story.moves import Move
-from webdemo.inference.story.told import Told
-from webdemo.inference.story.ways import Way
 
 from .test_planned_scenes import made
 

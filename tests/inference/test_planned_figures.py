@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from acts.staging.bodies.figures import Figure, figured
+from acts.staging.given.hands import late_by
+from acts.staging.given.room import BODY, distance
 from motion import SMPL22
 from webdemo.inference import Engine, SceneRequest
-from webdemo.inference.pipelines.scene_hands import late_by
-from webdemo.inference.pipelines.scene_room import BODY, distance
 from webdemo.inference.story import Beat
-from webdemo.inference.story.bodies.figures import Figure, figured
 
 from .test_planned_scenes import FEET, QUICK, WRISTS, heights, made
 from .test_scenes import positions, run

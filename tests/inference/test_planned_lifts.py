@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from motion import SMPL22
+from acts.staging.given.beat import plan_note
+from motion import FPS, SMPL22
 from motion.metrics.naturalness import standing_foot
 from webdemo.inference import Engine, SceneRequest
-from webdemo.inference.actor import FPS
-from webdemo.inference.pipelines.scene_floor import plan_note
 from webdemo.inference.story import Beat, FloorPath, FloorPoint
 from webdemo.inference.story.scripting import split_sentence
 

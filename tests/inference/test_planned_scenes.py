@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from acts.staging.bodies.poses import lying, seated, stooping, upright
+from acts.staging.given.postures import led, still_down
 from motion import SMPL22
 from motion.metrics.naturalness import mirror_gap
 from webdemo.inference import Engine, GenerateRequest, SceneRequest
-from webdemo.inference.pipelines.scene_postures import led, still_down
 from webdemo.inference.story import Beat
-from webdemo.inference.story.bodies.poses import lying, seated, stooping, upright
 
 from .test_scenes import positions, run
 

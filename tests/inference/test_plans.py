@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from acts.staging.parts import KnownFrames, KnownPath
+from acts.staging.told import Told
 from motion import InputError
 from motion.looks import UNSAID
 from webdemo.inference import Engine, GenerateRequest, ReactRequest, SceneRequest
-from webdemo.inference.known_parts import KnownFrames, KnownPath
 from webdemo.inference.pipelines import intergen, scene_setting
 from webdemo.inference.pipelines.scene import Parts
 from webdemo.inference.plans import KeptPlan, WindowPlan, kept_plan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, prompted, request, understood
-from webdemo.inference.story.told import Told
 from webdemo.inference.tries import replayed
 
 from .people import waver

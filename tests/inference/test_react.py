@@ -8,9 +8,10 @@ import torch
 
 from motion import SKELETONS, SMPL22, Clip, Duet, InputError
 from motion.handedness import leading_wrist
+from motion.placement import MEDIAN_START_DISTANCE, Placement
 from motion.transforms import heading, heading_matrix, mirrored
 from webdemo.inference import Cancelled, CancelToken, Progress, ReactRequest, Result
-from webdemo.inference.actor import MEDIAN_START_DISTANCE, Placement, choose_actor
+from webdemo.inference.actor import choose_actor
 from webdemo.inference.engine import Engine
 
 from .people import waver

@@ -8,17 +8,16 @@ import numpy as np
 import pytest
 
 from acts import read
-from motion import SMPL22, Duet
+from acts.staging.bodies.poses import at_rest, bowing, lying, stooping, upright
+from acts.staging.floor import Standing
+from acts.staging.given.beat import plan_note
+from acts.staging.given.postures import postures
+from acts.staging.given.room import BODY, distance, roomy
+from acts.staging.stage import staged
+from acts.staging.told import Told
+from motion import FPS, SMPL22, Duet
 from webdemo.inference import SceneRequest
-from webdemo.inference.actor import FPS
-from webdemo.inference.pipelines.scene_floor import plan_note
-from webdemo.inference.pipelines.scene_postures import postures
-from webdemo.inference.pipelines.scene_room import BODY, distance, roomy
 from webdemo.inference.story import Beat
-from webdemo.inference.story.bodies.poses import at_rest, bowing, lying, stooping, upright
-from webdemo.inference.story.floor import Standing
-from webdemo.inference.story.staging import staged
-from webdemo.inference.story.told import Told
 
 from .followed import Follower, speeds
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from acts.staging.bodies.poses import about
 from motion import SMPL22
 from motion.arm_swing import swinging
 from motion.kinematics import forward_kinematics
 from motion.skeleton import ARMS
 from motion.transforms import heading_matrix
 from motion.vectors import unit
-from webdemo.inference.story.bodies.poses import about
 
 Array = NDArray[np.floating]
 FPS, FRAMES, STRIDES = 30.0, 180, 0.9

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from acts.staging.bodies.poses import kneeling, lying, upright
 from motion import SMPL22
 from motion.ground import _turned_up, above_floor
-from webdemo.inference.story.bodies.poses import kneeling, lying, upright
 
 Array = NDArray[np.floating]
 HERE = np.zeros(2)

@@ -16,11 +16,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import Duet, InputError, stacked_positions
+from motion import FPS, Duet, InputError, stacked_positions
 from training.core.shell import exit_code
 from training.evaluate.long_reactions import takes
 from webdemo.inference import Engine, PredictRequest, methods
-from webdemo.inference.actor import FPS
 
 Array = NDArray[np.floating]
 

@@ -13,14 +13,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import Duet
+from motion import FPS, Duet
 from motion.transforms import heading
 from motion.vectors import wrapped
 from training.core.shell import add_options, exit_code
 from training.corpus.pairs import load_pairs
 from training.corpus.scene import Scene
 from webdemo.inference import Engine, PredictRequest
-from webdemo.inference.actor import FPS
 from webdemo.inference.story import Beat, SceneRequest
 
 Array = NDArray[np.floating]

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22, Duet
+from motion import FPS, SMPL22, Duet
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import check
 from motion.metrics.sentences.scores import share
@@ -27,9 +27,8 @@ from motion.skeleton import FEET
 from motion.transforms import heading
 from training.core.shell import add_options, exit_code, write_scores
 from webdemo.inference import Engine, Result
-from webdemo.inference.actor import FPS
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneRequest
-from webdemo.inference.story.plan import windows
+from webdemo.inference.story.windows import windows
 from webdemo.inference.story.wishes import bent_wrong
 
 Array = NDArray[np.floating]

@@ -18,8 +18,8 @@ from typing import Any
 import httpx
 import numpy as np
 
-from motion import InputError
-from webdemo.inference.actor import FPS, read_actor
+from motion import FPS, InputError
+from webdemo.inference.actor import read_actor
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
 
 from .served import ROOT, errors_logged, ready, serving

@@ -141,9 +141,8 @@ def measure_prediction(repeats: int) -> dict[str, float]:
     recursion; and milliseconds that the virtual agent takes for all its looks at five seconds of a person."""
     import numpy as np
 
-    from motion import SMPL22, Duet
+    from motion import FPS, SMPL22, Duet
     from webdemo.inference import Engine, PredictRequest
-    from webdemo.inference.actor import FPS
     from webdemo.inference.methods import methods
 
     sway = 0.05 * np.sin(np.arange(150) / 5)[:, None, None] * SMPL22.rest_positions()

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from acts.plan import Plan, plan_of
-from motion import Duet, InputError
+from motion import FPS, Duet, InputError
 from motion.formats.on_rig import check_rig, on_rig
 from webdemo.inference.acting import acted
-from webdemo.inference.actor import FPS, read_actor
+from webdemo.inference.actor import read_actor
 from webdemo.inference.methods import AUTOMATIC, automatic, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result

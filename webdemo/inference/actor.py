@@ -7,34 +7,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22, Clip, InputError
+from motion import FPS, SMPL22, Clip, InputError
 from motion.formats import ImportChoices, read_everyone
 from motion.formats.crowd import clips_of
-from motion.handedness import leading_wrist, names_side
 from motion.retarget import to_smpl
-from motion.transforms import heading, heading_matrix, mirrored, resample
+from motion.transforms import resample
 
 Array = NDArray[np.floating]
 
-FPS = 30.0
-"""Frame rate of all generated motion."""
 ROLES = ("a", "b")
 SECONDS = (1.0, 10.0)
 """The shortest and the longest motion that the networks take."""
 LETTERS = "abcdef"
 """Names of the people in a file."""
 _COUNTS = ("no", "one", "two", "three", "four", "five", "six")
-MEDIAN_START_DISTANCE = 1.5
-"""Metres between the two people of the median training scene at its first frame; they face each other."""
-# Metres: a motion whose lowest joint is this close to 0 is taken to stand on the floor.
-_ON_FLOOR = (-0.05, 0.15)
 # Accepted ratio of an actor's bone lengths to an adult's; outside, the file is in another unit.
 _BODY_SIZES = (0.5, 1.6)
 # Metres; farther away, 32-bit positions are not exact to a tenth of a millimetre.
@@ -191,50 +184,3 @@ def check_length(clip: Clip, seconds: tuple[float, float]) -> None:
             f"The actor's motion lasts {clip.seconds:.1f} s: trim it to {longest:g} s or less by its start "
             "and end."
         )
-
-
-@dataclass(frozen=True)
-class Placement:
-    """A rotation about the vertical axis and a translation from a clip's world to the network's frame.
-
-    There person a stands at the origin at the first frame and faces +Z. Person b is assumed to stand
-    :data:`MEDIAN_START_DISTANCE` in front of that place and to face it. The floor is at 0.
-
-    Attributes:
-        turn: (3, 3) rotation about Y.
-        origin: (3,) the point of the clip's world that maps to ``goal``.
-        goal: (3,) metres.
-        mirror: whether people (…, 22, 3) are also mirrored in the plane X = 0 of the network's frame.
-    """
-
-    turn: Array
-    origin: Array
-    goal: Array
-    mirror: bool = False
-
-    @classmethod
-    def of(cls, clip: Clip, role: str, words: str = "") -> Placement:
-        """The placement that puts a person of this role where the network expects one.
-
-        In training, words that name no side occur with right-handed scenes only (:mod:`training.core.handedness`),
-        so a person who acts with the left hand under such words is mirrored.
-        """
-        positions = clip.positions.astype(np.float64)
-        lowest = positions[..., 1].min()
-        floor = 0.0 if _ON_FLOOR[0] <= lowest <= _ON_FLOOR[1] else lowest
-        origin = np.array([positions[0, 0, 0], floor, positions[0, 0, 2]])
-        goal = np.array([0.0, 0.0, 0.0 if role == "a" else MEDIAN_START_DISTANCE])
-        towards = 0.0 if role == "a" else math.pi
-        sideless = role == "a" and bool(words.strip()) and not names_side(words)
-        mirror = sideless and leading_wrist(positions) == "left"
-        return cls(heading_matrix(towards - float(heading(positions[0]))), origin, goal, mirror)
-
-    def to_network(self, positions: Array) -> Array:
-        """(…, 3) float64 metres in the network's frame."""
-        placed = (positions.astype(np.float64) - self.origin) @ self.turn.T + self.goal
-        return mirrored(placed) if self.mirror else placed
-
-    def to_world(self, positions: Array) -> Array:
-        """Inverse of :meth:`to_network`."""
-        placed = mirrored(positions) if self.mirror else positions
-        return (placed.astype(np.float64) - self.goal) @ self.turn + self.origin

@@ -13,15 +13,14 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from acts.staging.parts import KnownFrames, KnownPath, Part
 from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
-from motion import SMPL22, Duet, InputError
+from motion import FPS, SMPL22, Duet, InputError
 from motion.easing import minimum_jerk
 from motion.kinematics import project_to_skeleton
 
-from .actor import FPS
 from .joining import PASSING, joined, passing
-from .known_parts import KnownFrames, KnownPath, Part
 from .scenes import Finish, Scene
 
 Array = NDArray[np.floating]

@@ -9,11 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22
+from motion import FPS, SMPL22
 from motion.cleaning import foot_contacts, plant_feet
 from motion.kinematics import followed_rotations, rotation_matrices
-
-from .actor import FPS
 
 Array = NDArray[np.floating]
 Frames = NDArray[np.integer]

@@ -12,9 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import InputError
+from motion import FPS, InputError
 
-from .actor import FPS
 from .requests import ReactRequest
 from .results import Progress
 

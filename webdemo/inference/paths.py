@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from motion import InputError
+from motion import FPS, InputError
 
-from .actor import FPS, ROLES
+from .actor import ROLES
 
 FLOOR = 8.0
 """Metres from the middle of the floor to its edges."""

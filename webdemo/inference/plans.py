@@ -18,9 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acts.plan import Plan, plan_of
+from acts.staging.parts import KnownFrames, KnownPath, Part
 from motion import SMPL22, InputError
-
-from .known_parts import KnownFrames, KnownPath, Part
 
 Array = NDArray[np.floating]
 

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22, Clip, Duet, InputError, stacked_positions
+from motion import FPS, SMPL22, Clip, Duet, InputError, stacked_positions
 
 from . import methods
-from .actor import FPS, at_30_fps
+from .actor import at_30_fps
 from .limits import MAX_SEED, number, whole
 from .results import Result
 from .timer import StageTimer

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
-from motion import Clip, Duet
+from motion import FPS, Clip, Duet
+from motion.placement import Placement
 
-from .actor import FPS, ROLES, Placement
+from .actor import ROLES
 from .requests import GenerateRequest, ReactRequest
 
 Array = NDArray[np.floating]

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from acts.staging.bodies.poses import standing
 from motion import SMPL22
 from motion.metrics.naturalness import mirror_gap
 from motion.transforms import heading
-from tests.inference.story.staged_words import gesturing, idle, is_planned, told
-from webdemo.inference.story.bodies.poses import standing
+from tests.acts.staging.staged_words import gesturing, idle, is_planned, told
 
 
 @pytest.mark.parametrize(

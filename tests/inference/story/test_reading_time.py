@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 
+from acts.staging.given import beat as scene_floor
+from acts.staging.given.beat import plan_note
 from motion import InputError
 from webdemo.inference import cancel
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.pipelines import scene_floor
 from webdemo.inference.pipelines.scene import SceneMaker
-from webdemo.inference.pipelines.scene_floor import plan_note
 from webdemo.inference.requests import Cancelled, GenerateRequest
 from webdemo.inference.story import Beat, SceneRequest, split_sentence
 from webdemo.inference.story.prompted import as_scene

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from acts.staging.window import AFTER, MOST_FRAMES, PAST
 from motion import SMPL22, Duet, InputError
 from webdemo.inference.paths import meeting
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneRequest
-from webdemo.inference.story.plan import AFTER, MOST_FRAMES, PAST, window_seed, windows
+from webdemo.inference.story.windows import window_seed, windows
 from webdemo.inference.story.wishes import bent_wrong
 
 REST = SMPL22.rest_positions() + np.array([0, 0.98, 0])

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from acts import read
+from acts.staging.stage import staged
+from acts.staging.ways import Way
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.story.prompted import as_scene
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.scripting import beats_of
-from webdemo.inference.story.staging import staged
-from webdemo.inference.story.ways import Way
 
 BEATS = [
     ("walks away and waves back over the shoulder", ["walk-away wave"]),

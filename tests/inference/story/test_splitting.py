@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from acts.staging.stage import staged
 from motion import InputError
 from webdemo.inference.story import split_sentence
 from webdemo.inference.story.scripting import MOST_WORDS, _without_then, plan_of_beat
-from webdemo.inference.story.staging import staged
 
 ONE = [
     "Two people hug.",

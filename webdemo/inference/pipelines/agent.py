@@ -24,8 +24,8 @@ from models.agent.recogniser import OBSERVED, PREDICTED, load_folder, sampled
 from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
 from models.motion_tokens import TokenLayout
-from motion import SMPL22, Clip, Duet
-from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, Placement
+from motion import FPS, SMPL22, Clip, Duet
+from motion.placement import MEDIAN_START_DISTANCE, Placement
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.joining import joined
 from webdemo.inference.plans import KeptPlan

@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 from models.interformer.compact import FPS as NETWORK_FPS
 from models.interformer.compact import JOINTS_15, load_folder
 from models.interformer.decoding import ReactionDecoder
-from motion import SMPL22, Clip
+from motion import FPS, SMPL22, Clip
 from motion.ik import fit_skeleton
 from motion.metrics import compare
+from motion.placement import Placement
 from motion.transforms import heading_matrix, resample
-from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.cleanup import clean_person
 from webdemo.inference.noise import sample_noise

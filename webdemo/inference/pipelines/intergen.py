@@ -10,6 +10,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from acts.staging.stage import staged
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
 from models.text import MiniLM
 from motion import Clip, Duet
@@ -22,7 +23,6 @@ from webdemo.inference.scenes import Scene
 from webdemo.inference.story import understood
 from webdemo.inference.story.prompted import as_scene
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.staging import staged
 from webdemo.inference.timer import StageTimer
 
 from .scene import SceneMaker

@@ -17,17 +17,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.agent.recogniser import OBSERVED
+from motion import FPS
+from motion.steering import Goal
 from motion.things import Thing
 from motion.transforms import facing
 from motion.video.gaze import Gaze
-from webdemo.inference.actor import FPS
 from webdemo.inference.complaints import complaint
 from webdemo.inference.partner import Belief
 
 from .agent import BETWEEN, FIRST, Decision, Eye, Look
 from .live_partner import ReactingPartner
 from .live_room import Errand, Room
-from .steering import Goal
 
 Array = NDArray[np.floating]
 

@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from models.motion_tokens import FEATURES
-from motion import SMPL22, Clip
+from motion import FPS, SMPL22, Clip
+from motion.placement import Placement
+from motion.steering import Goal, Steering
 from motion.things import Thing
 from motion.transforms import turn
 from motion.video.gaze import Gaze
-from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.following import FollowingCleanup
 from webdemo.inference.noise import sample_noise
 from webdemo.inference.partner import Belief, LivePartner
@@ -28,7 +29,6 @@ from webdemo.inference.requests import ReactRequest
 from webdemo.inference.threads import take_threads
 
 from .regennet import ReGenNetPipeline, settle
-from .steering import Goal, Steering
 
 Array = NDArray[np.floating]
 

@@ -12,16 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22
+from motion import FPS, SMPL22
 from motion.cleaning import solve_two_bones
 from motion.easing import smoothstep
+from motion.steering import Goal
 from motion.things import Thing, shape
 from motion.transforms import facing
-from webdemo.inference.actor import FPS
 from webdemo.inference.complaints import Complaint
 from webdemo.inference.things.fixtures import BODIES, LEAVES, TAKES, placed_leaf
-
-from .steering import Goal
 
 Array = NDArray[np.floating]
 

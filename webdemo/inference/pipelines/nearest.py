@@ -19,11 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.weights_io import WeightsFolder
-from motion import SMPL22, Clip, Duet, InputError
+from motion import FPS, SMPL22, Clip, Duet, InputError
 from motion.formats import read
 from motion.metrics import compare
+from motion.placement import Placement
 from motion.transforms import resample
-from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.cleanup import clean_person
 from webdemo.inference.methods.nearest import FOLDER_VARIABLE

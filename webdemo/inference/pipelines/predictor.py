@@ -10,9 +10,8 @@ import numpy as np
 import torch
 
 from models.predictors import Predictor, load_predictor
-from motion import SMPL22, stacked_positions
+from motion import FPS, SMPL22, stacked_positions
 from motion.vectors import unit
-from webdemo.inference.actor import FPS
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.predict_request import PredictRequest, mean_steps, predicted
 from webdemo.inference.results import Progress, Result

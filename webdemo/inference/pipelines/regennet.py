@@ -22,10 +22,10 @@ from models.diffusion import make_scheduler, sample_steps
 from models.motion_tokens import FEATURES
 from models.regennet.compact import CompactReGenNet, load_folder
 from models.text import MiniLM
-from motion import SMPL22, Clip, Duet, InputError
+from motion import FPS, SMPL22, Clip, Duet, InputError
 from motion.easing import smoothstep
 from motion.metrics import compare
-from webdemo.inference.actor import FPS, Placement
+from motion.placement import Placement
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.cleanup import clean_person
 from webdemo.inference.damping import Beside, Damping

@@ -15,11 +15,13 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from acts.staging.given.beat import plan_note
+from acts.staging.window import Window
 from models.intergen.compact import CompactInterGen
-from motion import Duet, InputError
+from motion import FPS, Duet, InputError
 from motion.metrics import compare
 from webdemo.inference import methods
-from webdemo.inference.actor import FPS, ROLES
+from webdemo.inference.actor import ROLES
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.joining import closed
 from webdemo.inference.paths import meeting
@@ -27,13 +29,12 @@ from webdemo.inference.plans import KeptPlan, WindowPlan
 from webdemo.inference.requests import GenerateRequest, SamplingRequest
 from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import NAMES
-from webdemo.inference.story.plan import Window, window_seed, windows
 from webdemo.inference.story.progress import SceneProgress
 from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.story.windows import window_seed, windows
 from webdemo.inference.timer import StageTimer
 
 from .scene_finish import finished, finishes
-from .scene_floor import plan_note
 from .scene_setting import Setting
 from .two_person import Passes, TwoPersonPipeline
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from acts.staging.bodies.gestures import Hand
+from acts.staging.told import Told
+from motion import FPS
 from motion.arm_swing import swinging
 from motion.easing import smoothstep
 from motion.idling import alive
@@ -15,11 +18,9 @@ from motion.touch.clasped import hands_clasped
 from motion.touch.embraces import embraced
 from motion.touch.palms import palms_met
 from motion.touch.upright import backs_straight
-from webdemo.inference.actor import FPS, ROLES
+from webdemo.inference.actor import ROLES
 from webdemo.inference.plans import BeatFinish
-from webdemo.inference.story.bodies.gestures import Hand
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.told import Told
 
 Array = NDArray[np.floating]
 

@@ -10,17 +10,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from acts.staging.given.beat import planned
+from acts.staging.parts import KnownFrames, Part
+from acts.staging.window import Window
 from models.intergen.compact import CompactInterGen
+from motion import FPS
+from motion.placement import MEDIAN_START_DISTANCE, Placement
 from motion.transforms import heading, heading_matrix
-from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, ROLES, SECONDS, Placement
+from webdemo.inference.actor import ROLES, SECONDS
 from webdemo.inference.directed import Directed, directed
-from webdemo.inference.known_parts import KnownFrames, Part
 from webdemo.inference.plans import WindowPlan
 from webdemo.inference.requests import GenerateRequest
-from webdemo.inference.story.plan import Window
 from webdemo.inference.story.request import SceneRequest
 
-from .scene_floor import planned
 from .scene_wishes import wishes
 from .two_person import TwoPersonPipeline
 

@@ -13,14 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import InputError
-from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, ROLES, Placement
-from webdemo.inference.known_parts import KnownFrames, Part
+from acts.staging.given.paths import known_paths
+from acts.staging.parts import KnownFrames, Part
+from acts.staging.window import Window
+from motion import FPS, InputError
+from motion.placement import MEDIAN_START_DISTANCE, Placement
+from webdemo.inference.actor import ROLES
 from webdemo.inference.paths import MOST_SPEED, FloorPath
-from webdemo.inference.story.plan import Window
 from webdemo.inference.story.request import SceneRequest
-
-from .scene_paths import known_paths
 
 Array = NDArray[np.floating]
 

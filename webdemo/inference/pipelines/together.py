@@ -12,8 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from motion import Duet, stacked_positions
-from webdemo.inference.actor import FPS
+from motion import FPS, Duet, stacked_positions
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.predict_request import PredictRequest, predicted
 from webdemo.inference.results import Progress, Result

@@ -8,18 +8,17 @@ from dataclasses import fields, replace
 import numpy as np
 
 from acts import Plan
-from motion import InputError
+from acts.staging.stage import staged
+from acts.staging.told import Told
+from motion import FPS, InputError
 from webdemo.inference import methods
 from webdemo.inference.acting import with_plan
-from webdemo.inference.actor import FPS
 from webdemo.inference.paths import FloorPath
 from webdemo.inference.requests import GenerateRequest, SamplingRequest
 
 from .beats import SHORTEST, Beat, seconds_of_acts
 from .request import SceneRequest, beat_of
 from .scripting import beats_of, plan_of_beat
-from .staging import staged
-from .told import Told
 
 LEAST_SHARE = 1.25
 """Seconds for each beat of a sentence below which it is made in one."""

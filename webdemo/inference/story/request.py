@@ -12,9 +12,13 @@ from typing import Any
 import numpy as np
 
 from acts import Plan
-from motion import Duet, InputError
+from acts.staging.contacts import Region
+from acts.staging.postures import Posture
+from acts.staging.stage import staged
+from acts.staging.told import Told, at_start
+from acts.staging.ways import Way
+from motion import FPS, Duet, InputError
 from webdemo.inference import methods
-from webdemo.inference.actor import FPS
 from webdemo.inference.limits import number
 from webdemo.inference.paths import FloorPath, path_of, timed_paths
 from webdemo.inference.plans import KeptPlan
@@ -22,12 +26,7 @@ from webdemo.inference.predict_request import check_motion
 from webdemo.inference.requests import SamplingRequest
 
 from .beats import MOST_BEATS, SHORTEST, Beat, acts_of, seconds_of_acts
-from .contacts import Region
-from .postures import Posture
 from .scripting import plan_of_beat
-from .staging import staged
-from .told import Told, at_start
-from .ways import Way
 from .wishes import MOST_POSES, Pose, check_together
 
 MOST_SECONDS = 180.0

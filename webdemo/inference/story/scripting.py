@@ -9,14 +9,14 @@ from typing import Any
 from acts import Act, Plan
 from acts.captions import sentence
 from acts.lexicon import Entry, Lexicon, lexicon
+from acts.staging.act_kinds import hits, reaches_low
+from acts.staging.postures import LOWERED
 from acts.things import is_fixture
 from motion import InputError
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.limits import MAX_PROMPT
 
-from .act_kinds import hits, reaches_low
 from .beats import MOST_BEATS, Beat
-from .postures import LOWERED
 from .understood import understood
 
 MOST_WORDS = MOST_BEATS * MAX_PROMPT

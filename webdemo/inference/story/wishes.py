@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22, Clip, InputError
+from motion import FPS, SMPL22, Clip, InputError
 from motion.kinematics import swing
 from motion.vectors import unit
-from webdemo.inference.actor import FPS, ROLES, check_actor
+from webdemo.inference.actor import ROLES, check_actor
 from webdemo.inference.paths import FLOOR, MOST_SPEED, FloorPath
 
 Array = NDArray[np.floating]

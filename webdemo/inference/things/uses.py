@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from acts import Act, Plan, lexicon
+from acts.staging.bodies.strikes import PERIODS, Bout
 from acts.things import SEATS, Does, is_fixture, kind_of, nouns_in, on_floor, thing_of
 from motion.things import HELD
-from webdemo.inference.story.bodies.strikes import PERIODS, Bout
 
 TABLES = ("computer", "table")
 """Furniture at which people sit."""

@@ -15,9 +15,8 @@ from typing import Any
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
-from motion import SMPL22, Clip, InputError
+from motion import FPS, SMPL22, Clip, InputError
 from motion.video.packed import camera_number
-from webdemo.inference.actor import FPS
 from webdemo.ui.visitor import Visitor, visitor_of
 from webdemo.view.payload import player_payload
 

@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from motion import InputError
+from motion import FPS, InputError
 from motion.things import Thing
 from motion.video import Landmarks
 from motion.video.following import FollowedPerson
-from webdemo.inference.actor import FPS
 from webdemo.inference.partner import Belief, LivePartner
 from webdemo.view.payload import pack_positions
 from webdemo.view.things import thing_payload

@@ -11,8 +11,7 @@ from concurrent.futures import Future
 from functools import partial
 from typing import Any, Protocol
 
-from motion import InputError
-from webdemo.inference.actor import FPS
+from motion import FPS, InputError
 from webdemo.inference.partner import PARTNERS, LivePartner
 from webdemo.ui.visitor import Visitor
 

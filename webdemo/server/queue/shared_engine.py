@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from webdemo.inference.actor import FPS
+from motion import FPS
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.methods import method
 from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
-from webdemo.inference.story.plan import windows
 from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.story.windows import windows
 from webdemo.ui.lazy import LazyEngine
 
 NEARBY = 1.25

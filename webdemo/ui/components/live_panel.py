@@ -13,8 +13,7 @@ import json
 import numpy as np
 from pydantic import TypeAdapter
 
-from motion import SMPL22, Clip, InputError
-from webdemo.inference.actor import FPS
+from motion import FPS, SMPL22, Clip, InputError
 from webdemo.inference.live_take import LONGEST, LiveTake
 
 from .accepts import Text

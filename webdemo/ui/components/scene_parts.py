@@ -8,8 +8,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from motion import Duet, InputError
-from webdemo.inference.actor import FPS
+from motion import FPS, Duet, InputError
 from webdemo.inference.requests import MAX_SEED, Result
 from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest, in_time, split_sentence
 

@@ -11,8 +11,7 @@ from typing import Any
 import gradio as gr
 import numpy as np
 
-from motion import Clip, Duet, InputError
-from webdemo.inference.actor import FPS
+from motion import FPS, Clip, Duet, InputError
 from webdemo.inference.methods import installed, label_of, method
 from webdemo.inference.predict_request import LONGEST, PAST_SECONDS, PredictRequest, PredictResult
 from webdemo.inference.requests import Result

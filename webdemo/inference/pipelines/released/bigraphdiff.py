@@ -14,12 +14,11 @@ from models.diffusion import TRAIN_TIMESTEPS, cosine_betas, make_scheduler, samp
 from models.diffusion.schedule import SamplerName, Scheduler
 from models.intergen.released import read_normaliser
 from models.text.clip import find_vocabulary
-from motion import Duet, InputError
+from motion import FPS, Duet, InputError
 from motion.layouts import LAYOUTS
 from motion.metrics import compare
 from motion.retarget import to_smpl
 from motion.skeleton import NTU25
-from webdemo.inference.actor import FPS
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.cleanup import clean_person
 from webdemo.inference.noise import sample_noise

@@ -15,9 +15,9 @@ from models.interformer.compact import FPS as NETWORK_FPS
 from models.interformer.compact import JOINTS_15
 from models.interformer.network import NETWORK, WIDTH, InterFormer, from_released
 from models.released import read_tensors, without_wrapper
-from motion import SMPL22, Clip
+from motion import FPS, SMPL22, Clip
+from motion.placement import Placement
 from motion.transforms import heading_matrix, resample
-from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.pipelines.interformer import RECORDED_START_DISTANCE, InterFormerPipeline

@@ -10,8 +10,10 @@ from torch import Tensor
 
 from models.intergen.released import ReleasedInterGen, load_released
 from models.text.clip import find_vocabulary
+from motion import FPS
+from motion.placement import Placement
 from motion.representation import NUM_FEATURES
-from webdemo.inference.actor import FPS, ROLES, Placement
+from webdemo.inference.actor import ROLES
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.pipelines.two_person import Conditioning, Passes, TwoPersonPipeline

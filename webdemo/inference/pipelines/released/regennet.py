@@ -15,9 +15,9 @@ from torch import Tensor
 from models.diffusion import make_scheduler, sample_steps
 from models.regennet.network import ROW_WIDTH, ReGenNet
 from models.regennet.released import ROWS, decode, encode, load_released
-from motion import Clip, InputError
+from motion import FPS, Clip, InputError
+from motion.placement import Placement
 from motion.skeleton import SMPL22
-from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.cleanup import clean_person
 from webdemo.inference.following import FollowingCleanup

@@ -1,0 +1,225 @@
+"""Figures: what a whole body does key by key, such as a push-up, a cartwheel or a kick, and its course over a beat.
+
+No caption of the training data names them. ``figures.toml`` has them as poses, given by the angles of joints, and the
+seconds from one to the next; :mod:`.figure_floor` puts the body on the floor.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy  # its parts are loaded with their first use
+from numpy.typing import NDArray
+
+from motion import FPS
+from motion.easing import smoothstep
+
+from .figure_floor import grounded_poses
+
+Array = NDArray[np.floating]
+
+SINGLE = ("pitch", "roll", "yaw", "spine", "lean", "twist", "neck", "look", "tilt")
+"""Degrees by which the pelvis is pitched forward, rolled to the left and turned to the left, by which the trunk is bent
+forward, leant to the left and twisted to the left, and by which the head is bent, turned and tilted likewise."""
+METRES = ("rise", "ahead", "aside")
+"""Metres of the lowest joint over the floor, and of the body ahead and to the left of where it would be."""
+PAIRED = ("hip", "out", "turnout", "knee", "ankle", "arm", "side", "rotate", "elbow", "shrug", "free")
+"""Degrees by which a thigh is raised, spread and turned out, a knee bent, toes pointed, an arm raised forward, spread
+and turned in, an elbow bent, a shoulder raised; "free" is 1 for a leg that does not carry the body, as it swings past
+the floor. A number for both sides, or [left, right]."""
+NAMES = (*SINGLE, *METRES, *(f"{side}_{name}" for side in ("left", "right") for name in PAIRED))
+_SWAY = {
+    "lean": 0.8,
+    "twist": 1.5,
+    "neck": 2.0,
+    "look": 3.0,
+    "tilt": 1.0,
+    "arm": 2.5,
+    "side": 2.0,
+    "elbow": 2.5,
+}
+"""Degrees by which parts of the body waver."""
+
+
+def _wavers(name: str) -> float:
+    return float(np.deg2rad(_SWAY.get(name.split("_")[-1], 0.0)))
+
+
+_ASIDE = tuple(NAMES.index(name) for name in ("roll", "yaw", "lean", "twist", "look", "tilt", "aside"))
+"""Those that change their sign in a mirror."""
+_STANDS = {"hip": 3.4, "out": -1.1, "knee": 6.9, "ankle": -3.4, "side": 9.8, "elbow": 17.2}
+_LEFT_ARM = [NAMES.index(f"left_{name}") for name in ("arm", "side", "rotate", "elbow", "shrug")]
+_LAG = 0.05
+"""Seconds by which the left arm is behind the right one."""
+_WAVERS = np.array([_wavers(name) for name in NAMES])
+"""Radians by which each angle wavers."""
+BEGINS, RESTS = 0.3, 0.15
+"""Seconds of a beat before a figure begins, and after it."""
+FASTEST, SLOWEST = 0.75, 1.25
+"""Shares of their own seconds in which figures are done to fit into a beat."""
+_ROUND = 2.0
+"""Frames over which the angles are rounded at a pose (the width of a Gaussian)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """A figure as it stands in the file: seconds from the pose before (N,) and angles (N, angles) in radians.
+
+    Attributes:
+        into: what is done once, from standing.
+        again: what is then done over and over; empty for nothing.
+        out: what leads back to standing.
+    """
+
+    into: tuple[Array, Array]
+    again: tuple[Array, Array]
+    out: tuple[Array, Array]
+
+    def least(self) -> float:
+        """Seconds that it takes at its fastest."""
+        return FASTEST * sum(float(part[0].sum()) for part in (self.into, self.again, self.out))
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of one person.
+
+    Attributes:
+        name: of :func:`figures`.
+        times: how often its middle is done; 0 for as long as the beat lasts.
+        mirrored: left and right are exchanged.
+        meets: it is done to the other, who stands within its reach: the two do not move apart for it.
+        late, early: seconds by which it begins later, and by which it ends before the beat does.
+        in_time: two people who do it, do it as one.
+    """
+
+    name: str
+    times: int = 0
+    mirrored: bool = False
+    meets: bool = False
+    late: float = 0.0
+    early: float = 0.0
+    in_time: bool = False
+
+
+@lru_cache(maxsize=1)
+def figures() -> Mapping[str, Course]:
+    """All figures by name."""
+    found = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))
+    poses = {"stand": {}, **found["poses"]}
+    return {
+        name: Course(*(_keys(rows.get(part, ()), poses) for part in ("into", "again", "out")))
+        for name, rows in found["figures"].items()
+    }
+
+
+def figured(figure: Figure, place: Array, angle: float, frames: int, seed: int = 0) -> Array:
+    """A person who does a figure through a beat of so many frames.
+
+    Args:
+        figure: which.
+        place: (2,) x and z of the pelvis in metres where they stand before.
+        angle: heading in radians from +Z towards +X.
+        frames: of the beat.
+        seed: draws how the body wavers.
+
+    Returns:
+        (frames, 22, 3) metres; the body is on the floor, and what stands on it does not glide.
+    """
+    length = frames / FPS
+    late, early = (min(seconds, length / 4) for seconds in (figure.late, figure.early))
+    times, rows = _scheduled(figures()[figure.name], figure.times, length - late - early)
+    times[1:] += late
+    if figure.mirrored:
+        rows = _mirrored(rows)
+    at = np.arange(frames) / FPS
+    between = scipy.interpolate.PchipInterpolator(times, rows, axis=0)
+    course, later = (between(np.clip(at - lag, times[0], times[-1])) for lag in (0.0, _LAG))
+    stands = _upright(course)
+    course[:, _LEFT_ARM] += stands * (later - course)[:, _LEFT_ARM]
+    course += stands * _wavering(at, seed)
+    course = scipy.ndimage.gaussian_filter1d(course, _ROUND, axis=0, mode="nearest")
+    return grounded_poses(dict(zip(NAMES, course.T, strict=True)), place, angle)
+
+
+def _upright(course: Array) -> Array:
+    """(N, 1) 1 where the trunk is upright, 0 where hands may be on the floor, which are not to leave it."""
+    up = np.cos(course[:, NAMES.index("pitch")]) * np.cos(course[:, NAMES.index("roll")])
+    return np.asarray(smoothstep(up, 0.4, 0.85))[:, None]
+
+
+def _wavering(at: Array, seed: int) -> Array:
+    """Angles (N, angles) by which trunk and arms waver, each in its own time: nobody is as even as a drawing."""
+    dice = np.random.default_rng(seed)
+    periods, phases = dice.uniform(1.7, 4.3, len(NAMES)), dice.uniform(0.0, 2 * np.pi, len(NAMES))
+    found: Array = np.sin(2 * np.pi * at[:, None] / periods + phases) * _WAVERS
+    return found
+
+
+def _scheduled(course: Course, times: int, length: float) -> tuple[Array, Array]:
+    """Seconds (N,) of a beat and the angles (N, angles) at them, beginning and ending with standing."""
+    room = max(length - BEGINS - RESTS, 0.1)
+    cycle = float(course.again[0].sum())
+    frame = float(course.into[0].sum() + course.out[0].sum())
+    reps = 0
+    if cycle:
+        fits = int((room / FASTEST - frame) / cycle)
+        reps = min(times or max(round((room - frame) / cycle), 1), max(fits, 1))
+    parts = [course.into, *[course.again] * reps, course.out]
+    steps, rows = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
+    pace = room / float(steps.sum())
+    if pace < FASTEST:
+        steps, rows = _cut(steps, rows, room)
+        pace = 1.0
+    stands = _row({}, {"stand": {}})
+    at = BEGINS + np.cumsum(np.concatenate([[0.0], steps * min(pace, SLOWEST)]))
+    return np.concatenate([[0.0], at + 1e-3]), np.concatenate([stands, stands, rows])
+
+
+def _cut(steps: Array, rows: Array, room: float) -> tuple[Array, Array]:
+    """The beginning of a figure for which there is no time, and the same way back."""
+    fits = int(np.searchsorted(np.cumsum(2 * FASTEST * steps), room, side="right"))
+    if not fits:
+        return np.array([room]), _row({}, {"stand": {}})
+    steps, rows = FASTEST * steps[:fits], rows[:fits]
+    back = np.concatenate([rows[-2::-1], _row({}, {"stand": {}})])
+    return np.concatenate([steps, steps[::-1]]), np.concatenate([rows, back])
+
+
+def _keys(rows: Sequence[Mapping[str, Any]], poses: Mapping[str, Any]) -> tuple[Array, Array]:
+    """Seconds (N,) and angles (N, angles) of a part of a figure."""
+    if not rows:
+        return np.zeros(0), np.zeros((0, len(NAMES)))
+    return np.array([float(row["in"]) for row in rows]), np.concatenate([_row(row, poses) for row in rows])
+
+
+def _row(row: Mapping[str, Any], poses: Mapping[str, Any]) -> Array:
+    """The angles (1, angles) in radians of a row: those of its pose, with what it says beside."""
+    said = (
+        _STANDS | poses[row.get("pose", "stand")] | {k: v for k, v in row.items() if k not in ("in", "pose")}
+    )
+    found = np.zeros(len(NAMES))
+    for name, value in said.items():
+        if name in METRES:
+            found[NAMES.index(name)] = value
+        elif name in SINGLE:
+            found[NAMES.index(name)] = np.deg2rad(value)
+        else:
+            for side, own in zip(("left", "right"), np.broadcast_to(value, 2), strict=True):
+                found[NAMES.index(f"{side}_{name}")] = own if name == "free" else np.deg2rad(own)
+    return found[None]
+
+
+def _mirrored(rows: Array) -> Array:
+    """Angles (N, angles) with left and right exchanged."""
+    count = len(SINGLE) + len(METRES)
+    left, right = rows[:, count : count + len(PAIRED)], rows[:, count + len(PAIRED) :]
+    found = np.concatenate([rows[:, :count], right, left], axis=1)
+    found[:, _ASIDE] *= -1.0
+    return found

@@ -1,0 +1,180 @@
+"""Gaits on two feet that no caption of the training data shows: somebody limps, or sneaks on tiptoe.
+
+Footprints are laid along the way, each in the middle of the time for which its foot carries the body; the other foot
+swings to its next one meanwhile, and two-bone IK gives the knees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy  # its parts are loaded with their first use
+from numpy.typing import NDArray
+
+from motion import FPS, SMPL22
+from motion.cleaning import solve_two_bones
+from motion.easing import minimum_jerk
+from motion.kinematics import forward_kinematics
+from motion.skeleton import LEGS
+from motion.transforms import heading_matrix
+
+from .poses import SOLE, STANDS, about
+
+Array = NDArray[np.floating]
+
+_SIDES = (("left", 1.0, 0.0), ("right", -1.0, 0.5))
+"""Sides with the sign of their x and the share of a cycle by which their foot is ahead."""
+_SWINGS = 0.43
+"""Share of a cycle in which a foot swings."""
+_TURNED = 0.2
+"""Metres that are walked on the spot for each radian of a turn."""
+_TAKES = 0.64
+"""Seconds of a step, at least: who goes faster takes longer steps."""
+_LAST = 0.12
+"""Share of a cycle by which the last footprint of a foot may be behind the other one."""
+_AHEAD = 0.33
+"""Share of a cycle by which it may land before the body."""
+_WIDE = 0.1
+"""Metres of a foot beside the line that is walked."""
+_REACH = 0.985
+"""Share of a leg's length that is used at most."""
+_SMOOTH = 5.0
+"""Frames over which a way that is given now and then is rounded."""
+_EVEN = 4.0
+"""Frames over which the height of the hips is evened out."""
+_TOE = SMPL22.offsets[SMPL22.index("left_foot")]
+_LEG = float(SMPL22.bone_lengths[SMPL22.index("left_knee")] + SMPL22.bone_lengths[SMPL22.index("left_ankle")])
+
+
+@dataclass(frozen=True)
+class Gait:
+    """A gait on two feet.
+
+    Attributes:
+        length: metres of a step.
+        lift: metres by which a foot is raised (left, right).
+        heels: radians by which the heels are up.
+        sinks: metres by which the hips are lower than legs would let them be.
+        pitch, arms: radians by which the trunk leans ahead and the elbows are bent.
+        lurch: radians by which the trunk leans over the right leg while that carries the body.
+        short: metres by which the left foot falls short of its step, as the right leg carries the body only briefly.
+    """
+
+    length: float
+    lift: tuple[float, float]
+    heels: float = 0.0
+    sinks: float = 0.02
+    pitch: float = 0.04
+    arms: float = 0.3
+    lurch: float = 0.0
+    short: float = 0.0
+
+
+ON_FEET: Mapping[str, Gait] = {
+    "limps": Gait(0.44, (0.05, 0.025), sinks=0.03, pitch=0.12, arms=0.45, lurch=0.16, short=0.14),
+    "on tiptoe": Gait(0.4, (0.1, 0.1), heels=0.75, sinks=0.05, pitch=0.16, arms=0.9),
+}
+"""The gaits by their names in the lexicon."""
+
+
+def stepped(gait: str, places: Array, headings: Array) -> Array:
+    """A person who walks with a gait.
+
+    Args:
+        gait: a name of :data:`ON_FEET`.
+        places: (N, 2) x and z of the pelvis in metres, one a frame.
+        headings: (N,) radians from +Z towards +X.
+
+    Returns:
+        (N, 22, 3) metres, on the floor.
+    """
+    steps = ON_FEET[gait]
+    places, headings = (
+        scipy.ndimage.gaussian_filter1d(values, _SMOOTH, axis=0, mode="nearest")
+        for values in (np.asarray(places, dtype=float), np.unwrap(headings))
+    )
+    gone = np.linalg.norm(np.diff(places, axis=0, prepend=places[:1]), axis=1)
+    steps = replace(steps, length=max(steps.length, _TAKES * float(np.percentile(gone, 80)) * FPS))
+    gone = np.cumsum(gone + _TURNED * np.abs(np.diff(headings, prepend=headings[:1])))
+    cycles = max(round(float(gone[-1]) / steps.length), 1) / 2 if gone[-1] > steps.length / 2 else 0.0
+    phase = cycles * gone / max(float(gone[-1]), 1e-6)
+    feet = [_foot(steps, side, phase, cycles, places, headings) for side in range(2)]
+    poses = forward_kinematics(_trunk(steps, phase, headings), np.zeros((len(places), 3)))
+    ankles = [_ankle(steps, toe, sign, headings) for toe, (_, sign, _) in zip(feet, _SIDES, strict=True)]
+    poses += np.insert(places, 1, _height(steps, poses, places, ankles), axis=1)[:, None]
+    ahead = np.stack([np.sin(headings), np.zeros(len(headings)), np.cos(headings)], axis=1)
+    for (hip, knee, ankle, toe), goal, foot in zip(LEGS, ankles, feet, strict=True):
+        sole = foot - goal
+        poses[:, knee], poses[:, ankle] = solve_two_bones(
+            poses[:, hip], poses[:, knee], poses[:, ankle], goal, ahead, soft=0.01
+        )
+        poses[:, toe] = poses[:, ankle] + sole
+    return poses
+
+
+def _foot(steps: Gait, side: int, phase: Array, cycles: float, places: Array, headings: Array) -> Array:
+    """The way (N, 3) of a toe from footprint to footprint."""
+    _, sign, ahead = _SIDES[side]
+    own = phase + ahead
+    number, share = np.floor(own + 1e-9), own - np.floor(own + 1e-9)
+    late = steps.short / (2 * steps.length) if sign > 0 else 0.0
+    time = np.arange(len(phase))
+
+    def print_of(count: Array) -> Array:
+        """(N, 3) the footprint of the stance of a cycle: where the body is in the middle of it, or begins, or ends."""
+        middle = count + (1 + _SWINGS) / 2 - ahead - late
+        last = count + 1 - ahead >= cycles - 1e-6
+        nearer = np.maximum(middle, np.minimum(cycles - _LAST, count - ahead + _SWINGS + _AHEAD))
+        middle = np.clip(np.where(last, nearer, middle), 0.0, cycles)
+        at = np.interp(middle, phase + 1e-9 * time, time)
+        place = np.stack([np.interp(at, time, places[:, i]) for i in (0, 1)], axis=1)
+        angle = np.interp(at, time, np.unwrap(headings))
+        across = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
+        line = np.stack([np.sin(angle), np.cos(angle)], axis=1)
+        return np.insert(place + sign * _WIDE * across + float(_TOE[2]) * line, 1, SOLE, axis=1)
+
+    swung = minimum_jerk(share / _SWINGS)[:, None]
+    way = print_of(number - 1) + swung * (print_of(number) - print_of(number - 1))
+    up = np.clip(share / _SWINGS, 0.0, 1.0)
+    way[:, 1] += steps.lift[side] * (4 * up * (1 - up)) ** 3
+    return way
+
+
+def _ankle(steps: Gait, toe: Array, sign: float, headings: Array) -> Array:
+    """(N, 3) the ankle over a toe whose heel is up."""
+    sole = about(0, steps.heels) @ (_TOE * [sign, 1.0, 1.0])
+    return toe - np.stack([heading_matrix(float(angle)) @ sole for angle in headings])
+
+
+def _height(steps: Gait, poses: Array, places: Array, ankles: list[Array]) -> Array:
+    """(N,) metres of the pelvis from which both feet are within reach."""
+    found = []
+    for (hip, *_), ankle in zip(LEGS, ankles, strict=True):
+        offset = poses[:, hip]
+        apart = np.linalg.norm(ankle[:, [0, 2]] - places - offset[:, [0, 2]], axis=1)
+        reach = np.sqrt(np.maximum((_REACH * _LEG) ** 2 - apart**2, 0.01))
+        found.append(ankle[:, 1] + reach - offset[:, 1])
+    lowest = scipy.ndimage.minimum_filter1d(np.minimum(*found), 5)
+    return np.asarray(scipy.ndimage.gaussian_filter1d(lowest, _EVEN, mode="nearest") - steps.sinks)
+
+
+def _trunk(steps: Gait, phase: Array, headings: Array) -> Array:
+    """Rotations (N, 22, 3, 3) of a trunk that leans over the leg that hurts, and of arms that swing a little."""
+    turns = np.tile(np.eye(3), (len(phase), SMPL22.num_joints, 1, 1))
+    cycle = 2 * np.pi * phase
+    over = 0.5 + 0.5 * np.cos(cycle - np.pi * _SWINGS)  # 1 while the left foot swings
+    over *= minimum_jerk(np.arange(len(phase)) / 12)
+    turns[:, 0] = np.stack([heading_matrix(float(angle)) for angle in headings])
+    lean = about(0, np.full(len(phase), steps.pitch / 2)) @ about(2, steps.lurch * over / 2)
+    for name in ("spine1", "spine2"):
+        turns[:, SMPL22.index(name)] = lean
+    turns[:, SMPL22.index("neck")] = about(2, -0.5 * steps.lurch * over)
+    for side, sign, _ in _SIDES:
+        swing = 0.12 * sign * np.sin(cycle)
+        turns[:, SMPL22.index(f"{side}_shoulder")] = about(0, swing) @ about(2, -sign * STANDS["shoulder"])
+        turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * steps.arms)
+        turns[:, SMPL22.index(f"{side}_hip")] = about(0, np.full(len(phase), -0.2))
+        turns[:, SMPL22.index(f"{side}_knee")] = about(0, np.full(len(phase), 0.4))
+    return turns

@@ -1,0 +1,353 @@
+"""The floor of a beat: the moves of two people as places and headings over time.
+
+The floor is seen from above, in metres of the scene's world; headings are radians from +Z towards +X. A place is
+given once a second and the network does the walking between; where people touch, the way is left free.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import FPS
+from motion.vectors import wrapped
+
+from .bodies.curves import bearing, direction, eased, smoothed
+from .holds import Hold, danced
+from .moves import Move
+from .sampled import Way2D, sampled
+from .track import EASE, MOST, Track
+from .ways import Way
+
+Array = NDArray[np.floating]
+
+_DENSE = 4
+"""Frames from one place to the next that are given to a couple who dance in hold."""
+CLOSE = 0.9
+"""Metres from each other at which people who walk up to each other are left to the network."""
+NEAR_BY = 0.6
+"""Metres from the other at which one who came up behind them stands."""
+ABREAST = 0.9
+"""Metres between two people who walk side by side."""
+LINKED = 0.6
+"""Metres between two people who walk hand in hand or arm in arm."""
+BEHIND = 1.2
+"""Metres by which one follows the other."""
+ABEAM = 0.3
+"""Cosine of the angle between where somebody faces and where the other is, below which they cannot walk past them."""
+ASIDE = 0.7
+"""Metres beside the other at which one walks past."""
+ACROSS = 1.3
+"""Metres that somebody walks to a thing, for which they turn from the other."""
+BACKWARDS = 0.9
+"""Metres of a step back, at most."""
+RUN = 1.6
+"""Metres a second from which somebody runs, who gets up their speed within a step."""
+SIDESTEP = 0.8
+"""Metres of a step aside."""
+PACED = 1.1
+"""Metres to either side that somebody walks to and fro."""
+WIDE = 0.9
+"""Radius in metres of a walk around the other, at least."""
+FARTHEST = 5.0
+"""Metres apart to which people walk; the training scenes hold next to nothing beyond."""
+_CHASED = 7.0
+"""Metres that somebody goes who is followed."""
+_REACTS = 0.4
+"""Seconds after which somebody follows who walks away."""
+_ROUND_BEHIND = 0.55
+"""Share of a beat that a walk round the other to their back takes at most: what is done there follows."""
+_WEIGHT = {Way.STAY: 0.4, Way.AVERTED: 0.6, Way.TURN: 0.5, Way.FACE: 0.4, Way.BACK: 0.7, Way.ASIDE: 0.7}
+"""Shares of a beat's time that moves take beside a walk."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """The places of two people who stand.
+
+    Attributes:
+        places: (2, 2) x and z in metres.
+        headings: (2,) radians.
+        speeds: (2, 2) metres a second.
+    """
+
+    places: Array
+    headings: Array
+    speeds: Array = field(default_factory=lambda: np.zeros((2, 2)))
+
+    def gap(self) -> float:
+        """Metres between them."""
+        return float(np.linalg.norm(self.places[0] - self.places[1]))
+
+    def towards(self, who: int) -> Array:
+        """The direction (2,) from one to the other; ahead, where they stand on one spot."""
+        line = self.places[1 - who] - self.places[who]
+        length = float(np.linalg.norm(line))
+        return line / length if length > 0.05 else direction(float(self.headings[who]))
+
+
+def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool = False) -> list[Way2D]:
+    """The ways of both people through a beat of so many frames, from where they stand.
+
+    A person without moves has no way. In a ``first`` beat the ways also say where the two begin.
+    """
+    tracks = [
+        Track(
+            np.asarray(standing.places[i], dtype=float), float(standing.headings[i]),
+            np.full((frames, 2), np.nan), np.full(frames, np.nan),
+        )
+        for i in range(2)
+    ]  # fmt: skip
+    own = [[move for move in moves if move.person == person] for person in "ab"]
+    for who in (0, 1) if not any(m.way in (Way.AFTER, Way.FACE) for m in own[0]) else (1, 0):
+        _walked(who, own, tracks, standing)
+    if first:
+        for who, track in enumerate(tracks):
+            track.places[0], track.headings[0] = standing.places[who], standing.headings[who]
+    return [way for who, track in enumerate(tracks) if (way := sampled(who, track, first=first)) is not None]
+
+
+def _walked(who: int, own: Sequence[Sequence[Move]], tracks: Sequence[Track], standing: Standing) -> None:
+    """Lays out the moves of one person in order."""
+    track, theirs = tracks[who], [move.way for move in own[1 - who]]
+    listed = list(own[who])
+    for i, move in enumerate(listed):
+        if track.left() <= 0.1:
+            return
+        if move.late and i == 0:
+            track.frame = round(0.35 * track.left() * FPS)
+        later = [after.way for after in listed[i + 1 :]]
+        if move.way is Way.TURN and (Way.AWAY in later or Way.PAST in later):
+            continue  # a person walking away has turned
+        if move.way is Way.TURN and Way.FACE in later and Way.ROUND in theirs:
+            continue  # they turn as the other goes round them
+        if move.way is Way.TO and Way.PAST in later:
+            continue  # who walks past comes up on the way
+        seconds = track.left() * _WEIGHT.get(move.way, 1.0)
+        seconds /= _WEIGHT.get(move.way, 1.0) + sum(_WEIGHT.get(way, 1.0) for way in later)
+        if move.until:
+            seconds *= 0.55
+        _moved(move, who, tracks, standing, theirs, seconds, last=not later)
+    if track.frame and listed and listed[-1].way in (Way.AWAY, Way.BACK, Way.PAST, Way.ROUND):
+        track.stay()
+
+
+def _moved(
+    move: Move, who: int, tracks: Sequence[Track], standing: Standing, theirs: Sequence[Way], seconds: float,
+    *, last: bool,
+) -> None:  # fmt: skip
+    """Lays out one move; after the ``last`` one of a beat a person stays where they are."""
+    track, here = tracks[who], tracks[who].place
+    other = tracks[1 - who].at(track.frame, standing.places[1 - who])
+    gap = float(np.linalg.norm(other - here))
+    to = (other - here) / gap if track.frame and gap > 0.3 else standing.towards(who)
+    both = move.way in theirs
+    match move.way:
+        case Way.STAY | Way.BACKS | Way.AVERTED:
+            track.halt(standing.speeds[who])
+            watched = any(way in theirs for way in (Way.TURN, Way.FACE, Way.BEHIND, Way.BESIDE, Way.AWAY))
+            track.stay(
+                None if seconds >= track.left() else seconds, facing=watched or move.way is not Way.STAY
+            )
+        case Way.THING:
+            if direction(track.heading) @ to > ABEAM:  # it is not where the other stands
+                far = min(ACROSS, 0.6 * seconds * move.speed)
+                line = np.stack([here, here - far * to])
+                track.walk(line, _time(far, move.speed, 0.7 * seconds), evenly=True)
+            track.stay(facing=True)
+        case Way.TURN:
+            track.turn(2 * math.pi * move.turns)
+            track.stay(facing=True, seconds=None if last else 0.2)
+        case Way.FACE if last and Way.ROUND in theirs and tracks[1 - who].frame > track.frame:
+            track.watch(tracks[1 - who])
+        case Way.FACE:
+            track.turn(wrapped(bearing(other - here) - track.heading))
+            track.stay(facing=True, seconds=None if last else 0.2)
+        case Way.BEHIND | Way.BESIDE:
+            faces = tracks[1 - who].faces(track.frame, standing.headings[1 - who])
+            _behind(move, track, other, faces, seconds)
+        case Way.TO:
+            _to(move, track, gap, to, seconds, both=both, last=last)
+        case Way.AWAY:
+            _away(move, track, gap, to, seconds, both=both, followed=Way.AFTER in theirs)
+        case Way.BACK | Way.ASIDE:
+            far = min(move.metres, move.speed * seconds) if move.metres else min(BACKWARDS, 0.6 * seconds)
+            step = -far * to if move.way is Way.BACK else SIDESTEP * np.array([to[1], -to[0]])
+            taken = min(seconds, max(1.3, float(np.linalg.norm(step)) / move.speed + EASE))
+            track.walk(np.stack([here, here + step]), taken, heading=bearing(to))
+            track.stay(facing=True, seconds=None if last else 0.2)
+        case Way.PAST:
+            _past(move, track, other, to, seconds)
+        case Way.AHEAD:
+            room = gap + BACKWARDS if Way.BACK in theirs else gap
+            _ahead(move, track, room, to, seconds, last=last)
+        case Way.PACE:
+            _to_and_fro(track, to, seconds)
+        case Way.ROUND:
+            _around(move, track, other, seconds, both, standing)
+        case Way.HOLD | Way.SPAR:
+            _in_hold(move, track, standing, seconds)
+        case Way.ALONG:
+            _along(who, move, track, standing, seconds)
+        case Way.AFTER:
+            _after(move, track, tracks[1 - who], standing.places[1 - who], seconds)
+
+
+def _to(move: Move, track: Track, gap: float, to: Array, seconds: float, *, both: bool, last: bool) -> None:
+    """A walk up to the other, or halfway where both come."""
+    near = move.near or CLOSE
+    way = (gap - near) / (2 if both else 1)
+    if way > (0.05 if move.near else 0.25):
+        line = np.stack([track.place, track.place + way * to])
+        track.walk(line, _time(way, move.speed, seconds), evenly=move.speed < RUN)
+    if last:
+        track.stay(facing=bool(move.near))
+
+
+def _behind(move: Move, track: Track, other: Array, faces: float, seconds: float) -> None:
+    """A walk up to the other's back, or side, round them where they stand in the way, that ends facing as they do."""
+    near, out = move.near or NEAR_BY, track.place - other
+    start, ends = bearing(out), faces + math.pi
+    if move.way is Way.BESIDE:  # the nearer one
+        ends = min((faces + math.pi / 2, faces - math.pi / 2), key=lambda side: abs(wrapped(side - start)))
+    goal = other + near * direction(ends)
+    sweep = wrapped(ends - start)
+    line = [track.place, goal]
+    if abs(sweep) > (math.pi / 3 if move.way is Way.BEHIND else 0.6 * math.pi):
+        wide = min(float(np.linalg.norm(out)), WIDE)
+        line[1:1] = [other + wide * direction(start + share * sweep) for share in (0.4, 0.75)]
+    way = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+    if way > (0.05 if move.near else 0.25):
+        most = seconds if len(line) == 2 else _ROUND_BEHIND * seconds
+        track.walk(smoothed(np.stack(line)), _time(way, move.speed, most))
+    if abs(turn := wrapped(faces - track.heading)) > 0.1:
+        track.turn(turn)
+    track.stay(facing=True)
+
+
+def _away(
+    move: Move, track: Track, gap: float, to: Array, seconds: float, *, both: bool, followed: bool
+) -> None:
+    """A walk away from the other, or on in the direction that the person was going in."""
+    room = _CHASED if followed else (FARTHEST - gap + max(0.0, move.speed - 1.1)) / (2 if both else 1)
+    away = -to if not np.linalg.norm(track.going) else track.going
+    way = min(max(seconds - 0.4, 0.5) * move.speed, max(room, 1.2))
+    facing = bearing(to) if move.backwards else None
+    taken = min(seconds, way / move.speed + EASE if move.speed > RUN else way / (0.8 * move.speed) + 2 * EASE)
+    track.walk(np.stack([track.place, track.place + way * away]), taken, heading=facing)
+
+
+def _past(move: Move, track: Track, other: Array, to: Array, seconds: float) -> None:
+    """A walk past the other, to one side of them."""
+    here, gap = track.place, float(np.linalg.norm(other - track.place))
+    ahead = direction(track.heading)
+    if ahead @ to < ABEAM and not move.backwards:  # the other is beside or behind them: they walk on
+        way = min(max(seconds - 0.4, 0.5) * move.speed, FARTHEST)
+        track.walk(np.stack([here, here + way * ahead]), seconds)
+        return
+    beyond = max(1.3, min(gap, seconds * move.speed - gap)) + move.metres
+    aside = ASIDE * np.array([to[1], -to[0]])
+    line = np.stack([here, here + 0.5 * gap * to + 0.7 * aside, other + aside, other + beyond * to + aside])
+    facing = bearing(-to) if move.backwards else None
+    track.walk(smoothed(line), min(seconds, (gap + beyond) / min(move.speed, MOST) + EASE), heading=facing)
+
+
+def _ahead(move: Move, track: Track, gap: float, to: Array, seconds: float, *, last: bool) -> None:
+    """A walk straight on, which ends before the other."""
+    here = track.place
+    ahead = direction(track.heading)
+    most = gap - CLOSE if ahead @ to > 0.7 else FARTHEST
+    way = min(move.metres, most, max(seconds - 0.2, 0.5) * move.speed)
+    if way > 0.15:
+        track.walk(np.stack([here, here + way * ahead]), min(seconds, way / move.speed + EASE))
+    track.stay(facing=True, seconds=None if last else 0.2)
+
+
+def _to_and_fro(track: Track, to: Array, seconds: float) -> None:
+    """A walk to and fro across the line to the other."""
+    middle, across, side = track.place, np.array([to[1], -to[0]]), 1.0
+    ends = track.frame + seconds * FPS
+    while track.left() > 1.0 and track.frame < ends - FPS:
+        goal = middle + side * PACED * across
+        way = float(np.linalg.norm(goal - track.place))
+        track.walk(np.stack([track.place, goal]), way + EASE)
+        side = -side
+
+
+def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, standing: Standing) -> None:
+    """A walk around the other, or of both around the middle between them."""
+    middle = standing.places.mean(axis=0) if both else other
+    out = track.place - middle
+    start, radius = bearing(out), float(np.linalg.norm(out))
+    wanted = 2 * math.pi * move.turns * (1.1 if move.turns >= 1 else 1.5)
+    end_radius = max(radius, WIDE / 2 if both else WIDE)
+    speed = max(move.speed, 1.3)
+    wanted = min(wanted, speed * max(seconds - 0.4, 0.5) / max((radius + end_radius) / 2, 0.4))
+    angles = start + np.linspace(0, wanted, 60)
+    radii = radius + (end_radius - radius) * np.clip(np.linspace(0, 5, 60), 0, 1)
+    line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+    track.walk(line, seconds)
+
+
+def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> None:
+    """The way of one of two who turn around the middle between them; in hold they face each other."""
+    middle = standing.places.mean(axis=0)
+    out = track.place - middle
+    time = np.linspace(0, 1, max(round(seconds * FPS), 2))
+    start, radius = bearing(out), float(np.linalg.norm(out))
+    nearer = np.clip(time * seconds / 1.2, 0, 1)
+    turned = 2 * math.pi * move.turns * seconds * eased(time, min(0.5, 1.5 / seconds))
+    angles, radii = start + turned, radius + (move.near / 2 - radius) * nearer
+    line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+    stop = min(track.frame + len(line), len(track.places))
+    if move.way is Way.HOLD and move.near == Hold.CLOSED.value:
+        line = line + danced(time * seconds, angles, np.sign(out @ (standing.places[0] - middle)) or 1.0)
+        track.dense.update(range(track.frame, stop, _DENSE))
+    track.places[track.frame : stop] = line[: stop - track.frame]
+    if move.way is Way.HOLD:
+        track.headings[track.frame : stop] = angles[: stop - track.frame] + math.pi
+    track.place, track.heading, track.frame = line[-1], float(angles[-1] + math.pi), stop
+
+
+def _along(who: int, move: Move, track: Track, standing: Standing, seconds: float) -> None:
+    """A walk side by side: both turn into one direction across the line between them."""
+    between = standing.towards(0)
+    ahead = np.array([between[1], -between[0]])
+    facing = direction(standing.headings[0]) + direction(standing.headings[1])
+    if ahead @ facing < 0:
+        ahead = -ahead
+    middle = standing.places.mean(axis=0)
+    side = between * ((LINKED if move.linked else ABREAST) / 2) * (-1 if who == 0 else 1)
+    way = min(max(seconds - 0.4, 0.5) * move.speed, 7.0)
+    line = np.stack([track.place, middle + side + min(0.8, 0.4 * way) * ahead, middle + side + way * ahead])
+    taken = way / move.speed + EASE if move.speed > RUN else seconds
+    track.walk(smoothed(line), min(seconds, taken))
+    track.going = ahead
+
+
+def _after(move: Move, track: Track, ahead: Track, start: Array, seconds: float) -> None:
+    """A walk on the other's way, some steps behind them."""
+    frames = min(round(seconds * FPS), len(track.places) - track.frame)
+    first = track.frame
+    theirs = np.stack([ahead.at(frame, start) for frame in range(first, first + frames)])
+    line = np.concatenate([track.place[None], theirs])
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    most = max(move.speed, MOST) / FPS
+    done, gone = np.zeros(frames), 0.0
+    for i in range(frames):
+        if i > _REACTS * FPS:
+            free = along[i + 1] - (move.near or BEHIND) - gone
+            gone += float(np.clip(free, 0.0, most * min(1.0, (i / FPS - _REACTS) / EASE)))
+        done[i] = gone
+    if done[-1] > 0.25:
+        at = np.stack([np.interp(done, along, line[:, axis]) for axis in (0, 1)], axis=1)
+        track.follow(at)
+
+
+def _time(way: float, speed: float, most: float) -> float:
+    """Seconds in which a way is walked, at a run if there is little time."""
+    return min(most, max(way / speed + EASE, way / MOST))

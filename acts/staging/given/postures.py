@@ -1,0 +1,233 @@
+"""The postures and jumps that the words of a beat ask for, as the network is given them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import FPS, SMPL22
+from motion.easing import minimum_jerk
+from motion.transforms import heading
+
+from ..bodies.gaits import on_all_fours
+from ..bodies.poses import (
+    FLAT,
+    HANDS,
+    LOWER,
+    LYING,
+    STANCE,
+    TOES,
+    at_rest,
+    bowing,
+    crouching,
+    grounded,
+    kneeling,
+    leaping,
+    lying,
+    rising,
+    seated,
+    stooping,
+    upright,
+)
+from ..floor import Standing
+from ..postures import Change, Posture
+from ..told import Told, at_start
+from ..track import HALT
+
+Array = NDArray[np.floating]
+Pose = tuple[int, Array]
+"""A frame of the scene and a pose (22, 3) in metres of its world."""
+
+HELD = 4
+"""Frames between two poses of a person who keeps a posture: as many as between the network's knots."""
+SETTLING = 40
+"""Frames in which somebody sits down, falls or gets up."""
+RISING = 54
+"""Frames in which somebody gets up from the ground."""
+LYING_DOWN = 84
+"""Frames in which somebody lies down who does not fall, where there is time (recorded: 2.5 to 3.5 s)."""
+DUCKING = 16
+"""Frames in which somebody ducks, and as many in which they are up again."""
+UPRIGHT = 0.8
+"""Height in metres of the pelvis of people who stand."""
+LOW = 0.5
+"""Metres of the head over the pelvis below which somebody lies or is bent."""
+_FLAT = 0.3
+"""Height in metres of the head below which somebody lies flat."""
+_DROPS = 0.6
+"""Exponent of the time of a fall, which begins slowly."""
+FOLDS = 18
+"""Frames after lying down in which a hand comes to lie on the belly."""
+_KNEELS = 0.3
+"""Height in metres of the pelvis above which a bent person's arms reach down to the floor."""
+_HEAD = SMPL22.index("head")
+LEAP = 36
+"""Frames from the highest moment of a jump to that of the next."""
+BOWED, DEEP = 0.9, 1.25
+"""Radians of a bow, and of a deep one."""
+BOW = 50
+"""Frames from the lowest moment of a bow to that of the next."""
+_LOW = (Posture.LIES, Posture.GROUND)
+"""Postures from which people sit up and get their feet under them before they stand."""
+_MAKES: dict[Posture, Callable[[Array, float], Array]] = {
+    Posture.STANDS: upright,
+    Posture.SITS: seated,
+    Posture.GROUND: grounded,
+    Posture.KNEELS: kneeling,
+    Posture.CROUCHES: crouching,
+    Posture.BENDS: stooping,
+    Posture.LIES: lying,
+    Posture.ALL_FOURS: on_all_fours,
+}
+
+
+def postures(
+    story: Sequence[Told], beat: int, person: int, start: int, stop: int, stand: Standing, last: Array | None
+) -> list[Pose]:
+    """The poses by which a person's posture is held in a beat; none where the words leave them on their feet.
+
+    Args:
+        story: what all beats tell.
+        beat: which one.
+        person: 0 for a, 1 for b.
+        start, stop: the beat's first frame and the one after its last.
+        stand: where the people are when it begins.
+        last: the person's pose (22, 3) before it; None in a first beat.
+    """
+    who, told = "ab"[person], story[beat]
+    now = at_start(story, beat)[who]
+    own = [change for change in told.changes.get(who, ()) if not change.already]
+    if last is not None and now is not Posture.STANDS and last[0, 1] > UPRIGHT:  # as in a given motion
+        now, own = Posture.STANDS, [Change(now), *own]
+    jumps, nods = told.leaps.get(who, 0), told.bows.get(who)
+    if now is Posture.STANDS and not own and not jumps and not nods:
+        others = [*told.changes, *told.leaps, *told.bows]
+        return [(start, upright(*_place(person, stand, None)))] if last is None and others else []
+    place, angle = _place(person, stand, last)
+    if last is None and now is Posture.LIES:  # across the other's way, and not with the feet towards them
+        angle += math.pi / 2
+        place = place + LYING * np.array([math.sin(angle), math.cos(angle)])
+    found: dict[int, Array] = {}
+    begins = start + 1 if last is not None else start
+    pose = _MAKES[now](place, angle) if last is None or now is Posture.STANDS else last
+    for change in own:
+        at = start + round(change.after * (stop - start))
+        if last is None and now is not Posture.STANDS:
+            at = max(at, start + round(FPS))  # they are seen as they were
+        if now is not Posture.STANDS or (last is None and begins == start):
+            found |= _stays(pose, begins, at + 1)
+        if change.passing:
+            middle = min(at + DUCKING + (stop - at) // 4, stop - DUCKING)
+            found |= {middle: _MAKES[change.posture](place, angle), middle + DUCKING: upright(place, angle)}
+            begins = middle + DUCKING
+            continue
+        ends, on_the_way = _on_the_way(now, change, at, stop, place, angle)
+        found |= on_the_way
+        now, pose, begins = change.posture, _MAKES[change.posture](place, angle), ends
+    if own and now is Posture.STANDS:
+        found |= _stays(pose, begins, min(begins + 2 * HELD + 1, stop))
+    elif now is not Posture.STANDS:
+        found |= _stays(pose, begins, stop)
+    if now is Posture.STANDS:
+        found |= dict(_jumping(jumps, start, stop, place, angle))
+        found |= dict(_bowing(*nods, start, stop, place, angle)) if nods else {}
+    return [(frame, found[frame]) for frame in sorted(found) if start <= frame < stop]
+
+
+def _on_the_way(
+    now: Posture, change: Change, at: int, stop: int, place: Array, angle: float
+) -> tuple[int, dict[int, Array]]:
+    """The frame at which a change of posture is over that begins ``at`` one, and the poses on the way."""
+    lies = Posture.LIES in (now, change.posture)
+    if now in _LOW and change.posture is Posture.STANDS:
+        ends = min(at + RISING, stop - 1)
+        return ends, {
+            at + round(share * (ends - at)): pose for share, pose in rising(place, angle, lies=lies)
+        }
+    ends = min(at + SETTLING, stop - 1)
+    if {now, change.posture} == {Posture.BENDS, Posture.STANDS}:
+        shares = minimum_jerk(np.arange(HELD, ends - at, HELD) / (ends - at))
+        down = shares if change.posture is Posture.BENDS else 1 - shares
+        return ends, {
+            at + HELD * (i + 1): stooping(place, angle, float(share)) for i, share in enumerate(down)
+        }
+    falls = lies and not change.gently
+    if now is not Posture.STANDS or change.posture not in _LOW or not (change.gently or falls):
+        return ends, {}
+    ends = min(at + (SETTLING if falls else LYING_DOWN if lies else RISING), stop - 1)
+    pace = _DROPS if falls else 1.0
+    on_the_way = reversed(rising(place, angle, lies=lies))
+    return ends, {at + round((1 - share) ** pace * (ends - at)): pose for share, pose in on_the_way}
+
+
+def still_down(poses: list[Pose], stop: int, more: int) -> list[Pose]:
+    """Poses of a beat that ends before frame ``stop``, and of ``more`` frames behind it if it ends on the floor.
+
+    A network that is free there may put a trunk far into the floor. The body is raised out of it, smoothly, and so are
+    the frames before.
+    """
+    if not more or not poses or poses[-1][0] < stop - 1 or poses[-1][1][0, 1] > UPRIGHT:
+        return poses
+    return [*poses, *sorted(_stays(poses[-1][1], stop, stop + more).items(), key=lambda pose: pose[0])]
+
+
+def led(
+    poses: list[Pose], first: int, last: int, *, arms: bool = False, loose: bool = False
+) -> Iterator[tuple[Sequence[int], list[int], Array]]:
+    """The joints, frames and poses (N, 22, 3) from ``first`` to before ``last`` that are given.
+
+    Pelvis and legs, and the trunk and head of those who lie or bend down, which the network would raise; with
+    ``arms`` also the arms of those who bend down, and with ``loose`` of those who lie.
+    """
+    down = [bool(pose[_HEAD, 1] - pose[0, 1] < LOW) for _, pose in poses]
+    gets_down = (frame for (frame, _), was, now in zip(poses[1:], down, down[1:], strict=False) if now > was)
+    folds = next(gets_down, first - FOLDS) + FOLDS
+    for joints, lies in ((LOWER, False), (FLAT, True)):
+        inside = [
+            each for each, low in zip(poses, down, strict=True) if first <= each[0] < last and low is lies
+        ]
+        stoops = bool(inside) and inside[-1][1][0, 1] > _KNEELS
+        laid = [
+            lies and (arms if stoops else loose and frame >= folds and bool(pose[_HEAD, 1] < _FLAT))
+            for frame, pose in inside
+        ]
+        for own, given in ((False, joints), (True, (*joints, *HANDS))):
+            shown = [each for each, with_hands in zip(inside, laid, strict=True) if with_hands == own]
+            if shown:
+                known = np.stack([pose for _, pose in shown])
+                yield given, [frame for frame, _ in shown], known if stoops or not own else at_rest(known)
+
+
+def _stays(pose: Array, start: int, stop: int) -> dict[int, Array]:
+    return dict.fromkeys({*range(start, stop, HELD), max(start, stop - 1)}, pose)
+
+
+def _jumping(times: int, start: int, stop: int, place: Array, angle: float) -> Iterator[Pose]:
+    """The poses of so many jumps, the first of them a second after the beat begins."""
+    top = start + min(FPS, (stop - start) // 2)
+    for i in range(times):
+        for seconds, pose in leaping(place, angle):
+            yield round(top + i * LEAP + seconds * FPS), pose
+
+
+def _bowing(times: int, deep: bool, start: int, stop: int, place: Array, angle: float) -> Iterator[Pose]:
+    """The poses of so many bows, the lowest of the first a second after the beat begins."""
+    low = start + min(FPS, (stop - start) // 2)
+    for i in range(times):
+        for seconds, pose in bowing(place, angle, DEEP if deep else BOWED):
+            yield round(low + i * BOW + seconds * FPS), pose
+
+
+def _place(person: int, stand: Standing, last: Array | None) -> tuple[Array, float]:
+    """The place (x, z) and heading of a standing person, or of a person who is down once they get up."""
+    if last is None:
+        return np.asarray(stand.places[person], dtype=float), float(stand.headings[person])
+    pose = np.asarray(last, dtype=float)
+    angle = float(heading(pose[None])[0])
+    if pose[0, 1] > UPRIGHT:
+        return np.asarray(stand.places[person] + HALT * stand.speeds[person], dtype=float), angle
+    toes = pose[list(TOES)].mean(axis=0)[[0, 2]]
+    return toes - STANCE * np.array([np.sin(angle), np.cos(angle)]), angle

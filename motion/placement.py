@@ -1,0 +1,67 @@
+"""Where a person stands in the frame that the networks know."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .clip import Clip
+from .handedness import leading_wrist, names_side
+from .transforms import heading, heading_matrix, mirrored
+
+Array = NDArray[np.floating]
+
+MEDIAN_START_DISTANCE = 1.5
+"""Metres between the two people of the median training scene at its first frame; they face each other."""
+# Metres: a motion whose lowest joint is this close to 0 is taken to stand on the floor.
+_ON_FLOOR = (-0.05, 0.15)
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A rotation about the vertical axis and a translation from a clip's world to the network's frame.
+
+    There person a stands at the origin at the first frame and faces +Z. Person b is assumed to stand
+    :data:`MEDIAN_START_DISTANCE` in front of that place and to face it. The floor is at 0.
+
+    Attributes:
+        turn: (3, 3) rotation about Y.
+        origin: (3,) the point of the clip's world that maps to ``goal``.
+        goal: (3,) metres.
+        mirror: whether people (…, 22, 3) are also mirrored in the plane X = 0 of the network's frame.
+    """
+
+    turn: Array
+    origin: Array
+    goal: Array
+    mirror: bool = False
+
+    @classmethod
+    def of(cls, clip: Clip, role: str, words: str = "") -> Placement:
+        """The placement that puts a person of this role where the network expects one.
+
+        In training, words that name no side occur with right-handed scenes only (:mod:`training.core.handedness`),
+        so a person who acts with the left hand under such words is mirrored.
+        """
+        positions = clip.positions.astype(np.float64)
+        lowest = positions[..., 1].min()
+        floor = 0.0 if _ON_FLOOR[0] <= lowest <= _ON_FLOOR[1] else lowest
+        origin = np.array([positions[0, 0, 0], floor, positions[0, 0, 2]])
+        goal = np.array([0.0, 0.0, 0.0 if role == "a" else MEDIAN_START_DISTANCE])
+        towards = 0.0 if role == "a" else math.pi
+        sideless = role == "a" and bool(words.strip()) and not names_side(words)
+        mirror = sideless and leading_wrist(positions) == "left"
+        return cls(heading_matrix(towards - float(heading(positions[0]))), origin, goal, mirror)
+
+    def to_network(self, positions: Array) -> Array:
+        """(…, 3) float64 metres in the network's frame."""
+        placed = (positions.astype(np.float64) - self.origin) @ self.turn.T + self.goal
+        return mirrored(placed) if self.mirror else placed
+
+    def to_world(self, positions: Array) -> Array:
+        """Inverse of :meth:`to_network`."""
+        placed = mirrored(positions) if self.mirror else positions
+        return (placed.astype(np.float64) - self.goal) @ self.turn + self.origin

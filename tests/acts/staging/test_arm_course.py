@@ -1,0 +1,102 @@
+"""Arms that rise to a gesture and sink again: where the elbow is, and no hand before the face."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from acts.staging.bodies.arm_course import PASSING, arm, hanging, hangs, rested
+from acts.staging.bodies.gestures import Gesture, Hand
+from acts.staging.bodies.poses import upright
+from motion import SMPL22
+
+LENGTH = 5.0
+TIME = np.arange(0, 150, 2) / 30
+AHEAD = np.tile([0.0, 0.0, 1.0], (len(TIME), 1))
+HEAD = SMPL22.index("head")
+LONG = [SMPL22.bone_lengths[SMPL22.index(f"left_{joint}")] for joint in ("elbow", "wrist")]
+
+
+def course(hand: Hand, side: str = "right", *, both: bool = False, length: float = LENGTH) -> np.ndarray:
+    gesture = Gesture(hand, ("left", "right") if both else (side,))
+    return arm(gesture, side, TIME, length, AHEAD, hanging(side))
+
+
+def palms(made: np.ndarray) -> np.ndarray:
+    """(N, 3) middles of the hands, as seen from the head."""
+    pose = upright(np.zeros(2), 0.0)
+    along = made[:, 1] - made[:, 0]
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    return np.asarray(made[:, 1] + 0.1 * along - (pose[HEAD] - pose[0]))
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize(
+    "hand", [Hand.WAVES, Hand.BECKONS, Hand.SALUTES, Hand.UP, Hand.HIGH, Hand.POINTS, Hand.OFFERS, Hand.PHONE]
+)
+def test_no_gesture_puts_a_hand_before_the_face_or_over_the_head(hand: Hand, side: str) -> None:
+    found = palms(course(hand, side))
+    beside = np.abs(found[:, 0]) > 0.08
+    below = found[:, 1] < -0.1
+    ahead = found[:, 2] > 0.3
+    assert (beside | below | ahead).all()
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_the_hand_of_a_wave_is_beside_the_head_over_the_elbow(side: str) -> None:
+    out = 1 if side == "left" else -1
+    up = course(Hand.WAVES, side)[(TIME > 1.3) & (TIME < 3.7)]
+    shoulder = (upright(np.zeros(2), 0.0)[SMPL22.index(f"{side}_shoulder")])[0]
+    assert (out * up[:, 1, 0] > out * shoulder).all(), "no nearer to the middle than the shoulder"
+    assert (up[:, 0, 1] < up[:, 1, 1] - 0.1).all(), "the elbow is lower than the hand"
+    assert np.ptp(up[:, 1, 0]) > 0.15 and np.ptp(up[:, 0], axis=0).max() < 0.15, "the forearm waves"
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_the_elbow_of_a_salute_is_out_at_the_side(side: str) -> None:
+    out = 1 if side == "left" else -1
+    elbow, hand = np.moveaxis(course(Hand.SALUTES, side)[(TIME > 1.3) & (TIME < 3.7)], 1, 0)
+    assert (out * (elbow - hand)[:, 0] > 0.15).all() and (elbow[:, 1] > 0.3).all()
+
+
+@pytest.mark.parametrize("hand", list(Hand))
+def test_arms_begin_where_they_hung_on_bones_of_their_length(hand: Hand) -> None:
+    for side in ("left", "right"):
+        made = course(hand, side)
+        pose = upright(np.zeros(2), 0.0)
+        shoulder, elbow, wrist = (
+            pose[SMPL22.index(f"{side}_{joint}")] - pose[0] for joint in ("shoulder", "elbow", "wrist")
+        )
+        np.testing.assert_allclose(made[0], [elbow, wrist], atol=1e-6)
+        np.testing.assert_allclose(np.linalg.norm(made[:, 0] - shoulder, axis=1), LONG[0], atol=1e-6)
+        np.testing.assert_allclose(np.linalg.norm(made[:, 1] - made[:, 0], axis=1), LONG[1], atol=1e-6)
+        assert (np.linalg.norm(np.diff(made[:, 1], axis=0), axis=1) * 15 < 3.2).all(), "no faster than people"
+
+
+def test_hands_sink_again_after_what_passes_and_stay_up_in_what_is_held() -> None:
+    for hand in PASSING:
+        assert np.linalg.norm(course(hand)[-1, 1] - course(hand)[0, 1]) < 0.02
+        short = course(hand, length=2.0)[TIME < 2.0]
+        assert np.linalg.norm(short[-1, 1] - short[0, 1]) > 0.2, "too short to be seen otherwise"
+    for hand in (Hand.UP, Hand.POINTS, Hand.OFFERS, Hand.HIPS):
+        assert np.linalg.norm(course(hand)[-1, 1] - course(hand)[0, 1]) > 0.1
+
+
+@pytest.mark.parametrize(
+    "hand", [Hand.HIGH, Hand.UP, Hand.AHEAD, Hand.SPREAD, Hand.CLAPS, Hand.CROSSED, Hand.FLAPS]
+)
+def test_two_hands_are_no_mirror_images(hand: Hand) -> None:
+    left, right = (course(hand, side, both=True)[:, 1] for side in ("left", "right"))
+    gap = np.linalg.norm(left - right * [-1, 1, 1], axis=1)
+    assert gap[(TIME > 0.6) & (TIME < 0.9)].max() > 0.04, "one is a little later"
+    assert gap.mean() > 0.01
+
+
+def test_an_arm_comes_down_from_where_it_was_and_goes_on_hanging() -> None:
+    before = np.array([[-0.5, 0.0, 0.8], [0.0, 1.0, 0.0]])
+    before /= np.linalg.norm(before, axis=1, keepdims=True)
+    assert hangs(hanging("left")) and hangs(hanging("right")) and not hangs(before)
+    made = rested("right", TIME, before)
+    end = rested("right", TIME, hanging("right"))
+    np.testing.assert_allclose(made[-1], end[-1], atol=1e-6)
+    assert np.linalg.norm(made[0] - end[0]) > 0.4 and np.ptp(end, axis=0).max() < 0.05

@@ -1,0 +1,137 @@
+"""Figures of the whole body: what a push-up, a handstand or a cartwheel looks like, and its way over the floor."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from acts import shapes
+from acts.staging.bodies.figure_floor import _CLEARANCES
+from acts.staging.bodies.figures import Figure, figured, figures
+from acts.staging.bodies.poses import upright
+from motion import SMPL22
+
+J = {name: i for i, name in enumerate(SMPL22.joint_names)}
+FEET, HANDS = [J["left_foot"], J["right_foot"]], [J["left_wrist"], J["right_wrist"]]
+LENGTHS = (1.0, 2.3, 6.0)
+IN_THE_AIR = ("jumping-jacks", "leapfrog", "shoots", "skips-rope", "hops", "smashes")
+
+
+def made(name: str, seconds: float = 6.0, **more: object) -> NDArray[np.floating]:
+    """A figure of a person who stands at the origin and faces +Z."""
+    return figured(Figure(name, **more), np.zeros(2), 0.0, round(seconds * 30))  # type: ignore[arg-type]
+
+
+def heights(poses: NDArray[np.floating]) -> NDArray[np.floating]:
+    """(frames, 22) metres of the skin below each joint over the floor."""
+    found: NDArray[np.floating] = poses[..., 1] - _CLEARANCES
+    return found
+
+
+def test_the_lexicon_may_name_each_figure_and_no_other() -> None:
+    assert set(get_args(shapes.Figure.model_fields["figure"].annotation)) == set(figures())
+
+
+@pytest.mark.parametrize("seconds", LENGTHS)
+@pytest.mark.parametrize("name", figures())
+def test_a_figure_is_on_the_floor_at_a_bodys_pace(name: str, seconds: float) -> None:
+    poses = made(name, seconds)
+    assert np.isfinite(poses).all()
+    assert heights(poses).min() > -0.03, "a body is in the floor"
+    if name not in IN_THE_AIR:
+        assert heights(poses).min(axis=1).max() < 0.06, "a body floats"
+    speed = np.linalg.norm(np.diff(poses, axis=0), axis=-1) * 30
+    assert speed.max() < 8.0, f"a joint flies at {speed.max():.1f} m/s"
+
+
+@pytest.mark.parametrize("seconds", LENGTHS)
+@pytest.mark.parametrize("name", figures())
+def test_a_figure_begins_and_ends_with_standing(name: str, seconds: float) -> None:
+    poses = made(name, seconds)
+    stands = upright(np.zeros(2), 0.0)
+    for pose in (poses[0], poses[-1]):
+        assert pose[0, 1] == pytest.approx(stands[0, 1], abs=0.05)
+        assert pose[J["head"], 1] > 1.45
+    assert poses[0, FEET].mean(axis=0) == pytest.approx(stands[FEET].mean(axis=0), abs=0.03)
+
+
+def test_a_handstand_has_the_feet_over_the_hands() -> None:
+    poses = made("handstand")
+    up = poses[:, FEET, 1].min(axis=1) > 1.6
+    assert up.sum() > 30
+    assert poses[up][:, HANDS, 1].max() < 0.08
+    across = poses[up][:, FEET].mean(axis=1) - poses[up][:, HANDS].mean(axis=1)
+    assert np.linalg.norm(across[:, [0, 2]], axis=1).mean() < 0.25
+
+
+def test_push_ups_go_down_and_up_over_hands_that_stay() -> None:
+    poses = made("push-ups")
+    down = (poses[:, HANDS, 1] < 0.075).all(axis=1)
+    assert down.sum() > 60
+    places = poses[down][10:-10, HANDS]
+    assert np.ptp(places[..., [0, 2]], axis=0).max() < 0.03, "hands glide"
+    chest = poses[down][:, J["spine3"], 1]
+    assert np.ptp(chest) > 0.15
+    assert np.abs(poses[down][20:-20, J["head"], 1] - poses[down][20:-20, 0, 1]).max() < 0.5
+
+
+def test_a_somersault_rolls_ahead_once_over_the_back() -> None:
+    poses = made("somersault", 4.0)
+    spine = poses[:, J["spine3"]] - poses[:, 0]
+    turned = np.unwrap(np.arctan2(spine[:, 2], spine[:, 1]))
+    assert turned[-1] - turned[0] == pytest.approx(2 * np.pi, abs=0.1)
+    assert 0.8 < poses[-1, 0, 2] < 2.5
+    assert (poses[:, FEET, 1].min(axis=1) > poses[:, J["head"], 1]).any()
+
+
+def test_a_cartwheel_wheels_to_the_left_and_mirrored_to_the_right() -> None:
+    left, right = made("cartwheel", 4.0), made("cartwheel", 4.0, mirrored=True)
+    assert left[-1, 0, 0] > 1.5
+    assert right[-1, 0, 0] == pytest.approx(-left[-1, 0, 0], abs=0.05)
+    assert left[:, HANDS, 1].min() < 0.08
+    assert left[:, FEET, 1].min(axis=1).max() > 0.9
+
+
+def test_a_kick_is_over_the_other_foot_which_stays() -> None:
+    poses = made("kicks", 2.5)
+    assert (poses[:, J["right_foot"], 1] - poses[:, J["left_foot"], 1]).max() > 0.5
+    assert np.ptp(poses[:, J["left_foot"]], axis=0).max() < 0.06
+
+
+def test_more_time_is_more_of_what_is_done_over_and_over() -> None:
+    def pressed(seconds: float, **more: object) -> int:
+        chest = made("push-ups", seconds, **more)[:, J["spine3"], 1]
+        low = chest < 0.335
+        return int((low[1:] & ~low[:-1]).sum())
+
+    assert pressed(9.0) > pressed(5.0) >= 1
+    assert pressed(9.0, times=1) == 1
+
+
+def test_there_is_no_time_for_a_figure_that_is_begun_and_taken_back() -> None:
+    poses = made("cartwheel", 1.6)
+    assert poses[:, FEET, 1].max() < 0.6
+    assert np.abs(poses[-1, 0] - poses[0, 0]).max() < 0.1
+
+
+def test_no_arm_is_the_mirror_image_of_the_other() -> None:
+    left, right = (made("jumping-jacks")[:, hand] for hand in HANDS)
+    gap = np.linalg.norm(left - right * [-1.0, 1.0, 1.0], axis=1)
+    assert 0.02 < gap.mean() < 0.15
+
+
+def test_a_person_who_follows_the_other_is_as_late_as_said() -> None:
+    first, second = made("phrase", 6.0, early=1.0), made("phrase", 6.0, late=1.0)
+    assert np.abs(second[30:] - first[:-30]).mean() < 0.03
+    assert np.abs(second - first).mean() > 0.03
+
+
+def test_each_seed_wavers_in_its_own_way_with_hands_in_the_air_alone() -> None:
+    one, other = (figured(Figure("handstand"), np.zeros(2), 0.0, 150, seed) for seed in (1, 2))
+    apart = np.linalg.norm(one - other, axis=-1)
+    assert apart[:, HANDS].max() > 0.01 and apart[:, FEET][:20].max() < 1e-3
+    down = (one[:, HANDS, 1] < 0.075).all(axis=1)
+    assert apart[down][:, HANDS].max() < 0.03

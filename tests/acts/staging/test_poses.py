@@ -1,0 +1,109 @@
+"""Poses of planned bodies: on the floor, with their own bones, where they should be."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from acts.staging.bodies.poses import (
+    LOWER,
+    bending,
+    bowed,
+    crouching,
+    grounded,
+    kneeling,
+    leaping,
+    lying,
+    seated,
+    stooping,
+    upright,
+)
+from motion import SMPL22
+from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.poses import kneels, lies, low, sits
+from motion.metrics.sentences.poses import upright as is_upright
+from motion.transforms import heading
+
+PLACE = np.array([1.0, -2.0])
+TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
+
+
+def bones(pose: np.ndarray) -> np.ndarray:
+    parents, children = np.array(SMPL22.bones).T
+    return np.linalg.norm(pose[children] - pose[parents], axis=-1) / SMPL22.bone_lengths[children]
+
+
+@pytest.mark.parametrize("make", [upright, seated, grounded, bending, stooping, crouching, kneeling, lying])
+def test_poses_are_of_this_body_and_on_the_floor(make) -> None:
+    pose = make(PLACE, 0.7)
+    np.testing.assert_allclose(bones(pose), 1.0, atol=1e-9)
+    assert 0.0 <= pose[:, 1].min() < 0.1
+    assert abs(float(heading(pose[None])[0]) - 0.7) < 0.05
+
+
+@pytest.mark.parametrize(
+    ("make", "rule"), [(upright, is_upright), (seated, sits), (kneeling, kneels), (lying, lies), (crouching, low)]
+)  # fmt: skip
+def test_poses_are_what_they_are_called(make, rule) -> None:
+    duet = np.stack([np.tile(upright(PLACE, 0.0), (40, 1, 1)), np.tile(upright(PLACE + 1, 0.0), (40, 1, 1))])
+    duet[0, 20:] = make(PLACE, 0.0)  # a body's height is seen while it stands
+    assert rule(Motion(duet), 0)[25:].all()
+
+
+def test_feet_stay_where_they_stood() -> None:
+    feet = [
+        make(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]]
+        for make in (upright, seated, grounded, bending, stooping, crouching)
+    ]
+    assert np.ptp(feet, axis=0).max() < 1e-6
+    assert np.linalg.norm(lying(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]] - feet[0]) < 0.35
+
+
+def test_who_sits_on_the_ground_is_at_its_level() -> None:
+    pose = grounded(PLACE, 0.7)
+    assert pose[0, 1] < 0.25 < 0.6 < pose[SMPL22.index("head"), 1]
+
+
+def test_who_bends_down_keeps_straight_legs_and_lowers_the_head_forward() -> None:
+    straight, bent = upright(np.zeros(2), 0.0), bending(np.zeros(2), 0.0)
+    head = SMPL22.index("head")
+    assert bent[head, 1] < straight[head, 1] - 0.2 and bent[head, 2] > straight[head, 2] + 0.4
+    assert np.array_equal(bent[list(LOWER)][:3], straight[list(LOWER)][:3])
+    assert np.array_equal(bent[TOES], straight[TOES])
+
+
+def test_who_bends_down_has_the_hands_near_the_floor() -> None:
+    pose = stooping(PLACE, 0.7)
+    assert pose[[SMPL22.index(f"{side}_wrist") for side in ("left", "right")], 1].max() < 0.4
+    assert 0.75 < pose[0, 1] < 0.9 and pose[SMPL22.index("head"), 1] > 0.6
+
+
+def test_a_jump_takes_as_long_as_its_height_needs() -> None:
+    for rise in (0.1, 0.3):
+        moments = leaping(PLACE, 0.0, rise)
+        top = next(pose for seconds, pose in moments if seconds == 0.0)
+        assert abs(top[TOES, 1].min() - 0.02 - rise) < 0.1, "the feet leave the floor"
+        in_air = math.sqrt(2 * rise / 9.81)
+        assert all(abs(seconds) > in_air for seconds, pose in moments if pose[TOES, 1].min() < 0.05)
+
+
+def test_a_bow_takes_its_time_and_the_arms_hang_from_a_trunk_that_is_down() -> None:
+    time = np.arange(0, 5, 0.1)
+    stands = np.repeat(upright(np.zeros(2), 0.6)[None], len(time), axis=0)
+    found = bowed(stands, 0.6, time, 5.0, times=2, lean=0.9)
+    head = found[:, SMPL22.index("head"), 1]
+    assert np.sum(np.diff((head < head[0] - 0.15).astype(int)) == 1) == 2
+    assert head[0] == pytest.approx(head[-1], abs=1e-3)
+    speed = np.linalg.norm(np.diff(found, axis=0), axis=-1) / 0.1
+    assert speed.max() < 1.8, "no dive"
+    at = int(head.argmin())
+    for side in ("left", "right"):
+        shoulder, wrist = (SMPL22.index(f"{side}_{joint}") for joint in ("shoulder", "wrist"))
+        arm = found[at, wrist] - found[at, shoulder]
+        back = arm @ [np.sin(0.6), 0.0, np.cos(0.6)]
+        assert arm[1] < -0.4 and back > -0.3, "it is not stretched out behind"
+    parents, children = np.array(SMPL22.bones).T
+    lengths = np.linalg.norm(found[:, children] - found[:, parents], axis=-1)
+    np.testing.assert_allclose(lengths, np.tile(SMPL22.bone_lengths[children], (len(time), 1)), atol=1e-6)

@@ -1,0 +1,149 @@
+"""Postures: who goes down, who stays down, and who jumps, as the words say."""
+
+from __future__ import annotations
+
+import pytest
+
+from acts.staging import told
+from acts.staging.postures import Posture
+
+from .staged_words import bows, changes, leaps
+from .staged_words import told as of_words
+
+
+def at_start(story: list[str], beat: int) -> dict[str, Posture]:
+    return told.at_start([of_words(sentence) for sentence in story], beat)
+
+
+SITS, KNEELS, LIES = Posture.SITS, Posture.KNEELS, Posture.LIES
+CROUCHES, STANDS = Posture.CROUCHES, Posture.STANDS
+
+
+@pytest.mark.parametrize(
+    ("sentence", "found"),
+    [
+        ("Person A sits down.", {"a": [SITS]}),
+        ("They sit down and talk.", {"a": [SITS], "b": [SITS]}),
+        ("A man drops to one knee.", {"a": [KNEELS]}),
+        ("She crouches.", {"a": [CROUCHES]}),
+        ("One falls to the ground and the other helps him up again.", {"a": [LIES, STANDS]}),
+        ("Person B is knocked over by person A.", {"b": [LIES]}),
+        ("Person A pushes person B to the ground.", {"b": [LIES]}),
+        ("Person A kneels down, holds out a hand and is pulled to their feet by person B.", {"a": [KNEELS, STANDS]}),
+        ("B sits; A pulls up B", {"b": [SITS, STANDS]}),
+
+        ("A woman plops onto the sofa.", {"a": [SITS]}),
+        ("He falls into a chair.", {"a": [SITS]}),
+        ("Person A hits the floor.", {"a": [LIES]}),
+
+
+        ("She walks away and leaves him sitting there.", {"b": [SITS]}),
+        ("B is in the barber's chair.", {"b": [SITS]}),
+
+
+
+
+        # nobody goes down
+        ("They walk to the table.", {}),
+        ("Person A does not sit down.", {}),
+        ("Person A nearly falls over.", {}),
+
+
+        ("Person A falls into step with person B.", {}),
+        ("They shake hands.", {}),
+        ("", {}),
+    ],
+)  # fmt: skip
+def test_changes_are_read_in_order(sentence: str, found: dict[str, list[Posture]]) -> None:
+    assert {who: [c.posture for c in listed] for who, listed in changes(sentence).items()} == found
+
+
+@pytest.mark.parametrize(
+    ("sentence", "already"),
+    [
+        ("Person A stays seated and waves.", True),
+        ("While person A kneels, person B looks on.", True),
+        ("Person A is lying on the floor.", True),
+        ("Person A sits down.", False),
+        ("While person B watches, person A sits down.", False),
+        ("Person A kneels.", False),
+    ],
+)
+def test_who_is_down_already_does_not_go_down(sentence: str, already: bool) -> None:
+    assert changes(sentence)["a"][0].already is already
+
+
+def test_what_makes_somebody_fall_comes_before_the_fall() -> None:
+    assert changes("A person is knocked over by the other person.")["a"][0].after >= 0.4
+    assert changes("Person A falls over.")["a"][0].after == 0.0
+
+
+def test_who_ducks_is_up_again() -> None:
+    (duck,) = changes("Person A punches and person B ducks.")["b"]
+    assert duck.passing and duck.posture is CROUCHES
+    assert at_start(["Person B ducks.", "They bow."], 1)["b"] is STANDS
+
+
+def test_postures_last_until_the_person_gets_up() -> None:
+    story = ["Person A sits down.", "Person B waves.", "Person A gets up.", "They bow."]
+    assert [at_start(story, beat)["a"] for beat in range(4)] == [STANDS, SITS, SITS, STANDS]
+    assert at_start(["Person A stays seated."], 0) == {"a": SITS, "b": STANDS}
+    assert at_start(["He rises from his chair and bows."], 0)["a"] is SITS, "who gets up was down"
+
+
+@pytest.mark.parametrize("act", ["They dance.", "They walk away.", "Person A jumps."])
+def test_who_needs_their_legs_is_on_their_feet_again(act: str) -> None:
+    assert at_start(["They sit down.", act, "They talk."], 1)["a"] is STANDS
+    assert at_start(["They sit down.", act, "They talk."], 2)["a"] is STANDS
+    assert at_start(["They sit down.", "They talk."], 1)["a"] is SITS
+
+
+@pytest.mark.parametrize(
+    ("sentence", "times"),
+    [
+        ("Both jump.", {"a": 1, "b": 1}),
+        ("They jump up and down for joy.", {"a": 3, "b": 3}),
+        ("Person A jumps twice.", {"a": 2}),
+        ("Person A leaps into the air.", {"a": 1}),
+        ("Person A jumps to his feet.", {}),
+        ("Person A jumps aside.", {}),
+        ("Person A jumps back.", {}),
+        ("They do jumping jacks.", {}),
+        ("Person A does not jump.", {}),
+    ],
+)
+def test_jumps_on_the_spot_are_counted(sentence: str, times: dict[str, int]) -> None:
+    assert leaps(sentence) == times
+
+
+def test_who_is_left_sitting_sat_from_the_start() -> None:
+    story = ["She gets up from the table.", "Person A leaves him sitting there."]
+    assert at_start(story, 0) == {"a": SITS, "b": SITS}
+    assert at_start(story, 1)["b"] is SITS and at_start(story, 1)["a"] is STANDS
+    assert at_start(["Person B runs in.", "Person B is sitting on a chair."], 0)["b"] is STANDS
+
+
+def test_who_lies_down_was_up() -> None:
+    assert not changes("One person lies down on the floor next to the other.")["a"][0].already
+    assert changes("One person is lying on the floor.")["a"][0].already
+
+
+@pytest.mark.parametrize(
+    ("sentence", "found"),
+    [
+        ("Person A bows.", {"a": (1, False)}),
+        ("They bow to each other.", {"a": (1, False), "b": (1, False)}),
+        ("Person B bows very deeply.", {"b": (1, True)}),
+        ("One of them takes three bows in a row.", {"a": (3, False)}),
+        ("She bows twice.", {"a": (2, False)}),
+        ("Person A does not bow.", {}),
+        ("He draws a bow tie.", {}),
+        ("They wave.", {}),
+    ],
+)
+def test_bows_are_counted(sentence: str, found: dict[str, tuple[int, bool]]) -> None:
+    assert bows(sentence) == found
+
+
+def test_jumps_are_counted_as_nouns_too() -> None:
+    assert leaps("The girl does three hops.") == {"a": 3}
