@@ -117,7 +117,7 @@ def silence(pipeline: Any) -> None:
         InputError: for a method that has none.
     """
     network = getattr(model := getattr(pipeline, "model", None), "denoiser", model)
-    if not hasattr(network, "guided"):
+    if network is None or not hasattr(network, "guided"):
         raise InputError(f"{pipeline.name} has no network that denoises: leave --zeros out.")
     network.guided = lambda x, *_, **__: x.new_zeros(x.shape)
 
