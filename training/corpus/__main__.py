@@ -22,15 +22,12 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True, help="folder for motions.npy and index.json")
     parser.add_argument("--hours", type=float, default=5.0, help="hours of composed motion (5)")
     add_options(parser, "seed")
-    parser.add_argument("--families", nargs="+", metavar="NAME", help="only these families")
     parser.add_argument("--cache", type=Path, help="folder that keeps the fitted pairs for the next build")
     options = parser.parse_args(arguments)
     logging.basicConfig(level=logging.WARNING, format="%(message)s")
     began = time.monotonic()
     try:
-        scenes, tally = build(
-            options.data, hours=options.hours, seed=options.seed, only=options.families, cache=options.cache
-        )
+        scenes, tally = build(options.data, hours=options.hours, seed=options.seed, cache=options.cache)
         save(scenes, options.out)
     except InputError as error:
         print(error, file=sys.stderr)

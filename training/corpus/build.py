@@ -1,11 +1,11 @@
-"""Builds the corpus: draws scenes family by family, checks each, writes them."""
+"""Builds the corpus: draws scenes of each kind, checks each, writes them."""
 
 from __future__ import annotations
 
 import json
 import logging
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -14,9 +14,10 @@ import numpy as np
 from motion import InputError
 from motion.formats.files import replacing, write_text
 
+from .beats.formation import DANCERS, formation
+from .beats.script import compose
 from .checks import fault
 from .compose import FPS
-from .families import Family, load_families
 from .library import Library
 from .scene import Scene
 from .sources import load_sources
@@ -26,9 +27,30 @@ TEST_SHARE = 0.08
 TRIES = 30
 
 
+@dataclass(frozen=True)
+class Kind:
+    """A kind of composed scene.
+
+    Attributes:
+        make: makes one scene with its label and captions.
+        needs: source actions without which it cannot be made.
+        weight: its share of the corpus relative to the other kinds.
+    """
+
+    make: Callable[[np.random.Generator, Library], Scene]
+    needs: tuple[str, ...]
+    weight: float
+
+
+KINDS = {
+    "beats": Kind(compose, ("walk", "walk-back", "idle", "wave", "bow"), 65.0),
+    "formation": Kind(formation, DANCERS, 1.0),
+}
+
+
 @dataclass
 class Tally:
-    """Counts of a build: frames by family, and rejected scenes by family and reason."""
+    """Counts of a build: frames by kind, and rejected scenes by kind and reason."""
 
     frames: Counter[str] = field(default_factory=Counter)
     scenes: Counter[str] = field(default_factory=Counter)
@@ -46,22 +68,21 @@ class Tally:
 
 
 def draw(
-    rng: np.random.Generator, library: Library, families: dict[str, Family], frames: int, tally: Tally
+    rng: np.random.Generator, library: Library, kinds: dict[str, Kind], frames: int, tally: Tally
 ) -> list[Scene]:
-    """Checked scenes of ``frames`` frames in all, spread over the families by their weights.
+    """Checked scenes of ``frames`` frames in all, spread over the kinds by their weights.
 
-    A family whose scenes fail :data:`TRIES` times in a row is left out from then on, with a warning.
+    A kind whose scenes fail :data:`TRIES` times in a row is left out from then on, with a warning.
     """
-    open_families = {name: family for name, family in families.items() if library.has(*family.needs)}
+    left = {name: kind for name, kind in kinds.items() if library.has(*kind.needs)}
     own: Counter[str] = Counter()
     failures: Counter[str] = Counter()
     scenes: list[Scene] = []
-    while open_families and sum(own.values()) < frames:
-        name = min(open_families, key=lambda key: own[key] / open_families[key].weight)
-        family = open_families[name]
+    while left and sum(own.values()) < frames:
+        name = min(left, key=lambda key: own[key] / left[key].weight)
         try:
-            scene = family.build(rng, library)
-            why = fault(scene, contact=family.contact)
+            scene = left[name].make(rng, library)
+            why = fault(scene)
         except LookupError as error:
             why = str(error)
         if why:
@@ -69,7 +90,7 @@ def draw(
             failures[name] += 1
             if failures[name] >= TRIES:
                 logger.warning("%s is left out of the %s split: %s", name, library.split, why)
-                del open_families[name]
+                del left[name]
             continue
         failures[name] = 0
         own[name] += scene.positions.shape[1]
@@ -84,7 +105,6 @@ def build(
     *,
     hours: float = 5.0,
     seed: int = 0,
-    only: Sequence[str] | None = None,
     recorded: bool = True,
     cache: Path | None = None,
 ) -> tuple[list[Scene], Tally]:
@@ -94,19 +114,12 @@ def build(
         data_dir: the unpacked or packed data sets; see :func:`training.corpus.sources.load_sources`.
         hours: composed motion, of which 8 % is the test split.
         seed: the same seed, data and code give the same corpus.
-        only: names of families; all by default.
         recorded: whether the recorded pairs and the real duets join where their data are there.
         cache: where the skeletons fitted to the recorded pairs are kept from one build to the next.
 
     Raises:
-        InputError: where the data or a family's name are unknown.
+        InputError: where the data are not there.
     """
-    families = load_families()
-    if only:
-        unknown = sorted(set(only) - set(families))
-        if unknown:
-            raise InputError(f"No family {', '.join(unknown)}: choose from {', '.join(sorted(families))}.")
-        families = {name: families[name] for name in only}
     if not 0 < hours <= 200:
         raise InputError(f"{hours} hours cannot be built: give a number above 0 and up to 200.")
     clips = load_sources(data_dir)
@@ -114,8 +127,8 @@ def build(
     for number, (split, share) in enumerate((("train", 1 - TEST_SHARE), ("test", TEST_SHARE))):
         rng = np.random.default_rng([seed, number])
         frames = int(hours * share * 3600 * FPS)
-        scenes += draw(rng, Library(clips, split), families, frames, tally)
-    if recorded and not only:
+        scenes += draw(rng, Library(clips, split), KINDS, frames, tally)
+    if recorded:
         scenes += _recorded(data_dir, tally, cache)
     return scenes, tally
 
@@ -145,7 +158,7 @@ def save(scenes: Sequence[Scene], folder: Path) -> None:
     Float16 would round positions 4 to 8 m from the origin to 4 mm, which shows as jitter.
     """
     if not scenes:
-        raise InputError("There is no scene to write: ask for more hours or other families.")
+        raise InputError("There is no scene to write: ask for more hours.")
     index, start = [], 0
     for scene in scenes:
         frames = int(scene.positions.shape[1])

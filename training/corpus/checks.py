@@ -18,17 +18,6 @@ FEET = tuple(
     tuple(SMPL22.index(f"{side}_{joint}") for joint in ("ankle", "foot")) for side in ("left", "right")
 )
 TRUNK = tuple(SMPL22.index(name) for name in ("pelvis", "spine1", "spine2", "spine3", "neck", "head"))
-LIMBS = tuple(
-    SMPL22.index(f"{side}_{joint}")
-    for side in ("left", "right")
-    for joint in ("elbow", "wrist", "knee", "ankle")
-)
-SLIDING = {
-    **dict.fromkeys(("run-together", "chase"), 1.2),
-    **dict.fromkeys(("spar", "sword-fight", "punch-dodge", "punch-recoil", "kick-step-back"), 0.3),
-    **dict.fromkeys(("dance-together", "dance-mirrored", "dance-watch", "salsa"), 0.3),
-}
-"""Foot skate allowed where the recorded motion itself flies or pivots on the foot, metres a second."""
 FLYING = {"run", "jump", "jumping", "dance", "spin", "crawl", "somersault", "cartwheel", "kick", "push", "fall",
           "cheer", "chase", "throw", "rage", "swing", "punch", "shadow", "skip", "lie",
           "shoot", "squats"}  # fmt: skip
@@ -42,7 +31,7 @@ def allowed_skate(scene: Scene) -> float:
     }
     if "run" in acts or "chase" in acts:
         return 0.8
-    return 0.3 if acts & FLYING else SLIDING.get(scene.family, 0.15)
+    return 0.3 if acts & FLYING or scene.family == "salsa" else 0.15
 
 
 @dataclass(frozen=True)
@@ -52,7 +41,6 @@ class Measures:
     Attributes:
         bone_drift: largest difference of a bone from the skeleton's length in metres.
         trunk_gap: least distance between the two trunks in metres.
-        limb_gap: least distance from a limb's joint to the other's trunk in metres.
         skate: mean speed of the foot that carries the body, metres a second.
         acceleration: largest acceleration of a joint, metres a second squared.
         floor: lowest joint over the scene, metres.
@@ -60,7 +48,6 @@ class Measures:
 
     bone_drift: float
     trunk_gap: float
-    limb_gap: float
     skate: float
     acceleration: float
     floor: float
@@ -73,15 +60,10 @@ def measure(positions: Array) -> Measures:
     lengths = np.linalg.norm(positions[..., 1:, :] - positions[..., parents, :], axis=-1)
     trunks = positions[:, :, list(TRUNK)]
     gaps = np.linalg.norm(trunks[0, :, :, None] - trunks[1, :, None], axis=-1)
-    limbs = positions[:, :, list(LIMBS)]
-    limb = min(
-        float(np.linalg.norm(limbs[p][:, :, None] - trunks[1 - p][:, None], axis=-1).min()) for p in (0, 1)
-    )
     acceleration = np.linalg.norm(np.diff(positions, n=2, axis=1), axis=-1).max() * FPS**2
     return Measures(
         float(np.abs(lengths - SMPL22.bone_lengths[1:]).max()),
         float(gaps.min()),
-        limb,
         max(foot_skate(person) for person in positions),
         float(acceleration),
         float(positions[..., 1].min()),
@@ -100,7 +82,7 @@ def foot_skate(positions: Array) -> float:
     return float(speed.min(axis=-1)[low].mean()) if low.any() else 0.0
 
 
-def fault(scene: Scene, *, contact: bool = False) -> str | None:
+def fault(scene: Scene) -> str | None:
     """The reason why a scene must not enter the corpus, or ``None`` if it may."""
     if not np.isfinite(scene.positions).all():
         return "not finite"
@@ -111,10 +93,8 @@ def fault(scene: Scene, *, contact: bool = False) -> str | None:
     found = measure(scene.positions)
     if found.bone_drift > 1e-3:
         return "bones drift"
-    if found.trunk_gap < (0.12 if contact else 0.3):
+    if found.trunk_gap < 0.12:
         return "trunks overlap"
-    if not contact and found.limb_gap < 0.14:
-        return "a limb in the other's trunk"
     if found.skate > allowed_skate(scene):
         return "feet slide"
     if found.acceleration > 260:

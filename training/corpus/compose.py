@@ -223,3 +223,14 @@ def look_at(motion: Motion, target: Array, *, amount: float = 0.8) -> Motion:
 def realise(motion: Motion) -> Array:
     """(T, 22, 3) positions with planted feet: forward kinematics, then :func:`plant_feet`."""
     return plant_feet(forward_kinematics(motion.rotations, motion.root), motion.contacts)
+
+
+def blend_for(first: Motion, second: Motion) -> int:
+    """Frames over which to blend so that no joint has to hurry: 10 to 24, by how far the poses are apart."""
+    ends = np.stack([first.rotations[-1], second.rotations[0]])
+    pose = forward_kinematics(ends * 1.0, np.zeros((2, 3)))
+    own = np.linalg.inv(ends[:, 0])
+    gap = np.linalg.norm(
+        np.einsum("aij,akj->aki", own, pose)[0] - np.einsum("aij,akj->aki", own, pose)[1], axis=-1
+    )
+    return int(np.clip(8 + 22 * gap.max(), 10, 24))

@@ -63,7 +63,7 @@ def load_duets(root: str | Path, tally: Counter[str] | None = None) -> list[Scen
     scenes = []
     for take in read_takes(Path(root)):
         for scene in windows(take):
-            why = fault(scene, contact=True)
+            why = fault(scene)
             if why is None:
                 scenes.append(scene)
             elif tally is not None:

@@ -302,3 +302,30 @@ def extend(motion: Motion, frames: int) -> Motion:
     while len(longer) < frames:
         longer = join(longer, motion[enter - half : leave + half], blend=2 * half)
     return longer
+
+
+def stride(
+    rng: np.random.Generator,
+    library: Library,
+    action: str,
+    distance: float,
+    *,
+    style: str | None = None,
+    side: str | None = None,
+) -> Take:
+    """A walk, run, … of about ``distance`` metres, cut where the feet pass each other."""
+    take = library.take(rng, action, style=style, side=side, warp=False)
+    motion = take.motion
+    speed = np.linalg.norm((motion.root[-1] - motion.root[0])[[0, 2]]) / max(len(motion) - 1, 1)
+    motion = extend(motion, int(distance / max(speed, 0.005)) + 45)
+    passes = feet_together(motion)
+    passes = passes[(passes > 6) & (passes < len(motion) - 7)]
+    warp = float(np.clip(rng.normal(1.0, 0.07), 0.85, 1.15))
+    if len(passes) < 2:
+        return Take(time_warp(motion, warp), action, take.style, take.side, speed=warp)
+    first = int(passes[rng.integers(min(3, len(passes)))])
+    travelled = np.linalg.norm((motion.root - motion.root[first])[:, [0, 2]], axis=-1)
+    later = passes[passes > first]
+    last = int(later[np.abs(travelled[later] - distance).argmin()]) if len(later) else len(motion) - 7
+    steps = time_warp(motion[first - 6 : last + 7], warp)
+    return Take(steps, action, take.style, take.side, speed=warp)

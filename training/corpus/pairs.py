@@ -27,16 +27,16 @@ from motion.transforms import canonicalize, facing
 from motion.vectors import unit
 
 from .checks import foot_skate
-from .cues import STILL
+from .cues import STILL, Beat
 from .k3hi import read_k3hi
 from .kinect import ANKLE, FPS, fit_pair
 from .sbu import KinectPair, read_sbu
-from .scene import Scene, played
+from .scene import Scene
 from .telling import describe as write_words
 
 Array = NDArray[np.floating]
 
-CACHE_VERSION = 2
+CACHE_VERSION = 3
 _ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
 _TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
 _LEFT, _RIGHT = "left", "right"
@@ -128,15 +128,17 @@ def build_scene(pair: KinectPair, report: Report | None = None) -> Scene | None:
     report.kept[name] += 1
     report.errors.setdefault(name, []).append(error)
     source = f"{pair.dataset}/{pair.name}"
-    slots, events = describe(people, family)
     split = "benchmark" if pair.split == "benchmark" else "train"
-    return _told(Scene(people.astype(np.float32), family, (source,), split, events, slots))
+    return _told(people.astype(np.float32), family, source, split)
 
 
-def _told(scene: Scene) -> Scene:
-    """The scene with its label and captions."""
-    scene.played = played(scene, SHOWS[scene.family], "while")
-    return write_words(np.random.default_rng(zlib.crc32(scene.sources[0].encode())), scene, sides=False)
+def _told(people: Array, family: str, source: str, split: str) -> Scene:
+    """The scene with its events, label and captions."""
+    scene = Scene(people, family, (source,), split, describe(people, family))
+    side = scene.events.get("side", {}).get("a")
+    frames = scene.positions.shape[1]
+    scene.played = [Beat(SHOWS[family], 0, frames, relation="while", sides=(side, None))]
+    return write_words(np.random.default_rng(zlib.crc32(source.encode())), scene, sides=False)
 
 
 def _as_seen(family: str, people: Array) -> tuple[str, Array]:
@@ -299,13 +301,12 @@ def _off_target(people: Array) -> float:
     return float(np.degrees(np.arccos(np.clip(cos, -1, 1))))
 
 
-def describe(people: Array, family: str) -> tuple[dict[str, Any], dict[str, Any]]:
-    """(what is said of the scene, its events) that the motion shows.
+def describe(people: Array, family: str) -> dict[str, Any]:
+    """The events of a scene that the motion shows.
 
     Args:
         people: (2, T, 22, 3) metres.
     """
-    slots: dict[str, Any] = {}
     events: dict[str, Any] = {}
     if family in _MEANT_TO_FACE:
         events["facing"] = True
@@ -316,7 +317,6 @@ def describe(people: Array, family: str) -> tuple[dict[str, Any], dict[str, Any]
         if side is None and family == "push":
             side = "both"
         if side is not None:
-            slots["side_a"] = side
             events["side"] = {"a": side}
     if family in _TOUCH:
         sides = _hands(people)
@@ -324,9 +324,8 @@ def describe(people: Array, family: str) -> tuple[dict[str, Any], dict[str, Any]
         if len(touching):
             joints = {role: f"{side}_wrist" for role, side in zip("ab", sides, strict=True)}
             events["contact"] = [{**joints, "start": int(touching[0]), "end": int(touching[-1])}]
-        slots["side_a"] = sides[0]
         events["side"] = {"a": sides[0]}
-    return slots, events
+    return events
 
 
 def _striking_side(people: Array, part: str, *, up: bool = False) -> str | None:
@@ -346,10 +345,7 @@ def _striking_side(people: Array, part: str, *, up: bool = False) -> str | None:
 
 
 def _save(path: Path, scenes: list[Scene], report: Report) -> None:
-    meta = [
-        {"family": s.family, "said": s.said, "sources": s.sources, "split": s.split, "events": s.events}
-        for s in scenes
-    ]
+    meta = [{"family": s.family, "source": s.sources[0], "split": s.split} for s in scenes]
     summary = {"kept": report.kept, "dropped": report.dropped, "errors": report.errors}
     lengths = np.array([scene.positions.shape[1] for scene in scenes])
     joined = (
@@ -372,7 +368,4 @@ def _load(path: Path, report: Report | None) -> list[Scene]:
         report.kept.update(summary["kept"])
         report.dropped.update(summary["dropped"])
         report.errors.update(summary["errors"])
-    return [
-        _told(Scene(positions, **{**entry, "sources": tuple(entry["sources"])}))
-        for positions, entry in zip(parts, meta, strict=False)
-    ]
+    return [_told(positions, **entry) for positions, entry in zip(parts, meta, strict=True)]

@@ -1,38 +1,44 @@
-"""The report of a corpus in numbers and pictures: ``python -m training.corpus.report --corpus DIR --out DIR``.
+"""What a corpus holds, in numbers and pictures: ``python -m training.corpus.report --corpus DIR --out DIR``.
 
-Writes ``corpus.md``, one row a family, and ``corpus/FAMILY.webp``, a contact sheet of one scene a family.
+Writes ``corpus.md``, one row an act of the lexicon, and ``corpus/ACT.webp``, a contact sheet of a scene that shows it.
 """
 
 from __future__ import annotations
 
 import argparse
 import re
-import textwrap
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22, Duet
 from motion.formats.files import replacing, write_text
-from motion.metrics import bone_drift, foot_skate, penetration
+from motion.metrics import foot_skate, jerk, penetration
 from training.core.shell import add_options, exit_code
 from training.prepare import load_corpus
 from webdemo.view.contact_sheet import contact_sheet
 
-from .cues import Label
+from .cues import STILL, Label
 
 FPS = 30.0
-MEASURED = 15
-"""Scenes of a family that are measured."""
-PICTURE_WIDTH = 960
+MEASURED = 250
+"""Scenes of each kind that are measured."""
+PICTURE_WIDTH = 640
 RECORDED = ("sbu/", "k3hi/", "cmu-salsa/", "cmu-handshake/")
 """How the sources begin whose two people were recorded together."""
-_LINE = 119
-"""Characters of a line of prose."""
+_PERFORMERS = (
+    (r"accad_(Female1|Male1)_", ("accad {}",)),
+    (r"cmu-(?:iclone_0|solo_)(\d\d)[_-]", ("cmu {}",)),
+    (r"cmu-dance-martial_(indian|martial)", ("cmu {}",)),
+    (r"perfume_([ABC])_", ("perfume {}",)),
+    (r"cmu-(salsa)/", ("cmu 60", "cmu 61")),
+    (r"cmu-(handshake)/", ("cmu 18", "cmu 19")),
+)
+"""Patterns of sources that name their performers."""
 
 
 def touch_gap(duet: Duet, contacts: Sequence[dict[str, Any]]) -> float:
@@ -48,139 +54,9 @@ def touch_gap(duet: Duet, contacts: Sequence[dict[str, Any]]) -> float:
     return max(gaps)
 
 
-def report(motions: NDArray[np.floating], index: list[dict[str, Any]], out: Path) -> str:
-    """Writes the report of a corpus (see :func:`training.prepare.load_corpus`) and returns its Markdown."""
-    families: dict[str, list[dict[str, Any]]] = defaultdict(list)
-    for scene in index:
-        families[scene["family"]].append(scene)
-    pictures = out / "corpus"
-    pictures.mkdir(parents=True, exist_ok=True)
-    rows = [_family(name, scenes, motions, pictures) for name, scenes in sorted(families.items())]
-    text = "\n".join([*_head(rows, index), *_table(rows), "", *_acts_table(index), ""])
-    write_text(out / "corpus.md", text)
-    return text
-
-
-class _Family(NamedTuple):
-    """A row of the table: ``gap`` is the median distance in cm of joints that touch, None if none do."""
-
-    name: str
-    scenes: int
-    test: int
-    minutes: float
-    captions: int
-    drift: float
-    skate: float
-    overlap: float
-    gap: float | None
-
-
-def _family(
-    name: str, scenes: list[dict[str, Any]], motions: NDArray[np.floating], pictures: Path
-) -> _Family:
-    """Measures a family and draws one of its scenes into ``pictures``."""
-    chosen = scenes[:: max(len(scenes) // MEASURED, 1)][:MEASURED]
-    duets = [_duet(motions, scene) for scene in chosen]
-    contacts = [(scene.get("events") or {}).get("contact") for scene in chosen]
-    gaps = [100 * touch_gap(d, c) for d, c in zip(duets, contacts, strict=True) if c]
-    found = [(bone_drift(d), foot_skate(d).speed, penetration(d).mean) for d in duets]
-    drift, skate, overlap = np.mean(found, axis=0)
-    sheet = contact_sheet(duets[-1], title=f"{name}: {chosen[-1]['captions'][0]}", frames=6)
-    sheet = sheet.resize((PICTURE_WIDTH, round(sheet.height * PICTURE_WIDTH / sheet.width)))
-    with replacing(pictures / f"{name}.webp") as temporary:
-        sheet.save(temporary, "webp", quality=60)
-    return _Family(
-        name=name,
-        scenes=len(scenes),
-        test=sum(scene["split"] == "test" for scene in scenes),
-        minutes=sum(scene["frames"] for scene in scenes) / FPS / 60,
-        captions=len({caption for scene in scenes for caption in scene["captions"]}),
-        drift=drift,
-        skate=skate,
-        overlap=overlap,
-        gap=float(np.median(gaps)) if gaps else None,
-    )
-
-
-def _table(rows: Sequence[_Family]) -> list[str]:
-    lines = [
-        "| Family | Scenes (test) | Minutes | Captions | Bone drift, % | Foot skate, cm/s | Penetration, cm "
-        "| Touching joints, cm | Scene |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
-    for row in rows:
-        gap = "–" if row.gap is None else f"{row.gap:.0f}"
-        lines.append(
-            f"| {row.name} | {row.scenes} ({row.test}) | {row.minutes:.1f} | {row.captions} | {row.drift:.2f} "
-            f"| {row.skate:.1f} | {row.overlap:.2f} | {gap} | [sheet](corpus/{row.name}.webp) |"
-        )
-    return lines
-
-
-def _head(rows: Sequence[_Family], index: list[dict[str, Any]]) -> list[str]:
-    """The text above the table: sizes, means weighted by minutes, and how the corpus was split and measured."""
-    minutes = np.array([row.minutes for row in rows])
-    drift, skate, overlap = (
-        np.average([getattr(row, key) for row in rows], weights=minutes)
-        for key in ("drift", "skate", "overlap")
-    )
-    captions = {caption for scene in index for caption in scene["captions"]}
-    return [
-        "# The corpus",
-        "",
-        _wrapped(
-            f"{len(index):,} scenes of {len(rows)} families, {minutes.sum() / 60:.1f} hours at "
-            f"30 fps, with {len(captions):,} different captions. {_together(index)} "
-            f"{_people(index)} Overall, bone drift is {drift:.2f} %, foot skate "
-            f"{skate:.1f} cm/s and penetration {overlap:.2f} cm."
-        ),
-        "",
-        _wrapped(
-            "The test scenes are composed from recordings that no training scene uses, and the phrasings of "
-            "their captions are held out too; but an action with fewer than six recordings has them in both "
-            "splits. The data sets, the performers and the rules of composition are the same in both splits, so "
-            "scores on the test split flatter a network."
-        ),
-        "",
-        _wrapped(
-            f"The measures come from up to {MEASURED} scenes per family. *Touching joints* is the median distance "
-            "of the joints that touch, at the moment when they are nearest. Wrists that meet are 6 to 9 cm apart, "
-            "and a joint of the trunk lies inside the body."
-        ),
-        "`python -m training.corpus.report` rebuilds this page.",
-        "",
-    ]
-
-
 def is_recorded(scene: dict[str, Any]) -> bool:
-    """True for a scene whose two people were recorded together."""
-    return str((scene.get("sources") or [""])[0]).startswith(RECORDED)
-
-
-def _together(index: list[dict[str, Any]]) -> str:
-    """A sentence on what was recorded of two people."""
-    recorded = [scene for scene in index if is_recorded(scene)]
-    frames = sum(scene["frames"] for scene in recorded)
-    share = 100 * frames / max(sum(scene["frames"] for scene in index), 1)
-    return (
-        f"{len(recorded):,} scenes ({frames / FPS / 60:.0f} minutes, {share:.1f} %) are recorded duets, cut into "
-        "windows that may overlap; the others are composed from single-person recordings."
-    )
-
-
-def _people(index: list[dict[str, Any]]) -> str:
-    """A sentence on how many performers the sources name."""
-    found = {who for scene in index for source in scene.get("sources") or () for who in performers(source)}
-    return f"The files name {len(found)} performers; some sets do not say who performs."
-
-
-_PERFORMERS = (
-    (r"accad_(Female1|Male1)_", "accad {}"),
-    (r"cmu-(?:iclone_0|solo_)(\d\d)[_-]", "cmu {}"),
-    (r"cmu-dance-martial_(indian|martial)", "cmu {}"),
-    (r"perfume_([ABC])_", "perfume {}"),
-)
-"""Patterns of sources that name their performer."""
+    """Whether the scene's two people were recorded together."""
+    return any(source.startswith(RECORDED) for source in scene.get("sources") or ())
 
 
 def performers(source: str) -> set[str]:
@@ -189,42 +65,93 @@ def performers(source: str) -> set[str]:
     >>> sorted(performers("cmu-salsa/05"))
     ['cmu 60', 'cmu 61']
     """
-    for pattern, name in _PERFORMERS:
-        match = re.match(pattern, source)
-        if match:
-            return {name.format(match[1])}
-    if source.startswith("cmu-salsa/"):
-        return {"cmu 60", "cmu 61"}
-    if source.startswith("cmu-handshake/"):
-        return {"cmu 18", "cmu 19"}
     if source.startswith("sbu/"):
         return {f"sbu {number}" for number in re.findall(r"s(\d\d)", source.split("/")[1])}
+    for pattern, names in _PERFORMERS:
+        if match := re.match(pattern, source):
+            return {name.format(match[1]) for name in names}
     return set()
 
 
-def _acts_table(index: list[dict[str, Any]]) -> list[str]:
-    """One row an act of the lexicon: scenes, minutes, and how many of them are of recorded duets."""
-    scenes: Counter[str] = Counter()
-    frames: Counter[str] = Counter()
-    real: Counter[str] = Counter()
+def report(motions: NDArray[np.floating], index: list[dict[str, Any]], out: Path) -> str:
+    """Writes the report of a corpus (see :func:`training.prepare.load_corpus`) and returns its Markdown."""
+    (out / "corpus").mkdir(parents=True, exist_ok=True)
+    text = "\n".join([*_head(motions, index), *_acts_table(motions, index, out / "corpus"), ""])
+    write_text(out / "corpus.md", text)
+    return text
+
+
+def _head(motions: NDArray[np.floating], index: list[dict[str, Any]]) -> list[str]:
+    recorded = [scene for scene in index if is_recorded(scene)]
+    frames, real = (sum(scene["frames"] for scene in part) for part in (index, recorded))
+    captions = {caption for scene in index for caption in scene["captions"]}
+    found = {who for scene in index for source in scene.get("sources") or () for who in performers(source)}
+    lines = [
+        "# The corpus",
+        "",
+        f"{len(index):,} scenes, {frames / FPS / 3600:.1f} hours at {FPS:.0f} fps, {len(captions):,} different "
+        f"captions; {sum(scene['split'] == 'test' for scene in index):,} scenes are for testing.",
+        f"{len(recorded):,} scenes ({real / FPS / 60:.0f} minutes, {100 * real / max(frames, 1):.1f} %) are recorded "
+        f"duets. The files name {len(found)} performers; some sets do not say who performs.",
+        "",
+        "| | Foot skate, cm/s | Jerk, m/s³ | Penetration, cm |",
+        "|---|---|---|---|",
+    ]
+    composed = [scene for scene in index if not is_recorded(scene)]
+    for name, kind in (("composed", composed), ("recorded duets", recorded)):
+        if kind:
+            duets = [_duet(motions, scene) for scene in kind[:: max(len(kind) // MEASURED, 1)]]
+            skate, shake, depth = np.mean(
+                [(foot_skate(duet).speed, jerk(duet), penetration(duet).mean) for duet in duets], axis=0
+            )
+            lines.append(f"| {name} ({len(duets)}) | {skate:.1f} | {shake:.0f} | {depth:.2f} |")
+    return [*lines, ""]
+
+
+def _acts_table(motions: NDArray[np.floating], index: list[dict[str, Any]], pictures: Path) -> list[str]:
+    """One row an act of the lexicon: scenes, minutes, how many of them are of recorded duets, and a sheet."""
+    shown: dict[str, list[tuple[int, int, dict[str, Any]]]] = defaultdict(list)
     for scene in index:
-        if not scene.get("label"):
-            continue
-        known = Label.of_row(scene["label"])
-        scenes.update({act.act for act in known.plan.acts})
-        for act in known.plan.acts:
-            start, stop = known.spans[act.id]
-            frames[act.act] += stop - start
-            real[act.act] += (stop - start) * is_recorded(scene)
-    lines = ["| Act | Scenes | Minutes | of these recorded duets |", "|---|---:|---:|---:|"]
-    for name in sorted(scenes):
-        minutes, recorded = (count[name] / FPS / 60 for count in (frames, real))
-        lines.append(f"| {name} | {scenes[name]} | {minutes:.1f} | {recorded:.1f} |")
+        if scene.get("label"):
+            known = Label.of_row(scene["label"])
+            for act in known.plan.acts:
+                shown[act.act].append((*known.spans[act.id], scene))
+    lines = [
+        "| Act | Scenes | Minutes | of these recorded duets | Touching joints, cm | Scene |",
+        "|---|---:|---:|---:|---:|---|",
+    ]
+    for name, found in sorted(shown.items()):
+        minutes, recorded = (
+            sum(stop - start for start, stop, scene in found if not only or is_recorded(scene)) / FPS / 60
+            for only in (False, True)
+        )
+        gaps = [
+            100 * gap for start, stop, scene in found[:20] if (gap := _touch(motions, scene, start, stop))
+        ]
+        link = "–"
+        if name != STILL:
+            # A short scene shows an act best.
+            _draw(motions, min((scene for *_, scene in found), key=lambda one: one["frames"]), name, pictures)
+            link = f"[sheet](corpus/{name}.webp)"
+        lines.append(
+            f"| {name} | {len({scene['start'] for *_, scene in found})} | {minutes:.1f} | {recorded:.1f} "
+            f"| {f'{np.median(gaps):.0f}' if gaps else '–'} | {link} |"
+        )
     return lines
 
 
-def _wrapped(paragraph: str) -> str:
-    return textwrap.fill(paragraph, _LINE, break_on_hyphens=False)
+def _touch(motions: NDArray[np.floating], scene: dict[str, Any], start: int, stop: int) -> float | None:
+    """Metres between the joints that touch while an act lasts, or None."""
+    contacts = (scene.get("events") or {}).get("contact") or ()
+    within = [contact for contact in contacts if start <= contact["start"] < stop]
+    return touch_gap(_duet(motions, scene), within) if within else None
+
+
+def _draw(motions: NDArray[np.floating], scene: dict[str, Any], name: str, folder: Path) -> None:
+    sheet = contact_sheet(_duet(motions, scene), title=f"{name}: {scene['captions'][0]}", frames=6)
+    sheet = sheet.resize((PICTURE_WIDTH, round(sheet.height * PICTURE_WIDTH / sheet.width)))
+    with replacing(folder / f"{name}.webp") as temporary:
+        sheet.save(temporary, "webp", quality=45)
 
 
 def _duet(motions: NDArray[np.floating], scene: dict[str, Any]) -> Duet:
@@ -234,9 +161,7 @@ def _duet(motions: NDArray[np.floating], scene: dict[str, Any]) -> Duet:
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    parser = argparse.ArgumentParser(
-        description="Report what a corpus holds, with a picture of every family."
-    )
+    parser = argparse.ArgumentParser(description="Report what a corpus holds, with a picture of every act.")
     add_options(parser, "corpus")
     parser.add_argument("--out", type=Path, required=True, help="folder for corpus.md and corpus/")
     options = parser.parse_args(argv)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .cues import STILL, Beat, Label
+from .cues import Beat, Label
 
 Array = NDArray[np.floating]
 
@@ -50,18 +50,14 @@ class Scene:
 
     Attributes:
         positions: (2, T, 22, 3) metres, 30 fps, canonical: a's root at XZ = 0 facing +Z at frame 0.
-        family: the kind of interaction, e.g. "handshake".
+        family: its kind: "beats-2", "formation", "salsa", or a recorded interaction such as "handshake".
         sources: the files the motion comes from.
         split: "train" or "test".
         events: what a person would check, each key only where it applies:
             "contact": [{"a": joint or None, "b": joint, "start": frame, "end": frame}, …] joints that touch;
             "side": {"a": "left"} the hand that the caption names, by person;
-            "distance": "approach" | "part" | "keep";
-            "order": ["bow", "wave"] actions in the order in which they happen;
+            "distance": "approach" | "part";
             "facing": True where the two face each other in the middle of the motion.
-        said: what the family's builder knows for the captions: "acts" (cues of a and b), "relation", "span" (frames),
-            "side_a", "side_b", "manner_a", "manner_b" (styles), "speed" ("slow" or "fast"), "direction", "came" ("a" or
-            "ab" walk up before) and "left" (True where a walks away after).
         played: the beats that were played, from which the label and the captions come.
         label: the plan of the scene, with the frames of its acts.
         captions: different sentences that are all true of the motion.
@@ -75,33 +71,8 @@ class Scene:
     sources: tuple[str, ...]
     split: str
     events: dict[str, Any] = field(default_factory=dict)
-    said: dict[str, Any] = field(default_factory=dict)
     played: list[Beat] = field(default_factory=list)
     label: Label | None = None
     captions: list[str] = field(default_factory=list)
     alone: tuple[list[str], list[str]] = field(default_factory=lambda: ([], []))
     beats: list[dict[str, Any]] = field(default_factory=list)
-
-
-def played(scene: Scene, acts: tuple[str, str], relation: str) -> list[Beat]:
-    """The beats of a scene, from its family's cues and what its builder says of it."""
-    said, frames = scene.said, scene.positions.shape[1]
-    start, stop = said.get("span", (0, frames))
-    styles = (said.get("manner_a"), said.get("manner_b"))
-    main = Beat(
-        said.get("acts", acts),
-        start,
-        stop,
-        relation=said.get("relation", relation),
-        sides=(said.get("side_a"), said.get("side_b")),
-        styles=styles,
-        more={key: said[key] for key in ("direction", "speed") if said.get(key)},
-    )
-    beats = [main]
-    if said.get("came"):
-        walk_up = ("walk-up", "walk-up" if said["came"] == "ab" else STILL)
-        beats.insert(0, Beat(walk_up, 0, start, relation="while", styles=styles, minor=True))
-        main.styles = ("normal", "normal")
-    if said.get("left"):
-        beats.append(Beat(("walk-away", STILL), stop, frames, relation="while", minor=True))
-    return beats

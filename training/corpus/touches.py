@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from motion.skeleton import SMPL22
+
 from .compose import ARMS, Array
 from .contact import (
     UP,
@@ -257,7 +259,7 @@ def pats(rng: Rng, frames: int, arrive: int, leave: int) -> Array:
 
 
 def pat_back(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> Touched:
-    """b stands beside and a little in front of a, see :func:`training.corpus.families.bodies.pat_back`."""
+    """b stands beside and a little in front of a."""
     arrive, leave, end = timing(rng, start, stop)
     weight = envelope(len(a), start, arrive, leave, end)
     b = bend(b, np.cross(UP, axes(b)[1]) * 0.08 * weight[:, None])
@@ -303,8 +305,6 @@ def arm_around(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -
 
 def whisper(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> Touched:
     """b stands beside and a little in front of a."""
-    from motion.skeleton import SMPL22
-
     arrive, leave, end = timing(rng, start, stop)
     weight = envelope(len(a), start, arrive, leave, end)
     head = SMPL22.index("head")

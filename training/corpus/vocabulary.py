@@ -22,6 +22,7 @@ from scipy.ndimage import gaussian_filter1d
 from motion import InputError
 from motion.cleaning import foot_contacts, plant_feet
 from motion.formats.bvh import read_bvh
+from motion.formats.glb_motion import animations_in, read_glb_people
 from motion.kinematics import project_to_skeleton
 from motion.retarget import retarget
 from motion.rigs import RigMotion
@@ -29,7 +30,6 @@ from motion.skeleton import SMPL22
 from motion.transforms import resample
 
 from .deepmimic import read_deepmimic
-from .gltf_clips import read_animations
 
 Array = NDArray[np.floating]
 
@@ -190,7 +190,8 @@ def _clips(folder: Path, dataset: str, wanted: set[str]) -> dict[str, RigMotion]
         for path in _clip_files(place, dataset):
             try:
                 if dataset == "mesh2motion":
-                    found |= {name: rig for name, rig in read_animations(path).items() if name in wanted}
+                    for name in wanted & set(animations_in(path).names):
+                        found[name] = upright(read_glb_people(path, animation=name)[0])
                 elif path.stem in wanted and dataset == "deepmimic":
                     found[path.stem] = read_deepmimic(path.read_bytes(), name=path.name)
                 elif path.stem in wanted:

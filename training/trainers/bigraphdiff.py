@@ -85,7 +85,7 @@ class Settings:
 
 
 def of_classes(scenes: Scenes) -> Scenes:
-    """The scenes that are of one class: labelled, without beats or an order of acts.
+    """The scenes that are of one class: labelled, with one beat at most, transitions not counted.
 
     Raises:
         InputError: if there are none.
@@ -94,8 +94,7 @@ def of_classes(scenes: Scenes) -> Scenes:
         row
         for row in scenes.rows
         if (row.get("label") or row.get("class"))
-        and not row.get("beats")
-        and "order" not in (row.get("events") or {})
+        and sum(not beat["minor"] for beat in row.get("beats") or ()) <= 1
     ]
     if not rows:
         raise InputError(

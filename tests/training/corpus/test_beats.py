@@ -10,9 +10,9 @@ from motion.transforms import heading
 from tests.training.corpus.test_compose import bone_error, bow, clips, motion, walk
 from training.corpus import checks
 from training.corpus.beats import script
+from training.corpus.beats.acts import deepened
 from training.corpus.beats.stories import pattern
 from training.corpus.compose import realise
-from training.corpus.families.gestures import deepened
 from training.corpus.library import Library
 from training.corpus.retell import retold
 from training.corpus.scene import Scene, SourceClip
@@ -71,7 +71,7 @@ def test_free_scenes_are_sound(library: Library) -> None:
         frames = scene.positions.shape[1]
         assert 30 < frames <= script.MOST and np.isfinite(scene.positions).all()
         assert bone_error(scene.positions) < 1e-3
-        jolts += checks.fault(scene, contact=True) == "a joint jumps"
+        jolts += checks.fault(scene) == "a joint jumps"
         starts = [beat["start"] for beat in scene.beats]
         assert starts == sorted(starts) and all(b["start"] < b["end"] <= frames for b in scene.beats)
         assert all(len(beat["captions"]) >= 1 for beat in scene.beats)

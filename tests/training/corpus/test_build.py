@@ -5,27 +5,32 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from acts.reading import read
 from models.motion_tokens import TokenLayout
-from tests.training.corpus.test_compose import clips
+from tests.training.corpus.test_beats import more
+from tests.training.corpus.test_compose import clips, walk
 from training.corpus import __main__ as command
 from training.corpus import build, retell
+from training.corpus.beats.formation import formation
 from training.corpus.cues import Label, class_of
+from training.corpus.library import Library
+from training.corpus.scene import SourceClip
 from training.prepare import prepare
 from training.trainers.bigraphdiff import labels_of, of_classes
 
-FAMILIES = ("wave-back", "ordered", "bow-back")
+SOURCES = [clip for split in ("train", "test") for clip in (*clips(split), *more(split))]
 
 
 @pytest.fixture(scope="module")
 def corpus(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """72 seconds of three families."""
+    """144 seconds of beats."""
     folder = tmp_path_factory.mktemp("corpus")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(build, "load_sources", lambda data: [*clips(), *clips("test")])
-        words = ["--data", str(folder), "--out", str(folder), "--hours", "0.02", "--families", *FAMILIES]
+        patch.setattr(build, "load_sources", lambda data: SOURCES)
+        words = ["--data", str(folder), "--out", str(folder), "--hours", "0.04"]
         assert command.main(words) == 0
     return folder
 
@@ -36,7 +41,7 @@ def rows(corpus: Path) -> list[dict]:
 
 def test_every_scene_has_a_plan_that_its_captions_tell(corpus: Path) -> None:
     found = rows(corpus)
-    assert {row["family"] for row in found} == set(FAMILIES)
+    assert {row["family"].split("-")[0] for row in found} == {"beats"}
     assert {row["split"] for row in found} == {"train", "test"}
     captions = right = 0
     for row in found:
@@ -54,9 +59,9 @@ def test_every_scene_has_a_plan_that_its_captions_tell(corpus: Path) -> None:
 
 def test_a_scene_has_its_class_from_its_label(corpus: Path) -> None:
     scenes = of_classes(prepare(corpus, TokenLayout()))
-    assert {row["family"] for row in scenes.rows} == set(FAMILIES) - {"ordered"}
+    assert {sum(not beat["minor"] for beat in row["beats"]) for row in scenes.rows} <= {0, 1}
     names, touches = labels_of(scenes)
-    assert {"bow", "wave"} <= set(names) and len(touches) == len(names)
+    assert names and len(touches) == len(names)
     assert all(class_of(row) in names for row in scenes.split("train"))
 
 
@@ -69,3 +74,37 @@ def test_captions_are_written_anew_and_the_rest_stays(corpus: Path) -> None:
     assert [{k: v for k, v in row.items() if k not in words} for row in before] == [
         {k: v for k, v in row.items() if k not in words} for row in after
     ]
+
+
+def test_a_written_corpus_reads_back(corpus: Path, tmp_path: Path) -> None:
+    tally = build.Tally()
+    scenes = build.draw(np.random.default_rng(0), Library(SOURCES, "train"), build.KINDS, 600, tally)
+    assert not tally.scenes["formation"] and sum(tally.frames.values()) >= 600
+    build.save(scenes, tmp_path)
+    motions = np.load(tmp_path / "motions.npy", allow_pickle=False)
+    index = json.loads((tmp_path / "index.json").read_text())
+    assert motions.shape == (sum(entry["frames"] for entry in index), 2, 22, 3)
+    for entry, scene in zip(index, scenes, strict=True):
+        part = motions[entry["start"] : entry["start"] + entry["frames"]]
+        np.testing.assert_array_equal(part.swapaxes(0, 1), scene.positions)
+        assert entry["captions"] == scene.captions
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["index.json", "motions.npy"]
+
+
+def test_a_kind_that_never_passes_is_left_out(monkeypatch, caplog) -> None:
+    monkeypatch.setattr(build, "fault", lambda scene: "broken")
+    tally = build.Tally()
+    assert build.draw(np.random.default_rng(0), Library(SOURCES, "train"), build.KINDS, 400, tally) == []
+    assert tally.rejected["beats", "broken"] > 1
+    assert "beats is left out" in caplog.text
+
+
+def test_dancers_keep_the_places_of_their_formation() -> None:
+    def dancer(name: str, place: tuple[float, float, float]) -> SourceClip:
+        return SourceClip(walk(200), f"formation-{name}", "normal", None, name, "made-up", place=place)
+
+    library = Library([dancer("a", (0, 0, 0)), dancer("b", (1.5, 0, 0)), dancer("c", (-1.5, 0, 0))], "train")
+    scene = formation(np.random.default_rng(0), library)
+    gap = np.linalg.norm(scene.positions[0, :, 0] - scene.positions[1, :, 0], axis=-1)
+    assert scene.label and {act.act for act in scene.label.plan.acts} == {"dance"}
+    assert np.allclose(gap, 1.5, atol=0.05) or np.allclose(gap, 3.0, atol=0.05)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,10 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from motion.kinematics import forward_kinematics
 from motion.skeleton import LEGS, SMPL22
-from motion.transforms import facing, heading
 from training.corpus import __main__ as command
-from training.corpus import blending, build, checks, compose, feet, stage
-from training.corpus.families import load_families
+from training.corpus import blending, checks, compose, feet
 from training.corpus.library import Library, extend, shorten
 from training.corpus.scene import Scene, SourceClip
 
@@ -240,60 +236,13 @@ def test_library_performs_the_wanted_side(library: Library, side: str) -> None:
 def test_library_keeps_splits_apart(library: Library) -> None:
     test = Library(clips() + clips("test"), "test")
     for books, split in ((library, "train"), (test, "test")):
-        scene = load_families()["wave-back"].build(np.random.default_rng(1), books)
-        assert scene.split == split
-        assert all(source.startswith(split) for source in scene.sources)
+        take = books.take(np.random.default_rng(1), "wave")
+        assert all(source.startswith(split) for source in take.motion.sources)
     with pytest.raises(LookupError, match="no 'kick'"):
         library.take(np.random.default_rng(0), "kick")
     few = [replace(clip, action="call", source="few", split="both") for clip in clips()[:1]]
     for split in ("train", "test"):
         assert Library(clips() + few, split).has("call")
-
-
-@pytest.mark.parametrize("name", ["wave-back", "bow-back", "raise-watch", "ordered", "sequence", "together",
-                                  "meet", "leave", "walk-together", "circle", "point"])  # fmt: skip
-def test_families_pass_the_checks(library: Library, name: str) -> None:
-    family = load_families()[name]
-    scene = family.build(np.random.default_rng(4), library)
-    assert bone_error(scene.positions) < 1e-4
-    assert abs(float(heading(scene.positions[0])[0])) < 1e-4
-    np.testing.assert_allclose(scene.positions[0, 0, 0, [0, 2]], 0, atol=1e-5)
-    assert len(set(scene.captions)) == len(scene.captions) >= 3
-    again = family.build(np.random.default_rng(4), library)
-    np.testing.assert_array_equal(scene.positions, again.positions)
-    assert scene.captions == again.captions
-
-
-def test_the_hand_that_the_captions_name_is_the_one_that_rises(library: Library) -> None:
-    for seed in range(8):
-        scene = load_families()["raise-watch"].build(np.random.default_rng(seed), library)
-        side = scene.events["side"]["a"]
-        heights = {hand: scene.positions[0, :, J(f"{hand}_wrist"), 1].max() for hand in ("left", "right")}
-        if side == "both":
-            assert min(heights.values()) > 1.4
-        else:
-            assert heights[side] > max(1.4, heights["right" if side == "left" else "left"] + 0.3)
-            assert all(re.search(rf"\b{side}\b", caption) for caption in scene.captions)
-
-
-def test_ordered_scenes_happen_in_order(library: Library) -> None:
-    for seed in range(6):
-        scene = load_families()["ordered"].build(np.random.default_rng(seed), library)
-        activity = np.linalg.norm(np.diff(scene.positions[:, :, J("spine3") :], axis=1), axis=-1).mean(
-            axis=-1
-        )
-        centre = (activity * np.arange(activity.shape[1])).sum(axis=1) / activity.sum(axis=1)
-        assert centre[0] + 20 < centre[1]
-
-
-def test_people_meet_face_to_face(library: Library) -> None:
-    scene = load_families()["meet"].build(np.random.default_rng(3), library)
-    roots = scene.positions[:, :, 0]
-    gap = np.linalg.norm((roots[0] - roots[1])[:, [0, 2]], axis=-1)
-    assert gap[-1] < 1.8 < gap[0]
-    towards = (roots[1, -1] - roots[0, -1]) / gap[-1]
-    assert facing(scene.positions[0])[-1] @ towards > 0.9
-    assert facing(scene.positions[1])[-1] @ -towards > 0.9
 
 
 def _scene(positions: np.ndarray) -> Scene:
@@ -320,46 +269,10 @@ def test_checks_turn_bad_scenes_away() -> None:
     assert checks.fault(_scene(close)) == "trunks overlap"
 
 
-def test_written_corpus_reads_back(tmp_path, library: Library) -> None:
-    families = {name: load_families()[name] for name in ("wave-back", "ordered")}
-    tally = build.Tally()
-    scenes = build.draw(np.random.default_rng(0), library, families, 900, tally)
-    build.save(scenes, tmp_path)
-    motions = np.load(tmp_path / "motions.npy", allow_pickle=False)
-    index = json.loads((tmp_path / "index.json").read_text())
-    assert motions.shape == (sum(entry["frames"] for entry in index), 2, 22, 3)
-    assert sum(tally.frames.values()) == len(motions) >= 900
-    assert {entry["family"] for entry in index} == set(families)
-    for entry, scene in zip(index, scenes, strict=True):
-        part = motions[entry["start"] : entry["start"] + entry["frames"]]
-        np.testing.assert_array_equal(part.swapaxes(0, 1), scene.positions.astype(np.float32))
-        assert entry["captions"] == scene.captions
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["index.json", "motions.npy"]
-
-
-def test_a_family_that_never_passes_is_left_out(library: Library, monkeypatch, caplog) -> None:
-    monkeypatch.setattr(
-        build, "fault", lambda scene, contact: "broken" if scene.family == "ordered" else None
-    )
-    families = {name: load_families()[name] for name in ("wave-back", "ordered")}
-    tally = build.Tally()
-    scenes = build.draw(np.random.default_rng(0), library, families, 400, tally)
-    assert {scene.family for scene in scenes} == {"wave-back"}
-    assert tally.rejected["ordered", "broken"] == build.TRIES
-    assert "ordered is left out" in caplog.text
-
-
-@pytest.mark.parametrize("extra", [["--families", "tango"], ["--hours", "-1"], []])
+@pytest.mark.parametrize("extra", [["--hours", "-1"], []])
 def test_command_says_what_is_wrong(tmp_path, capsys, extra: list[str]) -> None:
     out = tmp_path / "out"
     assert command.main(["--data", str(tmp_path / "none"), "--out", str(out), *extra]) == 2
     message = capsys.readouterr().err.strip()
     assert message.count("\n") == 0 and message
     assert not out.exists()
-
-
-def test_pad_waits_and_cuts(library: Library) -> None:
-    rng = np.random.default_rng(0)
-    person = motion(gesture(60, "left"))
-    assert len(stage.pad(rng, library, person, 40)) == 40
-    assert len(stage.pad(rng, library, person, 150)) == 150

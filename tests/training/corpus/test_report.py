@@ -1,4 +1,4 @@
-"""The report of a corpus, from a corpus of two families."""
+"""The report of a corpus of three scenes."""
 
 import json
 from pathlib import Path
@@ -8,8 +8,8 @@ import pytest
 from PIL import Image
 
 from motion import SMPL22, Duet
-from training.corpus import report, report_beats
-from training.corpus.cues import Beat, label
+from training.corpus import report
+from training.corpus.cues import STILL, Beat, label
 
 WRIST = SMPL22.index("right_wrist")
 TOUCH = {"a": "right_wrist", "b": "right_wrist", "start": 10, "end": 20}
@@ -42,62 +42,38 @@ def test_touch_gap_is_the_least_in_the_window_and_the_largest_of_the_touches() -
     assert report.touch_gap(duet, [TOUCH, TOUCH | {"start": 30, "end": 40}]) == pytest.approx(1, abs=1e-5)
 
 
-def test_command_writes_a_row_and_a_picture_a_family(
+def test_the_report_counts_acts_people_and_the_share_of_recorded_duets(
     corpus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    out = tmp_path / "docs"
-    assert report.main(["--corpus", str(corpus), "--out", str(out)]) == 0
-    text = (out / "corpus.md").read_text()
-    assert text.strip() == capsys.readouterr().out.strip()
-    assert "3 scenes of 2 families" in text
-    row = next(line for line in text.splitlines() if line.startswith("| shake"))
-    assert "| 2 (1) |" in row and "| 8 |" in row
-    for name in ("shake", "stand"):
-        assert Image.open(out / "corpus" / f"{name}.webp").width == report.PICTURE_WIDTH
-
-
-def test_the_report_counts_acts_people_and_the_share_of_recorded_duets(corpus: Path, tmp_path: Path) -> None:
     index = json.loads((corpus / "index.json").read_text())
     beats = [Beat(("dance", "dance"), 0, 45, relation="while"), Beat(("twirl", ""), 45, 60, relation="while")]
     made = label(beats, 60).row()
     index[0] |= {"sources": ["cmu-salsa/05"], "label": made}
     index[1] |= {
         "sources": ["accad_Female1_A07_Crouch", "cmu-solo_10_01", "cmu-iclone_002_06"],
-        "label": made,
+        "label": label([Beat(("shake-hands", "shake-hands"), 0, 60), Beat((STILL, STILL), 0, 60)], 60).row(),
     }
     index[2] |= {"sources": ["sbu/s01s02/06/001", "bandai"]}
-    text = report.report(np.load(corpus / "motions.npy"), index, tmp_path / "docs").replace("\n", " ")
-    assert "2 scenes (0 minutes, 66.7 %) are recorded duets" in text and "name 7 performers;" in text
-    rows = [line for line in (tmp_path / "docs" / "corpus.md").read_text().splitlines() if "dance |" in line]
-    assert rows == ["| dance | 2 | 0.1 | 0.0 |"]
-    assert report._acts_table([index[0]] * 60)[2:] == [
-        "| dance | 60 | 1.5 | 1.5 |",
-        "| twirl | 60 | 0.5 | 0.5 |",
-    ]
+    (corpus / "index.json").write_text(json.dumps(index))
+    out = tmp_path / "docs"
+    assert report.main(["--corpus", str(corpus), "--out", str(out)]) == 0
+    text = (out / "corpus.md").read_text()
+    assert text.strip() == capsys.readouterr().out.strip()
+    assert "3 scenes, 0.0 hours" in text and "1 scenes are for testing" in text
+    assert "2 scenes (0 minutes, 66.7 %) are recorded duets. The files name 7 performers;" in text
+    rows = {line.split("|")[1].strip(): line for line in text.splitlines() if line.startswith("| ")}
+    assert rows["shake-hands"] == "| shake-hands | 1 | 0.1 | 0.0 | 10 | [sheet](corpus/shake-hands.webp) |"
+    assert rows["stand-still"].endswith("| – |")
+    drawn = {path.stem for path in (out / "corpus").iterdir()}
+    assert drawn == {"dance", "twirl", "shake-hands"}
+    assert Image.open(out / "corpus" / "dance.webp").width == report.PICTURE_WIDTH
+    found = report._acts_table(np.load(corpus / "motions.npy"), [index[0]] * 60, out / "corpus")
+    assert found[2].startswith("| dance | 1 | 1.5 | 1.5 |") and found[3].startswith(
+        "| twirl | 1 | 0.5 | 0.5 |"
+    )
 
 
 def test_a_folder_without_a_corpus(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert report.main(["--corpus", str(tmp_path), "--out", str(tmp_path / "docs")]) != 0
     assert "python -m training.corpus" in capsys.readouterr().err
     assert not (tmp_path / "docs").exists()
-
-
-def test_beats_are_reported_act_by_act(corpus: Path, tmp_path: Path) -> None:
-    index = json.loads((corpus / "index.json").read_text())
-    beat = {
-        "start": 0,
-        "end": 60,
-        "acts": ["shake-hands", "shake-hands"],
-        "minor": False,
-        "captions": ["They."],
-    }
-    known = {"alone": [["A."], ["B."]], "sources": ["mesh2motion_Bow"]}
-    index[0] |= known | {"beats": [beat]}
-    index[2] |= known | {"beats": [beat | {"acts": ["wave", "stand-still"]}]}
-    (corpus / "index.json").write_text(json.dumps(index))
-    text = report_beats.report(*report_beats.load_corpus(corpus), tmp_path / "docs")
-    assert "2 scenes, 0.0 hours: 2 with 1 beats" in text
-    assert "| shake-hands | 1 | 0.0 | shake-hands | 6 | [sheet](corpus/beats/shake-hands.webp) |" in text
-    assert "| stand-still | 1 | 0.0 | wave | – | – |" in text
-    drawn = {path.stem for path in (tmp_path / "docs" / "corpus" / "beats").iterdir()}
-    assert drawn == {"shake-hands", "wave"}

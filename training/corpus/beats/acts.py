@@ -6,20 +6,44 @@ from collections.abc import Callable
 
 import numpy as np
 
+from motion.easing import smoothstep
+from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
 
-from ..compose import ARMS, Array, Motion, drift, layer
+from ..compose import ARMS, Array, Motion, drift, layer, lean
 from ..contact import UP, axes, bend, envelope, nod, on_body, reach_arm
-from ..families.combat import blow
-from ..families.gestures import dance_piece, deepened
 from ..library import Library, Take, pick
 from ..touches import Touches
 from .act import Act, Done, Make
 from .performer import Rng
 from .play import Play
+from .strikes import blow
 from .whole import WHOLE, part_of, perform, taken
 
+HEAD = SMPL22.index("head")
 UPPER = (*ARMS["left"], *ARMS["right"])
+
+
+def deepened(motion: Motion, drop: float) -> Motion:
+    """A bow whose head comes down by ``drop`` metres at least: the spine bends as much further as needed."""
+    height = forward_kinematics(motion.rotations, motion.root)[:, HEAD, 1]
+    fallen = height[: max(len(height) // 8, 1)].mean() - height
+    if fallen.max() < 0.04:
+        raise LookupError("a bow that is none")
+    if fallen.max() >= drop:
+        return motion
+    weight = smoothstep(fallen / fallen.max())
+    angle = 0.0
+    bent = motion
+    for _ in range(6):
+        lacking = drop - (height.max() - forward_kinematics(bent.rotations, bent.root)[:, HEAD, 1].min())
+        if lacking < 0.01:
+            break
+        angle = min(angle + lacking / 0.45, 1.25)
+        bent = lean(motion, angle * weight)
+        back = np.stack([np.sin(motion.headings), np.zeros(len(motion)), np.cos(motion.headings)], axis=-1)
+        bent = drift(bent, -0.09 * angle * weight[:, None] * back)
+    return bent
 
 
 def bow(play: Play, i: int) -> Done:
@@ -39,14 +63,11 @@ def dance(play: Play, i: int) -> Done:
     """Person i dances."""
     rng = play.rng
     action = pick(rng, [n for n in ("dance", "dance-show", "ballet") if play.library.has(n)])
-    if action == "dance":
-        take = dance_piece(rng, play.library)
-        motion = take.motion[: play.seconds(2.5, 4.0)]
-    else:
-        clip = play.library.take(rng, action).motion
-        frames = min(play.seconds(2.5, 4.0), len(clip))
-        at = int(rng.integers(0, len(clip) - frames + 1))
-        motion = clip[at : at + frames]
+    clip = play.library.take(rng, action).motion
+    frames = min(play.seconds(2.5, 4.0), len(clip))
+    at = int(rng.integers(0, len(clip) - frames + 1))
+    motion = clip[at : at + frames]
+    if action != "dance":
         way = (motion.root[-1] - motion.root[0]) * np.array([1.0, 0.0, 1.0])
         if np.linalg.norm(way) > 0.8:  # it stays about where it began
             motion = drift(motion, -np.linspace(0, 0.7, len(motion))[:, None] * way)

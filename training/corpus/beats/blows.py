@@ -9,12 +9,13 @@ import numpy as np
 from ..compose import Array
 from ..contact import envelope, impulse, lean_to, nod, on_body, reach, towards
 from ..cues import STILL
-from ..families import combat
-from ..stage import stride
+from ..library import stride
 from ..touches import Touches
 from .acts import ACTS
 from .moves import close_in, come
 from .play import Play
+from .strikes import blow, dodge, recoil
+from .strikes import reach as reach_of
 
 FALL = "fall-down>stand-up"
 
@@ -63,14 +64,14 @@ def blow_at(name: str) -> Callable[[Play, int], None]:
 
     def make(play: Play, i: int) -> None:
         rng = play.rng
-        take = combat.blow(rng, play.library, name, most=1)
+        take = blow(rng, play.library, name, most=1)
         start = play.sync()
         answers = {"punch": ("dodge", "flinch", "step-back", FALL), "kick": ("step-back", "flinch", FALL)}
         answer = play.wanted(answers[name], 1)
         if answer == FALL and not play.library.has("fall", "get-up-back"):
             answer = "flinch"
         far = play.gap
-        close_in(play, i, combat.reach(take) + rng.uniform(0.1, 0.25))
+        close_in(play, i, reach_of(take) + rng.uniform(0.1, 0.25))
         begun = play.sync()
         if far - play.gap > 0.6:
             play.note_span(("walk-up", STILL), start, begun, i=i, relation="while", minor=True)
@@ -85,7 +86,7 @@ def blow_at(name: str) -> Callable[[Play, int], None]:
             ACTS[FALL].make(play, 1 - i)
         else:
             other.hold_until(max(len(own), hit + 34))
-            other.motion = (combat.dodge if answer == "dodge" else combat.recoil)(rng, other.motion, hit)
+            other.motion = (dodge if answer == "dodge" else recoil)(rng, other.motion, hit)
         play.note((name, answer), begun, i=i, sides=(take.side, None))
 
     return make

@@ -9,8 +9,7 @@ from motion.vectors import wrapped
 from ..compose import Array, steer
 from ..contact import envelope
 from ..cues import STILL
-from ..library import pick
-from ..stage import stride
+from ..library import pick, stride
 from ..touches import Touches, arm_around, joined_hands, meet_hands, opposite
 from .moves import abreast, come, side_by_side
 from .play import Effect, Play

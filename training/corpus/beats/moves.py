@@ -9,8 +9,7 @@ from motion.vectors import wrapped
 from ..blending import ease
 from ..compose import Array, Motion, steer, tempo
 from ..cues import STILL
-from ..library import Take, pick
-from ..stage import stride
+from ..library import Take, pick, stride
 from .acts import ACTS, arms_over
 from .performer import Performer, bearing
 from .play import Play

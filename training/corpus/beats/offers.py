@@ -7,8 +7,7 @@ import numpy as np
 from ..compose import Array
 from ..contact import axes, envelope, on_body, reach_arm
 from ..cues import STILL
-from ..library import pick
-from ..stage import stride
+from ..library import pick, stride
 from ..touches import Touches, chosen_side
 from .acts import ACTS
 from .moves import close_in, come

@@ -7,9 +7,8 @@ import numpy as np
 from motion.vectors import wrapped
 
 from ..blending import ease
-from ..compose import Array, Motion, drift, facing_at, join, place, steer, tempo
-from ..library import Library, Take
-from ..stage import blend_for, stride
+from ..compose import Array, Motion, blend_for, drift, facing_at, join, place, steer, tempo
+from ..library import Library, Take, stride
 
 Rng = np.random.Generator
 

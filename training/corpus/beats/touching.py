@@ -12,8 +12,7 @@ from motion.vectors import wrapped
 from ..compose import Array
 from ..contact import UP, envelope, on_body, reach
 from ..cues import STILL
-from ..library import pick
-from ..stage import stride
+from ..library import pick, stride
 from ..touches import TOUCHES, Touches, chosen_side, help_up, hug, pat_back, pats, whisper
 from .blows import blow_at, push
 from .joined import arm_around_beat, carousel, hand_in_hand

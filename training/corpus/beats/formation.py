@@ -1,4 +1,4 @@
-"""Scenes of several beats as one family, of the largest share, and dancers who were recorded together."""
+"""Two of three dancers who were recorded together."""
 
 from __future__ import annotations
 
@@ -7,30 +7,23 @@ import numpy as np
 from motion.kinematics import forward_kinematics
 from motion.transforms import canonicalize
 
-from ..beats.script import compose
 from ..compose import FPS, Motion, mirror, motion_from_positions, place, realise
+from ..cues import Beat
 from ..library import Library
 from ..scene import Scene, SourceClip
-from ..stage import Rng, seconds
-from . import register
+from ..telling import describe
+from .performer import Rng
 
 DANCERS = ("formation-a", "formation-b", "formation-c")
 
 
-@register("beats", needs=("walk", "walk-back", "idle", "wave", "bow"), weight=260.0, contact=True)
-def beats(rng: Rng, library: Library) -> Scene:
-    """One to four beats, see :mod:`training.corpus.beats`."""
-    return compose(rng, library)
-
-
-@register("formation", "dance", needs=DANCERS, weight=4.0)
 def formation(rng: Rng, library: Library) -> Scene:
     """Two of three dancers, as they were recorded in one formation."""
     chosen = rng.permutation(3)[:2]
     parts = [library.clips(DANCERS[k]) for k in chosen]
     number = int(rng.integers(len(parts[0])))
     a, b = (_in_place(part[number]) for part in parts)
-    frames = min(seconds(rng, 4, 9), len(a), len(b))
+    frames = min(int(rng.uniform(4, 9) * FPS), len(a), len(b))
     for _ in range(12):  # now and then a dancer waits for long
         start = int(rng.integers(0, min(len(a), len(b)) - frames + 1))
         if min(_liveliness(m[start : start + frames]) for m in (a, b)) > 0.35:
@@ -39,7 +32,10 @@ def formation(rng: Rng, library: Library) -> Scene:
         a, b = mirror(a), mirror(b)
     positions = canonicalize(np.stack([realise(m[start : start + frames]) for m in (a, b)]))
     sources = tuple(sorted(set(a.sources + b.sources)))
-    return Scene(positions.astype(np.float32), "formation", sources, library.split)
+    beats = [Beat(("dance", "dance"), 0, frames, relation="while")]
+    return describe(
+        rng, Scene(positions.astype(np.float32), "formation", sources, library.split, played=beats)
+    )
 
 
 def _liveliness(motion: Motion) -> float:
