@@ -1,6 +1,6 @@
-"""``python -m training.evaluate``: see :mod:`training.evaluate.generation`."""
+"""``python -m training.evaluate``: see :mod:`training.evaluate.captions`."""
 
-from training.evaluate.generation import main
+from training.evaluate.captions import main
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(main())

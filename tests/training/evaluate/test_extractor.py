@@ -8,12 +8,13 @@ import torch
 
 from models.motion_tokens import TokenLayout, encode, foot_contacts
 from motion import SMPL22, InputError
-from training.evaluate import extractor
+from training.evaluate import captions, extractor
+from training.evaluate.captions import Sampling, draw, real_duet
 from training.evaluate.extractor import Settings, contrast, fit, load_extractor
-from training.evaluate.judge import retrieval
-from training.evaluate.judge.draw import Sampling
-from training.evaluate.judge.prompts import real_duet
 from training.prepare import Scenes, save
+from webdemo.inference import GenerateRequest
+from webdemo.inference.engine import WEIGHTS
+from webdemo.inference.pipelines.intergen import InterGenPipeline
 
 SETTINGS = Settings(
     width=32, num_layers=1, num_heads=2, features=16, batch=16, steps=100, learning_rate=2e-3, dropout=0.0
@@ -59,7 +60,7 @@ def test_contrast_is_least_where_pairs_match() -> None:
 
 
 def test_duets_lie_near_their_sentences(scenes: Scenes, trained: extractor.Extractor) -> None:
-    features = retrieval.Features(trained)
+    features = captions.Features(trained)
     rows = scenes.split("test")
     motion = features.motion([real_duet(scenes, row) for row in rows])
     np.testing.assert_allclose(np.linalg.norm(motion, axis=1), 1, atol=1e-5)
@@ -82,28 +83,28 @@ def test_saved_and_read_again(trained: extractor.Extractor, scenes: Scenes, tmp_
 def test_measures_of_recorded_and_of_wrong_motion(
     scenes: Scenes, trained: extractor.Extractor, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(retrieval, "POOL", 4)
+    monkeypatch.setattr(captions, "POOL", 4)
     real = {row["captions"][0]: real_duet(scenes, row) for row in scenes.rows}
 
     def same(tasks, seed):
-        yield from ((i, real[task.caption]) for i, task in enumerate(tasks))
+        yield from ((i, real[caption]) for i, (caption, _) in enumerate(tasks))
 
     def still(tasks, seed):
         yield from ((i, real["Two people walk."]) for i, _ in enumerate(tasks))
 
-    good = retrieval.measure(scenes, trained, same, repeats=2, many=2, samples=2)
-    bad = retrieval.measure(scenes, trained, still, repeats=2, many=2, samples=2)
+    good = captions.measure(scenes, trained, same, repeats=2, many=2, samples=2)
+    bad = captions.measure(scenes, trained, still, repeats=2, many=2, samples=2)
     assert good["generated"]["FID"][0] < 0.3 * bad["generated"]["FID"][0]
     assert good["generated"]["MM distance"][0] < bad["generated"]["MM distance"][0]
     assert good["generated"]["multimodality"] == [0.0, 0.0]
     assert good["real"]["top 3"][0] > bad["generated"]["top 3"][0]
-    shown = retrieval.table(good)
+    shown = captions.table(good)
     assert "| FID |" in shown and "| multimodality | 0.000 | – |" in shown
 
 
 def test_too_few_test_scenes(scenes: Scenes, trained: extractor.Extractor) -> None:
     with pytest.raises(InputError, match="16 test scenes are fewer than the 32"):
-        retrieval.measure(scenes, trained, None)
+        captions.measure(scenes, trained, None)
 
 
 def test_command(scenes: Scenes, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -115,8 +116,16 @@ def test_command(scenes: Scenes, tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "python -m training.prepare" in "".join(capsys.readouterr())
 
 
-def test_sampling_is_the_products_default() -> None:
-    from webdemo.inference import GenerateRequest
+def test_captions_of_several_lengths_are_drawn_at_once_and_each_by_its_own_seed() -> None:
+    generator = InterGenPipeline(WEIGHTS / "intergen")
+    tasks = [("Two people hug.", 60), ("One person bows.", 95), ("Two people hug.", 62)]
+    found = dict(draw(generator, tasks, Sampling(steps=2), 5))
+    assert [found[i].num_frames for i in range(3)] == [60, 90, 60]
+    assert np.abs(found[0].positions - found[2].positions).max() > 1e-3
+    (alone,) = (duet for _, duet in draw(generator, tasks[:1], Sampling(steps=2), 5))
+    np.testing.assert_allclose(alone.positions, found[0].positions, atol=1e-4)
 
+
+def test_sampling_is_the_products_default() -> None:
     request = GenerateRequest(prompt="x")
     assert (Sampling().guidance, Sampling().damping) == (request.guidance, request.damping)

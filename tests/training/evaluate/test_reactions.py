@@ -1,11 +1,12 @@
 """The scores of reactions: a classifier that learns, and distances that say what they should."""
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
 
-from motion import Duet
+from motion import SMPL22, Duet
 from motion.metrics import summary
 from training.evaluate.deep_gru import (
     accuracy,
@@ -16,18 +17,20 @@ from training.evaluate.deep_gru import (
     padded,
     spread,
 )
-from training.evaluate.judge.reactions import METHODS
-from training.evaluate.paper_tables.clips import SENTENCES
 from training.evaluate.reactions import (
     CLASS_TOLD,
+    METHODS,
+    SENTENCES,
     Reaction,
     interval,
+    react,
     reacted,
     readouts,
     score,
     table,
     zero_velocity,
 )
+from webdemo.inference import Engine, ReactRequest
 
 
 def clips(count: int, seed: int) -> tuple[list[np.ndarray], list[int]]:
@@ -136,6 +139,35 @@ def test_the_class_is_told_only_where_the_name_says_so(name: str, monkeypatch: p
         made = reacted(None, pair, ["kick", "push"], 0, method)  # type: ignore[arg-type]
         assert made.shape == (40, 22, 3)
     assert asked == [(METHODS[name], ""), (METHODS[name], "One person pushes the other.")]
+
+
+@pytest.fixture
+def duet() -> Duet:
+    person = (SMPL22.rest_positions() + np.array([0, 0.98, 0]))[None].repeat(45, axis=0)
+    other = person * [-1, 1, -1] + [0, 0, 1.2]
+    return Duet.from_positions(np.stack([person, other]), fps=30.0)
+
+
+def test_person_a_stays_as_recorded(duet: Duet) -> None:
+    for method, chosen in METHODS.items():
+        made = react(Engine(), duet, 3, chosen | {"steps": 2}, prompt="They hug.")
+        np.testing.assert_allclose(made.a.positions, duet.a.positions, atol=1e-5, err_msg=method)
+        assert made.b.positions.shape == duet.b.positions.shape
+
+
+def test_words_and_the_first_pose_reach_only_methods_that_take_them(duet: Duet) -> None:
+    asked: list[ReactRequest] = []
+
+    class Listening:
+        def run(self, request: ReactRequest) -> Any:
+            asked.append(request)
+            return Engine().run(request)
+
+    for method in ("InterFormer, first pose given", "ReGenNet, online"):
+        react(Listening(), duet, 0, METHODS[method], prompt="They hug.")  # type: ignore[arg-type]
+    assert [request.prompt for request in asked] == ["", "They hug."]
+    np.testing.assert_allclose(asked[0].first_pose, duet.b.positions[0])
+    assert asked[1].first_pose is None
 
 
 def test_every_class_of_either_protocol_has_a_sentence() -> None:

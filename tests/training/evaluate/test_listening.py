@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from motion import SMPL22
 from motion.transforms import turn
-from training.evaluate.judge.listening import listening, said
+from training.evaluate.listening import listening, main, said
 
 
 def standing(frames: int = 5, raised: float = 0.0) -> np.ndarray:
@@ -32,3 +34,12 @@ def test_without_pairs_nothing_is_said() -> None:
     found = listening([[standing()]])
     assert found == {"seeds": None, "sentences": None}
     assert said(found) == ""
+
+
+def test_the_command_reads_a_folder_of_motions(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, raised in (("wave-1f-0", 0.0), ("wave-1f-1", 0.22), ("bow-2e-0", 0.44)):
+        np.save(tmp_path / f"{name}.npy", standing(raised=raised))
+    assert main([str(tmp_path)]) == 0
+    assert "1.0 cm apart, of two sentences of a seed 2.0 cm" in capsys.readouterr().out
+    (tmp_path / "bow-2e-0.npy").unlink()
+    assert main([str(tmp_path)]) == 2

@@ -1,18 +1,24 @@
 """A measure of whether a network listens: how far its poses move with the sentence, and how far with the seed.
 
 A network that hardly listens gives two sentences of one seed almost the same motion, and one that is a single actor
-gives two seeds of one sentence almost the same.
+gives two seeds of one sentence almost the same. ``python -m training.evaluate.listening MOTIONS`` measures
+the motions that ``python -m webdemo score --motions MOTIONS`` kept.
 """
 
 from __future__ import annotations
 
+import argparse
 import itertools
+from collections import defaultdict
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from motion import InputError
 from motion.transforms import heading, heading_matrix
+from training.core.shell import exit_code
 
 Array = NDArray[np.floating]
 
@@ -55,3 +61,25 @@ def said(found: dict[str, float | None]) -> str:
         f" Poses of two seeds of a sentence are {seeds:.1f} cm apart, of two sentences of a seed {sentences:.1f} cm, "
         f"{sentences / seeds:.1f} times as far."
     )
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
+    parser = argparse.ArgumentParser(prog="python -m training.evaluate.listening", description=__doc__)
+    parser.add_argument("motions", type=Path, help="a folder of NAME-SEED.npy")
+    options = parser.parse_args(argv)
+
+    def job() -> None:
+        kept: dict[str, list[Array]] = defaultdict(list)
+        for path in sorted(options.motions.rglob("*.npy")):
+            kept[path.stem.rpartition("-")[0]].append(np.load(path, allow_pickle=False).astype(np.float64))
+        text = said(listening(list(kept.values())))
+        if not text:
+            raise InputError(f"{options.motions} holds no two seeds of two sentences: score with --seeds 2.")
+        print(text.strip())
+
+    return exit_code(job)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
