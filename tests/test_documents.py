@@ -116,7 +116,9 @@ def shares(text: str, pattern: str) -> list[str]:
 def test_the_class_models_card_has_the_scores_of_the_table() -> None:
     card = (ROOT / "models/weights/bigraphdiff/CARD.md").read_text()
     scores = (ROOT / "docs/scores.md").read_text()
-    table = scores[scores.index("<!-- classes -->") : scores.index("<!-- end of classes -->")]
+    table = scores[
+        scores.index("## A class to two people") : scores.index("## Reactions to a recorded person")
+    ]
     rows = {name: cells for name, *cells in re.findall(r"^\| ([^|]+) \| ([^|]+) \| ([^|]+) \|$", table, re.M)}
     named, among = rows["class recognised"], rows["class among the 3 likeliest"]
     said = shares(card, r"right class in (\d+) % .* likeliest in (\d+) % \(.*: (\d+) and (\d+) %\)")

@@ -88,7 +88,7 @@ def draw(
                 model,
                 sampling.damping,
                 frames=frames,
-                final_timestep=int(scheduler.timesteps[-1]),
+                timesteps=scheduler.timesteps.tolist(),
                 touches=model.touches(condition),
             )
 

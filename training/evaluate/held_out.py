@@ -56,7 +56,7 @@ def errors(model: CompactInterGen, data: Data, kind: str, batches: int) -> Tenso
     total = torch.zeros(len(TIMESTEPS))
     for step in range(batches):
         batch = data.batch(step)
-        cond, _ = condition(model, batch)
+        cond = condition(model, batch)
         frames = batch.frame_mask.sum(1).int().tolist()
         known = known_parts(
             model.control(batch.x0), frames, [0] * len(frames), layout, GIVEN[kind], seeded(step, 1)

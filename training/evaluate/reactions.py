@@ -3,8 +3,8 @@
 The thesis' table (Chopin, Tables 3.2–3.3) on SBU and K3HI: classification accuracy, FVD and diversity of the
 reacting person, for recorded motion, zero velocity and the reaction models of the engine. The classifiers
 (:mod:`training.evaluate.deep_gru`) are trained on recorded reactions of the published training lists and judge those
-to the actors of the test lists, which no model was trained on. Three baselines of :mod:`training.evaluate.baselines`
-know the same recorded pairs.
+to the actors of the test lists, which no model was trained on. The nearest recorded reaction
+knows the same recorded pairs.
 
 Methods whose name ends in *class told* get the sentence of the clip's class (:data:`SENTENCES`), the others no words.
 
@@ -32,10 +32,10 @@ from motion.metrics import summary
 from training.core.shell import add_options, exit_code
 from training.corpus.pairs import load_pairs
 from training.corpus.strict_pairs import strict_pairs
-from training.evaluate.baselines import Baseline, conditional_vae, nearest, plain_transformer
 from training.evaluate.deep_gru import accuracy, deep_features, fit, frechet_distance, measured
 from webdemo.inference import Engine, ReactRequest, Result
 from webdemo.inference.engine import WEIGHTS
+from webdemo.inference.pipelines.nearest import Bank
 
 Array = NDArray[np.floating]
 
@@ -47,6 +47,7 @@ METHODS: dict[str, dict[str, Any]] = {
     "ReGenNet, offline": _OFFLINE,
     "ReGenNet, online, first pose given": _ONLINE | {"first_pose": True},
     "ReGenNet, offline, first pose given": _OFFLINE | {"first_pose": True},
+    "InterFormer": {"model": "interformer"},
     "InterFormer, first pose given": {"model": "interformer", "first_pose": True},
     "InterGen, person to person": _PERSON_TO_PERSON | {"steps": 20, "guidance": 1.0, "damping": 0.0},
     "Virtual agent": {"model": "agent", "steps": 20, "damping": 0.0},
@@ -169,22 +170,10 @@ def long_enough(people: Array) -> Array:
     return np.concatenate([people, np.repeat(people[:, -1:], missing, axis=1)], axis=1)
 
 
-def baselines(
-    train: Sequence[Reaction], test: Sequence[Reaction], seeds: int, *, steps: int = 400
-) -> dict[str, list[list[Array]]]:
-    """Per baseline and seed, a person b for each test clip. The nearest reaction has no seed."""
-    known = [reaction.people for reaction in train]
-
-    def all_of(react: Baseline) -> list[Array]:
-        return [react(reaction.people) for reaction in test]
-
-    return {
-        "Nearest recorded reaction": [all_of(nearest(known))],
-        "Plain Transformer": [
-            all_of(plain_transformer(known, seed=seed, steps=steps)) for seed in range(seeds)
-        ],
-        "Conditional VAE": [all_of(conditional_vae(known, seed=seed, steps=steps)) for seed in range(seeds)],
-    }
+def nearest(bank: Bank, people: Array) -> Array:
+    """The reactor (T, 22, 3) of the recorded pair whose actor and first pose lie nearest to these people's."""
+    found = int(bank.answers(people[0], people[1, 0])[0])
+    return bank.reactor(found, people.shape[1], people[1, 0])
 
 
 def zero_velocity(reaction: Reaction, _: int) -> Array:
@@ -298,7 +287,8 @@ def _run(options: argparse.Namespace) -> None:
         read = strictly if options.strict else recorded
         train, test, classes = read(options.data, options.cache, dataset)
         made = {"Zero velocity": [[zero_velocity(reaction, 0) for reaction in test]]}
-        made |= baselines(train, test, options.samples)
+        bank = Bank([reaction.people for reaction in train])
+        made["Nearest recorded reaction"] = [[nearest(bank, reaction.people) for reaction in test]]
         for method in options.methods:
             made[method] = []
             for seed in range(options.samples):

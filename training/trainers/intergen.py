@@ -69,15 +69,15 @@ def new_model(settings: Settings, data: Data) -> CompactInterGen:
     return model
 
 
-def condition(model: CompactInterGen, batch: Batch) -> tuple[Tensor, Tensor]:
-    """The condition of the sentences that are read, and the vectors (B, C) of those for both people."""
+def condition(model: CompactInterGen, batch: Batch) -> Tensor:
+    """The condition of the sentences that are read."""
     size = len(batch.x0)
     if not model.config.words:
         vectors = model.conditioner(batch.text[:size], batch.text_mask[:size])
-        return vectors * batch.read[:, :1], vectors
+        return vectors * batch.read[:, :1]
     rows = model.conditioner.rows(batch.text, batch.text_mask)
     text = rows.new_zeros(3 * size, *rows.shape[1:]).index_copy(0, batch.places, rows)
-    return text.view(size, 3, *rows.shape[1:]) * batch.read[:, :, None, None], rows[:size, 0]
+    return text.view(size, 3, *rows.shape[1:]) * batch.read[:, :, None, None]
 
 
 @dataclass
@@ -121,8 +121,7 @@ class Trainer(Loop):
                 checkpoint.restore_part(init, "ema", self.model)
         self.ema = build(settings, self.data).to(device).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
-        self.reader = self.data.reader.to(device)
-        self.optimizer = adamw([*self.model.parameters(), *self.reader.parameters()], settings)
+        self.optimizer = adamw(self.model.parameters(), settings)
         self.restore(asdict(settings))
         self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
 
@@ -144,10 +143,6 @@ class Trainer(Loop):
         self.feature_weights = torch.ones(FEATURES, device=device)
         self.feature_weights[:3] = settings.root_weight**0.5
         self.feature_weights = self.feature_weights.repeat(scenes.layout.knots_per_token)
-
-    def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
-        """The contents of a checkpoint, by name."""
-        return {"model": self.model, "ema": self.ema, "reader": self.reader, "optimizer": self.optimizer}
 
     def known(self, batch: Batch, generator: torch.Generator) -> Known | None:
         """The given parts of each motion, drawn by the settings' shares."""
@@ -185,11 +180,10 @@ class Trainer(Loop):
             xt = hold(xt)
         seen = {} if hold is None or not self.settings.words else {"known": hold.features.to(xt)}
         with mixed_precision(self.device):
-            cond, vectors = condition(self.model, batch)
+            cond = condition(self.model, batch)
             predicted = self.model.denoiser(xt, t, cond, batch.mask, **seen)
         predicted = predicted.float() if hold is None else hold(predicted.float())
-        reading = self.settings.reading_weight * self.reader(vectors, batch.labels)
-        return {"reading": reading} | self.motion_terms(predicted, batch.x0, t, batch)
+        return self.motion_terms(predicted, batch.x0, t, batch)
 
     def motion_terms(self, made: Tensor, wanted: Tensor, t: Tensor, batch: Batch) -> dict[str, Tensor]:
         """The losses of clean motions (B, tokens, 2F) against those that are wanted, weighted and damped."""

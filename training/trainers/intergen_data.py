@@ -25,7 +25,6 @@ from training.core.text_features import CaptionFeatures, CaptionTokens
 from training.corpus.grammar import mirror_caption
 from training.prepare import Scenes, normalizer, sentence_lists
 from training.trainers.given import Shares
-from training.trainers.reading import UNKNOWN, CaptionReader
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,6 @@ class Settings:
     ema: float = 0.9985
     cond_drop_prob: float = 0.1
     root_weight: float = 4.0
-    reading_weight: float = 0.1
     t_bar: float = 0.7
     noisiest: float = 0.4
     seed: int = 0
@@ -130,7 +128,6 @@ class Batch:
         places: (N,) 3 times a sentence's row, plus 0 for both people, 1 for a, 2 for b.
         read: (B, 3), 1 where a sentence is read; those for both people are there even if they are not.
         past: (B,) frames at the beginning that are given.
-        labels: (B, 5) what the captions say, see :mod:`training.trainers.reading`.
     """
 
     x0: Tensor
@@ -141,7 +138,6 @@ class Batch:
     places: Tensor
     read: Tensor
     past: Tensor
-    labels: Tensor
 
 
 LEAST = 20
@@ -207,7 +203,6 @@ class Data:
             self.captions = CaptionFeatures(sorted(known), cache) if on_cpu else CaptionTokens(device)
         self.mean, self.std = normalizer(scenes, SMPL22.mirror)
         self.tokens = torch.tensor([row["tokens"] for row in self.rows])
-        self.reader = CaptionReader(scenes.rows, settings.cond_dim)
         self.batches_an_epoch = len(self.rows) // settings.batch
         self._epoch, self._order = -1, torch.empty(0)
 
@@ -283,7 +278,7 @@ class Data:
         mask, read = torch.zeros(len(rows), tokens, 2), torch.zeros(len(rows), 3)
         frame_mask = torch.zeros(len(rows), layout.num_frames(tokens))
         past = torch.zeros(len(rows), dtype=torch.long)
-        both, alone, places, labels = [], [], [], []
+        both, alone, places = [], [], []
         for i, (row, draw) in enumerate(zip(rows, draws, strict=True)):
             one, (sentences, chosen) = self.scenes.scene(row), self.sentences(row, draw[1:6])
             cut = self.continued(row, draw[6:])
@@ -294,8 +289,6 @@ class Data:
             named = [s for s, wanted in zip(sentences, chosen, strict=True) if wanted]
             text = " ".join(named or sentences[:1])
             mirror = mirrored(text, row.get("hand"), draw[0])
-            label = self.reader.labels(row, mirror=mirror)
-            labels.append(label if cut is None else torch.full_like(label, UNKNOWN))
             if mirror:
                 one = mirror_control(one, SMPL22.mirror)
                 sentences = [mirror_caption(sentence) for sentence in sentences]
@@ -311,7 +304,7 @@ class Data:
         text, text_mask = self.features(both + alone)
         x0 = pack((control - self.mean) / self.std, layout)
         where = torch.tensor([*range(0, 3 * len(rows), 3), *places])
-        return Batch(x0, mask, frame_mask, text, text_mask, where, read, past, torch.stack(labels))
+        return Batch(x0, mask, frame_mask, text, text_mask, where, read, past)
 
     def on_device(self, batch: Batch) -> Batch:
         """A batch on the device, with the features of its sentences."""

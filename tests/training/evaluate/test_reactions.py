@@ -8,6 +8,7 @@ import pytest
 
 from motion import SMPL22, Duet
 from motion.metrics import summary
+from tests.motion.bodies import marching
 from training.evaluate.deep_gru import (
     accuracy,
     deep_features,
@@ -23,6 +24,8 @@ from training.evaluate.reactions import (
     SENTENCES,
     Reaction,
     interval,
+    long_enough,
+    nearest,
     react,
     reacted,
     readouts,
@@ -31,6 +34,7 @@ from training.evaluate.reactions import (
     zero_velocity,
 )
 from webdemo.inference import Engine, ReactRequest
+from webdemo.inference.pipelines.nearest import Bank
 
 
 def clips(count: int, seed: int) -> tuple[list[np.ndarray], list[int]]:
@@ -139,6 +143,34 @@ def test_the_class_is_told_only_where_the_name_says_so(name: str, monkeypatch: p
         made = reacted(None, pair, ["kick", "push"], 0, method)  # type: ignore[arg-type]
         assert made.shape == (40, 22, 3)
     assert asked == [(METHODS[name], ""), (METHODS[name], "One person pushes the other.")]
+
+
+def walking(way: float, frames: int = 40) -> np.ndarray:
+    """An actor who goes along X by ``way`` metres, and a reactor who goes half as far along Z."""
+    rest, time = marching(2)[0][0], np.linspace(0, 1, frames)[:, None, None]
+    actor = rest + time * np.array([way, 0, 0])
+    return np.stack([actor, rest + np.array([0, 0, 1.0]) + time * np.array([0, 0, way / 2])])
+
+
+def test_the_nearest_reaction_begins_in_the_given_pose_and_the_reaction_is_not_looked_at() -> None:
+    bank = Bank([walking(0.0), walking(1.0), walking(-1.0)])
+    asked = walking(0.9, frames=25)
+    asked[1] += np.array([0.05, 0, 0])  # stands elsewhere: the reaction begins there
+    made = nearest(bank, asked)
+    assert made.shape == (25, 22, 3)
+    np.testing.assert_allclose(made[0], asked[1, 0], atol=1e-12)
+    np.testing.assert_allclose((made[-1] - made[0])[:, 2], 0.5, atol=1e-6)  # that of the pair that goes 1 m
+    asked[1, 1:] += 3.0
+    np.testing.assert_array_equal(nearest(bank, asked), made)
+
+
+@pytest.mark.parametrize(("frames", "wanted"), [(12, 31), (50, 50)])
+def test_short_clips_hold_their_last_poses(frames: int, wanted: int) -> None:
+    people = walking(1.0, frames)
+    found = long_enough(people)
+    assert found.shape[1] == wanted
+    np.testing.assert_array_equal(found[:, :frames], people)
+    np.testing.assert_array_equal(found[:, -1], people[:, -1])
 
 
 @pytest.fixture

@@ -24,7 +24,7 @@ SETTINGS = Settings(
 
 @pytest.fixture(scope="module")
 def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Half of the scenes are handshakes, in the others both wave; one is of two acts in order, which is no class."""
+    """Half of the scenes are handshakes, in the others both wave; one is of two beats, which is no class."""
     folder = tmp_path_factory.mktemp("classes")
     corpus = write_corpus(folder / "corpus", scenes=13)
     rows = json.loads((corpus / "index.json").read_text())
@@ -33,7 +33,8 @@ def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
         row["label"] = label([Beat((cue, cue), 0, row["frames"], relation="while")], row["frames"]).row()
         row["beats"] = []
         if i == 4:
-            row["events"]["order"] = ["bow", "wave"]
+            beat = Beat((cue, cue), 0, row["frames"]).row(row["frames"], ["They wave."])
+            row["beats"] = [beat, beat]
     (corpus / "index.json").write_text(json.dumps(rows))
     out = folder / "scenes.safetensors"
     assert prepare.main(["--corpus", str(corpus), "--out", str(out)]) == 0

@@ -14,7 +14,6 @@ from training.core.text_features import CaptionFeatures
 from training.trainers import intergen
 from training.trainers.given import Shares
 from training.trainers.intergen_data import LEAST, SENTENCES, balanced
-from training.trainers.reading import UNKNOWN
 
 
 @pytest.fixture(scope="module")
@@ -37,8 +36,8 @@ def test_sentences_for_each_person_are_read_and_left_out(scenes: Path, tmp_path:
     shares = {tuple(read): 0 for read in SENTENCES} | {(0, 0, 0): 0}
     for step in range(60):
         batch = trainer.data.batch(step)
-        conditions, vectors = intergen.condition(trainer.model, batch)
-        assert conditions.shape[:2] == (4, 3) and len(vectors) == 4
+        conditions = intergen.condition(trainer.model, batch)
+        assert conditions.shape[:2] == (4, 3)
         # A sentence that is read has rows, and no other has.
         assert torch.equal((conditions != 0).any(-1).any(-1), batch.read.bool())
         for read in batch.read.bool().tolist():
@@ -90,10 +89,10 @@ def test_a_later_beat_is_learned_with_what_came_before_it_given(scenes: Path, tm
         known = trainer.known(batch, torch.Generator().manual_seed(0))
         for i, past in enumerate(batch.past.tolist()):
             if not past:
-                assert read[i] != "They bow." and (batch.labels[i] >= 0).all()
+                assert read[i] != "They bow."
                 continue
             cut += 1
-            assert read[i] == "They bow." and past == 12 and (batch.labels[i] == UNKNOWN).all()
+            assert read[i] == "They bow." and past == 12
             assert batch.frame_mask[i].sum() >= past + LEAST
             assert torch.equal(known.mask[i].any(-1).sum(-1), torch.tensor([past, past]))
             root = known.rows[i, 0, 0, :3]
@@ -108,7 +107,7 @@ def test_a_beat_that_was_cut_off_is_left_out(scenes: Path, tmp_path: Path) -> No
     row = data.rows[0] | {"beats": [{}, {"start": 300, "end": 320, "captions": ["They bow."]}]}
     assert data.continued(row, [0.0] * 4) is None
     row["beats"][1] |= {"start": 8, "end": 300}
-    assert data.continued(row, [0.0] * 4)[1:] == (8, "They bow.", 0)
+    assert data.continued(row, [0.0] * 4)[1:] == (8, "They bow.")
     row["beats"][1]["captions"] = []
     assert data.continued(row, [0.0] * 4) is None
 

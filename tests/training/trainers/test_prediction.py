@@ -15,7 +15,6 @@ from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import load_predictor, save_predictor
 from motion import SMPL22, InputError
 from motion.transforms import heading
-from training.evaluate import prediction_ablation as ablation
 from training.evaluate import prediction_product as product
 from training.trainers import mawgan
 from training.trainers import motion_mlp as mlp
@@ -278,24 +277,3 @@ def test_standing_feet_that_glide_are_measured() -> None:
     assert product.glide(standing) == 0.0
     sliding = standing + 0.004 * np.arange(30)[:, None, None] * np.array([1.0, 0.0, 0.0])
     assert product.glide(sliding) == pytest.approx(12.0, rel=1e-6)
-
-
-def test_every_row_of_the_ablation_is_trained_once_and_scored(
-    cmu_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    small = {"fc": 36, "critic_fc": 8, "batch": 4}
-    monkeypatch.setattr(ablation, "LEAN", ablation.LEAN | small)
-    page = tmp_path / "page.md"
-    asked = ["--data", str(cmu_folder), "--out", str(tmp_path / "runs"), "--steps", "1", "--table", str(page)]
-    assert ablation.main([*asked, "--only", "a-r", "no-linear", "lean", "past-5"]) == 0
-    text = page.read_text()
-    for row in ("| La + Lr |", "| the same, convolutions alone |", "| 25 frames of past |", "zero velocity"):
-        assert row in text
-    configs = {
-        path.parents[1].name: json.loads(path.read_text())
-        for path in (tmp_path / "runs").glob("*/predictor/config.json")
-    }
-    assert configs["past-5"]["model"]["past"] == 5 and not configs["no-linear"]["model"]["linear"]
-    assert configs["a-r"]["training"]["skeleton"] == configs["a-r"]["training"]["position"] == 0
-    monkeypatch.setattr(ablation, "Trainer", None)  # nothing is trained anew
-    assert ablation.main([*asked, "--only", "a-r"]) == 0

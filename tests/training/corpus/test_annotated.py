@@ -1,4 +1,4 @@
-"""InterHuman's files become a corpus on which the trainer runs, stops and goes on."""
+"""Files of InterHuman and Inter-X become a corpus on which the trainer runs, stops and goes on."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from motion.transforms import canonicalize
 from tests.motion.bodies import marching
 from tests.training.trainers.runs import SETTINGS, begin, take
 from training import prepare
-from training.corpus import interhuman
+from training.corpus import annotated
 
 POSITIONS, _ = marching(60)
 OTHER = POSITIONS * [-1, 1, -1] + np.array([0.0, 0.0, 1.5])
@@ -42,7 +42,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def corpus(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("corpus")
-    assert interhuman.main(["--data", str(data), "--out", str(out)]) == 0
+    assert annotated.main(["--data", str(data), "--out", str(out)]) == 0
     return out
 
 
@@ -81,10 +81,33 @@ def test_lists_give_the_split_and_what_is_damaged_is_left_out(
     (tmp_path / "copy" / "split").mkdir()
     (tmp_path / "copy" / "split" / "test.txt").write_text("7\n")
     np.save(tmp_path / "copy" / "motions_processed" / "person1" / "8.npy", np.full((40, 492), np.nan))
-    (scene,) = interhuman.read_interhuman(tmp_path / "copy")
+    (scene,) = annotated.read_annotated(tmp_path / "copy")
     assert scene.split == "test" and "8.npy" in capsys.readouterr().err
 
 
 def test_another_folder_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert interhuman.main(["--data", str(tmp_path), "--out", str(tmp_path / "out")]) == 2
+    assert annotated.main(["--data", str(tmp_path), "--out", str(tmp_path / "out")]) == 2
     assert "person1" in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
+def test_inter_x_is_read_by_its_parameters_and_the_actor_comes_first(tmp_path: Path) -> None:
+    (tmp_path / "texts").mkdir()
+    for name in ("G001", "G002"):
+        (tmp_path / "motions" / name).mkdir(parents=True)
+        (tmp_path / "texts" / f"{name}.txt").write_text("Two people stand.\n")
+        for person, place in (("P1", 0.0), ("P2", 1.0)):
+            np.savez(
+                tmp_path / "motions" / name / f"{person}.npz",
+                root_orient=np.zeros((60, 3), np.float32),
+                pose_body=np.zeros((60, 63), np.float32),
+                trans=np.tile(np.float32([place, 0.0, 2.0 * place]), (60, 1)),
+                mocap_frame_rate=np.float32(30.0),
+            )
+    (tmp_path / "second.txt").write_text("G002\n")
+    words = ["--data", str(tmp_path), "--out", str(tmp_path / "corpus")]
+    assert annotated.main([*words, "--second-acts", str(tmp_path / "second.txt")]) == 0
+    motions, rows = prepare.load_corpus(tmp_path / "corpus")
+    assert [row["sources"] for row in rows] == [["interx/G001"], ["interx/G002"]]
+    gaps = [np.asarray(motions[row["start"], 1, 0] - motions[row["start"], 0, 0]) for row in rows]
+    np.testing.assert_allclose(gaps[0][[0, 2]], -gaps[1][[0, 2]], atol=1e-3)
+    np.testing.assert_allclose(np.linalg.norm(gaps[0][[0, 2]]), 5**0.5, atol=0.05)
