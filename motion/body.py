@@ -1,8 +1,8 @@
 """Skinned bodies on the 22 SMPL joints: what the player, the exports and the films draw.
 
-A body is a closed surface bound to SMPL22 (``static/bodies``, made from MakeHuman's mesh, CC0). Joint positions alone pose it: :func:`bone_rotations` finds how each bone is turned, twist
-included, and :func:`skin` moves the surface by linear blend skinning. ``static/player/pose.js`` and
-``skin.js`` do the same in the browser, number for number.
+A body is a closed surface bound to SMPL22 (``static/bodies``, made from MakeHuman's mesh, CC0). Joint positions alone
+pose it: :func:`bone_rotations` finds how each bone is turned, twist included, and :func:`skin` moves the surface by
+linear blend skinning. ``static/player/pose.js`` and ``skin.js`` do the same in the browser, number for number.
 """
 
 from __future__ import annotations
