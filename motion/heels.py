@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .easing import smoothstep
-from .vectors import unit
+from .vectors import FLAT, unit
 
 Array = NDArray[np.floating]
 
 _BEHIND = 0.2
 """Metres that a foot is behind its hip from which its heel rises fully."""
-_FLAT = np.array([1.0, 0.0, 1.0])
 
 
 def heel_raised(hip: Array, ankle: Array, toe: Array, leg: Array) -> Array:
@@ -34,7 +33,7 @@ def heel_raised(hip: Array, ankle: Array, toe: Array, leg: Array) -> Array:
     along = np.clip((length**2 + far**2 - leg**2) / np.maximum(2 * far, 1e-9), -length, length)
     out = unit(foot - np.sum(foot * axis, axis=-1, keepdims=True) * axis)
     raised = toe + along * axis + np.sqrt(np.maximum(length**2 - along**2, 0.0)) * out
-    ahead = np.sum((hip - ankle) * unit((toe - ankle) * _FLAT), axis=-1, keepdims=True)
+    ahead = np.sum((hip - ankle) * unit((toe - ankle) * FLAT), axis=-1, keepdims=True)
     short = np.linalg.norm(ankle - hip, axis=-1, keepdims=True) > leg
     turned = toe + (ankle - toe) + short * smoothstep(ahead / _BEHIND) * (raised - ankle)
     bone = turned - toe

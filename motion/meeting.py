@@ -20,7 +20,7 @@ from .planted import HIPS, UPPER, over_planted_feet
 from .skeleton import ARMS, SMPL22
 from .touch.arms import arms_apart
 from .transforms import facing
-from .vectors import unit
+from .vectors import FLAT, unit
 
 Array = NDArray[np.floating]
 
@@ -71,7 +71,6 @@ _BONES = tuple(
 _TRUNK = 4
 """The first of these, on which a hand slides up and down; the next is that of the head."""
 _NECK, _HEAD = _J("neck"), _J("head")
-_FLAT = np.array([1.0, 0.0, 1.0])
 
 
 def met_again(made: Array, small: Array, sizes: tuple[float, float]) -> Array:
@@ -191,7 +190,7 @@ class _Touch:
         places[:, :_TRUNK, 1] += slide * (own - on_trunk)
         head = other[:, _HEAD]
         over = _FROM_ABOVE[2] * smoothstep(arm[:, 0, 1] - head[:, 1], *_FROM_ABOVE[:2])[:, None]
-        crown = head + scale * (_CROWN[0] * unit((arm[:, 0] - head) * _FLAT) + [0.0, _CROWN[1], 0.0])
+        crown = head + scale * (_CROWN[0] * unit((arm[:, 0] - head) * FLAT) + [0.0, _CROWN[1], 0.0])
         places[:, _TRUNK] += over * (crown - places[:, _TRUNK])
         weight = self.weight.copy()
         weight[:, _TRUNK] *= 1 - embrace
@@ -246,7 +245,7 @@ def _too_short(pair: Array, touch: _Touches) -> Array:
 
 def _stooped(own: Array, other: Array, lean: Array, short: Array) -> Array:
     """A person (T, 22, 3) who leans to the other by radians (T,) and bends the knees, over feet that stay."""
-    way = unit((other[:, _NECK] - own[:, _NECK]) * _FLAT)
+    way = unit((other[:, _NECK] - own[:, _NECK]) * FLAT)
     axis = np.cross([0.0, 1.0, 0.0], way)
     turn = scipy.spatial.transform.Rotation.from_rotvec(lean[:, None] * axis).as_matrix()
     moved = own.copy()
@@ -264,7 +263,7 @@ def _looking(made: Array, pair: Array, leans: list[Array]) -> Array:
         own, other = pair[person], pair[1 - person]
         before, now = (_elevation(p[1 - person, :, _HEAD] - p[person, :, _HEAD]) for p in (made, pair))
         ahead = facing(own)
-        towards = unit((other[:, _HEAD] - own[:, _HEAD]) * _FLAT)
+        towards = unit((other[:, _HEAD] - own[:, _HEAD]) * FLAT)
         faces = smoothstep(np.sum(ahead * towards, axis=-1), *_SEES)
         angle = faces * np.clip(now - before + leans[person], -_NODS, _NODS)
         angle = scipy.ndimage.gaussian_filter1d(angle, _EASED, mode="nearest")
@@ -278,4 +277,4 @@ def _looking(made: Array, pair: Array, leans: list[Array]) -> Array:
 
 def _elevation(way: Array) -> Array:
     """(T,) radians by which a direction (T, 3) points upwards."""
-    return np.asarray(np.arctan2(way[:, 1], np.linalg.norm(way * _FLAT, axis=-1)))
+    return np.asarray(np.arctan2(way[:, 1], np.linalg.norm(way * FLAT, axis=-1)))

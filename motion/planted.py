@@ -6,6 +6,8 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
+from motion.vectors import FLAT
+
 from .cleaning import solve_two_bones
 from .heels import heel_raised
 from .skeleton import LEGS, SMPL22
@@ -23,7 +25,6 @@ _SINKS = 0.06
 """Metres by which a body sinks at most."""
 _MOST = 0.995
 """Share of a leg's length that it reaches."""
-_FLAT = np.array([1.0, 0.0, 1.0])
 
 
 def over_planted_feet(own: Array, moved: Array) -> Array:
@@ -63,7 +64,7 @@ def _sunk(moved: Array, ankles: list[Array], reaches: list[Array]) -> Array:
     sunk = np.zeros(len(moved))
     for leg, ankle, most in zip(LEGS, ankles, reaches, strict=True):
         hip = moved[:, leg[0]]
-        aside = np.linalg.norm((hip - ankle) * _FLAT, axis=-1)
+        aside = np.linalg.norm((hip - ankle) * FLAT, axis=-1)
         reach = np.sqrt(np.maximum(most[:, 0] ** 2 - aside**2, 0.0))
         sunk = np.maximum(sunk, np.minimum(hip[:, 1] - ankle[:, 1] - reach, _SINKS))
     return sunk

@@ -13,6 +13,8 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
+from motion.vectors import FLAT
+
 from .cleaning import solve_two_bones
 from .easing import smoothstep
 from .meeting import met_again
@@ -22,7 +24,6 @@ from .transforms import facing
 
 Array = NDArray[np.floating]
 
-FLAT = np.array([1.0, 0.0, 1.0])
 _ON_FEET = (0.55, 0.75)
 """Heights in metres of an adult's pelvis up to which the feet go with the body, and from which they stand."""
 _LOW = (0.15, 0.4)

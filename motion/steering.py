@@ -18,7 +18,7 @@ from .cleaning import solve_two_bones
 from .easing import minimum_jerk
 from .skeleton import LEGS
 from .transforms import facing, heading, heading_matrix
-from .vectors import wrapped
+from .vectors import FLAT, wrapped
 
 Array = NDArray[np.floating]
 
@@ -41,7 +41,6 @@ LIFT = 0.05
 FADE = 0.85
 """Factor by which what is left of a foot's distance decays each frame, when all steps are done."""
 _NECK, _HEAD = SMPL22.index("neck"), SMPL22.index("head")
-_FLAT = np.array([1.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True)
@@ -105,7 +104,7 @@ class Steering:
     def takes_over(self, raw: Array, shown: Array) -> None:
         """Goes on from the pose that is shown with another pose (22, 3) of the network at the same moment."""
         self.yaw = wrapped(float(heading(shown[None])[0] - heading(raw[None])[0]))
-        self.place = (shown[0] - raw[0]) * _FLAT
+        self.place = (shown[0] - raw[0]) * FLAT
 
     def _moved(self, pose: Array) -> Array:
         return (pose - pose[0]) @ heading_matrix(self.yaw).T + pose[0] + self.place
@@ -173,8 +172,7 @@ class Steps:
             return
         stands = [stand for stand in self._stands if stand is not None]
         far = [
-            float(np.linalg.norm((goal - stand[0]) * _FLAT))
-            for goal, stand in zip(goals, stands, strict=True)
+            float(np.linalg.norm((goal - stand[0]) * FLAT)) for goal, stand in zip(goals, stands, strict=True)
         ]
         side = int(np.argmax(far))
         if far[side] > least:
@@ -194,7 +192,7 @@ class Steps:
             self._swings[side] = None if done else (frame + 1, began, foot)
             self._stands[side] = (place, turned)
             return place, turned
-        far = float(np.linalg.norm((goal[0] - stand[0]) * _FLAT))
+        far = float(np.linalg.norm((goal[0] - stand[0]) * FLAT))
         if not moving and not any(self._swings) and far <= REST_FROM:
             stand = (goal[0] + FADE * (stand[0] - goal[0]), _turned(goal[1], stand[1], FADE))
             self._stands[side] = stand if np.linalg.norm(stand[0] - goal[0]) > 1e-3 else None
@@ -205,7 +203,7 @@ def _too_high(pose: Array, leg: tuple[int, ...], place: Array) -> float:
     """Metres by which a body is to be lowered so that its leg reaches an ankle's place (3,)."""
     hip, knee, ankle = (pose[joint] for joint in leg[:3])
     length = float(np.linalg.norm(knee - hip) + np.linalg.norm(ankle - knee)) - 1e-5
-    aside = float(np.linalg.norm((hip - place) * _FLAT))
+    aside = float(np.linalg.norm((hip - place) * FLAT))
     return max(0.0, float(hip[1] - place[1]) - float(np.sqrt(max(length**2 - aside**2, 0.0))))
 
 
@@ -217,7 +215,7 @@ def _turned(first: Array, second: Array, share: float) -> Array:
 
 def _angle_to(pose: Array, goal: Goal) -> float:
     """Radians from the direction that a pose faces to its goal, positive towards +X."""
-    way = (goal.towards - pose[0]) * _FLAT * (-1 if goal.away else 1)
+    way = (goal.towards - pose[0]) * FLAT * (-1 if goal.away else 1)
     if np.linalg.norm(way) < 1e-6:
         return 0.0
     return wrapped(float(np.arctan2(way[0], way[2]) - heading(pose[None])[0]))

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.floating]
+FLAT = np.array([1.0, 0.0, 1.0])
+"""Times a vector or a place: its part along the floor."""
 Angle = TypeVar("Angle", float, Array)
 Real = TypeVar("Real", bound=np.floating[Any])
 

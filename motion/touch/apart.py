@@ -22,7 +22,7 @@ from motion.planted import HIPS, UPPER, over_planted_feet
 from motion.skeleton import LEGS, SMPL22
 from motion.smoothing import eased_marks
 from motion.transforms import facing
-from motion.vectors import runs, unit
+from motion.vectors import FLAT, runs, unit
 
 Array = NDArray[np.floating]
 
@@ -43,7 +43,6 @@ _LEVEL = 0.4
 """Share of a push that goes over the floor, at least: bodies that lie over each other would go far."""
 _ROOT = 0.4
 """Share of the upper arm that belongs to the body; the rest bends out of the way."""
-_FLAT = np.array([1.0, 0.0, 1.0])
 _LEG_PARTS = ("ankle", "foot")
 _RAISED, _SHORT = 0.2, 2.0
 """Height in metres of a toe from which a leg is raised, and frames over which it is stopped."""
@@ -61,7 +60,7 @@ def bodies_apart(pair: Array, fps: float, free: Array | None = None) -> Array:
         (2, T, 22, 3) on bones as long as before.
     """
     result = np.array(pair, dtype=np.float64)
-    near = np.linalg.norm((result[0] - result[1])[:, 0] * _FLAT, axis=-1) < _NEAR
+    near = np.linalg.norm((result[0] - result[1])[:, 0] * FLAT, axis=-1) < _NEAR
     share = _on_their_feet(result) * (1.0 if free is None else free)
     if not (near & (share > 0)).any():
         return result
@@ -138,7 +137,7 @@ def _on_their_feet(pair: Array) -> Array:
 
 def _way(pair: Array) -> Array:
     """(T, 3) the level way from one pelvis to the other."""
-    line = scipy.ndimage.gaussian_filter1d((pair[1, :, 0] - pair[0, :, 0]) * _FLAT, _SMOOTH, axis=0)
+    line = scipy.ndimage.gaussian_filter1d((pair[1, :, 0] - pair[0, :, 0]) * FLAT, _SMOOTH, axis=0)
     return np.asarray(unit(line))
 
 

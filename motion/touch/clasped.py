@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from motion.skeleton import ARMS, SMPL22
 from motion.smoothing import eased_marks, without_flicker
 from motion.transforms import facing
-from motion.vectors import unit
+from motion.vectors import FLAT, unit
 
 from .bending import across, bent_towards
 
@@ -35,7 +35,6 @@ _REACH = 0.96
 _OUT = 0.6
 """How far an elbow is to its own side, for a metre backwards."""
 _SPINE = SMPL22.index("spine3")
-_FLAT = np.array([1.0, 0.0, 1.0])
 
 
 def hands_clasped(pair: Array, held: Array) -> Array:
@@ -60,8 +59,8 @@ def hands_clasped(pair: Array, held: Array) -> Array:
     middle: Array = 0.5 * (pair[0, :, mine[-1]] + pair[1, :, theirs[-1]])
     middle = scipy.ndimage.gaussian_filter1d(middle, _SMOOTH, axis=0, mode="nearest")[at]
     middle = _within_reach(middle, [(pair[p, at], arm) for p, arm in enumerate((mine, theirs))])
-    ahead = 0.5 * _FLAT * (facing(pair[0]) + facing(pair[1]))
-    way = unit((pair[1, at, _SPINE] - pair[0, at, _SPINE]) * _FLAT)
+    ahead = 0.5 * FLAT * (facing(pair[0]) + facing(pair[1]))
+    way = unit((pair[1, at, _SPINE] - pair[0, at, _SPINE]) * FLAT)
     for person, arm, side in ((0, mine, -1.0), (1, theirs, 1.0)):
         shoulder, elbow, wrist = (result[person, at, joint] for joint in arm)
         goal = wrist + share[at, None] * (middle + 0.5 * side * APART * way - wrist)

@@ -18,6 +18,7 @@ from motion.planted import HIPS, UPPER, over_planted_feet
 from motion.skeleton import ARMS, LEGS, SMPL22
 from motion.smoothing import eased_marks, without_flicker
 from motion.transforms import facing
+from motion.vectors import FLAT
 
 from .arms import grips_of_hands
 from .bending import across, bent_towards
@@ -59,7 +60,6 @@ _LIFTED = 0.12
 """Height in metres of the lifted person's lower toe."""
 _SPINE = SMPL22.index("spine3")
 _TOES = [leg[-1] for leg in LEGS]
-_FLAT = np.array([1.0, 0.0, 1.0])
 
 
 def embraced(pair: Array, free: Array | None = None) -> Array:
@@ -109,7 +109,7 @@ def _around(own: Array, other: Array, least: float = _AROUND[0]) -> NDArray[np.b
         past = np.einsum("ti,ti->t", hand, way) > least
         beside = np.abs(np.einsum("ti,ti->t", hand, across)) < _AROUND[1]
         found.append(past & beside & (low < own[:, wrist, 1]) & (own[:, wrist, 1] < high))
-    near = np.linalg.norm((spine - own[:, _SPINE]) * _FLAT, axis=-1) < _MOST
+    near = np.linalg.norm((spine - own[:, _SPINE]) * FLAT, axis=-1) < _MOST
     return np.stack(found, axis=1) & near[:, None]
 
 
@@ -158,7 +158,7 @@ def _drawn(
 ) -> Array:
     """A person (T, 22, 3) who comes a share of the way to the other by ``weight`` (T,), over feet that stay."""
     way = _way(own, other)
-    gap = np.linalg.norm((other[:, _SPINE] - own[:, _SPINE]) * _FLAT, axis=-1)
+    gap = np.linalg.norm((other[:, _SPINE] - own[:, _SPINE]) * FLAT, axis=-1)
     metres = share * weight * np.maximum(gap - close, 0.0)
     ahead = metres[:, None] * way + (aside * weight)[:, None] * _left(way)
     shift = _SHARE * ahead
@@ -215,5 +215,5 @@ def _left(way: Array) -> Array:
 
 
 def _level(way: Array) -> Array:
-    flat = way * _FLAT
+    flat = way * FLAT
     return np.asarray(flat / np.maximum(np.linalg.norm(flat, axis=-1, keepdims=True), 1e-6))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from motion.cleaning import solve_two_bones
 from motion.skeleton import ARMS, SMPL22
 from motion.smoothing import eased_marks, without_flicker
-from motion.vectors import unit
+from motion.vectors import FLAT, unit
 
 Array = NDArray[np.floating]
 Arm = tuple[int, ...]
@@ -34,7 +34,6 @@ _SOFT = 0.06
 """Share of an arm's length before its end that is used up ever more slowly: a straight arm jolts its elbow."""
 _AGAINST = -0.2
 """Cosine between two forearms that point at each other, at most."""
-_FLAT = np.array([1.0, 0.0, 1.0])
 _SPINE = SMPL22.index("spine3")
 
 
@@ -49,7 +48,7 @@ def palms_met(pair: Array, free: Array | None = None) -> Array:
         (2, T, 22, 3) with other elbows and wrists where hands meet.
     """
     result = np.array(pair, dtype=np.float64)
-    way = unit((result[1, :, _SPINE] - result[0, :, _SPINE]) * _FLAT)
+    way = unit((result[1, :, _SPINE] - result[0, :, _SPINE]) * FLAT)
     for mine, theirs in itertools.product(ARMS, ARMS):
         aside = _aside(way, mine, theirs)
         against, clasped = (

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.vectors import FLAT
+
 from .landmarks import INDEX
 
 Array = NDArray[np.floating]
@@ -16,7 +18,6 @@ _SEEN = 0.5
 """A nose that is seen less surely than this is turned away."""
 _LEAST = 0.03
 """Metres from between the ears to the nose, over the floor, below which a face points nowhere."""
-_FLAT = np.array([1.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +34,7 @@ class Gaze:
 
     def towards(self, way: Array) -> float:
         """Cosine of the angle between the face and a way (3,) over the floor; 0 where one of them points nowhere."""
-        length = float(np.linalg.norm(way * _FLAT))
+        length = float(np.linalg.norm(way * FLAT))
         return float(self.ahead @ way) / length if length > 1e-6 else 0.0
 
 
@@ -52,10 +53,10 @@ def gaze(points: Array, seen: Array, turn: Array) -> Gaze | None:
     if seen[_NOSE] < _SEEN:
         return HIDDEN
     middle = points[_EARS].mean(axis=0)
-    ahead = (points[_NOSE] - middle) @ turn.T * _FLAT
+    ahead = (points[_NOSE] - middle) @ turn.T * FLAT
     length = float(np.linalg.norm(ahead))
     if not length > _LEAST:
         return None
-    way = -middle @ turn.T * _FLAT
+    way = -middle @ turn.T * FLAT
     found = Gaze(ahead / length, 0.0)
     return Gaze(found.ahead, found.towards(way))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.cleaning import foot_contacts, plant_feet
-from motion.clip import Clip, Duet
+from motion.clip import FPS, Clip, Duet
 from motion.errors import InputError
 from motion.ik import fit_skeleton
 from motion.kinematics import project_to_skeleton
@@ -28,7 +28,6 @@ from .tracks import Track, tracks_of
 
 Array = NDArray[np.floating]
 
-FPS = 30.0
 TILTS = (-45.0, 60.0)
 """Degrees by which a camera may look down, at least and at most."""
 LENSES = (40.0, 130.0)

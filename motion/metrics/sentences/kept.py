@@ -8,12 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from motion import Duet, InputError
+from motion import FPS, Duet, InputError
 from motion.formats.files import replacing
 
 from .catalogue import Sentence
-
-FPS = 30
 
 
 @dataclass(frozen=True)
@@ -38,7 +36,7 @@ class Motions:
             positions = np.load(path, allow_pickle=False)
         except (OSError, ValueError) as error:
             raise InputError(f"{path.name} is missing or damaged: draw the motions again.") from error
-        return Duet.from_positions(positions, fps=float(FPS))
+        return Duet.from_positions(positions, fps=FPS)
 
     def write(self, sentence: Sentence, seed: int, duet: Duet) -> None:
         """Keeps one motion."""

@@ -21,6 +21,7 @@ from motion.placement import Placement
 from motion.steering import Goal, Steering
 from motion.things import Thing
 from motion.transforms import turn
+from motion.vectors import FLAT
 from motion.video.gaze import Gaze
 from webdemo.inference.following import FollowingCleanup
 from webdemo.inference.noise import sample_noise
@@ -46,7 +47,6 @@ PUSHED = 0.5
 """Metres: when the partner is kept off by more, a new segment begins at the place shown."""
 FARTHEST = 6.0
 """Metres between the two beyond which the partner begins anew: training scenes are not wider."""
-_FLAT = np.array([1.0, 0.0, 1.0])
 
 
 def warm_up(partner: LivePartner) -> None:
@@ -147,7 +147,7 @@ class ReactingPartner:
         """See :class:`webdemo.inference.partner.LivePartner`."""
         take_threads(plain_denoiser=False)  # a stream's messages come to any of several threads
         pose = np.asarray(pose, dtype=np.float64)
-        if self._shown and np.linalg.norm((pose[0] - self._shown[-1][0]) * _FLAT) > FARTHEST:
+        if self._shown and np.linalg.norm((pose[0] - self._shown[-1][0]) * FLAT) > FARTHEST:
             self._begin_anew()
         if self._now is None:
             self._now = self._segment(pose, None)
@@ -191,7 +191,7 @@ class ReactingPartner:
             shown = self._shown[-1]
             if not self._steering.idle:  # what it has turned and gone is no error of the new segment's pose
                 self._steering.takes_over(raw, shown)
-                raw, shown = raw - raw[0] * _FLAT, turn(shown - shown[0] * _FLAT, -self._steering.yaw)
+                raw, shown = raw - raw[0] * FLAT, turn(shown - shown[0] * FLAT, -self._steering.yaw)
             self._off, self._settled = shown - raw, 1
             self._now, self._next = self._next, None
 
@@ -199,7 +199,7 @@ class ReactingPartner:
         """(3,) by how much the partner is moved, so that they stay on their side of the person."""
         if not self._shown:
             return np.zeros(3)
-        side = (self._shown[-1][0] - self._person[-1][0]) * _FLAT
+        side = (self._shown[-1][0] - self._person[-1][0]) * FLAT
         length = float(np.linalg.norm(side))
         if length < 1e-3:
             return np.zeros(3)

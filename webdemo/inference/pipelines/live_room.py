@@ -18,6 +18,7 @@ from motion.easing import smoothstep
 from motion.steering import Goal
 from motion.things import Thing, shape
 from motion.transforms import facing
+from motion.vectors import FLAT
 from webdemo.inference.complaints import Complaint
 from webdemo.inference.things.fixtures import BODIES, LEAVES, TAKES, placed_leaf
 
@@ -34,7 +35,6 @@ USES, REACHES = 60, 15
 HANDS = {"window": (1.3, (0.16, -0.16)), "curtain": (1.4, (0.22, -0.22)), "hi-fi": (1.02, (-0.14,))}
 """Height over the floor, and metres aside of its middle, at which the hands use a thing: both hands, or the right."""
 _UP = np.array([0.0, 1.0, 0.0])
-_FLAT = np.array([1.0, 0.0, 1.0])
 
 
 @dataclass
@@ -65,11 +65,11 @@ class Room:
     """
 
     def __init__(self, person: Array, agent: Array) -> None:
-        away = (agent[0] - person[0]) * _FLAT
+        away = (agent[0] - person[0]) * FLAT
         length = float(np.linalg.norm(away))
         back = away / length if length > 1e-3 else np.array([0.0, 0.0, 1.0])
         left = np.cross(_UP, back)
-        begin = agent[0] * _FLAT
+        begin = agent[0] * FLAT
         self._places = {kind: begin + x * left + z * back for kind, (x, z) in PLACES.items()}
         fronts = {"window": -back, "hi-fi": -left}
         self._yaws = {kind: float(np.arctan2(front[0], front[2])) for kind, front in fronts.items()}
@@ -91,7 +91,7 @@ class Room:
         if errand is None:
             return None
         place = self._places[BODIES.get(errand.complaint.kind, errand.complaint.kind)]
-        far = float(np.linalg.norm((place - agent[0]) * _FLAT))
+        far = float(np.linalg.norm((place - agent[0]) * FLAT))
         return Goal(place + _UP, walk=errand.used < 0 and far > STANDS)
 
     def step(self, agent: Array) -> Array:
@@ -101,7 +101,7 @@ class Room:
             return agent
         kind = BODIES.get(errand.complaint.kind, errand.complaint.kind)
         errand.frame += 1
-        way = (self._places[kind] - agent[0]) * _FLAT
+        way = (self._places[kind] - agent[0]) * FLAT
         far = float(np.linalg.norm(way))
         there = far <= STANDS + 0.05 and float(facing(agent) @ way) > 0.8 * far
         if errand.used < 0 and not there:
