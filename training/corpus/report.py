@@ -109,13 +109,14 @@ def _head(motions: NDArray[np.floating], index: list[dict[str, Any]]) -> list[st
 
 
 def _acts_table(motions: NDArray[np.floating], index: list[dict[str, Any]], pictures: Path) -> list[str]:
-    """One row an act of the lexicon: scenes, minutes, how many of them are of recorded duets, and a sheet."""
+    """One row an act of the lexicon, done or only offered: scenes, minutes, those of recorded duets, and a sheet."""
     shown: dict[str, list[tuple[int, int, dict[str, Any]]]] = defaultdict(list)
     for scene in index:
         if scene.get("label"):
             known = Label.of_row(scene["label"])
             for act in known.plan.acts:
-                shown[act.act].append((*known.spans[act.id], scene))
+                name = act.act if act.modality == "told" else f"{act.act}-{act.modality}"
+                shown[name].append((*known.spans[act.id], scene))
     lines = [
         "| Act | Scenes | Minutes | of these recorded duets | Touching joints, cm | Scene |",
         "|---|---:|---:|---:|---:|---|",

@@ -51,7 +51,7 @@ def test_the_report_counts_acts_people_and_the_share_of_recorded_duets(
     index[0] |= {"sources": ["cmu-salsa/05"], "label": made}
     index[1] |= {
         "sources": ["accad_Female1_A07_Crouch", "cmu-solo_10_01", "cmu-iclone_002_06"],
-        "label": label([Beat(("shake-hands", "shake-hands"), 0, 60), Beat((STILL, STILL), 0, 60)], 60).row(),
+        "label": label([Beat(("shake-hands", "hug?"), 0, 60), Beat((STILL, STILL), 0, 60)], 60).row(),
     }
     index[2] |= {"sources": ["sbu/s01s02/06/001", "bandai"]}
     (corpus / "index.json").write_text(json.dumps(index))
@@ -62,10 +62,10 @@ def test_the_report_counts_acts_people_and_the_share_of_recorded_duets(
     assert "3 scenes, 0.0 hours" in text and "1 scenes are for testing" in text
     assert "2 scenes (0 minutes, 66.7 %) are recorded duets. The files name 7 performers;" in text
     rows = {line.split("|")[1].strip(): line for line in text.splitlines() if line.startswith("| ")}
-    assert rows["shake-hands"] == "| shake-hands | 1 | 0.1 | 0.0 | 10 | [sheet](corpus/shake-hands.webp) |"
+    assert rows["shake-hands"] == "| shake-hands | 1 | 0.0 | 0.0 | 10 | [sheet](corpus/shake-hands.webp) |"
     assert rows["stand-still"].endswith("| – |")
     drawn = {path.stem for path in (out / "corpus").iterdir()}
-    assert drawn == {"dance", "twirl", "shake-hands"}
+    assert drawn == {"dance", "twirl", "shake-hands", "hug-offered"}
     assert Image.open(out / "corpus" / "dance.webp").width == report.PICTURE_WIDTH
     found = report._acts_table(np.load(corpus / "motions.npy"), [index[0]] * 60, out / "corpus")
     assert found[2].startswith("| dance | 1 | 1.5 | 1.5 |") and found[3].startswith(
