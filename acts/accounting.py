@@ -1,4 +1,4 @@
-"""What a verdict leaves out of a sentence: words that are in no act, and qualifiers of acts that no rule measures.
+"""The parts of a sentence that a verdict leaves out: words in no act, and qualifiers of acts that no rule measures.
 
 A word is in an act that its clause names: as one of the entry's own words or a verb of like meaning, as the act's
 thing, part of the body or manner, or as its number, side, direction, speed, length or distance. Words of grammar and of
@@ -222,7 +222,7 @@ OTHER_THING = "which thing"
 
 
 def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterator[tuple[str, str]]:
-    """What a rule of an entry does not measure of an act: each kind of qualifier, and a rule that does, or "".
+    """Qualifiers of an act that no rule of its entry measures: each kind of qualifier, and a rule that does, or "".
 
     Args:
         act: told, and of this entry.

@@ -71,7 +71,7 @@ def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
 
 
 def _doubts(plan: Plan, others: Sequence[Plan]) -> Iterator[Unread]:
-    """What other plans of the same text, which leave as little over, take for acts that a plan does not have."""
+    """Acts that other plans of the same text, which leave as little over, have and a plan does not."""
     seen = {act.act for act in plan.acts}
     for act in (act for other in others for act in other.acts):
         if act.act not in seen and act.words is not None:

@@ -22,7 +22,7 @@ from motion.skeleton import NTU25, SBU15
 from .arrays import filled
 from .choices import ImportChoices
 from .crowd import Recording
-from .files import MAX_FRAMES, check_duration, decode_text
+from .files import MAX_FRAMES, MAX_SECONDS, check_duration, decode_text
 
 Array = NDArray[np.floating]
 Track = dict[int, Array]
@@ -97,7 +97,8 @@ def _lines(text: str, label: str) -> Iterator[tuple[int, str]]:
 
 
 def _read_sbu(text: str, label: str, fps: float) -> list[Array]:
-    rows = np.empty((min(text.count("\n"), MAX_FRAMES) + 1, 90), dtype=np.float32)
+    most = min(text.count("\n"), MAX_FRAMES, int(MAX_SECONDS * fps))
+    rows = np.empty((most + 1, 90), dtype=np.float32)
     frames = 0
     for number, line in _lines(text, label):
         check_duration(frames + 1, fps, label)

@@ -1,4 +1,4 @@
-"""How much of what people write about motion is read: ``python -m training.evaluate.reading_coverage CAPTIONS_FILE``.
+"""The share of captions of motion that is read: ``python -m training.evaluate.reading_coverage CAPTIONS_FILE``.
 
 The file has a caption a line, plain or packed (``.xz``, ``.gz``); 2,000 of them, always the same, are read.
 """

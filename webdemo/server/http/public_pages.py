@@ -75,7 +75,7 @@ class _Pages:
         return _sent(embed_html(shown.entry, payload, Place(files=f"{self.root}/shown/")))
 
     def _read(self, key: str) -> tuple[Shown, Payload]:
-        """What a page shows, and its motion; raises Refused where it shows nothing, kept or not."""
+        """The state that a page shows, and its motion; raises Refused where it shows nothing, kept or not."""
         try:
             shown = self.publishing.shown(key)
             with self._lock:
