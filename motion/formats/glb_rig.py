@@ -9,7 +9,7 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from motion.errors import InputError
 from motion.retarget import floor_on_smpl, leg_scale, retarget, up_rotation
 from motion.rigs import RigMotion, match_joints, pairs_of
 from motion.skeleton import SMPL22
+from motion.transforms import mirrored
 
 from ..easing import smoothstep
 from .choices import Animation
@@ -39,6 +40,7 @@ _SOLE = float(_REST[SMPL22.index("left_ankle"), 1] - _REST[SMPL22.index("left_fo
 _REACH = (0.2, 0.6)
 """Metres from a wrist to the nearest joint of the other person: there it is all, and not at all, where it was made."""
 _LIFTS = (-0.05, 0.3)
+_ACROSS, _MIRROR = np.diag([-1.0, 1.0, 1.0]), np.diag([-1.0, 1.0, 1.0, 1.0])
 
 
 def glb_on_rig(
@@ -116,6 +118,7 @@ class _Skeleton:
             against the world.
         base: (4, 4) world matrix of the node above the root of the body.
         root: index of that root.
+        mirrored: the file's world shows what is named left on the right; all this is of its mirror image.
     """
 
     rig: Rig
@@ -125,6 +128,7 @@ class _Skeleton:
     holders: Array = field(repr=False)
     base: Array = field(repr=False)
     root: int
+    mirrored: bool
 
     def moved(
         self, clip: Clip, lift: float, upright: Array | None = None, near: Mapping[str, Array] | None = None
@@ -138,6 +142,10 @@ class _Skeleton:
             near: (T,) share of the way that each wrist goes to where the person's is, by side.
         """
         upright = np.eye(3) if upright is None else upright
+        if self.mirrored:
+            clip = replace(clip, positions=mirrored(clip.positions), rotations=None)
+            upright = _ACROSS @ upright @ _ACROSS
+            near = near and {"left": near["right"], "right": near["left"]}
         rig, rest = self.rig, self.rest
         stands = up_rotation(rest)
         pairs = pairs_of(rest)
@@ -198,8 +206,13 @@ def _in_binding(file: GlbFile, parents: Sequence[int], rig: Rig) -> _Skeleton:
     still = np.stack([world[node][0] for node in rig.nodes])
     if (np.abs(np.linalg.det(still[:, :3, :3])) < 1e-15).any():
         file.refuse("a joint in it has no size", "apply its scale")
+    is_mirrored = _is_mirrored(still)
+    if is_mirrored:
+        world = {node: _MIRROR @ each for node, each in world.items()}
+        still = _MIRROR @ still
     bound = bind_pose(file, rig)
-    turns = split((still if bound is None else bound)[:, :3, :3])[0]
+    bound = still if bound is None else _MIRROR @ bound if _is_mirrored(bound) else bound
+    turns = split(bound[:, :3, :3])[0]
     facing = split(still[:, :3, :3])[0]
     count = len(rig.nodes)
     bones, offsets, holders = np.zeros((count, 3)), np.zeros((count, 3)), np.empty((count, 3, 3))
@@ -217,9 +230,13 @@ def _in_binding(file: GlbFile, parents: Sequence[int], rig: Rig) -> _Skeleton:
     rest = RigMotion(names, rig.above, scale * offsets, scale * places[None], None, 30.0, scale, file.label)
     root = rest.path_to_root(match_joints(rest).pelvis)[-1]
     above = parents[rig.nodes[root]]
-    return _Skeleton(
-        rig, rest, scale * bones, turns, holders, world[above][0] if above >= 0 else np.eye(4), root
-    )
+    base = world[above][0] if above >= 0 else _MIRROR if is_mirrored else np.eye(4)
+    return _Skeleton(rig, rest, scale * bones, turns, holders, base, root, is_mirrored)
+
+
+def _is_mirrored(joints: Array) -> bool:
+    """True for world matrices (J, 4, 4) that show what is left on the right."""
+    return bool(np.linalg.det(joints[0, :3, :3]) < 0)
 
 
 def _lift(skeleton: _Skeleton, reference: str | Path | bytes, name: str | None) -> float:

@@ -218,3 +218,12 @@ def _above(joint: int, kept: list[int]) -> int:
         if joint in kept:
             return joint
     return -1
+
+
+def in_a_mirror(data: bytes) -> bytes:
+    """The file with all its nodes under one that mirrors them."""
+    document, blob = unpacked(data)
+    top = [number for scene in document["scenes"] for number in scene["nodes"]]
+    document["nodes"].append({"name": "mirror", "scale": [-1, 1, 1], "children": top})
+    document["scenes"][0]["nodes"] = [len(document["nodes"]) - 1]
+    return packed(document, blob)

@@ -17,7 +17,7 @@ from motion.skeleton import SBU15
 from motion.transforms import turn
 from tests.motion.bodies import marching
 
-from .characters import a_pose, glb_character, glb_motion, unpacked
+from .characters import a_pose, glb_character, glb_motion, in_a_mirror, unpacked
 from .rigs import RIGS
 from .skinned import Skinned
 
@@ -161,6 +161,17 @@ def test_nodes_with_a_matrix_are_taken_apart() -> None:
     made = glb_wearing(DUET, reference, name="x.glb")
     assert not any("matrix" in node for node in unpacked(made)[0]["nodes"])
     assert angles(in_our_order(made, "mixamo"), DUET.a.positions).max() < 0.1
+
+
+@pytest.mark.parametrize("skinned", [True, False])
+@pytest.mark.parametrize("turn", [None, Z_UP])
+def test_a_mirrored_rig_shows_the_same_motion(skinned: bool, turn: np.ndarray | None) -> None:
+    reference = in_a_mirror(glb_motion(ROTATIONS, POSITIONS[:, 0], skinned=skinned, turn=turn))
+    clip = read(reference, name="x.glb")
+    assert isinstance(clip, Clip)
+    made = read(glb_on_rig(clip, reference, name="x.glb"), name="made.glb")
+    assert isinstance(made, Clip)
+    np.testing.assert_allclose(made.positions, clip.positions, atol=0.03)
 
 
 def test_what_is_wrong_is_one_sentence() -> None:
