@@ -125,6 +125,4 @@ def write(duet: Duet | Clip, path: str | Path) -> list[Path]:
     known = FORMATS.get(suffix)
     if known is None or known.writer is None:
         raise InputError(unknown(suffix, "written", [f.suffix for f in FORMATS.values() if f.writer]))
-    if not can_write(suffix):
-        raise InputError(f"{known.label} files need the package {known.needs}: install it with pip.")
     return write_clip(duet, path) if isinstance(duet, Clip) else known.writer(duet, path)

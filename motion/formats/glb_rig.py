@@ -26,7 +26,8 @@ from motion.transforms import mirrored
 
 from ..easing import smoothstep
 from .choices import Animation
-from .glb_file import GlbFile, opened, packed
+from .glb_buffer import Buffer
+from .glb_file import GlbFile, opened
 from .glb_motion import MESHES, metres_per_unit, read_glb_people
 from .glb_nodes import Rig, bind_pose, people, placed, quaternions, split, with_those_above
 from .glb_reader import read_character
@@ -66,12 +67,9 @@ def glb_on_rig(
         raise InputError(f"{moved[0].name} holds {len(moved)} people: a partner needs the rig of one.")
     with opened(reference, name, "used as a rig", harmless=MESHES) as file:
         skeleton = _skeleton(file)
-        document, blob = copy.deepcopy(file.document), bytearray(file.blob)
         upright, lift = up_rotation(moved[0]), floor_on_smpl(moved[0])
-        document["animations"] = [
-            _animation(document, blob, [skeleton.moved(clip, lift, upright)], clip.fps, "partner")
-        ]
-        return packed(document, bytes(blob))
+        moves = [skeleton.moved(clip, lift, upright)]
+        return _animated(copy.deepcopy(file.document), file.blob, moves, clip.fps, "partner")
 
 
 def glb_wearing(duet: Duet, reference: str | Path | bytes, *, name: str | None = None) -> bytes:
@@ -92,17 +90,16 @@ def glb_wearing(duet: Duet, reference: str | Path | bytes, *, name: str | None =
     with opened(reference, name, "used as a character") as file:
         skeleton = _skeleton(file)
         lift = _lift(skeleton, reference, name)
-        document, blob = copy.deepcopy(file.document), bytearray(file.blob)
+        document = copy.deepcopy(file.document)
         first, *_ = starts = _twice(document, file.node_parents(), duet.roles)
         moves = []
         for clip, other, start in zip(duet.people, duet.people[::-1], starts, strict=True):
             moved = skeleton.moved(clip, lift, near=_near(clip, other))
             moves.append({(node + start - first, path): values for (node, path), values in moved.items()})
-        document["animations"] = [_animation(document, blob, moves, duet.a.fps, "duet")]
         if duet.manifest:
             manifest = json.loads(json.dumps(duet.manifest, default=str))
             document["asset"] = {**document.get("asset", {}), "extras": {"manifest": manifest}}
-        return packed(document, bytes(blob))
+        return _animated(document, file.blob, moves, duet.a.fps, "duet")
 
 
 @dataclass(frozen=True, eq=False)
@@ -293,37 +290,21 @@ def _shifted(node: dict[str, Any], nodes: int, skins: int) -> dict[str, Any]:
     return node
 
 
-def _animation(
-    document: dict[str, Any], blob: bytearray, moves: Sequence[Mapping[tuple[int, str], Array]], fps: float, name: str
-) -> dict[str, Any]:  # fmt: skip
-    """An animation of these channels, whose values are added to the file; nodes lose what they were turned by."""
-
-    def add(values: Array, kind: str, **bounds: Any) -> int:
-        blob.extend(bytes(-len(blob) % 4))
-        data = values.astype("<f4").tobytes()
-        document["bufferViews"].append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(data)})
-        blob.extend(data)
-        document["accessors"].append(
-            {
-                "bufferView": len(document["bufferViews"]) - 1,
-                "componentType": 5126,
-                "count": len(values),
-                "type": kind,
-            }
-            | bounds
-        )
-        return len(document["accessors"]) - 1
-
-    times = (np.arange(len(next(iter(moves[0].values())))) / fps).astype(np.float32)
-    clock = add(times, "SCALAR", min=[float(times[0])], max=[float(times[-1])])
-    samplers, channels = [], []
+def _animated(
+    document: dict[str, Any],
+    blob: bytes,
+    moves: Sequence[Mapping[tuple[int, str], Array]],
+    fps: float,
+    name: str,
+) -> bytes:
+    """The file with one animation of these channels; nodes lose what they were turned by."""
+    document["animations"] = [{"name": name}]
+    buffer = Buffer(document, blob)
+    clock = buffer.clock(len(next(iter(moves[0].values()))), fps)
     for (node, path), values in (each for person in moves for each in person.items()):
-        kind = "VEC4" if path == "rotation" else "VEC3"
-        samplers.append({"input": clock, "output": add(values, kind), "interpolation": "LINEAR"})
-        channels.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
+        buffer.animate(node, path, values, clock)
         _decomposed(document["nodes"][node])
-    document["buffers"][0]["byteLength"] = len(blob)
-    return {"name": name, "samplers": samplers, "channels": channels}
+    return buffer.packed()
 
 
 def _decomposed(node: dict[str, Any]) -> None:

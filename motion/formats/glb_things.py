@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from motion.body import vertex_normals
 from motion.colours import hex_of, linear
-from motion.things.thing import Mesh, Thing
+from motion.things.thing import Thing
 
 from .glb_buffer import Buffer
 from .glb_nodes import quaternions
-
-if TYPE_CHECKING:
-    import pygltflib
 
 ROUGH = 0.75
 
@@ -31,50 +25,26 @@ def names_of(things: Sequence[Thing]) -> list[str]:
 
 
 def add_things(buffer: Buffer, things: Sequence[Thing], times: int) -> None:
-    """Adds things to the file's first scene and its first animation.
+    """Adds things to the file's first scene and its animation.
 
     Args:
         buffer: of the file.
         things: beside the people.
         times: accessor of the seconds of the frames.
     """
-    import pygltflib as gl
-
-    gltf = buffer.gltf
     for thing, name in zip(things, names_of(things), strict=True):
-        gltf.meshes.append(gl.Mesh(name=name, primitives=list(_primitives(buffer, thing.mesh, name))))
+        vertices = buffer.vertices(thing.mesh.vertices, thing.mesh.faces)
+        colours, which = thing.mesh.by_colour()
+        parts = [  # one for each colour
+            buffer.primitive(
+                vertices, thing.mesh.faces[which == number], f"{name}_{number + 1}", light, ROUGH
+            )
+            for number, light in enumerate([*linear(hex_of(colour))] for colour in colours.tolist())
+        ]
+        mesh = buffer.append("meshes", {"name": name, "primitives": parts})
         turns = quaternions(thing.rotations.astype(np.float64))
-        node = gl.Node(name=name, mesh=len(gltf.meshes) - 1)
-        node.translation, node.rotation = thing.places[0].tolist(), turns[0].tolist()
-        gltf.nodes.append(node)
-        gltf.scenes[0].nodes.append(len(gltf.nodes) - 1)
-        if not thing.moves:
-            continue
-        for path, values in (("translation", thing.places), ("rotation", turns)):
-            buffer.animate(len(gltf.nodes) - 1, path, values, times)
-
-
-def _primitives(buffer: Buffer, mesh: Mesh, name: str) -> Iterator[pygltflib.Primitive]:
-    """A primitive and a material for each colour."""
-    import pygltflib as gl
-
-    normals = unit_normals(mesh)
-    attributes = gl.Attributes(
-        POSITION=buffer.add(mesh.vertices, gl.VEC3, target=gl.ARRAY_BUFFER, bounds=True),
-        NORMAL=buffer.add(normals.astype(np.float32), gl.VEC3, target=gl.ARRAY_BUFFER),
-    )
-    colours, which = mesh.by_colour()
-    for number, colour in enumerate(colours.tolist()):
-        light = [*linear(hex_of(colour)), 1.0]
-        surface = gl.PbrMetallicRoughness(baseColorFactor=light, metallicFactor=0.0, roughnessFactor=ROUGH)
-        buffer.gltf.materials.append(gl.Material(name=f"{name}_{number + 1}", pbrMetallicRoughness=surface))
-        corners = mesh.faces[which == number].astype(np.uint16).reshape(-1)
-        indices = buffer.add(corners, gl.SCALAR, target=gl.ELEMENT_ARRAY_BUFFER)
-        yield gl.Primitive(attributes=attributes, indices=indices, material=len(buffer.gltf.materials) - 1)
-
-
-def unit_normals(mesh: Mesh) -> NDArray[np.floating]:
-    """(V, 3) normals of a thing's vertices; upwards where all triangles of one have no area."""
-    normals = vertex_normals(mesh.vertices.astype(np.float64), mesh.faces)
-    normals[np.linalg.norm(normals, axis=1) < 0.5] = (0.0, 1.0, 0.0)
-    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        places = {"translation": thing.places[0].tolist(), "rotation": turns[0].tolist()}
+        node = buffer.append("nodes", {"name": name, "mesh": mesh, **places})
+        buffer.document["scenes"][0]["nodes"].append(node)
+        for path, values in (("translation", thing.places), ("rotation", turns)) if thing.moves else ():
+            buffer.animate(node, path, values, times)

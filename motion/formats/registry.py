@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from importlib.util import find_spec
 from pathlib import Path
 
 from motion.clip import Duet
@@ -44,14 +43,12 @@ class Format:
         reader: gives what a file's bytes hold, by its name in messages and what is known of it; ``None`` where it is
             only written.
         writer: ``writer(duet, path)`` gives the paths it wrote; ``None`` where it is only read.
-        needs: a package that must be installed for writing.
     """
 
     suffix: str
     label: str
     reader: Callable[[bytes, str, ImportChoices], Recording] | None = None
     writer: Callable[[Duet, Path], list[Path]] | None = None
-    needs: str | None = None
 
 
 def read_rigs(
@@ -83,7 +80,7 @@ FORMATS: dict[str, Format] = {
         Format(".npy", "NumPy array", read_npy, write_npy),
         Format(".skeleton", "Kinect v2 text", read_kinect),
         Format(".txt", "Kinect text", read_kinect),
-        Format(".glb", "glTF binary", _rigs, write_glb, needs="pygltflib"),
+        Format(".glb", "glTF binary", _rigs, write_glb),
         Format(".vrm", "VRM character", _rigs),
         Format(".vrma", "VRM animation", _rigs),
         Format(".usda", "USD as text", None, write_usd),
@@ -151,13 +148,8 @@ def can_read(suffix: str) -> bool:
 
 
 def can_write(suffix: str) -> bool:
-    """True if this installation writes files with this suffix (with its dot)."""
-    known = FORMATS.get(suffix.lower())
-    return (
-        known is not None
-        and known.writer is not None
-        and (known.needs is None or find_spec(known.needs) is not None)
-    )
+    """True if files with this suffix (with its dot) are written."""
+    return suffix.lower() in FORMATS and FORMATS[suffix.lower()].writer is not None
 
 
 def unknown(suffix: str, verb: str, known: list[str]) -> str:

@@ -9,7 +9,8 @@ import numpy as np
 from motion.colours import hex_of, linear
 from motion.things.thing import Mesh, Thing
 
-from .glb_things import ROUGH, names_of, unit_normals
+from .glb_buffer import unit_normals
+from .glb_things import ROUGH, names_of
 from .usd_text import identifier, matrices, rows, tuple_of
 
 
@@ -69,7 +70,7 @@ def _surface(mesh: Mesh, place: str) -> str:
             int[] faceVertexCounts = {[3] * len(mesh.faces)}
             int[] faceVertexIndices = {mesh.faces.reshape(-1).tolist()}
             point3f[] points = {rows(mesh.vertices)}
-            normal3f[] normals = {rows(unit_normals(mesh))} (
+            normal3f[] normals = {rows(unit_normals(mesh.vertices, mesh.faces))} (
                 interpolation = "vertex"
             )
 {subsets}"""
