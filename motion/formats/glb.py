@@ -45,11 +45,11 @@ def write_glb(duet: Duet, path: str | Path) -> list[Path]:
 
 def glb_bytes(duet: Duet) -> bytes:
     """The file's bytes."""
-    asset = {"version": "2.0", "generator": "Pas de Deux"}
+    asset: dict[str, Any] = {"version": "2.0", "generator": "Pas de Deux"}
     if duet.manifest:
         asset["extras"] = {"manifest": json.loads(json.dumps(duet.manifest, default=str))}
-    scenes = [{"name": "duet", "nodes": []}]
-    buffer = Buffer({"asset": asset, "scene": 0, "scenes": scenes, "animations": [{"name": "duet"}]})
+    scene: dict[str, Any] = {"name": "duet", "nodes": []}
+    buffer = Buffer({"asset": asset, "scene": 0, "scenes": [scene], "animations": [{"name": "duet"}]})
     times = buffer.clock(duet.num_frames, duet.fps)
     for person in skinned(duet):
         _add_person(buffer, person, times)

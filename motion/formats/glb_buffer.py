@@ -11,7 +11,7 @@ from motion.body import vertex_normals
 
 from .glb_file import packed
 
-Array = NDArray[np.floating]
+Array = NDArray[Any]
 
 _COMPONENTS = {"f": 5126, "H": 5123, "B": 5121}
 _KINDS = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 16: "MAT4"}

@@ -116,7 +116,7 @@ def silence(pipeline: Any) -> None:
     Raises:
         InputError: for a method that has none.
     """
-    network = getattr(model := getattr(pipeline, "model", None), "denoiser", model)
+    network: Any = getattr(model := getattr(pipeline, "model", None), "denoiser", model)
     if network is None or not hasattr(network, "guided"):
         raise InputError(f"{pipeline.name} has no network that denoises: leave --zeros out.")
     network.guided = lambda x, *_, **__: x.new_zeros(x.shape)
