@@ -91,7 +91,7 @@ def test_the_readme_is_a_map() -> None:
     readme = (ROOT / "README.md").read_text()
     for path in (
         "models/diffusion/sampling.py",
-        "webdemo/inference/damping.py",
+        "webdemo/inference/finish/damping.py",
         "webdemo/inference/methods/",
     ):
         assert f"`{path}`" in readme

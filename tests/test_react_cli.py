@@ -160,7 +160,7 @@ def test_a_stream_prints_every_frame_before_the_answer(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
     from webdemo.inference.engine import Engine
-    from webdemo.inference.live import LiveFrame
+    from webdemo.inference.live.stream import LiveFrame
 
     def live(self: Engine, request: ReactRequest) -> Any:
         for index, frame in enumerate(request.actor.positions):

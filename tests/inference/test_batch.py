@@ -5,9 +5,10 @@ import pytest
 import torch
 
 from motion import SMPL22, Clip
-from webdemo.inference import Engine, GenerateRequest, Result, damping
+from webdemo.inference import Engine, GenerateRequest, Result
 from webdemo.inference.batch import Meeting, _Question, answer_together, run_batch
 from webdemo.inference.cancel import CancelToken
+from webdemo.inference.finish import damping
 from webdemo.inference.requests import Cancelled, Progress, ReactRequest
 
 

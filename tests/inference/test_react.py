@@ -152,7 +152,7 @@ def test_damping_and_cleanup_touch_the_reaction_alone(engine: Engine) -> None:
 
 
 def test_damping_moves_no_given_number(engine: Engine) -> None:
-    from webdemo.inference.damping import Damping
+    from webdemo.inference.finish.damping import Damping
     from webdemo.inference.scenes import scene_of
 
     model = engine.pipeline("intergen").model

@@ -7,7 +7,7 @@ from motion import SMPL22
 from motion.cleaning import foot_contacts, plant_feet
 from motion.footsteps import stepping
 from motion.metrics.naturalness import joint_speeds, naturalness
-from webdemo.inference.cleanup import on_constant_bones
+from webdemo.inference.finish.cleanup import on_constant_bones
 
 from .bodies import FPS
 

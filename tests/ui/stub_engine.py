@@ -13,10 +13,10 @@ from motion import SMPL22, Clip, Duet, InputError, stacked_positions
 from motion.kinematics import forward_kinematics
 from motion.metrics import compare
 from motion.transforms import heading_matrix
-from webdemo.inference.live import LiveFrame, LiveProgress, LiveRequest, paced
-from webdemo.inference.live_take import LiveTake
+from webdemo.inference.live.partner import Belief
+from webdemo.inference.live.stream import LiveFrame, LiveProgress, LiveRequest, paced
+from webdemo.inference.live.take import LiveTake
 from webdemo.inference.methods import method
-from webdemo.inference.partner import Belief
 from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.story import SceneProgress, SceneRequest

@@ -36,9 +36,9 @@ from motion.metrics.generation import (
 from training.core.shell import add_options, exit_code, write_scores
 from training.evaluate.extractor import Extractor, load_extractor
 from training.prepare import Scenes, load
-from webdemo.inference.cleanup import clean_person
-from webdemo.inference.damping import Damping
 from webdemo.inference.engine import WEIGHTS
+from webdemo.inference.finish.cleanup import clean_person
+from webdemo.inference.finish.damping import Damping
 from webdemo.inference.noise import sample_noise
 from webdemo.inference.pipelines.intergen import InterGenPipeline
 

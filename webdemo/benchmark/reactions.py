@@ -30,7 +30,7 @@ def measure_reactions(repeats: int) -> dict[str, Any]:
     from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, load_folder
     from motion import SMPL22
     from webdemo.inference.engine import WEIGHTS
-    from webdemo.inference.following import FollowingCleanup
+    from webdemo.inference.finish.following import FollowingCleanup
 
     folder = WEIGHTS / "regennet"
     shipped = (folder / "config.json").is_file()

@@ -21,9 +21,9 @@ from torch.nn.functional import pad
 from models.diffusion import Term, terms, weighted
 from models.intergen import InterGenDenoiser
 from models.intergen.words import join_conditions
+from webdemo.inference.finish.damping import Damping, correct_together
 
 from .cancel import CancelToken
-from .damping import Damping, correct_together
 from .engine import Engine
 from .requests import GenerateRequest, ReactRequest
 from .results import Progress, Result

@@ -19,8 +19,8 @@ from models.known import Hold, Known
 from motion import FPS, SMPL22, Duet, InputError
 from motion.easing import minimum_jerk
 from motion.kinematics import project_to_skeleton
+from webdemo.inference.finish.joining import PASSING, joined, passing
 
-from .joining import PASSING, joined, passing
 from .scenes import Finish, Scene
 
 Array = NDArray[np.floating]

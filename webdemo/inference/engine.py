@@ -19,21 +19,21 @@ from pathlib import Path
 from typing import Any, cast
 
 from motion import Duet, InputError
+from webdemo.inference.finish.cleanup import standing_clear
+from webdemo.inference.finish.sizes import as_given, enlarged
+from webdemo.inference.live.partner import PARTNERS, LivePartner
+from webdemo.inference.live.stream import LiveFrame
+from webdemo.inference.live.take import LiveTake
 
 from . import methods
 from .acting import plans_of, with_plan
 from .cancel import CancelToken
-from .cleanup import standing_clear
-from .live import LiveFrame
-from .live_take import LiveTake
 from .method import Pipeline
 from .methods import WEIGHTS
 from .own.classes import fenced
-from .partner import PARTNERS, LivePartner
 from .predict_request import PredictRequest
 from .requests import GenerateRequest, ReactRequest, SamplingRequest
 from .results import Progress, Result
-from .sized import as_given, enlarged
 from .story.request import SceneRequest
 from .things import furnished
 from .timer import StageTimer
@@ -141,15 +141,15 @@ class Engine:
         return pipeline.live(request)
 
     def partner(self, name: str, *, seed: int = 0) -> LivePartner:
-        """A partner who answers a stream of poses, one of :data:`webdemo.inference.partner.PARTNERS`.
+        """A partner who answers a stream of poses, one of :data:`webdemo.inference.live.partner.PARTNERS`.
 
         Raises:
             InputError: if there is no such partner, or its weights are missing or altered.
         """
         if name not in PARTNERS:
             raise InputError(f"There is no live partner {name!r:.40}: choose {' or '.join(PARTNERS)}.")
-        from .pipelines.live_agent import LiveAgent
-        from .pipelines.live_partner import ReactingPartner, warm_up
+        from webdemo.inference.live.agent import LiveAgent
+        from webdemo.inference.live.partner_pipeline import ReactingPartner, warm_up
 
         reacting: Any = self.pipeline("regennet")
         eye = None if name == "regennet" else cast(Any, self.pipeline("agent")).eye

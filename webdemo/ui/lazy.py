@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.partner import LivePartner
+from webdemo.inference.live.partner import LivePartner
 from webdemo.inference.requests import Progress, Result
 
 

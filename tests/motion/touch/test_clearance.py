@@ -6,7 +6,7 @@ import pytest
 from motion import SMPL22, Clip, Duet
 from motion.touch.clearance import CLEAR, out_of_the_way
 from webdemo.inference import ReactRequest, Result
-from webdemo.inference.cleanup import standing_clear
+from webdemo.inference.finish.cleanup import standing_clear
 
 STANDING = SMPL22.rest_positions() - [0.0, SMPL22.rest_positions()[:, 1].min(), 0.0]
 FRAMES = 120

@@ -27,7 +27,7 @@ from models.motion_tokens import TokenLayout
 from motion import FPS, SMPL22, Clip, Duet
 from motion.placement import MEDIAN_START_DISTANCE, Placement
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.joining import joined
+from webdemo.inference.finish.joining import joined
 from webdemo.inference.plans import KeptPlan
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.results import Progress, Result

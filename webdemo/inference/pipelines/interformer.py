@@ -25,7 +25,7 @@ from motion.metrics import compare
 from motion.placement import Placement
 from motion.transforms import heading_matrix, resample
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.cleanup import clean_person
+from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.noise import sample_noise
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.results import Progress, Result

@@ -16,6 +16,7 @@ from models.text import MiniLM
 from motion import Clip, Duet
 from webdemo.inference.acting import with_plan
 from webdemo.inference.cancel import CancelToken
+from webdemo.inference.finish.scene import finish_of, in_touch
 from webdemo.inference.plans import BeatFinish, KeptPlan
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.results import Progress, Result
@@ -26,7 +27,6 @@ from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.timer import StageTimer
 
 from .scene import SceneMaker
-from .scene_finish import finish_of, in_touch
 from .two_person import Conditioning, Passes, TwoPersonPipeline
 
 

@@ -25,7 +25,7 @@ from motion.metrics import compare
 from motion.placement import Placement
 from motion.transforms import resample
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.cleanup import clean_person
+from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.methods.nearest import FOLDER_VARIABLE
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.results import Progress, Result

@@ -27,10 +27,10 @@ from motion.easing import smoothstep
 from motion.metrics import compare
 from motion.placement import Placement
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.cleanup import clean_person
-from webdemo.inference.damping import Beside, Damping
-from webdemo.inference.following import FollowingCleanup
-from webdemo.inference.live import LiveFrame, LiveProgress, LiveRequest, paced
+from webdemo.inference.finish.cleanup import clean_person
+from webdemo.inference.finish.damping import Beside, Damping
+from webdemo.inference.finish.following import FollowingCleanup
+from webdemo.inference.live.stream import LiveFrame, LiveProgress, LiveRequest, paced
 from webdemo.inference.noise import sample_noise
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.results import Progress, Result

@@ -23,7 +23,8 @@ from motion.metrics import compare
 from webdemo.inference import methods
 from webdemo.inference.actor import ROLES
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.joining import closed
+from webdemo.inference.finish.joining import closed
+from webdemo.inference.finish.scene import finished, finishes
 from webdemo.inference.paths import meeting
 from webdemo.inference.plans import KeptPlan, WindowPlan
 from webdemo.inference.requests import GenerateRequest, SamplingRequest
@@ -34,7 +35,6 @@ from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.windows import window_seed, windows
 from webdemo.inference.timer import StageTimer
 
-from .scene_finish import finished, finishes
 from .scene_setting import Setting
 from .two_person import Passes, TwoPersonPipeline
 

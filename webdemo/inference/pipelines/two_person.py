@@ -22,8 +22,8 @@ from models.weights_io import WeightsFolder
 from motion import Duet, InputError
 from motion.metrics import compare
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.cleanup import clean_person
-from webdemo.inference.damping import Damping
+from webdemo.inference.finish.cleanup import clean_person
+from webdemo.inference.finish.damping import Damping
 from webdemo.inference.noise import sample_noise
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.results import Progress, Result

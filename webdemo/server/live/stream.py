@@ -15,7 +15,7 @@ from motion import FPS, InputError
 from motion.things import Thing
 from motion.video import Landmarks
 from motion.video.following import FollowedPerson
-from webdemo.inference.partner import Belief, LivePartner
+from webdemo.inference.live.partner import Belief, LivePartner
 from webdemo.view.payload import pack_positions
 from webdemo.view.things import thing_payload
 

@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any, Protocol
 
 from motion import FPS, InputError
-from webdemo.inference.partner import PARTNERS, LivePartner
+from webdemo.inference.live.partner import PARTNERS, LivePartner
 from webdemo.ui.visitor import Visitor
 
 from .messages import read_message

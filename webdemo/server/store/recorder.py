@@ -11,7 +11,7 @@ from typing import Any
 from sqlalchemy.exc import SQLAlchemyError
 
 from motion import InputError
-from webdemo.inference.live_take import live_title
+from webdemo.inference.live.take import live_title
 from webdemo.inference.methods import methods
 from webdemo.inference.requests import Cancelled, Progress, Result
 from webdemo.inference.story.beats import story_title

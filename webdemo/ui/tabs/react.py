@@ -10,8 +10,8 @@ import gradio as gr
 
 from motion import InputError
 from webdemo.inference.actor import SECONDS
-from webdemo.inference.live import LiveRequest
-from webdemo.inference.live_take import LiveTake
+from webdemo.inference.live.stream import LiveRequest
+from webdemo.inference.live.take import LiveTake
 from webdemo.inference.methods import AUTOMATIC, variants
 from webdemo.inference.requests import ReactRequest
 from webdemo.ui.components.actors import (

@@ -20,7 +20,7 @@ from motion.metrics import compare
 from motion.retarget import to_smpl
 from motion.skeleton import NTU25
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.cleanup import clean_person
+from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.noise import sample_noise
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import GenerateRequest

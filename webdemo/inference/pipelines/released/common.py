@@ -13,7 +13,7 @@ from torch import nn
 
 from models.compiled import Precision, compile_network, has_bfloat16
 from motion import Duet
-from webdemo.inference.cleanup import clean_person
+from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.scenes import Finish, Scene
 

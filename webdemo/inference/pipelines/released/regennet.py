@@ -19,9 +19,9 @@ from motion import FPS, Clip, InputError
 from motion.placement import Placement
 from motion.skeleton import SMPL22
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.cleanup import clean_person
-from webdemo.inference.following import FollowingCleanup
-from webdemo.inference.live import LiveFrame
+from webdemo.inference.finish.cleanup import clean_person
+from webdemo.inference.finish.following import FollowingCleanup
+from webdemo.inference.live.stream import LiveFrame
 from webdemo.inference.noise import sample_noise
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.pipelines.regennet import ReGenNetPipeline

@@ -11,11 +11,11 @@ from typing import Any, ClassVar
 
 from motion import Clip, Duet, InputError
 from motion.metrics import compare
+from webdemo.inference.requests import clip_facts
+from webdemo.inference.results import Progress, Result
+from webdemo.inference.timer import StageTimer
 
 from .partner import PARTNERS
-from .requests import clip_facts
-from .results import Progress, Result
-from .timer import StageTimer
 
 LONGEST = 60.0
 """Seconds of a stream that can be kept."""
@@ -28,7 +28,7 @@ class LiveTake:
     """Asks for a live stream to be kept.
 
     Attributes:
-        model: who answered, one of :data:`webdemo.inference.partner.PARTNERS`.
+        model: who answered, one of :data:`webdemo.inference.live.partner.PARTNERS`.
         actor: the person, at 30 fps on SMPL22's joints.
         reactor: the partner, of the same length.
 

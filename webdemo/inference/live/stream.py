@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import FPS, InputError
-
-from .requests import ReactRequest
-from .results import Progress
+from webdemo.inference.requests import ReactRequest
+from webdemo.inference.results import Progress
 
 Array = NDArray[np.floating]
 

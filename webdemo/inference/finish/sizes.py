@@ -18,14 +18,13 @@ from motion import SMPL22, Clip, Duet, stacked_positions
 from motion.easing import smoothstep
 from motion.looks import UNSAID, grown_up, size_of
 from motion.sizes import at_sizes, bones_of, floor_scale, of_adults
-
-from .acting import plans_of
-from .paths import FloorPath
-from .predict_request import PredictRequest, PredictResult, compared
-from .results import Result
-from .story.request import SceneRequest
-from .story.wishes import Pose
-from .things.furnishing import looks_in
+from webdemo.inference.acting import plans_of
+from webdemo.inference.paths import FloorPath
+from webdemo.inference.predict_request import PredictRequest, PredictResult, compared
+from webdemo.inference.results import Result
+from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.story.wishes import Pose
+from webdemo.inference.things.furnishing import looks_in
 
 Array = NDArray[np.floating]
 

@@ -1,6 +1,6 @@
 """The room of the live agent: a window with curtains behind it and a hi-fi at its side, which it goes to and uses.
 
-The person's complaints (:mod:`webdemo.inference.complaints`) send the agent on an errand: it walks to the thing, its
+The person's complaints (:mod:`.complaints`) send the agent on an errand: it walks to the thing, its
 hands come to it, the thing changes, and the agent comes back. Nothing depends on a later frame of the person.
 """
 
@@ -19,8 +19,9 @@ from motion.steering import Goal
 from motion.things import Thing, shape
 from motion.transforms import facing
 from motion.vectors import FLAT
-from webdemo.inference.complaints import Complaint
 from webdemo.inference.things.fixtures import BODIES, LEAVES, TAKES, placed_leaf
+
+from .complaints import Complaint
 
 Array = NDArray[np.floating]
 

@@ -9,12 +9,12 @@ from acts.staging.bodies.gestures import Gesture, Hand, wrist
 from motion import SMPL22
 from motion.transforms import heading_matrix
 from motion.video.gaze import HIDDEN
-from webdemo.inference.complaints import BRIGHT, COLD, FRAMES, HOT, LOUD, SMELLS, Complaint, complaint
+from webdemo.inference.live.agent import BESIDE, LiveAgent
+from webdemo.inference.live.complaints import BRIGHT, COLD, FRAMES, HOT, LOUD, SMELLS, Complaint, complaint
+from webdemo.inference.live.room import PLACES, STANDS, USES
 from webdemo.inference.pipelines.agent import FIRST
-from webdemo.inference.pipelines.live_agent import BESIDE, LiveAgent
-from webdemo.inference.pipelines.live_room import PLACES, STANDS, USES
 
-from .test_live_partner import NOTHING, STANDING, Recorded, Scripted
+from .test_partner import NOTHING, STANDING, Recorded, Scripted
 
 J = SMPL22.index
 LONG = 400

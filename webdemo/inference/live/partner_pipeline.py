@@ -23,13 +23,13 @@ from motion.things import Thing
 from motion.transforms import turn
 from motion.vectors import FLAT
 from motion.video.gaze import Gaze
-from webdemo.inference.following import FollowingCleanup
+from webdemo.inference.finish.following import FollowingCleanup
 from webdemo.inference.noise import sample_noise
-from webdemo.inference.partner import Belief, LivePartner
+from webdemo.inference.pipelines.regennet import ReGenNetPipeline, settle
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.threads import take_threads
 
-from .regennet import ReGenNetPipeline, settle
+from .partner import Belief, LivePartner
 
 Array = NDArray[np.floating]
 
@@ -109,7 +109,7 @@ class ReactingPartner:
 
     Attributes:
         goal: where the partner turns and goes by itself, beside what the network has it do; None for nowhere.
-        gaze: see :class:`webdemo.inference.partner.LivePartner`; this partner reacts to bodies alone.
+        gaze: see :class:`webdemo.inference.live.partner.LivePartner`; this partner reacts to bodies alone.
     """
 
     belief = Belief("follows", "")
@@ -144,7 +144,7 @@ class ReactingPartner:
         self.condition = self._conditions[prompt]
 
     def step(self, pose: Array) -> Array:
-        """See :class:`webdemo.inference.partner.LivePartner`."""
+        """See :class:`webdemo.inference.live.partner.LivePartner`."""
         take_threads(plain_denoiser=False)  # a stream's messages come to any of several threads
         pose = np.asarray(pose, dtype=np.float64)
         if self._shown and np.linalg.norm((pose[0] - self._shown[-1][0]) * FLAT) > FARTHEST:

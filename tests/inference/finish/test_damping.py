@@ -15,12 +15,11 @@ from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig
 from motion import SMPL22, Duet
 from motion.metrics.quality import penetration
 from motion.skeleton import FEET
-from webdemo.inference import damping
-from webdemo.inference.damping import Beside, Damping, asked_energy, shares
+from tests.inference.people import waver
 from webdemo.inference.engine import Engine
+from webdemo.inference.finish import damping
+from webdemo.inference.finish.damping import Beside, Damping, asked_energy, shares
 from webdemo.inference.requests import GenerateRequest, ReactRequest
-
-from .people import waver
 
 HANDS = (("right_wrist", "right_wrist"),)
 

@@ -19,10 +19,9 @@ from motion.smoothing import least_jerk
 from motion.swings import lift_swinging_feet
 from motion.touch.clearance import out_of_the_way
 from motion.transforms import facing
-
-from .actor import ROLES
-from .requests import ReactRequest
-from .results import Result
+from webdemo.inference.actor import ROLES
+from webdemo.inference.requests import ReactRequest
+from webdemo.inference.results import Result
 
 Array = NDArray[np.floating]
 

@@ -11,10 +11,11 @@ from motion import InputError
 from motion.steering import Goal, Steering
 from motion.transforms import heading, heading_matrix
 from motion.video.gaze import HIDDEN, Gaze
+from tests.inference.people import waver
+from tests.inference.test_reactor import bones_off, engine, folder
 from webdemo.inference.engine import Engine
-from webdemo.inference.pipelines import live_partner
-from webdemo.inference.pipelines.agent import BETWEEN, FIRST, Eye, Look
-from webdemo.inference.pipelines.live_agent import (
+from webdemo.inference.live import partner_pipeline as live_partner
+from webdemo.inference.live.agent import (
     ANSWER,
     BACK,
     BESIDE,
@@ -24,10 +25,8 @@ from webdemo.inference.pipelines.live_agent import (
     LISTENS,
     LiveAgent,
 )
-from webdemo.inference.pipelines.live_partner import ReactingPartner
-
-from .people import waver
-from .test_reactor import bones_off, engine, folder
+from webdemo.inference.live.partner_pipeline import ReactingPartner
+from webdemo.inference.pipelines.agent import BETWEEN, FIRST, Eye, Look
 
 __all__ = ["engine", "folder"]
 LABELS = ("nothing", "wave", "bow")

@@ -7,7 +7,7 @@ from motion.kinematics import fit_rotations, forward_kinematics
 from motion.skeleton import FEET
 from motion.transforms import heading_matrix
 from webdemo.inference.directed import with_given
-from webdemo.inference.joining import PASSING, REACH, closed, joined, passing
+from webdemo.inference.finish.joining import PASSING, REACH, closed, joined, passing
 
 PARENTS, CHILDREN = np.array(SMPL22.bones).T
 FRAMES = 90

@@ -11,15 +11,14 @@ import pytest
 from motion import SMPL22, Duet
 from motion.looks import SIZES, UNSAID
 from motion.sizes import floor_scale
+from tests.inference.test_scenes import run
 from webdemo.inference import Engine, GenerateRequest, Result, SceneRequest
+from webdemo.inference.finish.sizes import enlarged
 from webdemo.inference.paths import FloorPath, FloorPoint
 from webdemo.inference.predict_request import PredictRequest, PredictResult
-from webdemo.inference.sized import enlarged
 from webdemo.inference.story import Beat
 from webdemo.inference.story.wishes import Pose
 from webdemo.inference.things import furnished
-
-from .test_scenes import run
 
 QUICK: dict[str, Any] = {"steps": 3, "seed": 1}
 CHILD = SIZES["girl"]

@@ -22,12 +22,12 @@ from motion.steering import Goal
 from motion.things import Thing
 from motion.transforms import facing
 from motion.video.gaze import Gaze
-from webdemo.inference.complaints import complaint
-from webdemo.inference.partner import Belief
+from webdemo.inference.pipelines.agent import BETWEEN, FIRST, Decision, Eye, Look
 
-from .agent import BETWEEN, FIRST, Decision, Eye, Look
-from .live_partner import ReactingPartner
-from .live_room import Errand, Room
+from .complaints import complaint
+from .partner import Belief
+from .partner_pipeline import ReactingPartner
+from .room import Errand, Room
 
 Array = NDArray[np.floating]
 
@@ -85,7 +85,7 @@ class LiveAgent:
         self.belief = Belief("watches", "The agent watches.")
 
     def step(self, pose: Array) -> Array:
-        """See :class:`webdemo.inference.partner.LivePartner`."""
+        """See :class:`webdemo.inference.live.partner.LivePartner`."""
         self.frame += 1
         self._seen.append(np.asarray(pose, dtype=np.float64))
         self.partner.goal = self._goal(self._seen[-1])
@@ -104,7 +104,7 @@ class LiveAgent:
 
     @property
     def things(self) -> tuple[Thing, ...]:
-        """See :class:`webdemo.inference.partner.LivePartner`."""
+        """See :class:`webdemo.inference.live.partner.LivePartner`."""
         return () if self._room is None else self._room.things()
 
     def _is_asked(self) -> bool:

@@ -8,8 +8,8 @@ import pytest
 from motion import SMPL22, Duet, InputError
 from motion.transforms import heading_matrix
 from webdemo.inference import SceneRequest
-from webdemo.inference.pipelines import scene_finish
-from webdemo.inference.pipelines.scene_finish import finished, finishes
+from webdemo.inference.finish import scene as scene_finish
+from webdemo.inference.finish.scene import finished, finishes
 from webdemo.inference.plans import BeatFinish
 from webdemo.inference.story.beats import Beat
 

@@ -1,0 +1,1 @@
+"""What is done to a motion while and after it is made: damping, clean-up, joining, touches, sizes."""
