@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.kinematics import rotation_matrices
 from motion.vectors import unit
 
 from .glb_file import MOST_JOINTS, GlbFile, Stored, in_order
@@ -195,10 +196,15 @@ def local_parts(file: GlbFile, node: int) -> dict[str, Array]:
     """Translation (3,), rotation (4,) and scale (3,) of a node at rest."""
     stored = file.document["nodes"][node]
     if stored.get("matrix") is not None:
-        matrix = _numbers(file, stored["matrix"], 16).reshape(4, 4).T
-        turn, scale = split(matrix[None, :3, :3])
-        return {"translation": matrix[:3, 3], "rotation": quaternions(turn)[0], "scale": scale[0]}
+        return parts_of(_numbers(file, stored["matrix"], 16))
     return {path: _numbers(file, stored.get(path, usual), len(usual)) for path, usual in _DEFAULTS.items()}
+
+
+def parts_of(stored: Array) -> dict[str, Array]:
+    """Translation (3,), rotation (4,) and scale (3,) of a matrix (16,) as a node has it."""
+    matrix = stored.reshape(4, 4).T
+    turn, scale = split(matrix[None, :3, :3])
+    return {"translation": matrix[:3, 3], "rotation": quaternions(turn)[0], "scale": scale[0]}
 
 
 def _numbers(file: GlbFile, values: Any, count: int) -> Array:
@@ -211,14 +217,8 @@ def _numbers(file: GlbFile, values: Any, count: int) -> Array:
 def matrices(parts: dict[str, Array]) -> Array:
     """(T, 4, 4) of translations (T or 1, 3), rotations (T or 1, 4) and scales (T or 1, 3)."""
     frames = max(len(part) for part in parts.values())
-    x, y, z, w = np.moveaxis(unit(parts["rotation"]), -1, 0)
-    turn = np.stack([
-        1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
-        2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
-        2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y),
-    ], axis=-1).reshape(-1, 3, 3)  # fmt: skip
     found = np.zeros((frames, 4, 4))
-    found[:, :3, :3] = turn * parts["scale"][:, None]
+    found[:, :3, :3] = rotation_matrices(parts["rotation"]) * parts["scale"][:, None]
     found[:, :3, 3] = parts["translation"]
     found[:, 3, 3] = 1.0
     return found

@@ -91,14 +91,8 @@ def _character(file: GlbFile) -> Character:
 
 def _triangles(file: GlbFile, meshes: Sequence[Mapping[str, Any]]) -> int:
     """The number of skinned triangles of meshes, by what the file declares; nothing is decoded."""
-    total = 0
-    for primitive in (each for mesh in meshes for each in mesh["primitives"]):
-        held = primitive["attributes"]
-        if _is_skinned(primitive):
-            corners = primitive.get("indices")
-            what = (held["POSITION"], "VEC3") if corners is None else (corners, "SCALAR")
-            total += file.stored(*what, 3 * MOST_TRIANGLES, "corners of triangles").rows // 3
-    return total
+    parts = [each for mesh in meshes for each in mesh["primitives"] if _is_skinned(each)]
+    return sum(file.corners(part, MOST_TRIANGLES) for part in parts) // 3
 
 
 def _is_skinned(primitive: Mapping[str, Any]) -> bool:
@@ -120,18 +114,11 @@ def _surface(file: GlbFile, meshes: Sequence[Mapping[str, Any]]) -> tuple[Array,
         weights = file.numbers(held["WEIGHTS_0"], "VEC4", len(vertices), "weights").astype(np.float64)
         if not len(vertices) == len(slots) == len(weights) or (weights < 0).any() or (slots < 0).any():
             file.refuse("its weights do not fit its vertices")
-        if primitive.get("indices") is not None:
-            corners = file.numbers(
-                primitive["indices"], "SCALAR", 3 * (MOST_TRIANGLES - triangles), "corners of triangles"
-            ).astype(np.int64)[:, 0]
-        else:
-            corners = np.arange(len(vertices))
-        if len(corners) % 3 or corners.max(initial=0) >= len(vertices) or corners.min(initial=0) < 0:
-            file.refuse("its triangles have corners that are not there")
+        cells = file.triangles(primitive, len(vertices), MOST_TRIANGLES - triangles)
         total = weights.sum(axis=1, keepdims=True)
         weights = np.where(total > 0, weights / np.maximum(total, 1e-12), [1.0, 0.0, 0.0, 0.0])
-        parts.append((vertices, corners.reshape(-1, 3) + count, slots, weights))
-        count, triangles = count + len(vertices), triangles + len(corners) // 3
+        parts.append((vertices, cells + count, slots, weights))
+        count, triangles = count + len(vertices), triangles + len(cells)
     if not triangles:
         file.refuse("it has no skinned triangles", "skin the mesh and export it with its armature")
     vertices, faces, slots, weights = (np.concatenate(each) for each in zip(*parts, strict=True))

@@ -29,7 +29,7 @@ from .choices import Animation
 from .glb_buffer import Buffer
 from .glb_file import GlbFile, opened
 from .glb_motion import MESHES, metres_per_unit, read_glb_people
-from .glb_nodes import Rig, bind_pose, people, placed, quaternions, split, with_those_above
+from .glb_nodes import Rig, bind_pose, parts_of, people, placed, quaternions, split, with_those_above
 from .glb_reader import read_character
 from .rig_pose import check_smpl, posed, reached, root_path
 
@@ -303,16 +303,7 @@ def _animated(
     clock = buffer.clock(len(next(iter(moves[0].values()))), fps)
     for (node, path), values in (each for person in moves for each in person.items()):
         buffer.animate(node, path, values, clock)
-        _decomposed(document["nodes"][node])
+        if (matrix := document["nodes"][node].pop("matrix", None)) is not None:  # animated nodes have none
+            parts = parts_of(np.array(matrix, dtype=np.float64))
+            document["nodes"][node] |= {each: part.tolist() for each, part in parts.items()}
     return buffer.packed()
-
-
-def _decomposed(node: dict[str, Any]) -> None:
-    """Gives a node with a matrix its parts instead: animated nodes have none."""
-    if node.get("matrix") is None:
-        return
-    matrix = np.array(node.pop("matrix"), dtype=np.float64).reshape(4, 4).T
-    turn, scale = split(matrix[None, :3, :3])
-    node |= {
-        "translation": matrix[:3, 3].tolist(), "rotation": quaternions(turn)[0].tolist(), "scale": scale[0].tolist(),
-    }  # fmt: skip

@@ -67,31 +67,35 @@ _KEYS = (
 )
 
 
-def write_npz(duet: Duet, path: str | Path) -> list[Path]:
-    """Writes a duet's positions (2, T, J, 3) float32 with fps, joint_names, parents, roles and manifest.
+def write_npz(motion: Duet | Clip, path: str | Path) -> list[Path]:
+    """Writes positions (2, T, J, 3) or (T, J, 3) float32 with fps, joint_names and parents.
 
-    Things beside the people, the grips of their hands and their looks are further arrays, see :mod:`.npz_things`.
+    A duet's roles and manifest, things beside the people, the grips of their hands and their looks are further arrays,
+    see :mod:`.npz_things`.
     """
     arrays: dict[str, Any] = {
-        "positions": duet.positions,
-        "fps": np.float64(duet.fps),
-        "joint_names": np.array(duet.skeleton.joint_names),
-        "parents": np.array(duet.skeleton.parents, dtype=np.int64),
-        "roles": np.array(duet.roles),
-        "manifest": np.array(json.dumps(duet.manifest or {}, ensure_ascii=False)),
-        **npz_things.arrays_of(duet.things),
-        **npz_things.grips_array(duet.grips),
-        **npz_things.looks_array(duet.looks),
+        "positions": motion.positions,
+        "fps": np.float64(motion.fps),
+        "joint_names": np.array(motion.skeleton.joint_names),
+        "parents": np.array(motion.skeleton.parents, dtype=np.int64),
     }
+    if isinstance(motion, Duet):
+        arrays |= {
+            "roles": np.array(motion.roles),
+            "manifest": np.array(json.dumps(motion.manifest or {}, ensure_ascii=False)),
+            **npz_things.arrays_of(motion.things),
+            **npz_things.grips_array(motion.grips),
+            **npz_things.looks_array(motion.looks),
+        }
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)
     return write_files({Path(path): buffer.getvalue()})
 
 
-def write_npy(duet: Duet, path: str | Path) -> list[Path]:
-    """Writes only a duet's positions (2, T, J, 3) float32; the frame rate is lost."""
+def write_npy(motion: Duet | Clip, path: str | Path) -> list[Path]:
+    """Writes only positions (2, T, J, 3) or (T, J, 3) float32; the frame rate is lost."""
     buffer = io.BytesIO()
-    np.save(buffer, duet.positions, allow_pickle=False)
+    np.save(buffer, motion.positions, allow_pickle=False)
     return write_files({Path(path): buffer.getvalue()})
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
-
-import numpy as np
 
 from motion import Clip, InputError
 
 from .bvh_writer import bvh_text
 from .files import write_files
+from .npz import write_npy, write_npz
 from .smpl import SUFFIX, smpl_bytes
 
 SUFFIXES = (".npz", ".bvh", ".npy", SUFFIX)
@@ -37,15 +35,4 @@ def write_clip(clip: Clip, path: str | Path) -> list[Path]:
         return write_files({path: smpl_bytes(clip)})
     if suffix == ".bvh":
         return write_files({path: bvh_text(clip).encode()})
-    buffer = io.BytesIO()
-    if suffix == ".npy":
-        np.save(buffer, clip.positions, allow_pickle=False)
-    else:
-        np.savez_compressed(
-            buffer,
-            positions=clip.positions,
-            fps=np.float64(clip.fps),
-            joint_names=np.array(clip.skeleton.joint_names),
-            parents=np.array(clip.skeleton.parents, dtype=np.int64),
-        )
-    return write_files({path: buffer.getvalue()})
+    return write_npy(clip, path) if suffix == ".npy" else write_npz(clip, path)

@@ -20,6 +20,7 @@ from motion.vectors import unit
 
 from .files import read_bytes
 from .glb_file import GlbFile, opened
+from .glb_nodes import placed, with_those_above
 
 Array = NDArray[np.floating]
 
@@ -119,44 +120,28 @@ def _from_glb(file: GlbFile) -> tuple[Array, NDArray, NDArray]:
     used = [
         (i, file.index(node["mesh"], len(meshes), "mesh")) for i, node in enumerate(nodes) if "mesh" in node
     ]
-    corners = sum(_corners(file, part) for _, mesh in used for part in meshes[mesh]["primitives"])
+    corners = sum(
+        file.corners(part, MOST_TRIANGLES) for _, mesh in used for part in meshes[mesh]["primitives"]
+    )
     if not 0 < corners <= 3 * MOST_TRIANGLES:
         file.refuse(f"it has {corners // 3:,} triangles", f"give 1 to {MOST_TRIANGLES:,}")
     vertices, faces, colours, first = [], [], [], 0
+    world = placed(file, with_those_above([node for node, _ in used], parents), parents)
     for node, mesh in used:
-        place = _world(file, node, parents)
+        place = world[node][0]
+        if not (np.abs(place) <= 1e6).all():  # NaN is not
+            file.refuse("a node in it is very far away or infinite", "apply its transforms")
         for part in meshes[mesh]["primitives"]:
-            if _corners(file, part):
-                points, cells = _triangles(file, part)
+            if file.corners(part, MOST_TRIANGLES):
+                places = part["attributes"]["POSITION"]
+                points = file.numbers(places, "VEC3", 3 * MOST_TRIANGLES, "vertices").astype(np.float64)
+                cells = file.triangles(part, len(points), MOST_TRIANGLES)
                 vertices.append(points @ place[:3, :3].T + place[:3, 3])
                 turned = np.linalg.det(place[:3, :3]) < 0
                 faces.append((cells[:, ::-1] if turned else cells) + first)
                 colours.append(np.tile(_colour(file, part), (len(cells), 1)))
                 first += len(points)
     return np.concatenate(vertices), np.concatenate(faces), np.concatenate(colours)
-
-
-def _corners(file: GlbFile, part: dict[str, Any]) -> int:
-    """Corners of a primitive's triangles by what it declares; 0 for points and lines."""
-    if part.get("mode", 4) != 4:
-        return 0
-    indices = part.get("indices")
-    what = (part["attributes"]["POSITION"], "VEC3") if indices is None else (indices, "SCALAR")
-    rows = file.stored(*what, 3 * MOST_TRIANGLES, "corners of triangles").rows
-    file.stored(part["attributes"]["POSITION"], "VEC3", 3 * MOST_TRIANGLES, "vertices")
-    return rows
-
-
-def _triangles(file: GlbFile, part: dict[str, Any]) -> tuple[Array, NDArray]:
-    points = file.numbers(part["attributes"]["POSITION"], "VEC3", 3 * MOST_TRIANGLES, "vertices")
-    indices = part.get("indices")
-    if indices is None:
-        cells = np.arange(len(points))
-    else:
-        cells = file.numbers(indices, "SCALAR", 3 * MOST_TRIANGLES, "corners").astype(np.int64)[:, 0]
-    if len(cells) % 3 or cells.max(initial=0) >= len(points) or cells.min(initial=0) < 0:
-        file.refuse("its triangles have corners that are not there", "export it again")
-    return points.astype(np.float64), cells.reshape(-1, 3)
 
 
 def _colour(file: GlbFile, part: dict[str, Any]) -> NDArray[np.uint8]:
@@ -168,38 +153,6 @@ def _colour(file: GlbFile, part: dict[str, Any]) -> NDArray[np.uint8]:
     if len(light) != 4 or not all(isinstance(v, int | float) and 0 <= v <= 1 for v in light):
         file.refuse("a colour in it is none", "export it again")
     return np.rint(255 * np.array(light[:3], dtype=float) ** (1 / 2.2)).astype(np.uint8)
-
-
-def _world(file: GlbFile, node: int, parents: list[int]) -> Array:
-    """(4, 4) where a node stands."""
-    place = np.eye(4)
-    while node >= 0:
-        place = _local(file, file.document["nodes"][node]) @ place
-        node = parents[node]
-    if not np.isfinite(place).all() or np.abs(place).max() > 1e6:
-        file.refuse("a node in it is very far away or infinite", "apply its transforms")
-    return place
-
-
-def _local(file: GlbFile, node: dict[str, Any]) -> Array:
-    def numbers(key: str, count: int, default: list[float]) -> Array:
-        found = node.get(key, default)
-        if not isinstance(found, list) or len(found) != count:
-            file.refuse(f"the {key} of a node is none", "export it again")
-        return np.array([float(value) for value in found])
-
-    if "matrix" in node:
-        return numbers("matrix", 16, []).reshape(4, 4).T
-    x, y, z, w = numbers("rotation", 4, [0, 0, 0, 1])
-    turn = np.array([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ])  # fmt: skip
-    place = np.eye(4)
-    place[:3, :3] = turn * numbers("scale", 3, [1, 1, 1])
-    place[:3, 3] = numbers("translation", 3, [0, 0, 0])
-    return place
 
 
 # ---- the surface -----------------------------------------------------------------------------------------

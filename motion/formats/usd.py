@@ -7,19 +7,17 @@ animation, and a body of :mod:`motion.body` bound to it. The stage is in metres 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 
-from motion.body import Body
 from motion.clip import Duet
-from motion.colours import linear
 
 from .files import write_files
 from .glb_nodes import quaternions
 from .skinned import ABOVE, JOINTS, Skinned, check_rest_pose, skinned
-from .usd_text import identifier, matrices, rows, samples, tuple_of
+from .usd_text import identifier, materials, matrices, rows, samples, subsets, surface
 from .usd_things import things_text
 
 _AROUND = 0.4
@@ -84,6 +82,8 @@ def _person(person: Skinned, name: str) -> str:
     bind[:, :3, :3] = person.bound_turns
     bind[:, 3, :3] = person.bound_places
     place = f"/duet/{name}/person"
+    zones = {zone: np.flatnonzero(body.face_zones == number) for number, zone in enumerate(body.zones)}
+    colours = {zone: person.colours[zone] for zone in zones}
     box = np.stack([positions.min(axis=(0, 1)) - _AROUND, positions.max(axis=(0, 1)) + _AROUND])
     return f"""    def Scope "{name}"
     {{
@@ -106,10 +106,9 @@ def _person(person: Skinned, name: str) -> str:
                 prepend apiSchemas = ["SkelBindingAPI", "MaterialBindingAPI"]
             )
             {{
-                rel skel:skeleton = <{place}/{name}>
-{_surface(person)}
-{_subsets(body, place)}            }}
-{_materials(body, place, person.colours)}        }}
+                rel skel:skeleton = <{place}/{name}>{surface(body.vertices, body.faces)}{_skinning(person)}
+{subsets(zones, place)}            }}
+{materials(colours, place, 0.8)}        }}
     }}
 """
 
@@ -129,51 +128,15 @@ def _animation(person: Skinned) -> str:
                 }}"""
 
 
-def _surface(person: Skinned) -> str:
-    """The body as it is bound; each vertex follows four joints."""
-    body, weights = person.body, np.round(person.weights, 6)
+def _skinning(person: Skinned) -> str:
+    """Each vertex of the body follows four joints."""
+    weights = np.round(person.weights, 6)
     joints = np.where(weights > 0, person.bones, 0)
     four = '(\nelementSize = 4\ninterpolation = "vertex"\n)'
-    return f"""                uniform token subdivisionScheme = "none"
-                float3[] extent = {rows(np.stack([body.vertices.min(axis=0), body.vertices.max(axis=0)]))}
-                int[] faceVertexCounts = {[3] * len(body.faces)}
-                int[] faceVertexIndices = {body.faces.reshape(-1).tolist()}
-                point3f[] points = {rows(body.vertices)}
+    return f"""
                 int[] primvars:skel:jointIndices = {joints.reshape(-1).tolist()} {four}
                 float[] primvars:skel:jointWeights = {weights.reshape(-1).tolist()} {four}
                 matrix4d primvars:skel:geomBindTransform = {matrices(np.eye(4)[None])[1:-1]}"""
-
-
-def _subsets(body: Body, place: str) -> str:
-    """The faces of each zone, bound to its material."""
-    return "".join(f"""
-                def GeomSubset "{zone}" (
-                    prepend apiSchemas = ["MaterialBindingAPI"]
-                )
-                {{
-                    uniform token elementType = "face"
-                    uniform token familyName = "materialBind"
-                    int[] indices = {np.flatnonzero(body.face_zones == number).tolist()}
-                    rel material:binding = <{place}/{zone}>
-                }}
-""" for number, zone in enumerate(body.zones))  # fmt: skip
-
-
-def _materials(body: Body, place: str, colours: Mapping[str, str]) -> str:
-    return "".join(f"""
-            def Material "{zone}"
-            {{
-                token outputs:surface.connect = <{place}/{zone}/surface.outputs:surface>
-
-                def Shader "surface"
-                {{
-                    uniform token info:id = "UsdPreviewSurface"
-                    color3f inputs:diffuseColor = {tuple_of(np.round(linear(colours[zone]), 5))}
-                    float inputs:roughness = 0.8
-                    token outputs:surface
-                }}
-            }}
-""" for zone in body.zones)  # fmt: skip
 
 
 def _paths() -> Iterable[str]:

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from motion.colours import hex_of, linear
-from motion.things.thing import Mesh, Thing
+from motion.colours import hex_of
+from motion.things.thing import Thing
 
 from .glb_buffer import unit_normals
 from .glb_things import ROUGH, names_of
-from .usd_text import identifier, matrices, rows, tuple_of
+from .usd_text import identifier, materials, matrices, rows, subsets, surface
 
 
 def things_text(things: Sequence[Thing], taken: Sequence[str]) -> str:
@@ -36,6 +36,10 @@ def _thing(thing: Thing, name: str) -> str:
         track = f"xformOp:transform.timeSamples = {{\n{frames}}}"
     else:
         track = f"xformOp:transform = {matrices(place[:1])[1:-1]}"
+    mesh, prim = thing.mesh, f"/duet/{name}"
+    colours, which = mesh.by_colour()
+    shades = {f"colour_{number}": hex_of(colour) for number, colour in enumerate(colours.tolist(), 1)}
+    zones = {zone: np.flatnonzero(which == number) for number, zone in enumerate(shades)}
     return f"""
     def Xform "{name}"
     {{
@@ -45,50 +49,10 @@ def _thing(thing: Thing, name: str) -> str:
         def Mesh "{name}_mesh" (
             prepend apiSchemas = ["MaterialBindingAPI"]
         )
-        {{
-{_surface(thing.mesh, f"/duet/{name}")}        }}
-{_materials(thing.mesh, f"/duet/{name}")}    }}
-"""
-
-
-def _surface(mesh: Mesh, place: str) -> str:
-    _, which = mesh.by_colour()
-    subsets = "".join(f"""
-            def GeomSubset "colour_{number + 1}" (
-                prepend apiSchemas = ["MaterialBindingAPI"]
-            )
-            {{
-                uniform token elementType = "face"
-                uniform token familyName = "materialBind"
-                int[] indices = {np.flatnonzero(which == number).tolist()}
-                rel material:binding = <{place}/colour_{number + 1}>
-            }}
-""" for number in range(int(which.max()) + 1))  # fmt: skip
-    box = np.stack([mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)])
-    return f"""            uniform token subdivisionScheme = "none"
-            float3[] extent = {rows(box)}
-            int[] faceVertexCounts = {[3] * len(mesh.faces)}
-            int[] faceVertexIndices = {mesh.faces.reshape(-1).tolist()}
-            point3f[] points = {rows(mesh.vertices)}
+        {{{surface(mesh.vertices, mesh.faces)}
             normal3f[] normals = {rows(unit_normals(mesh.vertices, mesh.faces))} (
                 interpolation = "vertex"
             )
-{subsets}"""
-
-
-def _materials(mesh: Mesh, place: str) -> str:
-    colours, _ = mesh.by_colour()
-    return "".join(f"""
-        def Material "colour_{number + 1}"
-        {{
-            token outputs:surface.connect = <{place}/colour_{number + 1}/surface.outputs:surface>
-
-            def Shader "surface"
-            {{
-                uniform token info:id = "UsdPreviewSurface"
-                color3f inputs:diffuseColor = {tuple_of(np.round(linear(hex_of(colour)), 5))}
-                float inputs:roughness = {ROUGH}
-                token outputs:surface
-            }}
-        }}
-""" for number, colour in enumerate(colours.tolist()))  # fmt: skip
+{subsets(zones, prim)}        }}
+{materials(shades, prim, ROUGH)}    }}
+"""
