@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from motion.errors import InputError
 
-from .files import read_bytes
+from .files import read_bytes, read_json
 
 MOST_JOINTS = 512
 MOST_NODES = 5_000
@@ -27,7 +27,6 @@ MOST_SKINS = 200
 """Skins of a file: a character has one for each of its meshes."""
 MOST_ITEMS = 20_000
 """Entries of each list of the file."""
-LARGEST_JSON = 4 * 2**20
 _MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
 _TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
@@ -147,11 +146,10 @@ class GlbFile:
                 self.refuse("it is cut off")
             found.setdefault(kind, data[at + 8 : at + 8 + length])
             at += 8 + length + (-length % 4)
-        if len(found.get(_JSON, b"")) > LARGEST_JSON:
-            self.refuse(
-                f"its description has more than {LARGEST_JSON // 2**20} MB", "export the character alone"
-            )
-        document = json.loads(found.get(_JSON, b"").decode("utf-8"))
+        try:
+            document = read_json(found.get(_JSON, b""))
+        except ValueError as error:
+            self.refuse(f"its description {error}", "export the character alone")
         if not isinstance(document, dict):
             self.refuse("its description is none")
         return document, found.get(_BIN, b"")

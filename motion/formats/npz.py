@@ -25,15 +25,13 @@ from . import npz_things
 from .arrays import frame_rate, load_array, load_members, no_rate, numbers
 from .choices import ORDERS, ImportChoices
 from .crowd import MAX_PEOPLE, Recording
-from .files import check_duration, write_files
+from .files import check_duration, read_json, write_files
 from .joint_order import likely_skeleton
 from .smpl import FPS_KEYS, PARAMETER_KEYS, has_parameters, read_parameters
 
 Array = NDArray[Any]
 
 _SMPL24 = 24
-_LONGEST_MANIFEST = 1_000_000
-"""Characters of JSON, which holds the interpreter while it is read: some 30 ms for so many."""
 _JOINT_COUNTS = (
     "15 (Kinect v1), 17 (CMU, Human3.6M, COCO), 22 or 24 (SMPL), 25 (Kinect v2), 30 or 77 joints (SOMA)"
 )
@@ -240,14 +238,10 @@ def _beside(arrays: dict[str, Array], found: Recording, label: str) -> dict[str,
     roles = tuple(str(role)[:40] for role in np.atleast_1d(arrays.get("roles", ("a", "b")))[:2])
     manifest = None
     if "manifest" in arrays:
-        if arrays["manifest"].nbytes > 4 * _LONGEST_MANIFEST:
-            raise InputError(
-                f"{label}: its manifest has over {_LONGEST_MANIFEST:,} characters: save it again."
-            )
         try:
-            manifest = json.loads(str(arrays["manifest"]))
-        except (ValueError, RecursionError):
-            raise InputError(f"{label}: its manifest is not JSON text: save it again.") from None
+            manifest = read_json(str(arrays["manifest"]))
+        except ValueError as error:
+            raise InputError(f"{label}: its manifest {error}: save it again.") from None
     return {
         "roles": (roles[0], roles[1]) if len(roles) == 2 else ("a", "b"),
         "manifest": manifest if isinstance(manifest, dict) and manifest else None,

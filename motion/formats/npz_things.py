@@ -28,6 +28,8 @@ from motion.hands import Grip, grips_of, to_lists
 from motion.looks import UNSAID, checked
 from motion.things.thing import MOST_THINGS, Mesh, Thing
 
+from .files import read_json
+
 Array = NDArray[Any]
 
 KEYS = (
@@ -116,11 +118,11 @@ def grips_in(arrays: Mapping[str, Array], label: str) -> tuple[Grip, ...]:
     if GRIPS not in arrays:
         return ()
     try:
-        return grips_of(json.loads(str(arrays[GRIPS])))
+        return grips_of(read_json(str(arrays[GRIPS])))
     except InputError as error:
         raise InputError(f"{label}: {error}") from None
-    except (ValueError, RecursionError):
-        raise InputError(f"{label}: its grips are not JSON text: save it again.") from None
+    except ValueError as error:
+        raise InputError(f"{label}: the text of its grips {error}: save it again.") from None
 
 
 def looks_array(looks: tuple[str, str]) -> dict[str, Array]:

@@ -55,19 +55,43 @@ async def attack(url: str) -> dict[str, Any]:
     return {f"attack_{name}": count for name, count in sorted(counts.items())}
 
 
+def _count(answer: httpx.Response, what: str, counts: Counter[str]) -> bool:
+    """Counts a call and returns whether it was taken; raises for one that no server takes, which attacks nothing."""
+    taken = answer.status_code == 200
+    if not taken and answer.status_code not in (429, 503):
+        answer.raise_for_status()
+    counts[f"{what}_{'taken' if taken else 'refused'}"] += 1
+    return taken
+
+
 async def _fill(client: httpx.AsyncClient, counts: Counter[str]) -> None:
     """Sends contact sheets and generations, of which nobody fetches the results."""
     sent = await client.post("gradio_api/upload", files={"files": (Path(_HANDS).name, _HANDS.read_bytes())})
     file = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}
-    sheet = [file, "png", "bodies", "light", "threequarter", False, 24, 640, 360, None, "", 0, 0, False]
+    sheet = [
+        file,
+        "png",
+        "bodies",
+        "light",
+        "threequarter",
+        False,
+        24,
+        640,
+        360,
+        None,
+        "",
+        0,
+        0,
+        False,
+        "",
+        "",
+    ]
     run = ["Two people dance together.", 5, 0, 2, 3, 20, 0.7, "ddim", "intergen", 1]
 
     async def ask(i: int) -> None:
         endpoint, data = ("generate", run) if i % 4 == 0 else ("render", sheet)
         answer = await client.post(f"gradio_api/call/{endpoint}", json={"data": data})
-        if answer.status_code not in (200, 429, 503):  # a call that no server takes attacks nothing
-            answer.raise_for_status()
-        counts["events_taken" if answer.status_code == 200 else "events_refused"] += 1
+        _count(answer, "events", counts)
 
     count = EVENTS
     while True:
@@ -121,7 +145,7 @@ async def _ask_for_readings(client: httpx.AsyncClient, counts: Counter[str]) -> 
     for i in itertools.count():
         text = f"The {i}. time, " + "they walk up to each other, hug, dance and walk away again. " * 40
         answer = await client.post("gradio_api/call/read", json={"data": [text[:2000]]})
-        counts["readings_taken" if answer.status_code == 200 else "readings_refused"] += 1
+        _count(answer, "readings", counts)
         await asyncio.sleep(READING_EVERY)
 
 
@@ -153,13 +177,33 @@ async def _send_large(client: httpx.AsyncClient, counts: Counter[str]) -> None:
             sent = await client.post("gradio_api/upload", files={"files": ("large.trc", data)})
             if sent.status_code == 200:
                 file = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}
-                react = [file, "", "", 0, 2, "b", 0, 1, 3, 5, 0.7, "ddim", "", "offline", False, False, "", 0]
+                react = [
+                    file,
+                    "",
+                    "",
+                    0,
+                    2,
+                    "b",
+                    0,
+                    1,
+                    3,
+                    5,
+                    0.7,
+                    "ddim",
+                    "",
+                    "offline",
+                    False,
+                    False,
+                    "",
+                    0,
+                    "",
+                    "",
+                ]
                 answer = await client.post("gradio_api/call/react", json={"data": react})
-                if answer.status_code == 200:
+                if _count(answer, "files", counts):
                     await client.get(f"gradio_api/call/react/{answer.json()['event_id']}")
-                counts["files_taken" if answer.status_code == 200 else "files_refused"] += 1
             else:
-                counts["files_refused"] += 1
+                counts["uploads_refused"] += 1
             await asyncio.sleep(1)
 
     await asyncio.gather(*(one() for _ in range(LARGE)))

@@ -127,9 +127,9 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
     """Mounts the page in the application and closes what Gradio leaves open when mounted."""
     settings = lab.settings
     page.state_session_capacity = PAGES
-    page.max_threads = settings.queue + 64  # each waiting run holds a thread
     near = settings.events * settings.address_people
     limits = EventLimits(person=settings.events, address=near, total=2 * max(near, settings.queue) + 64)
+    page.max_threads = limits.total  # each that waits for a run or a file holds a thread
     start_queue(page, partial(FairEvents, limits=limits, figures=lab.figures))
     options = launch_options() | {
         "allowed_paths": [],

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from motion import InputError
 from motion.character import character_body
-from motion.formats import glb_file
+from motion.formats import files
 from motion.formats.glb_file import GlbFile
 from motion.formats.glb_reader import read_character
 
@@ -89,9 +89,9 @@ def test_deep_descriptions_are_a_sentence(monkeypatch: pytest.MonkeyPatch) -> No
     data = (
         struct.pack("<III", 0x46546C67, 2, 20 + len(deep)) + struct.pack("<II", len(deep), 0x4E4F534A) + deep
     )
-    with pytest.raises(InputError, match="is damaged"):
+    with pytest.raises(InputError, match="its description is not JSON text"):
         read_character(data, name="box.glb")
-    monkeypatch.setattr(glb_file, "LARGEST_JSON", 100)
+    monkeypatch.setattr(files, "MAX_JSON", 100)
     with pytest.raises(InputError, match="its description has more"):
         read_character(VALID, name="box.glb")
 

@@ -19,6 +19,7 @@ from motion.formats.files import MAX_BYTES
 from motion.formats.importing import import_motion
 from tests.motion.bodies import marching
 
+from .characters import packed
 from .rigs import RIGS, bvh_text
 from .test_markers import c3d_bytes, keypoints, trc_text
 
@@ -61,8 +62,23 @@ HOSTILE: dict[str, tuple[Callable[[], bytes], str]] = {
     "line.trc": (lambda: trc_text(keypoints()).encode() + b"1\t" * (FULL // 2 - 10_000), "is longer than"),
     "hours.trc": (lambda: trc_text(keypoints()).encode() + b"1\t0\n" * (FULL // 4 - 10_000), "600 s allowed"),
     "noise.c3d": (lambda: b"\x02\x50" * (FULL // 2), "not possible"),
+    "lists.glb": (
+        lambda: packed({"asset": {"version": "2.0"}, "extras": [[]] * 900_000}, b""),
+        "100,000 parts",
+    ),
+    "manifest.npz": (lambda: _with_text("manifest"), "100,000 parts"),
+    "grips.npz": (lambda: _with_text("grips"), "100,000 parts"),
     "noise.npy": (lambda: b"\x93NUMPY\x01\x00\xff\xff" + b"(" * FULL, "not a NumPy"),
 }
+
+
+def _with_text(key: str) -> bytes:
+    """A .npz of two people, a few kilobytes packed, with an array of text: as much JSON as once held a server."""
+    text = np.array("[" + "[]," * 1_300_000 + "[]]")
+    people = np.stack([marching(30)[0]] * 2)
+    file = io.BytesIO()
+    np.savez_compressed(file, positions=people, fps=np.array(30.0), **{key: text})  # type: ignore[arg-type]
+    return file.getvalue()
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..clients import FIELDS
+from ..clients import FIELDS, PREDICT
 
 API = "/gradio_api"
 FORM = "multipart/form-data; boundary=x"
@@ -91,7 +91,7 @@ OTHERS_THINGS = [
     get("the folder of another's files", f"{API}/file={{folder_of_ada}}", 403, 404),
     call("another's upload as a prompt", [OTHER_FILE, *FIELDS[1:]], 400, 403),
     post(
-        "another's upload as a past", f"{API}/call/predict", 403, body={"data": [OTHER_FILE, 0, 1, "still", "", 0, 0]}
+        "another's upload as a past", f"{API}/call/predict", 403, body={"data": [OTHER_FILE, *PREDICT]}
     ),
     get("what another's call ends with", f"{API}/call/generate/{{call}}", 403, 404, never=("SECRET",)),
     get("another's session as a call", f"{API}/call/generate/{{session}}", 403, 404, never=("SECRET",)),

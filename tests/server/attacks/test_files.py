@@ -6,11 +6,8 @@ from typing import Any
 
 import pytest
 
-from ..clients import FIELDS
+from ..clients import FIELDS, PREDICT, REACT
 from .target import CANARY, Target
-
-REACT = ["", "", 0, 0, "a", 0, 1, 3, 1, 0, "ddim", "intergen", "offline", False, False, "", 0]
-PREDICT = [0, 1, "still", "", 0, 0]
 
 
 def file_data(path: str, **more: Any) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from motion import InputError
-from tests.server.clients import FIELDS, HERE, UPLOAD, client_of, events_of, lab_of, settings_for
+from tests.server.clients import FIELDS, HERE, REACT, UPLOAD, client_of, events_of, lab_of, settings_for
 from tests.server.lab import stub_module
 from webdemo.server.queue.queue import FairQueue
 from webdemo.server.queue.turns import QueueLimits
@@ -30,8 +30,7 @@ def open_to_all(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient
 
 
 def react(client: TestClient, actor: Any) -> str:
-    rest = ["", "", 0, 0, "a", 0, 1, 3, 1, 0, "ddim", "intergen", "offline", False, False, "", 0]
-    return events_of(client, "react", [actor, *rest])
+    return events_of(client, "react", [actor, *REACT])
 
 
 @pytest.mark.parametrize(

@@ -41,13 +41,13 @@ class FairEvents(Queue):
     most half of its places.
 
     Args:
-        limits: unfinished events; ``total`` becomes Gradio's ``max_size``.
+        limits: unfinished events.
         figures: metrics to update.
         options: of Gradio's queue.
     """
 
     def __init__(self, *, limits: EventLimits, figures: Figures, **options: Any) -> None:
-        super().__init__(**options, max_size=limits.total)
+        super().__init__(**options, max_size=None)
         self.limits, self.figures = limits, figures
         self.accounts = Accounts()
         self._begun: dict[Event, float] = {}
@@ -56,10 +56,14 @@ class FairEvents(Queue):
         """Takes an event in.
 
         Raises:
-            HTTPException: 429 with a sentence, if the person or the address has too many unfinished ones.
+            HTTPException: 429 with a sentence, if the person or the address has too many unfinished ones; 503 if
+                everybody together has.
         """
         who = visitor_of(request)
         known = [visitor_of(event.request) for event in self._unfinished()]
+        if len(known) >= self.limits.total:
+            self.figures.refused.labels("events of all").inc()
+            raise HTTPException(503, f"{len(known)} things are not done yet: try again in a minute.")
         mine = sum(other.person == who.person for other in known)
         near = sum(other.address == who.address for other in known) if who.address else 0
         if mine >= self.limits.person:

@@ -115,8 +115,8 @@ class Worn:
         """
         with READING.place():
             body = character_body(read_character(path))
-        still = Clip(SMPL22.rest_positions()[None].astype(np.float32), 30.0)
-        glb_wearing(Duet(still, still), path)
+            still = Clip(SMPL22.rest_positions()[None].astype(np.float32), 30.0)
+            glb_wearing(Duet(still, still), path)
         return cls(body, Path(shutil.copyfile(path, folder / path.name)))
 
 

@@ -14,6 +14,7 @@ from webdemo.inference.requests import GenerateRequest, Result, with_current_nam
 from webdemo.inference.story import SceneRequest
 from webdemo.inference.things import with_own_thing
 from webdemo.inference.tries import replayed
+from webdemo.ui.places import READING
 
 from .exports import Record
 
@@ -30,7 +31,8 @@ def bring(record: Record | None, path: str | None) -> Result:
         raise InputError("There is no thing: choose a .glb, .obj, .stl or .ply file.")
     if record is None or record.compared:
         raise InputError("A thing is for one result: make a motion first, not several side by side.")
-    return with_own_thing(record.result, _request(record.result.manifest), Path(path))
+    with READING.place():
+        return with_own_thing(record.result, _request(record.result.manifest), Path(path))
 
 
 def _request(manifest: Mapping[str, Any]) -> Any:
