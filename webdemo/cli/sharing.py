@@ -95,7 +95,8 @@ def link(options: argparse.Namespace) -> dict[str, Any]:
 def list_pages(options: argparse.Namespace) -> dict[str, Any]:
     """All pages that have not ended, with their owners."""
     with _publishing() as publishing:
-        return {"pages": [{"owner": owner} | _about(page) for owner, page in publishing.everybodys()]}
+        pages = publishing.everybodys()
+    return {"pages": [{"owner": owner.partition("#")[0]} | _about(page) for owner, page in pages]}
 
 
 def revoke(options: argparse.Namespace) -> dict[str, Any]:

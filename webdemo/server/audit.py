@@ -1,7 +1,7 @@
 """Log lines of the server's log for sign-ins, opened links, imports, deletions and acts of administrators.
 
-They are those of the logger ``webdemo.audit``, with ``act``, ``ok``, ``person`` and ``address``. They hold names,
-addresses, ids and counts, never a password, a cookie, a link or what somebody wrote.
+They are those of the logger ``webdemo.server.audit``, with ``act``, ``ok``, ``person`` and ``address``. They hold
+names, addresses, ids and counts, never a password, a cookie, a link or what somebody wrote.
 """
 
 from __future__ import annotations

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import gradio as gr
 import pytest
 from fastapi import HTTPException
+from gradio.routes import App
+from starlette.routing import Mount
 
 from tests.server.attacks.target import Target
-from tests.server.clients import FIELDS
+from tests.server.clients import FIELDS, settings_for
 from tests.server.lab import ROOT, stub_module
+from webdemo.server.app import create_app
 from webdemo.server.http.metrics import Figures
 from webdemo.server.queue.events import AT_ONCE, EventLimits, FairEvents
 from webdemo.ui.page import build_page, start_queue
@@ -123,7 +127,7 @@ def test_runs_begin_at_once_since_they_wait_elsewhere() -> None:
 
 
 def test_a_person_and_an_address_have_so_many_unfinished_events() -> None:
-    queue = made(EventLimits(person=3, address=5, total=40))
+    queue = made(EventLimits(person=3, address=5, total=9))
     for _ in range(3):
         ask(queue, "greedy", "film")
     begin(queue)  # what is worked on counts as well
@@ -135,6 +139,16 @@ def test_a_person_and_an_address_have_so_many_unfinished_events() -> None:
     with pytest.raises(HTTPException, match="5 things that your network"):
         ask(queue, Visitor("visitor 6", address="203.0.113.9"), "film")
     ask(queue, "other", "film")
+    with pytest.raises(HTTPException) as refused:
+        ask(queue, "another", "film")
+    assert refused.value.status_code == 503
+
+
+def test_whoever_waits_takes_no_thread_from_others(tmp_path: Path) -> None:
+    """One address took all 128 threads by as many files that waited to be read."""
+    app = create_app(settings_for(tmp_path, open=True), engine=stub_module().StubEngine())
+    (page,) = [r.app.get_blocks() for r in app.routes if isinstance(r, Mount) and isinstance(r.app, App)]
+    assert page.max_threads >= page._queue.limits.total > page._queue.limits.address
 
 
 def test_nothing_that_computes_goes_past_the_queue() -> None:
