@@ -23,9 +23,12 @@ from torch import Tensor
 
 from models.motion_tokens import FEATURES, TokenLayout, feature_rows, foot_contacts, pack, unpack
 from models.turning import Turning
+from motion import SMPL22
 
 FLOOR = (0, 2)
 """Columns of a row that hold the pelvis' place on the floor: x and z."""
+JOINT_NUMBERS = 3 * SMPL22.num_joints
+"""Of a row, those that say where joints are; the others are contacts of the feet."""
 KNOWN_FEATURES = 2 * FEATURES + 3
 """Input features of the known part, per person and knot: values, mask, the heading's sine and cosine, and a 1 if
 the heading is known."""
@@ -187,6 +190,21 @@ class Hold:
                 whole[at] = True
         whole = whole.view(self.batch, 2, 1, FEATURES).expand(-1, -1, knots, -1)
         return pack(whole, self.layout)
+
+    @property
+    def shares(self) -> Tensor:
+        """(T,) what share of the places of joints is laid out at each frame, from 0 to 1; the mean of all motions.
+
+        A number counts by how much less it varies with a network's control points, if these are white noise: whole
+        where it is known, and nearly so between two known frames, as the spline leads from one to the other.
+        """
+        free = self._basis.double()
+        varies = free.square().sum(1)
+        found = torch.zeros_like(varies)
+        for at, _, move in self.groups:
+            left = 0.0 if move is None else (free @ move.double()).square().sum(1) / varies
+            found += (at % FEATURES < JOINT_NUMBERS).sum() * (1 - left)
+        return found / (self.batch * 2 * JOINT_NUMBERS)
 
     def __call__(self, x: Tensor) -> Tensor:
         """x (B, tokens, 2·token_features) with the known part written in; any B if one motion is known."""

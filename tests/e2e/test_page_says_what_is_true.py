@@ -106,7 +106,7 @@ def test_controls_that_differ_from_what_is_shown_say_so(page: Page, server: Simp
     expect(folded).to_contain_text("Guidance 4.3, 12 steps, damping 0.7")
     expect(page.locator("#pace input:checked")).to_have_count(0)
     expect(changed).to_contain_text(CHANGED)
-    page.get_by_label("Plan from the words").first.uncheck()
+    page.locator("#planned label", has_text="Let the network alone").click()
     expect(folded).to_contain_text("damping 0.7, no paths")
     set_number(page, "#seed", "3")
     generate(page, "Two people run.")

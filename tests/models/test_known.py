@@ -172,6 +172,27 @@ def test_a_bend_meets_the_past_with_less_of_a_jolt_than_the_least_move():
     assert moved[:, -1].abs().max() < 0.2 * moved.abs().max(), "far from what is known the motion stays"
 
 
+def test_the_share_that_is_laid_out_is_that_which_a_network_no_longer_moves():
+    def shares(known: Known) -> Tensor:
+        return Hold(known, LAYOUT, MEAN, STD).shares
+
+    motion, known = people(), Known.nothing(FRAMES)
+    assert shares(known).shape == (FRAMES,) and not shares(known).any()
+    known.add_person(0, motion[0, ::3], range(0, FRAMES, 3))
+    assert shares(known) == pytest.approx(0.5, abs=0.01), "between known frames, too, and b is free"
+    moved = torch.stack([positions(held(known, made_by_a_network(1, seed)))[0] for seed in range(40)])
+    spread, free = (each[:, :-1, 1:].std(0).mean() for each in (moved[:, 0], moved[:, 1]))
+    assert spread < 0.02 * free
+    known.add_person(1, motion[1, :3], range(3))
+    after = shares(known)
+    assert (
+        after[:3].min() > 0.99 and after[3:].diff().max() < 0.01 and after[12] == pytest.approx(0.5, abs=0.01)
+    )
+    both = Known.nothing(FRAMES, batch=2)
+    both.add_joints(1, motion[1], range(FRAMES), range(11))
+    assert shares(both) == pytest.approx(0.25, abs=1e-3), "half of the joints of one of two people"
+
+
 def test_a_single_pose_says_nothing_of_planted_feet() -> None:
     known = Known.nothing(8)
     known.add_person(0, torch.zeros(1, 22, 3), [3])

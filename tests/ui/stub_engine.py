@@ -192,6 +192,7 @@ class StubEngine:
             after = tuple(walking(request.seconds, seed) for seed in seeds)
         noise = np.random.default_rng(request.seed).normal(0, 0.004, after[0].positions.shape)
         before = [duet.with_positions(duet.positions + noise) for duet in after]
+        planned = {} if isinstance(request, ReactRequest) else {"planned": 0.6 * request.planned}
         notes = ()
         if "unknown" in request.prompt:
             notes = (
@@ -201,7 +202,7 @@ class StubEngine:
         yield Result(
             duets=after,
             manifest={"model": "stub", "request": request.to_dict()},
-            readouts=tuple(compare(b, a) for b, a in zip(before, after, strict=True)),
+            readouts=tuple({**compare(b, a), **planned} for b, a in zip(before, after, strict=True)),
             timings={"text": 0.01, "sampling": time.monotonic() - started, "finish": 0.05},
             notes=notes,
         )

@@ -35,7 +35,7 @@ def write_result(result: Result, out: Path) -> dict[str, Any]:
     return {
         "files": [str(path) for path in paths],
         "manifest": result.manifest,
-        "readouts": [{k: r[k] for k in ("before", "after")} for r in result.readouts],
+        "readouts": [{k: r[k] for k in ("before", "after", "planned") if k in r} for r in result.readouts],
         "timings": result.timings,
         "notes": list(result.notes),
     }

@@ -38,7 +38,8 @@ class Result:
         duets: one a sample; a prediction for one person is that person's clip.
         manifest: request, plan, model, weights hash, versions: all that reproduces the result.
         readouts: one dictionary of interaction measures a sample (see :mod:`motion.metrics`), each
-            measure with its value ``before`` and ``after`` the damping and clean-up where both exist.
+            measure with its value ``before`` and ``after`` the damping and clean-up where both exist; of a
+            sentence also the share of the motion that was laid out for the network, ``planned`` (0 to 1).
         timings: seconds by stage.
         notes: sentences the user should read, such as a prompt far from all training captions.
         run: its id in the history; "" where none keeps it.

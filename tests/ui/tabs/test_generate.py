@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -275,7 +276,10 @@ def test_words_become_paths_unless_that_is_switched_off(tab: GenerateTab) -> Non
         last = run(tab, planned=planned)[-1]
         assert last["record"].result.manifest["request"]["planned"] is planned
         assert ("Plan from the words" in last["readouts"]) is not planned
+        assert ("lays out 60 %" if planned else "lays out nothing") in last["laid"]
     assert tab.planned in tab.controls.values() and tab.planned in tab.knobs.values()
+    assert tab.planned.parent is tab.damping.parent and tab.laid.parent is tab.folded, "beside the sliders"
+    assert tab.laid in tab.outputs.values()
     assert tab.planned in tab.tell_advanced["inputs"], "the line over the folded settings says it"
     assert [tab.asked_by(way)[4]["visible"] for way in ("intergen", "bigraphdiff")] == [True, False]
 
@@ -335,6 +339,7 @@ def test_a_kept_run_opens_with_its_own_plan(tab: GenerateTab) -> None:
         result = result_of(tab).result
         request = {**result.manifest["request"], "prompt": "They wave.", **asked}
         entry = Entry(id="x", kind="generate", title="t", state="done", request=request)
+        result = replace(result, manifest={**result.manifest, "request": request})
         found = tab.opened(Opened(entry=entry, result=result, kept=Kept(controls={})))
         shown = found[tab.reading]["shown"]
         assert (shown["said"], shown["edited"], shown["number"]) == (said, edited, None)

@@ -18,6 +18,7 @@ from webdemo.ui.text.panels import (
     model_card,
     model_state,
     notes_lines,
+    plan_line,
     readout_panel,
     status,
 )
@@ -155,6 +156,16 @@ def test_progress_and_cancellation_name_the_step() -> None:
 )
 def test_errors_become_sentences(error: Exception, start: str) -> None:
     assert error_line(error).startswith(start)
+
+
+def test_a_line_says_what_share_of_a_motion_is_planned() -> None:
+    def line(*shares: float | None) -> str:
+        readouts = tuple({} if share is None else {"planned": share} for share in shares)
+        return plan_line([Result(duets=(), manifest={}, readouts=readouts)])
+
+    assert line(None) == "" == line(), "no sentence, no plan"
+    assert "lays out all of this motion" in line(0.999) and "lays out nothing" in line(0.0, 0.0)
+    assert "lays out 62 %" in line(0.62) and "lays out 5 to 62 %" in line(0.62, 0.05)
 
 
 @pytest.mark.parametrize(

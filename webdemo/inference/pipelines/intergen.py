@@ -77,9 +77,11 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
             )
         for event in events:
             if isinstance(event, Result):
-                if split is None and request.cleanup:
-                    finish = plan.finishes[0] if plan.finishes else BeatFinish()
-                    event = replace(event, duets=tuple(_in_touch(duet, finish) for duet in event.duets))
+                if split is None:
+                    event = replace(event, readouts=tuple({**r, "planned": 0.0} for r in event.readouts))
+                    if request.cleanup:
+                        finish = plan.finishes[0] if plan.finishes else BeatFinish()
+                        event = replace(event, duets=tuple(_in_touch(duet, finish) for duet in event.duets))
                 own, said = plan.to_dict(), plan.acts[0].notes
                 whole = {name: own[name] for name in ("acts", "beats")}
                 kept = own | event.manifest.get("plan", {}) | whole

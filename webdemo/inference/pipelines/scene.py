@@ -58,9 +58,13 @@ class WindowRequest(GenerateRequest):
 
 @dataclass(frozen=True)
 class Made:
-    """The motion of a window: positions (2, frames, 22, 3) in the scene's world, and notes."""
+    """The motion of a window: positions (2, frames, 22, 3) in the scene's world, and notes.
+
+    ``planned`` is the share of it that the plan, or given paths and poses, laid out for the network.
+    """
 
     positions: Array
+    planned: float
     notes: tuple[str, ...] = ()
 
 
@@ -128,10 +132,11 @@ class SceneMaker:
             )
         steps, done, duets = request.steps * len(listed) * request.samples, 0, []
         made_plans: list[WindowPlan] = []
+        shares: list[float] = []
         planning = kept.notes if kept else (*notes, *plan_note(request, cancel.raise_if_cancelled))
         said = [*planning, *_notes(request)]
         for sample in range(request.samples):
-            scene = _blank(request)
+            scene, laid = _blank(request), 0.0
             for window in listed:
                 cancel.raise_if_cancelled()
                 setting = Setting.of(request, window, scene, kept.windows[len(made_plans)] if kept else None)
@@ -140,6 +145,7 @@ class SceneMaker:
                 made = yield from self._window(request, sample, setting, cancel, timer, passes, done, steps)
                 scene[:, window.start : window.stop] = made.positions
                 said += made.notes
+                laid += made.planned * made.positions.shape[1]
                 done += request.steps
                 finished = Duet.from_positions(scene[:, : window.stop], fps=FPS, roles=NAMES)
                 yield SceneProgress(
@@ -149,13 +155,16 @@ class SceneMaker:
             if request.loop:
                 _close(request, scene)
             duets.append(_duet(request, scene, sample))
+            shares.append(laid / sum(window.stop - window.start for window in listed))
         said += _distance_note(duets, request)
         plan = KeptPlan(request.plans, windows=tuple(made_plans), notes=tuple(planning))
         yield timer.progress("finish")
         yield Result(
             duets=tuple(duets),
             manifest={"plan": replace(plan, finishes=finishes(request)).to_dict()},
-            readouts=tuple(compare(None, duet) for duet in duets),
+            readouts=tuple(
+                {**compare(None, duet), "planned": share} for duet, share in zip(duets, shares, strict=True)
+            ),
             timings={**timer.stages, "total": round(timer.elapsed, 4)},
             notes=tuple(dict.fromkeys(said)),
         )
@@ -181,7 +190,8 @@ class SceneMaker:
         for event in self.pipeline.run(asked, cancel, timer, passes, given):
             if isinstance(event, Result):
                 made = setting.made(event.duets[0].positions)
-                found = Made(made, tuple(_of_beat(note, request, window) for note in event.notes))
+                notes = tuple(_of_beat(note, request, window) for note in event.notes)
+                found = Made(made, setting.share(self.pipeline), notes)
                 if (
                     passes is None
                 ):  # sharing a pass changes the rounding, and kept windows give the same bytes

@@ -81,11 +81,19 @@ class Setting:
         """As the pipeline takes it."""
         return directed(pipeline.model, self.frames, self.parts, check=False)
 
+    def share(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> float:
+        """The share of the new frames that the plan lays out, see :attr:`models.known.Hold.shares`."""
+        planned = directed(pipeline.model, self.frames, self.plan.parts, check=False).given
+        return 0.0 if planned is None else float(planned.shares[self._own].mean())
+
     def made(self, positions: Array) -> Array:
         """The new frames (2, T, 22, 3) in the scene's world, of the whole window's."""
-        first = self.window.past
-        new = positions[:, first : first + self.window.stop - self.window.start]
-        return self.placement.to_world(new).astype(np.float32)
+        return self.placement.to_world(positions[:, self._own]).astype(np.float32)
+
+    @property
+    def _own(self) -> slice:
+        """The frames that are the window's own, among those that it sees."""
+        return slice(self.window.past, self.window.past + self.window.stop - self.window.start)
 
     def key(self, asked: GenerateRequest, digest: str) -> str:
         """A hash of all that the window is made from."""

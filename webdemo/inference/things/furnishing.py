@@ -123,7 +123,7 @@ def _at_their_sizes(result: Result, looks: tuple[str, str]) -> Result:
             continue
         if (a, b) != (1.0, 1.0):
             duet = duet.with_positions(at_sizes(duet.positions, (a, b)))
-            readouts[i : i + 1] = [compare(None, duet)]
+            readouts[i : i + 1] = [{**each, **compare(None, duet)} for each in readouts[i : i + 1]]
         duets[i] = replace(duet, looks=looks)
     manifest = {**result.manifest, "looks": list(looks)}
     return replace(result, duets=tuple(duets), readouts=tuple(readouts), manifest=manifest)

@@ -81,7 +81,7 @@ def _marks(text: str, result: Result) -> dict[str, Any] | None:
 
 _PLANNED_INFO = say("generate.planned_info")
 _EDITED_UNPLANNED = (
-    "The plan was edited, but it is not followed: tick Plan from the words, or press Read again."
+    "The plan was edited, but it is not followed: choose Plan from the words, or press Read again."
 )
 ARRIVAL = "shake-hands.npz"
 """The example that plays before anything is asked for."""
@@ -244,13 +244,15 @@ class GenerateTab(SweepTab):
             self._sampling(self._plan, said=True)
             self._sweeps()
 
-    def _plan(self) -> Sequence[gr.Checkbox]:
+    def _plan(self) -> Sequence[gr.Radio]:
         """A switch: words become paths, or not."""
-        self.planned = gr.Checkbox(
-            GenerateRequest.planned,
-            label=say("generate.planned"),
+        self.planned = gr.Radio(
+            [(say("generate.planned"), True), (say("generate.alone"), False)],
+            value=GenerateRequest.planned,
+            label=say("generate.who"),
             info=_PLANNED_INFO,
             elem_id=self._id("planned"),
+            elem_classes="pd-way",
         )
         return [self.planned]
 

@@ -249,7 +249,7 @@ class HistoryTab:
             job = self.jobs.get(runs[0].entry.kind) if runs else None
             if job is None:
                 raise InputError("Choose two to nine runs first.")
-            shown = compared(runs)
+            shown = compared(runs) | job.laid_out(run.result for run in runs)
         except Exception as error:
             return self._not_shown(error_line(error))
         changes: dict[int, Any] = {

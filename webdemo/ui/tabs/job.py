@@ -6,7 +6,7 @@ import logging
 import secrets
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -22,7 +22,7 @@ from webdemo.ui.components.settings import OPENED, differs, snapshot
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Kept, Opened, Original
-from webdemo.ui.text.panels import comparison_panel, notes_lines, readout_panel, status
+from webdemo.ui.text.panels import comparison_panel, notes_lines, plan_line, readout_panel, status
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line, seconds
 from webdemo.ui.visitor import visitor
@@ -117,6 +117,7 @@ class JobTab(SamplingTab, ABC):
             "record": self.record,
             "asked": self.asked,
             "changed": self.changed,
+            **({} if self.laid is None else {"laid": self.laid}),
             **self.more_outputs(),
         }
         self.compare: dict[str, Any] = {
@@ -336,7 +337,12 @@ class JobTab(SamplingTab, ABC):
             "under": gr.update(visible=True),
             "readouts": readout_panel(result),
             "record": Record(result, title),
+            **self.laid_out([result]),
         }
+
+    def laid_out(self, results: Iterable[Result]) -> dict[str, str]:
+        """The update of the line on how much is planned, where the tab has it."""
+        return {} if self.laid is None else {"laid": plan_line(results)}
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Updates that show a kept run here, by the components of this tab."""

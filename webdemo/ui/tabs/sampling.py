@@ -34,6 +34,8 @@ class SamplingTab(ResultsTab):
     """Holds guidance, steps and damping, where the tab has them."""
     more: gr.Accordion | None = None
     """Holds the settings that are rarely needed, where the tab has them."""
+    laid: gr.HTML | None = None
+    """Says what share of the motion the plan lays out, where the tab takes sentences."""
     pace: gr.Radio | None = None
     """Switches between few steps and many, where the tab has it."""
     tries: gr.Slider | None = None
@@ -41,10 +43,11 @@ class SamplingTab(ResultsTab):
     compare: dict[str, Any]
     """The event that says what was changed since the result; set where runs are wired."""
 
-    def _sampling(self, more: Callable[[], Sequence[gr.Checkbox]] = tuple, *, said: bool = False) -> None:
-        """Guidance, steps and damping under a line with their values; in *More* samples, the seed and ``more``.
+    def _sampling(self, beside: Callable[[], Sequence[gr.Radio]] = tuple, *, said: bool = False) -> None:
+        """Guidance, steps, damping and ``beside`` under a line with their values; in *More* samples and the seed.
 
-        ``said``, in a tab of sentences, puts a switch over them, fast or faithful, and tries into *More*.
+        ``said``, in a tab of sentences, puts a switch over them, fast or faithful, a line under them, how much of
+        the motion is planned, and tries into *More*.
         """
         if said:
             self.pace = pace_switch(self._id("pace"))
@@ -64,10 +67,13 @@ class SamplingTab(ResultsTab):
                 *DAMPING, value=values[2], step=0.05, label=say("sampling.damping"),
                 info=_DAMPING_INFO, elem_id=self._id("damping"),
             )  # fmt: skip
+            added = beside()
+            if said:
+                self.laid = gr.HTML(elem_id=self._id("laid"))
         with gr.Accordion(
             say("sampling.more"), open=False, elem_id=self._id("more"), elem_classes="pd-advanced"
         ) as self.more:
-            added = self._more(more, said=said)
+            self._more(said=said)
         tries = [] if self.tries is None else [self.tries]
         parts: list[Any] = [self.guidance, self.steps, self.damping, *tries, *added]
         # A folded part tells nobody of its changes before it was seen, so others also use this.
@@ -76,8 +82,8 @@ class SamplingTab(ResultsTab):
         if self.pace is not None:
             self.steps.change(None, inputs=self.steps, outputs=self.pace, js=FOLLOWED, **QUIET)
 
-    def _more(self, more: Callable[[], Sequence[gr.Checkbox]], *, said: bool) -> Sequence[gr.Checkbox]:
-        """The settings that are rarely needed; returns those of ``more``."""
+    def _more(self, *, said: bool) -> None:
+        """The settings that are rarely needed."""
         self.samples = gr.Slider(
             *SAMPLES, value=SamplingRequest.samples, step=1, label=say("sampling.samples"), info=_SAMPLES_INFO,
             elem_id=self._id("samples"),
@@ -99,7 +105,6 @@ class SamplingTab(ResultsTab):
                 *TRIES, value=SamplingRequest.tries, step=1, label=say("sampling.tries"), info=_TRIES_INFO,
                 elem_id=self._id("tries"),
             )  # fmt: skip
-        return more()
 
     def _wire_sampling(self) -> None:
         """The switch of the pace and the button that draws a seed, where the tab has them."""

@@ -138,7 +138,7 @@ class SweepTab(JobTab):
         spent = sum(map(total, made.values()))
         notes = {note: None for result in made.values() for note in notes_lines(result).splitlines() if note}
         yield self._updates(
-            **grid_shown(grid, made, title) | self.beside_grid(made, asked),
+            **grid_shown(grid, made, title) | self.laid_out(made.values()) | self.beside_grid(made, asked),
             line=status(f"{len(wanted)} results done in {seconds(spent)}.", tone="done") + "".join(notes),
             under=gr.update(visible=True),
         )
@@ -157,7 +157,9 @@ class SweepTab(JobTab):
             else Named([""] * len(results), [""], [], tuple(names))
         )
         made = dict(zip(names, results, strict=True))
-        shown = grid_shown(grid, made, str(about["title"])) | self.beside_grid(made, {})
+        shown = (
+            grid_shown(grid, made, str(about["title"])) | self.laid_out(results) | self.beside_grid(made, {})
+        )
         return found | {self.outputs[name]: update for name, update in shown.items()}
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from motion.metrics import MEASURES, Measure
@@ -49,6 +49,24 @@ def _note_tone(note: str) -> str:
     if note.startswith("Done"):
         return "quiet"
     return "note" if note.startswith(_NO_WARNINGS) else "warning"
+
+
+def plan_line(results: Iterable[Result]) -> str:
+    """One line on what share of sentences' motion was laid out for the network; "" where none says so."""
+    shares = [100 * each["planned"] for made in results for each in made.readouts if "planned" in each]
+    if not shares:
+        return ""
+    least, most = (f"{edge:.0f}" for edge in (min(shares), max(shares)))
+    if least == "100":
+        said = "The plan lays out all of this motion: guidance, steps and seed change little."
+    elif most == "0":
+        said = "The plan lays out nothing of this motion: the network makes it."
+    else:
+        share = most if least == most else f"{least} to {most}"
+        said = (
+            f"The plan lays out {share} % of this motion, whatever is set here; the network makes the rest."
+        )
+    return f'<p class="pd-method pd-laid" role="status">{text(said)}</p>'
 
 
 def method_line(summary: str) -> str:
