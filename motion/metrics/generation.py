@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
-from scipy import stats
 
 Array = NDArray[np.floating]
 
@@ -95,5 +95,15 @@ def interval(values: Sequence[float], confidence: float = 0.95) -> tuple[float, 
     found = np.asarray(values, dtype=np.float64)
     if len(found) < 2:
         return float(found.mean()), 0.0
-    width = stats.t.ppf(0.5 + confidence / 2, len(found) - 1) * found.std(ddof=1) / np.sqrt(len(found))
+    width = scipy.stats.t.ppf(0.5 + confidence / 2, len(found) - 1) * found.std(ddof=1) / np.sqrt(len(found))
     return float(found.mean()), float(width)
+
+
+def share(passed: int, count: int) -> str:
+    """A share with its 95 % score interval (Wilson, 1927) as text, such as "50 % (1/2; 9–91 %)"; "–" of nothing."""
+    if not count:
+        return "–"
+    bounds = scipy.stats.binomtest(passed, count).proportion_ci(method="wilson")
+    return (
+        f"{100 * passed / count:.0f} % ({passed}/{count}; {100 * bounds.low:.0f}–{100 * bounds.high:.0f} %)"
+    )

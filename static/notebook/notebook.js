@@ -185,7 +185,7 @@ export class Notebook {
       open: one?.state === "done", link: one?.state === "done", revoke: one?.links > 0,
       again: one && one.state !== "running", stop: true, favour: Boolean(one),
       compare: done.length > 1 && done.length === chosen.length && done.length <= 9,
-      study: done.length > 0 && done.length === chosen.length,
+      study: done.length === 2 && chosen.length === 2,
       publish: one?.state === "done",
       export: done.length > 0 && done.length === chosen.length,
       remove: chosen.length > 0 && chosen.every((entry) => entry.state !== "running" && !entry.favourite),

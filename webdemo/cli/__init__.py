@@ -1,6 +1,6 @@
 """The same jobs from a shell: ``python -m webdemo COMMAND``.
 
-The commands are generate, react, predict, scene, read, render, score, study, share, info, benchmark, serve, clock,
+The commands are generate, react, predict, scene, read, render, score, share, info, benchmark, serve, clock,
 user, database, backup, restore and admin.
 The last line on stdout is one JSON object. An error is one line on stderr that says what is
 wrong and what to do, with exit code 2. A cancelled run (Ctrl+C) ends with 130, and one whose reader has gone
@@ -30,7 +30,6 @@ from .scenes import add_scene
 from .scoring import add_score
 from .service import add_service
 from .sharing import add_share
-from .studies import add_study
 from .upkeep import add_upkeep
 
 __all__ = ["main"]
@@ -49,7 +48,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         add_render,
         add_gallery,
         add_score,
-        add_study,
         add_share,
         add_service,
         add_upkeep,

@@ -192,8 +192,7 @@ def _streams(settings: Settings, engine: EngineLike) -> Streams:
 def studies_of(settings: Settings, database: Database, storage: Storage | None = None) -> Studies:
     """The blind studies of a lab."""
     return Studies(
-        database, settings.data / "studies", storage=storage or storage_of(settings, database),
-        address_people=settings.study_voters,
+        database, settings.data / "studies", storage=storage or storage_of(settings, database)
     )  # fmt: skip
 
 

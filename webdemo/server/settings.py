@@ -189,9 +189,6 @@ class Settings(BaseSettings):
     address_people: int = Field(
         8, ge=1, description="on an open server: how many people's share one address may take"
     )
-    study_voters: int = Field(
-        60, ge=1, description="on an open server: people of one address who may vote in one study"
-    )
     upload_megabytes: float = Field(50, gt=0, le=50, description="largest upload")
     body_megabytes: float = Field(2, gt=0, description="largest body of any other request")
     body_seconds: float = Field(60, gt=0, description="time for a request's body to arrive")

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from webdemo.study import StudiesLike
 from webdemo.ui.components.exports import Shelf
 
 from .history import HistoryLike
 from .runs import EngineLike, Loader, RunsLike
 from .sharing import SharingLike
-from .studies import StudiesLike
 
 
 @dataclass(frozen=True, kw_only=True)

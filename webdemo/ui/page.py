@@ -16,6 +16,7 @@ from gradio.queueing import Queue
 from acts import lexicon
 from acts.own import own_files
 from motion.formats.files import MAX_BYTES
+from webdemo.study import StudiesLike
 from webdemo.ui.components.exports import Shelf
 from webdemo.ui.components.finder import Finder
 from webdemo.ui.components.folds import remember_folds
@@ -39,7 +40,6 @@ from .render_api import RenderEndpoint
 from .runs import EngineLike, Loader, Runs, RunsLike
 from .scene_api import SceneEndpoint
 from .sharing import SharingLike
-from .studies import StudiesLike
 from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import scipy  # its parts are loaded with their first use
-
 from motion import Duet
+from motion.metrics.generation import share
 from motion.metrics.physical import PHYSICAL, physical
 
 from .catalogue import Sentence
@@ -66,16 +65,6 @@ def _count(tally: dict[str, list[int]], sentence: Sentence, flags: Sequence[bool
         entry = tally.setdefault(tag, [0, 0])
         entry[0] += sum(flags)
         entry[1] += len(flags)
-
-
-def share(passed: int, count: int) -> str:
-    """A share with its 95 % Wilson interval, as text."""
-    if not count:
-        return "–"
-    bounds = scipy.stats.binomtest(passed, count).proportion_ci(method="wilson")
-    return (
-        f"{100 * passed / count:.0f} % ({passed}/{count}; {100 * bounds.low:.0f}–{100 * bounds.high:.0f} %)"
-    )
 
 
 def table(scores: Mapping[str, Any], beside: Mapping[str, Any] | None = None) -> str:

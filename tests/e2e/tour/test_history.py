@@ -77,7 +77,7 @@ def test_history(page: Page, tour: Tour, tmp_path: Path) -> None:
         visited(page, "History")
         chosen(page, 0, 1)
         acted(page, tour, "study")
-        tour.press_rest(page, "History / study-way")
+        tour.press_rest(page, "History / study-question")
         acted(page, tour, "export")
         with page.expect_download(timeout=SLOW) as download:
             page.click("#history-saved")

@@ -222,7 +222,7 @@ SCRIPTS = [
 ]  # fmt: skip
 
 OWN_PAGE = {"origin": "{here}"}
-VOTE = {"ticket": "x", "answer": "1"}
+VOTE = "/study/{study_key}/vote/0/1"
 STUDIES = [
     get("what is compared in a study", "/study/{study_key}", 200, holds="Which is longer?", never=("SECRET",)),
     get("a study by its id", "/study/{study}", 404, holds="no such study"),
@@ -230,19 +230,15 @@ STUDIES = [
     get("a script in a study's key", f"/study/{SCRIPT}", 404, headers={"accept": "text/html"}, never=(SCRIPT,)),
     get("a step out of a study", "/study/..%2f..%2fapp.py", 404),
     get("the motions of studies", f"{API}/file={{data}}/studies/{{study}}/0.npz", 403, 404, never=("PK",)),
-    post("what is compared in a pair", "/study/{study_key}/next", 200, headers=OWN_PAGE, holds='"ticket"',
+    post("what is compared in a pair", "/study/{study_key}/next", 200, headers=OWN_PAGE, holds='"number"',
          never=("SECRET", "manifest", "damped")),
-    post("a vote by a program", "/study/{study_key}/vote", 403, body=VOTE, holds="own page"),
+    post("a vote by a program", VOTE, 403, holds="own page"),
     post("a pair for a program", "/study/{study_key}/next", 403, holds="own page"),
-    post("a vote from another site", "/study/{study_key}/vote", 403, body=VOTE, holds="Another site",
-         headers={"origin": "https://example.invalid"}),
-    post("a vote by a stranger", "/study/{study_key}/vote", 401, who="stranger", at="closed", headers=OWN_PAGE,
-         body=VOTE),
-    post("a vote without a cookie", "/study/{study_key}/vote", 403, who="stranger", at="open", headers=OWN_PAGE,
-         body=VOTE, holds="cookie"),
-    post("a vote with no ticket", "/study/{study_key}/vote", 422, headers=OWN_PAGE, body=VOTE),
-    *(post(f"a vote that is {vote!r:.40}", "/study/{study_key}/vote", 400, headers=OWN_PAGE, body=vote)
-      for vote in ([], 7, {"ticket": "x"}, {"ticket": ["x"], "answer": "1"}, {"ticket": "x" * 2000, "answer": "1"})),
+    post("a vote from another site", VOTE, 403, holds="Another site", headers={"origin": "https://example.invalid"}),
+    post("a vote by a stranger", VOTE, 401, who="stranger", at="closed", headers=OWN_PAGE),
+    post("a vote without a cookie", VOTE, 403, who="stranger", at="open", headers=OWN_PAGE, holds="cookie"),
+    *(post(f"a vote that is {vote}", f"/study/{{study_key}}/vote/{vote}", 404, 422, headers=OWN_PAGE)
+      for vote in ("x/1", "0/x", "-1/1", "9/1", "1e99/1", "0/..%2f..", "0/1/1")),
 ]  # fmt: skip
 
 PUBLIC_PAGES = [

@@ -12,8 +12,7 @@ from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
 from webdemo.server.store.publishing import Publishing
 from webdemo.server.store.studies import Studies
-from webdemo.study import Stimulus
-from webdemo.ui.studies import NewStudy
+from webdemo.study import Pair
 
 from ..clients import FIELDS
 from ..lab import stub_module
@@ -21,7 +20,7 @@ from .known import API
 from .target import Target
 
 SECRET, UPLOADED = "SECRET", "HIERARCHY of ada's"
-"""What nobody else may read: her prompt, her study's names, her file."""
+"""What nobody else may read: her prompt, her study's runs, her file."""
 
 
 class Victim:
@@ -44,10 +43,9 @@ class Victim:
         join = {**open_call, "fn_index": 1, "session_hash": "adas own"}
         target.ask("ada", "POST", f"{API}/queue/join", json=join).raise_for_status()
         walking = stub_module().walking
-        sets = {f"{SECRET} {name}": [Stimulus("They walk.", walking(0.5))] for name in ("plain", "damped")}
         database = Database(f"sqlite:///{target.data / 'history.db'}")
         study = Studies(database, target.data / "studies").create(
-            self.owner, NewStudy(question="Which is longer?", title=SECRET, sets=sets, checks=0)
+            self.owner, "Which is longer?", (SECRET, f"{SECRET} damped"), [Pair(walking(0.5), walking(0.5))]
         )
         history = Notebook(database, target.data / "motions")
         page = Publishing(history).publish(self.owner, run)

@@ -20,9 +20,8 @@ from webdemo.server.store.notebook import Notebook
 from webdemo.server.store.scratch import Scratch
 from webdemo.server.store.storage import Storage
 from webdemo.server.store.studies import Studies
-from webdemo.study import Stimulus
+from webdemo.study import Pair
 from webdemo.ui.history import Search
-from webdemo.ui.studies import NewStudy
 from webdemo.ui.visitor import Visitor
 
 PEOPLE = ("user ada", "user eve", "user bob")
@@ -72,8 +71,7 @@ def test_nobody_s_deeds_remove_what_is_another_s(notebook: Notebook, tmp_path: P
             elif deed in ("upload", "film"):
                 notebook.storage.admit(who, draw.choice([1e3, 1e5]))
             elif deed == "study":
-                sets = {name: [Stimulus("They walk.", walk)] for name in "ab"}
-                studies.create(owner, NewStudy(question="Which?", sets=sets, checks=0))
+                studies.create(owner, "Which?", ("a", "b"), [Pair(walk, walk)])
             else:
                 notebook.clean()
         except InputError:

@@ -2,283 +2,156 @@
 
 from __future__ import annotations
 
+import csv
 import threading
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
 
-from motion import Duet, InputError
+from motion import InputError
 from tests.server.clients import DATABASES, database_url, drop_tables, no_room
 from tests.server.lab import stub_module
-from webdemo.server.lab import studies_of
-from webdemo.server.settings import Settings
 from webdemo.server.store.database import Database
 from webdemo.server.store.studies import Studies
-from webdemo.server.store.voting import SOONEST
-from webdemo.study import Stimulus
-from webdemo.ui.studies import NewStudy, StudyEntry
+from webdemo.study import Pair, StudyEntry
 
 ME, OTHER = "user ada", "user eve"
+RUNS = ("short", "=SUM(A1)")
 walking = stub_module().walking
-
-
-class Clock:
-    now = 1000.0
-
-    def __call__(self) -> float:
-        return self.now
 
 
 @pytest.fixture(params=DATABASES)
 def studies(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Studies]:
     database = Database(database_url(request.param, tmp_path))
-    yield Studies(database, tmp_path / "studies", clock=Clock(), address_people=2)
+    yield Studies(database, tmp_path / "studies", clock=lambda: 1000.0)
     drop_tables(database.engine)
     database.close()
 
 
-def sets(count: int = 3) -> dict[str, list[Stimulus]]:
-    """Walks of 1 s in the one set and of 2 s in the other, so that they differ."""
-    return {
-        name: [Stimulus(f"They walk {i}.", walking(seconds, i)) for i in range(count)]
-        for name, seconds in (("short", 1.0), ("long", 2.0))
-    }
+def new(studies: Studies, pairs: int = 3, owner: str = ME, question: str = "Which is longer?") -> StudyEntry:
+    """Walks of 1 s in the first run and of 2 s in the second."""
+    made = [Pair(walking(1.0, i), walking(2.0, i), f"They walk {i}.") for i in range(pairs)]
+    return studies.create(owner, question, RUNS, made)
 
 
-def new(studies: Studies, owner: str = ME, **fields: Any) -> StudyEntry:
-    asked: dict[str, Any] = {"question": "Which is longer?", "sets": sets(), "checks": 1} | fields
-    return studies.create(owner, NewStudy(**asked))
-
-
-def way(motion: Any) -> float:
-    """Metres that all joints travel: more where pieces jump."""
-    return float(np.abs(np.diff(motion.positions, axis=-3)).sum())
-
-
-def press(studies: Studies, key: str, person: str, *, attentive: bool = True) -> str:
-    """Answers the next pair: always the longer one, and never the shuffled one by an attentive person."""
-    shown = studies.hand_out(key, person)
-    assert shown is not None
-    studies.clock.now += SOONEST + 1  # type: ignore[attr-defined]
-    if shown.left.num_frames == shown.right.num_frames:
-        pressed = "2" if (way(shown.left) > way(shown.right)) == attentive else "1"
-    else:
-        pressed = "1" if shown.left.num_frames > shown.right.num_frames else "2"
-    studies.vote(key, person, shown.ticket, pressed)
+def press(studies: Studies, key: str, person: str) -> str:
+    """Answers the next pair: always the longer one."""
+    _, _, number, pair = studies.following(key, person)
+    assert number is not None and pair is not None
+    pressed = "1" if pair.first.num_frames > pair.second.num_frames else "2"
+    studies.vote(key, person, number, pressed)
     return pressed
 
 
-def vote_all(studies: Studies, key: str, person: str, **more: Any) -> list[str]:
-    total = studies.invitation(key, person).total
-    return [press(studies, key, person, **more) for _ in range(total)]
-
-
-def test_votes_of_several_people_become_a_result(studies: Studies, tmp_path: Path) -> None:
+def test_votes_of_several_people_become_a_result_and_a_table(studies: Studies, tmp_path: Path) -> None:
     study = new(studies)
-    assert (study.sets, study.pairs, study.checks) == (("short", "long"), 3, 1)
-    pressed = [vote_all(studies, study.key, f"voter {i}") for i in range(4)]
-    vote_all(studies, study.key, "careless", attentive=False)
-    assert {side for each in pressed for side in each} == {"1", "2"}, "sides are drawn"
-    assert studies.hand_out(study.key, "voter 0") is None
-    result = studies.result(study.id, ME)
-    (each,) = result.comparisons
-    assert (each.wins, each.losses, each.ties) == (0, 12, 0)
-    assert (result.raters, result.excluded, result.agreement) == (4, 1, 1.0)
-    assert studies.export(study.id, ME, tmp_path / "votes.csv") == 20
+    assert (study.runs, study.pairs, study.voters) == (RUNS, 3, 0)
+    pressed = [press(studies, study.key, f"voter {i}") for i in range(6) for _ in range(3)]
+    assert set(pressed) == {"1", "2"}, "sides are drawn"
+    assert studies.following(study.key, "voter 0") == (3, 3, None, None)
+    number = studies.following(study.key, "last").number
+    assert number is not None
+    studies.vote(study.key, "last", number, "=")
     (mine,) = studies.mine(ME)
-    assert (mine.raters, mine.votes) == (5, 20)
+    assert (mine.id, mine.wins, mine.ties, mine.voters) == (study.id, (0, 18), 1, 7)
+    assert studies.export(study.id, ME, tmp_path / "votes.csv") == 19
+    rows = list(csv.DictReader((tmp_path / "votes.csv").open()))
+    assert {row["chosen"] for row in rows} == {"'=SUM(A1)", "tie"}, "a spreadsheet computes nothing"
+    assert {row["voter"] for row in rows} == set("1234567")
+    sides = {"1": "left", "2": "right"}
+    for row in rows:
+        assert {row["left"], row["right"]} == {"short", "'=SUM(A1)"}
+        assert row["sentence"] == f"They walk {int(row['pair']) - 1}."
+    first = [row for row in rows if row["chosen"] != "tie"]
+    assert sorted(row[sides[key]] for row, key in zip(first, pressed, strict=True)).count("short") < len(
+        first
+    )
 
 
-def test_a_voter_sees_motions_without_names_and_in_an_order_of_their_own(studies: Studies) -> None:
-    study = new(studies, sets=sets(8), checks=0)
+def test_every_person_has_an_order_of_their_own_and_a_reload_skips_nothing(studies: Studies) -> None:
+    study = new(studies, pairs=8)
     orders = []
     for person in ("one", "two"):
         captions = []
         for _ in range(8):
-            shown = studies.hand_out(study.key, person)
-            assert shown is not None and isinstance(shown.left, Duet)
-            assert not shown.left.manifest and shown.left.roles == ("a", "b")
-            captions.append(shown.caption)
+            shown, again = (studies.following(study.key, person) for _ in range(2))
+            assert shown.pair and again.pair and shown.number == again.number
+            assert not shown.pair.first.manifest and shown.pair.first.roles == ("a", "b")
+            captions.append(shown.pair.caption)
             press(studies, study.key, person)
         orders.append(captions)
     assert sorted(orders[0]) == sorted(orders[1]) and len(set(orders[0])) == 8
     assert orders[0] != orders[1]  # equal once in 40,320 times
-    hidden = studies.hand_out(new(studies, shows_sentence=False).key, "one")
-    assert hidden is not None and hidden.caption == ""
-
-
-def test_every_person_votes_once_on_a_pair_and_not_before_it_can_be_seen(studies: Studies) -> None:
-    study = new(studies)
-    with pytest.raises(InputError, match="was not sent to you"):
-        studies.vote(study.key, "ada", "made up", "1")
-    shown = studies.hand_out(study.key, "ada")
-    again = studies.hand_out(study.key, "ada")
-    assert shown and again and shown.ticket == again.ticket, "a reload does not skip a pair"
-    with pytest.raises(InputError, match="came before the pair can have been seen"):
-        studies.vote(study.key, "ada", shown.ticket, "1")
-    studies.clock.now += SOONEST  # type: ignore[attr-defined]
-    with pytest.raises(InputError, match="was not sent to you"):
-        studies.vote(study.key, "eve", shown.ticket, "1")
-    with pytest.raises(InputError, match="1, 2, = or skip"):
-        studies.vote(study.key, "ada", shown.ticket, "3")
-    studies.vote(study.key, "ada", shown.ticket, "=")
-    with pytest.raises(InputError, match="voted on this pair already"):
-        studies.vote(study.key, "ada", shown.ticket, "1")
-    assert studies.result(study.id, ME).votes in (0, 1)  # 0 where it was an attention check
 
 
 def test_two_tabs_of_one_person_cannot_vote_twice(studies: Studies) -> None:
     study = new(studies)
     said: list[str] = []
-    tickets: list[str] = []
 
-    def take() -> None:
-        shown = studies.hand_out(study.key, "ada")
-        assert shown is not None
-        tickets.append(shown.ticket)
-
-    def cast() -> None:
+    def vote() -> None:
         try:
-            studies.vote(study.key, "ada", tickets[0], "1")
+            studies.vote(study.key, "ada", 0, "1")
             said.append("")
         except InputError as error:
             said.append(str(error))
 
-    for job in (take, cast):
-        studies.clock.now += SOONEST + 1  # type: ignore[attr-defined]
-        threads = [threading.Thread(target=job) for _ in range(4)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-    assert len(tickets) == 4 and len(set(tickets)) == 1
-    assert said.count("") == 1 and len(said) == 4
-    assert studies.mine(ME)[0].votes == 1
+    threads = [threading.Thread(target=vote) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert said.count("") == 1 and sum("voted on this pair already" in each for each in said) == 3
+    assert sum(studies.mine(ME)[0].wins) == 1
+
+
+@pytest.mark.parametrize(("number", "pressed"), [(3, "1"), (-1, "1"), (0, "3"), (0, "")])
+def test_an_answer_that_no_page_sends_is_a_sentence(studies: Studies, number: int, pressed: str) -> None:
+    with pytest.raises(InputError, match="An answer is 1, 2 or ="):
+        studies.vote(new(studies).key, "ada", number, pressed)
 
 
 def test_nobody_reads_or_changes_what_is_not_theirs(studies: Studies, tmp_path: Path) -> None:
     study = new(studies)
-    assert studies.mine(OTHER) == [] and studies.mine("") == []
     for owner in (OTHER, ""):
-        for act in (
-            lambda who: studies.result(study.id, who),
-            lambda who: studies.close(study.id, who, closed=True),
-            lambda who: studies.delete(study.id, who),
-            lambda who: studies.export(study.id, who, tmp_path / "theirs.csv"),
-        ):
-            with pytest.raises(InputError, match="no such study of yours"):
-                act(owner)
+        assert studies.mine(owner) == []
+        with pytest.raises(InputError, match="There is no such study"):
+            studies.delete(study.id, owner)
+        with pytest.raises(InputError, match="There is no such study"):
+            studies.export(study.id, owner, tmp_path / "theirs.csv")
     for key in (study.id, "../x", ""):
         with pytest.raises(InputError, match="There is no such study"):
-            studies.hand_out(key, "ada")
+            studies.following(key, "ada")
     assert not (tmp_path / "theirs.csv").exists() and len(studies.mine(ME)) == 1
 
 
-def test_results_are_hidden_from_whoever_is_voting(studies: Studies, tmp_path: Path) -> None:
-    study = new(studies, shows_result=True)
-    press(studies, study.key, ME)
-    with pytest.raises(InputError, match="hidden until your last pair, 1 of 4 done"):
-        studies.result(study.id, ME, ME)
-    with pytest.raises(InputError, match="hidden until your last pair"):
-        studies.export(study.id, ME, tmp_path / "votes.csv", ME)
-    assert studies.invitation(study.key, ME).result is None
-    for _ in range(3):
-        press(studies, study.key, ME)
-    assert studies.result(study.id, ME, ME).votes == 3
-    shown = studies.invitation(study.key, ME).result
-    assert shown is not None and shown.votes == 3
-    silent = new(studies)
-    vote_all(studies, silent.key, "eve")
-    assert studies.invitation(silent.key, "eve").result is None, "the owner did not want it shown"
-
-
-def test_people_with_few_pairs_each_cover_all_of_them(studies: Studies) -> None:
-    study = new(studies, sets=sets(6), pairs_each=2, checks=1)
-    for i in range(3):
-        assert len(vote_all(studies, study.key, f"voter {i}")) == 3
-    assert studies.result(study.id, ME).votes == 6
-    assert studies.result(study.id, ME).agreement is None, "no pair came twice"
-
-
-def test_a_closed_study_takes_no_votes_and_a_deleted_one_is_gone(studies: Studies) -> None:
+def test_a_deleted_study_is_gone(studies: Studies) -> None:
     study = new(studies)
-    vote_all(studies, study.key, "done")
-    shown = studies.hand_out(study.key, "ada")
-    assert shown is not None
-    studies.clock.now += SOONEST  # type: ignore[attr-defined]
-    studies.close(study.id, ME, closed=True)
-    for act in (
-        lambda: studies.vote(study.key, "ada", shown.ticket, "1"),
-        lambda: studies.hand_out(study.key, "eve"),
-    ):
-        with pytest.raises(InputError, match="closed: nobody can vote"):
-            act()
-    assert studies.hand_out(study.key, "done") is None, "whoever has voted on all pairs is thanked"
-    studies.close(study.id, ME, closed=False)
-    studies.vote(study.key, "ada", shown.ticket, "1")
+    press(studies, study.key, "ada")
     folder = studies.folder / study.id
-    assert len(list(folder.iterdir())) == 7, "six motions and a shuffled copy"
+    assert len(list(folder.iterdir())) == 6
     studies.delete(study.id, ME)
     assert not folder.exists() and studies.mine(ME) == []
     with pytest.raises(InputError, match="There is no such study"):
-        studies.invitation(study.key, "ada")
+        studies.question(study.key)
 
 
-def test_a_lab_behind_one_address_may_vote(tmp_path: Path) -> None:
-    """The voters of a study have a limit of their own, higher than the share of an address in all else."""
-    database = Database(f"sqlite:///{tmp_path / 's.db'}")
-    assert studies_of(Settings(data=tmp_path), database).address_people >= 5 * Settings().address_people
-    assert studies_of(Settings(data=tmp_path, study_voters=3), database).address_people == 3
-
-
-def test_one_address_has_a_limited_number_of_voters(studies: Studies) -> None:
-    study = new(studies)
-    for person in ("one", "two"):
-        assert studies.hand_out(study.key, person, "203.0.113.9") is not None
-    with pytest.raises(InputError, match="2 people vote in this study from your network already"):
-        studies.hand_out(study.key, "three", "203.0.113.9")
-    assert studies.hand_out(study.key, "one", "203.0.113.9") is not None
-    assert studies.hand_out(study.key, "three", "203.0.113.10") is not None
-
-
-@pytest.mark.parametrize(
-    ("fields", "says"),
-    [
-        ({"sets": {}}, "2 to 6 sets of motions, not 0"),
-        ({"sets": {"short": sets()["short"]}}, "2 to 6 sets of motions, not 1"),
-        ({"sets": {"short": sets()["short"], "none": []}}, "The set 'none' has no motions"),
-        ({"sets": {"x" * 100 + "1": sets()["short"], "x" * 100 + "2": sets()["long"]}}, "the same name"),
-        ({"question": "  "}, "has no question"),
-        ({"question": "?" * 301}, "The question has 301 characters"),
-        ({"checks": 21}, "0 to 20 attention checks"),
-        ({"pairs_each": -1}, "0 or more pairs"),
-        ({"sets": {name: [Stimulus("a", walking(61.0))] for name in "ab"}}, "60 s at most"),
-    ],
-)
-def test_what_makes_no_study_is_a_sentence_and_leaves_nothing(
-    tmp_path: Path, fields: dict[str, Any], says: str
-) -> None:
-    studies = Studies(Database(f"sqlite:///{tmp_path / 'h.db'}"), tmp_path / "studies")
-    with pytest.raises(InputError, match=says):
-        new(studies, **fields)
+def test_what_makes_no_study_is_a_sentence_and_leaves_nothing(studies: Studies) -> None:
+    for question in ("  ", "?" * 301):
+        with pytest.raises(InputError, match="write 1 to 300"):
+            new(studies, question=question)
     with pytest.raises(InputError, match="sign in or allow cookies"):
         new(studies, owner="")
-    assert studies.mine(ME) == [] and not (tmp_path / "studies").exists()
-    studies.database.close()
+    studies.storage.total_bytes = 1
+    with pytest.raises(InputError, match="nothing of others is removed for yours"):
+        new(studies)
+    assert studies.mine(ME) == [] and not studies.folder.exists()
 
 
 def test_a_full_disk_leaves_no_half_study(tmp_path: Path) -> None:
     studies = Studies(Database(f"sqlite:///{tmp_path / 'h.db'}"), tmp_path / "studies")
-    motion = walking(0.2)
-    many = {name: [Stimulus(f"They walk {i}.", motion) for i in range(80)] for name in "ab"}
+    many = [Pair(walking(0.2), walking(0.2), "They walk. " * 9)] * 80
     with no_room(studies.database), pytest.raises(InputError, match="disk is full"):
-        new(studies, sets=many)
-    assert list((tmp_path / "studies").iterdir()) == []
-    studies.storage.total_bytes = 1
-    with pytest.raises(InputError, match="nothing of others is removed for yours"):
-        new(studies)
+        studies.create(ME, "Which?", RUNS, many)
     assert list((tmp_path / "studies").iterdir()) == []
     studies.database.close()

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Engine, ForeignKey, Text, UniqueConstraint, create_engine, event, select
+from sqlalchemy import Engine, ForeignKey, Text, create_engine, event, select
 from sqlalchemy.exc import ArgumentError, DatabaseError, NoSuchModuleError, SQLAlchemyError
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship, sessionmaker
 
@@ -150,14 +150,9 @@ class Study(Table):
         id: unguessable; names its folder.
         owner: whose it is.
         key: unguessable; anyone who knows it can vote.
-        title: the owner's name for it.
         question: that people answer for every pair.
-        sets: names of what is compared, as JSON.
-        pairs: as JSON; attention checks come last.
-        pairs_each: pairs that a person is shown, without attention checks.
-        shows_sentence: the sentence of a pair stands above it.
-        shows_result: people see the result after their last pair.
-        closed: nobody can vote any more.
+        runs: names of the two runs, as JSON.
+        captions: the sentence of each pair, as JSON.
         size: bytes of its motions.
         address: as that of a run.
     """
@@ -167,59 +162,33 @@ class Study(Table):
     id: Mapped[str] = mapped_column(primary_key=True)
     owner: Mapped[str] = mapped_column(index=True)
     key: Mapped[str] = mapped_column(unique=True)
-    title: Mapped[str] = mapped_column(Text)
     question: Mapped[str] = mapped_column(Text)
-    sets: Mapped[str] = mapped_column(Text)
-    pairs: Mapped[str] = mapped_column(Text)
-    pairs_each: Mapped[int]
-    shows_sentence: Mapped[bool]
-    shows_result: Mapped[bool]
-    closed: Mapped[bool] = mapped_column(default=False)
+    runs: Mapped[str] = mapped_column(Text)
+    captions: Mapped[str] = mapped_column(Text)
     created: Mapped[float] = mapped_column(default=time.time)
     size: Mapped[int] = mapped_column(default=0)
     address: Mapped[str] = mapped_column(default="", index=True)
 
 
-class Rater(Table):
-    """A person who takes part in a study.
+class Vote(Table):
+    """A person's answer to a pair of a study.
 
     Attributes:
         person: a hash of the study and the person.
-        address: a hash of the study and the address; empty where people are known by their accounts.
-        plan: numbers of the pairs in the order in which they are shown, as JSON.
-    """
-
-    __tablename__ = "raters"
-    __table_args__ = (UniqueConstraint("study_id", "person"),)
-
-    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
-    study_id: Mapped[str] = mapped_column(ForeignKey("studies.id", ondelete="CASCADE"), index=True)
-    person: Mapped[str]
-    address: Mapped[str] = mapped_column(default="")
-    plan: Mapped[str] = mapped_column(Text)
-
-
-class Ballot(Table):
-    """A pair that was shown to a rater, and the answer.
-
-    Attributes:
         pair: its number in the study.
-        ticket: unguessable; comes back with the answer.
-        swapped: the second motion is on the left.
-        shown: when it was sent.
-        answer: "first", "second", "tie" or "skip"; empty until there is one.
-        answered: when.
+        answer: "first" or "second" of the runs, or "tie".
+        swapped: the second run was on the left.
+        at: when.
     """
 
-    __tablename__ = "ballots"
+    __tablename__ = "votes"
 
-    rater_id: Mapped[int] = mapped_column(ForeignKey("raters.id", ondelete="CASCADE"), primary_key=True)
+    study_id: Mapped[str] = mapped_column(ForeignKey("studies.id", ondelete="CASCADE"), primary_key=True)
+    person: Mapped[str] = mapped_column(primary_key=True)
     pair: Mapped[int] = mapped_column(primary_key=True)
-    ticket: Mapped[str]
+    answer: Mapped[str]
     swapped: Mapped[bool]
-    shown: Mapped[float]
-    answer: Mapped[str] = mapped_column(default="")
-    answered: Mapped[float] = mapped_column(default=0.0)
+    at: Mapped[float]
 
 
 class Database:
@@ -243,7 +212,7 @@ class Database:
     def check(self) -> None:
         """Raises SQLAlchemyError if the database does not answer, or what people need cannot be read."""
         with self.engine.connect() as connection:
-            for table in (Run, Note, Link, Published, SignIn, Study, Rater, Ballot):
+            for table in (Run, Note, Link, Published, SignIn, Study, Vote):
                 connection.execute(select(table).limit(CHECKED_ROWS)).all()
             if self.engine.dialect.name == "sqlite" and time.monotonic() > self._sound_until:
                 (found,) = connection.exec_driver_sql("PRAGMA quick_check(1)").one()

@@ -1,217 +1,220 @@
-"""Blind studies: copies of motions in a folder, pairs that are shown in random order and side, and votes."""
+"""Blind studies: copies of the motions of two runs in a folder, and votes on pairs of them."""
 
 from __future__ import annotations
 
+import csv
+import hashlib
 import json
-import os
+import random
 import secrets
 import shutil
-from collections.abc import Sequence
-from dataclasses import asdict
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple, cast
 
-from sqlalchemy import delete, func, select
+from sqlalchemy import ColumnElement, select
+from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from motion import Clip, Duet, InputError, formats
-from motion.formats.files import replacing
+from motion import Duet, InputError, formats
+from motion.formats.spreadsheet import safe_cell
 from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit
-from webdemo.study import Pair, StudyResult, matched_pairs, tally
-from webdemo.study.pairs import as_shown, check_sources, shuffled
-from webdemo.study.results import FIRST, write_votes
-from webdemo.ui.studies import NewStudy, StudyEntry
+from webdemo.study import FIRST, SECOND, TIE, Pair, StudyEntry, as_shown
 
-from .database import Ballot, Rater, Study, sentences
+from .database import Database, Study, Vote, sentences
 from .ledger import locked
-from .voting import Voting, answered_of, pairs_of, plan_of, rater_of, votes_of
+from .storage import Storage
 
 LONGEST_QUESTION, LONGEST_NAME = 300, 100
-LONGEST_MOTION = 60.0
-"""Seconds."""
-MOST_STUDIES = 30
-"""Of one owner."""
-_NOT_MINE = "There is no such study of yours: reload the page."
+Clock = Callable[[], float]
+COLUMNS = ("voter", "pair", "sentence", "left", "right", "chosen", "time")
+_PRESSED = {"1": FIRST, "2": SECOND, "=": TIE}
+"""Keys and their answers where the first run is on the left."""
 
 
-class Studies(Voting):
-    """Keeps studies; see :class:`Voting` for its arguments."""
+class Next(NamedTuple):
+    """How far a voter is, and the number and the motions of the next pair, left and right; None after the last."""
+
+    done: int
+    total: int
+    number: int | None = None
+    pair: Pair | None = None
+
+
+class Studies:
+    """Keeps studies. The owner reaches them by their ids, voters by their keys.
+
+    Args:
+        database: where their rows are.
+        folder: holds a folder of motions a study.
+        storage: counts what people store, and makes room; by default with no limit for one person.
+        clock: gives seconds since 1970.
+    """
+
+    def __init__(
+        self, database: Database, folder: Path, storage: Storage | None = None, clock: Clock = time.time
+    ) -> None:
+        self.database, self.folder, self.clock = database, folder, clock
+        self.storage = storage or Storage(database, folder)
 
     # ---- the owner -------------------------------------------------------------------------------
 
     @sentences()
-    def create(self, owner: str, study: NewStudy, *, address: str = "") -> StudyEntry:
+    def create(
+        self, owner: str, question: str, runs: tuple[str, str], pairs: Sequence[Pair], *, address: str = ""
+    ) -> StudyEntry:
         """Makes a study of copies of the motions, so that it outlives the runs.
 
         Where the owner's room is used up, runs of theirs make way (:meth:`.storage.Storage.make_room`).
 
         Raises:
-            InputError: if there are no pairs, or too many, or no question, or no room.
+            InputError: if there is no question, or no room.
         """
+        question = " ".join(question.split())
         if not owner:
             raise InputError("There is no history here to make a study in: sign in or allow cookies first.")
-        names, question = _checked(study)
-        pairs = matched_pairs(list(study.sets.values()))
-        motions: list[Duet | Clip] = [each.motion for given in study.sets.values() for each in given]
-        if max(motion.seconds for motion in motions) > LONGEST_MOTION:
-            raise InputError(f"Motions of a study last {LONGEST_MOTION:g} s at most: cut them first.")
-        motions = [as_shown(motion) for motion in motions]
-        count = len(pairs)
-        for i, source in enumerate(check_sources(pairs, study.checks, seed=secrets.randbits(32))):
-            chosen, where = source.motions[0], source.sets[0]
-            pairs.append(Pair((where, where), (chosen, len(motions)), source.caption, known=FIRST))
-            motions.append(shuffled(motions[chosen], seed=i))
-        row = Study(
-            # Hexadecimal, since people type it in a shell, where a word that begins with "-" is an option.
-            id=secrets.token_hex(12), owner=owner, key=secrets.token_urlsafe(18), question=question,
-            title=" ".join(study.title.split())[:LONGEST_NAME] or question[:LONGEST_NAME], sets=json.dumps(names),
-            pairs=json.dumps([asdict(pair) for pair in pairs]), shows_sentence=study.shows_sentence,
-            pairs_each=min(study.pairs_each or count, count), shows_result=study.shows_result,
-            created=self.clock(), address=digest(address) if address else "",
-        )  # fmt: skip
+        if not 0 < len(question) <= LONGEST_QUESTION:
+            raise InputError(f"The question has {len(question)} characters: write 1 to {LONGEST_QUESTION}.")
+        motions = [as_shown(motion) for pair in pairs for motion in (pair.first, pair.second)]
+        row = Study(id=secrets.token_hex(12), owner=owner, key=secrets.token_urlsafe(18), question=question)
+        row.runs, row.created = json.dumps([name[:LONGEST_NAME] for name in runs]), self.clock()
+        row.captions = json.dumps([pair.caption for pair in pairs])
+        row.address = digest(address) if address else ""
         with self.database.session() as session:
-            self._check_number(session, owner)
-            size = sum(motion.positions.nbytes for motion in motions)
-            self.storage.check(session, owner, row.address, size)
-        row.size = self._write(row.id, motions) + len(row.pairs)
+            self.storage.check(session, owner, row.address, sum(m.positions.nbytes for m in motions))
+        folder, kept = self.folder / row.id, False
         try:
+            folder.mkdir(mode=0o700, parents=True)
+            for number, motion in enumerate(motions):
+                formats.write(motion, folder / f"{number}.npz")
+            row.size = sum(path.stat().st_size for path in folder.iterdir()) + len(row.captions)
             with self.database.session.begin() as session:
                 locked(session)
                 gone = self.storage.make_room(session, owner, row.address, row.size)
                 session.add(row)
-        except BaseException:
-            shutil.rmtree(self.folder / row.id, ignore_errors=True)
-            raise
+            kept = True
+        except OSError as error:
+            raise InputError(f"The study could not be written ({error.strerror}): free some room.") from None
+        finally:
+            if not kept:
+                shutil.rmtree(folder, ignore_errors=True)
         self.storage.drop(gone)
-        return _entry(row, 0, 0)
+        return _entry(row, [])
 
     @sentences()
     def mine(self, owner: str) -> Sequence[StudyEntry]:
-        """The owner's studies, newest first."""
+        """The owner's studies with the count of their votes, newest first."""
+        mine = select(Study).where(Study.owner == owner, Study.owner != "").order_by(Study.created.desc())
         with self.database.session() as session:
-            rows = session.scalars(select(Study).where(Study.owner == owner).order_by(Study.created.desc()))
-            return [_entry(row, *_counts(session, row.id)) for row in rows] if owner else []
-
-    @sentences()
-    def everybodys(self) -> Sequence[tuple[str, StudyEntry]]:
-        """All studies with their owners, newest first, for the person who runs the lab."""
-        with self.database.session() as session:
-            rows = session.scalars(select(Study).order_by(Study.created.desc()))
-            return [(row.owner, _entry(row, *_counts(session, row.id))) for row in rows]
-
-    @sentences()
-    def result(self, study: str, owner: str, person: str = "") -> StudyResult:
-        """The count of all answers.
-
-        Raises:
-            InputError: as well while the owner, as ``person``, has voted on some of the pairs and not on all.
-        """
-        with self.database.session() as session:
-            row = self._own(session, study, owner)
-            self._check_finished(session, row, person)
-            return tally(json.loads(row.sets), pairs_of(row), votes_of(session, row.id))
-
-    @sentences()
-    def close(self, study: str, owner: str, *, closed: bool) -> None:
-        """Ends the voting, or opens it again."""
-        with self.database.session.begin() as session:
-            self._own(session, study, owner).closed = closed
+            return [_entry(row, _votes(session, row)) for row in session.scalars(mine).all()]
 
     @sentences()
     def delete(self, study: str, owner: str) -> None:
         """Deletes a study with its votes and its motions."""
         with self.database.session.begin() as session:
-            row = self._own(session, study, owner)
-            raters = select(Rater.id).where(Rater.study_id == row.id)
-            session.execute(delete(Ballot).where(Ballot.rater_id.in_(raters)))
-            session.execute(delete(Rater).where(Rater.study_id == row.id))
-            session.delete(row)
+            session.delete(_find(session, *_mine(study, owner)))
         shutil.rmtree(self.folder / study, ignore_errors=True)
         audit("study-deleted", study=study)
 
     @sentences()
-    def export(self, study: str, owner: str, file: Path, person: str = "") -> int:
-        """Writes all votes as .csv; returns how many. Hidden as :meth:`result` is."""
+    def export(self, study: str, owner: str, file: Path) -> int:
+        """Writes all votes as .csv; returns how many. People are numbers; no cell is what a spreadsheet computes."""
         with self.database.session() as session:
-            row = self._own(session, study, owner)
-            self._check_finished(session, row, person)
-            votes = votes_of(session, row.id)
-            sets, pairs = json.loads(row.sets), pairs_of(row)
-        with replacing(file) as temporary:
-            write_votes(sets, pairs, votes, temporary)
+            row = _find(session, *_mine(study, owner))
+            votes = _votes(session, row)
+        runs, captions = json.loads(row.runs), json.loads(row.captions)
+        voters: dict[str, int] = {}
+        with file.open("w", newline="", encoding="utf-8") as opened:
+            table = csv.writer(opened)
+            table.writerow(COLUMNS)
+            for vote in votes:
+                sides = runs[::-1] if vote.swapped else runs
+                chosen = {FIRST: runs[0], SECOND: runs[1]}.get(vote.answer, TIE)
+                voter = voters.setdefault(vote.person, len(voters) + 1)
+                cells = voter, vote.pair + 1, captions[vote.pair], *sides, chosen, round(vote.at)
+                table.writerow(map(safe_cell, cells))
         return len(votes)
 
-    # ---- parts -----------------------------------------------------------------------------------
+    # ---- voters ----------------------------------------------------------------------------------
 
-    @staticmethod
-    def _check_number(session: Session, owner: str) -> None:
-        count = session.scalar(select(func.count()).select_from(Study).where(Study.owner == owner)) or 0
-        if count >= MOST_STUDIES:
-            raise InputError(f"You have {count} studies already: delete one first.")
+    @sentences()
+    def question(self, key: str) -> str:
+        """What the people with a link are asked; raises InputError where there is no such study."""
+        with self.database.session() as session:
+            return _find(session, Study.key == key).question
 
-    def _check_finished(self, session: Session, row: Study, person: str) -> None:
-        rater = rater_of(session, row, person) if person else None
-        if rater is None:
-            return
-        done, total = len(answered_of(session, rater)), len(plan_of(rater))
-        if 0 < done < total:
-            raise InputError(
-                f"You vote in this study yourself: its result is hidden until your last pair, {done} of {total} done."
-            )
+    @sentences()
+    def following(self, key: str, person: str) -> Next:
+        """The next pair for a person: each has an order and sides of their own."""
+        with self.database.session() as session:
+            row = _find(session, Study.key == key)
+            voter = _hashed(row, person)
+            done = {vote.pair for vote in _votes(session, row) if vote.person == voter}
+        captions, plan = json.loads(row.captions), _plan(row, voter)
+        for number, swapped in plan.items():
+            if number not in done:
+                files = [self.folder / row.id / f"{2 * number + side}.npz" for side in (swapped, not swapped)]
+                left, right = (cast(Duet, formats.read(file)) for file in files)
+                return Next(len(done), len(plan), number, Pair(left, right, captions[number]))
+        return Next(len(done), len(plan))
 
-    def _own(self, session: Session, study: str, owner: str) -> Study:
-        row = session.get(Study, study)
-        if row is None or not owner or row.owner != owner:
-            raise InputError(_NOT_MINE)
-        return row
+    @sentences()
+    def vote(self, key: str, person: str, number: int, pressed: str) -> None:
+        """Takes an answer to a pair: 1 is the left motion, 2 the right one, = neither.
 
-    def _write(self, study: str, motions: Sequence[Duet | Clip]) -> int:
-        half = self.folder / f".{study}"
+        Raises:
+            InputError: for a pair that there is none, or a second vote on one.
+        """
         try:
-            half.mkdir(mode=0o700, parents=True)
-            for number, motion in enumerate(motions):
-                formats.write(motion, half / f"{number}.npz")
-            size = sum(path.stat().st_size for path in half.iterdir())
-            os.replace(half, self.folder / study)
-        except OSError as error:
-            shutil.rmtree(half, ignore_errors=True)
-            raise InputError(
-                f"The study could not be written ({error.strerror}): tell the person who runs this server."
-            ) from None
-        return size
+            with self.database.session.begin() as session:
+                row = _find(session, Study.key == key)
+                voter = _hashed(row, person)
+                answer, swapped = _PRESSED.get(pressed), _plan(row, voter).get(number)
+                if answer is None or swapped is None:
+                    raise InputError("An answer is 1, 2 or = to a pair of the study: reload the page.")
+                if swapped:
+                    answer = {FIRST: SECOND, SECOND: FIRST}.get(answer, answer)
+                told = {"answer": answer, "swapped": swapped, "at": self.clock()}
+                session.add(Vote(study_id=row.id, person=voter, pair=number, **told))
+        except IntegrityError:
+            raise InputError("You have voted on this pair already: one vote for each pair counts.") from None
 
 
-def _checked(study: NewStudy) -> tuple[list[str], str]:
-    """The names of the sets and the question; raises InputError for ones that do not fit."""
-    question = " ".join(study.question.split())
-    if not question:
-        raise InputError("The study has no question: write what people are to decide.")
-    if len(question) > LONGEST_QUESTION:
-        raise InputError(
-            f"The question has {len(question)} characters: shorten it to {LONGEST_QUESTION} or fewer."
-        )
-    if study.pairs_each < 0:
-        raise InputError("Give 0 or more pairs for each person; 0 stands for all.")
-    names = [name[:LONGEST_NAME] for name in study.sets]
-    if len(set(names)) < len(names):
-        raise InputError("Two sets have the same name: give each its own.")
-    if empty := [name for name, given in study.sets.items() if not given]:
-        raise InputError(f"The set {empty[0][:LONGEST_NAME]!r} has no motions: choose some for it.")
-    return names, question
+def _hashed(row: Study, person: str) -> str:
+    """A name for a person that says nothing outside of the study."""
+    return hashlib.sha256(f"{row.id} {person}".encode()).hexdigest()
 
 
-def _counts(session: Session, study: str) -> tuple[int, int]:
-    counts = select(func.count(func.distinct(Ballot.rater_id)), func.count()).join(
-        Rater, Rater.id == Ballot.rater_id
-    )
-    people, votes = session.execute(counts.where(Rater.study_id == study, Ballot.answer != "")).one()
-    return people, votes
+def _plan(row: Study, voter: str) -> dict[int, bool]:
+    """The numbers of the pairs in a voter's order, and whether the second run is on the left."""
+    draw = random.Random(f"{row.id} {voter}")
+    numbers = list(range(len(json.loads(row.captions))))
+    draw.shuffle(numbers)
+    return {number: draw.random() < 0.5 for number in numbers}
 
 
-def _entry(row: Study, raters: int, votes: int) -> StudyEntry:
-    pairs = pairs_of(row)
-    checks = sum(bool(pair.known) for pair in pairs)
-    return StudyEntry(
-        id=row.id, key=row.key, title=row.title, question=row.question, sets=tuple(json.loads(row.sets)),
-        pairs=len(pairs) - checks, checks=checks, closed=row.closed, created=row.created, raters=raters, votes=votes,
-    )  # fmt: skip
+def _find(session: Session, *where: ColumnElement[bool]) -> Study:
+    row = session.scalar(select(Study).where(*where))
+    if row is None:
+        raise InputError("There is no such study, or it was deleted: ask for its link, or reload the page.")
+    return row
+
+
+def _mine(study: str, owner: str) -> tuple[ColumnElement[bool], ...]:
+    return Study.id == study, Study.owner == owner, Study.owner != ""
+
+
+def _votes(session: Session, row: Study) -> Sequence[Vote]:
+    return session.scalars(select(Vote).where(Vote.study_id == row.id).order_by(Vote.at)).all()
+
+
+def _entry(row: Study, votes: Sequence[Vote]) -> StudyEntry:
+    first, second = json.loads(row.runs)
+    found = Counter(vote.answer for vote in votes)
+    entry = StudyEntry(row.id, row.key, row.question, (first, second), len(json.loads(row.captions)))
+    wins, voters = (found[FIRST], found[SECOND]), len({vote.person for vote in votes})
+    return replace(entry, wins=wins, ties=found[TIE], voters=voters)

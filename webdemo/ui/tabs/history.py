@@ -73,7 +73,7 @@ class HistoryTab:
             self.saved = gr.DownloadButton(
                 say("history.save"), visible=False, elem_id="history-saved", size="sm"
             )
-            self.study = StudyPanel(self.page) if self.page.studies is not None else None
+            self.study = StudyPanel(self.page, self.line) if self.page.studies is not None else None
             if self.study is not None:
                 self.study.build()
             self.sharing = SharingPanel(self.page) if self.page.sharing is not None else None

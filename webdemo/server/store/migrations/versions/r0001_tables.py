@@ -55,21 +55,14 @@ def upgrade() -> None:
         _text("text", sa.Text),
     )  # fmt: skip
     sa.Table(
-        "studies", tables, _id(), _text("owner", index=True), _text("key", unique=True), _text("title", sa.Text),
-        _text("question", sa.Text), _text("sets", sa.Text), _text("pairs", sa.Text),
-        _number("pairs_each", sa.Integer), _number("shows_sentence", sa.Boolean),
-        _number("shows_result", sa.Boolean), _number("closed", sa.Boolean), _number("created"),
-        _number("size", sa.Integer), _text("address", index=True),
+        "studies", tables, _id(), _text("owner", index=True), _text("key", unique=True),
+        _text("question", sa.Text), _text("runs", sa.Text), _text("captions", sa.Text),
+        _number("created"), _number("size", sa.Integer), _text("address", index=True),
     )  # fmt: skip
     sa.Table(
-        "raters", tables, sa.Column("id", sa.Integer, primary_key=True, autoincrement=True),
-        _of("studies", "study_id", index=True), _text("person"), _text("address"), _text("plan", sa.Text),
-        sa.UniqueConstraint("study_id", "person"),
-    )  # fmt: skip
-    sa.Table(
-        "ballots", tables, _of("raters", "rater_id", sa.Integer, primary_key=True),
-        sa.Column("pair", sa.Integer, primary_key=True), _text("ticket"), _number("swapped", sa.Boolean),
-        _number("shown"), _text("answer"), _number("answered"),
+        "votes", tables, _of("studies", "study_id", primary_key=True), _id("person"),
+        sa.Column("pair", sa.Integer, primary_key=True), _text("answer"), _number("swapped", sa.Boolean),
+        _number("at"),
     )  # fmt: skip
     sa.Table("places", tables, _id(), _text("person", index=True), _text("node", index=True), _number("seen"))
     sa.Table("work", tables, _id("person"), _id("node"), _number("units"), _number("seen", index=True))
