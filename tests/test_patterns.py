@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import subprocess
 import sys
 
@@ -13,8 +12,7 @@ from webdemo.inference.requests import MAX_PROMPT
 from webdemo.inference.story.scripting import LONGEST_READ, MOST_WORDS
 from webdemo.inference.story.toml import MOST_CHARACTERS
 
-from .compiled_patterns import ANYTHING, ROOT, SENTENCE, STORY, inline
-from .pattern_attacks import attacks
+from .compiled_patterns import ANYTHING, ROOT, SENTENCE, STORY
 
 
 def slow(pattern: str | bytes, longest: int) -> str:
@@ -28,44 +26,15 @@ def slow(pattern: str | bytes, longest: int) -> str:
     return done.stdout.strip()
 
 
-@pytest.mark.parametrize(
-    "pattern",
-    [
-        r"^(?:(?:slowly|\w+ly),? )*(?:he|she)\b",
-        r"^(?:(?:first|then|slowly|\w+ly),? )*(?=they )",
-        r"(?:a+)+$",
-        r"(?:\w+\s?)*!",
-        r"(?:x|y(?:b|b)*)*c",
-    ],
-)
-def test_patterns_that_match_in_many_ways_are_found(pattern):
-    assert slow(pattern, SENTENCE)
-
-
-@pytest.mark.parametrize("pattern", [r"\s+$", r"\bhelp.* up", r",\s*x|\s+and", rb"[ \t]*\n[ \t]*M"])
-def test_patterns_of_quadratic_time_are_found_on_texts_of_any_length(pattern):
+@pytest.mark.parametrize("pattern", [r"(?:a+)+$", r"\s+$", rb"[ \t]*\n[ \t]*M"])
+def test_a_pattern_of_quadratic_or_exponential_time_is_found(pattern):
     assert slow(pattern, ANYTHING)
-
-
-@pytest.mark.parametrize("pattern", [r"\w+", r"^(?:(?:now|\w+ly),? )*+he\b", r"[,;]|\band\b", rb"^\s*MOTION"])
-def test_patterns_of_linear_time_are_left_alone(pattern):
-    assert not slow(pattern, ANYTHING)
-
-
-def test_attacks_are_as_long_as_may_be():
-    lengths = {len(text) for text in attacks(re.compile(r"(?:then|\w+ly )+x"), 300)}
-    assert 300 - 10 < max(lengths) <= 300
 
 
 def test_the_limits_are_those_of_the_readers():
     assert (SENTENCE, STORY) == (LONGEST_READ, MOST_WORDS)
     assert SENTENCE >= MAX_PROMPT
     assert MOST_CHARACTERS <= 2 * ANYTHING  # its patterns are of linear time
-
-
-def test_patterns_inside_functions_are_found():
-    files = {file for file, *_ in inline()}
-    assert "webdemo/inference/story/toml.py" in files
 
 
 def test_every_pattern_of_the_packages_is_fast():
