@@ -70,7 +70,7 @@ async def _fill(client: httpx.AsyncClient, counts: Counter[str]) -> None:
     file = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}
     sheet = [
         file,
-        *"png bodies light threequarter".split(),
+        *["png", "bodies", "light", "threequarter"],
         False,
         24,
         640,
