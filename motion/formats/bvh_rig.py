@@ -23,8 +23,8 @@ from motion.skeleton import SMPL22
 
 from .bvh import read_bvh, read_rotations
 from .bvh_hierarchy import Joint
-from .files import ascii_bytes, read_bytes
-from .rig_pose import check_smpl, local_of, posed, root_path
+from .files import ascii_bytes, check_smpl, read_bytes
+from .rig_pose import local_of, posed, root_path
 
 Array = NDArray[np.floating]
 
@@ -46,7 +46,7 @@ def bvh_on_rig(clip: Clip, reference: str | Path | bytes, *, name: str | None = 
     Raises:
         InputError: for another skeleton, or a file that is no BVH of one person.
     """
-    check_smpl(clip)
+    check_smpl(clip, "A rig")
     rig = read_bvh(reference, name=name)
     joints, turned, values = read_rotations(reference, name=name, most=_ENOUGH)
     frames = len(turned)

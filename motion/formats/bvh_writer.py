@@ -10,11 +10,11 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion.clip import Clip, Duet
-from motion.errors import InputError
 from motion.kinematics import fit_rotations, forward_kinematics, global_rotations
-from motion.skeleton import SMPL22, Skeleton
+from motion.skeleton import SMPL22
 
-from .files import write_files
+from .files import check_smpl, write_files
+from .skinned import bone_offsets
 
 Array = NDArray[np.floating]
 
@@ -50,10 +50,7 @@ def write_bvh(duet: Duet, path: str | Path) -> list[Path]:
 
 def bvh_text(clip: Clip) -> str:
     """One person's BVH."""
-    if clip.skeleton.joint_names != SMPL22.joint_names:
-        raise InputError(
-            f"BVH needs a rest pose, and {clip.skeleton.name} has none: retarget to SMPL22 first."
-        )
+    check_smpl(clip, "BVH")
     positions = clip.positions.astype(np.float64)
     rotations, offsets = fit_rig(positions, clip.rotations)
     order: list[int] = []
@@ -73,9 +70,7 @@ def bvh_text(clip: Clip) -> str:
     return "\n".join(lines) + "\n"
 
 
-def fit_rig(
-    positions: Array, rotations: Array | None = None, skeleton: Skeleton = SMPL22
-) -> tuple[Array, Array]:
+def fit_rig(positions: Array, rotations: Array | None = None) -> tuple[Array, Array]:
     """Local rotations and a person's own rest offsets that give back their positions.
 
     Args:
@@ -87,16 +82,12 @@ def fit_rig(
         positions come back exactly, otherwise with the mean of each bone.
     """
     if rotations is not None:
-        found = forward_kinematics(rotations, positions[:, 0], skeleton)
+        found = forward_kinematics(rotations, positions[:, 0])
         if np.abs(found - positions).max() < 1e-4:
-            return np.asarray(rotations, dtype=np.float64), np.asarray(skeleton.offsets, dtype=np.float64)
-    fitted = fit_rotations(positions, skeleton)
-    world = global_rotations(fitted, skeleton)
-    offsets = np.zeros((skeleton.num_joints, 3))
-    for parent, joint in skeleton.bones:
-        bones = (positions[:, joint] - positions[:, parent])[:, None] @ world[:, parent]
-        offsets[joint] = bones[:, 0].mean(axis=0)
-    return fitted, offsets
+            return np.asarray(rotations, dtype=np.float64), np.asarray(SMPL22.offsets, dtype=np.float64)
+    fitted = fit_rotations(positions)
+    world = global_rotations(fitted)
+    return fitted, bone_offsets(positions, world)
 
 
 def _write_joint(joint: int, depth: int, offsets: Array, lines: list[str], order: list[int]) -> None:

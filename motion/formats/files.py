@@ -13,7 +13,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from motion.clip import Clip, Duet
 from motion.errors import InputError
+from motion.skeleton import SMPL22
 
 MAX_BYTES = 50 * 2**20
 MAX_SECONDS = 600.0
@@ -136,6 +138,14 @@ def check_duration(frames: int, fps: float, label: str) -> None:
     if frames > MAX_FRAMES:
         raise InputError(
             f"{label} has {frames:,} frames, more than the {MAX_FRAMES:,} allowed: lower its frame rate."
+        )
+
+
+def check_smpl(motion: Clip | Duet, kind: str) -> None:
+    """Raises InputError for people who are not on SMPL22, whose T-pose is known; ``kind`` is what needs it."""
+    if motion.skeleton.joint_names != SMPL22.joint_names:
+        raise InputError(
+            f"{kind} needs a rest pose and SMPL's 22 joints, not {motion.skeleton.name}'s: retarget the motion."
         )
 
 

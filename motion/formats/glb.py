@@ -16,11 +16,11 @@ from motion.clip import Duet
 from motion.colours import linear
 from motion.skeleton import SMPL22
 
-from .files import write_files
+from .files import check_smpl, write_files
 from .glb_buffer import Buffer
 from .glb_nodes import quaternions
 from .glb_things import add_things
-from .skinned import ABOVE, JOINTS, Skinned, check_rest_pose, skinned
+from .skinned import ABOVE, JOINTS, Skinned, skinned
 
 _CHILDREN = [[joint for joint, above in enumerate(ABOVE) if above == parent] for parent in range(len(JOINTS))]
 """The joints below each."""
@@ -39,7 +39,7 @@ def write_glb(duet: Duet, path: str | Path) -> list[Path]:
     Raises:
         InputError: for people who are not on SMPL22, or where the file cannot be written.
     """
-    check_rest_pose(duet, "glTF")
+    check_smpl(duet, "glTF")
     return write_files({Path(path): glb_bytes(duet)})
 
 

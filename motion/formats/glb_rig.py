@@ -26,12 +26,13 @@ from motion.transforms import mirrored
 
 from ..easing import smoothstep
 from .choices import Animation
+from .files import check_smpl
 from .glb_buffer import Buffer
 from .glb_file import GlbFile, opened
 from .glb_motion import MESHES, metres_per_unit, read_glb_people
 from .glb_nodes import Rig, bind_pose, parts_of, people, placed, quaternions, split, with_those_above
 from .glb_reader import read_character
-from .rig_pose import check_smpl, posed, reached, root_path
+from .rig_pose import posed, reached, root_path
 
 Array = NDArray[np.floating]
 
@@ -61,7 +62,7 @@ def glb_on_rig(
     Raises:
         InputError: for another skeleton, or a file that is no animated character.
     """
-    check_smpl(clip)
+    check_smpl(clip, "A rig")
     moved = read_glb_people(reference, name=name, animation=animation)
     if len(moved) != 1:
         raise InputError(f"{moved[0].name} holds {len(moved)} people: a partner needs the rig of one.")
@@ -85,8 +86,7 @@ def glb_wearing(duet: Duet, reference: str | Path | bytes, *, name: str | None =
     Raises:
         InputError: for another skeleton, or a file that is no character.
     """
-    for clip in duet.people:
-        check_smpl(clip)
+    check_smpl(duet, "A character")
     with opened(reference, name, "used as a character") as file:
         skeleton = _skeleton(file)
         lift = _lift(skeleton, reference, name)

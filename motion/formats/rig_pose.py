@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from motion.body import bone_rotations
 from motion.clip import Clip
-from motion.errors import InputError
 from motion.kinematics import swing
 from motion.retarget import leg_scale
 from motion.rigs import RigMotion, match_joints
@@ -27,14 +26,6 @@ _NEXT = {
     "knee": "ankle",
     "ankle": "foot",
 }
-
-
-def check_smpl(clip: Clip) -> None:
-    """Raises InputError for a clip on other joints than SMPL22's."""
-    if clip.skeleton.joint_names != SMPL22.joint_names:
-        raise InputError(
-            f"A rig is moved by SMPL's 22 joints, not by {clip.skeleton.name}: retarget the motion."
-        )
 
 
 def posed(

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from motion.body import Body, bone_rotations, load_body
 from motion.clip import Clip, Duet
 from motion.colours import BODIES as COLOURS
-from motion.errors import InputError
 from motion.hands import angles
 from motion.kinematics import local_rotations
 from motion.skeleton import SMPL22
@@ -61,14 +60,6 @@ def skinned(duet: Duet) -> Iterator[Skinned]:
     for person, (clip, role, look) in enumerate(zip(duet.people, duet.roles, duet.looks, strict=True)):
         shapes = angles(duet.grips, person, now, duet.fps)
         yield _skinned(clip, role, load_body(look), COLOURS[person], shapes)
-
-
-def check_rest_pose(duet: Duet, kind: str) -> None:
-    """Raises InputError for people who are not on SMPL22, whose T-pose is known; ``kind`` is the format's name."""
-    if duet.skeleton.joint_names != SMPL22.joint_names:
-        raise InputError(
-            f"{kind} needs a rest pose, and {duet.skeleton.name} has none: retarget to SMPL22 first."
-        )
 
 
 def _skinned(clip: Clip, role: str, body: Body, colours: Mapping[str, str], shapes: Array) -> Skinned:

@@ -25,7 +25,7 @@ from motion.skeleton import SMPL22
 
 from .arrays import frame_rate, no_rate, numbers
 from .crowd import Recording
-from .files import check_duration, write_files
+from .files import check_duration, check_smpl, write_files
 
 Array = NDArray[Any]
 
@@ -168,10 +168,7 @@ def smpl_bytes(clip: Clip) -> bytes:
     Raises:
         InputError: for joints other than SMPL22's.
     """
-    if clip.skeleton.joint_names != SMPL22.joint_names:
-        raise InputError(
-            f"SMPL's parameters need its 22 joints, not those of {clip.skeleton.name}: retarget the motion."
-        )
+    check_smpl(clip, SUFFIX)
     rotations = (
         fit_rotations(clip.positions) if clip.rotations is None else np.array(clip.rotations, np.float64)
     )

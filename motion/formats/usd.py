@@ -14,9 +14,9 @@ import numpy as np
 
 from motion.clip import Duet
 
-from .files import write_files
+from .files import check_smpl, write_files
 from .glb_nodes import quaternions
-from .skinned import ABOVE, JOINTS, Skinned, check_rest_pose, skinned
+from .skinned import ABOVE, JOINTS, Skinned, skinned
 from .usd_text import identifier, materials, matrices, rows, samples, subsets, surface
 from .usd_things import things_text
 
@@ -38,7 +38,7 @@ def write_usd(duet: Duet, path: str | Path) -> list[Path]:
     Raises:
         InputError: for people who are not on SMPL22, or where the file cannot be written.
     """
-    check_rest_pose(duet, "USD")
+    check_smpl(duet, "USD")
     return write_files({Path(path): usd_text(duet).encode()})
 
 
