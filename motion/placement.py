@@ -1,4 +1,4 @@
-"""Where a person stands in the frame that the networks know."""
+"""The place of a person in the frame that the networks know."""
 
 from __future__ import annotations
 

@@ -26,27 +26,20 @@ Points = Mapping[str, Array]
 _FARTHEST = 1000.0  # metres
 _OFTEN_UNSEEN = 0.2
 """Share of the frames; a joint that is interpolated for longer is mentioned."""
-_SIDED: dict[str, tuple[tuple[str, ...], ...]] = {
-    "hip": (("*hjc",), ("*hjcstudy",), ("*hipjc",), ("*hip",), ("%hip",), ("*hipcenter",)),
-    "knee": (
-        ("*kjc",), ("*kneejc",), ("*kne", "*knem"), ("*kneestudy", "*mkneestudy"), ("*knee", "*mknee"), ("*kne",),
-        ("*knee",), ("%knee",),
-    ),
-    "ankle": (
-        ("*ajc",), ("*anklejc",), ("*ank", "*ankm"), ("*ank", "*med"), ("*anklestudy", "*mankstudy"),
-        ("*anklestudy", "*manklestudy"), ("*ankle", "*mankle"), ("*ank",), ("*ankle",), ("%ankle",),
-    ),
-    "foot": (
-        ("*toe",), ("*bigtoe",), ("*bigtoe", "*smalltoe"), ("*toestudy",), ("*mt1", "*mt5"), ("%toe",), ("%foot",),
-    ),
-    "shoulder": (("*sjc",), ("*sho",), ("*shoulder",), ("%shoulder",), ("*acr",)),
-    "elbow": (("*ejc",), ("*elb", "*elbm"), ("*elb",), ("*elbow",), ("%elbow",)),
-    "wrist": (("*wjc",), ("*wra", "*wrb"), ("*wri",), ("*wrist",), ("%wrist",), ("*wrb",), ("*wra",)),
-}  # fmt: skip
-"""Markers whose mean is the joint, by preference; "*" is l or r, "%" left or right."""
-_MIDDLE: dict[str, tuple[tuple[str, ...], ...]] = {
-    "head": (("lfhd", "rfhd", "lbhd", "rbhd"), ("lfhd", "rfhd"), ("head",), ("lear", "rear"), ("nose",)),
-    "neck": (("c7", "clav"), ("neck",), ("c7",), ("t1",)),
+_SIDED = {
+    "hip": "*hjc, *hjcstudy, *hipjc, *hip, %hip, *hipcenter",
+    "knee": "*kjc, *kneejc, *kne *knem, *kneestudy *mkneestudy, *knee *mknee, *kne, *knee, %knee",
+    "ankle": "*ajc, *anklejc, *ank *ankm, *ank *med, *anklestudy *mankstudy, *anklestudy *manklestudy, "
+    "*ankle *mankle, *ank, *ankle, %ankle",
+    "foot": "*toe, *bigtoe, *bigtoe *smalltoe, *toestudy, *mt1 *mt5, %toe, %foot",
+    "shoulder": "*sjc, *sho, *shoulder, %shoulder, *acr",
+    "elbow": "*ejc, *elb *elbm, *elb, *elbow, %elbow",
+    "wrist": "*wjc, *wra *wrb, *wri, *wrist, %wrist, *wrb, *wra",
+}
+"""Markers whose mean is the joint, by preference, between commas; "*" is l or r, "%" left or right."""
+_MIDDLE = {
+    "head": "lfhd rfhd lbhd rbhd, lfhd rfhd, head, lear rear, nose",
+    "neck": "c7 clav, neck, c7, t1",
 }
 _PELVIS = (
     ("lasi", "rasi", "lpsi", "rpsi"),
@@ -110,8 +103,8 @@ def _joints(markers: Points) -> tuple[dict[str, Array], str]:
     found: dict[str, Array] = {}
     for side in ("left", "right"):
         for part, choices in _SIDED.items():
-            names = [[n.replace("*", side[0]).replace("%", side) for n in choice] for choice in choices]
-            if (place := _mean_of(markers, names)) is not None:
+            its = choices.replace("*", side[0]).replace("%", side)
+            if (place := _mean_of(markers, its)) is not None:
                 found[f"{side}_{part}"] = place
     for part, choices in _MIDDLE.items():
         if (place := _mean_of(markers, choices)) is not None:
@@ -121,9 +114,9 @@ def _joints(markers: Points) -> tuple[dict[str, Array], str]:
     return found, next((joint for joint in lacks if joint not in found), "")
 
 
-def _mean_of(markers: Points, choices: Sequence[Sequence[str]]) -> Array | None:
+def _mean_of(markers: Points, choices: str) -> Array | None:
     """The mean of the first set of markers that are all there."""
-    for choice in choices:
+    for choice in (names.split() for names in choices.split(", ")):
         if all(name in markers for name in choice):
             return np.mean([markers[name] for name in choice], axis=0)
     return None

@@ -1,4 +1,4 @@
-"""What a corpus holds, in numbers and pictures: ``python -m training.corpus.report --corpus DIR --out DIR``.
+"""The contents of a corpus, in numbers and pictures: ``python -m training.corpus.report --corpus DIR --out DIR``.
 
 Writes ``corpus.md``, one row an act of the lexicon, and ``corpus/ACT.webp``, a contact sheet of a scene that shows it.
 """
@@ -55,7 +55,7 @@ def touch_gap(duet: Duet, contacts: Sequence[dict[str, Any]]) -> float:
 
 
 def is_recorded(scene: dict[str, Any]) -> bool:
-    """Whether the scene's two people were recorded together."""
+    """True if the scene's two people were recorded together."""
     return any(source.startswith(RECORDED) for source in scene.get("sources") or ())
 
 

@@ -1,1 +1,1 @@
-"""What a beat gives the network in one window: poses, places and hands at some frames."""
+"""Constraints of a beat on the network in one window: poses, places and hands at some frames."""

@@ -1,1 +1,1 @@
-"""What is done to a motion while and after it is made: damping, clean-up, joining, touches, sizes."""
+"""The finish of a motion, while and after it is made: damping, clean-up, joining, touches, sizes."""
