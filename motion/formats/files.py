@@ -110,7 +110,7 @@ def _is_text(data: bytes, encoding: str) -> bool:
 
 
 def read_json(text: str | bytes) -> Any:
-    """What JSON says that came with a file.
+    """The contents of JSON that came with a file.
 
     While it is read nothing else is done in the process, and a list takes twenty times as long as a number.
 

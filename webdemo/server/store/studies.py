@@ -37,7 +37,7 @@ _PRESSED = {"1": FIRST, "2": SECOND, "=": TIE}
 
 
 class Next(NamedTuple):
-    """How far a voter is, and the number and the motions of the next pair, left and right; None after the last."""
+    """The progress of a voter, and the number and the motions of the next pair, left and right; None after the last."""
 
     done: int
     total: int

@@ -163,7 +163,7 @@ def _motions(run: Opened) -> list[tuple[str, Any]]:
 
 
 def names(runs: Sequence[Opened]) -> tuple[str, str]:
-    """What tells two runs apart: their titles, or for equal ones the settings that differ."""
+    """The difference between two runs: their titles, or for equal ones the settings that differ."""
     first, second = (run.entry.title for run in runs)
     if first == second:
         ours, theirs = (dict(settings(run.entry)) for run in runs)
