@@ -143,7 +143,7 @@ class Studies:
 
     @sentences()
     def question(self, key: str) -> str:
-        """What the people with a link are asked; raises InputError where there is no such study."""
+        """The question to the people with a link; raises InputError where there is no such study."""
         with self.database.session() as session:
             return _find(session, Study.key == key).question
 
