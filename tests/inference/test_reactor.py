@@ -141,6 +141,17 @@ def test_the_stream_is_the_sampling_of_the_whole_at_once(network: CompactReGenNe
     torch.testing.assert_close(streamed, whole, atol=1e-4, rtol=0)
 
 
+def test_offline_denoises_at_the_timesteps_of_the_stream(
+    engine: Engine, network: CompactReGenNet, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[list[int]] = []
+    made = reactor.Damping
+    monkeypatch.setattr(reactor, "Damping", lambda *a, **k: seen.append(k["timesteps"]) or made(*a, **k))
+    react(engine, mode="offline", steps=5)
+    stream = network.stream(torch.zeros(1, 32), steps=5, max_frames=30)
+    assert seen == [stream.scheduler.timesteps.tolist()] and seen[0][0] == 999
+
+
 @pytest.mark.parametrize("mode", ["online", "offline"])
 @pytest.mark.parametrize("frames", [30, 31, 32, 33, 34])
 def test_any_number_of_frames_is_answered(engine: Engine, mode: str, frames: int) -> None:

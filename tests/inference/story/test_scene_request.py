@@ -2,6 +2,7 @@
 
 import itertools
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -156,3 +157,6 @@ def test_a_span_sees_what_follows_and_a_loop_its_beginning() -> None:
     assert (one.past, one.after) == (30, 30)
     first, last = windows(SceneRequest(beats=(WAVE,), loop=True))
     assert first.after == 0 and 0 < last.after <= min(AFTER, last.start)
+    short, long = (replace(WAVE, seconds=seconds) for seconds in (0.5, 4.0))
+    first, last = windows(SceneRequest(beats=(short, long), loop=True))
+    assert last.after == last.start == first.stop < AFTER, "no frame before its own is seen twice"
