@@ -195,7 +195,7 @@ class Frame:
             return None
         if self.subject == "a+b":
             with_other = len(subject.who) == 2 or any(
-                ref.kind in ("person", "each") for _, ref in event.prepositions
+                ref.kind in ("person", "each") and ref.who != subject.who for _, ref in event.prepositions
             )
             return subject.who if with_other or (event.object and event.object.kind == "person") else None
         return subject.who

@@ -6,10 +6,11 @@ They have no verb with a tense, and the parser hangs them on whatever is near, s
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from acts.frames import PREPOSITIONS
+from acts.said import Event, Ref
 
 from .vocabulary import vocabulary
 
@@ -137,3 +138,11 @@ def stands_absolutely(lower: Callable[[int], str], has_verb: Callable[[int], boo
         or ((after in words.directions or after in _STATES) and ends)
         or (placed and not has_verb(at + 1))
     )
+
+
+def own_part(preposition: str, target: Ref, event: Event) -> Ref:
+    """A part of the body that nobody is said to own, or behind which hands are, as that of the hands' owner."""
+    if event.subject is None or target.kind != "part" or target.family == "shoulder":
+        return target
+    own = target.bare or preposition == "behind"
+    return replace(target, who=event.subject.who) if own else target

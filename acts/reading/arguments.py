@@ -11,7 +11,7 @@ from acts.said import Event, Ref
 from . import wordnet
 from .people import Cast, states_of
 from .references import reference
-from .syntax import is_adverb
+from .syntax import adverb_of, is_adverb, is_kept, taken_away
 from .vocabulary import is_act, vocabulary
 
 if TYPE_CHECKING:
@@ -22,35 +22,13 @@ _LENGTHS = frozenset(("step", "pace", "metre", "meter", "yard"))
 _PATHS = frozenset(
     ("circle", "lap", "loop", "line", "arc", "curve", "spiral", "semicircle", "diagonal", "zigzag")
 )
+_TURNS = frozenset(("clockwise", "counterclockwise"))
 _SIDES = frozenset(("behind", "below", "above"))
 _WAYS = frozenset(("way", "manner", "fashion", "mood", "style"))
 _RECEIVES = frozenset(("get", "receive", "take", "have"))
 _MODIFIERS = frozenset(
     ("prt", "advmod", "acomp", "attr", "oprd", "npadvmod", "amod", "neg", "intj", "compound")
 )
-
-
-def _adverb(adjective: str) -> str:
-    """The adverb of an adjective: "happily", and "friendly" as it is."""
-    if adjective.endswith("ly"):
-        return adjective
-    return f"{adjective[:-1]}ily" if adjective.endswith("y") else f"{adjective}ly"
-
-
-def is_kept(token: Token) -> bool:
-    """True for the participle of "keeps her back turned", which says how something of one's own is held."""
-    keeps = (
-        token.tag_ in ("VBN", "VBD") and token.dep_ == "dep" and token.head.lemma_ in ("keep", "have", "hold")
-    )
-    return keeps and token.i > 0 and token.nbor(-1).dep_ == "dobj" and token.nbor(-1).head == token.head
-
-
-def _taken_away(verb: Token) -> list[Token]:
-    """The objects of a verb that the parser hung on the one before: "stands behind him and massages his shoulders"."""
-    if verb.dep_ != "conj" or verb.pos_ != "VERB" or any(c.dep_ in ("dobj", "obj") for c in verb.children):
-        return []
-    others = (c for above in verb.ancestors for c in above.children if c.dep_ in ("dobj", "obj"))
-    return [noun for noun in others if noun.left_edge.i == verb.i + 1]
 
 
 class Arguments:
@@ -75,9 +53,9 @@ class Arguments:
         subject = event.subject
         who = subject.who if subject is not None and subject.kind == "person" else ""
         agent: Ref | None = None
-        for child in (*token.children, *_taken_away(token)):
+        for child in (*token.children, *taken_away(token)):
             before = child.left_edge.i - 1
-            if before > token.i and child.head == token and child in _taken_away(token.doc[before]):
+            if before > token.i and child.head == token and child in taken_away(token.doc[before]):
                 continue
             if subject is not None and self.cast.seen.get(child.i) is subject:  # "…, said the witch"
                 continue
@@ -173,11 +151,17 @@ class Arguments:
 
     def _argument(self, token: Token, who: str, event: Event) -> Ref:
         self.seen.add(token.i)
+        within = next((c for c in token.children if c.dep_ == "compound"), None)
+        if within is not None and self._words.directions.get(token.lower_) in _TURNS:
+            self._direction(token.lower_, event)
+            token = within  # "in a circle clockwise"
         person = self._words.is_person(token.lemma_.lower())
         states = {phrase.i for phrase, _ in states_of(token)} if person else set()
         for child in token.children:
             if child.dep_ in ("compound", "amod"):
                 event.words.append(child.lemma_.lower())
+                if self._words.directions.get(child.lower_) in _TURNS:
+                    self._direction(child.lower_, event)
                 if child.lower_ in self._words.verbs["imagined"]:
                     event.modality = "pretended"
                 if child.lower_ in ("left", "right") and is_act(token.lemma_.lower()):  # "a left hook"
@@ -189,7 +173,10 @@ class Arguments:
                 self._preposition(child, who, event)
             elif child.dep_ == "nummod" or child.lower_ in self._words.numbers:
                 self._count(child, token, event)
-            elif child.dep_ == "prt":  # "helps him up off the floor"
+            elif child.dep_ == "prt" or (
+                child.dep_ in ("appos", "advmod") and child.lower_ in self._words.directions
+            ):
+                # "helps him up off the floor", "in a circle, clockwise"
                 self._modifier(child, event)
             elif child.lower_ == "no" and child.dep_ == "det":
                 event.denied = not event.denied
@@ -200,8 +187,11 @@ class Arguments:
         return reference(token, self.cast, who)
 
     def place(self, token: Token, who: str, event: Event) -> None:
-        """Takes up the phrase of a preposition: "on his back"."""
-        self._phrase(token, who, event)
+        """Takes up the phrase of a preposition or an adverb: "on his back", "forward"."""
+        if token.dep_ == "prep":
+            self._phrase(token, who, event)
+        else:
+            self._modifier(token, event)
 
     def _preposition(self, token: Token, who: str, event: Event) -> None:
         if token.i not in self._postures:
@@ -282,7 +272,7 @@ class Arguments:
         """Notes "like an old man" and "in a friendly way" as the adverb of how one moves so."""
         said = [c.lower_ for c in noun.children if c.dep_ in ("amod", "compound")]
         if preposition.lower_ == "in" and noun.lower_ in _WAYS:
-            event.adverbs += [_adverb(adjective) for adjective in said]
+            event.adverbs += [adverb_of(adjective) for adjective in said]
         elif preposition.lower_ == "like":
             named = (noun.lemma_.lower(), *said)  # of "an old king", old
             adverbs = [self._words.likeness[word] for word in named if word in self._words.likeness]
@@ -369,8 +359,18 @@ class Arguments:
         """Turns "gives him a hug" and "takes a bow" into the verb that their noun stands for."""
         noun = event.object
         if noun is not None and noun.kind == "thing" and noun.lemma in self._verbs:
-            for kind in ("tried", "wished", "not", "pretended"):  # "wants a hug", "refuses the dance"
+            for kind in (
+                "tried",
+                "wished",
+                "not",
+                "pretended",
+                "offered",
+            ):  # "wants a hug", "refuses the dance"
                 if event.lemma in self._words.verbs[kind] and event.lemma not in ("hope", "promise"):
+                    if kind == "offered" and (
+                        wordnet.usual_kind(noun.lemma) == "consumption" or not is_act(noun.lemma)
+                    ):
+                        continue  # "offers her a drink" hands something over
                     event.lemma, event.object, event.dative = noun.lemma, event.dative, None
                     event.modality = event.modality if kind == "not" else kind
                     event.denied = event.denied != (kind == "not")

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from acts.said import Event
 
-from .arguments import is_kept
-from .syntax import is_adverb
+from .syntax import is_adverb, is_kept
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -180,3 +179,10 @@ def spans(doc: Doc, events: Sequence[Event]) -> Iterator[tuple[int, int]]:
                 own.append(child)
                 waiting.append(child)
         yield min(t.idx for t in own), max(t.idx + len(t.text) for t in own)
+
+
+def tells_on(clause: Token) -> bool:
+    """True for a relative clause that goes on with what is told: "kicks the ball to B, who stops it"."""
+    noun = clause.head
+    back = any(c.dep_ == "dobj" and c.lower_ in ("him", "her", "them") for c in clause.children)
+    return back or any(t.text == "," for t in clause.doc[noun.i : clause.i])

@@ -18,7 +18,7 @@ _LIMBS = frozenset(("hand", "arm", "leg", "foot"))
 
 
 def completed(
-    number: int, event: Event, events: Sequence[Event], acts: Sequence[Act], known: Lexicon
+    number: int, event: Event, events: Sequence[Event], acts: Sequence[Act], known: Lexicon, alone: bool
 ) -> Iterator[tuple[Event, float]]:
     """The event with what other words say of it, as the object of "he reads and tears up the letter", and the cost.
 
@@ -28,6 +28,7 @@ def completed(
         events: of the text.
         acts: before it.
         known: the lexicon.
+        alone: whether the text names a single person.
     """
     if event.subject is not None and event.subject.kind == "part" and event.object is None:
         above = events[event.beside].subject if event.beside is not None else None
@@ -49,11 +50,11 @@ def completed(
             yield replace(event, object=other.object), 0.0
     if (patient := _meant(event, acts, known)) is not None:  # "leans in, but does not kiss"
         yield replace(event, object=Ref("person", patient)), 0.0
-    alone = event.lemma in known.frames and not event.particles and event.joint != "comp"
-    alone = alone and event.lemma not in vocabulary().verbs["vague"]  # "leads with arm circles"
-    alone = alone and all(ref.kind == "thing" for _, ref in event.prepositions)
+    bare = not alone and event.lemma in known.frames and not event.particles and event.joint != "comp"
+    bare = bare and event.lemma not in vocabulary().verbs["vague"]  # "leads with arm circles"
+    bare = bare and all(ref.kind == "thing" for _, ref in event.prepositions)
     inner = any(other.beside == number and other.joint == "comp" for other in events)
-    if event.subject is not None and alone and not inner and (whom := other_of(event.subject.who)):
+    if event.subject is not None and bare and not inner and (whom := other_of(event.subject.who)):
         yield replace(event, object=Ref("person", whom)), 1.0  # "one pushes and the other falls"
 
 

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from .spelling import Speller
 
 _ENDS = frozenset(("", ",", ";", ":", ".", "!", "?", "-", "then", "and"))
+_JOINS = frozenset((",", "and", "then"))
+_BEFORE_SIDES = frozenset(("to", "with", "on", "towards", "toward", "over", "by"))
+"""Prepositions before a side, or a part of the body that has one."""
 _ARTICLES = frozenset(("a", "an", "another", "one"))
 _OF = frozenset(("of", "you", "us", "them", "the", "two"))
 _OTHERS = frozenset(("both", "one", "other", "first", "second", "each"))
@@ -193,12 +196,28 @@ class Ellipsis:
         return False
 
     def _listed_side(self, i: int) -> str:
-        """The verb that is done again to another side: "throws left, (throws) right, (throws) left"."""
-        if self._lower(i) not in ("left", "right") or not self._last:
+        """The verb done again to another side: "throws left, (throws) right", "with the right leg, then the left"."""
+        if not self._last or self._lower(i - 1) not in _JOINS:
             return ""
-        before, at = self._lower(i - 1), i - 1
-        if before not in (",", "and") or self._lower(i + 1) not in (",", ".", "", "and", ";"):
-            return ""
-        while self._lower(at) in (",", "and"):
+        at = i - 1
+        while self._lower(at) in _JOINS or self._lower(at) == "first":
             at -= 1
-        return self._last if self._lower(at) in ("left", "right") else ""
+        noun = self._lower(at) not in ("left", "right")
+        first = at - noun
+        if self._lower(first) not in ("left", "right") or (noun and not self._is_sided(at)):
+            return ""
+        own = self._lower(i) in _BEFORE_SIDES
+        side = i + own + (self._lower(i + own) in _OWNERS)
+        last = side + (self._lower(side) in ("left", "right"))
+        more = noun and self._is_sided(last)
+        if last == side or self._lower(last + more) not in _ENDS | _CLAUSES | {"again", "side"}:
+            return ""
+        before = self._lower(first - 1 - (self._lower(first - 1) in _OWNERS))
+        with_it = more and not own and before in _BEFORE_SIDES - {"to"}
+        return f"{self._last} {before}" if with_it else self._last
+
+    def _is_sided(self, i: int) -> bool:
+        """True for a part of the body of which there are two, or a side."""
+        word = self._lower(i)
+        part = self._words.part({"feet": "foot"}.get(word, word)) or self._words.part(word.removesuffix("s"))
+        return bool(part) or word in ("side", "direction")

@@ -11,13 +11,13 @@ from acts.lexicon import Lexicon
 from acts.said import Event, Ref
 
 from . import wordnet
-from .absolute import Absolute, absolutes
+from .absolute import Absolute, absolutes, own_part
 from .arguments import Arguments
-from .clauses import MARKS, NOUNMARKS, ClauseTree
+from .clauses import MARKS, NOUNMARKS, ClauseTree, tells_on
 from .people import A_NAME, B_NAME, Cast
-from .references import reference
+from .references import names_one, reference
 from .subjects import Subjects, ends_before
-from .syntax import is_ongoing, seems
+from .syntax import conjunction, is_ongoing, seems
 from .vocabulary import vocabulary
 from .voice import give_roles, goes_on, is_passive, is_suffered, other_person, state_of
 
@@ -44,6 +44,7 @@ class Reader:
         verbs = frozenset(known.frames)
         self.doc = doc
         self.cast = Cast()
+        self.cast.alone = names_one(doc)
         self.events: list[Event] = []
         self._absolutes = {found.preposition.i: found for found in absolutes(doc)}
         held = {token.i for found in self._absolutes.values() for token in (found.state, found.part)}
@@ -61,6 +62,8 @@ class Reader:
                 self._event(token)
             elif token.dep_ == "conj" and token.head.i in self._of:
                 self._gapped(token)
+            elif token.dep_ == "conj":
+                self._also(token)
         self._states()
         self._postures()
         self._sort()
@@ -86,7 +89,7 @@ class Reader:
 
     def _is_swallowed(self, token: Token) -> bool:
         """True for a person whom the parser took for a part of the noun behind: "the man waves"."""
-        named = token.text in (A_NAME, B_NAME) or self._words.is_person(token.lemma_.lower())
+        named = token.text in (A_NAME, B_NAME) or self._words.is_usual_person(token.lemma_.lower())
         return named and token.dep_ in ("compound", "nmod", "amod") and token.head.i > token.i
 
     def _states(self) -> None:
@@ -115,13 +118,13 @@ class Reader:
             if found.verb == "put":
                 self._arguments.place(found.state, who, event)
                 event.prepositions = [
-                    (word, self._own(word, target, event)) for word, target in event.prepositions
+                    (word, own_part(word, target, event)) for word, target in event.prepositions
                 ]
             elif found.verb == "hold" or found.state.lower_ in self._words.directions:
                 event.words.append(found.state.lower_)
                 event.direction = self._words.directions.get(found.state.lower_)
             else:
-                for phrase in (c for c in found.state.children if c.dep_ == "prep"):
+                for phrase in (c for c in found.state.children if c.dep_ in ("prep", "advmod")):
                     self._arguments.place(phrase, who, event)
             self._joints.append((event, found.preposition, "with", clause.i if clause is not None else None))
             self.events.append(event)
@@ -140,14 +143,6 @@ class Reader:
         if subject is not None and subject.lemma == "partner" and found.part.idx < subject.first:
             return other_person(subject)  # "left knee up, partner mirrors it"
         return subject
-
-    @staticmethod
-    def _own(preposition: str, target: Ref, event: Event) -> Ref:
-        """A part of the body that nobody is said to own, or behind which hands are, as that of the hands' owner."""
-        if event.subject is None or target.kind != "part" or target.family == "shoulder":
-            return target
-        own = target.bare or preposition == "behind"
-        return replace(target, who=event.subject.who) if own else target
 
     def _clause_of(self, found: Absolute) -> Token | None:
         """The clause beside which a part of the body is held: the one above, else the nearest of its sentence."""
@@ -227,7 +222,7 @@ class Reader:
         self._joints.append((event, token, kind, beside))
         self.events.append(event)
         countered = self._event_of(token.head) if token.dep_ == "conj" else None
-        if countered is not None and self._conjunction(token) == "but":
+        if countered is not None and conjunction(token) == "but":
             countered.countered = True
 
     def _is_mutual(self, event: Event) -> bool:
@@ -258,6 +253,22 @@ class Reader:
         self._arguments.fill(token, event)
         self._joints.append((event, token, "with", token.head.i))
         self.events.append(event)
+
+    def _also(self, token: Token) -> None:
+        """Adds what is done with a further part of the body: "raises the left arm and the right leg"."""
+        noun = next((t for t in token.ancestors if t.dep_ != "conj"), token)
+        above = self._event_of(noun.head)
+        if noun.dep_ != "dobj" or above is None or above.object is None or above.object.kind != "part":
+            return
+        ref = reference(token, self.cast, above.subject.who if above.subject is not None else "")
+        if ref.kind != "part":
+            return
+        self._arguments.seen.add(token.i)
+        if (ref.family, ref.side) != (above.object.family, above.object.side):
+            last = token.idx + len(token.text)
+            event = replace(above, object=ref, words=list(above.words), noun=None, first=token.idx, last=last)
+            self._joints.append((event, token, "with", noun.head.i))
+            self.events.append(event)
 
     def _polarity(self, token: Token, head: Token | None, event: Event) -> None:
         children = {
@@ -310,7 +321,7 @@ class Reader:
             if head is not None and token.dep_ == "conj":
                 above = self._event_of(head)
                 if above is not None and not any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children):
-                    if above.denied and token.head.i == head.i and self._conjunction(token) == "or":
+                    if above.denied and token.head.i == head.i and conjunction(token) == "or":
                         event.denied = True
                     if above.modality != "told" and head.dep_ in ("xcomp", "ccomp"):
                         event.modality, event.denied = above.modality, event.denied or above.denied
@@ -336,10 +347,6 @@ class Reader:
     def _event_of(self, head: Token) -> Event | None:
         number = self._of.get(head.i)
         return self.events[number] if number is not None and number < len(self.events) else None
-
-    @staticmethod
-    def _conjunction(token: Token) -> str:
-        return next((child.lower_ for child in token.head.children if child.dep_ == "cc"), "")
 
     def _joint(self, token: Token, head: Token | None) -> tuple[str, int | None]:
         """The place of a clause in time beside another, as (kind, the token of that one's verb).
@@ -377,8 +384,8 @@ class Reader:
             return "while", above.i
         if token.dep_ == "amod":
             return "while", above.i
-        if token.dep_ == "relcl" and token.i > above.i and token.tag_ != "VBG" and _goes_on(token):
-            return "after", above.i
+        if token.dep_ == "relcl" and token.i > above.i and token.tag_ != "VBG" and tells_on(token):
+            return "who", above.i
         if token.dep_ in ("acl", "relcl"):
             return ("while" if token.tag_ == "VBG" else "with"), above.i
         if token.dep_ in ("xcomp", "ccomp"):
@@ -390,10 +397,3 @@ class Reader:
         """True if "then" stands between a clause and the verb before it."""
         before = max((i for i in self._of if i < token.i), default=0)
         return any(self.doc[i].lower_ in _THEN for i in range(before, token.i))
-
-
-def _goes_on(clause: Token) -> bool:
-    """True for a relative clause that goes on with what is told: "kicks the ball to B, who stops it"."""
-    noun = clause.head
-    back = any(c.dep_ == "dobj" and c.lower_ in ("him", "her", "them") for c in clause.children)
-    return back or any(t.text == "," for t in clause.doc[noun.i : clause.i])

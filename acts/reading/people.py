@@ -27,7 +27,7 @@ PRONOUN_SEX = dict.fromkeys(("he", "him", "his", "himself"), "m") | dict.fromkey
 )
 """The sex that a pronoun tells."""
 _NOMINATIVE = frozenset(("i", "he", "she", "they", "we"))
-_ANYONE = frozenset(("someone", "somebody", "anyone", "anybody", "person"))
+ANYONE = frozenset(("someone", "somebody", "anyone", "anybody", "person"))
 _ARTICLES = frozenset(("a", "an", "the", "his", "her", "their"))
 _OTHERS = frozenset(("conj", "poss", "appos"))
 """What hangs on a noun and is somebody else: "a man and a girl", "the child's mother"."""
@@ -62,6 +62,8 @@ class Cast:
         """The sex of its owner, by a possessive."""
         self.thing_of = ""
         """The people of the clause that named it."""
+        self.alone = False
+        """The text names one person and nobody else, whose every part of a body and pronoun are."""
         self.animals: set[str] = set()
         """Animals that act as people do."""
         self.seen: dict[int, Ref] = {}
@@ -90,6 +92,8 @@ class Cast:
         """
         lemma, text = token.lemma_.lower(), token.lower_
         children = {child.lower_ for child in token.children}
+        if self.alone and (text in PRONOUN_SEX or text in _THEY):
+            return self._as("a", text)
         if text in PRONOUN_SEX:
             return self._pronoun(PRONOUN_SEX[text], subject)
         if text in ("i", "me", "myself", "you", "yourself"):
@@ -227,7 +231,7 @@ class Cast:
         words, lemma = self._words, token.lemma_.lower()
         known.sex = known.sex or words.sex(lemma)
         known.age = known.age or words.age(lemma)
-        if words.sex(lemma) or lemma in _ANYONE | {"couple", "people"}:
+        if words.sex(lemma) or lemma in ANYONE | {"couple", "people"}:
             beside = (c for c in token.children if c.dep_ not in _OTHERS)
             known.age = known.age or next((age for c in beside if (age := words.age(c.lower_))), "")
 
@@ -242,10 +246,10 @@ class Cast:
         free = next((who for who in "ab" if who not in self._known), "")
         if not free:
             bare = [
-                who for who in "ab" if set(self._known[who].words) <= _ANYONE | {"one", "other", "another"}
+                who for who in "ab" if set(self._known[who].words) <= ANYONE | {"one", "other", "another"}
             ]
             free = next((who for who in bare if who != self.last), "")
-            if not free and lemma in _ANYONE | {"another"}:
+            if not free and lemma in ANYONE | {"another"}:
                 free = other_of(self.last) or "a"
         if not free:
             if token is not None:
@@ -304,7 +308,7 @@ class Cast:
     def _is_anyone(self, who: str) -> bool:
         """True for somebody of whom no more is known than that they are a person."""
         known = self._known[who]
-        return not known.sex and bool(known.words) and set(known.words) <= _ANYONE
+        return not known.sex and bool(known.words) and set(known.words) <= ANYONE
 
     def address(self, who: str) -> None:
         """Says that an order is given to this person."""
@@ -317,6 +321,8 @@ class Cast:
 
     def owner(self, token: Token, subject: str) -> str:
         """The owner of a part of the body, by its possessive; "" where the words leave it open."""
+        if self.alone and len(subject) < 2:
+            return subject or "a"
         for child in token.children:
             if child.dep_ == "poss" or child.tag_ == "PRP$":
                 text = child.lower_

@@ -175,7 +175,9 @@ class _Planner:
             found = None if found is not None and (found[0] == "stand-still" or found[2].rest) else found
             event = placed if found is not None else event
         if found is None:
-            for whole, cost in completed(number, event, self._events, self._acts, self._known):
+            for whole, cost in completed(
+                number, event, self._events, self._acts, self._known, self._reader.cast.alone
+            ):
                 self.cost += cost
                 if (found := self._matcher.find(whole)) is not None:
                     event = whole
@@ -345,7 +347,8 @@ class _Planner:
         patient = match.patient
         entry = self._known.entries[name]
         upwards = entry.thing == "throws" and event.direction == "up"  # to nobody
-        if entry.to == "other" and len(match.agents) == 1 and not upwards:
+        shared = entry.mutual and event.modality == "offered"
+        if (entry.to == "other" or shared) and len(match.agents) == 1 and not upwards:
             patient = patient or other_of(match.agents)
         owner = None
         if part is not None:

@@ -8,11 +8,47 @@ from typing import TYPE_CHECKING
 from acts.said import Ref
 from acts.things import is_fixture
 
-from .people import PRONOUN_SEX, Cast, begins_clause
+from .people import A_NAME, ANYONE, B_NAME, PRONOUN_SEX, Cast, begins_clause
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
-    from spacy.tokens import Token
+    from spacy.tokens import Doc, Token
+
+_SOMEBODY = ANYONE | {"someone", "somebody"}
+_PLAIN = _SOMEBODY | {"man", "woman", "guy", "boy", "girl", "human", "kid", "child", "dude"}
+"""Nouns that name nobody's part in a scene, as "nurse" does, who has a patient."""
+_AROUND = frozenset(("of", "behind", "above", "below", "over", "around", "beside", "under", "before"))
+"""Prepositions of where something is around oneself: "in front of him"."""
+_COMPANY = frozenset(
+    ("other", "another", "first", "second", "former", "latter", "you", "i", "me", "my", "your", "us", "we")
+)
+"""Words of more people than one, or of those who speak."""
+
+
+def names_one(doc: Doc) -> bool:
+    """True for a parsed text that names a single person, whose every part of a body and pronoun are."""
+    words_of = vocabulary()
+    nouns = [t for t in doc if t.lower_ in _SOMEBODY or words_of.is_usual_person(t.lemma_.lower())]
+    nouns = [t for t in nouns if t.pos_ != "VERB" and t.dep_ not in ("amod", "compound")]
+    words = {t.lower_ for t in doc}
+    if any(t.lower_ == "one" and words_of.part(t.nbor().lemma_) for t in doc[:-1]):
+        words -= {"other"}  # "one foot in front of the other"
+    new = sum(any(c.lower_ in ("a", "an") for c in t.children) for t in nouns)
+    plain = all(t.lemma_.lower() in _PLAIN for t in nouns)
+    objects = (t for t in doc if t.lower_ in ("him", "her", "them") and t.dep_ != "poss")
+    plain = plain and all(
+        t.head.lower_ in _AROUND or (t.lower_ == "them" and t.dep_ != "pobj") for t in objects
+    )
+    same = (
+        plain
+        and len({t.lemma_.lower() for t in nouns}) == 1
+        and new < 2
+        and all(t.tag_ == "NN" for t in nouns)
+    )
+    sexes = {PRONOUN_SEX[word] for word in words & PRONOUN_SEX.keys()}
+    sexes |= {words_of.sex(t.lemma_.lower()) for t in nouns} - {""}
+    named = any(t.text in (A_NAME, B_NAME) for t in doc) or bool(words & _COMPANY)
+    return same and len(sexes) < 2 and not named
 
 
 def reference(token: Token, cast: Cast, subject: str) -> Ref:
@@ -24,7 +60,8 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
         return Ref("self", subject, lemma, first=first, last=last)
     if token.lower_ in ("other", "another") and children & {"each", "one"}:
         return Ref("each", "ab", "other", first=first, last=last)
-    if token.lower_ == "them" and cast.things is not None and len(subject) == 1:
+    behind = cast.alone and token.dep_ == "pobj"  # "holds them in front of them"
+    if token.lower_ == "them" and cast.things is not None and len(subject) == 1 and not behind:
         return replace(cast.things, first=first, last=last)  # "drops her keys, and he picks them up"
     if token.lower_ == "it" and cast.thing is not None:
         said_of = cast.thing_of if cast.thing_of != subject and len(cast.thing_of) == 1 else ""
@@ -54,7 +91,9 @@ def _is_aside(token: Token, cast: Cast) -> bool:
 def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
     """Notes what "it" and "them" mean from here on."""
     light = token.head.lemma_.lower() in vocabulary().verbs["light"]  # "does two jumps"
-    if ref.kind == "thing" and token.tag_ == "NNS" and token.dep_ == "dobj" and not light:
+    many = ref.kind == "thing" or (ref.kind == "part" and cast.alone)
+    taken = token.dep_ == "dobj" or (ref.kind == "part" and token.head.lower_ in ("with", "of"))
+    if many and token.tag_ == "NNS" and taken and not light:
         cast.things = ref
     beside = (
         token.dep_ == "pobj" and cast.thing is not None and (ref.kind, cast.thing.kind) == ("part", "thing")

@@ -13,6 +13,7 @@ from acts.things import is_fixture
 BESIDE = frozenset(("gesture", "limb", "words"))
 """Shapes of what a person can do on their way."""
 _ARRIVES = frozenset(("to", "behind", "back", "aside"))
+_LASTS = frozenset(("around", "along", "after", "to and fro"))
 _KINDS = ("after", "with", "while", "before", "until")
 _FOR_THE_OTHER = {"main-after": "after", "main-until": "until"}
 """Joints that say where the act above stands: "as soon as he waves, she bows"."""
@@ -49,6 +50,8 @@ def related(
             continue
         other = acts[of[above]]
         then, kind = kind == "then", "after" if kind == "then" else kind
+        if kind == "who":
+            kind = "while" if _lasts(other, known) else "after"
         if kind == "after" and (other.already or _waits(other, known)):
             talk = next((r.act for r in found[other.id] if r.kind == "while"), None)
             # What follows "A talks while B waits" follows the talk.
@@ -86,6 +89,11 @@ def _joint(number: int, events: Sequence[Event], of: Mapping[int, str]) -> tuple
         kind = events[above].joint if kind in ("comp", "") else kind
         above = events[above].beside
     return kind, above if above in of else None
+
+
+def _lasts(act: Act, known: Lexicon) -> bool:
+    """True for a way that goes on for as long as one likes, as around somebody."""
+    return any(isinstance(shape, Go) and shape.way in _LASTS for shape in known.entries[act.act].stage)
 
 
 def _waits(act: Act, known: Lexicon) -> bool:

@@ -77,7 +77,7 @@ class Subjects:
             return told
         if (named := self._named_before(token)) is not None:
             return named
-        if token.dep_ in ("relcl", "acl") or token.dep_ == "amod":
+        if token.dep_ in ("relcl", "acl", "amod") and token.head != head:
             found = self._antecedent(token)
             handles = token.tag_ == "VBG" and any(c.dep_ == "dobj" for c in token.children)
             if found is None or found.kind != "part" or not handles or head is None:

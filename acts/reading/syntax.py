@@ -145,3 +145,31 @@ def is_adverb(text: str) -> bool:
     if len(text) < 5 or not text.endswith("ly") or wordnet.is_verb(text):
         return False
     return is_word(text[:-2]) or is_word(f"{text[:-3]}y")
+
+
+def is_kept(token: Token) -> bool:
+    """True for the participle of "keeps her back turned", which says how something of one's own is held."""
+    keeps = (
+        token.tag_ in ("VBN", "VBD") and token.dep_ == "dep" and token.head.lemma_ in ("keep", "have", "hold")
+    )
+    return keeps and token.i > 0 and token.nbor(-1).dep_ == "dobj" and token.nbor(-1).head == token.head
+
+
+def taken_away(verb: Token) -> list[Token]:
+    """The objects of a verb that the parser hung on the one before: "stands behind him and massages his shoulders"."""
+    if verb.dep_ != "conj" or verb.pos_ != "VERB" or any(c.dep_ in ("dobj", "obj") for c in verb.children):
+        return []
+    others = (c for above in verb.ancestors for c in above.children if c.dep_ in ("dobj", "obj"))
+    return [noun for noun in others if noun.left_edge.i == verb.i + 1]
+
+
+def adverb_of(adjective: str) -> str:
+    """The adverb of an adjective: "happily", and "friendly" as it is."""
+    if adjective.endswith("ly"):
+        return adjective
+    return f"{adjective[:-1]}ily" if adjective.endswith("y") else f"{adjective}ly"
+
+
+def conjunction(token: Token) -> str:
+    """The word that joins what hangs on the same head: "and", "but", …; "" for none."""
+    return next((child.lower_ for child in token.head.children if child.dep_ == "cc"), "")

@@ -86,3 +86,26 @@ def tokens(text: str) -> Iterator[tuple[str, int, int]]:
     """The words, numbers and marks of a text, with plain quotes, and their offsets in it."""
     for match in _TOKEN.finditer(text):
         yield "".join(_QUOTES.get(c, c) for c in match[0]), match.start(), match.end()
+
+
+def without_speech(tokens: list[tuple[str, int, int]]) -> list[tuple[str, int, int]]:
+    """The tokens without what is said in quotation marks or stands in brackets; all if nothing else is told."""
+    marks = [i for i, (word, _, _) in enumerate(tokens) if word == '"']
+    spoken = {i for first, last in zip(marks[::2], marks[1::2], strict=False) for i in range(first, last + 1)}
+    opened = -1
+    for i, (word, _, _) in enumerate(tokens):
+        opened = i if word == "(" else opened
+        if word == ")" and opened >= 0:
+            spoken.update(range(opened, i + 1))
+            opened = -1
+    told = [token for i, token in enumerate(tokens) if i not in spoken]
+    return told if sum(word.isalpha() for word, _, _ in told) > 1 else tokens
+
+
+def without_request(tokens: list[tuple[str, int, int]]) -> list[tuple[str, int, int]]:
+    """The tokens without what asks for a motion: "show me two people dancing", "i want to see them hug"."""
+    words = [word.lower() for word, _, _ in tokens]
+    for request in vocabulary().requests:
+        if tuple(words[: len(request)]) == request and len(words) > len(request) + 1:
+            return tokens[len(request) :]
+    return tokens

@@ -15,7 +15,7 @@ from .absolute import stands_absolutely
 from .ellipsis import Ellipsis
 from .letters import names
 from .people import A_NAME, B_NAME
-from .text import Text, tokens
+from .text import Text, tokens, without_request, without_speech
 from .vocabulary import FORMATION, vocabulary
 
 if TYPE_CHECKING:
@@ -53,6 +53,9 @@ _TO_SIDES = tuple(
 """Words behind a part of the body that say that it moves from side to side."""
 _LIES = ("lie", "lying", "lay", "fall", "fell", "land", "roll", "flat")
 """How verbs begin of which "on her back" says how she lies herself."""
+_MOTIONS = frozenset(
+    ("motion", "motions", "movement", "movements", "gesture", "gestures", "action", "actions")
+)
 _NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}
 """Letters and numbers behind "person" or "dancer", and whether they name the first."""
 
@@ -72,9 +75,9 @@ class _Preparation:
 
     def __init__(self, text: str, speller: Speller) -> None:
         self._text, self._mended, self._is_verb = text, speller.mended, speller.is_form
-        self._is_deed = speller.is_deed
+        self._is_deed, self._forms = speller.is_deed, speller.forms
         self._words = vocabulary()
-        self._tokens = _without_request(_without_speech(list(tokens(text))))
+        self._tokens = without_request(without_speech(list(tokens(text))))
         self._letters = names([word for word, _, _ in self._tokens], self._is_verb)
         self._ellipsis = Ellipsis(lambda i: self._letters.get(i, self._lower(i)).lower(), speller)
         self._pieces: list[tuple[str, int, int]] = []
@@ -122,7 +125,7 @@ class _Preparation:
         start = self._tokens[i][1]
         if self._lower(i - 1) == "," and not verb.startswith(("is", "are")):
             _, first, last = self._pieces.pop()
-            self._pieces.append(("and" if verb.endswith("s") else ".", first, last))
+            self._pieces.append(("and" if verb.split()[0].endswith("s") else ".", first, last))
         self._pieces.append((verb, start, start))
 
     def _lower(self, i: int) -> str:
@@ -130,14 +133,19 @@ class _Preparation:
 
     def _phrase(self, i: int) -> int:
         """Several words that join clauses as one does, as "as soon as"; how many they were, or 0."""
-        for phrase, word in self._words.phrases.get(self._lower(i), ()):
-            if self._stand_at(i, phrase):
-                self._pieces.append((word, self._tokens[i][1], self._tokens[i + len(phrase) - 1][2]))
-                return len(phrase)
         if self._part_at(i - 1) and (swung := next((w for w in _TO_SIDES if self._stand_at(i, w)), ())):
             last = self._tokens[i + len(swung) - 1]
             self._pieces.append(("sideways", self._tokens[i][1], last[2]))  # "shakes his head left and right"
             return len(swung)
+        for phrase, word in self._words.phrases.get(self._lower(i), ()):
+            if self._stand_at(i, phrase):
+                self._pieces.append((word, self._tokens[i][1], self._tokens[i + len(phrase) - 1][2]))
+                return len(phrase)
+        if mimed := self._mimed(i):
+            return mimed
+        if self._stand_at(i, ("both", "of")):  # "takes both of her hands"
+            self._pieces.append(("both", self._tokens[i][1], self._tokens[i + 1][2]))
+            return 2
         if (later := self._later(i)) > 0:
             self._pieces.append(("later", self._tokens[i][1], self._tokens[i + later - 1][2]))
             return later
@@ -164,6 +172,24 @@ class _Preparation:
             )  # "the two circle round"
             return 2
         return 0
+
+    def _mimed(self, i: int) -> int:
+        """How many words "makes a throwing motion", "in a chopping motion" or "does the motion of digging" begin with.
+
+        In their place stands what they mean, "pretends to throw" and "as if to chop"; 0 for other words.
+        """
+        verb, ending = self._forms.get(self._lower(i), ("", ""))
+        makes = verb in self._words.verbs["light"]
+        if not makes and self._lower(i) not in ("in", "with"):
+            return 0
+        at = next((k for k in range(i, i + 5) if self._lower(k + 1) in _MOTIONS), i)
+        last = at + (3 if makes and self._lower(at + 2) == "of" else 1)
+        lemma, going = self._forms.get(self._lower(last if last > at + 1 else at), ("", ""))
+        if going != "ing" or last == i + 1:
+            return 0
+        said = f"pretend{ending.removeprefix('e')} to {lemma}" if makes else f"as if to {lemma}"
+        self._pieces.append((said, self._tokens[i][1], self._tokens[last][2]))
+        return last + 1 - i
 
     def _stand_at(self, i: int, words: Sequence[str]) -> bool:
         return all(self._lower(i + k) == word for k, word in enumerate(words))
@@ -214,6 +240,8 @@ class _Preparation:
         if word == ":" and (mark := self._behind_label(i)) is not None:
             self._pieces += [(mark, start, stop)] if mark else []
             return 1
+        if word == "," and self._words.directions.get(self._lower(i + 1), "").endswith("clockwise"):
+            return 1  # "in a circle, clockwise"
         if word.lower().startswith("mid-") and self._is_verb(self._lower(i - 1)):  # "freezes mid-step"
             return 1
         own = self._lower(i + 1) in ("his", "her", "their") and self._words.part(self._lower(i + 2)[:-1])
@@ -245,7 +273,10 @@ class _Preparation:
         """The article that a bare noun of a person lacks."""
         word, start, _ = self._tokens[i]
         sided = self._lower(i) in ("left", "right") and self._part_at(i + 1)
-        if sided and self._lower(i - 1) not in _DETERMINERS | {"left", "right", "and", "or", "with"}:
+        begun = self._pieces[-1:] and self._pieces[-1][1:] == (start, start)  # a verb was supplied
+        if sided and (
+            begun or self._lower(i - 1) not in _DETERMINERS | {"left", "right", "and", "or", "with"}
+        ):
             return [("the", start, start)]  # "drags left leg", where nobody leaves
         bare = (
             i not in self._letters
@@ -325,20 +356,6 @@ class _Preparation:
         return lower if word.isupper() and len(word) > 1 else word
 
 
-def _without_speech(tokens: list[tuple[str, int, int]]) -> list[tuple[str, int, int]]:
-    """The tokens without what is said in quotation marks or stands in brackets; all if nothing else is told."""
-    marks = [i for i, (word, _, _) in enumerate(tokens) if word == '"']
-    spoken = {i for first, last in zip(marks[::2], marks[1::2], strict=False) for i in range(first, last + 1)}
-    opened = -1
-    for i, (word, _, _) in enumerate(tokens):
-        opened = i if word == "(" else opened
-        if word == ")" and opened >= 0:
-            spoken.update(range(opened, i + 1))
-            opened = -1
-    told = [token for i, token in enumerate(tokens) if i not in spoken]
-    return told if sum(word.isalpha() for word, _, _ in told) > 1 else tokens
-
-
 def begins_with_subject(text: str) -> bool:
     """True if a clause names who acts, as "she waves" and "the man waves" do, and not "waves"."""
     words = [word for word, _, _ in tokens(text.lower())][:2]
@@ -347,15 +364,6 @@ def begins_with_subject(text: str) -> bool:
     known = vocabulary()
     alone = words[0] in _SUBJECTS or words[0] in known.both or known.is_usual_person(words[0])
     return alone or words[0] in _DETERMINERS
-
-
-def _without_request(tokens: list[tuple[str, int, int]]) -> list[tuple[str, int, int]]:
-    """The tokens without what asks for a motion: "show me two people dancing", "i want to see them hug"."""
-    words = [word.lower() for word, _, _ in tokens]
-    for request in vocabulary().requests:
-        if tuple(words[: len(request)]) == request and len(words) > len(request) + 1:
-            return tokens[len(request) :]
-    return tokens
 
 
 def _begins(before: str) -> bool:

@@ -111,7 +111,21 @@ def test_a_list_keeps_its_middle(start: str, said: str, act: str, joined: str) -
         # with a part of the body
         ("A person kicks using the right leg.", [("kick", "a", None)]),
         ("His right hand picks up something.", [("pick-up-thing", "a", None)]),
-        ("A person drags right leg and waves.", [("move-other", "a", "b"), ("wave", "a", "b")]),
+        ("A person drags right leg and waves.", [("swing-leg", "a", None), ("wave", "a", "b")]),
+        ("A man nods and moves his hands in front of him.", [("nod", "a", None), ("swing-arms", "a", None)]),
+        ("A person holds out both arms and lowers them.", [("extend-arm", "a", None), ("lower-arm", "a", None)]),
+        ("A person lifts her left arm and right knee.", [("raise-arm", "a", None), ("raise-knee", "a", None)]),
+        ("A boy kicks with his left foot, then the right foot.", [("kick", "a", None)] * 2),
+        ("She turns left, then right.", [("turn-around", "a", None)] * 2),
+        ("A person makes a bowing motion.", [("bow", "a", None)]),
+        ("A man does the motion of digging.", [("dig", "a", None)]),
+        ("A woman jogs forward.", [("run-ahead", "a", None)]),
+        ("A man walks back and returns to the original position.", [("return", "a", "b"), ("go-back", "a", None)]),
+        ("A offers a handshake, but B declines, turning away.",
+         [("shake-hands", "a", "b"), ("shake-hands", "b", "a"), ("turn-away", "b", "a")]),
+        ("B takes both of A's hands and pulls A up.", [("hold-hands", "b", "a"), ("help-up", "b", "a")]),
+        ("They hold hands and spin around each other.", [("hold-hands", "ab", None), ("ring", "ab", None)]),
+        ("A calls out and B comes running.", [("beckon", "a", "b"), ("run-up", "b", None)]),
         ("The man appears to be dancing.", [("dance", "a", None)]),
         ("A person who is standing takes two steps.", [("stand-still", "a", None), ("step-forward", "a", None)]),
         ("The person raises its arms.", [("raise-arm", "a", None)]),
@@ -121,14 +135,24 @@ def test_no_act_is_lost_and_none_gained(text: str, acts: list[tuple[str, str, st
     assert told(text) == acts
 
 
+def test_who_goes_around_somebody_does_so_while_they_turn() -> None:
+    around, turns = read("A walks around B, who waves.").acts[:2]
+    assert [(each.kind, each.act) for each in turns.order] == [("while", around.id)]
+
+
+def test_a_circle_goes_one_way_round() -> None:
+    for said in ("a clockwise circle", "a circle clockwise", "a circle, clockwise"):
+        assert read(f"A man walks in {said}.").acts[0].direction == "clockwise", said
+
+
 def test_the_foot_with_which_one_steps_to_a_side() -> None:
     (step,) = read("He steps to the left using his right foot.").acts
     assert (step.act, step.side, step.direction) == ("step-aside", "right", "left")
 
 
 def test_words_in_no_act_are_said() -> None:
-    plan = read("A jumps to a great height.")
-    assert [plan.text(part.words) for part in plan.unread] == ["great"]
+    plan = read("A picks up a cup and a plate.")
+    assert [plan.text(part.words) for part in plan.unread] == ["plate"]
 
 
 def test_another_parse_that_explains_as_much_is_a_doubt() -> None:

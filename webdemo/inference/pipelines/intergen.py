@@ -105,9 +105,9 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
             return self.model.condition(*parts), tokens.pooled()[0]
 
     def notes(self, plan: KeptPlan, vector: Tensor) -> tuple[str, ...]:
-        """Warns the user of a prompt that is not understood and far from all that was trained on."""
+        """Warns the user of a prompt in which no act is known, far from all that was trained on."""
         near = self.bank.nearest(vector)
-        if near[0][0] >= self.bank.far or understood.is_understood(plan.acts[0]):
+        if near[0][0] >= self.bank.far or plan.acts[0].acts:
             return ()
         return (
             "This sentence is far from anything the model was trained on, so the motion may not match it. "

@@ -16,11 +16,6 @@ def understood(text: str) -> Plan:
         return Plan()
 
 
-def is_understood(plan: Plan) -> bool:
-    """True if people's ways, postures or touches are planned from a plan, or its text has nothing but known acts."""
-    return bool(plan.acts) and (not plan.unread or staged(plan.acts).is_planned)
-
-
 def of_each(plan: Plan) -> tuple[str, str]:
     """A sentence on what person a does and one on what b does, as :func:`acts.captions.of_each` gives them."""
     return captions.of_each(plan.acts, lexicon())
