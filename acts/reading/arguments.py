@@ -19,9 +19,8 @@ if TYPE_CHECKING:
 
 DENY = frozenset(("not", "n't", "never", "hardly", "barely", "no", "neither", "nor"))
 _LENGTHS = frozenset(("step", "pace", "metre", "meter", "yard"))
-_PATHS = frozenset(
-    ("circle", "lap", "loop", "line", "arc", "curve", "spiral", "semicircle", "diagonal", "zigzag")
-)
+_PATH_NOUNS = "circle lap loop line arc curve spiral semicircle diagonal zigzag direction"
+_PATHS = frozenset(_PATH_NOUNS.split())
 _TURNS = frozenset(("clockwise", "counterclockwise"))
 _SIDES = frozenset(("behind", "below", "above"))
 _WAYS = frozenset(("way", "manner", "fashion", "mood", "style"))

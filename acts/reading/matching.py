@@ -68,8 +68,9 @@ class Matcher:
         """The act whose verbs mean what this one does, of those whose frames fit."""
         found: Found | None = None
         about = vocabulary().verbs["begins"] | vocabulary().verbs["ends"]
-        if event.object is None and event.lemma in about:
-            return None  # they are about other verbs
+        walks = event.object is not None and event.lemma in vocabulary().verbs["goes"]
+        if walks or (event.object is None and event.lemma in about):
+            return None  # nobody moves what is walked, as a way is, and others are about other verbs
         most = LEAST_SCORE
         for cost, (name, frame, match) in self._alike(event):
             worth = match.score - _SYNONYM * cost

@@ -29,7 +29,7 @@ def names_one(doc: Doc) -> bool:
     """True for a parsed text that names a single person, whose every part of a body and pronoun are."""
     words_of = vocabulary()
     nouns = [t for t in doc if t.lower_ in _SOMEBODY or words_of.is_usual_person(t.lemma_.lower())]
-    nouns = [t for t in nouns if t.pos_ != "VERB" and t.dep_ not in ("amod", "compound")]
+    nouns = [t for t in nouns if t.pos_ != "VERB" and t.dep_ != "amod"]
     words = {t.lower_ for t in doc}
     if any(t.lower_ == "one" and words_of.part(t.nbor().lemma_) for t in doc[:-1]):
         words -= {"other"}  # "one foot in front of the other"

@@ -107,7 +107,9 @@ class Subjects:
             return behind
         if token.dep_ == "ROOT" or head is None:
             # "grab her by the wrist" is said to one
-            alone = any(t.lower_ in _SOMEBODY or self._is_someone(t) for t in token.subtree)
+            alone = self._cast.alone or any(
+                t.lower_ in _SOMEBODY or self._is_someone(t) for t in token.subtree
+            )
             if alone:
                 self._cast.address("a")
             return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)

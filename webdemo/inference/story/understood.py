@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from acts import Plan, captions, read
 from acts.lexicon import lexicon
-from acts.staging.stage import staged
 from motion import InputError
 
 
