@@ -24,6 +24,7 @@ from tests.motion.formats.characters import glb_character, glb_motion, glb_takes
 from webdemo.inference.method import DEFAULT_STEPS
 from webdemo.inference.methods import method
 from webdemo.ui.page import build_page, launch_options
+from webdemo.ui.places import READING
 
 from .stub_engine import StubEngine, walking
 
@@ -59,6 +60,13 @@ def test_generate_gives_a_manifest_and_files_that_can_be_read(client: Client) ->
 def test_only_the_prompt_is_needed(client: Client) -> None:
     answer, _ = generate(client, prompt="two people walk")
     assert answer["manifest"]["request"]["steps"] == DEFAULT_STEPS
+
+
+def test_words_wait_for_nobody_who_has_a_file_read(client: Client) -> None:
+    """A small run waited four minutes for eight large recordings of other people's."""
+    with READING.place():
+        answer, _ = client.submit("two people walk", api_name="/generate").result(timeout=60)
+    assert answer["manifest"]
 
 
 def test_a_class_is_enough_too(client: Client) -> None:

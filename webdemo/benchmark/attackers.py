@@ -174,7 +174,7 @@ async def _send_large(client: httpx.AsyncClient, counts: Counter[str]) -> None:
             sent = await client.post("gradio_api/upload", files={"files": ("large.trc", data)})
             if sent.status_code == 200:
                 file = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}
-                usual = [1, 3, 5, 0.7, "ddim", "", "offline", False, False, "", 0, "", ""]
+                usual = [1, 3, 5, 0.7, "ddim", "intergen", "offline", False, False, "", 0, "", ""]
                 react = [file, "", "", 0, 2, "b", 0, *usual]
                 answer = await client.post("gradio_api/call/react", json={"data": react})
                 if _count(answer, "files", counts):

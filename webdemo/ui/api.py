@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +101,7 @@ class Endpoint:
         the notes say which animation was taken.
         """
         try:
-            with READING.place():
+            with READING.place() if given is not None else nullcontext():
                 request = make()
                 notes = [animation_note(*given)] if given is not None else []
                 notes += reading_notes(request)

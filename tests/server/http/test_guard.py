@@ -165,6 +165,8 @@ def test_a_kept_page_is_not_made_again() -> None:
         for encoding in ("gzip", "gzip;q=0.9, br", "deflate, gzip"):
             assert client.get(path, headers={"accept-encoding": encoding}).text == "page"
     assert made == ["/"]
+    for port in range(1000, 1040):
+        assert client.get("/", headers={"host": f"127.0.0.1:{port}"}).text == "page"
     for path in ("/other", "/config", "/config?x=1"):
         client.get(path)
     assert made == ["/", "/other", "/config"]

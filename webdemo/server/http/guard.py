@@ -10,6 +10,7 @@ import errno
 import hmac
 import json
 import logging
+import re
 import shutil
 from collections.abc import Callable
 from urllib.parse import parse_qs, quote, urlsplit
@@ -62,6 +63,7 @@ _GETS = 1500
 _DEAR = frozenset(("/", "/config", f"{API}info", f"{API}startup-events"))
 _DEAR_WEIGHT = 10.0
 """The number of GETs that one of these counts as: they are long, or made anew for a name of the server's."""
+_HOST = re.compile(r"[a-z0-9._\[\]:-]*+")
 _MOST_FIELDS = 50
 """Parameters of an address."""
 
@@ -210,6 +212,8 @@ class Guard:
             name, asks = urlsplit(f"//{host}").hostname or "", urlsplit(origin).netloc
         except ValueError:
             raise Refused(400, "The request's Host or Origin is not an address.", "bad head") from None
+        if not _HOST.fullmatch(host):
+            raise Refused(400, "The request's Host is not a name.", "bad head")
         if self.hosts and name not in self.hosts:
             raise Refused(
                 421, "This server is not called so: set PASDEDEUX_HOSTS to the names it has.", "host"

@@ -11,6 +11,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 KEPT = 16
 """Most cached variants: they differ by host name, scheme and whether the answer may be packed."""
 PATHS = ("/", "/config")
+_ANY = b"any-host.invalid"
+"""Stands for the name by which a visitor calls this server; the guard lets no name in that is more than a name."""
+_LEVEL = 5
+"""Of packing: a third of the time of the highest, which saves two per cent."""
 _ASKED = b"""<script>{
   const asked = new URLSearchParams(location.search).get("lang");
   if (/^[a-z]{2,3}(-[a-z0-9]+)*$/i.test(asked ?? "")) Object.defineProperty(navigator, "language", { value: asked });
@@ -30,7 +34,7 @@ class PageCache:
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
-        self._page = GZipMiddleware(_Asked(app))
+        self._page = GZipMiddleware(_Page(app), compresslevel=_LEVEL)
         self._kept: OrderedDict[tuple[object, ...], list[Message]] = OrderedDict()
         self._making = asyncio.Lock()
 
@@ -67,30 +71,42 @@ class PageCache:
         return made
 
 
-class _Asked:
-    """An ASGI middleware that puts :data:`_ASKED` at the beginning of a page's head."""
+class _Page:
+    """An ASGI application that has each answer of another made once, whatever the host's name, and gives it the name.
+
+    :data:`_ASKED` is put at the beginning of a page's head.
+
+    Args:
+        app: makes them; their addresses are those of :data:`_ANY`.
+    """
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
+        self._made: dict[tuple[str, str], tuple[Message, bytes]] = {}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answers as the page does; an answer that comes in pieces, or has no head, stays as it is."""
-        start: list[Message] = []
+        """Answers under the name by which it is asked."""
+        key = scope["path"], scope["scheme"]
+        start, body = self._made.get(key) or await self._make(scope, receive)
+        if start["status"] == 200:
+            self._made[key] = start, body
+        body = body.replace(_ANY, dict(scope["headers"]).get(b"host", b""))
+        headers = [pair for pair in start["headers"] if pair[0] != b"content-length"]
+        headers.append((b"content-length", str(len(body)).encode()))
+        await send({**start, "headers": headers})
+        await send({"type": "http.response.body", "body": body})
 
-        async def put(message: Message) -> None:
-            if message["type"] == "http.response.start":
-                start.append(_copy(message))
-                return
-            body, whole = message.get("body", b""), not message.get("more_body", False)
-            if start:
-                if whole and b"<head>" in body:
-                    body = body.replace(b"<head>", b"<head>" + _ASKED, 1)
-                    headers = [pair for pair in start[0]["headers"] if pair[0] != b"content-length"]
-                    start[0]["headers"] = [*headers, (b"content-length", str(len(body)).encode())]
-                await send(start.pop())
-            await send({**message, "body": body})
+    async def _make(self, scope: Scope, receive: Receive) -> tuple[Message, bytes]:
+        made: list[Message] = []
 
-        await self.app(scope, receive, put)
+        async def keep(message: Message) -> None:
+            made.append(_copy(message))
+
+        heard = [pair for pair in scope["headers"] if pair[0] != b"host"]
+        await self.app({**scope, "headers": [*heard, (b"host", _ANY)]}, receive, keep)
+        start = next(message for message in made if message["type"] == "http.response.start")
+        body = b"".join(message["body"] for message in made if message.get("body"))
+        return start, body.replace(b"<head>", b"<head>" + _ASKED, 1)
 
 
 def _copy(message: Message) -> Message:
