@@ -1,19 +1,21 @@
-"""The parts of a sentence that a verdict leaves out: words in no act, and qualifiers of acts that no rule measures.
+"""The words of a sentence that a verdict leaves out.
 
-A word is in an act that its clause names: as one of the entry's own words or a verb of like meaning, as the act's
-thing, part of the body or manner, or as its number, side, direction, speed, length or distance. Words of grammar and of
-the two people count for nothing.
+A word is said by an act that its clause names: as one of its captions' words or a verb of like meaning, as the act's
+thing, part of the body or manner, or as its number, side, direction, speed, length or distance. One that only led to
+the act, as a word of its frames, is read and not said: an act whose captions say none of its clause's verbs is another
+act than the words name. Words of grammar and of the two people count for nothing.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from motion import InputError
 
+from .captions import caption_of, naming
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import FROM_BEHIND, Act, Plan
 from .reading import wordnet
@@ -31,13 +33,13 @@ if TYPE_CHECKING:
 MOST_WORDS = 12
 """Stretches of words that are reported of one sentence, at most."""
 _CONTENT = frozenset(("NOUN", "PROPN", "VERB", "ADJ", "ADV", "NUM"))
-_FILLERS_TEXT = (
+_WORDS_OF_GRAMMAR = (
     "then finally again next now afterwards afterward meanwhile later first second last also too so "
     "very just still already even only almost together simultaneously immediately instead back "
     "around away off not never there here ever other another each same such one time turn way "
     "something nothing each-other when while how where let"
 )
-_FILLERS = frozenset(_FILLERS_TEXT.split())
+FILLERS = frozenset(_WORDS_OF_GRAMMAR.split())
 """Words of grammar, of order and of together and apart, which the acts' agents and order stand for."""
 _SCENERY = frozenset(
     ["floor", "ground", "room", "place", "spot", "air", "direction", "body", "scene", "person", "people"]
@@ -58,61 +60,155 @@ _KINDS = (
 )
 """Verbs about other verbs, which the acts' modality, polarity and order stand for."""
 _STATES = frozenset(("be", "have", "stand", "stay", "remain", "keep", "do", "go", "come"))
+_PLACES_TEXT = "behind beside past across between under through near opposite along front next"
+_PLACES = frozenset(_PLACES_TEXT.split())
+"""Words of where somebody is to the other or to a thing, before what they name."""
+_TARGETS = frozenset(("on", "onto", "against", "over", "at", "into"))
+_BESIDE = frozenset(("beside", "next", "side", "alongside"))
+_VERB = re.compile(r"\[([a-z-]+)\]")
+_PHRASAL = re.compile(r"\[([a-z-]+)\] (?:\{b\} )?([a-z]+)")
 _WORD, _SLOTS = re.compile(r"[a-z]+"), re.compile(r"\{(?![\w.]+:)[^}]*\}")
 _TURNS = frozenset(("left", "right", "clockwise", "counterclockwise"))
 """Directions that never belong to what an act's own words mean."""
 _SIDED = frozenset(("hand", "arm", "foot", "leg"))
 """Families of the parts with which something is done: "with both hands"."""
-_BOTH = re.compile(
-    r"\bboth (?:\w+ )?(?:hands|arms|palms|fists|feet|legs|knees|elbows|shoulders|cheeks)\b", re.IGNORECASE
-)
 
 
-# ---- words that are in no act ----------------------------------------------------------------------------
+# ---- words that no verdict says --------------------------------------------------------------------------
+class Account(NamedTuple):
+    """What the acts of a plan leave out of its sentence, as it was written.
+
+    Attributes:
+        unread: the stretches that are in no act, in the sentence's order.
+        unsaid: those that an act was read from and that its captions do not say, by the act's id.
+        others: the words of the acts whose captions say none of their verbs, by the act's id.
+    """
+
+    unread: tuple[str, ...] = ()
+    unsaid: Mapping[str, tuple[str, ...]] = {}
+    others: Mapping[str, str] = {}
+
+
 def unread_words(plan: Plan, known: Lexicon | None = None) -> tuple[str, ...]:
-    """The stretches of a plan's sentence that are in no act, in its order, as they were written.
+    """The stretches of a plan's sentence that are in no act, in its order, as they were written."""
+    return account(plan, known).unread
+
+
+def account(plan: Plan, known: Lexicon | None = None) -> Account:
+    """What the acts of a plan leave out of its sentence.
 
     Args:
         plan: with the sentence that it was read from; one that was written by hand has none.
         known: the lexicon; ours by default.
     """
-    if not plan.sentence.strip():
-        return ()
-    return _unread(plan, lexicon() if known is None else known)
+    return _account(plan, lexicon() if known is None else known) if plan.sentence.strip() else Account()
 
 
 @lru_cache(maxsize=256)
-def _unread(plan: Plan, known: Lexicon) -> tuple[str, ...]:
-    whole = [(each.words.start, each.words.stop) for each in plan.unread]
-    found = list(whole)
+def _account(plan: Plan, known: Lexicon) -> Account:
+    left = [(each.words.start, each.words.stop) for each in plan.unread]
+    whole = tuple(left)
+    unsaid: dict[str, list[tuple[int, int]]] = {}
+    others: dict[str, str] = {}
+    taken: list[tuple[int, int]] = []
     if not any(start == 0 and stop >= len(plan.sentence.rstrip()) for start, stop in whole):
         speller = Speller(known)
         try:
             parsed = next(parses(prepared(plan.sentence, speller), speller))
         except InputError:  # no parser is installed, where a kept plan is shown
-            return tuple(plan.sentence[i:j] for i, j in _joined(found, plan.sentence))[:MOST_WORDS]
+            return Account(_quoted(left, plan.sentence))
+        spans = {t.i: parsed.text.span(t.idx, t.idx + len(t)) for t in parsed.doc}
+        for act in plan.acts:
+            entry, own = known.entries.get(act.act), act.words
+            if entry is not None and entry.caption and own is not None:
+                within = [t for t in parsed.doc if own.start <= spans[t.i][0] and spans[t.i][1] <= own.stop]
+                if within and not _is_named(within, act, entry, parsed):
+                    verb = next((t for t in within if t.pos_ == "VERB"), within[0])
+                    taken.append((spans[verb.i][0], own.stop))
+                    others[act.id] = plan.sentence[spans[verb.i][0] : own.stop].strip(" ,;.")
+        left = [(i, j) for i, j in left if not any(i < stop and start < j for start, stop in taken)]
         for token in parsed.doc:
-            start, stop = parsed.text.span(token.idx, token.idx + len(token))
-            inside = any(first <= start and stop <= last for first, last in whole)
-            if (
-                not inside
-                and _counts(token, parsed)
-                and not _explained(token, start, stop, plan, known, parsed)
-            ):
-                found.append(parsed.text.span(*_phrase(token)))
-    return tuple(plan.sentence[i:j] for i, j in _joined(found, plan.sentence))[:MOST_WORDS]
+            start, stop = spans[token.i]
+            told = any(first <= start and stop <= last for first, last in (*whole, *taken))
+            if told or not _counts(token, parsed):
+                continue
+            by = _read_by(token, start, stop, plan, known, parsed)
+            if by is None:
+                left.append(parsed.text.span(*_phrase(token)))
+            elif by:
+                unsaid.setdefault(by, []).append(parsed.text.span(*_phrase(token)))
+    left = [(i, j) for i, j in left if plan.sentence[i:j].strip() not in (A_NAME, B_NAME)]
+    named = {
+        of: _quoted([(i, j) for i, j in each if not any(i < y and x < j for x, y in left)], plan.sentence)
+        for of, each in unsaid.items()
+    }
+    return Account(_quoted(left, plan.sentence), named, others)
+
+
+def _quoted(spans: list[tuple[int, int]], text: str) -> tuple[str, ...]:
+    return tuple(text[i:j] for i, j in _joined(spans, text))[:MOST_WORDS]
+
+
+def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> bool:
+    """True for an act whose captions say what the words of its clause do: a verb, or several of the other words."""
+    words, captions = vocabulary(), said_words(entry.caption)
+    verbs, said = _verbs(entry.caption), "".join(_lemma(t, parsed) for t in within)
+    parts = {family for t in within if (family := words.part(_lemma(t, parsed)))}
+    shown = {family for word in said_words((shown_caption(act, entry),)) if (family := words.part(word))}
+    if (
+        parts
+        and shown
+        and not parts & shown
+        and "{part}" not in shown_caption(act, entry)
+        and not act.part_of
+    ):
+        return False  # "lays her head on B's lap" is not "on B's shoulder"
+    several = _VERB.findall(shown_caption(act, entry))
+    said_verbs = [_lemma(t, parsed) for t in within if t.pos_ in ("VERB", "NOUN")]
+    if len(several) > 1 and not all(
+        verb in said_verbs or any(_alike(own, (verb,), ()) for own in said_verbs) for verb in several
+    ):
+        return False  # "spins" is not "holds hands and spins"
+    shared = set()
+    for token in within:
+        lemma = _lemma(token, parsed)
+        if {lemma, token.lower_} & captions and not (token.is_stop and token.pos_ not in ("ADP", "ADV")):
+            shared.add(lemma)
+        if token.pos_ not in ("VERB", "NOUN") or (token.pos_ == "NOUN" and words.part(lemma)):
+            continue
+        if lemma in captions and lemma not in words.light and lemma not in _STATES:
+            return True
+        if _alike(lemma, verbs, ()) or (token.pos_ == "VERB" and _is_kind_of(lemma, verbs)):
+            return True
+        if lemma == act.act.split("-")[0] and any(_is_kind_of(verb, (lemma,)) for verb in verbs):
+            return True  # "lifts her", shown as "picks her up"
+        if lemma in words.gaits and any(isinstance(shape, Go) for shape in entry.stage):
+            return True
+    if any("-" in verb and verb.replace("-", "") in said for verb in verbs):
+        return True
+    own = [
+        t for t in within if t.pos_ == "VERB" and _counts(t, parsed) and _lemma(t, parsed) not in words.light
+    ]
+    return len(shared) >= 2 or (not own and bool(shared))
+
+
+def shown_caption(act: Act, entry: Entry) -> str:
+    """The caption in whose words the verdict on an act is given."""
+    return naming(act, entry, caption_of(act, entry))
 
 
 def _counts(token: Token, parsed: Parse) -> bool:
     """True for a word that says something of what is done."""
     lemma, words = _lemma(token, parsed), vocabulary()
+    if _is_place(token) or _is_target(token):
+        return True
     if (
         token.pos_ not in _CONTENT
         or not token.text[0].isalnum()
         or (len(token.text) < 2 and not token.text.isdigit())
     ):
         return False
-    if {lemma, token.lower_} & (_FILLERS | _SCENERY) or token.text in (A_NAME, B_NAME):
+    if {lemma, token.lower_} & (FILLERS | _SCENERY) or token.text in (A_NAME, B_NAME):
         return False
     if token.pos_ in ("VERB", "AUX") and (
         lemma in _STATES or any(lemma in words.verbs[kind] for kind in _KINDS)
@@ -129,29 +225,40 @@ def _counts(token: Token, parsed: Parse) -> bool:
     return True
 
 
-def _explained(token: Token, start: int, stop: int, plan: Plan, known: Lexicon, parsed: Parse) -> bool:
-    """True for a word that an act stands for: one of its clause, or of a word that was read with it."""
+def _read_by(token: Token, start: int, stop: int, plan: Plan, known: Lexicon, parsed: Parse) -> str | None:
+    """The id of the act that a word was read for and that does not say it; "" where one says it, None for no act."""
     around = [
         act.words for act in plan.acts if act.words and act.words.start <= start and stop <= act.words.stop
     ]
+    found = None
     for act in plan.acts:
         entry, own = known.entries.get(act.act), act.words
         near = own is None or any(own.start < span.stop and span.start < own.stop for span in around)
-        if entry is not None and near and _in_act(token, act, entry, parsed):
-            return True
-    return False
+        if entry is not None and near:
+            if _is_said(token, act, entry, parsed):
+                return ""
+            if found is None and _is_read(token, act, entry, parsed):
+                found = act.id
+    return found
 
 
-def _in_act(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
+def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
+    """True for a word that the verdict on an act says, or that one of its fields stands for."""
     words, lemma, text = vocabulary(), _lemma(token, parsed), token.lower_
     forms = {lemma, text, *_WORD.findall(text)}
     if (way := words.directions.get(text)) in _TURNS:
         return way in (act.direction, act.side)
-    if forms & said_words((*entry.frames, *entry.caption)) or (
+    if lemma in (act.act.split("-")[0], act.act.replace("-", "")):
+        return True
+    if _is_target(token) and "{b}" in shown_caption(act, entry):
+        return True
+    if any(forms & each for each in (said_words(entry.caption), set(act.manner))):
+        return True
+    if (text in _BESIDE and said_words(entry.caption) & _BESIDE) or (
         text == "behind" and FROM_BEHIND in act.manner
     ):
         return True
-    if token.pos_ in ("VERB", "NOUN") and _alike(lemma, entry.frames, entry.synsets):
+    if token.pos_ in ("VERB", "NOUN") and _alike(lemma, _verbs(entry.caption), entry.synsets):
         return True
     if act.thing and forms & set(act.thing.split()):
         return bool(kind_of(act.thing))
@@ -160,7 +267,7 @@ def _in_act(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
             act.side is not None and family in _SIDED and any(c.lower_ == act.side for c in token.children)
         )
         return sided or (act.part is not None and family == words.part(act.part))
-    if forms & set(act.manner) or (text in words.speeds and act.speed != 1.0):
+    if (text in words.speeds and act.speed != 1.0) or (lemma in words.gaits and act.speed != 1.0):
         return True
     if (way is not None and way == act.direction) or (text == "both" and act.side == "both"):
         return True
@@ -171,29 +278,72 @@ def _in_act(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
     )
 
 
+def _is_read(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
+    """True for a word by which an act was found."""
+    lemma = _lemma(token, parsed)
+    if vocabulary().directions.get(token.lower_) in _TURNS:
+        return False
+    return bool({lemma, token.lower_, *_WORD.findall(token.lower_)} & said_words(entry.frames)) or (
+        token.pos_ in ("VERB", "NOUN")
+        and _alike(lemma, tuple(v for f in entry.frames for v in f.split()[1].split("|")), entry.synsets)
+    )
+
+
 @lru_cache(maxsize=1024)
 def said_words(texts: tuple[str, ...]) -> frozenset[str]:
     """The words of frames and captions, without the slots of captions."""
     return frozenset(word for text in texts for word in _WORD.findall(_SLOTS.sub("", text.lower())))
 
 
+@lru_cache(maxsize=1024)
+def _verbs(captions: tuple[str, ...]) -> tuple[str, ...]:
+    """The verbs of captions, and with what stands behind them where that makes another: "pick_up"."""
+    found = [verb for text in captions for verb in _VERB.findall(text)]
+    pairs = (f"{verb}_{word}" for text in captions for verb, word in _PHRASAL.findall(text))
+    return tuple(dict.fromkeys([*found, *filter(wordnet.senses, pairs)]))
+
+
 @lru_cache(maxsize=4096)
-def _alike(lemma: str, frames: tuple[str, ...], synsets: tuple[str, ...]) -> bool:
-    """True for a verb, or the noun of one, that means what one of an entry's verbs does."""
-    mine = {sense for sense, _ in wordnet.meanings(lemma)} | set(wordnet.senses(lemma)[:2])
+def _alike(lemma: str, verbs: tuple[str, ...], synsets: tuple[str, ...]) -> bool:
+    """True for a verb, or the noun of one, that means what one of these does."""
     theirs = {wordnet.synset(name) for name in synsets}
-    for verb in {verb for frame in frames for verb in frame.split()[1].split("|")}:
+    for verb in verbs:
         theirs |= set(wordnet.senses(verb)[:2])
-    return bool(mine & theirs)
+    return bool(set(wordnet.senses(lemma)[:2]) & theirs)
+
+
+def _is_kind_of(lemma: str, verbs: tuple[str, ...]) -> bool:
+    """True for a verb whose usual meaning is a way to do what one of these does: "stroke", of "touch"."""
+    above = {up for sense in wordnet.senses(lemma)[:2] for up in wordnet.above(sense)}
+    return any(above & set(wordnet.senses(verb)[:2]) for verb in verbs)
 
 
 def _lemma(token: Token, parsed: Parse) -> str:
     return str(parsed.lemmas.get(token.i, token.lemma_.lower()))
 
 
+def _is_place(token: Token) -> bool:
+    return token.lower_ in _PLACES and any(c.dep_ in ("pobj", "prep") for c in token.children)
+
+
+def _is_target(token: Token) -> bool:
+    """True for a preposition before the person to whom something is done: "on each other"."""
+    people = vocabulary().is_person
+    return token.lower_ in _TARGETS and any(
+        (c.dep_ == "pobj" and (c.pos_ == "PRON" or c.text in (A_NAME, B_NAME) or people(c.lemma_.lower())))
+        or (c.lower_ == "other" and c.dep_ == "pobj")
+        for c in token.children
+    )
+
+
 def _phrase(token: Token) -> tuple[int, int]:
     """A word with what belongs to it on its left, and its preposition: "against the wall"."""
     first = token
+    if _is_place(token) or _is_target(token):
+        if token.dep_ == "pobj" and token.head.i == token.i - 1:
+            first = token.head  # "in front of him"
+        last = max(token.subtree, key=lambda each: each.i) if token.n_rights else token
+        return first.idx, last.idx + len(last)
     if token.pos_ in ("NOUN", "PROPN") and token.lower_ not in vocabulary().directions:
         own = [c for c in token.lefts if c.dep_ in ("det", "amod", "compound", "poss", "nummod")]
         first = min((token, *own), key=lambda each: each.i)
@@ -214,93 +364,3 @@ def _joined(spans: list[tuple[int, int]], text: str) -> Iterator[tuple[int, int]
         last = (start, stop)
     if last is not None:
         yield last
-
-
-# ---- qualifiers of acts ----------------------------------------------------------------------------------
-OTHER_THING = "which thing"
-"""The kind of qualifier without which an act is not judged: pointing at a door is not pointing at the other person."""
-
-
-def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterator[tuple[str, str]]:
-    """Qualifiers of an act that no rule of its entry measures: each kind of qualifier, and a rule that does, or "".
-
-    Args:
-        act: told, and of this entry.
-        entry: of the lexicon.
-        who: one of its agents.
-        mask: the predicate by which it is seen; "" where it has none.
-        said: the act's own words in the sentence.
-    """
-    names = set(re.findall(r"\w+", " ".join(entry.rule)))
-    words = said_words((*entry.frames, *entry.caption))
-    goes = next((shape for shape in entry.stage if isinstance(shape, Go)), None)
-    if act.times is not None and act.times > 1 and act.distance is None and "n" not in names:
-        yield "how often", ""
-    if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
-        yield "which side", ""
-    if (
-        act.side == "both"
-        and not names & {"side", "hands"}
-        and _BOTH.search(said)
-        and not _is_two_handed(entry)
-    ):
-        yield "with both hands", ""
-    if act.direction is not None and act.direction not in words and "way" not in names:
-        yield "which way", _goes_way(act, who) if goes else ""
-    if abs(act.speed - 1.0) > 0.15:
-        yield "how fast", _at_speed(act.speed, goes, who) if goes else ""
-    if act.distance is not None:
-        yield (
-            "how far",
-            f"happens(goes_metres({who}, {0.65 * act.distance:.2f}, {1.5 * act.distance + 0.3:.2f}))"
-            * bool(goes),
-        )
-    if act.seconds is not None:
-        yield "how long", ""
-    if FROM_BEHIND in act.manner:
-        yield "from where", f"happens(both({mask}, behind({who})))" if mask else ""
-    if any(
-        adverb not in _FILLERS and adverb != FROM_BEHIND and adverb not in vocabulary().speeds
-        for adverb in act.manner
-    ):
-        yield "in which manner", ""
-    if (
-        act.part
-        and "part" not in names
-        and not {act.part, f"{act.part}s", vocabulary().part(act.part)} & words
-    ):
-        yield "where on the body", ""
-    if act.thing and not (entry.thing and kind_of(act.thing)) and not set(act.thing.split()) & words:
-        yield OTHER_THING, ""
-
-
-def plain(act: Act, kinds: frozenset[str]) -> Act:
-    """An act without the qualifiers of these kinds."""
-    left: dict[str, dict[str, object]] = {
-        "how often": {"times": None}, "which side": {"side": None}, "with both hands": {"side": None},
-        "which way": {"direction": None}, "how fast": {"manner": ()}, "in which manner": {"manner": ()},
-        "from where": {"manner": ()},
-    }  # fmt: skip
-    return act.model_copy(
-        update={name: value for kind in kinds for name, value in left.get(kind, {}).items()}
-    )
-
-
-def _is_two_handed(entry: Entry) -> bool:
-    """True for an entry whose own shape has both hands or arms."""
-    return any("both" in (getattr(shape, "sides", ""), getattr(shape, "hands", "")) for shape in entry.stage)
-
-
-def _goes_way(act: Act, who: str) -> str:
-    ahead = {"forward": f"happens(goes_ahead({who}, 0.3))", "back": f"happens(backs({who}, 0.2))"}
-    if act.direction in ("left", "right"):
-        return f"happens(goes_way({who}, '{act.direction}'))"
-    return ahead.get(act.direction or "", "")
-
-
-def _at_speed(factor: float, goes: Go, who: str) -> str:
-    """Faster, or nowhere as fast, as half way between the usual speed and the one that the words ask for."""
-    between = goes.speed * (1.0 + factor) / 2.0
-    if factor > 1.0:
-        return f"happens(walks({who}, 0.4, {between:.2f}))"
-    return f"never(walks({who}, 0.4, {max(between, 0.6):.2f}))"

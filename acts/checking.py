@@ -9,6 +9,7 @@ more where they do.
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -21,19 +22,23 @@ from motion.metrics.sentences.language import check, mask_of, masks, measured
 from motion.metrics.sentences.stretches import stretches
 from motion.metrics.sentences.touches import BODY
 
-from .accounting import OTHER_THING, plain, qualifiers
-from .captions import naming, with_thing, worded
+from .accounting import account, shown_caption
+from .captions import with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import Act, Plan
+from .qualifiers import OTHER_THING, plain, qualifiers
 from .reading.vocabulary import vocabulary
 
 ONLY = {
-    "tried": "it is only tried",
-    "offered": "it is only offered",
-    "pretended": "it is only pretended",
-    "wished": "it is only wished",
+    "tried": "only tried",
+    "offered": "only offered",
+    "pretended": "only pretended",
+    "wished": "only wished",
 }
 """The reason why an act that is not told cannot be judged, by its modality."""
+
+NO_RULE = "nothing measures it"
+"""The reason where an entry has no rule."""
 
 WAYS = {"forward": "forward", "back": "back", "left": "left", "right": "right", "clockwise": "right",
         "counterclockwise": "left"}  # fmt: skip
@@ -51,8 +56,9 @@ class Verdict:
         done: None where it cannot be judged.
         measure: what was measured, such as "hand 34 cm from the shoulder"; "" where the rule has no measure; why it
             cannot be judged, where it cannot.
-        unchecked: the kinds of its qualifiers that nothing measures, such as "how often"; the words of an act that is
-            done leave them out.
+        unchecked: the kinds of its qualifiers that nothing measures, such as "how often", and quoted words that
+            it does not say; the words of an act that is done leave them out.
+        wrote: the sentence's own words where they name another act than the one that they were read as.
     """
 
     id: str
@@ -61,11 +67,18 @@ class Verdict:
     done: bool | None
     measure: str = ""
     unchecked: tuple[str, ...] = ()
+    wrote: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """As it stands in a manifest."""
-        found = {"act": self.act, "words": self.words, "done": self.done, "measure": self.measure}
-        return found | ({"unchecked": list(self.unchecked)} if self.unchecked else {})
+        found: dict[str, Any] = {
+            "act": self.act,
+            "words": self.words,
+            "done": self.done,
+            "measure": self.measure,
+        }
+        found |= {"unchecked": list(self.unchecked)} if self.unchecked else {}
+        return found | ({"wrote": self.wrote} if self.wrote else {})
 
 
 def checked(plan: Plan, motion: Duet | Motion, known: Lexicon | None = None) -> tuple[Verdict, ...]:
@@ -102,7 +115,8 @@ def _in_order(plan: Plan) -> Iterator[Act]:
 def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mapping[str, Verdict]) -> Verdict:
     entry = known.entries.get(act.act)
     if why := _unjudged(act, entry):
-        return Verdict(act.id, act.act, _words(act, entry), None, why)
+        wrote = account(plan, known).others.get(act.id, "")
+        return Verdict(act.id, act.act, _words(act, entry), None, why, wrote=wrote)
     assert entry is not None
     casts = [rule for who in act.agents for rule in rules_of(act, entry, who)]
     if act.polarity == "not":
@@ -116,11 +130,15 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
             unchecked |= {} if rule else {kind: None}
     failed = [rule for rule in casts if not check(rule, motion)]
     if not failed and OTHER_THING in unchecked:
-        return Verdict(act.id, act.act, _words(act, entry), None, OTHER_THING)
+        wrote = account(plan, known).others.get(act.id, "")
+        return Verdict(act.id, act.act, _words(act, entry), None, OTHER_THING, wrote=wrote)
     late = "" if failed else _too_early(act, plan, motion, known, before)
     done = not failed and not late
     words = _words(plain(act, frozenset(unchecked)) if done else act, entry)
-    return Verdict(act.id, act.act, words, done, late or _measure(failed, casts, motion), tuple(unchecked))
+    left = account(plan, known)
+    kinds = (*unchecked, *(f"“{each}”" for each in left.unsaid.get(act.id, ())))
+    measure = late or _measure(failed, casts, motion)
+    return Verdict(act.id, act.act, words, done, measure, kinds, left.others.get(act.id, ""))
 
 
 def _unjudged(act: Act, entry: Entry | None) -> str:
@@ -130,12 +148,13 @@ def _unjudged(act: Act, entry: Entry | None) -> str:
     if act.modality != "told":
         return ONLY[act.modality]
     if not entry.rule:
-        return "nothing measures it" if entry.shown else "no body shows it"
+        return NO_RULE if entry.shown else "no body shows it"
     return ""
 
 
 def _measure(failed: list[str], rules: list[str], motion: Motion) -> str:
-    return next((found for rule in (*failed, *rules) if (found := measured(rule, motion))), "")
+    lacking = bool(failed)
+    return next(filter(None, (measured(rule, motion, lacking=lacking) for rule in failed or rules)), "")
 
 
 # ---- order -----------------------------------------------------------------------------------------------
@@ -149,6 +168,13 @@ def _too_early(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Map
     earlier = [acts[name] for name in _chain(act, plan) if name in before and before[name].done]
     told = [other for other in earlier if other.polarity == "done"]
     mine = _last(act, motion, known)
+    if (
+        mine is not None
+        and mine < 0.3 * motion.fps
+        and not act.already
+        and len(motion.positions[0]) > motion.fps
+    ):
+        return "is over when it begins"
     for other in told:
         first = [each for mask in _seen(other, known) for each in _stretches(mask, motion)[:1]]
         theirs = [min((i + j) / 2, i + motion.fps) for i, j in first]
@@ -264,7 +290,10 @@ def _words(act: Act, entry: Entry | None) -> str:
     """An act in plain words, with the people as A and B."""
     if entry is None or not entry.caption:
         return act.act.replace("-", " ")
-    text = worded(*with_thing(act, naming(act, entry, entry.caption[0])))
+    caption = shown_caption(act, entry)
+    if act.polarity == "not":
+        caption = re.sub(r"\[([a-z-]+)\]", r"[do] not \1", caption, count=1)
+    text = worded(*with_thing(act, caption))
     for person, name in (("person A", "A"), ("person B", "B")):
         text = text.replace(person, name)
-    return f"not: {text}" if act.polarity == "not" else text
+    return text

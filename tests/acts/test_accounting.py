@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 from acts import read
-from acts.accounting import unread_words
+from acts.accounting import account, unread_words
 from acts.checking import checked
 from tests.motion.metrics.test_sentence_shapes import duet, put
+from webdemo.inference.verdicts import note
 
 
 @pytest.mark.parametrize(
@@ -50,3 +51,48 @@ def test_what_is_done_is_said_without_what_was_not_measured() -> None:
     assert found.done and found.words == "A raises the left arm" and found.unchecked == ("in which manner",)
     (found,) = checked(read("A raises the left arm angrily."), duet())
     assert not found.done and found.words == "A raises the left arm angrily"
+
+
+@pytest.mark.parametrize(
+    ("sentence", "wrote"),
+    [
+        ("A waves at B.", ""),
+        ("A gives B a hug.", ""),
+        ("A throws a punch at B.", ""),
+        ("They high-five.", ""),
+        ("A strokes B's cheek.", ""),
+        ("A lifts B up.", ""),
+        ("A blows a kiss to B.", "blows a kiss to B"),
+        ("A shakes his fist at B.", "shakes his fist at B"),
+        ("A rests her head on B's lap.", "rests her head on B's lap"),
+        ("They spin next to each other.", "spin next to each other"),
+    ],
+)
+def test_an_act_that_says_none_of_its_words_is_shown_as_what_they_were_read_as(
+    sentence: str, wrote: str
+) -> None:
+    assert checked(read(sentence), duet())[0].wrote == wrote
+    row = checked(read(sentence), duet())[0].to_dict() | {"done": True}
+    assert (f"“{wrote}”, read as: " in note([[row]])) == bool(wrote)
+    assert ("Done: " in note([[row]])) != bool(wrote)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "words"),
+    [
+        ("They lean on each other, back to back.", "on each other"),
+        ("A crawls under a table.", "under a table"),
+        ("A limps past B.", "past B"),
+        ("B staggers back.", "staggers"),
+        ("A looks up at the ceiling.", "at the ceiling"),
+    ],
+)
+def test_places_targets_and_verbs_that_no_verdict_says_are_named(sentence: str, words: str) -> None:
+    left = account(read(sentence))
+    assert any(words in each for each in (*left.unread, *(w for said in left.unsaid.values() for w in said)))
+
+
+def test_a_long_note_names_fewer_of_each_kind() -> None:
+    row = {"act": "wave", "done": True, "measure": ""}
+    rows = [row | {"words": f"A waves at B in way {i} {'x' * 40}"} for i in range(9)]
+    assert len(note([rows])) <= 350 and "more" in note([rows])

@@ -58,7 +58,7 @@ def _finished(best: Judged, request: Any, timer: StageTimer, tries: dict[str, An
         timings = {**result.timings, **timer.stages, "total": round(timer.elapsed, 4)}
         result = replace(result, manifest={**result.manifest, "tries": tries}, timings=timings)
     said = note(best.rows, tries, best.unread)
-    return replace(result, notes=(*result.notes, said)) if said else result
+    return replace(result, notes=(said, *result.notes)) if said else result
 
 
 def replayed(request: Mapping[str, Any], manifest: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from acts import Plan
 from acts.accounting import unread_words
-from acts.checking import checked
+from acts.checking import NO_RULE, checked
 from acts.telling import told
 from motion import SMPL22, Clip, Duet
 from motion.metrics.sentences.joints import Motion
@@ -21,6 +21,8 @@ from .things.uses import lengths_of
 
 MOST_NAMED = 6
 """Acts that a note names of each kind, at most."""
+MOST_CHARACTERS = 350
+"""Characters of a note, at most, where fewer acts of each kind make it so short."""
 _ORDINALS = ("1st", "2nd", "3rd", "4th")
 
 Rows = list[dict[str, Any]]
@@ -110,21 +112,17 @@ def note(rows: Sequence[Rows], tries: Mapping[str, Any] | None = None, unread: S
     """
     acts = [list(column) for column in zip(*rows, strict=True)]
     judged = [column for column in acts if any(row["done"] is not None for row in column)]
-    done = [column[0]["words"] for column in judged if all(row["done"] for row in column)]
-    missed = [_missed(column) for column in judged if not all(row["done"] for row in column)]
-    open_ = [
-        _with_why(str(column[0]["words"]), column[0]["measure"]) for column in acts if column not in judged
-    ]
-    open_ += [
-        _with_why(str(column[0]["words"]), "; ".join(column[0]["unchecked"]))
-        for column in judged
-        if column[0].get("unchecked") and column[0]["done"]
-    ]
-    quoted = _listed([f"“{words}”" for words in unread])
-    parts = [f"Not understood: {quoted}."] if unread else []
-    parts += [f"Not checked: {_listed(open_)}."] if open_ else []
-    parts += [f"Not seen: {_listed(missed)}."] if missed else []
-    parts += [f"Done: {_listed(done)}."] if done else []
+    made = [column for column in judged if all(row["done"] for row in column)]
+    done = [column[0]["words"] for column in made if not column[0].get("wrote")]
+    missed = [_missed(column) for column in judged if column not in made]
+    open_ = [_unchecked(column) for column in acts if column in made or column not in judged]
+    open_ = [each for each in open_ if each]
+    quoted = [f"“{words}”" for words in unread]
+    heads = {"Not understood": quoted, "Not checked": open_, "Not seen": missed, "Done": done}
+    for most in range(MOST_NAMED, 0, -1):
+        parts = [f"{head}: {_listed(words, most)}." for head, words in heads.items() if words]
+        if len(" ".join(parts)) <= MOST_CHARACTERS:
+            break
     if tries is None or not judged:
         return " ".join(parts)
     if missed:
@@ -136,6 +134,19 @@ def note(rows: Sequence[Rows], tries: Mapping[str, Any] | None = None, unread: S
     return f"Done at the {won} of {tries['asked']} tries: {_listed(done)}."
 
 
+def _unchecked(column: Sequence[Mapping[str, Any]]) -> str:
+    """What is left out of an act that is done, or that nothing measures; "" for nothing."""
+    row = column[0]
+    words = str(row["words"])
+    if row.get("wrote"):
+        return f"“{row['wrote']}”, read as: {words}"
+    if row["done"] is None:
+        return words if row["measure"] == NO_RULE else _with_why(words, row["measure"])
+    return _with_why(" and ".join(row.get("unchecked", ())), " ".join(words.split()[:2])) * bool(
+        row.get("unchecked")
+    )
+
+
 def _with_why(words: str, why: str) -> str:
     return f"{words} ({why})" if why else words
 
@@ -143,13 +154,14 @@ def _with_why(words: str, why: str) -> str:
 def _missed(column: Sequence[Mapping[str, Any]]) -> str:
     """An act that is not done, with what was measured; of several samples with the number of those that show it."""
     words = str(column[0]["words"])
+    words = f"“{column[0]['wrote']}”, read as: {words}" if column[0].get("wrote") else words
     if len(column) > 1:
         met = sum(bool(row["done"]) for row in column)
         return f"{words} (in {met} of {len(column)} samples)"
     return _with_why(words, column[0]["measure"])
 
 
-def _listed(words: Sequence[str]) -> str:
+def _listed(words: Sequence[str], most: int = MOST_NAMED) -> str:
     words = list(dict.fromkeys(words))
-    more = f"; and {len(words) - MOST_NAMED} more" if len(words) > MOST_NAMED else ""
-    return "; ".join(words[:MOST_NAMED]) + more
+    more = f"; and {len(words) - most} more" if len(words) > most else ""
+    return "; ".join(words[:most]) + more

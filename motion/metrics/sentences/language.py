@@ -7,6 +7,7 @@ A rule is one condition over predicates (:mod:`.vocabulary`), or several joined 
 from __future__ import annotations
 
 import ast
+import inspect
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -128,15 +129,35 @@ def check(rule: str, motion: Motion) -> bool:
     return _holds(tree, rule, motion)
 
 
-def measured(rule: str, motion: Motion) -> str:
+def measured(rule: str, motion: Motion, *, lacking: bool = False) -> str:
     """A plain measure of the first predicate of a rule that has one (:mod:`.measures`), or "".
+
+    Args:
+        rule: as for :func:`check`.
+        motion: of two people.
+        lacking: of the first that holds in no frame, with what it asks for: "hands 12 cm apart, 5 cm needed".
 
     Raises:
         RuleError: as :func:`check`.
     """
     for node in _calls(ast.parse(rule, mode="eval").body):
-        if _name(node.func) in MEASURES:
-            return str(_call(node, motion, MEASURES))
+        if _name(node.func) in MEASURES and not (lacking and np.any(_value(node, motion))):
+            said, limit = str(_call(node, motion, MEASURES)), _limit(node, motion) if lacking else ""
+            return said + limit * (("°" in said) == ("°" in limit))
+    return ""
+
+
+def _limit(node: ast.Call, motion: Motion) -> str:
+    """The distance or angle that a predicate asks for, as ", 5 cm needed"; "" where it names none."""
+    arguments = [_value(argument, motion) for argument in node.args]
+    named = {str(keyword.arg): _value(keyword.value, motion) for keyword in node.keywords}
+    bound = inspect.signature(PREDICATES[_name(node.func)]).bind(motion, *arguments, **named)
+    bound.apply_defaults()
+    for name, value in bound.arguments.items():
+        if name in ("gap", "metres", "over", "rise", "drop") and isinstance(value, float) and value > 0:
+            return f", {100 * value:.0f} cm needed" if value < 1 else f", {value:.1f} m needed"
+        if name == "degrees" and isinstance(value, (int, float)):
+            return f", {value:.0f}° needed"
     return ""
 
 

@@ -206,7 +206,9 @@ def checked(text: str, plan: Plan, manifest: Mapping[str, Any]) -> dict[str, Any
         {
             "id": act.id,
             "act": act.act,
-            "done": None if row.get("done") and row.get("unchecked") else row.get("done"),
+            "done": None
+            if row.get("done") and (row.get("unchecked") or row.get("wrote"))
+            else row.get("done"),
             "measure": "; ".join(row.get("unchecked") or ()) or row.get("measure") or "",
         }
         for act, row in zip(plan.acts, manifest.get("checked") or (), strict=False)

@@ -1,0 +1,111 @@
+"""The qualifiers of acts, such as how often and which side, that no rule measures: a verdict names them.
+
+Where an act goes somewhere, its way, speed and distance bring rules of their own.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from .accounting import FILLERS, said_words, shown_caption
+from .lexicon import Entry
+from .plan import FROM_BEHIND, Act
+from .reading.vocabulary import is_act, vocabulary
+from .shapes import Go
+
+_BOTH = re.compile(
+    r"\bboth (?:\w+ )?(?:hands|arms|palms|fists|feet|legs|knees|elbows|shoulders|cheeks)\b", re.IGNORECASE
+)
+
+OTHER_THING = "which thing"
+"""The kind of qualifier without which an act is not judged: pointing at a door is not pointing at the other person."""
+
+
+def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterator[tuple[str, str]]:
+    """Qualifiers of an act that no rule of its entry measures: each kind of qualifier, and a rule that does, or "".
+
+    Args:
+        act: told, and of this entry.
+        entry: of the lexicon.
+        who: one of its agents.
+        mask: the predicate by which it is seen; "" where it has none.
+        said: the act's own words in the sentence.
+    """
+    names = set(re.findall(r"\w+", " ".join(entry.rule)))
+    caption = shown_caption(act, entry)
+    words = said_words((caption,))
+    goes = next((shape for shape in entry.stage if isinstance(shape, Go)), None)
+    if act.times is not None and act.times > 1 and act.distance is None and "n" not in names:
+        yield "how often", ""
+    if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
+        yield "which side", ""
+    if (
+        act.side == "both"
+        and not names & {"side", "hands"}
+        and _BOTH.search(said)
+        and not _is_two_handed(entry)
+    ):
+        yield "with both hands", ""
+    if act.direction is not None and act.direction not in words and "way" not in names:
+        yield "which way", _goes_way(act, who) if goes else ""
+    if abs(act.speed - 1.0) > 0.15:
+        yield "how fast", _at_speed(act.speed, goes, who) if goes else ""
+    if act.distance is not None:
+        yield (
+            "how far",
+            f"happens(goes_metres({who}, {0.65 * act.distance:.2f}, {1.5 * act.distance + 0.3:.2f}))"
+            * bool(goes),
+        )
+    if act.seconds is not None:
+        yield "how long", ""
+    if FROM_BEHIND in act.manner:
+        yield "from where", f"happens(both({mask}, behind({who})))" if mask else ""
+    if any(
+        adverb not in FILLERS and adverb != FROM_BEHIND and adverb not in vocabulary().speeds
+        for adverb in act.manner
+    ):
+        yield "in which manner", ""
+    if (
+        act.part
+        and "part" not in names
+        and not any(vocabulary().part(act.part) == vocabulary().part(word) != "" for word in words)
+        and "{part}" not in caption
+        and "{limb}" not in caption
+    ):
+        yield "where on the body", ""
+    other = act.thing and "{b}" in caption and not entry.thing and not set(act.thing.split()) & words
+    if other and act.thing not in FILLERS and not is_act(act.thing or ""):
+        yield OTHER_THING, ""
+
+
+def plain(act: Act, kinds: frozenset[str]) -> Act:
+    """An act without the qualifiers of these kinds."""
+    left: dict[str, dict[str, object]] = {
+        "how often": {"times": None}, "which side": {"side": None}, "with both hands": {"side": None},
+        "which way": {"direction": None}, "how fast": {"manner": ()}, "in which manner": {"manner": ()},
+        "from where": {"manner": ()},
+    }  # fmt: skip
+    return act.model_copy(
+        update={name: value for kind in kinds for name, value in left.get(kind, {}).items()}
+    )
+
+
+def _is_two_handed(entry: Entry) -> bool:
+    """True for an entry whose own shape has both hands or arms."""
+    return any("both" in (getattr(shape, "sides", ""), getattr(shape, "hands", "")) for shape in entry.stage)
+
+
+def _goes_way(act: Act, who: str) -> str:
+    ahead = {"forward": f"happens(goes_ahead({who}, 0.3))", "back": f"happens(backs({who}, 0.2))"}
+    if act.direction in ("left", "right"):
+        return f"happens(goes_way({who}, '{act.direction}'))"
+    return ahead.get(act.direction or "", "")
+
+
+def _at_speed(factor: float, goes: Go, who: str) -> str:
+    """Faster, or nowhere as fast, as half way between the usual speed and the one that the words ask for."""
+    between = goes.speed * (1.0 + factor) / 2.0
+    if factor > 1.0:
+        return f"happens(walks({who}, 0.4, {between:.2f}))"
+    return f"never(walks({who}, 0.4, {max(between, 0.6):.2f}))"
