@@ -160,7 +160,7 @@ def test_a_loop_meets_its_beginning(engine: Engine, beats: tuple[Beat, ...]) -> 
     closing = np.diff(np.concatenate([found[:, -2:], found[:, :2]], axis=1), n=2, axis=1)
     assert np.linalg.norm(closing, axis=-1).max() < 0.01
     assert np.linalg.norm(closing.sum(1), axis=-1).max() < 0.01
-    assert np.abs(np.diff(found, n=2, axis=1)).max() > 0.01, "elsewhere people move"
+    assert np.ptp(found, axis=1).max() > 0.1, "elsewhere people move"
 
 
 def test_a_pose_at_the_beginning_of_a_loop_stays(engine: Engine, story: Result) -> None:
