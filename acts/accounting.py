@@ -45,19 +45,7 @@ _SCENERY = frozenset(
     ["floor", "ground", "room", "place", "spot", "air", "direction", "body", "scene", "person", "people"]
 )
 """What is there in every scene."""
-_KINDS = (
-    "begins",
-    "ends",
-    "light",
-    "causes",
-    "tried",
-    "pretended",
-    "wished",
-    "offered",
-    "not",
-    "seems",
-    "sees",
-)
+_KINDS = ("begins", "ends", "light", "causes", "tried", "pretended", "wished", "offered", "not", "seems", "sees")
 """Verbs about other verbs, which the acts' modality, polarity and order stand for."""
 _STATES = frozenset(("be", "have", "stand", "stay", "remain", "keep", "do", "go", "come"))
 _PLACES_TEXT = "behind beside past across between under through near opposite along front next"
@@ -76,7 +64,7 @@ _SIDED = frozenset(("hand", "arm", "foot", "leg"))
 
 # ---- words that no verdict says --------------------------------------------------------------------------
 class Account(NamedTuple):
-    """What the acts of a plan leave out of its sentence, as it was written.
+    """The words that the acts of a plan leave out of its sentence, as it was written.
 
     Attributes:
         unread: the stretches that are in no act, in the sentence's order.
@@ -95,7 +83,7 @@ def unread_words(plan: Plan, known: Lexicon | None = None) -> tuple[str, ...]:
 
 
 def account(plan: Plan, known: Lexicon | None = None) -> Account:
-    """What the acts of a plan leave out of its sentence.
+    """All that the acts of a plan leave out of its sentence.
 
     Args:
         plan: with the sentence that it was read from; one that was written by hand has none.
@@ -155,13 +143,7 @@ def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> boo
     verbs, said = _verbs(entry.caption), "".join(_lemma(t, parsed) for t in within)
     parts = {family for t in within if (family := words.part(_lemma(t, parsed)))}
     shown = {family for word in said_words((shown_caption(act, entry),)) if (family := words.part(word))}
-    if (
-        parts
-        and shown
-        and not parts & shown
-        and "{part}" not in shown_caption(act, entry)
-        and not act.part_of
-    ):
+    if parts and shown and not parts & shown and "{part}" not in shown_caption(act, entry) and not act.part_of:
         return False  # "lays her head on B's lap" is not "on B's shoulder"
     several = _VERB.findall(shown_caption(act, entry))
     said_verbs = [_lemma(t, parsed) for t in within if t.pos_ in ("VERB", "NOUN")]
@@ -186,9 +168,7 @@ def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> boo
             return True
     if any("-" in verb and verb.replace("-", "") in said for verb in verbs):
         return True
-    own = [
-        t for t in within if t.pos_ == "VERB" and _counts(t, parsed) and _lemma(t, parsed) not in words.light
-    ]
+    own = [t for t in within if t.pos_ == "VERB" and _counts(t, parsed) and _lemma(t, parsed) not in words.light]
     return len(shared) >= 2 or (not own and bool(shared))
 
 
@@ -202,17 +182,11 @@ def _counts(token: Token, parsed: Parse) -> bool:
     lemma, words = _lemma(token, parsed), vocabulary()
     if _is_place(token) or _is_target(token):
         return True
-    if (
-        token.pos_ not in _CONTENT
-        or not token.text[0].isalnum()
-        or (len(token.text) < 2 and not token.text.isdigit())
-    ):
+    if token.pos_ not in _CONTENT or not token.text[0].isalnum() or (len(token.text) < 2 and not token.text.isdigit()):
         return False
     if {lemma, token.lower_} & (FILLERS | _SCENERY) or token.text in (A_NAME, B_NAME):
         return False
-    if token.pos_ in ("VERB", "AUX") and (
-        lemma in _STATES or any(lemma in words.verbs[kind] for kind in _KINDS)
-    ):
+    if token.pos_ in ("VERB", "AUX") and (lemma in _STATES or any(lemma in words.verbs[kind] for kind in _KINDS)):
         return False
     if token.dep_ in ("prt", "aux", "auxpass", "neg", "mark") or token.lower_ in words.both:
         return False
@@ -227,9 +201,7 @@ def _counts(token: Token, parsed: Parse) -> bool:
 
 def _read_by(token: Token, start: int, stop: int, plan: Plan, known: Lexicon, parsed: Parse) -> str | None:
     """The id of the act that a word was read for and that does not say it; "" where one says it, None for no act."""
-    around = [
-        act.words for act in plan.acts if act.words and act.words.start <= start and stop <= act.words.stop
-    ]
+    around = [act.words for act in plan.acts if act.words and act.words.start <= start and stop <= act.words.stop]
     found = None
     for act in plan.acts:
         entry, own = known.entries.get(act.act), act.words
@@ -254,18 +226,14 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return True
     if any(forms & each for each in (said_words(entry.caption), set(act.manner))):
         return True
-    if (text in _BESIDE and said_words(entry.caption) & _BESIDE) or (
-        text == "behind" and FROM_BEHIND in act.manner
-    ):
+    if (text in _BESIDE and said_words(entry.caption) & _BESIDE) or (text == "behind" and FROM_BEHIND in act.manner):
         return True
     if token.pos_ in ("VERB", "NOUN") and _alike(lemma, _verbs(entry.caption), entry.synsets):
         return True
     if act.thing and forms & set(act.thing.split()):
         return bool(kind_of(act.thing))
     if family := words.part(lemma):
-        sided = (
-            act.side is not None and family in _SIDED and any(c.lower_ == act.side for c in token.children)
-        )
+        sided = act.side is not None and family in _SIDED and any(c.lower_ == act.side for c in token.children)
         return sided or (act.part is not None and family == words.part(act.part))
     if (text in words.speeds and act.speed != 1.0) or (lemma in words.gaits and act.speed != 1.0):
         return True
@@ -273,9 +241,7 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return True
     if text in words.numbers or text.isdigit():
         return any(value is not None for value in (act.times, act.seconds, act.distance))
-    return (lemma in words.metres and act.distance is not None) or (
-        lemma in words.seconds and act.seconds is not None
-    )
+    return (lemma in words.metres and act.distance is not None) or (lemma in words.seconds and act.seconds is not None)
 
 
 def _is_read(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:

@@ -130,9 +130,9 @@ def beats(plan: Plan, known: Lexicon) -> list[str]:
 def sentence(groups: Sequence[Sequence[Act]], known: Lexicon) -> str:
     """Groups of acts that follow each other closely, as one sentence; "" where nothing is done or left undone."""
     told = [words.rstrip(".") for group in groups if (words := _sentence(group, known))]
-    return ", and then ".join(
-        [*told[:1], *(f"{words[:1].lower()}{words[1:]}" for words in told[1:])]
-    ) + "." * bool(told)
+    return ", and then ".join([*told[:1], *(f"{words[:1].lower()}{words[1:]}" for words in told[1:])]) + "." * bool(
+        told
+    )
 
 
 def _sentence(group: Sequence[Act], known: Lexicon) -> str:
@@ -229,11 +229,14 @@ def _phrase(act: Act, entry: Entry | None) -> str:
             return named
     side = f"{act.side} " if act.side in ("left", "right") and "{side}" not in caption else ""
     values = {
-        "a": "", "b": "*",
+        "a": "",
+        "b": "*",
         "part": f"{side}{act.part}" if act.part else "",
-        "side": side.strip(), "thing": act.thing or "something", "direction": act.direction or "",
+        "side": side.strip(),
+        "thing": act.thing or "something",
+        "direction": act.direction or "",
         "limb": f"both {_plural(act.part or 'hand')}" if act.side == "both" else f"{side}{act.part or 'hand'}",
-    }  # fmt: skip
+    }
     filled = _SLOT.sub(lambda m: f"{values.get(m[1], '')} ", caption.replace("{b} on the {part}", "{part}"))
     kept: list[str] = []
     for word in filled.split():

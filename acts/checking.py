@@ -29,19 +29,20 @@ from .plan import Act, Plan
 from .qualifiers import OTHER_THING, plain, qualifiers
 from .reading.vocabulary import vocabulary
 
-ONLY = {
-    "tried": "only tried",
-    "offered": "only offered",
-    "pretended": "only pretended",
-    "wished": "only wished",
-}
+ONLY = {"tried": "only tried", "offered": "only offered", "pretended": "only pretended", "wished": "only wished"}
 """The reason why an act that is not told cannot be judged, by its modality."""
 
 NO_RULE = "nothing measures it"
 """The reason where an entry has no rule."""
 
-WAYS = {"forward": "forward", "back": "back", "left": "left", "right": "right", "clockwise": "right",
-        "counterclockwise": "left"}  # fmt: skip
+WAYS = {
+    "forward": "forward",
+    "back": "back",
+    "left": "left",
+    "right": "right",
+    "clockwise": "right",
+    "counterclockwise": "left",
+}
 """Directions that a rule may ask for; those of the clock are seen from above."""
 
 
@@ -71,12 +72,7 @@ class Verdict:
 
     def to_dict(self) -> dict[str, Any]:
         """As it stands in a manifest."""
-        found: dict[str, Any] = {
-            "act": self.act,
-            "words": self.words,
-            "done": self.done,
-            "measure": self.measure,
-        }
+        found: dict[str, Any] = {"act": self.act, "words": self.words, "done": self.done, "measure": self.measure}
         found |= {"unchecked": list(self.unchecked)} if self.unchecked else {}
         return found | ({"wrote": self.wrote} if self.wrote else {})
 
@@ -168,12 +164,7 @@ def _too_early(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Map
     earlier = [acts[name] for name in _chain(act, plan) if name in before and before[name].done]
     told = [other for other in earlier if other.polarity == "done"]
     mine = _last(act, motion, known)
-    if (
-        mine is not None
-        and mine < 0.3 * motion.fps
-        and not act.already
-        and len(motion.positions[0]) > motion.fps
-    ):
+    if mine is not None and mine < 0.3 * motion.fps and not act.already and len(motion.positions[0]) > motion.fps:
         return "is over when it begins"
     for other in told:
         first = [each for mask in _seen(other, known) for each in _stretches(mask, motion)[:1]]

@@ -125,13 +125,9 @@ def _check_address(found: DirectorSettings) -> None:
     except ValueError:
         host = ""
     if not host or parts.scheme not in ("http", "https") or parts.username or parts.query or parts.fragment:
-        raise InputError(
-            "The setting director.url must be http://HOST/v1 or https://HOST/v1, without a name or key."
-        )
+        raise InputError("The setting director.url must be http://HOST/v1 or https://HOST/v1, without a name or key.")
     if not found.model or not 0 < found.seconds <= 60 or any(ord(c) < 33 or ord(c) > 126 for c in found.key):
-        raise InputError(
-            "The setting director needs a model, at most 60 seconds, and a key of plain characters."
-        )
+        raise InputError("The setting director needs a model, at most 60 seconds, and a key of plain characters.")
     if parts.scheme == "http" and not is_loopback(host) and not found.plain_http:
         raise InputError(
             "The setting director.url is http:// to another machine: use https://, or allow it with plain_http = true."

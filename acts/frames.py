@@ -85,9 +85,7 @@ class Frame:
             raise InputError(f'A frame begins with a slot and a verb, as in "{{a}} wave", not {text!r:.80}.')
         subject = tokens[0][1:-1]
         if subject not in ("a", "a+b", "part", "a.part", "thing") and not subject.startswith("a.part:"):
-            raise InputError(
-                f"A frame's subject is {{a}}, {{a+b}}, {{a.part}} or {{thing}}, not {tokens[0]!r:.40}."
-            )
+            raise InputError(f"A frame's subject is {{a}}, {{a+b}}, {{a.part}} or {{thing}}, not {tokens[0]!r:.40}.")
         elements: list[_Element] = []
         i = 2
         while i < len(tokens):
@@ -132,9 +130,7 @@ class Frame:
                 if element.slot == "b.part" and len(agents) == 2 and _is_own(ref):
                     score -= _OWN
                 name = element.slot.partition(".")[2] or element.slot
-                if (
-                    name not in bound or element.slot == "b.part"
-                ):  # "a hand on his shoulder" is about the shoulder
+                if name not in bound or element.slot == "b.part":  # "a hand on his shoulder" is about the shoulder
                     bound[name] = ref
         if event.object is not None and "object" not in taken:
             if not (together and event.object.kind in ("person", "each")):
@@ -245,15 +241,11 @@ def _element(token: str, prepositions: frozenset[str], optional: bool, text: str
         return _Element(frozenset(token.split("|")), "", frozenset(), prepositions, optional)
     slot, _, family = token[1:-1].partition(":")
     if slot not in _SLOTS and slot not in ("a.part", "b.part"):
-        raise InputError(
-            f"{token} in the frame {text!r:.80} is no slot: use {{b}}, {{thing}}, {{part}}, {{self}}, …."
-        )
+        raise InputError(f"{token} in the frame {text!r:.80} is no slot: use {{b}}, {{thing}}, {{part}}, {{self}}, ….")
     return _Element(frozenset(), slot, frozenset(family.split("|")) - {""}, prepositions, optional)
 
 
-def _found(
-    element: _Element, event: Event, agents: str, used: list[int], taken: set[str]
-) -> Ref | bool | None:
+def _found(element: _Element, event: Event, agents: str, used: list[int], taken: set[str]) -> Ref | bool | None:
     """The argument that fills an element of a frame; True for a word; None if nothing does."""
     if element.prepositions:
         for i, (preposition, ref) in enumerate(event.prepositions):
@@ -261,11 +253,7 @@ def _found(
                 used.append(i)
                 taken.add(preposition)
                 return ref
-        if (
-            event.dative is not None
-            and "to" in element.prepositions
-            and _fills(element, event.dative, agents, event)
-        ):
+        if event.dative is not None and "to" in element.prepositions and _fills(element, event.dative, agents, event):
             taken.add("dative")
             return event.dative
         if not element.direct:
@@ -332,6 +320,4 @@ def best(frames: Mapping[str, list[tuple[str, Frame]]], event: Event) -> tuple[s
             if form is event and event.noun is not None and handed:  # "gives a hug" hands nothing over
                 match = replace(match, score=match.score - 3.0)
             fitting.append((name, frame, match))
-    return max(
-        fitting, key=lambda found: (found[2].score, found[2].own, -len(found[1].elements)), default=None
-    )
+    return max(fitting, key=lambda found: (found[2].score, found[2].own, -len(found[1].elements)), default=None)

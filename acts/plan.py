@@ -112,9 +112,7 @@ class Act(_Model):
         if len(set(self.agents)) != len(self.agents):
             raise ValueError("name each agent once")
         if self.patient is not None and self.patient in self.agents:
-            raise ValueError(
-                "the patient must not be an agent: use {self} entries for what people do to themselves"
-            )
+            raise ValueError("the patient must not be an agent: use {self} entries for what people do to themselves")
         return self
 
     @property

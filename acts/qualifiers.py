@@ -40,12 +40,7 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
         yield "how often", ""
     if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
         yield "which side", ""
-    if (
-        act.side == "both"
-        and not names & {"side", "hands"}
-        and _BOTH.search(said)
-        and not _is_two_handed(entry)
-    ):
+    if act.side == "both" and not names & {"side", "hands"} and _BOTH.search(said) and not _is_two_handed(entry):
         yield "with both hands", ""
     if act.direction is not None and act.direction not in words and "way" not in names:
         yield "which way", _goes_way(act, who) if goes else ""
@@ -54,16 +49,14 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     if act.distance is not None:
         yield (
             "how far",
-            f"happens(goes_metres({who}, {0.65 * act.distance:.2f}, {1.5 * act.distance + 0.3:.2f}))"
-            * bool(goes),
+            f"happens(goes_metres({who}, {0.65 * act.distance:.2f}, {1.5 * act.distance + 0.3:.2f}))" * bool(goes),
         )
     if act.seconds is not None:
         yield "how long", ""
     if FROM_BEHIND in act.manner:
         yield "from where", f"happens(both({mask}, behind({who})))" if mask else ""
     if any(
-        adverb not in FILLERS and adverb != FROM_BEHIND and adverb not in vocabulary().speeds
-        for adverb in act.manner
+        adverb not in FILLERS and adverb != FROM_BEHIND and adverb not in vocabulary().speeds for adverb in act.manner
     ):
         yield "in which manner", ""
     if (
@@ -82,13 +75,15 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
 def plain(act: Act, kinds: frozenset[str]) -> Act:
     """An act without the qualifiers of these kinds."""
     left: dict[str, dict[str, object]] = {
-        "how often": {"times": None}, "which side": {"side": None}, "with both hands": {"side": None},
-        "which way": {"direction": None}, "how fast": {"manner": ()}, "in which manner": {"manner": ()},
+        "how often": {"times": None},
+        "which side": {"side": None},
+        "with both hands": {"side": None},
+        "which way": {"direction": None},
+        "how fast": {"manner": ()},
+        "in which manner": {"manner": ()},
         "from where": {"manner": ()},
-    }  # fmt: skip
-    return act.model_copy(
-        update={name: value for kind in kinds for name, value in left.get(kind, {}).items()}
-    )
+    }
+    return act.model_copy(update={name: value for kind in kinds for name, value in left.get(kind, {}).items()})
 
 
 def _is_two_handed(entry: Entry) -> bool:

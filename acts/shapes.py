@@ -35,9 +35,7 @@ class Go(_Shape):
     """
 
     do: Literal["go"] = "go"
-    way: Literal[
-        "to", "away", "past", "around", "behind", "along", "after", "back", "aside", "ahead", "to and fro"
-    ]
+    way: Literal["to", "away", "past", "around", "behind", "along", "after", "back", "aside", "ahead", "to and fro"]
     speed: Annotated[float, Field(gt=0, le=4)] = 1.1
     turns: Annotated[float, Field(gt=0, le=5)] = 0.5
     metres: Metres = 0.0
@@ -80,9 +78,7 @@ class Posture(_Shape):
     """A way to hold oneself from then on; ``already`` from the start, ``passing`` only for a moment, ``times`` over."""
 
     do: Literal["posture"] = "posture"
-    posture: Literal[
-        "stands", "sits", "kneels", "sits on the ground", "crouches", "bends down", "lies", "on all fours"
-    ]
+    posture: Literal["stands", "sits", "kneels", "sits on the ground", "crouches", "bends down", "lies", "on all fours"]
     already: bool = False
     passing: bool = False
     times: Annotated[int, Field(ge=1, le=5)] = 1

@@ -13,9 +13,28 @@ from motion.things import FIXTURES
 from .plan import Act
 
 Does = Literal[
-    "", "gives", "takes", "throws", "catches", "carries", "holds", "lifts", "puts", "drops", "plays", "sits", "fights",
-    "passes", "faces", "opens", "closes", "rolls", "kicks", "uses", "bounces",
-]  # fmt: skip
+    "",
+    "gives",
+    "takes",
+    "throws",
+    "catches",
+    "carries",
+    "holds",
+    "lifts",
+    "puts",
+    "drops",
+    "plays",
+    "sits",
+    "fights",
+    "passes",
+    "faces",
+    "opens",
+    "closes",
+    "rolls",
+    "kicks",
+    "uses",
+    "bounces",
+]
 """What is done with a thing: the values that an entry's ``thing`` may have."""
 SEATS = ("chair", "bench", "bed")
 """Kinds of things on which people sit."""

@@ -98,9 +98,7 @@ class TwoPersonInputs(ABC):
 
 def cache_folder() -> Path:
     """The folder of compiled networks: ``$XDG_CACHE_HOME/pas-de-deux/compiled``, by default in ``~/.cache``."""
-    return (
-        Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")) / "pas-de-deux" / "compiled"
-    )
+    return Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")) / "pas-de-deux" / "compiled"
 
 
 def has_bfloat16() -> bool:
@@ -109,9 +107,7 @@ def has_bfloat16() -> bool:
     return bool(found.get("avx512_bf16") or found.get("amx_bf16"))
 
 
-def compile_network(
-    network: nn.Module, key: str, cache: Path | None = None, *, precision: Precision = "f32"
-) -> bool:
+def compile_network(network: nn.Module, key: str, cache: Path | None = None, *, precision: Precision = "f32") -> bool:
     """Lets OpenVINO run a network's ``forward`` from now on.
 
     The network's own weights are let go, so nothing but ``forward`` and what calls it can be used afterwards, and
@@ -134,9 +130,7 @@ def compile_network(
         return False
     try:
         folder = (cache or cache_folder()) / _name(network, key, openvino, precision)
-        compiled = _cached(openvino, network, folder, precision) or _translated(
-            openvino, network, folder, precision
-        )
+        compiled = _cached(openvino, network, folder, precision) or _translated(openvino, network, folder, precision)
     except Exception as error:  # whatever a translator may raise: the plain network does the same job
         log.warning("%s runs without OpenVINO: %s", type(network).__name__, error)
         return False
@@ -174,15 +168,11 @@ class Compiled:
             alone = stack.enter_context(self._counted()) == 1
             parts = min(STREAMS, len(inputs[0])) if alone else 1
             requests = [stack.enter_context(self._request()) for _ in range(parts)]
-            for request, *rows in zip(
-                requests, *(np.array_split(value, parts) for value in inputs), strict=True
-            ):
+            for request, *rows in zip(requests, *(np.array_split(value, parts) for value in inputs), strict=True):
                 request.start_async(rows, share_inputs=True)
             for request in requests:
                 request.wait()
-            return torch.from_numpy(
-                np.concatenate([request.get_output_tensor(0).data for request in requests])
-            )
+            return torch.from_numpy(np.concatenate([request.get_output_tensor(0).data for request in requests]))
 
     @contextmanager
     def _counted(self) -> Iterator[int]:
@@ -233,17 +223,8 @@ def _options(precision: Precision) -> dict[str, Any]:
 def _name(network: nn.Module, key: str, openvino: Any, precision: Precision) -> str:
     """The cache's name for a network's translation, which is for one kind of processor."""
     core = openvino.Core()
-    processor = [
-        str(core.get_property("CPU", name)) for name in ("FULL_DEVICE_NAME", "OPTIMIZATION_CAPABILITIES")
-    ]
-    parts = (
-        type(network).__qualname__,
-        key,
-        precision,
-        openvino.get_version(),
-        torch.__version__,
-        *processor,
-    )
+    processor = [str(core.get_property("CPU", name)) for name in ("FULL_DEVICE_NAME", "OPTIMIZATION_CAPABILITIES")]
+    parts = (type(network).__qualname__, key, precision, openvino.get_version(), torch.__version__, *processor)
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:24]
 
 
@@ -290,16 +271,9 @@ def _translate(openvino: Any, network: Any) -> Any:
     example = network.example()
     with torch.no_grad():
         traced = torch.jit.freeze(torch.jit.trace(Whole().eval(), example, check_trace=False))
-    types = {
-        torch.float32: openvino.Type.f32,
-        torch.int64: openvino.Type.i64,
-        torch.bool: openvino.Type.boolean,
-    }
+    types = {torch.float32: openvino.Type.f32, torch.int64: openvino.Type.i64, torch.bool: openvino.Type.boolean}
     inputs = [
-        (
-            openvino.PartialShape([-1 if i in axes else n for i, n in enumerate(value.shape)]),
-            types[value.dtype],
-        )
+        (openvino.PartialShape([-1 if i in axes else n for i, n in enumerate(value.shape)]), types[value.dtype])
         for value, axes in zip(example, network.varying.values(), strict=True)
     ]
     return openvino.convert_model(traced, input=inputs)

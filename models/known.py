@@ -82,9 +82,7 @@ class Known:
         self.rows[:, person, at] = feature_rows(positions, contacts)
         self.mask[:, person, at, : FEATURES if moving else FEATURES - 4] = True
 
-    def add_joints(
-        self, person: int, positions: Tensor, frames: Iterable[int], joints: Iterable[int]
-    ) -> None:
+    def add_joints(self, person: int, positions: Tensor, frames: Iterable[int], joints: Iterable[int]) -> None:
         """Marks some joints of a person's poses as known in all motions.
 
         Args:
@@ -100,9 +98,7 @@ class Known:
             self.rows[:, person, at, own] = rows[:, own]
             self.mask[:, person, at, own] = True
 
-    def add_path(
-        self, person: int, frames: Iterable[int], places: Tensor, headings: Tensor | None = None
-    ) -> None:
+    def add_path(self, person: int, frames: Iterable[int], places: Tensor, headings: Tensor | None = None) -> None:
         """Marks a person's place at some frames, and the heading there, as known in all motions.
 
         Args:
@@ -234,9 +230,7 @@ class Hold:
         """Means over the frames nearest to each knot."""
         frames, knots = rows.shape[2], self.tokens * self.layout.knots_per_token
         step = self.layout.frames_per_knot
-        nearest = (
-            torch.arange(frames) + step // 2
-        ) // step + 1  # knot k of the spline lies at frame step·(k − 1)
+        nearest = (torch.arange(frames) + step // 2) // step + 1  # knot k of the spline lies at frame step·(k − 1)
         given = known.heading_mask[..., None]
         sums = torch.cat([rows, known.mask, torch.where(given, known.heading, 0.0), given], -1)
         bins = sums.new_zeros(*sums.shape[:2], knots, sums.shape[-1]).index_add(2, nearest, sums)

@@ -41,9 +41,7 @@ class TimestepEmbedding(nn.Module):
     def __init__(self, latent_dim: int) -> None:
         super().__init__()
         self.latent_dim = latent_dim
-        self.time_embed = nn.Sequential(
-            nn.Linear(latent_dim, latent_dim), nn.SiLU(), nn.Linear(latent_dim, latent_dim)
-        )
+        self.time_embed = nn.Sequential(nn.Linear(latent_dim, latent_dim), nn.SiLU(), nn.Linear(latent_dim, latent_dim))
 
     def forward(self, t: Tensor) -> Tensor:
         """Timesteps (B,) → (B, d)."""

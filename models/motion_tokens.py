@@ -125,9 +125,7 @@ def encode(positions: Tensor, contacts: Tensor, layout: TokenLayout) -> Tensor:
     rows = feature_rows(positions, contacts)
     tokens = layout.num_tokens(positions.shape[-3])
     if layout.num_frames(tokens) != positions.shape[-3]:
-        raise ValueError(
-            f"{positions.shape[-3]} frames do not fill {tokens} tokens; pad to num_frames first."
-        )
+        raise ValueError(f"{positions.shape[-3]} frames do not fill {tokens} tokens; pad to num_frames first.")
     return layout.fit(tokens).to(rows) @ rows
 
 
@@ -159,9 +157,7 @@ def canonical_control(control: Tensor) -> Tensor:
     stands at the origin and faces +Z."""
     first = (control[0, 0] + 4 * control[0, 1] + control[0, 2]) / 6  # the spline at frame 0
     sine, cosine = headings(first)
-    turn = torch.stack(
-        [cosine, 0 * sine, sine, 0 * sine, 1 + 0 * sine, 0 * sine, -sine, 0 * sine, cosine]
-    ).view(3, 3)
+    turn = torch.stack([cosine, 0 * sine, sine, 0 * sine, 1 + 0 * sine, 0 * sine, -sine, 0 * sine, cosine]).view(3, 3)
     root, relative, contacts = control.split([3, 3 * (NUM_JOINTS - 1), NUM_CONTACTS], dim=-1)
     root = (root - first[:3] * first.new_tensor([1.0, 0.0, 1.0])) @ turn
     relative = relative.unflatten(-1, (NUM_JOINTS - 1, 3)) @ turn

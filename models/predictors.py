@@ -76,9 +76,7 @@ def without_jump(past: Tensor, future: Tensor) -> Tensor:
     return future - fade[:, None, None] * excess[:, None]
 
 
-def save_predictor(
-    folder: Path, network: MotionMLP | PredictiveMAWGAN, *, kind: str, fps: float, **meta: Any
-) -> None:
+def save_predictor(folder: Path, network: MotionMLP | PredictiveMAWGAN, *, kind: str, fps: float, **meta: Any) -> None:
     """Writes a folder that :func:`load_predictor` reads; ``config.json`` comes last.
 
     Args:
@@ -105,9 +103,14 @@ def load_predictor(folder: Path) -> Predictor:
     config = network.config
     return Predictor(
         network,
-        config.past, config.future, float(source.meta["fps"]), config.joints,
-        folder.name, source.digest, source.meta.get("training"),
-    )  # fmt: skip
+        config.past,
+        config.future,
+        float(source.meta["fps"]),
+        config.joints,
+        folder.name,
+        source.digest,
+        source.meta.get("training"),
+    )
 
 
 def _mlp(sizes: dict[str, Any]) -> MotionMLP:

@@ -123,9 +123,7 @@ def _read_safetensors(path: Path) -> dict[str, Tensor]:
     try:
         return load_file(path)
     except (SafetensorError, OSError, ValueError) as error:
-        raise WeightsError(
-            f"{path.name} is not a whole safetensors file: copy or download it again."
-        ) from error
+        raise WeightsError(f"{path.name} is not a whole safetensors file: copy or download it again.") from error
 
 
 def _read_torch(path: Path, network: str) -> Any:

@@ -73,9 +73,7 @@ def swinging(person: Array, fps: float, free: Array, seed: int | Sequence[int] =
     ahead = unit(_smooth(facing(result), _EASES, fps))
     left = np.cross(_UP, ahead)
     velocity = np.gradient(_smooth(result[:, 0], _STEADY, fps), axis=0) * fps
-    rises = scipy.ndimage.maximum_filter1d(
-        np.abs(velocity[:, 1]), 2 * round(_EASES * fps) + 1, mode="nearest"
-    )
+    rises = scipy.ndimage.maximum_filter1d(np.abs(velocity[:, 1]), 2 * round(_EASES * fps) + 1, mode="nearest")
     speed = np.linalg.norm(_smooth(velocity[:, [0, 2]], _EASES, fps), axis=-1)
     walks = free * smoothstep(speed, *_WALKS) * smoothstep(result[:, 0, 1], *_UPRIGHT)
     walks *= 1 - smoothstep(rises, *_LEAPS)
@@ -103,9 +101,7 @@ def _widths(seed: int | Sequence[int]) -> tuple[float, float]:
 
 def _below(person: Array, arm: Sequence[int], span: tuple[float, float], fps: float) -> Array:
     """(T,) from 0 to 1 over a span of how far a hand is below its shoulder, and as little shortly before and after."""
-    drop = (person[:, arm[0]] - person[:, arm[2]])[:, 1] / sum(
-        SMPL22.bone_lengths[joint] for joint in arm[1:]
-    )
+    drop = (person[:, arm[0]] - person[:, arm[2]])[:, 1] / sum(SMPL22.bone_lengths[joint] for joint in arm[1:])
     share = smoothstep(drop, *span)
     return np.asarray(scipy.ndimage.minimum_filter1d(share, 2 * round(_EASES * fps) + 1, mode="nearest"))
 
@@ -121,10 +117,7 @@ def _lower(person: Array, arm: Sequence[int], share: Array, ahead: Array, out: A
     mean = unit(_smooth(unit(upper), _STRIDE, fps))
     down = np.maximum(-mean[:, 1], 0.1)
     tilts = [np.arctan2(np.sum(mean * way, axis=-1), down) for way in (out, ahead)]
-    aims = [
-        tilt - _LOWERS * np.maximum(tilt - most, 0.0)
-        for tilt, most in zip(tilts, (_OUT, _AHEAD), strict=True)
-    ]
+    aims = [tilt - _LOWERS * np.maximum(tilt - most, 0.0) for tilt, most in zip(tilts, (_OUT, _AHEAD), strict=True)]
     aim = unit(np.tan(aims[0])[:, None] * out + np.tan(aims[1])[:, None] * ahead - _UP)
     axis = np.cross(mean, aim)
     sine = np.linalg.norm(axis, axis=-1)

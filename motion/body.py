@@ -154,9 +154,7 @@ def _shape_hands(body: Body, turned: Array, surface: Array, hands: Array | None)
     left = body.vertices[body.fingers.vertices, 0] > 0
     for side, chosen in (("left", left), ("right", ~left)):
         wrist = turned[:, _J[f"{side}_wrist"]]
-        surface[:, body.fingers.vertices[chosen]] += (shift[:, chosen] @ np.swapaxes(wrist, -1, -2)).astype(
-            np.float32
-        )
+        surface[:, body.fingers.vertices[chosen]] += (shift[:, chosen] @ np.swapaxes(wrist, -1, -2)).astype(np.float32)
 
 
 def vertex_normals(vertices: Array, faces: NDArray[np.integer]) -> Array:
@@ -165,9 +163,7 @@ def vertex_normals(vertices: Array, faces: NDArray[np.integer]) -> Array:
     flat = np.cross(b - a, c - a)
     total = np.empty_like(vertices)
     for axis in range(3):
-        total[:, axis] = np.bincount(
-            faces.ravel(), weights=np.repeat(flat[:, axis], 3), minlength=len(vertices)
-        )
+        total[:, axis] = np.bincount(faces.ravel(), weights=np.repeat(flat[:, axis], 3), minlength=len(vertices))
     return unit(total)
 
 
@@ -216,9 +212,7 @@ def _positions(motion: Clip | Array) -> Array:
     positions = np.asarray(motion.positions if isinstance(motion, Clip) else motion, dtype=np.float64)
     names = motion.skeleton.joint_names if isinstance(motion, Clip) else SMPL22.joint_names
     if positions.ndim != 3 or positions.shape[1:] != (22, 3) or names != SMPL22.joint_names:
-        raise InputError(
-            f"Bodies stand on SMPL22's 22 joints, not on {positions.shape}: retarget the motion."
-        )
+        raise InputError(f"Bodies stand on SMPL22's 22 joints, not on {positions.shape}: retarget the motion.")
     return positions
 
 
@@ -243,12 +237,8 @@ def _turn_trunk(positions: Array, world: Array) -> None:
     rest_middle = (_REST[_J["left_hip"]] + _REST[_J["right_hip"]]) / 2
     pelvis = square_frame(positions[:, _J["spine1"]] - middle, _toward(positions, "right_hip", "left_hip"))
     pelvis = pelvis @ square_frame(_REST[_J["spine1"]] - rest_middle, _rest_toward("right_hip", "left_hip")).T
-    chest = square_frame(
-        _toward(positions, "spine3", "neck"), _toward(positions, "right_collar", "left_collar")
-    )
-    chest = (
-        chest @ square_frame(_rest_toward("spine3", "neck"), _rest_toward("right_collar", "left_collar")).T
-    )
+    chest = square_frame(_toward(positions, "spine3", "neck"), _toward(positions, "right_collar", "left_collar"))
+    chest = chest @ square_frame(_rest_toward("spine3", "neck"), _rest_toward("right_collar", "left_collar")).T
     world[:, _J["pelvis"]], world[:, _J["spine3"]] = pelvis, chest
     between = _rotation_vector(np.swapaxes(pelvis, -1, -2) @ chest)
     for name, child, share in (("spine1", "spine2", 1 / 3), ("spine2", "spine3", 2 / 3)):
@@ -354,8 +344,14 @@ def _rotation(vector: Array) -> Array:
 
 def _rotation_vector(rotation: Array) -> Array:
     """(…, 3) the inverse of :func:`_rotation`, for less than half a turn."""
-    axis = np.stack([rotation[..., 2, 1] - rotation[..., 1, 2], rotation[..., 0, 2] - rotation[..., 2, 0],
-                     rotation[..., 1, 0] - rotation[..., 0, 1]], axis=-1)  # fmt: skip
+    axis = np.stack(
+        [
+            rotation[..., 2, 1] - rotation[..., 1, 2],
+            rotation[..., 0, 2] - rotation[..., 2, 0],
+            rotation[..., 1, 0] - rotation[..., 0, 1],
+        ],
+        axis=-1,
+    )
     sine = np.linalg.norm(axis, axis=-1, keepdims=True) / 2
     cosine = (np.trace(rotation, axis1=-2, axis2=-1)[..., None] - 1) / 2
     return axis / np.maximum(2 * sine, 1e-9) * np.arctan2(sine, cosine)

@@ -41,12 +41,7 @@ def _named(*names: str) -> list[int]:
 
 
 _TRUNK = _named("pelvis", "spine1", "spine2", "spine3", "neck", "head", "left_collar", "right_collar")
-_MARKS = [
-    _named("left_hip", "right_hip"),
-    _named("left_shoulder", "right_shoulder"),
-    _named("neck"),
-    _named("head"),
-]
+_MARKS = [_named("left_hip", "right_hip"), _named("left_shoulder", "right_shoulder"), _named("neck"), _named("head")]
 """Joints whose middles say how far the trunk's surface is moved at their height."""
 _APART = 0.02
 """Metres between the heights of two of these, at least."""
@@ -95,9 +90,7 @@ def _rig(character: Character) -> RigMotion:
     parents = np.array(character.parents)
     offsets = character.joints - np.where(parents[:, None] < 0, 0.0, character.joints[np.maximum(parents, 0)])
     positions = character.joints[None].astype(np.float64)
-    return RigMotion(
-        character.joint_names, character.parents, offsets, positions, None, 30.0, name=character.name
-    )
+    return RigMotion(character.joint_names, character.parents, offsets, positions, None, 30.0, name=character.name)
 
 
 def _owner(rig: RigMotion, joint: int, ours: dict[int, int]) -> int:
@@ -174,10 +167,7 @@ def _ground(side: str, vertices: Array, weights: Array, moves: Array, pivots: Ar
     scale = np.ones(3)
     scale[1] = np.clip((_REST[ball] - _REST[ankle])[1] / surface[:, 1].min(), *_FOOT_STRETCH)
     turn: Array = np.eye(3)
-    bone, wanted = (
-        (back @ (pivots[0, ball] - pivots[0, ankle])) * _LEVEL,
-        (_REST[ball] - _REST[ankle]) * _LEVEL,
-    )
+    bone, wanted = ((back @ (pivots[0, ball] - pivots[0, ankle])) * _LEVEL, (_REST[ball] - _REST[ankle]) * _LEVEL)
     if (length := float(np.linalg.norm(bone))) > 1e-2:  # not so where the rig has no toes
         turn = swing(bone / length, wanted / np.linalg.norm(wanted))
         scale[[0, 2]] = np.clip(np.linalg.norm(wanted) / length, *_STRETCH)
@@ -221,10 +211,17 @@ def _body(name: str, vertices: Array, faces: NDArray, weights: Array) -> Body:
     shares = np.rint(255 * shares / shares.sum(axis=1, keepdims=True))
     shares[:, 0] += 255 - shares.sum(axis=1)
     return Body(
-        name=name, vertices=vertices, faces=faces, face_zones=np.zeros(len(faces), dtype=np.int64), zones=(ZONE,),
-        sky=np.ones(len(vertices)), joints=_REST.astype(np.float64), turns=np.tile(np.eye(3), (22, 1, 1)),
-        bones=strongest.astype(np.int64), weights=shares / 255,
-    )  # fmt: skip
+        name=name,
+        vertices=vertices,
+        faces=faces,
+        face_zones=np.zeros(len(faces), dtype=np.int64),
+        zones=(ZONE,),
+        sky=np.ones(len(vertices)),
+        joints=_REST.astype(np.float64),
+        turns=np.tile(np.eye(3), (22, 1, 1)),
+        bones=strongest.astype(np.int64),
+        weights=shares / 255,
+    )
 
 
 def packed_body(body: Body) -> dict[str, Any]:
@@ -239,9 +236,17 @@ def packed_body(body: Body) -> dict[str, Any]:
     scale = np.maximum(np.ptp(body.vertices, axis=0), 1e-9) / (2**16 - 1)
 
     return {
-        "zones": list(body.zones), "joint_names": list(SMPL22.joint_names), "rest": _REST.tolist(),
-        "joints": body.joints.tolist(), "turns": body.turns.tolist(), "min": low.tolist(), "scale": scale.tolist(),
-        "vertices": in_base64(np.rint((body.vertices - low) / scale), "<u2"), "faces": in_base64(body.faces, "<u2"),
-        "face_zones": in_base64(body.face_zones, "u1"), "sky": in_base64(np.rint(255 * body.sky), "u1"),
-        "bones": in_base64(body.bones, "u1"), "weights": in_base64(np.rint(255 * body.weights), "u1"),
-    }  # fmt: skip
+        "zones": list(body.zones),
+        "joint_names": list(SMPL22.joint_names),
+        "rest": _REST.tolist(),
+        "joints": body.joints.tolist(),
+        "turns": body.turns.tolist(),
+        "min": low.tolist(),
+        "scale": scale.tolist(),
+        "vertices": in_base64(np.rint((body.vertices - low) / scale), "<u2"),
+        "faces": in_base64(body.faces, "<u2"),
+        "face_zones": in_base64(body.face_zones, "u1"),
+        "sky": in_base64(np.rint(255 * body.sky), "u1"),
+        "bones": in_base64(body.bones, "u1"),
+        "weights": in_base64(np.rint(255 * body.weights), "u1"),
+    }

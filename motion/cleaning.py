@@ -102,20 +102,12 @@ def plant_feet(
     result[..., 1] -= sink[:, None]
     forward = facing(result, skeleton)
     for name, ankle_goal, toe_goal in zip(_SIDES, ankles, toes, strict=True):
-        hip, knee, ankle, toe = (
-            skeleton.index(f"{name}_{part}") for part in ("hip", "knee", "ankle", "foot")
-        )
+        hip, knee, ankle, toe = (skeleton.index(f"{name}_{part}") for part in ("hip", "knee", "ankle", "foot"))
         new_knee, new_ankle = solve_two_bones(
             result[:, hip], result[:, knee], result[:, ankle], ankle_goal, forward, soft=soft
         )
         result[:, knee] = steadied(
-            result[:, hip],
-            new_knee,
-            new_ankle,
-            result[:, knee],
-            forward,
-            free=near[:, 0] * ~stays,
-            hinged=True,
+            result[:, hip], new_knee, new_ankle, result[:, knee], forward, free=near[:, 0] * ~stays, hinged=True
         )
         result[:, ankle] = new_ankle
         result[:, toe] = toe_goal + (new_ankle - ankle_goal)
@@ -230,9 +222,7 @@ def _pins(
     return goal, fixed
 
 
-def _goal(
-    joint: Array, start: int, stop: int, stood: NDArray[np.bool_], heights: tuple[float, float]
-) -> Array:
+def _goal(joint: Array, start: int, stop: int, stood: NDArray[np.bool_], heights: tuple[float, float]) -> Array:
     """(1 or stop - start, 3) places of a joint in a contact: where it ``stood`` (T,) beside it, or its median."""
     beside = [joint[i] for i in (start - 1, stop) if 0 <= i < len(joint) and stood[i]]
     if not beside:
@@ -278,9 +268,7 @@ def _split(joint: Array, start: int, stop: int, blend: int) -> list[tuple[int, i
     if stop - start < 3 * blend:
         return []
     middle = (start + stop) // 2
-    return _split(joint, start, middle - blend // 2, blend) + _split(
-        joint, middle + (blend + 1) // 2, stop, blend
-    )
+    return _split(joint, start, middle - blend // 2, blend) + _split(joint, middle + (blend + 1) // 2, stop, blend)
 
 
 def _fade(stands: NDArray[np.bool_], blend: int) -> Array:
@@ -309,9 +297,7 @@ def _reaches(positions: Array, soft: Array, skeleton: Skeleton) -> list[tuple[Ar
     """The hip (T, 3) and the metres (T, 1) that a leg reaches, of each side."""
     found = []
     for name in _SIDES:
-        hip, knee, ankle = (
-            positions[:, skeleton.index(f"{name}_{part}")] for part in ("hip", "knee", "ankle")
-        )
+        hip, knee, ankle = (positions[:, skeleton.index(f"{name}_{part}")] for part in ("hip", "knee", "ankle"))
         leg = np.linalg.norm(knee - hip, axis=-1) + np.linalg.norm(ankle - knee, axis=-1)
         found.append((hip, (1 - soft) * leg[:, None] - 1e-3))
     return found

@@ -88,8 +88,7 @@ def feet_of(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
 
 def _legs(skeleton: Skeleton) -> list[list[int]]:
     return [
-        [skeleton.index(f"{side}_{part}") for part in ("hip", "knee", "ankle", "foot")]
-        for side in ("left", "right")
+        [skeleton.index(f"{side}_{part}") for part in ("hip", "knee", "ankle", "foot")] for side in ("left", "right")
     ]
 
 
@@ -108,9 +107,7 @@ def with_feet(positions: Array, found: Array, skeleton: Skeleton = SMPL22) -> Ar
         bone = found[own, side, 1] - found[own, side, 0]
         length = np.linalg.norm(feet[own, side, 1] - feet[own, side, 0], axis=-1, keepdims=True)
         result[own, knee], result[own, ankle] = bent, met
-        result[own, toe] = met + bone * length / np.maximum(
-            np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9
-        )
+        result[own, toe] = met + bone * length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
     return result
 
 
@@ -119,13 +116,9 @@ def _glides(positions: Array, feet: Array, fps: float) -> list[tuple[int, int]]:
     body = _speed(positions[:, 0], fps)
     slower = np.minimum(*(_speed(feet[:, side, 1], fps) for side in (0, 1)))
     low = np.minimum(feet[:, 0, 1, 1], feet[:, 1, 1, 1]) < ON_FLOOR
-    gliding = (
-        (body > _MOVES) & (slower > _GLIDES * body) & low & (positions[:, 0, 1] > UPRIGHT) & (slower > 0.15)
-    )
+    gliding = (body > _MOVES) & (slower > _GLIDES * body) & low & (positions[:, 0, 1] > UPRIGHT) & (slower > 0.15)
     closing = np.ones(2 * round(_GAP * fps / 2) + 1)
-    gliding = scipy.ndimage.binary_closing(np.pad(gliding, len(closing)), closing)[
-        len(closing) : -len(closing)
-    ]
+    gliding = scipy.ndimage.binary_closing(np.pad(gliding, len(closing)), closing)[len(closing) : -len(closing)]
     found: list[tuple[int, int]] = []
     for start, stop in runs(gliding):
         way = np.linalg.norm((positions[stop - 1, 0] - positions[start, 0])[[0, 2]])

@@ -13,10 +13,19 @@ from .vectors import unit
 Array = NDArray[np.floating]
 
 _DEEP = {
-    "pelvis": 0.08, "left_hip": 0.05, "right_hip": 0.05, "spine1": 0.07, "spine2": 0.07, "spine3": 0.07,
-    "neck": 0.05, "head": 0.07, "left_collar": 0.05, "right_collar": 0.05, "left_shoulder": 0.05,
+    "pelvis": 0.08,
+    "left_hip": 0.05,
+    "right_hip": 0.05,
+    "spine1": 0.07,
+    "spine2": 0.07,
+    "spine3": 0.07,
+    "neck": 0.05,
+    "head": 0.07,
+    "left_collar": 0.05,
+    "right_collar": 0.05,
+    "left_shoulder": 0.05,
     "right_shoulder": 0.05,
-}  # fmt: skip
+}
 """Metres from the joints of the trunk and the head to the skin of a body that lies."""
 _LIMBS = (("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle"))
 _THIN = 0.03

@@ -67,9 +67,7 @@ class Grip:
 
     def __post_init__(self) -> None:
         if self.person not in (0, 1) or self.side not in SIDES or self.shape not in SHAPES:
-            raise InputError(
-                f"A grip is of person 0 or 1, of the left or right hand, and one of {', '.join(SHAPES)}."
-            )
+            raise InputError(f"A grip is of person 0 or 1, of the left or right hand, and one of {', '.join(SHAPES)}.")
         if not (type(self.start) is int and type(self.stop) is int and 0 <= self.start < self.stop):
             raise InputError("A grip has a first frame and one after its last, from 0 on.")
 
@@ -92,9 +90,7 @@ def grips_of(values: Any) -> tuple[Grip, ...]:
 def cut(grips: Iterable[Grip], start: int, stop: int) -> tuple[Grip, ...]:
     """The grips of some frames, counted from the first of these."""
     kept = [g for g in grips if g.start < stop and g.stop > start]
-    return tuple(
-        Grip(g.person, g.side, g.shape, max(g.start - start, 0), min(g.stop, stop) - start) for g in kept
-    )
+    return tuple(Grip(g.person, g.side, g.shape, max(g.start - start, 0), min(g.stop, stop) - start) for g in kept)
 
 
 def angles(grips: Iterable[Grip], person: int, times: Array, fps: float) -> Array:
@@ -167,9 +163,7 @@ class Fingers:
         places[:, :, :, 0] = self.joints[:, :, 0]
         for joint in (1, 2):
             bone = self.joints[:, :, joint] - self.joints[:, :, joint - 1]
-            places[:, :, :, joint] = (
-                places[:, :, :, joint - 1] + (turns[:, :, :, joint - 1] @ bone[..., None])[..., 0]
-            )
+            places[:, :, :, joint] = places[:, :, :, joint - 1] + (turns[:, :, :, joint - 1] @ bone[..., None])[..., 0]
             turns[:, :, :, joint] = turns[:, :, :, joint - 1] @ turns[:, :, :, joint]
         return turns.reshape(-1, 30, 3, 3), places.reshape(-1, 30, 3)
 

@@ -80,9 +80,7 @@ _ABOVE = [joint for joint in UPPER if joint not in (_J("spine1"), _J("spine2"))]
 _TOES = [leg[-1] for leg in LEGS]
 
 
-def alive(
-    pair: Array, fps: float, seed: int = 0, free: Array | None = None, loose: Array | None = None
-) -> Array:
+def alive(pair: Array, fps: float, seed: int = 0, free: Array | None = None, loose: Array | None = None) -> Array:
     """Two people of whom nobody is a statue.
 
     Args:

@@ -245,16 +245,7 @@ def _start(target: Array, layout: Layout, body: Skeleton) -> tuple[Array, Array]
     rest = body.rest_positions()
     index = SMPL22.index
     column = {joint: i for i, joint in enumerate(layout.observed)}
-    trunk_names = (
-        "left_hip",
-        "right_hip",
-        "left_shoulder",
-        "right_shoulder",
-        "neck",
-        "spine2",
-        "spine3",
-        "pelvis",
-    )
+    trunk_names = ("left_hip", "right_hip", "left_shoulder", "right_shoulder", "neck", "spine2", "spine3", "pelvis")
     trunk = [index(n) for n in trunk_names if index(n) in column]
     seen = target[:, [column[j] for j in trunk]]
     centre, rest_centre = seen.mean(axis=1), rest[trunk].mean(axis=0)

@@ -23,12 +23,10 @@ MIN_NOISE = 0.0007  # metres
 _ROTATION_SPEED = 6.0  # rad/s, the spread of joint rotation speeds; only decides what positions leave open
 # m/s², the spread of accelerations in lively motion: of the trunk, of elbows and knees, of hands and feet.
 _ACCELERATION = np.full(SMPL22.num_joints, 5.0)
-_ACCELERATION[
-    [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("elbow", "knee")]
-] = 10.0
-_ACCELERATION[
-    [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("wrist", "ankle", "foot")]
-] = 20.0
+_ACCELERATION[[SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("elbow", "knee")]] = 10.0
+_ACCELERATION[[SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("wrist", "ankle", "foot")]] = (
+    20.0
+)
 _HARD = 0.06  # radians, how sharply a joint limit stops
 
 
@@ -113,9 +111,7 @@ class _State(NamedTuple):
 class _Problem:
     """The terms of the fit and their derivatives for increments exp(δ) R of each local rotation."""
 
-    def __init__(
-        self, target: Array, trust: Array, layout: Layout, body: Skeleton, noise: float, fps: float
-    ) -> None:
+    def __init__(self, target: Array, trust: Array, layout: Layout, body: Skeleton, noise: float, fps: float) -> None:
         self.target, self.seen, self.body = target, layout.observed, body
         self.weights = trust / noise**2
         # A thousandth of the cost is below a millimetre when the noise is centimetres.
@@ -129,9 +125,7 @@ class _Problem:
         self.ankles = [SMPL22.index(f"{side}_ankle") for side in ("left", "right")]
         self.toes = [SMPL22.index(f"{side}_foot") for side in ("left", "right")]
         self.level = self._level_weights() if not set(self.toes) & set(self.seen) else None
-        self.pairs = np.array(
-            [(turn, joint) for turn in range(len(_TURNING)) for joint in _below(_TURNING[turn])]
-        )
+        self.pairs = np.array([(turn, joint) for turn in range(len(_TURNING)) for joint in _below(_TURNING[turn])])
 
     def _level_weights(self) -> Array:
         """(T, 2) weights of keeping an unseen foot level: strong while its ankle is low."""
@@ -162,9 +156,7 @@ class _Problem:
     def _bends(self, state: _State) -> tuple[Array, Array, Array]:
         """(T, F, 3) rotation vectors of the free joints, how far beyond their limits, and |vector|."""
         bend = _log(state.rotations[:, _FREE])
-        beyond = np.where(
-            bend < self.lower, bend - self.lower, np.where(bend > self.upper, bend - self.upper, 0)
-        )
+        beyond = np.where(bend < self.lower, bend - self.lower, np.where(bend > self.upper, bend - self.upper, 0))
         return bend, beyond, np.linalg.norm(bend, axis=-1)
 
     def _turning(self, state: _State) -> Array:
@@ -201,9 +193,7 @@ class _Problem:
         """(T, 22, 3, N) derivative of every joint by the increments."""
         frames = len(state.root)
         parents = [SMPL22.parents[joint] for joint in _TURNING[1:]]
-        frame = np.concatenate(
-            [np.broadcast_to(np.eye(3), (frames, 1, 3, 3)), state.world[:, parents]], axis=1
-        )
+        frame = np.concatenate([np.broadcast_to(np.eye(3), (frames, 1, 3, 3)), state.world[:, parents]], axis=1)
         turn, joint = self.pairs.T
         arms = state.positions[:, joint] - state.positions[:, np.array(_TURNING)[turn]]
         jacobian = np.zeros((frames, SMPL22.num_joints, 3, _N // 3, 3))

@@ -15,9 +15,34 @@ Key = tuple[str, str]
 """("left" | "right" | "centre", the part's words in one, lower case)."""
 
 _NOISE = {
-    "mixamorig", "bip", "biped", "valve", "character", "cc", "c", "base", "j", "def", "org", "mcp", "jnt",
-    "joint", "bone", "skel", "skeleton", "ctrl", "rig", "m", "b", "sk", "avg", "f", "x", "bend", "stretch",
-}  # fmt: skip
+    "mixamorig",
+    "bip",
+    "biped",
+    "valve",
+    "character",
+    "cc",
+    "c",
+    "base",
+    "j",
+    "def",
+    "org",
+    "mcp",
+    "jnt",
+    "joint",
+    "bone",
+    "skel",
+    "skeleton",
+    "ctrl",
+    "rig",
+    "m",
+    "b",
+    "sk",
+    "avg",
+    "f",
+    "x",
+    "bend",
+    "stretch",
+}
 """Words of exporters and rigging tools that say nothing about the body; Auto-Rig Pro's and DAZ Genesis' among them."""
 _SIDES = {"l": "left", "left": "left", "lft": "left", "r": "right", "right": "right", "rgt": "right"}
 PARTS: dict[str, tuple[str, ...]] = {
@@ -36,9 +61,20 @@ PARTS: dict[str, tuple[str, ...]] = {
 Xsens' rig, where nothing else is, and the collar in Mixamo's, where "arm" is the upper arm. "uarm" and "farm" are
 OptiTrack's, "shldr" is DAZ's."""
 _JAPANESE = {
-    "手首": "wrist", "ひじ": "elbow", "腕": "arm", "肩": "collar", "足首": "ankle", "つま先": "toe", "ひざ": "knee",
-    "足": "thigh", "首": "neck", "頭": "head", "上半身": "spine", "下半身": "hips", "センター": "centre",
-}  # fmt: skip
+    "手首": "wrist",
+    "ひじ": "elbow",
+    "腕": "arm",
+    "肩": "collar",
+    "足首": "ankle",
+    "つま先": "toe",
+    "ひざ": "knee",
+    "足": "thigh",
+    "首": "neck",
+    "頭": "head",
+    "上半身": "spine",
+    "下半身": "hips",
+    "センター": "centre",
+}
 """MikuMikuDance's parts; 左 and 右 before them are left and right."""
 _GLUED = frozenset(word for words in PARTS.values() for word in words)
 _SHARED = 0.6

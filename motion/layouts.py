@@ -77,10 +77,7 @@ _KINECT2_NAMES = {"base_of_spine": "pelvis", "middle_of_spine": "spine2"}
 
 
 def _layout(
-    source: Skeleton,
-    names: dict[str, str],
-    offsets: dict[str, tuple[float, float, float]],
-    variety: float = 0.33,
+    source: Skeleton, names: dict[str, str], offsets: dict[str, tuple[float, float, float]], variety: float = 0.33
 ) -> Layout:
     wanted = [names.get(name, name) for name in source.joint_names]
     joints = tuple(SMPL22.joint_names.index(n) if n in SMPL22.joint_names else -1 for n in wanted)
@@ -115,13 +112,9 @@ def find_layout(joints: Layout | Skeleton | str | Sequence[str]) -> Layout:
         joints = joints.name
     if isinstance(joints, str):
         if joints not in LAYOUTS:
-            raise InputError(
-                f"No joint layout is called {joints!r}: use one of {', '.join(sorted(LAYOUTS))}."
-            )
+            raise InputError(f"No joint layout is called {joints!r}: use one of {', '.join(sorted(LAYOUTS))}.")
         return LAYOUTS[joints]
     unknown = [name for name in joints if name not in SMPL22.joint_names]
     if unknown:
-        raise InputError(
-            f"The joint {unknown[0]!r} is not one of the 22: use {', '.join(SMPL22.joint_names)}."
-        )
+        raise InputError(f"The joint {unknown[0]!r} is not one of the 22: use {', '.join(SMPL22.joint_names)}.")
     return Layout("named", tuple(SMPL22.joint_names.index(name) for name in joints), SMPL22.offsets)

@@ -62,12 +62,14 @@ _LIMBS = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "
 _BONES = tuple(
     (_J(start), _J(end))
     for start, end in (
-        ("pelvis", "spine3"), ("spine3", "neck"),
-        ("left_collar", "left_shoulder"), ("right_collar", "right_shoulder"),
+        ("pelvis", "spine3"),
+        ("spine3", "neck"),
+        ("left_collar", "left_shoulder"),
+        ("right_collar", "right_shoulder"),
         ("neck", "head"),
         *((f"{side}_{start}", f"{side}_{end}") for side in ("left", "right") for start, end in _LIMBS),
     )
-)  # fmt: skip
+)
 _TRUNK = 4
 """The first of these, on which a hand slides up and down; the next is that of the head."""
 _NECK, _HEAD = _J("neck"), _J("head")
@@ -269,9 +271,7 @@ def _looking(made: Array, pair: Array, leans: list[Array]) -> Array:
         angle = scipy.ndimage.gaussian_filter1d(angle, _EASED, mode="nearest")
         right = np.cross(ahead, [0.0, 1.0, 0.0])
         turn = scipy.spatial.transform.Rotation.from_rotvec(angle[:, None] * right).as_matrix()
-        result[person, :, _HEAD] = own[:, _NECK] + np.einsum(
-            "tij,tj->ti", turn, own[:, _HEAD] - own[:, _NECK]
-        )
+        result[person, :, _HEAD] = own[:, _NECK] + np.einsum("tij,tj->ti", turn, own[:, _HEAD] - own[:, _NECK])
     return result
 
 

@@ -107,9 +107,7 @@ def _turns(positions: Array, feet: Array, forward: Array, fps: float) -> list[Tu
         stop = last + int(after[0]) + 1 if lands else first + _ends(yaw[first : last + room]) + 1
         start = max(low, min(start, stop - least))
         if not lands:  # the last steps may end after the turn
-            stop = min(
-                max(stop, start + round(_wanted(yaw[stop - 1] - yaw[start]) * _PIVOT_TIME * fps)), len(yaw)
-            )
+            stop = min(max(stop, start + round(_wanted(yaw[stop - 1] - yaw[start]) * _PIVOT_TIME * fps)), len(yaw))
         if _speed(positions[start:stop, 0], fps) > _WALKS:
             continue  # its steps are those of a walk
         if abs(yaw[stop - 1] - yaw[start]) > _TURNED and stands[start:stop].all() and stop - start >= least:

@@ -17,9 +17,7 @@ Array = NDArray[np.floating]
 
 HIPS = [0, *(leg[0] for leg in LEGS)]
 """The pelvis and both hips."""
-UPPER = [
-    joint for joint in range(SMPL22.num_joints) if joint not in {0, *(joint for leg in LEGS for joint in leg)}
-]
+UPPER = [joint for joint in range(SMPL22.num_joints) if joint not in {0, *(joint for leg in LEGS for joint in leg)}]
 """Joints above the legs."""
 _SINKS = 0.06
 """Metres by which a body sinks at most."""
@@ -40,8 +38,7 @@ def over_planted_feet(own: Array, moved: Array) -> Array:
     """
     result = np.array(moved)
     reaches = [
-        _MOST
-        * sum(np.linalg.norm(own[:, end] - own[:, start], axis=-1, keepdims=True) for start, end in bones)
+        _MOST * sum(np.linalg.norm(own[:, end] - own[:, start], axis=-1, keepdims=True) for start, end in bones)
         for bones in ((leg[:2], leg[1:3]) for leg in LEGS)
     ]
     ankles = [

@@ -80,9 +80,7 @@ def retarget_duet(
     frames = min(len(person) for person in people)
     floor = min(_floor_height(person) for person in people)
     clips = [
-        replace(
-            _finished(person[:frames] - np.array([0.0, floor, 0.0]), fps, rig.name, plant), notes=rig.notes
-        )
+        replace(_finished(person[:frames] - np.array([0.0, floor, 0.0]), fps, rig.name, plant), notes=rig.notes)
         for person, rig in zip(people, (a, b), strict=True)
     ]
     return Duet(clips[0], clips[1], roles)
@@ -110,14 +108,10 @@ def to_smpl(motion: Clip | Duet) -> Clip | Duet:
     lowest = min(float(clip.positions[..., 1].min()) for clip in people)
     sources = [clip.positions.astype(np.float64) - np.array([0.0, lowest, 0.0]) for clip in people]
     scale = float(np.mean([body_scale(source, motion.skeleton) for source in sources]))
-    fitted = [
-        fit_skeleton(source, motion.skeleton, fps=motion.fps, scale=scale).positions for source in sources
-    ]
+    fitted = [fit_skeleton(source, motion.skeleton, fps=motion.fps, scale=scale).positions for source in sources]
     floor = min(_floor_height(person) for person in fitted)
     clips = [
-        replace(
-            _finished(person - np.array([0.0, floor, 0.0]), motion.fps, clip.name, True), notes=clip.notes
-        )
+        replace(_finished(person - np.array([0.0, floor, 0.0]), motion.fps, clip.name, True), notes=clip.notes)
         for person, clip in zip(fitted, people, strict=True)
     ]
     return Duet(clips[0], clips[1], motion.roles, motion.manifest) if isinstance(motion, Duet) else clips[0]
@@ -183,10 +177,13 @@ def rest_axis(rig: RigMotion) -> str:
     """The axis along which a rig's rest pose stands; empty for one that does not stand."""
     rest = _bodies(_rest_positions(rig)[None], rig, match_joints(rig), np.eye(3))
     tall = np.mean([rest["neck"] - rest[f"{side}_ankle"] for side in ("left", "right")], axis=(0, 1))
-    legs = np.mean([
-        np.linalg.norm(rest[f"{side}_{upper}"] - rest[f"{side}_{lower}"])
-        for side in ("left", "right") for upper, lower in (("hip", "knee"), ("knee", "ankle"))
-    ])  # fmt: skip
+    legs = np.mean(
+        [
+            np.linalg.norm(rest[f"{side}_{upper}"] - rest[f"{side}_{lower}"])
+            for side in ("left", "right")
+            for upper, lower in (("hip", "knee"), ("knee", "ankle"))
+        ]
+    )
     stands = np.abs(tall).max() > max(_STRAIGHT * np.linalg.norm(tall), _TALL * 2 * legs)
     return axis_of(tall) if stands else ""
 
@@ -234,8 +231,7 @@ def _standing_rest(rig: RigMotion, parts: BodyParts) -> dict[str, Array] | None:
     frame = square_frame(np.array([[0.0, 1.0, 0.0]]), bodies["left_hip"] - bodies["right_hip"])[0]
     bodies = {name: place @ frame for name, place in bodies.items()}
     legs_down = all(
-        (bodies[f"{s}_hip"] - bodies[f"{s}_ankle"])[0, 1] > 0.5
-        and (bodies["neck"] - bodies[f"{s}_hip"])[0, 1] > 0.2
+        (bodies[f"{s}_hip"] - bodies[f"{s}_ankle"])[0, 1] > 0.5 and (bodies["neck"] - bodies[f"{s}_hip"])[0, 1] > 0.2
         for s in ("left", "right")
     )
     return bodies if legs_down else None
@@ -289,9 +285,7 @@ def _transfer(source: dict[str, Array], rest: dict[str, Array] | None, scale: fl
     return result
 
 
-def _limb_bone(
-    source: dict[str, Array], name: str, parent_name: str, joint: int, frames: dict[str, Array]
-) -> Array:
+def _limb_bone(source: dict[str, Array], name: str, parent_name: str, joint: int, frames: dict[str, Array]) -> Array:
     length = SMPL22.bone_lengths[joint]
     if name.endswith("_shoulder"):
         if "left_collar" not in source:
@@ -328,9 +322,7 @@ def _level_feet(result: Array, source: dict[str, Array], rest: dict[str, Array] 
         length = np.linalg.norm(bone, axis=-1, keepdims=True)
         new_pitch = (pitch + correction)[:, None]
         down = np.array([0.0, -1.0, 0.0])
-        result[:, toe] = result[:, ankle] + length * (
-            np.cos(new_pitch) * horizontal + np.sin(new_pitch) * down
-        )
+        result[:, toe] = result[:, ankle] + length * (np.cos(new_pitch) * horizontal + np.sin(new_pitch) * down)
 
 
 def floor_on_smpl(rig: RigMotion) -> float:

@@ -61,11 +61,14 @@ class RigMotion:
     @cached_property
     def bone_lengths(self) -> Array:
         """(J,) median length of the bone that ends in each joint in metres, 0 for roots."""
-        return np.array([
-            0.0 if parent < 0
-            else np.median(np.linalg.norm(self.positions[:, joint] - self.positions[:, parent], axis=-1))
-            for joint, parent in enumerate(self.parents)
-        ])  # fmt: skip
+        return np.array(
+            [
+                0.0
+                if parent < 0
+                else np.median(np.linalg.norm(self.positions[:, joint] - self.positions[:, parent], axis=-1))
+                for joint, parent in enumerate(self.parents)
+            ]
+        )
 
     def path_to_root(self, joint: int) -> list[int]:
         """The joint and all its ancestors."""
@@ -178,9 +181,7 @@ def _helpers(rig: RigMotion, keys: list[Key]) -> frozenset[int]:
     return frozenset(found)
 
 
-def _match_limbs(
-    rig: RigMotion, keys: list[Key], side: str, helpers: frozenset[int]
-) -> dict[str, int | None]:
+def _match_limbs(rig: RigMotion, keys: list[Key], side: str, helpers: frozenset[int]) -> dict[str, int | None]:
     found: dict[str, int | None] = {}
     for part in _LIMB:
         taken = helpers.union(joint for joint in found.values() if joint is not None)
@@ -196,24 +197,16 @@ def _match_limbs(
 
 def _best(
     rig: RigMotion, keys: list[Key], side: str, part: str, taken: frozenset[int] = frozenset(), below: int | None = None
-) -> int | None:  # fmt: skip
+) -> int | None:
     """The joint of a part: one above the next joint down the limb, with the best-liked name, the nearest to that.
 
     Where nothing is known below, or nothing with such a name is above it, it is the one nearest to the root.
     """
     above = [] if below is None else rig.path_to_root(below)[1:]
-    named = [
-        joint
-        for joint, key in enumerate(keys)
-        if key[0] == side and key[1] in PARTS[part] and joint not in taken
-    ]
+    named = [joint for joint, key in enumerate(keys) if key[0] == side and key[1] in PARTS[part] and joint not in taken]
     if held := [joint for joint in named if joint in above]:
         return min(held, key=lambda joint: (PARTS[part].index(keys[joint][1]), above.index(joint)))
-    return min(
-        named,
-        key=lambda joint: (PARTS[part].index(keys[joint][1]), len(rig.path_to_root(joint))),
-        default=None,
-    )
+    return min(named, key=lambda joint: (PARTS[part].index(keys[joint][1]), len(rig.path_to_root(joint))), default=None)
 
 
 def _shorten(names: tuple[str, ...]) -> str:

@@ -113,8 +113,7 @@ def _sunk(person: Array, ankles: list[Array], most: float) -> Array:
     need = np.zeros(len(person))
     for (hip, knee, ankle, _), goal in zip(LEGS, ankles, strict=True):
         leg = sum(
-            np.linalg.norm(person[:, end] - person[:, start], axis=-1)
-            for start, end in ((hip, knee), (knee, ankle))
+            np.linalg.norm(person[:, end] - person[:, start], axis=-1) for start, end in ((hip, knee), (knee, ankle))
         )
         aside = np.linalg.norm((person[:, hip] - goal) * FLAT, axis=-1)
         reach = np.sqrt(np.maximum((_STRAIGHT * leg) ** 2 - aside**2, 0.0))

@@ -133,13 +133,9 @@ SMPL22 = _topology(
 """The 22 body joints of SMPL with the proportions of an average adult; what every network here speaks."""
 
 FEET = tuple(SMPL22.index(n) for n in ("left_ankle", "left_foot", "right_ankle", "right_foot"))
-ARMS = tuple(
-    tuple(SMPL22.index(f"{side}_{n}") for n in ("shoulder", "elbow", "wrist")) for side in ("left", "right")
-)
+ARMS = tuple(tuple(SMPL22.index(f"{side}_{n}") for n in ("shoulder", "elbow", "wrist")) for side in ("left", "right"))
 """Shoulder, elbow and wrist of the left arm and of the right one."""
-LEGS = tuple(
-    tuple(SMPL22.index(f"{side}_{n}") for n in ("hip", "knee", "ankle", "foot")) for side in ("left", "right")
-)
+LEGS = tuple(tuple(SMPL22.index(f"{side}_{n}") for n in ("hip", "knee", "ankle", "foot")) for side in ("left", "right"))
 """Hip, knee, ankle and toe of the left leg and of the right one."""
 
 _SBU = [
@@ -163,9 +159,22 @@ SBU15 = _topology("sbu15", _SBU)
 """SBU Kinect Interaction (Yun et al. 2012); joints in the order of its files."""
 
 _K3HI_ORDER = [
-    "head", "neck", "left_shoulder", "right_shoulder", "left_elbow", "right_elbow", "left_wrist",
-    "right_wrist", "torso", "left_hip", "right_hip", "left_knee", "right_knee", "left_foot", "right_foot",
-]  # fmt: skip
+    "head",
+    "neck",
+    "left_shoulder",
+    "right_shoulder",
+    "left_elbow",
+    "right_elbow",
+    "left_wrist",
+    "right_wrist",
+    "torso",
+    "left_hip",
+    "right_hip",
+    "left_knee",
+    "right_knee",
+    "left_foot",
+    "right_foot",
+]
 _SBU_PARENT = dict(_SBU)
 K3HI15 = Skeleton(
     "k3hi15",
@@ -179,66 +188,133 @@ K3HI15 = Skeleton(
 NTU25 = Skeleton(
     "ntu25",
     (
-        "base_of_spine", "middle_of_spine", "neck", "head", "left_shoulder", "left_elbow", "left_wrist",
-        "left_hand", "right_shoulder", "right_elbow", "right_wrist", "right_hand", "left_hip", "left_knee",
-        "left_ankle", "left_foot", "right_hip", "right_knee", "right_ankle", "right_foot", "spine_shoulder",
-        "left_hand_tip", "left_thumb", "right_hand_tip", "right_thumb",
+        "base_of_spine",
+        "middle_of_spine",
+        "neck",
+        "head",
+        "left_shoulder",
+        "left_elbow",
+        "left_wrist",
+        "left_hand",
+        "right_shoulder",
+        "right_elbow",
+        "right_wrist",
+        "right_hand",
+        "left_hip",
+        "left_knee",
+        "left_ankle",
+        "left_foot",
+        "right_hip",
+        "right_knee",
+        "right_ankle",
+        "right_foot",
+        "spine_shoulder",
+        "left_hand_tip",
+        "left_thumb",
+        "right_hand_tip",
+        "right_thumb",
     ),
     # The Kinect v2 order puts "spine_shoulder" after the joints that hang on it; here those hang on the
     # middle of the spine instead, which keeps parents before children without reordering the file's joints.
     (-1, 0, 1, 2, 1, 4, 5, 6, 1, 8, 9, 10, 0, 12, 13, 14, 0, 16, 17, 18, 1, 7, 6, 11, 10),
     np.zeros((25, 3)),
-)  # fmt: skip
+)
 """Kinect v2 / NTU RGB+D 25 joints in file order."""
 
 CMU17 = _topology(
     "cmu17",
     [
-        ("pelvis", None), ("left_hip", "pelvis"), ("left_knee", "left_hip"), ("left_ankle", "left_knee"),
-        ("right_hip", "pelvis"), ("right_knee", "right_hip"), ("right_ankle", "right_knee"),
-        ("spine1", "pelvis"), ("spine3", "spine1"), ("neck", "spine3"), ("head", "neck"),
-        ("left_shoulder", "spine3"), ("left_elbow", "left_shoulder"), ("left_wrist", "left_elbow"),
-        ("right_shoulder", "spine3"), ("right_elbow", "right_shoulder"), ("right_wrist", "right_elbow"),
+        ("pelvis", None),
+        ("left_hip", "pelvis"),
+        ("left_knee", "left_hip"),
+        ("left_ankle", "left_knee"),
+        ("right_hip", "pelvis"),
+        ("right_knee", "right_hip"),
+        ("right_ankle", "right_knee"),
+        ("spine1", "pelvis"),
+        ("spine3", "spine1"),
+        ("neck", "spine3"),
+        ("head", "neck"),
+        ("left_shoulder", "spine3"),
+        ("left_elbow", "left_shoulder"),
+        ("left_wrist", "left_elbow"),
+        ("right_shoulder", "spine3"),
+        ("right_elbow", "right_shoulder"),
+        ("right_wrist", "right_elbow"),
     ],
-)  # fmt: skip
+)
 """The 17 joints that motion-prediction papers keep of CMU MoCap, in their order."""
 
 H36M17 = _topology(
     "h36m17",
     [
-        ("pelvis", None), ("right_hip", "pelvis"), ("right_knee", "right_hip"), ("right_ankle", "right_knee"),
-        ("left_hip", "pelvis"), ("left_knee", "left_hip"), ("left_ankle", "left_knee"),
-        ("spine1", "pelvis"), ("spine3", "spine1"), ("neck", "spine3"), ("head", "neck"),
-        ("left_shoulder", "spine3"), ("left_elbow", "left_shoulder"), ("left_wrist", "left_elbow"),
-        ("right_shoulder", "spine3"), ("right_elbow", "right_shoulder"), ("right_wrist", "right_elbow"),
+        ("pelvis", None),
+        ("right_hip", "pelvis"),
+        ("right_knee", "right_hip"),
+        ("right_ankle", "right_knee"),
+        ("left_hip", "pelvis"),
+        ("left_knee", "left_hip"),
+        ("left_ankle", "left_knee"),
+        ("spine1", "pelvis"),
+        ("spine3", "spine1"),
+        ("neck", "spine3"),
+        ("head", "neck"),
+        ("left_shoulder", "spine3"),
+        ("left_elbow", "left_shoulder"),
+        ("left_wrist", "left_elbow"),
+        ("right_shoulder", "spine3"),
+        ("right_elbow", "right_shoulder"),
+        ("right_wrist", "right_elbow"),
     ],
-)  # fmt: skip
+)
 """The 17 joints of Human3.6M in the order of pose estimators (VideoPose3D): legs right first, arms left first."""
 
 COCO17 = _topology(
     "coco17",
     [
-        ("nose", None), ("left_eye", "nose"), ("right_eye", "nose"), ("left_ear", "nose"), ("right_ear", "nose"),
-        ("left_shoulder", "nose"), ("right_shoulder", "nose"), ("left_elbow", "left_shoulder"),
-        ("right_elbow", "right_shoulder"), ("left_wrist", "left_elbow"), ("right_wrist", "right_elbow"),
-        ("left_hip", "left_shoulder"), ("right_hip", "right_shoulder"), ("left_knee", "left_hip"),
-        ("right_knee", "right_hip"), ("left_ankle", "left_knee"), ("right_ankle", "right_knee"),
+        ("nose", None),
+        ("left_eye", "nose"),
+        ("right_eye", "nose"),
+        ("left_ear", "nose"),
+        ("right_ear", "nose"),
+        ("left_shoulder", "nose"),
+        ("right_shoulder", "nose"),
+        ("left_elbow", "left_shoulder"),
+        ("right_elbow", "right_shoulder"),
+        ("left_wrist", "left_elbow"),
+        ("right_wrist", "right_elbow"),
+        ("left_hip", "left_shoulder"),
+        ("right_hip", "right_shoulder"),
+        ("left_knee", "left_hip"),
+        ("right_knee", "right_hip"),
+        ("left_ankle", "left_knee"),
+        ("right_ankle", "right_knee"),
     ],
-)  # fmt: skip
+)
 """The 17 key points of COCO, in metres."""
 
 POINTS17 = _topology(
     "points17",
     [
-        ("pelvis", None), ("left_hip", "pelvis"), ("left_knee", "left_hip"), ("left_ankle", "left_knee"),
-        ("left_foot", "left_ankle"), ("right_hip", "pelvis"), ("right_knee", "right_hip"),
-        ("right_ankle", "right_knee"), ("right_foot", "right_ankle"), ("neck", "pelvis"), ("head", "neck"),
-        ("left_shoulder", "neck"), ("left_elbow", "left_shoulder"), ("left_wrist", "left_elbow"),
-        ("right_shoulder", "neck"), ("right_elbow", "right_shoulder"), ("right_wrist", "right_elbow"),
+        ("pelvis", None),
+        ("left_hip", "pelvis"),
+        ("left_knee", "left_hip"),
+        ("left_ankle", "left_knee"),
+        ("left_foot", "left_ankle"),
+        ("right_hip", "pelvis"),
+        ("right_knee", "right_hip"),
+        ("right_ankle", "right_knee"),
+        ("right_foot", "right_ankle"),
+        ("neck", "pelvis"),
+        ("head", "neck"),
+        ("left_shoulder", "neck"),
+        ("left_elbow", "left_shoulder"),
+        ("left_wrist", "left_elbow"),
+        ("right_shoulder", "neck"),
+        ("right_elbow", "right_shoulder"),
+        ("right_wrist", "right_elbow"),
     ],
-)  # fmt: skip
+)
 """Joint centres that are found from markers or key points (:mod:`motion.formats.markers`)."""
 
-SKELETONS: dict[str, Skeleton] = {
-    s.name: s for s in (SMPL22, SBU15, K3HI15, NTU25, CMU17, H36M17, COCO17, POINTS17)
-}
+SKELETONS: dict[str, Skeleton] = {s.name: s for s in (SMPL22, SBU15, K3HI15, NTU25, CMU17, H36M17, COCO17, POINTS17)}

@@ -93,9 +93,7 @@ class Steering:
             moved = self._moved(pose)
             off = _angle_to(moved, goal)
         wanted = off if goal is not None and goal.look and not goal.away else 0.0
-        self._head += float(
-            np.clip(np.clip(wanted, -HEAD_MOST, HEAD_MOST) - self._head, -HEAD_RATE, HEAD_RATE)
-        )
+        self._head += float(np.clip(np.clip(wanted, -HEAD_MOST, HEAD_MOST) - self._head, -HEAD_RATE, HEAD_RATE))
         moved[_HEAD] = moved[_NECK] + heading_matrix(self._head) @ (moved[_HEAD] - moved[_NECK])
         carried = goal is None and bool(self.yaw or self.place.any())
         ahead = self._speed * WALK * STRIDE / 2 * facing(moved)
@@ -171,9 +169,7 @@ class Steps:
         if any(self._swings):
             return
         stands = [stand for stand in self._stands if stand is not None]
-        far = [
-            float(np.linalg.norm((goal - stand[0]) * FLAT)) for goal, stand in zip(goals, stands, strict=True)
-        ]
+        far = [float(np.linalg.norm((goal - stand[0]) * FLAT)) for goal, stand in zip(goals, stands, strict=True)]
         side = int(np.argmax(far))
         if far[side] > least:
             self._swings[side] = (0, *stands[side])

@@ -96,7 +96,5 @@ def resample(positions: Array, fps: float, new_fps: float) -> Array:
         return np.array(positions, dtype=np.float64)
     duration = (frames - 1) / fps
     times = np.arange(int(np.floor(duration * new_fps + 1e-6)) + 1) / new_fps
-    spline = scipy.interpolate.make_interp_spline(
-        np.arange(frames) / fps, positions, k=3 if frames > 3 else 1, axis=0
-    )
+    spline = scipy.interpolate.make_interp_spline(np.arange(frames) / fps, positions, k=3 if frames > 3 else 1, axis=0)
     return spline(np.minimum(times, duration))

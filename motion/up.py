@@ -93,8 +93,11 @@ class _Body:
         count = len(places["left_hip"])
         some = np.unique(np.linspace(0, count - 1, min(count, _FRAMES)).astype(int))
         at = {name: np.asarray(place[some], dtype=np.float64) for name, place in places.items()}
-        legs = [np.linalg.norm(at[f"{side}_{upper}"] - at[f"{side}_{lower}"], axis=-1) for side in ("left", "right")
-                for upper, lower in (("hip", "knee"), ("knee", "ankle"))]  # fmt: skip
+        legs = [
+            np.linalg.norm(at[f"{side}_{upper}"] - at[f"{side}_{lower}"], axis=-1)
+            for side in ("left", "right")
+            for upper, lower in (("hip", "knee"), ("knee", "ankle"))
+        ]
         self.leg = max(float(np.median(np.sum(legs, axis=0))) / 2, 1e-9)
         self.ankles = np.stack([at["left_ankle"], at["right_ankle"]], axis=1)
         self.pelvis: Array = (at["left_hip"] + at["right_hip"]) / 2

@@ -100,10 +100,7 @@ def _constant(call: ast.Call) -> tuple[Any, int]:
     if not isinstance(pattern, ast.Constant):
         return None, 0
     given: Any = pattern.value
-    if isinstance(call.func, ast.Attribute) and call.func.attr in (
-        "match",
-        "fullmatch",
-    ):  # looked for in one place
+    if isinstance(call.func, ast.Attribute) and call.func.attr in ("match", "fullmatch"):  # looked for in one place
         given = rf"\A(?:{given})" if isinstance(given, str) else rb"\A(?:%b)" % given
     named = {node.attr for node in ast.walk(call) if isinstance(node, ast.Attribute)}
     return given, functools.reduce(operator.or_, (f for f in re.RegexFlag if f.name in named), 0)

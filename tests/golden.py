@@ -86,9 +86,7 @@ def replayed() -> SceneRequest:
 
 def pose_of(name: str, frame: int, person: str, seconds: float) -> Pose:
     """A pose out of ``static/examples`` at a moment."""
-    return Pose(
-        person, seconds, np.asarray(recorded(name).people["ab".index(person)].positions[frame], float)
-    )
+    return Pose(person, seconds, np.asarray(recorded(name).people["ab".index(person)].positions[frame], float))
 
 
 def line(person: str, *points: Sequence[float]) -> Any:
@@ -96,9 +94,7 @@ def line(person: str, *points: Sequence[float]) -> Any:
     return path_of({"person": person, "points": [list(point) for point in points]})
 
 
-WAVES = Plan(
-    acts=(Act(id="1", act="wave", agents=("a",), side="left"), Act(id="2", act="bow", agents=("b",)))
-)
+WAVES = Plan(acts=(Act(id="1", act="wave", agents=("a",), side="left"), Act(id="2", act="bow", agents=("b",))))
 
 CASES: dict[str, Callable[[], Any]] = {
     # Sentences
@@ -155,9 +151,7 @@ CASES: dict[str, Callable[[], Any]] = {
     "class hug": lambda: sentence("hug", model="bigraphdiff", steps=4),
     "class punch": lambda: sentence("punch, and dodge", model="bigraphdiff", steps=4),
     # Reactions
-    "react to words": lambda: reaction(
-        actor("push"), prompt="One person pushes the other.", model="intergen"
-    ),
+    "react to words": lambda: reaction(actor("push"), prompt="One person pushes the other.", model="intergen"),
     "act first": lambda: reaction(actor("wave"), role="b", prompt="They wave.", model="intergen"),
     "agent": lambda: reaction(actor("wave")),
     "regennet": lambda: reaction(actor("push"), model="regennet", mode="offline"),
@@ -177,8 +171,7 @@ CASES: dict[str, Callable[[], Any]] = {
     "goes on": lambda: story("They hug.", motion=recorded("wave")),
     "span": lambda: story("A ducks.", "B laughs.", motion=recorded("push"), start=1.5, end=4.0),
     "paths": lambda: story(
-        "They walk past each other.",
-        paths=(line("a", (0, 0, -1), (1.9, 1, 0)), line("b", (0, 1, 2), (1.5, 0, 1))),
+        "They walk past each other.", paths=(line("a", (0, 0, -1), (1.9, 1, 0)), line("b", (0, 1, 2), (1.5, 0, 1)))
     ),
     "path of a sentence": lambda: sentence(
         "A walks ahead and waves.", paths=(line("a", (0, 0, 0), (2, 0, 1), (2.8, 1, 1)),)

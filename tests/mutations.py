@@ -23,16 +23,7 @@ LIST = ROOT / "tests" / "mutations.toml"
 SOURCES = ("motion", "acts", "models", "webdemo", "training", "tests")
 MOST_SECONDS = 300.0
 """A fault that makes a test run for longer is found, too."""
-_SHARED = (
-    "numpy",
-    "scipy.interpolate",
-    "scipy.ndimage",
-    "scipy.optimize",
-    "torch",
-    "gradio",
-    "spacy",
-    "sqlalchemy",
-)
+_SHARED = ("numpy", "scipy.interpolate", "scipy.ndimage", "scipy.optimize", "torch", "gradio", "spacy", "sqlalchemy")
 
 
 @dataclass(frozen=True)

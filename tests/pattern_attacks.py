@@ -30,9 +30,34 @@ _MOST = 40
 _LETTERS = "abt1 ,.;-'\"\n\t\0(é\u3000_AZ/:[={}#!"
 """Characters of which one is in almost every set of characters."""
 _COMMON = (
-    " ", "a", "a ", "as ", "the ", ",", ", ", ". ", "\n", "(", '"', "A ", "B. ", "a's ", "aly ", "slowly ", "and ",
-    "person a ", "the other person ", "is ", "aing ", "1", "1 ", "\t\n", "[[a]]\n", "-", "é",
-)  # fmt: skip
+    " ",
+    "a",
+    "a ",
+    "as ",
+    "the ",
+    ",",
+    ", ",
+    ". ",
+    "\n",
+    "(",
+    '"',
+    "A ",
+    "B. ",
+    "a's ",
+    "aly ",
+    "slowly ",
+    "and ",
+    "person a ",
+    "the other person ",
+    "is ",
+    "aing ",
+    "1",
+    "1 ",
+    "\t\n",
+    "[[a]]\n",
+    "-",
+    "é",
+)
 _ENDS = ("", "\0", "!", " \n")
 
 

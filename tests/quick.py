@@ -70,9 +70,7 @@ def listed() -> dict[Path, tuple[int, float]]:
 def main(argv: Sequence[str]) -> None:
     """Writes the list."""
     quick = chosen(measured(Path(name) for name in argv))
-    rows = [
-        f"{module.as_posix()} {tests} {seconds:.2f}" for module, (tests, seconds) in sorted(quick.items())
-    ]
+    rows = [f"{module.as_posix()} {tests} {seconds:.2f}" for module, (tests, seconds) in sorted(quick.items())]
     head = "# The modules of `pytest -m quick`, with tests and seconds; `python -m tests.quick` writes it."
     LIST.write_text("\n".join([head, *rows, ""]))
 

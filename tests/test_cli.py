@@ -88,9 +88,7 @@ def test_generate_writes_a_file_and_one_json_line(run: Run, tmp_path: Path, suff
 
 def test_generate_tries_further_seeds(run: Run, tmp_path: Path) -> None:
     out = tmp_path / "x.npz"
-    code, said, err = run(
-        "generate", "--prompt", "A falls down and B walks away.", *QUICK, "--tries", 2, "--out", out
-    )
+    code, said, err = run("generate", "--prompt", "A falls down and B walks away.", *QUICK, "--tries", 2, "--out", out)
     assert code == 0
     manifest = answer(said)["manifest"]
     assert manifest["tries"]["asked"] == manifest["request"]["tries"] == 2
@@ -169,9 +167,7 @@ def test_a_full_disk_is_one_line_and_leaves_no_file(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_place_that_cannot_be_written_is_one_line(
-    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_place_that_cannot_be_written_is_one_line(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("in the way")
     assert "could not be written" in refused(generate(run, tmp_path / "file" / "duet.npz"))
 
@@ -241,13 +237,8 @@ def test_info_tells_the_model_and_the_formats(run: Run) -> None:
     assert printed["versions"]["torch"]
 
 
-def test_benchmark_reports_figures(
-    run: Run, weights: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for folder in (
-        *methods.WEIGHTS.iterdir(),
-        weights / "intergen",
-    ):  # the tiny InterGen among the shipped others
+def test_benchmark_reports_figures(run: Run, weights: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for folder in (*methods.WEIGHTS.iterdir(), weights / "intergen"):  # the tiny InterGen among the shipped others
         (tmp_path / folder.name).unlink(missing_ok=True)
         (tmp_path / folder.name).symlink_to(folder)
     monkeypatch.setattr(engine, "Engine", partial(engine.Engine.func, tmp_path))
@@ -276,9 +267,7 @@ def test_missing_weights_are_one_line(run: Run, tmp_path: Path, monkeypatch: pyt
     assert list(tmp_path.iterdir()) == []
 
 
-def test_app_takes_the_options_of_serve(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_app_takes_the_options_of_serve(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PASDEDEUX_PORT", "8001")
     assert app.main(["--print-settings", "--port", "8002"]) == 0
     assert "port = 8002" in capsys.readouterr().out

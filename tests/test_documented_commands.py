@@ -11,8 +11,11 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = ["README.md", *(str(p.relative_to(ROOT)) for p in sorted(ROOT.glob("docs/*.md"))),
-         *(str(p.relative_to(ROOT)) for p in sorted(ROOT.glob("models/weights/*/CARD.md")))]  # fmt: skip
+PAGES = [
+    "README.md",
+    *(str(p.relative_to(ROOT)) for p in sorted(ROOT.glob("docs/*.md"))),
+    *(str(p.relative_to(ROOT)) for p in sorted(ROOT.glob("models/weights/*/CARD.md"))),
+]
 _FENCED = re.compile(r"^ *```\w*\n(.*?)^ *```", re.DOTALL | re.MULTILINE)
 _INLINE = re.compile(r"`([^`]+)`")
 _COMMAND = re.compile(r"python -m ((?:webdemo|training)[\w.]*)(.*)")
@@ -36,18 +39,13 @@ COMMANDS = documented()
 
 
 def test_the_documents_show_commands() -> None:
-    assert {
-        "webdemo",
-        "training.trainers.intergen",
-        "training.trainers.bigraphdiff",
-        "training.trainers.mawgan",
-    } <= {m for _, m, _ in COMMANDS}
+    assert {"webdemo", "training.trainers.intergen", "training.trainers.bigraphdiff", "training.trainers.mawgan"} <= {
+        m for _, m, _ in COMMANDS
+    }
     assert len(COMMANDS) > 40
 
 
-@pytest.mark.parametrize(
-    ("page", "module", "words"), COMMANDS, ids=[" ".join(c[1:2] + c[2][:1]) for c in COMMANDS]
-)
+@pytest.mark.parametrize(("page", "module", "words"), COMMANDS, ids=[" ".join(c[1:2] + c[2][:1]) for c in COMMANDS])
 def test_a_documented_command_is_taken(
     page: str, module: str, words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -67,9 +65,7 @@ def test_a_documented_command_is_taken(
         return capsys.readouterr().out
 
     help_text = said(*asked)
-    if len(words) > 1 and re.search(
-        rf"^    {re.escape(words[1])}\b", help_text, re.MULTILINE
-    ):  # an action of its own
+    if len(words) > 1 and re.search(rf"^    {re.escape(words[1])}\b", help_text, re.MULTILINE):  # an action of its own
         help_text += said(*words[:2], "--help")
     flags = [word.split("=")[0] for word in words if word.startswith("--") and word != "--"]
     missing = [flag for flag in flags if flag != "--help" and not re.search(rf"{flag}(?![\w-])", help_text)]

@@ -39,18 +39,11 @@ def test_the_command_keeps_the_seed_that_did_it_and_a_thumbnail(
     path.write_text(json.dumps({"scenes": [WANTED]}), encoding="utf-8")
     assert main(["gallery", str(path)]) == 0
     (scene,) = json.loads(path.read_text(encoding="utf-8"))["scenes"]
-    assert (asked[0].prompt, asked[0].seconds, asked[0].seed, asked[0].tries) == (
-        "Two friends hug.",
-        4.0,
-        3,
-        4,
-    )
+    assert (asked[0].prompt, asked[0].seconds, asked[0].seed, asked[0].tries) == ("Two friends hug.", 4.0, 3, 4)
     assert scene["seed"] == 4 and base64.b64decode(scene["thumbnail"])[:2] == bytes([2, 20])
 
 
-def test_a_file_without_scenes_is_refused_in_a_sentence(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_file_without_scenes_is_refused_in_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "scenes.json"
     path.write_text("{}", encoding="utf-8")
     assert main(["gallery", str(path)]) == 2

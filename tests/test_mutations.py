@@ -26,16 +26,10 @@ def test_a_fault_can_be_made_and_has_tests(fault: Mutation) -> None:
 
 def test_what_survives_is_told(tmp_path: Path) -> None:
     (tmp_path / "double.py").write_text("def double(x):\n    return 2 * x\n")
-    (tmp_path / "test_good.py").write_text(
-        "from double import double\ndef test():\n    assert double(3) == 6\n"
-    )
-    (tmp_path / "test_weak.py").write_text(
-        "from double import double\ndef test():\n    assert double(0) == 0\n"
-    )
+    (tmp_path / "test_good.py").write_text("from double import double\ndef test():\n    assert double(3) == 6\n")
+    (tmp_path / "test_weak.py").write_text("from double import double\ndef test():\n    assert double(0) == 0\n")
     (tmp_path / "test_bad.py").write_text("def test():\n    assert False\n")
-    faults = [
-        Mutation("double.py", "2 * x", "3 * x", (f"test_{name}.py",)) for name in ("good", "weak", "bad")
-    ]
+    faults = [Mutation("double.py", "2 * x", "3 * x", (f"test_{name}.py",)) for name in ("good", "weak", "bad")]
     told = [(fault.tests[0], why) for fault, why in survivors(faults, tmp_path)]
     assert told == [("test_weak.py", "survives"), ("test_bad.py", "its tests fail without it")]
     assert "2 * x" in (tmp_path / "double.py").read_text()

@@ -30,9 +30,7 @@ DOCUMENT = ROOT / "docs" / "own-model.md"
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", DOCUMENT.read_text(), re.DOTALL | re.MULTILINE)
 TOY = next(text for kind, text in BLOCKS if kind == "python")
 TABLE = next(text for kind, text in BLOCKS if kind == "toml")
-COMMANDS = [
-    line for kind, text in BLOCKS if kind == "sh" for line in text.replace("\\\n", " ").splitlines() if line
-]
+COMMANDS = [line for kind, text in BLOCKS if kind == "sh" for line in text.replace("\\\n", " ").splitlines() if line]
 
 
 @pytest.fixture
@@ -118,25 +116,29 @@ BROKEN = {
     "empty.py:M": ("class M:\n" + RUN + "        yield timer.progress('sample')\n", "without a Result"),
     "odd.py:M": ("class M:\n" + RUN + "        yield 7\n", "gave 7, not Progress or a Result"),
     "leaves.py:M": ("import sys\nclass M:\n" + RUN + "        yield sys.exit(3)\n", "SystemExit: 3"),
-    "loads.py:M": ("class M:\n    def __init__(self):\n        open('nowhere')\n" + RUN + "        yield 1\n",
-                   "cannot be loaded: it raised FileNotFoundError"),
-    "nothing.py:M": ("from webdemo.inference import Result\nclass M:\n" + RUN
-                     + "        yield Result(duets=(), manifest={})\n", "no motion of two people"),
-    "nan.py:M": ("import numpy as np\nfrom motion import Duet\nfrom webdemo.inference import Result\nclass M:\n" + RUN
-                 + "        duet = Duet.from_positions(np.full((2, 30, 22, 3), 1.0), fps=30.0)\n"
-                 + "        duet.a.positions[3, 2, 1] = np.nan\n        yield Result(duets=(duet,), manifest={})\n",
-                 "not finite"),
-}  # fmt: skip
+    "loads.py:M": (
+        "class M:\n    def __init__(self):\n        open('nowhere')\n" + RUN + "        yield 1\n",
+        "cannot be loaded: it raised FileNotFoundError",
+    ),
+    "nothing.py:M": (
+        "from webdemo.inference import Result\nclass M:\n" + RUN + "        yield Result(duets=(), manifest={})\n",
+        "no motion of two people",
+    ),
+    "nan.py:M": (
+        "import numpy as np\nfrom motion import Duet\nfrom webdemo.inference import Result\nclass M:\n"
+        + RUN
+        + "        duet = Duet.from_positions(np.full((2, 30, 22, 3), 1.0), fps=30.0)\n"
+        + "        duet.a.positions[3, 2, 1] = np.nan\n        yield Result(duets=(duet,), manifest={})\n",
+        "not finite",
+    ),
+}
 UNUSABLE = {
     "syntax.py:M": ("class M(\n", "raised SyntaxError"),
     "imports.py:M": ("import nothing_of_this_name\n", "ModuleNotFoundError"),
     "exits.py:M": ("raise SystemExit(1)\n", "SystemExit"),
     "empty_file.py:M": ("", "has no class M"),
     "plain.py:M": ("class M:\n    pass\n", "not a class with a method `run"),
-    "task.py:M": (
-        "class M:\n    tasks = ('dance',)\n" + RUN + "        yield 1\n",
-        "its `tasks` must be some of",
-    ),
+    "task.py:M": ("class M:\n    tasks = ('dance',)\n" + RUN + "        yield 1\n", "its `tasks` must be some of"),
     "gone.py:M": (None, "there is no file"),
     "M": (None, "must be file.py:Class or package.module:Class"),
 }
@@ -165,9 +167,7 @@ def test_a_broken_class_fails_alone(folder: Path) -> None:
     assert method("intergen").name == "intergen"
 
 
-def test_wrong_sentences_get_one_sentence(
-    tmp_path: Path, folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_wrong_sentences_get_one_sentence(tmp_path: Path, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     wrong = {
         "a.json": ("{", "is not JSON"),
         "b.json": ("[{}]", "objects that have `words`"),

@@ -40,9 +40,8 @@ def test_the_limits_are_those_of_the_readers():
 def test_every_pattern_of_the_packages_is_fast():
     """In a process of its own, which is ended where a pattern does not end."""
     done = subprocess.run(
-        [sys.executable, "-m", "tests.compiled_patterns"],
-        cwd=ROOT, capture_output=True, text=True, timeout=900,
-    )  # fmt: skip
+        [sys.executable, "-m", "tests.compiled_patterns"], cwd=ROOT, capture_output=True, text=True, timeout=900
+    )
     assert done.returncode == 0, done.stderr[-2000:]
     found = json.loads(done.stdout.splitlines()[-1])
     assert found["patterns"] > 40

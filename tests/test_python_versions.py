@@ -70,9 +70,14 @@ def test_the_requirements_allow_what_is_promised() -> None:
 
 @pytest.mark.parametrize(
     ("pretended", "said", "goes_on"),
-    [("2, 7", "and this is 2.7", False), ("3, 10", "and this is 3.10", False), ("3, 11", "", True),
-     ("3, 13", "", True), ("3, 14", "Some packages may not install", True)],
-)  # fmt: skip
+    [
+        ("2, 7", "and this is 2.7", False),
+        ("3, 10", "and this is 3.10", False),
+        ("3, 11", "", True),
+        ("3, 13", "", True),
+        ("3, 14", "Some packages may not install", True),
+    ],
+)
 def test_make_says_which_python_it_needs(pretended: str, said: str, goes_on: bool, tmp_path: Path) -> None:
     if (make := shutil.which("make")) is None:
         pytest.skip("no make on this machine")
@@ -86,8 +91,11 @@ def test_make_says_which_python_it_needs(pretended: str, said: str, goes_on: boo
     venv = tmp_path / "venv"
     done = subprocess.run(
         [make, f"PYTHON={python}", f"VENV={venv}", f"{venv}/.runtime"],
-        cwd=ROOT, capture_output=True, text=True, env={**os.environ, "MAKEFLAGS": ""},
-    )  # fmt: skip
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "MAKEFLAGS": ""},
+    )
     assert done.returncode != 0 and not venv.exists()
     assert ("makes an environment" in done.stdout) == goes_on
     sentences = [line for line in done.stderr.splitlines() if "needs Python" in line]

@@ -10,9 +10,7 @@ import pytest
 from tests.quick import TESTS, chosen, is_left_out, listed, main
 
 FOLDERS = {
-    folder
-    for path in TESTS.rglob("test_*.py")
-    if not is_left_out(folder := path.parent.relative_to(TESTS).as_posix())
+    folder for path in TESTS.rglob("test_*.py") if not is_left_out(folder := path.parent.relative_to(TESTS).as_posix())
 }
 
 
@@ -35,16 +33,26 @@ def test_they_are_marked(request: pytest.FixtureRequest) -> None:
 
 
 def test_the_modules_that_test_most_in_a_second_are_taken() -> None:
-    modules = {"a/test_1.py": (10, 0.1), "a/test_2.py": (1, 0.6), "a/test_3.py": (10, 0.5), "b/test_4.py": (1, 9.0),
-               "e2e/test_5.py": (9, 0.1), "e2e/tour/test_6.py": (9, 0.1)}  # fmt: skip
+    modules = {
+        "a/test_1.py": (10, 0.1),
+        "a/test_2.py": (1, 0.6),
+        "a/test_3.py": (10, 0.5),
+        "b/test_4.py": (1, 9.0),
+        "e2e/test_5.py": (9, 0.1),
+        "e2e/tour/test_6.py": (9, 0.1),
+    }
     found = chosen({Path(name): times for name, times in modules.items()}, share=0.65)
     assert [module.as_posix() for module in found] == ["a/test_1.py", "a/test_3.py", "b/test_4.py"]
 
 
 def test_the_list_is_written_from_results(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     case = '<testcase classname="tests.{}" name="x" time="{}">{}</testcase>'
-    cases = [case.format("test_quick", 0.25, ""), case.format("test_quick", 0.5, ""),
-             case.format("test_structure", 0.1, "<failure/>"), case.format("gone.test_gone", 0.1, "")]  # fmt: skip
+    cases = [
+        case.format("test_quick", 0.25, ""),
+        case.format("test_quick", 0.5, ""),
+        case.format("test_structure", 0.1, "<failure/>"),
+        case.format("gone.test_gone", 0.1, ""),
+    ]
     (tmp_path / "results.xml").write_text(f"<testsuites>{''.join(cases)}</testsuites>")
     monkeypatch.setattr("tests.quick.LIST", tmp_path / "quick.txt")
     main([str(tmp_path / "results.xml")])

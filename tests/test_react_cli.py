@@ -60,18 +60,54 @@ def test_one_person_of_a_file_is_trimmed_and_answered(
 ) -> None:
     out = tmp_path / "answer.npz"
     code, said, _ = react(
-        capsys, "--actor", pair, "--person", "b", "--start", 1, "--end", 3, "--prompt", "They bow.",
-        "--model", "intergen", "--mode", "offline", "--role", "b", "--seed", 5, "--steps", 9, "--guidance", 3,
-        "--damping", 0.5, "--no-cleanup", "--out", out,
-    )  # fmt: skip
+        capsys,
+        "--actor",
+        pair,
+        "--person",
+        "b",
+        "--start",
+        1,
+        "--end",
+        3,
+        "--prompt",
+        "They bow.",
+        "--model",
+        "intergen",
+        "--mode",
+        "offline",
+        "--role",
+        "b",
+        "--seed",
+        5,
+        "--steps",
+        9,
+        "--guidance",
+        3,
+        "--damping",
+        0.5,
+        "--no-cleanup",
+        "--out",
+        out,
+    )
     assert code == 0
     answer = json.loads(said.splitlines()[-1])
     assert answer["files"] == [str(out)]
     request = answer["manifest"]["request"]
-    assert request | {
-        "prompt": "They bow.", "role": "b", "seed": 5, "steps": 9, "guidance": 3, "damping": 0.5,
-        "cleanup": False, "mode": "offline", "model": "intergen",
-    } == request  # fmt: skip
+    assert (
+        request
+        | {
+            "prompt": "They bow.",
+            "role": "b",
+            "seed": 5,
+            "steps": 9,
+            "guidance": 3,
+            "damping": 0.5,
+            "cleanup": False,
+            "mode": "offline",
+            "model": "intergen",
+        }
+        == request
+    )
     duet = read(out)
     assert duet.roles == ("actor", "reactor")
     np.testing.assert_array_equal(duet.a.positions, standing(120, x=2.0).positions[30:90])
@@ -112,10 +148,7 @@ def test_the_other_person_of_a_file_says_where_to_begin(
     code, said, _ = react(capsys, *words, "--model", "regennet")
     assert code == 0
     np.testing.assert_allclose(asked[-1].first_pose, standing(120).positions[30], atol=1e-5)
-    assert (
-        json.loads(said.splitlines()[-1])["manifest"]["request"]["first_pose"]
-        == asked[-1].first_pose.tolist()
-    )
+    assert json.loads(said.splitlines()[-1])["manifest"]["request"]["first_pose"] == asked[-1].first_pose.tolist()
     code, _, said = react(capsys, *words, "--model", "intergen")
     assert code == 2 and "InterGen takes no first pose" in said
     one = write(standing(120), tmp_path / "one.npz")[0]
@@ -138,9 +171,8 @@ def test_any_of_six_people_can_be_chosen(
 
 
 def test_of_a_long_kinect_recording_only_the_part_is_fitted(
-    tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:  # fmt: skip
+    tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     from webdemo.inference import actor
 
     bodies = standing(3000).positions[:, [15, 12, 6, 16, 18, 20, 17, 19, 21, 1, 4, 7, 2, 5, 8]]
@@ -156,9 +188,12 @@ def test_of_a_long_kinect_recording_only_the_part_is_fitted(
 
 
 def test_a_stream_prints_every_frame_before_the_answer(
-    pair: Path, tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str],
+    pair: Path,
+    tmp_path: Path,
+    asked: list[ReactRequest],
+    capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
-) -> None:  # fmt: skip
+) -> None:
     from webdemo.inference.engine import Engine
     from webdemo.inference.live.stream import LiveFrame
 
@@ -186,10 +221,7 @@ def test_a_stream_prints_every_frame_before_the_answer(
         (["--person", "a", "--start", "9"], "after the end of the motion"),
         (["--person", "a", "--model", "intergen", "--mode", "online"], "choose offline"),
         (["--person", "a", "--model", "intergen", "--stream"], "choose offline"),
-        (
-            ["--person", "a", "--model", "regennet", "--sampler", "dpm++"],
-            "does not sample with dpm++: choose ddim",
-        ),
+        (["--person", "a", "--model", "regennet", "--sampler", "dpm++"], "does not sample with dpm++: choose ddim"),
         (["--person", "a", "--role", "x"], "Role 'x'"),
         (["--person", "a", "--steps", "0"], "DDIM steps"),
         (["--actor", "none.bvh"], "cannot be read"),
@@ -198,9 +230,13 @@ def test_a_stream_prints_every_frame_before_the_answer(
     ],
 )
 def test_errors_are_one_line_and_write_nothing(
-    pair: Path, tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str],
-    words: list[str], says: str,
-) -> None:  # fmt: skip
+    pair: Path,
+    tmp_path: Path,
+    asked: list[ReactRequest],
+    capsys: pytest.CaptureFixture[str],
+    words: list[str],
+    says: str,
+) -> None:
     before = set(tmp_path.iterdir())
     code, said, error = react(capsys, "--actor", pair, "--out", tmp_path / "answer.npz", *words)
     assert code == 2
@@ -224,9 +260,7 @@ def test_the_partner_comes_on_the_rig_of_the_file_too(
     assert files[1].read_text().split("MOTION")[0] == rig.read_text().split("MOTION")[0]
     partner = read(files[1])
     np.testing.assert_allclose(partner.positions[:, 0, 2] - asked[0].actor.positions[:, 0, 2], 1.5, atol=0.03)
-    code, _, said = react(
-        capsys, "--actor", write(standing(60), tmp_path / "x.npz")[0], "--own-rig", "--out", rig
-    )
+    code, _, said = react(capsys, "--actor", write(standing(60), tmp_path / "x.npz")[0], "--own-rig", "--out", rig)
     assert code == 2 and "rig of a BVH or .glb file, and x.npz is none" in said
 
 
@@ -239,14 +273,8 @@ def test_one_animation_of_several_is_chosen_and_noted(
     words = ["--actor", actor, "--own-rig", "--out", tmp_path / "x.npz"]
     for more, note in (
         ([], "Of the 2 animations in takes.glb, 1 (“walk”) was taken; the other is 2 (“glide”)."),
-        (
-            ["--animation", "glide"],
-            "Of the 2 animations in takes.glb, 2 (“glide”) was taken; the other is 1 (“walk”).",
-        ),
-        (
-            ["--animation", "2"],
-            "Of the 2 animations in takes.glb, 2 (“glide”) was taken; the other is 1 (“walk”).",
-        ),
+        (["--animation", "glide"], "Of the 2 animations in takes.glb, 2 (“glide”) was taken; the other is 1 (“walk”)."),
+        (["--animation", "2"], "Of the 2 animations in takes.glb, 2 (“glide”) was taken; the other is 1 (“walk”)."),
     ):
         code, said, told = react(capsys, *words, *more)
         assert code == 0 and note in told.splitlines()
@@ -266,17 +294,7 @@ def test_other_commands_choose_an_animation_too(
     note = "Of the 2 animations in takes.glb, 2 (“glide”) was taken; the other is 1 (“walk”)."
     assert cli.main(["render", str(file), "--animation", "glide", "--frames", "2", "--width", "300"]) == 0
     assert json.loads(capsys.readouterr().out.splitlines()[-1])["notes"] == [note]
-    words = [
-        "predict",
-        "--past",
-        str(file),
-        "--animation",
-        "2",
-        "--model",
-        "still",
-        "--out",
-        str(tmp_path / "p.npz"),
-    ]
+    words = ["predict", "--past", str(file), "--animation", "2", "--model", "still", "--out", str(tmp_path / "p.npz")]
     requests: list[Any] = []
 
     def stop(request: Any) -> Any:
@@ -290,14 +308,8 @@ def test_other_commands_choose_an_animation_too(
     )
     for wrong, says in (
         (["render", str(file), str(file), "--animation", "1"], "chooses within one file"),
-        (
-            ["scene", "--prompt", "They bow.", "--animation", "1", "--out", str(tmp_path / "s.npz")],
-            "give --motion",
-        ),
-        (
-            ["scene", "--prompt", "They bow.", "--motion", str(file), "--animation", "9", "--out", words[-1]],
-            "no such",
-        ),
+        (["scene", "--prompt", "They bow.", "--animation", "1", "--out", str(tmp_path / "s.npz")], "give --motion"),
+        (["scene", "--prompt", "They bow.", "--motion", str(file), "--animation", "9", "--out", words[-1]], "no such"),
     ):
         capsys.readouterr()
         assert cli.main(wrong) == 2 and says in capsys.readouterr().err

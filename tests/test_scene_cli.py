@@ -14,9 +14,7 @@ STORY = '[[beat]]\nwords = "They wave."\nseconds = 1\n[[beat]]\nwords = "They bo
 
 def test_a_story_becomes_a_file_that_can_be_changed(run: Run, tmp_path: Path) -> None:
     (tmp_path / "story.toml").write_text(STORY)
-    code, said, _ = run(
-        "scene", tmp_path / "story.toml", "--steps", 2, "--seed", 5, "--out", tmp_path / "one.npz"
-    )
+    code, said, _ = run("scene", tmp_path / "story.toml", "--steps", 2, "--seed", 5, "--out", tmp_path / "one.npz")
     assert code == 0
     asked = answer(said)["manifest"]["request"]
     assert (asked["kind"], asked["seed"], asked["steps"], len(asked["beats"])) == ("scene", 5, 2, 2)

@@ -135,9 +135,7 @@ def test_modules_form_no_circle() -> None:
 def test_the_registry_names_pipelines_that_exist() -> None:
     """Shipped methods name their pipelines as text, since requests read the registry and pipelines read requests."""
     methods = [path for path in FILES.values() if path.parent.name == "methods"]
-    named = [
-        place for path in methods for place in re.findall(r'load_pipeline[,(] ?"([^"]+)"', path.read_text())
-    ]
+    named = [place for path in methods for place in re.findall(r'load_pipeline[,(] ?"([^"]+)"', path.read_text())]
     assert len(named) == 10
     for place in named:
         module, _, name = place.partition(".")
@@ -208,21 +206,7 @@ TESTED_FROM_OUTSIDE = {
 
 
 def test_tests_lie_where_their_packages_lie() -> None:
-    folders = {
-        path.parent.relative_to(ROOT / "tests").as_posix() for path in (ROOT / "tests").rglob("test_*.py")
-    }
+    folders = {path.parent.relative_to(ROOT / "tests").as_posix() for path in (ROOT / "tests").rglob("test_*.py")}
     mirrored = {name for name in folders if (ROOT / name).is_dir() or (ROOT / "webdemo" / name).is_dir()}
     assert len(mirrored) > 20
     assert folders - mirrored == TESTED_FROM_OUTSIDE & folders
-
-
-def test_docstrings_open_with_a_noun_or_a_verb() -> None:
-    clause = re.compile(r"(What|Where|How|Whether|Which|Whose|When|Who|Why)\b")
-    kinds = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
-    found = {
-        f"{module}: {docstring.splitlines()[0]}"
-        for module, path in FILES.items()
-        for node in ast.walk(ast.parse(path.read_text()))
-        if isinstance(node, kinds) and clause.match(docstring := ast.get_docstring(node) or "")
-    }
-    assert not found, "say what it is or does"

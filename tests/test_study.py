@@ -33,9 +33,7 @@ def test_motions_of_different_joints_are_a_sentence() -> None:
 
 def test_what_is_shown_does_not_tell_where_it_is_from() -> None:
     moved = turn(MOTION.positions, 1.1) + np.array([7.0, 0.0, -3.0])
-    other = Duet.from_positions(
-        moved, fps=MOTION.fps, roles=("actor", "reactor"), manifest={"model": "secret"}
-    )
+    other = Duet.from_positions(moved, fps=MOTION.fps, roles=("actor", "reactor"), manifest={"model": "secret"})
     one, two = as_shown(MOTION), as_shown(other)
     np.testing.assert_allclose(one.positions, two.positions, atol=1e-4)
     assert two.manifest is None and two.roles == ("a", "b")

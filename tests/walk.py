@@ -108,9 +108,7 @@ def walks(prompt: str) -> dict[str, Walk]:
     """The walks of a sentence by name, and that of the engine without the correction as "undamped"."""
     engine = Engine()
     tab = GenerateTab(
-        PageContext(
-            engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(Path(tempfile.mkdtemp()))
-        )
+        PageContext(engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(Path(tempfile.mkdtemp())))
     )
     with gr.Blocks():
         tab.build(gr.Blocks())
@@ -132,9 +130,7 @@ def walks(prompt: str) -> dict[str, Walk]:
             ReactRequest(actor=given.a, prompt=words, model="intergen", steps=8, seed=seed)
         ),
         "plan": lambda words, seed: run(GenerateRequest(acts=read(words), seed=seed, **FIELDS)),
-        "undamped": lambda words, seed: run(
-            GenerateRequest(prompt=words, seed=seed, **FIELDS | {"damping": 0.0})
-        ),
+        "undamped": lambda words, seed: run(GenerateRequest(prompt=words, seed=seed, **FIELDS | {"damping": 0.0})),
     }
     found = {}
     for seed, (name, job) in enumerate(jobs.items()):  # another seed each: no window of a scene is kept

@@ -46,9 +46,7 @@ def caption_bank(scenes: Scenes) -> CaptionBank:
     captions = sorted({c for known in chosen.values() for c in known})
     unseen = sorted({c for row in scenes.split("test") for c in row["captions"]})[:2000]
     if not captions or not unseen:
-        raise InputError(
-            "The scenes hold no training or no test captions: build the corpus with both splits."
-        )
+        raise InputError("The scenes hold no training or no test captions: build the corpus with both splits.")
     vectors = encode(encoder, captions)
     nearest = (encode(encoder, unseen) @ vectors.T).amax(1)
     return CaptionBank(tuple(captions), vectors, round(float(nearest.quantile(FAR_QUANTILE)), 3))

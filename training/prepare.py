@@ -81,9 +81,7 @@ def load_corpus(folder: Path) -> tuple[np.ndarray, list[dict[str, Any]]]:
     return motions, scenes
 
 
-def prepare(
-    folder: Path, layout: TokenLayout, max_seconds: float = 10.0, captions: int | None = None
-) -> Scenes:
+def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0, captions: int | None = None) -> Scenes:
     """Fits control points to every scene of a corpus; scenes are cut to whole tokens.
 
     ``captions`` keeps that many of a training scene's sentences, drawn at random.
@@ -137,10 +135,7 @@ def joined(parts: Sequence[Scenes]) -> Scenes:
 
 def save(scenes: Scenes, path: Path) -> None:
     """Writes prepared scenes; an interrupted write leaves no file of that name."""
-    layout = {
-        "frames_per_knot": scenes.layout.frames_per_knot,
-        "knots_per_token": scenes.layout.knots_per_token,
-    }
+    layout = {"frames_per_knot": scenes.layout.frames_per_knot, "knots_per_token": scenes.layout.knots_per_token}
     metadata = {"rows": json.dumps(scenes.rows), "layout": json.dumps(layout)}
     with replacing(path) as temporary:
         save_file({"control": scenes.control}, temporary, metadata=metadata)
@@ -154,9 +149,7 @@ def load(path: Path) -> Scenes:
             layout = TokenLayout(**json.loads(metadata["layout"]))
             return Scenes(file.get_tensor("control"), json.loads(metadata["rows"]), layout)
     except (OSError, SafetensorError, KeyError, TypeError, ValueError) as error:
-        raise InputError(
-            f"{path} holds no prepared scenes ({error}): run `python -m training.prepare`."
-        ) from error
+        raise InputError(f"{path} holds no prepared scenes ({error}): run `python -m training.prepare`.") from error
 
 
 def normalizer(scenes: Scenes, joint_mirror: tuple[int, ...]) -> tuple[Tensor, Tensor]:
@@ -180,9 +173,7 @@ def normalizer(scenes: Scenes, joint_mirror: tuple[int, ...]) -> tuple[Tensor, T
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Turn a corpus into the tensors that training reads.")
-    parser.add_argument(
-        "--corpus", type=Path, required=True, nargs="+", help="folders with motions.npy and index.json"
-    )
+    parser.add_argument("--corpus", type=Path, required=True, nargs="+", help="folders with motions.npy and index.json")
     parser.add_argument("--out", type=Path, required=True, help="the .safetensors file to write")
     parser.add_argument("--frames-per-knot", type=int, default=4)
     parser.add_argument("--knots-per-token", type=int, default=2)

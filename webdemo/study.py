@@ -70,9 +70,7 @@ def paired(first: Sequence[tuple[str, Duet]], second: Sequence[tuple[str, Duet]]
         for (said, ours), (also, theirs) in zip(first, second, strict=False)
     ]
     if not 0 < len(pairs) <= MOST_PAIRS:
-        raise InputError(
-            f"A study has 1 to {MOST_PAIRS} pairs of motions, not {len(pairs)}: choose other runs."
-        )
+        raise InputError(f"A study has 1 to {MOST_PAIRS} pairs of motions, not {len(pairs)}: choose other runs.")
     if any(pair.first.skeleton.joint_names != pair.second.skeleton.joint_names for pair in pairs):
         raise InputError("These runs have different joints, so they cannot be compared: choose others.")
     return pairs

@@ -21,9 +21,7 @@ _WITHIN = frozenset(("DET", "PRON", "NUM", "ADJ"))
 _PARTICIPLES = {"outstretched": "extend", "outspread": "spread", "upraised": "raise", "uplifted": "raise"}
 """Participles that are no verbs, and the verb of what they show."""
 _BEFORE = frozenset((",", ";", ":", "-", "", "and"))
-_OWNERS = frozenset(
-    ["his", "her", "their", "its", "my", "your", "each", "both", "one", "the", "left", "right"]
-)
+_OWNERS = frozenset(["his", "her", "their", "its", "my", "your", "each", "both", "one", "the", "left", "right"])
 _PLACES = frozenset(("on", "behind", "above", "around", "over", "against"))
 _STATES = frozenset(("straight", "upright", "together", "parallel", "loose", "relaxed", "soft", "tense"))
 """Adjectives of how a part is held that are no directions."""
@@ -128,16 +126,10 @@ def stands_absolutely(lower: Callable[[int], str], has_verb: Callable[[int], boo
         return False
     held = after in _PARTICIPLES or after in words.verbs["held"]
     ends = not behind.isalpha() or behind in ("and", "while", "as", "then")
-    placed = (
-        after in PREPOSITIONS - {"of", "to", "with"} and behind.isalpha() and after not in words.directions
-    )
+    placed = after in PREPOSITIONS - {"of", "to", "with"} and behind.isalpha() and after not in words.directions
     if placed and at == i and lower(i).endswith("s"):  # "hands over a parcel" is an act
         placed = any(words.part(lower(k).removesuffix("s")) for k in range(at + 2, at + 5))
-    return (
-        held
-        or ((after in words.directions or after in _STATES) and ends)
-        or (placed and not has_verb(at + 1))
-    )
+    return held or ((after in words.directions or after in _STATES) and ends) or (placed and not has_verb(at + 1))
 
 
 def own_part(preposition: str, target: Ref, event: Event) -> Ref:

@@ -25,9 +25,7 @@ _TURNS = frozenset(("clockwise", "counterclockwise"))
 _SIDES = frozenset(("behind", "below", "above"))
 _WAYS = frozenset(("way", "manner", "fashion", "mood", "style"))
 _RECEIVES = frozenset(("get", "receive", "take", "have"))
-_MODIFIERS = frozenset(
-    ("prt", "advmod", "acomp", "attr", "oprd", "npadvmod", "amod", "neg", "intj", "compound")
-)
+_MODIFIERS = frozenset(("prt", "advmod", "acomp", "attr", "oprd", "npadvmod", "amod", "neg", "intj", "compound"))
 
 
 class Arguments:
@@ -76,9 +74,7 @@ class Arguments:
             elif child.dep_ in ("dative", "iobj") and child.pos_ != "ADP":
                 event.dative = self._argument(child, who, event)
             elif child.dep_ == "agent":
-                agent = next(
-                    (self._argument(n, who, event) for n in child.children if n.dep_ == "pobj"), None
-                )
+                agent = next((self._argument(n, who, event) for n in child.children if n.dep_ == "pobj"), None)
                 if agent is not None and agent.kind == "part":  # "is dragged off by the feet"
                     event.prepositions.append((child.lower_, replace(agent, who=agent.who or who)))
                     agent = None
@@ -97,10 +93,7 @@ class Arguments:
             elif (
                 child.dep_ in _MODIFIERS
                 or (child.pos_ == "INTJ" and child.i > token.i)
-                or (
-                    child.dep_ in ("xcomp", "ccomp", "advcl")
-                    and (child.pos_ == "ADJ" or is_adverb(child.lower_))
-                )
+                or (child.dep_ in ("xcomp", "ccomp", "advcl") and (child.pos_ == "ADJ" or is_adverb(child.lower_)))
             ):
                 self._modifier(child, event)
             else:
@@ -172,9 +165,7 @@ class Arguments:
                 self._preposition(child, who, event)
             elif child.dep_ == "nummod" or child.lower_ in self._words.numbers:
                 self._count(child, token, event)
-            elif child.dep_ == "prt" or (
-                child.dep_ in ("appos", "advmod") and child.lower_ in self._words.directions
-            ):
+            elif child.dep_ == "prt" or (child.dep_ in ("appos", "advmod") and child.lower_ in self._words.directions):
                 # "helps him up off the floor", "in a circle, clockwise"
                 self._modifier(child, event)
             elif child.lower_ == "no" and child.dep_ == "det":
@@ -223,9 +214,7 @@ class Arguments:
                 self._preposition(child, who, event)
                 found = True
         if token.lower_ == "from":  # "from behind"
-            event.adverbs += [
-                f"from {c.lower_}" for c in token.children if c.lower_ in _SIDES and not c.n_rights
-            ]
+            event.adverbs += [f"from {c.lower_}" for c in token.children if c.lower_ in _SIDES and not c.n_rights]
         if not found:
             event.words.append(token.lower_)
             event.particles.append(token.lower_)
@@ -257,9 +246,7 @@ class Arguments:
         if lemma == "distance" and preposition.lower_ in ("at", "from"):
             of = (measure for child in noun.children if child.lower_ == "of" for measure in child.children)
             measure = next((m for m in of if m.lemma_.lower() in self._words.metres), None)
-            event.distance = (
-                self._amount(measure) * self._words.metres[measure.lemma_.lower()] if measure else None
-            )
+            event.distance = self._amount(measure) * self._words.metres[measure.lemma_.lower()] if measure else None
             event.words.append("apart")
             return True
         if lemma in ("length", "metre", "meter") and preposition.lower_ in ("at", "within", "by"):
@@ -329,11 +316,7 @@ class Arguments:
             event.side = text
         if all(child.lower_ != "forth" for child in token.children):  # "back and forth" is no way back
             self._direction(text, event)
-        adverb = (
-            token.dep_ == "advmod"
-            or (token.dep_ == "conj" and token.head.dep_ == "advmod")
-            or is_adverb(text)
-        )
+        adverb = token.dep_ == "advmod" or (token.dep_ == "conj" and token.head.dep_ == "advmod") or is_adverb(text)
         if adverb and (text.endswith("ly") or text in self._words.speeds):
             event.adverbs.append(text)
         for child in token.children:
@@ -358,13 +341,7 @@ class Arguments:
         """Turns "gives him a hug" and "takes a bow" into the verb that their noun stands for."""
         noun = event.object
         if noun is not None and noun.kind == "thing" and noun.lemma in self._verbs:
-            for kind in (
-                "tried",
-                "wished",
-                "not",
-                "pretended",
-                "offered",
-            ):  # "wants a hug", "refuses the dance"
+            for kind in ("tried", "wished", "not", "pretended", "offered"):  # "wants a hug", "refuses the dance"
                 if event.lemma in self._words.verbs[kind] and event.lemma not in ("hope", "promise"):
                     if kind == "offered" and (
                         wordnet.usual_kind(noun.lemma) == "consumption" or not is_act(noun.lemma)
@@ -374,21 +351,14 @@ class Arguments:
                     event.modality = event.modality if kind == "not" else kind
                     event.denied = event.denied != (kind == "not")
                     return
-        if (
-            event.lemma not in self._words.verbs["light"]
-            or noun is None
-            or noun.kind != "thing"
-            or noun.place
-        ):
+        if event.lemma not in self._words.verbs["light"] or noun is None or noun.kind != "thing" or noun.place:
             return
         if noun.lemma not in self._verbs or noun.lemma in ("step", "hand") or not is_act(noun.lemma):
             return
         if wordnet.usual_kind(noun.lemma) == "consumption" and noun.lemma not in self._words.verbs["nouns"]:
             return  # "offers her a drink" hands something over
         event.noun = replace(event, lemma=noun.lemma, object=event.dative, dative=None)
-        giver = next(
-            (i for i, (p, ref) in enumerate(event.prepositions) if p == "from" and ref.kind == "person"), -1
-        )
+        giver = next((i for i, (p, ref) in enumerate(event.prepositions) if p == "from" and ref.kind == "person"), -1)
         if event.lemma in _RECEIVES and giver >= 0:  # "gets a massage from her": she massages him
             rest = [each for i, each in enumerate(event.prepositions) if i != giver]
             event.noun = replace(

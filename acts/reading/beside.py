@@ -43,9 +43,7 @@ def seated(event: Event, found: Found, known: Lexicon, told: Iterable[str]) -> E
         told: people of whom the text has told something before.
     """
     seats = vocabulary().seats
-    seat = next(
-        (ref for word, ref in event.prepositions if word in ("in", "on") and ref.lemma in seats), None
-    )
+    seat = next((ref for word, ref in event.prepositions if word in ("in", "on") and ref.lemma in seats), None)
     if seat is None:
         return None
     shown = {shape.do for shape in known.entries[found[0]].stage}
@@ -103,27 +101,31 @@ def held(event: Event, found: Found, find: Find) -> Iterator[tuple[Event, Found]
     theirs = [each for each in event.prepositions if each[1].kind == "part" and _is_other(each[1], agents)]
     for preposition, ref in rest:
         if preposition == "with" and ref.family == "hand" and not ref.who and theirs and len(rest) > 1:
-            put = Event(
-                "put", event.subject, ref, prepositions=theirs[:1], first=event.first, last=event.last
-            )
+            put = Event("put", event.subject, ref, prepositions=theirs[:1], first=event.first, last=event.last)
             if (laid := find(put)) is not None and laid[0] != found[0]:  # "stops him with a hand on his back"
                 yield put, laid
             return
         open_ = not ref.who and (preposition == "with" or (_carries(ref) and ref.family != "knee"))
-        if (
-            ref.kind != "part"
-            or not (open_ or ref.who == agents)
-            or (preposition == "on" and not _carries(ref))
-        ):
+        if ref.kind != "part" or not (open_ or ref.who == agents) or (preposition == "on" and not _carries(ref)):
             continue
         words = [word for word in event.words if word in _HELD]
         if preposition == "with" and not words:
             continue
         posture = replace(
-            event, lemma="stand", subject=Ref("person", agents), object=None, dative=None,
-            words=words, particles=[], noun=None, times=None,
-            prepositions=[(preposition, ref)], side=None, direction=None, adverbs=[],
-        )  # fmt: skip
+            event,
+            lemma="stand",
+            subject=Ref("person", agents),
+            object=None,
+            dative=None,
+            words=words,
+            particles=[],
+            noun=None,
+            times=None,
+            prepositions=[(preposition, ref)],
+            side=None,
+            direction=None,
+            adverbs=[],
+        )
         posed = find(posture)
         if posed is not None and posed[0] != found[0] and not posed[2].rest and posed[2].score > 1.5:
             yield posture, posed
@@ -148,9 +150,7 @@ def is_given(event: Event, entry: Entry) -> bool:
 def given(event: Event, later: Iterable[Event]) -> Event:
     """Such an event, as done by one person to the other: to the one of whom the text goes on, else to b."""
     subjects = (other.subject for other in later if other.subject is not None)
-    whom = next(
-        (ref.who for ref in subjects if ref.kind == "person" and ref.lemma and len(ref.who) == 1), "b"
-    )
+    whom = next((ref.who for ref in subjects if ref.kind == "person" and ref.lemma and len(ref.who) == 1), "b")
     giver = Ref("person", "a" if whom == "b" else "b")
     noun = replace(event.noun or event, subject=giver, object=Ref("person", whom))
     return replace(event, subject=giver, noun=noun)
@@ -179,13 +179,18 @@ def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tup
         if not bodily or ref.lemma in vocabulary().verbs["no_nouns"]:
             continue
         others = [each for j, each in enumerate(event.prepositions) if j != i and j in rest]
-        person = (
-            event.object if event.object is not None and event.object.kind in ("person", "each") else None
-        )
+        person = event.object if event.object is not None and event.object.kind in ("person", "each") else None
         done = replace(
-            event, lemma=ref.lemma, object=person or event.dative, dative=None, words=[], particles=[],
-            prepositions=others, noun=None, direction=None,
-        )  # fmt: skip
+            event,
+            lemma=ref.lemma,
+            object=person or event.dative,
+            dative=None,
+            words=[],
+            particles=[],
+            prepositions=others,
+            noun=None,
+            direction=None,
+        )
         if preposition == "for" and event.countered:  # "goes in for a kiss, but she turns away"
             done.modality = "tried"
         words = [word for word in event.words if word not in event.particles]

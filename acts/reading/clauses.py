@@ -14,10 +14,24 @@ if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
 
 MARKS = {
-    "while": "while", "as": "while", "whereas": "while", "whilst": "while", "by": "while", "with": "while",
-    "when": "main-after", "after": "main-after", "once": "main-after", "upon": "main-after", "until": "main-until",
-    "till": "main-until", "before": "after", "because": "with", "so": "after", "without": "while", "instead": "with",
-}  # fmt: skip
+    "while": "while",
+    "as": "while",
+    "whereas": "while",
+    "whilst": "while",
+    "by": "while",
+    "with": "while",
+    "when": "main-after",
+    "after": "main-after",
+    "once": "main-after",
+    "upon": "main-after",
+    "until": "main-until",
+    "till": "main-until",
+    "before": "after",
+    "because": "with",
+    "so": "after",
+    "without": "while",
+    "instead": "with",
+}
 """How a clause with this word lies beside its main clause; "main-after" puts the main clause behind it."""
 
 NOUNMARKS = {"after": "main-after", "following": "main-after", "upon": "main-after", "before": "after"}
@@ -51,9 +65,13 @@ class ClauseTree:
     """
 
     def __init__(
-        self, doc: Doc, verbs: frozenset[str], lemmas: Mapping[int, str], forms: Mapping[str, tuple[str, str]],
+        self,
+        doc: Doc,
+        verbs: frozenset[str],
+        lemmas: Mapping[int, str],
+        forms: Mapping[str, tuple[str, str]],
         held: Set[int] = frozenset(),
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.doc = doc
         self.mains: list[int] = []
         """The verbs of main clauses read so far, by token."""
@@ -108,11 +126,7 @@ class ClauseTree:
             bare = not any(c.dep_ in ("det", "poss", "amod", "nummod") for c in token.children)
             if bare and token.lemma_.lower() in self._words.verbs["no_nouns"]:
                 return False  # "after work"
-            return (
-                known
-                and token.head.head.pos_ in ("VERB", "AUX")
-                and not self._words.is_person(token.lemma_.lower())
-            )
+            return known and token.head.head.pos_ in ("VERB", "AUX") and not self._words.is_person(token.lemma_.lower())
         if token.dep_ == "ROOT" and token.pos_ in ("NOUN", "PROPN", "ADJ", "INTJ", "ADV", "ADP", "X"):
             return self.lemma(token) in self._verbs or token.i in self._lemmas
         return token.dep_ in ("conj", "pcomp", "advcl", "dep") and token.i in self._lemmas
@@ -170,11 +184,7 @@ def spans(doc: Doc, events: Sequence[Event]) -> Iterator[tuple[int, int]]:
         waiting = [token]
         while waiting:
             for child in waiting.pop().children:
-                if (child.idx in heads and heads[child.idx] is not event) or child.dep_ in (
-                    "punct",
-                    "cc",
-                    "mark",
-                ):
+                if (child.idx in heads and heads[child.idx] is not event) or child.dep_ in ("punct", "cc", "mark"):
                     continue
                 own.append(child)
                 waiting.append(child)

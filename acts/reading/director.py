@@ -42,9 +42,23 @@ _FEW_WORDS = frozenset(("a", "an", "the", "their", "b", "b's", "to", "with", "at
 """Words of a caption that say nothing that the name of its act leaves open."""
 
 _ASKED = (
-    "id", "words", "act", "agents", "patient", "order", "polarity", "modality", "side", "times", "thing", "part",
-    "direction", "manner", "seconds", "distance",
-)  # fmt: skip
+    "id",
+    "words",
+    "act",
+    "agents",
+    "patient",
+    "order",
+    "polarity",
+    "modality",
+    "side",
+    "times",
+    "thing",
+    "part",
+    "direction",
+    "manner",
+    "seconds",
+    "distance",
+)
 """Fields that a model is asked for, the words first: a small model keeps to what it has just quoted."""
 
 _EXAMPLE = (
@@ -52,13 +66,7 @@ _EXAMPLE = (
     {
         "acts": [
             {"id": "1", "words": "hugs him", "act": "hug", "agents": ["a"], "patient": "b"},
-            {
-                "id": "2",
-                "words": "waves",
-                "act": "wave",
-                "agents": ["b"],
-                "order": [{"kind": "after", "act": "1"}],
-            },
+            {"id": "2", "words": "waves", "act": "wave", "agents": ["b"], "order": [{"kind": "after", "act": "1"}]},
         ]
     },
 )
@@ -88,11 +96,7 @@ def directed(text: str, *, ask: bool = True) -> Plan:
     plan = read(text)
     try:
         settings = director_settings()
-        if (
-            settings is None
-            or not text.strip()
-            or (settings.when == "unread" and plan.acts and not plan.unread)
-        ):
+        if settings is None or not text.strip() or (settings.when == "unread" and plan.acts and not plan.unread):
             return plan
         known = lexicon()
         key = (text, settings, known)
@@ -162,9 +166,13 @@ async def _plan(text: str, settings: DirectorSettings, known: Lexicon) -> Plan:
     notes = [f"Dropped from the director's answer: {each}" for each in wrong[:5]]
     things = dict.fromkeys(act.thing for act in acts if act.thing)
     return Plan(
-        sentence=text, people=people, things=tuple(things)[:20], acts=tuple(acts), notes=tuple(notes),
+        sentence=text,
+        people=people,
+        things=tuple(things)[:20],
+        acts=tuple(acts),
+        notes=tuple(notes),
         reader=settings.model[:60],
-    )  # fmt: skip
+    )
 
 
 async def _ask(messages: list[dict[str, str]], settings: DirectorSettings, known: Lexicon) -> str:
@@ -186,9 +194,7 @@ async def _ask(messages: list[dict[str, str]], settings: DirectorSettings, known
                 _form_of[settings.url] = number
                 break
             if _is_too_long(body):
-                raise _ContextError(
-                    "has too small a context for the list of acts: give its server 4,096 tokens"
-                )
+                raise _ContextError("has too small a context for the list of acts: give its server 4,096 tokens")
             if number + 1 == len(forms) or response.status_code not in _SCHEMA_REFUSED:
                 raise DirectorError(f"answered with HTTP {response.status_code}")
     try:
@@ -240,19 +246,10 @@ def schema(known: Lexicon) -> dict[str, Any]:
     act = {name: fields[name] for name in _ASKED}
     whole["$defs"]["Act"] |= {"properties": act, "required": ["id", "words", "act", "agents"]}
     act["words"] = {"type": "string", "maxLength": 300}
-    act["act"] = {
-        "type": "string",
-        "enum": sorted(name for name, entry in known.entries.items() if entry.shown),
-    }
+    act["act"] = {"type": "string", "enum": sorted(name for name, entry in known.entries.items() if entry.shown)}
     kept = {name: whole["properties"][name] for name in ("people", "acts")}
     defs = {name: whole["$defs"][name] for name in ("Act", "Person", "Relation")}
-    return {
-        "type": "object",
-        "properties": kept,
-        "required": ["acts"],
-        "additionalProperties": False,
-        "$defs": defs,
-    }
+    return {"type": "object", "properties": kept, "required": ["acts"], "additionalProperties": False, "$defs": defs}
 
 
 def _task(known: Lexicon, *, names_alone: bool = False) -> str:
@@ -288,9 +285,7 @@ def _listed(name: str, caption: str) -> str:
     return f"{name} b" if own & {"b", "b's"} else name
 
 
-def _understood(
-    content: str, text: str, known: Lexicon
-) -> tuple[list[Act], list[str], tuple[Person, Person]]:
+def _understood(content: str, text: str, known: Lexicon) -> tuple[list[Act], list[str], tuple[Person, Person]]:
     """The acts of an answer that can be used, a sentence for each other one, and the people."""
     people = (Person(id="a"), Person(id="b"))
     try:
@@ -332,9 +327,7 @@ def _act(given: Any, text: str, known: Lexicon) -> Act:
     for key in _WORDS:
         fields[key] = _plain(fields.get(key), 40) or None
     manner = fields.get("manner") or ()
-    fields["manner"] = (
-        [word for each in manner if (word := _plain(each, 40))] if isinstance(manner, list) else []
-    )
+    fields["manner"] = [word for each in manner if (word := _plain(each, 40))] if isinstance(manner, list) else []
     if fields.get("patient") is None and all("{b}" in text for text in entry.caption):
         fields["patient"] = _the_other(fields.get("agents"))  # nobody is carried by themselves
     quoted = fields.pop("words", None)

@@ -27,9 +27,7 @@ _OWNERS = frozenset(("his", "her", "their", "my", "your", "its", "the", "this", 
 _CLAUSES = frozenset(
     ("i", "you", "he", "she", "they", "we", "who", "is", "are", "was", "were", "as", "while", "until", "to")
 )
-_NOT_PLACES = frozenset(
-    ("with", "without", "of", "from", "like", "for", "by", "after", "before", "to", "past", "off")
-)
+_NOT_PLACES = frozenset(("with", "without", "of", "from", "like", "for", "by", "after", "before", "to", "past", "off"))
 _OBJECTS = _OWNERS | _ARTICLES | {"it", "him", "them", "me", "you", "us"}
 _HALVES = frozenset((("a", "half"), ("a", "full")))
 """How a turn begins that stands for the adverb "around"."""
@@ -127,11 +125,7 @@ class Ellipsis:
         at = i
         while at < i + _LONGEST and self._lower(at) not in outside:
             at += 1
-        if (
-            at == i
-            or self._lower(i - 1) not in ("", ".", "!", "?")
-            or self._lower(at) not in ("", ".", "!", "?")
-        ):
+        if at == i or self._lower(i - 1) not in ("", ".", "!", "?") or self._lower(at) not in ("", ".", "!", "?"):
             return False
         *before, noun = [self._lower(k) for k in range(i, at)]
         one = noun.removesuffix("s")

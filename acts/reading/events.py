@@ -73,9 +73,7 @@ class Reader:
     def without_subject(self) -> int:
         """The number of verbs that lack their subject."""
         subjects = ((self.events[number].subject, self.doc[i].tag_) for i, number in self._of.items())
-        return sum(
-            who is not None and not who.lemma and tag in ("VBZ", "VBD", "NNS", "NN") for who, tag in subjects
-        )
+        return sum(who is not None and not who.lemma and tag in ("VBZ", "VBD", "NNS", "NN") for who, tag in subjects)
 
     def missed(self) -> Iterator[Token]:
         """Words with a meaning of their own that no event has taken up."""
@@ -112,14 +110,17 @@ class Reader:
             owner = Ref("person", ref.who) if ref.who and found.state.lower_ != "behind" else subject
             first = found.part.idx if found.verb == "put" or found.state.i > found.part.i else found.state.idx
             event = Event(
-                found.verb or self._tree.lemma(found.state), owner, ref, first=first, last=first + len(found.part),
-                ongoing=True, state=True,
-            )  # fmt: skip
+                found.verb or self._tree.lemma(found.state),
+                owner,
+                ref,
+                first=first,
+                last=first + len(found.part),
+                ongoing=True,
+                state=True,
+            )
             if found.verb == "put":
                 self._arguments.place(found.state, who, event)
-                event.prepositions = [
-                    (word, own_part(word, target, event)) for word, target in event.prepositions
-                ]
+                event.prepositions = [(word, own_part(word, target, event)) for word, target in event.prepositions]
             elif found.verb == "hold" or found.state.lower_ in self._words.directions:
                 event.words.append(found.state.lower_)
                 event.direction = self._words.directions.get(found.state.lower_)
@@ -150,11 +151,7 @@ class Reader:
         above = next((t for t in found.preposition.ancestors if t.i in self._of), None)
         own = [self.doc[i] for i in self._of if sentence.start <= i < sentence.end]
         before = [token for token in own if token.i < found.preposition.i]
-        return (
-            before[-1]
-            if before and (above is None or above.i < before[-1].i)
-            else above or next(iter(own), None)
-        )
+        return before[-1] if before and (above is None or above.i < before[-1].i) else above or next(iter(own), None)
 
     def _sort(self) -> None:
         """Puts what is held from the start of a sentence before its verbs."""
@@ -194,23 +191,13 @@ class Reader:
         state = None if agent is not None else state_of(token, event, self._known)
         event = state or event
         if state is None and (above is not None or suffered or is_passive(token)):
-            agent = agent or (
-                above.subject if above is not None else None
-            )  # "is dipped by him and then spun out"
+            agent = agent or (above.subject if above is not None else None)  # "is dipped by him and then spun out"
             give_roles(token, event, agent)
         if event.object is None and event.dative is not None:
             event.object, event.dative = event.dative, None
         self._arguments.light(event)
-        if (
-            token.dep_ == "acl"
-            and token.tag_ != "VBG"
-            and event.subject is not None
-            and event.subject.kind == "part"
-        ):
-            event.object, event.subject = (
-                event.subject,
-                self._owner(event.subject, head),
-            )  # "with both arms raised"
+        if token.dep_ == "acl" and token.tag_ != "VBG" and event.subject is not None and event.subject.kind == "part":
+            event.object, event.subject = (event.subject, self._owner(event.subject, head))  # "with both arms raised"
             event.ongoing, kind = True, "with"
         self.cast.focus = event.subject.who if event.subject is not None and self._is_mutual(event) else ""
         self._of[token.i] = len(self.events)
@@ -247,9 +234,15 @@ class Reader:
             return  # it is that verb's subject
         before = self.events[self._of[token.head.i]]
         event = Event(
-            before.lemma, ref, before.object, before.dative, denied=before.denied, modality=before.modality,
-            first=token.idx, last=token.idx + len(token.text),
-        )  # fmt: skip
+            before.lemma,
+            ref,
+            before.object,
+            before.dative,
+            denied=before.denied,
+            modality=before.modality,
+            first=token.idx,
+            last=token.idx + len(token.text),
+        )
         self._arguments.fill(token, event)
         self._joints.append((event, token, "with", token.head.i))
         self.events.append(event)
@@ -271,20 +264,14 @@ class Reader:
             self.events.append(event)
 
     def _polarity(self, token: Token, head: Token | None, event: Event) -> None:
-        children = {
-            child.lower_
-            for child in token.children
-            if child.dep_ in ("neg", "det", "preconj", "advmod", "cc")
-        }
+        children = {child.lower_ for child in token.children if child.dep_ in ("neg", "det", "preconj", "advmod", "cc")}
         event.denied = any(child.dep_ == "neg" for child in token.children) or bool(
             children & {"never", "hardly", "barely"}
         )
         if event.subject is not None and event.subject.lemma in ("nobody", "neither", "none", "noone"):
             event.denied = True
         for child in token.children:
-            if child.dep_ in ("nsubj", "nsubjpass") and any(
-                c.lower_ in ("no", "neither") for c in child.children
-            ):
+            if child.dep_ in ("nsubj", "nsubjpass") and any(c.lower_ in ("no", "neither") for c in child.children):
                 event.denied = True
             if child.dep_ == "aux" and child.lower_ in self._words.modals["wished"]:
                 event.modality = "wished"
@@ -301,9 +288,7 @@ class Reader:
         ):
             event.denied = True
         above = token.head
-        if (
-            token.dep_ == "xcomp" and above.pos_ == "ADJ"
-        ):  # "too proud to cry", "unable to stop", "ready to box"
+        if token.dep_ == "xcomp" and above.pos_ == "ADJ":  # "too proud to cry", "unable to stop", "ready to box"
             kinds = self._words.adjectives
             event.denied |= above.lower_ in kinds["not"] or any(c.lower_ == "too" for c in above.children)
             event.modality = "wished" if above.lower_ in kinds["wished"] else event.modality
@@ -356,13 +341,9 @@ class Reader:
         """
         bare = (c for c in token.children if all(below.dep_ != "pobj" for below in c.children))
         marks = [c.lower_ for c in bare if c.dep_ in ("mark", "advmod", "prep", "cc", "intj")]
-        above = (
-            head if head is not None else next((t for t in token.ancestors if self._tree.is_clause(t)), None)
-        )
+        above = head if head is not None else next((t for t in token.ancestors if self._tree.is_clause(t)), None)
         previous = max((i for i in self._of if i < token.i), default=None)
-        if not _THEN.isdisjoint(marks) or (
-            above is not None and token.dep_ == "conj" and self._then_before(token)
-        ):
+        if not _THEN.isdisjoint(marks) or (above is not None and token.dep_ == "conj" and self._then_before(token)):
             return "then", previous
         if not _AT_ONCE.isdisjoint(marks) and token.dep_ != "xcomp":
             return "with", previous

@@ -30,13 +30,7 @@ def unknown(doc: Doc, is_verb: Callable[[str], bool]) -> Iterator[tuple[int, int
 def _is_known(word: str) -> bool:
     """True for a noun or an adverb that the parser has not met: of a person, a plural, two words in one, "tiredly"."""
     stem, words = word.removesuffix("s"), vocabulary()
-    if (
-        is_adverb(word)
-        or is_word(stem)
-        or _names_something(stem)
-        or word in words.directions
-        or word.endswith("wards")
-    ):
+    if is_adverb(word) or is_word(stem) or _names_something(stem) or word in words.directions or word.endswith("wards"):
         return True
     return any(_names_something(stem[:i]) and _names_something(stem[i:]) for i in range(3, len(stem) - 2))
 
@@ -54,9 +48,7 @@ def other_language(text: str) -> str | None:
         return "There are no words in this text: write in English what the two people do."
     if sum(ord(c) < 0x250 for c in letters) < 0.6 * len(letters):
         return "This is not in the Latin alphabet: write in English, or let a director's model read other languages."
-    words = [
-        word for word in "".join(c if c.isalpha() or c == "'" else " " for c in text).split() if len(word) > 1
-    ]
+    words = [word for word in "".join(c if c.isalpha() or c == "'" else " " for c in text).split() if len(word) > 1]
     if len(words) >= 4 and not any(word.lower() in _ENGLISH for word in words):
         unknown = sum(not is_word(word.lower()) for word in words)
         if unknown >= 0.4 * len(words):

@@ -27,8 +27,7 @@ def names(words: list[str], is_verb: Callable[[str], bool]) -> dict[int, str]:
         elif word == "B":
             found[i] = B_NAME
         elif word == "A" and (
-            (upper_b and (i + 1 == len(words) or not _takes_article(words, i)))
-            or _verb_follows(words, i, is_verb)
+            (upper_b and (i + 1 == len(words) or not _takes_article(words, i))) or _verb_follows(words, i, is_verb)
         ):
             found[i] = A_NAME
     return found

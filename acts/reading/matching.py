@@ -134,9 +134,7 @@ def _as(event: Event, verb: str) -> Event:
     """The event with another verb, and that one's particle."""
     _, _, particle = verb.partition("_")
     own = [particle] if particle else []
-    return replace(
-        event, lemma=verb, noun=None, words=[*event.words, *own], particles=[*event.particles, *own]
-    )
+    return replace(event, lemma=verb, noun=None, words=[*event.words, *own], particles=[*event.particles, *own])
 
 
 @lru_cache(maxsize=4)

@@ -167,36 +167,25 @@ class Cast:
             return False
         acts = token.dep_ in ("nsubj", "nsubjpass") and bool(children & _ARTICLES)
         known = self._words.is_person(lemma) or bool(self._has(lemma)) or self._is_many(token)
-        return (
-            known
-            or self._is_acting_animal(token, lemma)
-            or _is_who(token)
-            or (acts and self._is_acting(token))
-        )
+        return known or self._is_acting_animal(token, lemma) or _is_who(token) or (acts and self._is_acting(token))
 
     def _is_plural(self, token: Token, lemma: str) -> bool:
         """True for the plural of a noun, and not for a name like one: "Chris"."""
         text = token.lower_
-        named = (
-            token.tag_ == "NNS" and token.text.istitle() and lemma == text and lemma not in self._words.both
-        )
+        named = token.tag_ == "NNS" and token.text.istitle() and lemma == text and lemma not in self._words.both
         return (token.tag_ in ("NNS", "NNPS") and not named) or self._is_many(token)
 
     def _is_many(self, token: Token) -> bool:
         """True for a plural that the parser does not know as one: "ninjas"."""
         lemma = token.lemma_.lower()
         one = lemma.removesuffix("s")
-        return (
-            one != lemma == token.lower_ and not self._words.is_person(lemma) and self._words.is_person(one)
-        )
+        return one != lemma == token.lower_ and not self._words.is_person(lemma) and self._words.is_person(one)
 
     def _is_acting(self, token: Token) -> bool:
         """True for a noun that is a person where it acts: "the model poses", "the base lies on her back"."""
         if len(self._known) == 2 or self._words.part(token.lemma_.lower()):
             return False
-        own = (
-            t for t in token.head.subtree if t.tag_ == "PRP$" and t.lower_ in PRONOUN_SEX and t.i > token.i
-        )
+        own = (t for t in token.head.subtree if t.tag_ == "PRP$" and t.lower_ in PRONOUN_SEX and t.i > token.i)
         bodily = any(self._words.part(t.head.lemma_.lower()) for t in own)
         named = wordnet.may_be_person(token.lemma_.lower()) and not self._is_of_fable(token)
         return named or (bodily and not self._known)
@@ -245,9 +234,7 @@ class Cast:
     def _new(self, lemma: str, token: Token | None) -> str | None:
         free = next((who for who in "ab" if who not in self._known), "")
         if not free:
-            bare = [
-                who for who in "ab" if set(self._known[who].words) <= ANYONE | {"one", "other", "another"}
-            ]
+            bare = [who for who in "ab" if set(self._known[who].words) <= ANYONE | {"one", "other", "another"}]
             free = next((who for who in bare if who != self.last), "")
             if not free and lemma in ANYONE | {"another"}:
                 free = other_of(self.last) or "a"
@@ -370,9 +357,7 @@ class Cast:
             return ""
         owner = next((who for who in "ab" if who in self._known and self._known[who].sex == sex), "")
         told = any(known.sex for known in self._known.values())
-        return owner or (
-            self._pronoun(sex, "") if subject == "ab" and not told else ""
-        )  # "they dance, her head …"
+        return owner or (self._pronoun(sex, "") if subject == "ab" and not told else "")  # "they dance, her head …"
 
 
 def _is_who(noun: Token) -> bool:

@@ -53,17 +53,11 @@ def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
         InputError: if the text is too long, or the parser is not installed.
     """
     if len(text) > MOST_CHARACTERS:
-        raise InputError(
-            f"The text has {len(text)} characters: shorten it to {MOST_CHARACTERS}, or use several beats."
-        )
+        raise InputError(f"The text has {len(text)} characters: shorten it to {MOST_CHARACTERS}, or use several beats.")
     if not text.strip():
         return Plan(sentence=text, notes=("Nothing is said: write what the two people do.",))
     if (foreign := other_language(text)) is not None:
-        return Plan(
-            sentence=text,
-            unread=(Unread(words=Span(start=0, stop=len(text)), why=foreign),),
-            notes=(foreign,),
-        )
+        return Plan(sentence=text, unread=(Unread(words=Span(start=0, stop=len(text)), why=foreign),), notes=(foreign,))
     attempts = sorted(_attempts(text, lexicon(folders)), key=lambda attempt: attempt[0])
     cost, plan = attempts[0]
     others = [other for its_cost, other in attempts[1:] if its_cost <= cost + _DOUBT]
@@ -97,9 +91,14 @@ class _Planner:
     """Turns events into acts."""
 
     def __init__(
-        self, text: str, prepared_text: Text, known: Lexicon, events: Sequence[Event],
-        clauses: Sequence[tuple[int, int]], reader: Reader,
-    ) -> None:  # fmt: skip
+        self,
+        text: str,
+        prepared_text: Text,
+        known: Lexicon,
+        events: Sequence[Event],
+        clauses: Sequence[tuple[int, int]],
+        reader: Reader,
+    ) -> None:
         self._text, self._prepared, self._known = text, prepared_text, known
         self._events, self._clauses, self._reader = events, clauses, reader
         self._matcher = matcher(known)
@@ -142,27 +141,25 @@ class _Planner:
             span = Span(start=0, stop=len(self._text))
             self._unread.append(Unread(words=span, why="Nothing in this text is something that people do."))
         return Plan(
-            sentence=self._text, people=people, things=tuple(things)[:20], acts=tuple(self._acts[:MOST_ACTS]),
-            unread=tuple(self._unread[:60]), notes=tuple(notes),
-        )  # fmt: skip
+            sentence=self._text,
+            people=people,
+            things=tuple(things)[:20],
+            acts=tuple(self._acts[:MOST_ACTS]),
+            unread=tuple(self._unread[:60]),
+            notes=tuple(notes),
+        )
 
     def _event(self, number: int, event: Event) -> None:
-        inner = [
-            i for i, other in enumerate(self._events) if other.beside == number and other.joint == "comp"
-        ]
+        inner = [i for i, other in enumerate(self._events) if other.beside == number and other.joint == "comp"]
         if self._in_turn(number, event) or self._repeated(number, event, bool(inner)):
             return
         found = self._matcher.find(event)
         if found is not None and beside.is_given(event, self._known.entries[found[0]]):
             event = beside.given(event, self._events[number + 1 :])
             found = self._matcher.find(event)
-        if (theirs := of_the_last(event, self._acts)) is not None and (
-            other := self._matcher.find(theirs)
-        ) is not None:
+        if (theirs := of_the_last(event, self._acts)) is not None and (other := self._matcher.find(theirs)) is not None:
             touches = self._known.entries[other[0]].group in ("touch", "care") and other[2].patient
-            held = (
-                theirs.object is not None and theirs.object.definite
-            )  # "takes his ankle and bends the knee"
+            held = theirs.object is not None and theirs.object.definite  # "takes his ankle and bends the knee"
             if touches and (held or found is None or other[2].score >= found[2].score):
                 event, found = theirs, other
         if event.noun is not None and found is not None and found[2].part is event.noun.object is not None:
@@ -175,9 +172,7 @@ class _Planner:
             found = None if found is not None and (found[0] == "stand-still" or found[2].rest) else found
             event = placed if found is not None else event
         if found is None:
-            for whole, cost in completed(
-                number, event, self._events, self._acts, self._known, self._reader.cast.alone
-            ):
+            for whole, cost in completed(number, event, self._events, self._acts, self._known, self._reader.cast.alone):
                 self.cost += cost
                 if (found := self._matcher.find(whole)) is not None:
                     event = whole
@@ -193,9 +188,7 @@ class _Planner:
         if found is not None and not self._known.entries[found[0]].shown:
             self._unread.append(Unread(words=self._span(number), why="This is nothing that bodies show."))
         elif found is not None:
-            if inner and any(
-                self._events[i].lemma in f for f in (e.words for e in found[1].elements) for i in inner
-            ):
+            if inner and any(self._events[i].lemma in f for f in (e.words for e in found[1].elements) for i in inner):
                 self._taken.update(inner)
             self._add(number, event, *found)
             self._companions(number, event, found, formed)
@@ -213,9 +206,7 @@ class _Planner:
         nouns = self._found(other for _, other in beside.noun_acts(event, self._known, rest))
         return nouns[0] if nouns else None
 
-    def _companions(
-        self, number: int, event: Event, found: Found, formed: Sequence[tuple[Event, Found]]
-    ) -> None:
+    def _companions(self, number: int, event: Event, found: Found, formed: Sequence[tuple[Event, Found]]) -> None:
         """Adds the acts that the words beside a verb name."""
         of = str(len(self._acts))
         at_once = Relation(kind="with", act=of)
@@ -234,9 +225,7 @@ class _Planner:
             laid = posture[2].part
             if laid is not None and posture[2].patient and "touch" in shown and found[2].part is None:
                 where = {"part": laid.lemma, "part_of": posture[2].patient}
-                self._acts.append(
-                    self._acts.pop().model_copy(update=where)
-                )  # "stops him with a hand on his back"
+                self._acts.append(self._acts.pop().model_copy(update=where))  # "stops him with a hand on his back"
             else:
                 self._add(number, other, *posture, beside=at_once)
         if (sits := beside.seated(event, found, self._known, told)) is not None:
@@ -265,10 +254,7 @@ class _Planner:
     def _formations(self, number: int) -> list[str]:
         """The ways to move together that the clause of an event names."""
         span = self._span(number)
-        return [
-            *self._prepared.formations(span.start, span.stop),
-            *([_CANON] if number in self._in_turns else ()),
-        ]
+        return [*self._prepared.formations(span.start, span.stop), *([_CANON] if number in self._in_turns else ())]
 
     def _repeated(self, number: int, event: Event, has_inner: bool) -> bool:
         """Adds the last act once more where the words say so, or the last few with the roles exchanged."""
@@ -326,9 +312,8 @@ class _Planner:
         self._unread.append(Unread(words=self._span(number), why=why, nearest=self._matcher.nearest(event)))
 
     def _add(
-        self, number: int, event: Event, name: str, frame: Frame, match: Match,
-        beside: Relation | None = None,
-    ) -> None:  # fmt: skip
+        self, number: int, event: Event, name: str, frame: Frame, match: Match, beside: Relation | None = None
+    ) -> None:
         number_of = str(len(self._acts) + 1)
         self.cost += 0.5 * match.left
         part = match.part
@@ -355,15 +340,25 @@ class _Planner:
             whose = match.agents if frame.of_agent() else patient or match.agents
             owner = whose if len(whose) == 1 else None
         act = Act(
-            id=number_of, act=name, agents=tuple(match.agents),  # type: ignore[arg-type]
-            patient=patient or None, thing=match.thing or self._named(event, name),  # type: ignore[arg-type]
-            part=part.lemma if part is not None else None, part_of=owner,  # type: ignore[arg-type]
-            polarity="not" if event.denied else "done", modality=event.modality,  # type: ignore[arg-type]
-            already=self._goes_on(event, match.agents) and not self._known.entries[name].moment, seconds=event.seconds,
+            id=number_of,
+            act=name,
+            agents=tuple(match.agents),  # type: ignore[arg-type]
+            patient=patient or None,
+            thing=match.thing or self._named(event, name),  # type: ignore[arg-type]
+            part=part.lemma if part is not None else None,
+            part_of=owner,  # type: ignore[arg-type]
+            polarity="not" if event.denied else "done",
+            modality=event.modality,  # type: ignore[arg-type]
+            already=self._goes_on(event, match.agents) and not self._known.entries[name].moment,
+            seconds=event.seconds,
             side=side if side in ("left", "right", "both") else None,  # type: ignore[arg-type]
-            times=event.times, manner=tuple(event.adverbs[:8]), speed=min(max(speed, 0.2), 3.0),
-            direction=event.direction, distance=event.distance, words=self._span(number),
-        )  # fmt: skip
+            times=event.times,
+            manner=tuple(event.adverbs[:8]),
+            speed=min(max(speed, 0.2), 3.0),
+            direction=event.direction,
+            distance=event.distance,
+            words=self._span(number),
+        )
         self._acts.append(act)
         if beside is not None:
             self._beside[number_of] = beside

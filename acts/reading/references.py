@@ -36,15 +36,8 @@ def names_one(doc: Doc) -> bool:
     new = sum(any(c.lower_ in ("a", "an") for c in t.children) for t in nouns)
     plain = all(t.lemma_.lower() in _PLAIN for t in nouns)
     objects = (t for t in doc if t.lower_ in ("him", "her", "them") and t.dep_ != "poss")
-    plain = plain and all(
-        t.head.lower_ in _AROUND or (t.lower_ == "them" and t.dep_ != "pobj") for t in objects
-    )
-    same = (
-        plain
-        and len({t.lemma_.lower() for t in nouns}) == 1
-        and new < 2
-        and all(t.tag_ == "NN" for t in nouns)
-    )
+    plain = plain and all(t.head.lower_ in _AROUND or (t.lower_ == "them" and t.dep_ != "pobj") for t in objects)
+    same = plain and len({t.lemma_.lower() for t in nouns}) == 1 and new < 2 and all(t.tag_ == "NN" for t in nouns)
     sexes = {PRONOUN_SEX[word] for word in words & PRONOUN_SEX.keys()}
     sexes |= {words_of.sex(t.lemma_.lower()) for t in nouns} - {""}
     named = any(t.text in (A_NAME, B_NAME) for t in doc) or bool(words & _COMPANY)
@@ -65,9 +58,7 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
         return replace(cast.things, first=first, last=last)  # "drops her keys, and he picks them up"
     if token.lower_ == "it" and cast.thing is not None:
         said_of = cast.thing_of if cast.thing_of != subject and len(cast.thing_of) == 1 else ""
-        hers = bool(cast.thing_sex) and cast.thing_sex == cast.sex(
-            subject
-        )  # "kisses her hand; she withdraws it"
+        hers = bool(cast.thing_sex) and cast.thing_sex == cast.sex(subject)  # "kisses her hand; she withdraws it"
         owner = cast.thing.who or (said_of if cast.thing.kind == "part" and not hers else "")
         return replace(cast.thing, who=owner, first=first, last=last)  # "extends a hand, and she shakes it"
     ref = _reference(token, cast, subject)
@@ -83,9 +74,7 @@ def _is_aside(token: Token, cast: Cast) -> bool:
     verb = token.head.head if token.dep_ == "pobj" else token
     objects = (child for child in verb.children if child.dep_ in ("dobj", "obj"))
     thing = cast.thing
-    return (
-        thing is not None and thing.kind == "thing" and any(o.lemma_.lower() == thing.lemma for o in objects)
-    )
+    return thing is not None and thing.kind == "thing" and any(o.lemma_.lower() == thing.lemma for o in objects)
 
 
 def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
@@ -95,9 +84,7 @@ def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
     taken = token.dep_ == "dobj" or (ref.kind == "part" and token.head.lower_ in ("with", "of"))
     if many and token.tag_ == "NNS" and taken and not light:
         cast.things = ref
-    beside = (
-        token.dep_ == "pobj" and cast.thing is not None and (ref.kind, cast.thing.kind) == ("part", "thing")
-    )
+    beside = token.dep_ == "pobj" and cast.thing is not None and (ref.kind, cast.thing.kind) == ("part", "thing")
     if beside or _is_aside(token, cast):  # "throws the ball over her shoulder, and he catches it"
         return
     goal = ref.kind == "thing" and cast.thing is None and is_fixture(ref.lemma)  # "at the door, and opens it"
@@ -113,23 +100,17 @@ def _reference(token: Token, cast: Cast, subject: str) -> Ref:
     family = words.part(lemma)
     if family and not (token.ent_type_ or token.pos_ == "PROPN"):
         owner = cast.owner(token, subject)
-        side = next(
-            (child.lower_ for child in token.children if child.lower_ in ("left", "right", "both")), ""
-        )
+        side = next((child.lower_ for child in token.children if child.lower_ in ("left", "right", "both")), "")
         if not side and token.tag_ == "NNS" and family in ("hand", "arm", "foot", "leg", "knee", "shoulder"):
             side = "both"
         lemma = "back" if lemma == "spine" else lemma
         bare = all(c.dep_ != "poss" and c.tag_ != "PRP$" and c.lower_ != "of" for c in token.children)
         definite = any(c.lower_ == "the" for c in token.children)
-        return Ref(
-            "part", owner, lemma, family, side, bare=bare, definite=definite, first=first, last=last
-        )  # fmt: skip
+        return Ref("part", owner, lemma, family, side, bare=bare, definite=definite, first=first, last=last)
     thirds = len(cast.third)
     who = cast.person(token, subject)
     if who:
-        conjuncts = [
-            c for c in token.conjuncts if c.i > token.i and c.dep_ == "conj" and not begins_clause(c)
-        ]
+        conjuncts = [c for c in token.conjuncts if c.i > token.i and c.dep_ == "conj" and not begins_clause(c)]
         if len(who) == 1 and any(cast.person(c, who) not in (None, who) for c in conjuncts):
             both = Ref("person", "ab", lemma, first=first, last=last)
             cast.seen |= {c.i: both for c in conjuncts}
@@ -139,7 +120,5 @@ def _reference(token: Token, cast: Cast, subject: str) -> Ref:
         return Ref("third", "", lemma, first=first, last=last)
     owner = cast.owner(token, subject) if any(c.dep_ == "poss" for c in token.children) else ""
     owner = "ab" if owner == "each" else owner
-    bare = token.tag_ == "NN" and all(
-        c.dep_ not in ("det", "poss", "nummod", "predet") for c in token.children
-    )
+    bare = token.tag_ == "NN" and all(c.dep_ not in ("det", "poss", "nummod", "predet") for c in token.children)
     return Ref("thing", owner, lemma, place=lemma in words.places, bare=bare, first=first, last=last)

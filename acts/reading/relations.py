@@ -81,9 +81,7 @@ def _joint(number: int, events: Sequence[Event], of: Mapping[int, str]) -> tuple
     kind, above, seen = events[number].joint, events[number].beside, set[int]()
     while above is not None and above not in of and above not in seen:  # passed over
         seen.add(above)
-        inner = (
-            i for i in range(number) if i in of and events[i].beside == above and events[i].joint == "comp"
-        )
+        inner = (i for i in range(number) if i in of and events[i].beside == above and events[i].joint == "comp")
         if kind != "comp" and (told := next(inner, None)) is not None:  # "A pretends to throw, and B ducks"
             return kind, told
         kind = events[above].joint if kind in ("comp", "") else kind
@@ -137,9 +135,7 @@ def _upright_again(first: Act, then: Act, known: Lexicon) -> Act:
 def _answers_blow(first: Act, then: Act, known: Lexicon) -> bool:
     """True where somebody ducks under a blow or blocks it, which is staged with the blow."""
     shapes = known.entries[first.act].stage
-    strikes = any(
-        isinstance(shape, Strike) and shape.bout in ("fists", "slaps", "weapons") for shape in shapes
-    )
+    strikes = any(isinstance(shape, Strike) and shape.bout in ("fists", "slaps", "weapons") for shape in shapes)
     return strikes and known.entries[then.act].answers and first.agents != then.agents
 
 

@@ -23,9 +23,7 @@ _SAFE = {
 """Forms of a verb with and of two without an object that the parser hardly takes for anything else."""
 _SAFE_WITH_VERB = {"s": "starts", "ing": "starting", "ed": "started", "": "start"}
 """The same before another verb: "mimes drinking"."""
-_SUBJECTS = frozenset(
-    ("i", "you", "he", "she", "they", "we", "who", "someone", "somebody", "nobody", "everyone")
-)
+_SUBJECTS = frozenset(("i", "you", "he", "she", "they", "we", "who", "someone", "somebody", "nobody", "everyone"))
 _DO = {"does": "makes", "do": "make", "did": "made"}
 """Forms of "do", and of a verb in the same form that is no part of another."""
 _CROWDS = frozenset(("audience", "crowd", "public", "class", "team", "band", "orchestra", "jury", "family"))
@@ -38,9 +36,7 @@ _TAGS = {"VBZ": "s", "VBD": "ed", "VBP": "", "VB": ""}
 
 def others(safe: str) -> tuple[str, ...]:
     """The other safe verbs in the same form, for where the parser takes one for something else after all."""
-    return next(
-        (tuple(word for word in verbs if word != safe) for verbs in _SAFE.values() if safe in verbs), ()
-    )
+    return next((tuple(word for word in verbs if word != safe) for verbs in _SAFE.values() if safe in verbs), ())
 
 
 def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[str, str]]:
@@ -51,8 +47,7 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
         forms: the forms of verbs, as form → (lemma, ending).
     """
     found = {
-        token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0])
-        for token in _verbless(doc, forms)
+        token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0]) for token in _verbless(doc, forms)
     }
     last = ""  # the ending of the last finite verb of the sentence
     for token in doc:
@@ -128,9 +123,7 @@ def _is_told(token: Token, ending: str) -> bool:
     """True for a form of a verb behind its subject: "the man in the hat waves", "couple slow dancing"."""
     if ending == "ing":
         people = (t.lemma_.lower() for t in token.sent if t.i < token.i)
-        return token.tag_ == "NN" and any(
-            vocabulary().is_person(noun) or noun in vocabulary().both for noun in people
-        )
+        return token.tag_ == "NN" and any(vocabulary().is_person(noun) or noun in vocabulary().both for noun in people)
     return ending in ("s", "ed") and token.nbor(-1).pos_ in ("NOUN", "PROPN", "PRON")
 
 
@@ -163,9 +156,9 @@ def _is_other(token: Token) -> bool:
 def _swallowed(token: Token) -> bool:
     """True for a verb whose subject became a part of it, as in a compound."""
     children = list(token.children)
-    return any(
-        child.i == token.i - 1 and child.dep_ in ("compound", "nmod", "amod") for child in children
-    ) and all(child.dep_ not in ("nsubj", "nsubjpass") for child in children)
+    return any(child.i == token.i - 1 and child.dep_ in ("compound", "nmod", "amod") for child in children) and all(
+        child.dep_ not in ("nsubj", "nsubjpass") for child in children
+    )
 
 
 def _next(token: Token) -> Token | None:

@@ -39,9 +39,7 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
     declines = event.lemma in verbs["not"] | verbs["wished"]
     if event.lemma != "do" and not repeats and not declines:
         return None
-    if declines and (
-        (ref is not None and ref.lemma not in _SAME) or not (event.denied or event.lemma in verbs["not"])
-    ):
+    if declines and ((ref is not None and ref.lemma not in _SAME) or not (event.denied or event.lemma in verbs["not"])):
         return None
     agents, other = tuple(subject.who), other_of(subject.who) or "a"
     if len(last.agents) > 1 or (len(agents) > 1 and event.lemma != "do"):
@@ -56,8 +54,7 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
         "already": False,
         "times": event.times or last.times,
         "part_of": agents[0] if last.part_of in last.agents else last.part_of,
-        "side": event.side
-        or (_MIRRORED.get(last.side or "", last.side) if event.lemma == "mirror" else last.side),
+        "side": event.side or (_MIRRORED.get(last.side or "", last.side) if event.lemma == "mirror" else last.side),
     }
 
 

@@ -42,9 +42,7 @@ def breaks(doc: Doc, lemmas: Mapping[int, str], within: bool = False) -> Iterato
             before, below = None, False
         elif token.pos_ == "SCONJ" or token.tag_ in ("WRB", "WP", "WDT") or token.dep_ == "mark":
             below = True
-        elif (token.tag_ in _FINITE and token.pos_ == "VERB") or any(
-            c.dep_ == "nsubj" for c in token.children
-        ):
+        elif (token.tag_ in _FINITE and token.pos_ == "VERB") or any(c.dep_ == "nsubj" for c in token.children):
             if (
                 token.tag_ in _FINITE
                 and before is not None

@@ -77,11 +77,7 @@ def _forms(verbs: frozenset[str]) -> dict[str, tuple[str, str]]:
     found: dict[str, tuple[str, str]] = {}
     for verb in verbs:
         stem = verb[:-1] if verb.endswith("e") else verb
-        double = (
-            stem + stem[-1]
-            if len(verb) < 5 and verb[-1] not in "aeiouwxy" and verb[-2:-1] in "aeiou"
-            else stem
-        )
+        double = stem + stem[-1] if len(verb) < 5 and verb[-1] not in "aeiouwxy" and verb[-2:-1] in "aeiou" else stem
         third = verb + "es" if verb.endswith(("s", "sh", "ch", "x", "z", "o")) else verb + "s"
         if verb.endswith("y") and verb[-2:-1] not in "aeiou":
             third, double = verb[:-1] + "ies", verb
@@ -111,8 +107,6 @@ def _distance(one: str, other: str) -> int:
         if len(differ) == 1:
             return 1
         swapped = len(differ) == 2 and differ[1] == differ[0] + 1
-        return (
-            1 if swapped and one[differ[0]] == other[differ[1]] and one[differ[1]] == other[differ[0]] else 2
-        )
+        return 1 if swapped and one[differ[0]] == other[differ[1]] and one[differ[1]] == other[differ[0]] else 2
     short, long = sorted((one, other), key=len)
     return 1 if any(long[:i] + long[i + 1 :] == short for i in range(len(long))) else 2

@@ -99,17 +99,13 @@ class Subjects:
                     return above.object
             return own
         main = self._tree.main_before(token)
-        if (
-            main is not None and main < token.i
-        ):  # "creeps up, covers her eyes", where the second became the main one
+        if main is not None and main < token.i:  # "creeps up, covers her eyes", where the second became the main one
             return self._found.get(main)
         if token.tag_ in ("VBD", "VBZ") and (behind := self._behind(token)) is not None:
             return behind
         if token.dep_ == "ROOT" or head is None:
             # "grab her by the wrist" is said to one
-            alone = self._cast.alone or any(
-                t.lower_ in _SOMEBODY or self._is_someone(t) for t in token.subtree
-            )
+            alone = self._cast.alone or any(t.lower_ in _SOMEBODY or self._is_someone(t) for t in token.subtree)
             if alone:
                 self._cast.address("a")
             return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)
@@ -177,9 +173,7 @@ class Subjects:
 
     def _behind(self, token: Token) -> Ref | None:
         """The person behind a verb that nobody stands before: "…, said the witch"."""
-        objects = (
-            child for child in token.children if child.dep_ in ("dobj", "dative") and child.i > token.i
-        )
+        objects = (child for child in token.children if child.dep_ in ("dobj", "dative") and child.i > token.i)
         noun = next((child for child in objects if child.pos_ in ("NOUN", "PROPN")), None)
         ref = reference(noun, self._cast, "") if noun is not None else None
         return ref if ref is not None and ref.kind == "person" else None

@@ -55,9 +55,7 @@ def model_folder() -> Path:
 def _check(folder: Path) -> None:
     for name, digest in _DIGESTS.items():
         if hashlib.sha256((folder / name).read_bytes()).hexdigest() != digest:
-            raise InputError(
-                f"{folder / name} is not the file of en_core_web_sm 3.8.0: install that version."
-            )
+            raise InputError(f"{folder / name} is not the file of en_core_web_sm 3.8.0: install that version.")
 
 
 @cache
@@ -127,9 +125,7 @@ def seems(token: Token) -> bool:
 def is_likeness(token: Token) -> bool:
     """True for a noun that only says what somebody is like: "walks like an old man", "like children"."""
     children = {child.lower_ for child in token.children}
-    bare = token.tag_ == "NNS" and all(
-        child.dep_ not in ("det", "poss", "nummod") for child in token.children
-    )
+    bare = token.tag_ == "NNS" and all(child.dep_ not in ("det", "poss", "nummod") for child in token.children)
     indefinite = bare or not children.isdisjoint(("a", "an"))
     return token.dep_ == "pobj" and token.head.lower_ == "like" and indefinite
 
@@ -149,9 +145,7 @@ def is_adverb(text: str) -> bool:
 
 def is_kept(token: Token) -> bool:
     """True for the participle of "keeps her back turned", which says how something of one's own is held."""
-    keeps = (
-        token.tag_ in ("VBN", "VBD") and token.dep_ == "dep" and token.head.lemma_ in ("keep", "have", "hold")
-    )
+    keeps = token.tag_ in ("VBN", "VBD") and token.dep_ == "dep" and token.head.lemma_ in ("keep", "have", "hold")
     return keeps and token.i > 0 and token.nbor(-1).dep_ == "dobj" and token.nbor(-1).head == token.head
 
 

@@ -30,9 +30,7 @@ class Vocabulary:
             for noun in nouns.split()
         }
         self.both = frozenset(tables["groups"]["both"].split())
-        self._parts = {
-            word: family for family, text in tables["body"].items() for word in (family, *text.split())
-        }
+        self._parts = {word: family for family, text in tables["body"].items() for word in (family, *text.split())}
         self.numbers: dict[str, int] = dict(tables["numbers"])
         self.metres: dict[str, float] = dict(tables["metres"])
         self.seconds: dict[str, float] = dict(tables["seconds"])
@@ -58,9 +56,7 @@ class Vocabulary:
         for phrase in sorted(joined, key=len, reverse=True):
             words = tuple(phrase.split())
             self.phrases.setdefault(words[0], []).append((words, joined[phrase]))
-        self.requests = sorted(
-            (tuple(text.split()) for text in tables["requests"]["phrases"]), key=len, reverse=True
-        )
+        self.requests = sorted((tuple(text.split()) for text in tables["requests"]["phrases"]), key=len, reverse=True)
         """What asks for a motion before it says which, the longest first."""
         self.limits: dict[str, frozenset[str]] = {
             note: frozenset(words.split()) for note, words in tables["limits"].items()

@@ -53,9 +53,7 @@ _TO_SIDES = tuple(
 """Words behind a part of the body that say that it moves from side to side."""
 _LIES = ("lie", "lying", "lay", "fall", "fell", "land", "roll", "flat")
 """How verbs begin of which "on her back" says how she lies herself."""
-_MOTIONS = frozenset(
-    ("motion", "motions", "movement", "movements", "gesture", "gestures", "action", "actions")
-)
+_MOTIONS = frozenset(("motion", "motions", "movement", "movements", "gesture", "gestures", "action", "actions"))
 _NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}
 """Letters and numbers behind "person" or "dancer", and whether they name the first."""
 
@@ -86,11 +84,7 @@ class _Preparation:
     def _is_noun(self, i: int) -> bool:
         """True for a word that another may stand before as an adjective: "her high heels"."""
         word = self._lower(i)
-        return (
-            word.isalpha()
-            and word not in PREPOSITIONS
-            and word not in ("and", "then", "while", "as", "until")
-        )
+        return word.isalpha() and word not in PREPOSITIONS and word not in ("and", "then", "while", "as", "until")
 
     def _names_dancer(self, i: int) -> bool:
         """True for "lead" and "follow" as people: "the follow", "Lead dips the follow"."""
@@ -112,12 +106,7 @@ class _Preparation:
         last = self._lower(i - 1)
         if self._lower(i) != "and" or not (i - 1 in self._letters or self._words.is_person(last)):
             return False
-        known = self._lower(i + 1) in (
-            "the",
-            "this",
-            "that",
-            *_LETTER_BEFORE,
-        )  # "a woman and a woman" are two
+        known = self._lower(i + 1) in ("the", "this", "that", *_LETTER_BEFORE)  # "a woman and a woman" are two
         return last == self._lower(i + 1 + known)
 
     def _supply(self, verb: str, i: int) -> None:
@@ -167,9 +156,7 @@ class _Preparation:
             return 1
         pointed = self._lower(i) in ("the", "these", "those") and self._lower(i + 1) == "two"
         if pointed and self._is_verb(self._lower(i + 2)):
-            self._pieces.append(
-                ("they", self._tokens[i][1], self._tokens[i + 1][2])
-            )  # "the two circle round"
+            self._pieces.append(("they", self._tokens[i][1], self._tokens[i + 1][2]))  # "the two circle round"
             return 2
         return 0
 
@@ -262,9 +249,7 @@ class _Preparation:
             first -= 1
         if i - first == 1 and first in self._letters:
             return ""
-        told = (
-            i == first or self._ellipsis.has_verb(first) or any(k in self._letters for k in range(first, i))
-        )
+        told = i == first or self._ellipsis.has_verb(first) or any(k in self._letters for k in range(first, i))
         if told or i - first > _HEADING:
             return None
         return "," if self._pieces[-1][0] == FORMATION else "."
@@ -274,21 +259,12 @@ class _Preparation:
         word, start, _ = self._tokens[i]
         sided = self._lower(i) in ("left", "right") and self._part_at(i + 1)
         begun = self._pieces[-1:] and self._pieces[-1][1:] == (start, start)  # a verb was supplied
-        if sided and (
-            begun or self._lower(i - 1) not in _DETERMINERS | {"left", "right", "and", "or", "with"}
-        ):
+        if sided and (begun or self._lower(i - 1) not in _DETERMINERS | {"left", "right", "and", "or", "with"}):
             return [("the", start, start)]  # "drags left leg", where nobody leaves
-        bare = (
-            i not in self._letters
-            and word.islower()
-            and not word.endswith("s")
-            and word not in ("one", "person")
-        )
+        bare = i not in self._letters and word.islower() and not word.endswith("s") and word not in ("one", "person")
         if not bare or not self._is_bare_person(i) or self._lower(i + 1) == "'":
             return []
-        if (
-            self._lower(i - 2) in _DETERMINERS and self._lower(i - 1) not in _DETERMINERS
-        ):  # "an unconscious man"
+        if self._lower(i - 2) in _DETERMINERS and self._lower(i - 1) not in _DETERMINERS:  # "an unconscious man"
             return []
         return [("the", start, start)] if _begins(self._lower(i - 1)) else []
 
@@ -335,10 +311,7 @@ class _Preparation:
             return f"{self._words.shorthand.get(lower[:-1], word[:-1])}'s"  # "her brothers back"
         if (
             lower in ("left", "right")
-            and (
-                self._is_verb(self._lower(i - 1))
-                or (self._pieces[-1:] and self._is_verb(self._pieces[-1][0]))
-            )
+            and (self._is_verb(self._lower(i - 1)) or (self._pieces[-1:] and self._is_verb(self._pieces[-1][0])))
             and not self._words.part(following)
         ):
             return f"to the {lower}"  # "turn left": no past of "leave"

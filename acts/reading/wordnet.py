@@ -19,13 +19,39 @@ _PERSON, _ACT = "18", "04"
 
 
 _STARTS = (
-    "00001740", "00109660", "00588221", "00740595", "01072280", "01156852", "01205714", "01617210", "01759344",
-    "01831549", "02105828", "02199608", "02367050", "02603699", "02756558",
-)  # fmt: skip
+    "00001740",
+    "00109660",
+    "00588221",
+    "00740595",
+    "01072280",
+    "01156852",
+    "01205714",
+    "01617210",
+    "01759344",
+    "01831549",
+    "02105828",
+    "02199608",
+    "02367050",
+    "02603699",
+    "02756558",
+)
 _KINDS = (
-    "body", "change", "cognition", "communication", "competition", "consumption", "contact", "creation", "emotion",
-    "motion", "perception", "possession", "social", "stative", "weather",
-)  # fmt: skip
+    "body",
+    "change",
+    "cognition",
+    "communication",
+    "competition",
+    "consumption",
+    "contact",
+    "creation",
+    "emotion",
+    "motion",
+    "perception",
+    "possession",
+    "social",
+    "stative",
+    "weather",
+)
 """WordNet's kinds of verbs; their synsets stand in this order, each kind from the number in ``_STARTS`` on."""
 BODILY = frozenset(("body", "competition", "consumption", "contact", "motion"))
 """WordNet's kinds of verbs that bodies show; others are matched only with verbs of the same meaning."""

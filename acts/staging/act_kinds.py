@@ -19,9 +19,7 @@ _GENTLE = frozenset(("care", "touch"))
 """Groups of acts that somebody lets be done to them."""
 _BODILY = frozenset(("body", "ways", "moves", "stage"))
 """Groups of acts of the whole body."""
-_OWN_ARMS = frozenset(
-    ("creep-up", "sneak", "sneak-away", "stagger", "skip", "moonwalk", "strut", "stumble", "dive")
-)
+_OWN_ARMS = frozenset(("creep-up", "sneak", "sneak-away", "stagger", "skip", "moonwalk", "strut", "stumble", "dive"))
 """Acts of which arms of their own are part."""
 _LAYS = frozenset(("lie-down", "sit-ups", "sit-on-floor"))
 """Acts of people who let themselves down on the floor."""
@@ -30,10 +28,17 @@ _HANDS_FREE = frozenset(("go", "turn", "stay", "place", "posture", "jump", "bow"
 _JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
 """Shapes that take the other along."""
 _REGIONS = {
-    "head": Region.HEAD, "shoulder": Region.SHOULDER, "back": Region.BACK, "chest": Region.CHEST,
-    "waist": Region.CHEST, "arm": Region.ARM, "hand": Region.HAND, "leg": Region.LEG, "knee": Region.LEG,
+    "head": Region.HEAD,
+    "shoulder": Region.SHOULDER,
+    "back": Region.BACK,
+    "chest": Region.CHEST,
+    "waist": Region.CHEST,
+    "arm": Region.ARM,
+    "hand": Region.HAND,
+    "leg": Region.LEG,
+    "knee": Region.LEG,
     "foot": Region.FOOT,
-}  # fmt: skip
+}
 """Families of parts of the body and the region of each."""
 
 

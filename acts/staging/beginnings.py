@@ -89,9 +89,7 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
     gap = next((ways[way].near for way in (Way.HOLD, Way.SPAR) if way in ways), gap)
     for way in (Way.TO, Way.BEHIND):
         if way in ways:
-            gap = float(
-                np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0)
-            )
+            gap = float(np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0))
     averted = (Way.AVERTED,) if Way.ROUND in ways else (Way.AVERTED, Way.FACE)
     turned = next((m.person for m in moves if m.way in averted), "")
     turned = turned or next((other_of(m.person) for m in moves if m.way is Way.BEHIND), "")

@@ -64,10 +64,16 @@ class Contact:
 
 
 _JOINTS = {
-    Region.HEAD: "head", Region.SHOULDER: "{side}_shoulder", Region.BACK: "spine3", Region.CHEST: "spine2",
+    Region.HEAD: "head",
+    Region.SHOULDER: "{side}_shoulder",
+    Region.BACK: "spine3",
+    Region.CHEST: "spine2",
     Region.WAIST: "spine2",
-    Region.ARM: "{side}_elbow", Region.HAND: "{side}_wrist", Region.LEG: "{side}_knee", Region.FOOT: "{side}_ankle",
-}  # fmt: skip
+    Region.ARM: "{side}_elbow",
+    Region.HAND: "{side}_wrist",
+    Region.LEG: "{side}_knee",
+    Region.FOOT: "{side}_ankle",
+}
 _SKIN = 0.1
 """Metres between a wrist and the joint inside the part of the body that its hand is on."""
 _PALM = 0.05
@@ -223,9 +229,7 @@ def _tilted(other: Array, own: Array, angle: float, *, whispers: bool = False) -
     sign = -1.0 if side == SIDES[0] else 1.0
     found = own.copy()
     neck, head = SMPL22.index("neck"), SMPL22.index("head")
-    for root, moved, tilt in zip(
-        (0, neck), (list(TRUNK), [head]), _WHISPERS if whispers else _RESTS, strict=True
-    ):
+    for root, moved, tilt in zip((0, neck), (list(TRUNK), [head]), _WHISPERS if whispers else _RESTS, strict=True):
         turn = heading_matrix(angle) @ about(2, sign * tilt) @ heading_matrix(-angle)
         found[moved] = found[root] + (found[moved] - found[root]) @ turn.T
     inner = SIDES.index(side)

@@ -97,11 +97,13 @@ def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool 
     """
     tracks = [
         Track(
-            np.asarray(standing.places[i], dtype=float), float(standing.headings[i]),
-            np.full((frames, 2), np.nan), np.full(frames, np.nan),
+            np.asarray(standing.places[i], dtype=float),
+            float(standing.headings[i]),
+            np.full((frames, 2), np.nan),
+            np.full(frames, np.nan),
         )
         for i in range(2)
-    ]  # fmt: skip
+    ]
     own = [[move for move in moves if move.person == person] for person in "ab"]
     for who in (0, 1) if not any(m.way in (Way.AFTER, Way.FACE) for m in own[0]) else (1, 0):
         _walked(who, own, tracks, standing)
@@ -137,9 +139,15 @@ def _walked(who: int, own: Sequence[Sequence[Move]], tracks: Sequence[Track], st
 
 
 def _moved(
-    move: Move, who: int, tracks: Sequence[Track], standing: Standing, theirs: Sequence[Way], seconds: float,
-    *, last: bool,
-) -> None:  # fmt: skip
+    move: Move,
+    who: int,
+    tracks: Sequence[Track],
+    standing: Standing,
+    theirs: Sequence[Way],
+    seconds: float,
+    *,
+    last: bool,
+) -> None:
     """Lays out one move; after the ``last`` one of a beat a person stays where they are."""
     track, here = tracks[who], tracks[who].place
     other = tracks[1 - who].at(track.frame, standing.places[1 - who])
@@ -150,9 +158,7 @@ def _moved(
         case Way.STAY | Way.BACKS | Way.AVERTED:
             track.halt(standing.speeds[who])
             watched = any(way in theirs for way in (Way.TURN, Way.FACE, Way.BEHIND, Way.BESIDE, Way.AWAY))
-            track.stay(
-                None if seconds >= track.left() else seconds, facing=watched or move.way is not Way.STAY
-            )
+            track.stay(None if seconds >= track.left() else seconds, facing=watched or move.way is not Way.STAY)
         case Way.THING:
             if direction(track.heading) @ to > ABEAM:  # it is not where the other stands
                 far = min(ACROSS, 0.6 * seconds * move.speed)
@@ -229,9 +235,7 @@ def _behind(move: Move, track: Track, other: Array, faces: float, seconds: float
     track.stay(facing=True)
 
 
-def _away(
-    move: Move, track: Track, gap: float, to: Array, seconds: float, *, both: bool, followed: bool
-) -> None:
+def _away(move: Move, track: Track, gap: float, to: Array, seconds: float, *, both: bool, followed: bool) -> None:
     """A walk away from the other, or on in the direction that the person was going in."""
     room = _CHASED if followed else (FARTHEST - gap + max(0.0, move.speed - 1.1)) / (2 if both else 1)
     away = -to if not np.linalg.norm(track.going) else track.going

@@ -119,8 +119,7 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
     else:
         hands = {s: 0.7 * theirs(f"{s}_knee") + 0.3 * theirs(f"{s}_hip") - 0.1 * up for s, _ in _SIDES}
         holds = {
-            s: own("spine3") + 0.16 * ahead + sign * 0.02 * left + (sign * _UNEVEN - 0.02) * up
-            for s, sign in _SIDES
+            s: own("spine3") + 0.16 * ahead + sign * 0.02 * left + (sign * _UNEVEN - 0.02) * up for s, sign in _SIDES
         }
     for side, _ in _SIDES:
         _bend(carrier, side, hands[side])

@@ -116,9 +116,7 @@ def _followed(made: list[Move], *, until: bool) -> list[Move]:
         after = next((move for move in made if move.person == person and move.way is Way.AFTER), None)
         if after is not None and Way.BACK in ways:
             made = [
-                replace(m, way=Way.AWAY, speed=0.8, backwards=True)
-                if (m.person, m.way) == (other, Way.BACK)
-                else m
+                replace(m, way=Way.AWAY, speed=0.8, backwards=True) if (m.person, m.way) == (other, Way.BACK) else m
                 for m in made
             ]
         elif after is not None and not ways & _GOING:

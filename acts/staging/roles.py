@@ -37,9 +37,7 @@ def strike_of(blows: Blows, done: Done, *, late: bool) -> Strike | None:
     turns = "".join(dict.fromkeys("".join(each) for each, *_ in blows))
     turns = turns if len(blows) > 1 else turns * min(act.times or 1, 5)
     hit = other_of(people[0])
-    answered = any(
-        hit in other.agents and shape.do in ("posture", "go") for other, e in done for shape in e.stage
-    )
+    answered = any(hit in other.agents and shape.do in ("posture", "go") for other, e in done for shape in e.stage)
     fight = len(blows) > 1 and not answered and bout is not Bout.THROWS
     hands = tuple(each.side or "" for _, _, each in blows for _ in range(min(each.times or 1, 5)))
     if len(set(turns)) == 1 and any(hand in SIDES for hand in hands):  # "two jabs with the left and a cross"
@@ -92,7 +90,5 @@ def gesturing(gestures: Mapping[str, Gesture], moves: Sequence[Move], done: Done
     gone = {move.person for move in moves if move.way not in (Way.STAY, Way.BACKS)}
     own = {who: sum(who in act.agents and not only_stays(e) for act, e in done) for who in "ab"}
     return frozenset(
-        who
-        for who, gesture in gestures.items()
-        if gesture.hand not in AT_OTHER and own[who] < 2 and who not in gone
+        who for who, gesture in gestures.items() if gesture.hand not in AT_OTHER and own[who] < 2 and who not in gone
     )

@@ -51,9 +51,7 @@ def sampled(who: int, track: Track, *, first: bool) -> Way2D | None:
     frames = [f for f in _with_turns(sorted(wanted), track.headings) if np.isfinite(track.places[f, 0])]
     headings = track.headings[frames]
     facing = np.isfinite(headings)
-    return Way2D(
-        who, frames, track.places[frames], np.where(facing, headings, np.nan) if facing.any() else None
-    )
+    return Way2D(who, frames, track.places[frames], np.where(facing, headings, np.nan) if facing.any() else None)
 
 
 def _with_turns(frames: Sequence[int], headings: Array) -> list[int]:

@@ -44,9 +44,18 @@ from .told import Told
 from .ways import Way
 
 _WAYS = {
-    "to": Way.TO, "away": Way.AWAY, "past": Way.PAST, "around": Way.ROUND, "behind": Way.BEHIND, "along": Way.ALONG,
-    "after": Way.AFTER, "back": Way.BACK, "aside": Way.ASIDE, "ahead": Way.AHEAD, "to and fro": Way.PACE,
-}  # fmt: skip
+    "to": Way.TO,
+    "away": Way.AWAY,
+    "past": Way.PAST,
+    "around": Way.ROUND,
+    "behind": Way.BEHIND,
+    "along": Way.ALONG,
+    "after": Way.AFTER,
+    "back": Way.BACK,
+    "aside": Way.ASIDE,
+    "ahead": Way.AHEAD,
+    "to and fro": Way.PACE,
+}
 _TURNS = {"around": Way.TURN, "to": Way.FACE, "away": Way.TURN}
 PULLED = 0.8
 """Metres from where somebody stands up at which the one stands who pulls them up."""
@@ -132,24 +141,39 @@ class _Stage:
         waving = gesturing(self.gestures, moves, self.done)
         free = frozenset[str]() if self._is_joined() else loose(self.done, idle)
         return Told(
-            moves=moves, idle=idle, frozen=frozenset(self.frozen), gesturing=waving - self.changes.keys(),
-            gestures=self.gestures, contact=self.contact,
-            hold=self.hold, by_both_hands=self.both_hands or any(self._leads_by_both_hands(move) for move in moves),
-            twirls=self.twirls, pulls=self.pulls, lift=self.lift, strike=struck, changes=self.changes, limbs=self.limbs,
-            figures=self.figures, leaps=self.leaps, bows=self.bows,
+            moves=moves,
+            idle=idle,
+            frozen=frozenset(self.frozen),
+            gesturing=waving - self.changes.keys(),
+            gestures=self.gestures,
+            contact=self.contact,
+            hold=self.hold,
+            by_both_hands=self.both_hands or any(self._leads_by_both_hands(move) for move in moves),
+            twirls=self.twirls,
+            pulls=self.pulls,
+            lift=self.lift,
+            strike=struck,
+            changes=self.changes,
+            limbs=self.limbs,
+            figures=self.figures,
+            leaps=self.leaps,
+            bows=self.bows,
             linked=self.linked or any(move.linked for move in moves),
             on_feet=frozenset(who for act, e in self.done if e.group in _LEGS for who in act.agents),
             loose=free - self.gestures.keys() - self.limbs.keys(),
             placed=standing(
                 replace(
-                    self.setting, lift=self.lift, strike=struck, twirls=bool(self.twirls),
+                    self.setting,
+                    lift=self.lift,
+                    strike=struck,
+                    twirls=bool(self.twirls),
                     postures=[change.posture for listed in self.changes.values() for change in listed],
                 )
             ),
             keeps_place=self.setting.backs or self.setting.beside,
             reaching=self._reaching(),
             alone=away(of_each(self.acts, self.known), moves),
-        )  # fmt: skip
+        )
 
     # ---- shapes --------------------------------------------------------------------------------------
 
@@ -227,9 +251,7 @@ class _Stage:
             return
         here, backs = self.setting, shape.way == "back to back"
         beside = here.beside or shape.way == "beside"
-        self.setting = replace(
-            here, backs=here.backs or backs, beside=beside, apart=here.apart or shape.apart
-        )
+        self.setting = replace(here, backs=here.backs or backs, beside=beside, apart=here.apart or shape.apart)
         self.moves += [Move(who, Way.BACKS) for who in "ab" if backs]
 
     def _posture(self, act: Act, shape: shapes.Posture, people: tuple[str, ...]) -> None:
@@ -268,10 +290,18 @@ class _Stage:
         metres = act.distance if act.distance is not None and given else shape.metres
         turns = float(act.times) if act.times and way is Way.ROUND else shape.turns
         return Move(
-            who, way, min(shape.speed * (1.0 if shape.who == "patient" else act.speed), 3.0), turns,
+            who,
+            way,
+            min(shape.speed * (1.0 if shape.who == "patient" else act.speed), 3.0),
+            turns,
             shape.stops or any(r.kind == "until" for r in act.order),
-            shape.linked, way is not Way.AFTER and self._late(act), metres, shape.near, shape.backwards, shape.gait,
-        )  # fmt: skip
+            shape.linked,
+            way is not Way.AFTER and self._late(act),
+            metres,
+            shape.near,
+            shape.backwards,
+            shape.gait,
+        )
 
     def _chase(self, act: Act, shape: shapes.Go) -> None:
         """Both run after each other: a goes ahead, unless later words say who chases whom."""
@@ -336,11 +366,7 @@ class _Stage:
         for who, listed in self.changes.items():  # gets up from where they are, from a seat if nothing says
             self.changes[who] = (listed[0], *(c for c in listed[1:] if not c.already))
         self.changes = {
-            who: tuple(
-                c
-                for i, c in enumerate(listed)
-                if not i or c.passing or c.posture is not listed[i - 1].posture
-            )
+            who: tuple(c for i, c in enumerate(listed) if not i or c.passing or c.posture is not listed[i - 1].posture)
             for who, listed in self.changes.items()
         }
 
@@ -359,10 +385,7 @@ class _Stage:
             own = next((m for m in self.moves if m.person == other and m.way in _DODGES), None)
             return struck_moves(struck, own, down=other in self.changes)
         told = [replace(move, linked=move.linked or self.linked) for move in fastest(self.moves)]
-        if {move.person for move in told if move.way is Way.TO} == {
-            "a",
-            "b",
-        }:  # they meet for what they do then
+        if {move.person for move in told if move.way is Way.TO} == {"a", "b"}:  # they meet for what they do then
             told = [replace(m, near=m.near or self._reaching().get(m.person, 0.0)) for m in told]
         going = {move.person for move in told} | low
         told += [Move(who, Way.THING) for who in sorted(self.faces - going)]

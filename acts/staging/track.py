@@ -49,9 +49,7 @@ class Track:
     going: Array = field(default_factory=lambda: np.zeros(2))
     dense: set[int] = field(default_factory=set)
 
-    def walk(
-        self, line: Array, seconds: float, *, heading: float | None = None, evenly: bool = False
-    ) -> None:
+    def walk(self, line: Array, seconds: float, *, heading: float | None = None, evenly: bool = False) -> None:
         """Walks along points (N, 2) within some seconds; faces where it goes, or where ``heading`` says.
 
         Places of a walk are given every second or so. Where it ends there, a network that is late would surge: a way
@@ -112,9 +110,7 @@ class Track:
         frames = max(1, min(round(abs(angle) / math.pi * TURNING * FPS), len(self.places) - self.frame))
         stop = self.frame + frames
         self.places[self.frame : stop] = self.place
-        self.headings[self.frame : stop] = self.heading + angle * eased(
-            np.arange(1, frames + 1) / frames, 0.4
-        )
+        self.headings[self.frame : stop] = self.heading + angle * eased(np.arange(1, frames + 1) / frames, 0.4)
         self.heading, self.frame = self.heading + angle, stop
 
     def watch(self, other: Track) -> None:
@@ -128,9 +124,7 @@ class Track:
 
     def stay(self, seconds: float | None = None, *, facing: bool = False) -> None:
         """Stays for some seconds, or to the end of the beat."""
-        stop = (
-            len(self.places) if seconds is None else min(len(self.places), self.frame + round(seconds * FPS))
-        )
+        stop = len(self.places) if seconds is None else min(len(self.places), self.frame + round(seconds * FPS))
         self.places[self.frame : stop] = self.place
         if facing:
             self.headings[self.frame : stop] = self.heading

@@ -91,9 +91,7 @@ class SelfAttention(nn.Module):
 class CrossAttention(nn.Module):
     """A stream's attention to the text tokens."""
 
-    def __init__(
-        self, latent_dim: int, text_dim: int, num_heads: int, embed_dim: int, *, dropout: float = 0.0
-    ) -> None:
+    def __init__(self, latent_dim: int, text_dim: int, num_heads: int, embed_dim: int, *, dropout: float = 0.0) -> None:
         super().__init__()
         self.num_heads = num_heads
         self.norm = nn.LayerNorm(latent_dim)
@@ -107,9 +105,7 @@ class CrossAttention(nn.Module):
         """x (B, T, d), text (B, L, C), emb (B, E) → (B, T, d)."""
         tokens = self.text_norm(text)
         query = self.query(self.norm(x))
-        return x + self.proj_out(
-            efficient_attention(query, self.key(tokens), self.value(tokens), self.num_heads), emb
-        )
+        return x + self.proj_out(efficient_attention(query, self.key(tokens), self.value(tokens), self.num_heads), emb)
 
 
 class FeedForward(nn.Module):
@@ -285,9 +281,7 @@ class BiGraphDiff(nn.Module):
         self.out = nn.Linear(2 * d, 2 * config.input_features)
         self.text_side = text_side
 
-    def forward(
-        self, x: Tensor, t: Tensor, text: Tensor, text_vector: Tensor, mask: Tensor | None = None
-    ) -> Tensor:
+    def forward(self, x: Tensor, t: Tensor, text: Tensor, text_vector: Tensor, mask: Tensor | None = None) -> Tensor:
         """The predicted noise.
 
         Args:

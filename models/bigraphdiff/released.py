@@ -68,17 +68,13 @@ def load_released(checkpoint: Path, vocabulary: Path) -> ReleasedBiGraphDiff:
     tensors = without_wrapper(read_tensors(checkpoint, network=NETWORK), "joint_embed_1.")
     frozen = {name.removeprefix(CLIP): value for name, value in tensors.items() if name.startswith(CLIP)}
     if not frozen:
-        raise WeightsError(
-            f"{checkpoint.name} holds no {CLIP}* tensors, CLIP's tower: use the released file."
-        )
+        raise WeightsError(f"{checkpoint.name} holds no {CLIP}* tensors, CLIP's tower: use the released file.")
     latent_dim = len(tensors.get("joint_embed_1.weight", ()))
     with Uninitialised():
         network = from_released(tensors, num_heads=max(1, latent_dim // HEAD_WIDTH)).requires_grad_(False)
         tower = tower_from_released(frozen)
     if network.text_side is None:
-        raise WeightsError(
-            f"{checkpoint.name} holds no text_pre_proj: use the released {NETWORK} checkpoint."
-        )
+        raise WeightsError(f"{checkpoint.name} holds no text_pre_proj: use the released {NETWORK} checkpoint.")
     if network.config.input_features != 3 * JOINTS:
         raise WeightsError(
             f"{checkpoint.name} was trained on {network.config.input_features} numbers a person and frame, and "

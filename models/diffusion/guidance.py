@@ -16,11 +16,7 @@ def guide(conditional: Tensor, unconditional: Tensor, scale: float) -> Tensor:
 
 
 def classifier_free(
-    predict: Callable[..., Tensor],
-    *inputs: Tensor | None,
-    cond: Tensor,
-    scale: float,
-    nothing: Tensor | None = None,
+    predict: Callable[..., Tensor], *inputs: Tensor | None, cond: Tensor, scale: float, nothing: Tensor | None = None
 ) -> Tensor:
     """:func:`guide` on both predictions of a network, made in one batch.
 

@@ -57,9 +57,7 @@ def sample_steps(
         yield SamplingStep(i + 1, total, int(timestep), x, predicted)
 
 
-def denoise(
-    predict: Callable[[Tensor, Tensor], Tensor], noise: Tensor, scheduler: Scheduler, **options: Any
-) -> Tensor:
+def denoise(predict: Callable[[Tensor, Tensor], Tensor], noise: Tensor, scheduler: Scheduler, **options: Any) -> Tensor:
     """The end of :func:`sample_steps`, with its arguments: `noise` (B, …) denoised."""
     sample = noise
     for step in sample_steps(predict, noise, scheduler, **options):

@@ -117,13 +117,7 @@ class SpatialAttention(nn.Module):
         return _split(keys, self.heads), _split(values, self.heads)
 
     def forward(
-        self,
-        x: Tensor,
-        keys: Tensor,
-        values: Tensor,
-        *,
-        graph: Tensor | None = None,
-        distances: Tensor | None = None,
+        self, x: Tensor, keys: Tensor, values: Tensor, *, graph: Tensor | None = None, distances: Tensor | None = None
     ) -> Tensor:
         """x (B, T, D), graph (J, J) of 0 and 1, distances (B, T, 1, J, J) → (B, T, D)."""
         query = _split(self.query(x.unflatten(-1, (JOINTS, self.width))), self.heads)
@@ -150,9 +144,7 @@ class EncoderLayer(nn.Module):
     def forward(self, x: Tensor, mask: Tensor, graph: Tensor) -> Tensor:
         """x (B, T, D), mask (…, T, T) bool, graph (J, J) of 0 and 1 → (B, T, D)."""
         y = self.norm_1(x)
-        both = self.time(y, *self.time.remember(y), mask) + self.space(
-            y, *self.space.remember(y), graph=graph
-        )
+        both = self.time(y, *self.time.remember(y), mask) + self.space(y, *self.space.remember(y), graph=graph)
         x = x + self.drop(both)
         return x + self.drop(self.ff(self.norm_2(x)))
 
@@ -174,9 +166,7 @@ class DecoderLayer(nn.Module):
     ) -> Tensor:
         """x (B, T, D), encoded (B, S, D) with S > T: frame t sees the joints of the actor's frame t + 1."""
         y = self.norm_1(x)
-        both = self.time(y, *self.time.remember(y), causal) + self.space(
-            y, *self.space.remember(y), graph=graph
-        )
+        both = self.time(y, *self.time.remember(y), causal) + self.space(y, *self.space.remember(y), graph=graph)
         x = x + self.drop(both)
         y = self.norm_2(x)
         coming = encoded[:, 1 : x.shape[1] + 1]

@@ -115,9 +115,7 @@ class ReactionDecoder:
         guess = _exact(pose.flatten(2)) + _exact(steps) * _exact(model.step_std).ravel()
         return np.concatenate([x - x.mean(-1, keepdims=True), guess], axis=-1)
 
-    def poses_after(
-        self, actor: Tensor, first: Tensor, noise: Tensor, mask: Tensor | None = None
-    ) -> Iterator[Array]:
+    def poses_after(self, actor: Tensor, first: Tensor, noise: Tensor, mask: Tensor | None = None) -> Iterator[Array]:
         """The poses (B, J, 3) after the first one, T − 1 of them, each as soon as it is made.
 
         Args:

@@ -162,12 +162,7 @@ class SpatialAttention(nn.Module):
         return self.k_linear_sp(joints).mT, self.v_linear_sp(joints).mT
 
     def forward(
-        self,
-        query: Tensor,
-        memory: KeysValues,
-        *,
-        graph: Tensor | None = None,
-        distances: Tensor | None = None,
+        self, query: Tensor, memory: KeysValues, *, graph: Tensor | None = None, distances: Tensor | None = None
     ) -> Tensor:
         """query (B, T, 45), graph (J, J) bool, distances (B, T, J, J) → (B, T, 45)."""
         made = self.q_linear_sp(query.unflatten(-1, (AXES, JOINTS)).mT).mT
@@ -227,13 +222,7 @@ class DecoderLayer(nn.Module):
         self.ff = PositionwiseFeedForward(config.ff_size)
 
     def forward(
-        self,
-        x: Tensor,
-        kept: LayerMemory,
-        distances: Tensor,
-        source_mask: Tensor,
-        mask: Tensor | None,
-        graph: Tensor,
+        self, x: Tensor, kept: LayerMemory, distances: Tensor, source_mask: Tensor, mask: Tensor | None, graph: Tensor
     ) -> Tensor:
         """x (B, T, 45), the frames after those that are kept already."""
         y = self.norm_1(x)
@@ -327,12 +316,7 @@ class InterFormer(nn.Module):
         self.register_buffer("graph", graph, persistent=False)
 
     def forward(
-        self,
-        source: Tensor,
-        target_input: Tensor,
-        distances: Tensor,
-        source_mask: Tensor,
-        target_mask: Tensor,
+        self, source: Tensor, target_input: Tensor, distances: Tensor, source_mask: Tensor, target_mask: Tensor
     ) -> Tensor:
         """The next frame at every target frame.
 

@@ -147,9 +147,7 @@ class CompactInterGen(DuetSpace):
         )
         self.touch_reader = TouchReader(config.cond_dim, config.touches) if config.touches else None
 
-    def condition(
-        self, both: TokenFeatures, a: TokenFeatures | None = None, b: TokenFeatures | None = None
-    ) -> Tensor:
+    def condition(self, both: TokenFeatures, a: TokenFeatures | None = None, b: TokenFeatures | None = None) -> Tensor:
         """Encodes sentences for both people and for each as the denoiser's condition.
 
         Args:
@@ -193,9 +191,7 @@ class CompactInterGen(DuetSpace):
         own, taken = self.state_dict(), trained.state_dict()
         taken = {name: tensor for name, tensor in taken.items() if not name.startswith("touch_reader.")}
         if any(name not in own or own[name].shape != tensor.shape for name, tensor in taken.items()):
-            raise InputError(
-                "The weights to begin with are of other sizes: give the sizes they were trained with."
-            )
+            raise InputError("The weights to begin with are of other sizes: give the sizes they were trained with.")
         self.load_state_dict(own | taken)
 
 

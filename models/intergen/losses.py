@@ -103,11 +103,7 @@ def _pairs_mean(error: Tensor, pairs: Tensor, mask: Tensor | None) -> Tensor:
 
 
 def distance_map_loss(
-    pred: Tensor,
-    true: Tensor,
-    mask: Tensor | None = None,
-    *,
-    near_by: Literal["prediction", "truth"] = "prediction",
+    pred: Tensor, true: Tensor, mask: Tensor | None = None, *, near_by: Literal["prediction", "truth"] = "prediction"
 ) -> Tensor:
     """Squared error of the distances between the people's joints that are near (eq. 12), m² → (B,).
 
@@ -225,9 +221,7 @@ class InterGenLoss:
         self.near_by: Literal["prediction", "truth"] = near_by
         self.released_orientation = released_orientation
 
-    def regularizers(
-        self, pred: Tensor, true: Tensor, t: Tensor, mask: Tensor | None = None
-    ) -> dict[str, Tensor]:
+    def regularizers(self, pred: Tensor, true: Tensor, t: Tensor, mask: Tensor | None = None) -> dict[str, Tensor]:
         """Every term but *simple*, weighted and damped: positions (B, T, 2, J, 3), t (B,) → scalars."""
         pred, true, w = pred.float(), true.float(), self.weights
         damped: dict[str, Callable[[], Tensor]] = {

@@ -73,9 +73,7 @@ class AdaLayerNorm(nn.Module):
         return F.layer_norm(h, h.shape[-1:], eps=1e-6) * (1 + scale) + shift
 
 
-def attend(
-    q: Tensor, k: Tensor, v: Tensor, keep: Tensor | None, *, num_heads: int, dropout: float = 0.0
-) -> Tensor:
+def attend(q: Tensor, k: Tensor, v: Tensor, keep: Tensor | None, *, num_heads: int, dropout: float = 0.0) -> Tensor:
     """Attention of several heads in which a query may attend to nothing: one all-zero key and value is appended.
 
     Args:
@@ -228,9 +226,7 @@ class InterGenDenoiser(nn.Module, TwoPersonInputs, Guided):
 
     def embed_motion(self, people: Tensor) -> Tensor:
         """States of both people's tokens before the first block: (2, B, T, F) → (2, B, T, d)."""
-        h = self.motion_embed(people) + sinusoids(
-            people.shape[2], self.config.latent_dim, device=people.device
-        )
+        h = self.motion_embed(people) + sinusoids(people.shape[2], self.config.latent_dim, device=people.device)
         return h + self.role_embedding[:, None, None] if self.config.role_embedding else h
 
     def forward(self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None) -> Tensor:

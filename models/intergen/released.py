@@ -55,12 +55,7 @@ class ReleasedInterGen:
     reads_known = False
 
     def __init__(
-        self,
-        denoiser: InterGenDenoiser,
-        text: ClipTextEncoder,
-        tokenizer: ClipTokenizer,
-        mean: Tensor,
-        std: Tensor,
+        self, denoiser: InterGenDenoiser, text: ClipTextEncoder, tokenizer: ClipTokenizer, mean: Tensor, std: Tensor
     ) -> None:
         self.denoiser, self.text, self.tokenizer = denoiser, text, tokenizer
         self.mean, self.std, self.layout = mean, std, FrameLayout()

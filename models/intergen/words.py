@@ -60,13 +60,7 @@ class WordBlock(Block):
         self.words = WordAttention(config)
 
     def read(
-        self,
-        h: Tensor,
-        emb: Tensor,
-        keep: Tensor | None,
-        keep_other: Tensor | None,
-        text: Tensor,
-        real: Tensor,
+        self, h: Tensor, emb: Tensor, keep: Tensor | None, keep_other: Tensor | None, text: Tensor, real: Tensor
     ) -> Tensor:
         """As `Block.forward`, with the text (2B, S, C) and its real rows (2B, S)."""
         attended = h + self.sa_block(h, emb, keep)
@@ -94,12 +88,7 @@ class WordDenoiser(InterGenDenoiser):
         nn.init.zeros_(self.known_embed.weight)
 
     def forward(
-        self,
-        x: Tensor,
-        t: Tensor,
-        cond: Tensor,
-        mask: Tensor | None = None,
-        known: Tensor | None = None,
+        self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None, known: Tensor | None = None
     ) -> Tensor:
         """The predicted clean motion.
 
@@ -130,12 +119,7 @@ class WordDenoiser(InterGenDenoiser):
         return super().varying | {"cond": (0, 2), "known": (0, 1)}
 
     def filled(
-        self,
-        x: Tensor,
-        t: Tensor,
-        cond: Tensor,
-        mask: Tensor | None = None,
-        known: Tensor | None = None,
+        self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None, known: Tensor | None = None
     ) -> tuple[Tensor, ...]:
         """See :class:`models.compiled.Compilable`; zeros say that nothing is known."""
         if known is None:
@@ -167,9 +151,7 @@ class WordDenoiser(InterGenDenoiser):
         kinds = torch.stack([self.sentence_kinds, self.sentence_kinds[[0, 2, 1]]])  # (2, 3, C)
         text = (cond[None] + kinds[:, None, :, None]).flatten(2, 3)
         if self.training:
-            first = real.float().argsort(dim=1, descending=True, stable=True)[
-                :, : max(1, int(real.sum(1).max()))
-            ]
+            first = real.float().argsort(dim=1, descending=True, stable=True)[:, : max(1, int(real.sum(1).max()))]
             text = text.gather(2, first[None, :, :, None].expand(2, -1, -1, text.shape[-1]))
             real = real.gather(1, first)
         return text.flatten(0, 1), real.repeat(2, 1)

@@ -44,9 +44,7 @@ def gradient_penalty(critic: nn.Module, real: Tensor, made: Tensor, share: Tenso
     return ((gradient.flatten(1).square().sum(1) + 1e-12).sqrt() - 1).square().mean()
 
 
-def critic_loss(
-    critic: nn.Module, real: Tensor, made: Tensor, share: Tensor, *, penalty: float = 10.0
-) -> Tensor:
+def critic_loss(critic: nn.Module, real: Tensor, made: Tensor, share: Tensor, *, penalty: float = 10.0) -> Tensor:
     """The critic's loss: the Wasserstein distance of eq. 2.5, negated, and the penalty."""
     distance = critic(real).mean() - critic(made).mean()
     return -distance + penalty * gradient_penalty(critic, real, made, share)
@@ -74,10 +72,7 @@ def speed_loss(made: Tensor, real: Tensor, last: Tensor, *, groups: int = 1) -> 
         last: (B, 1, J, 3) the pose before.
         groups: parts of the batch with means of their own.
     """
-    speeds = [
-        (torch.cat([last, x], dim=1).diff(dim=1).square().sum(-1) + 1e-10).sqrt().mean(2)
-        for x in (made, real)
-    ]
+    speeds = [(torch.cat([last, x], dim=1).diff(dim=1).square().sum(-1) + 1e-10).sqrt().mean(2) for x in (made, real)]
     parts = (speeds[0] - speeds[1]).chunk(groups)
     return torch.stack([part.mean(0) for part in parts]).abs().mean()
 

@@ -113,9 +113,7 @@ class Generator(nn.Module):
         first = config.fc // (high * wide)
         self.fc = nn.Linear(config.past * 3 * config.joints + config.beside, first * high * wide)
         layers: list[nn.Module] = []
-        for i, (inputs, outputs) in enumerate(
-            zip((first, *config.channels), (*config.channels, 1), strict=True)
-        ):
+        for i, (inputs, outputs) in enumerate(zip((first, *config.channels), (*config.channels, 1), strict=True)):
             layers += [nn.Upsample(scale_factor=2.0), nn.Conv2d(inputs, outputs, 3, padding=1)]
             if i < _DOUBLINGS - 1:
                 layers.append(nn.ReLU())

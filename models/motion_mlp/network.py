@@ -59,9 +59,8 @@ class Residual(nn.Module):
     def __init__(self, width: int, dropout: float) -> None:
         super().__init__()
         self.layers = nn.Sequential(
-            nn.LayerNorm(width), nn.Linear(width, width), nn.GELU(), nn.Dropout(dropout),
-            nn.Linear(width, width),
-        )  # fmt: skip
+            nn.LayerNorm(width), nn.Linear(width, width), nn.GELU(), nn.Dropout(dropout), nn.Linear(width, width)
+        )
 
     def forward(self, x: Tensor) -> Tensor:
         """(B, width) → the same shape."""
@@ -97,10 +96,8 @@ class MotionMLP(nn.Module):
         self.register_buffer("scale", torch.ones(config.outputs))
         analysis, velocities = (
             torch.from_numpy(dct(torch.eye(size).double().numpy(), norm="ortho", axis=0))[:count]
-            for size, count in (
-                (config.past, config.past_coefficients), (config.future, config.future_coefficients)
-            )
-        )  # fmt: skip
+            for size, count in ((config.past, config.past_coefficients), (config.future, config.future_coefficients))
+        )
         # Offsets are the running sum of velocities.
         synthesis = velocities.T.cumsum(dim=0)
         self.register_buffer("analysis", analysis.float(), persistent=False)

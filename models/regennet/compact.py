@@ -26,15 +26,7 @@ from models.diffusion import classifier_free, denoise, guide, make_scheduler
 from models.intergen.compact import Touch, TouchReader, as_touches
 from models.layers import sinusoids_at
 from models.motion_tokens import FEATURES, NUM_JOINTS, TokenLayout, decode
-from models.regennet import (
-    ROW_WIDTH,
-    CausalPass,
-    ReGenNet,
-    ReGenNetConfig,
-    StreamError,
-    attend_to_one,
-    decoder_layer,
-)
+from models.regennet import ROW_WIDTH, CausalPass, ReGenNet, ReGenNetConfig, StreamError, attend_to_one, decoder_layer
 from models.text import TextConditioner, TextConditionerConfig
 from models.weights_io import WeightsFolder, load_network
 
@@ -195,14 +187,7 @@ class CompactReGenNet(nn.Module):
         return self.network.output_process(h)[..., :FEATURES]
 
     def guided(
-        self,
-        x: Tensor,
-        t: Tensor,
-        actor: Tensor,
-        condition: Tensor,
-        *,
-        scale: float,
-        begin: Tensor | None = None,
+        self, x: Tensor, t: Tensor, actor: Tensor, condition: Tensor, *, scale: float, begin: Tensor | None = None
     ) -> Tensor:
         """Offline :func:`models.diffusion.classifier_free` on the words; shapes as in `forward`."""
 

@@ -107,9 +107,7 @@ class ReGenNet(nn.Module):
             self.seqTransDecoder = nn.TransformerDecoder(layer, config.num_layers)
         else:
             encoder = nn.TransformerEncoderLayer(d, config.num_heads, config.ff_size, **sizes)
-            self.seqTransEncoder = nn.TransformerEncoder(
-                encoder, config.num_layers, enable_nested_tensor=False
-            )
+            self.seqTransEncoder = nn.TransformerEncoder(encoder, config.num_layers, enable_nested_tensor=False)
         self.embed_timestep = TimestepEmbedding(d)
         if config.num_actions:
             self.embed_action = ActionEmbedding(config.num_actions, d)
@@ -128,12 +126,7 @@ class ReGenNet(nn.Module):
         return self.fuse_process(torch.cat([self.input_process(x), self.cmo_process(actor)], dim=-1))
 
     def forward(
-        self,
-        x: Tensor,
-        t: Tensor,
-        actor: Tensor,
-        action: Tensor | None = None,
-        unconditional: bool | Tensor = False,
+        self, x: Tensor, t: Tensor, actor: Tensor, action: Tensor | None = None, unconditional: bool | Tensor = False
     ) -> Tensor:
         """The predicted clean reaction.
 
@@ -162,9 +155,7 @@ class ReGenNet(nn.Module):
 
     def guided(self, x: Tensor, t: Tensor, actor: Tensor, action: Tensor, *, scale: float) -> Tensor:
         """:func:`models.diffusion.classifier_free` on the action; shapes as in `forward`."""
-        given = torch.zeros(
-            x.shape[0], dtype=torch.bool, device=x.device
-        )  # which samples leave the action out
+        given = torch.zeros(x.shape[0], dtype=torch.bool, device=x.device)  # which samples leave the action out
         return classifier_free(self, x, t, actor, action, cond=given, nothing=~given, scale=scale)
 
     def stream(
@@ -229,9 +220,7 @@ class CausalPass:
             def attend(q: Tensor, k: Tensor, v: Tensor, cache: Tensor = cache) -> Tensor:
                 keys, values = cache
                 keys[:, :, i : i + 1], values[:, :, i : i + 1] = k, v
-                return F.scaled_dot_product_attention(
-                    q, keys[:, :, first : i + 1], values[:, :, first : i + 1]
-                )
+                return F.scaled_dot_product_attention(q, keys[:, :, first : i + 1], values[:, :, first : i + 1])
 
             h = decoder_layer(layer, h, memory, attend)
         self.length += 1
@@ -253,9 +242,7 @@ class ReactionStream:
     only the attention over past frames, the smaller part, grows with their number.
     """
 
-    def __init__(
-        self, network: ReGenNet, *, steps: int, batch: int, action: Tensor | None, max_frames: int
-    ) -> None:
+    def __init__(self, network: ReGenNet, *, steps: int, batch: int, action: Tensor | None, max_frames: int) -> None:
         self.network, self.batch, self.max_frames = network, batch, max_frames
         self.device = network.fuse_process.weight.device
         self.scheduler = make_scheduler("ddim", steps, device=self.device)
@@ -271,9 +258,7 @@ class ReactionStream:
         return next(iter(self.passes.values())).length
 
     @torch.no_grad()
-    def step(
-        self, actor: Tensor, *, noise: Tensor | None = None, generator: torch.Generator | None = None
-    ) -> Tensor:
+    def step(self, actor: Tensor, *, noise: Tensor | None = None, generator: torch.Generator | None = None) -> Tensor:
         """The reaction's next frame.
 
         Args:

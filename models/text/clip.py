@@ -30,14 +30,7 @@ if TYPE_CHECKING:
 NETWORK = "CLIP text"
 HEAD_WIDTH = 64  # CLIP's towers all have heads of 64 channels
 ENCODER_HEADS = 8
-PARTS = (
-    "clip_transformer.",
-    "token_embedding.",
-    "positional_embedding",
-    "ln_final.",
-    "clipTransEncoder.",
-    "clip_ln.",
-)
+PARTS = ("clip_transformer.", "token_embedding.", "positional_embedding", "ln_final.", "clipTransEncoder.", "clip_ln.")
 START, END = "<|startoftext|>", "<|endoftext|>"
 VOCABULARY_PACKAGE = "open-clip-torch"
 VOCABULARY_FILE = "open_clip/bpe_simple_vocab_16e6.txt.gz"
@@ -109,9 +102,7 @@ def _read_vocabulary(folder: Path) -> Tokenizer:
             tokenizer.no_truncation()
             return tokenizer
         if vocabulary.is_file() and merges.is_file():
-            return _tokenizer(
-                BPE.from_file(str(vocabulary), str(merges), end_of_word_suffix="</w>", unk_token=END)
-            )
+            return _tokenizer(BPE.from_file(str(vocabulary), str(merges), end_of_word_suffix="</w>", unk_token=END))
     except Exception as error:  # tokenizers raises plain Exception for a file that it cannot parse
         raise VocabularyError(f"The vocabulary in {folder} cannot be read: download it again.") from error
     raise VocabularyError(
@@ -193,14 +184,7 @@ class ClipTextEncoder(nn.Module):
     """Token numbers → the 768-vector `cond` of `models.intergen`, by the released names."""
 
     def __init__(
-        self,
-        *,
-        vocabulary: int,
-        context_length: int,
-        width: int,
-        num_layers: int,
-        ff_size: int,
-        encoder_layers: int,
+        self, *, vocabulary: int, context_length: int, width: int, num_layers: int, ff_size: int, encoder_layers: int
     ) -> None:
         super().__init__()
         self.token_embedding = nn.Embedding(vocabulary, width)

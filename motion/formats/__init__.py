@@ -12,18 +12,7 @@ from .crowd import Crowd, Motion, gathered
 from .glb_motion import animations_in
 from .importing import import_motion, import_pair
 from .one_person import write_clip
-from .registry import (
-    FORMATS,
-    GLBS,
-    RIGS,
-    Format,
-    can_read,
-    can_write,
-    read_rigs,
-    suffix_of,
-    unknown,
-    with_stem,
-)
+from .registry import FORMATS, GLBS, RIGS, Format, can_read, can_write, read_rigs, suffix_of, unknown, with_stem
 
 __all__ = [
     "FORMATS",
@@ -80,9 +69,7 @@ def read(
     return motion if keep_skeleton else to_smpl(motion)
 
 
-def read_everyone(
-    path: str | Path | bytes, *, name: str | None = None, choices: ImportChoices | None = None
-) -> Motion:
+def read_everyone(path: str | Path | bytes, *, name: str | None = None, choices: ImportChoices | None = None) -> Motion:
     """Like :func:`read`, but returns all people, even more than two, with the file's own joints."""
     found = import_motion(path, name=name, choices=choices)
     return gathered(found.people, name or "", everyone=True, beside=found.beside)
@@ -94,11 +81,7 @@ def animation_note(path: str | Path, animation: Animation | None = None) -> str:
 
 
 def read_pair(
-    a: str | Path,
-    b: str | Path,
-    *,
-    choices: ImportChoices | None = None,
-    roles: tuple[str, str] = ("a", "b"),
+    a: str | Path, b: str | Path, *, choices: ImportChoices | None = None, roles: tuple[str, str] = ("a", "b")
 ) -> Duet:
     """Reads two files of one person each that share one world, such as ``NAME_a.bvh`` and ``NAME_b.bvh``.
 

@@ -20,18 +20,26 @@ Array = NDArray[Any]
 MAX_UNPACKED = 128 * 2**20
 _MOST_MEMBERS = 200
 _MAX_HEADER = 4096
-_NO_RATE = (
-    "{} does not give its frame rate: {:g} frames a second are assumed. Give the true rate if it differs."
-)
+_NO_RATE = "{} does not give its frame rate: {:g} frames a second are assumed. Give the true rate if it differs."
 _PICKLED = (
     "{} holds pickled Python objects, which could run code and are never opened: where you trust the file, save its "
     'numbers alone, for MDM\'s results with `d = numpy.load("results.npy", allow_pickle=True).item()` and '
     '`numpy.save("motion.npy", d["motion"][0].transpose(2, 0, 1))`.'
 )
 ZIP_ERRORS = (
-    zipfile.BadZipFile, zlib.error, struct.error, lzma.LZMAError, EOFError, NotImplementedError, RuntimeError,
-    OSError, ValueError, OverflowError, IndexError, KeyError,
-)  # fmt: skip
+    zipfile.BadZipFile,
+    zlib.error,
+    struct.error,
+    lzma.LZMAError,
+    EOFError,
+    NotImplementedError,
+    RuntimeError,
+    OSError,
+    ValueError,
+    OverflowError,
+    IndexError,
+    KeyError,
+)
 """Errors that :mod:`zipfile` raises over damaged files, from wrong sums to sizes below zero."""
 
 
@@ -52,9 +60,7 @@ def load_members(data: bytes, label: str, keys: Collection[str]) -> dict[str, Ar
                 raise InputError(f"{label} is not packed the way NumPy does it: save it with numpy.savez.")
             total = sum(member.file_size for member in wanted)
             if total > MAX_UNPACKED:
-                raise InputError(
-                    f"{label} would unpack to {total / 2**20:.0f} MB, more than is allowed: cut it."
-                )
+                raise InputError(f"{label} would unpack to {total / 2**20:.0f} MB, more than is allowed: cut it.")
             for member in wanted:
                 key = member.filename.removesuffix(".npy")
                 with archive.open(member) as stream:  # gives no more than the declared size
@@ -73,9 +79,7 @@ def load_array(stream: IO[bytes], size: int, label: str) -> Array:
         reader = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
         shape, _, dtype = reader[version](stream, max_header_size=_MAX_HEADER)
     except Exception:  # the header is parsed as Python literals, which can fail in any way
-        raise InputError(
-            f"{label} is not a NumPy array file: save it with numpy.save or numpy.savez."
-        ) from None
+        raise InputError(f"{label} is not a NumPy array file: save it with numpy.save or numpy.savez.") from None
     if dtype.hasobject:
         raise InputError(_PICKLED.format(label))
     count = 1

@@ -53,18 +53,13 @@ def read_bvh(source: str | Path | bytes, *, name: str | None = None, fps: float 
     rigs = read_bvh_people(source, name=name, fps=fps)
     if len(rigs) > 1:
         raise InputError(
-            f"{rigs[0].name} holds {len(rigs)} people, a ROOT each: choose one on the page, or give one "
-            "person a file."
+            f"{rigs[0].name} holds {len(rigs)} people, a ROOT each: choose one on the page, or give one person a file."
         )
     return rigs[0]
 
 
 def read_bvh_people(
-    source: str | Path | bytes,
-    *,
-    name: str | None = None,
-    fps: float | None = None,
-    file_fps: float | None = None,
+    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, file_fps: float | None = None
 ) -> tuple[RigMotion, ...]:
     """The same for a file of several people, a ROOT each; they share one unit and one world.
 
@@ -152,9 +147,7 @@ def _placed(motion: Motion, every: int) -> tuple[RigMotion, ...]:
     joints, label = motion.joints, motion.label
     kept = -(-motion.frames // every)
     if 3 * kept * len(joints) > MAX_NUMBERS:
-        raise InputError(
-            f"{label} holds {len(joints)} joints in {kept:,} frames, too many: lower its frame rate."
-        )
+        raise InputError(f"{label} holds {len(joints)} joints in {kept:,} frames, too many: lower its frame rate.")
     positions = np.empty((kept, len(joints), 3), dtype=np.float32)
     people = trees(joints, label)
     own = [range(first, stop) for first, stop in people if _is_own(joints[first:stop])]
@@ -275,11 +268,7 @@ def _metres_per_unit(positions: Array, joints: list[Joint], label: str) -> float
     parents = [joint.parent for joint in joints]
     bones = np.zeros(len(parents))
     for index, joint in enumerate(joints):
-        if (
-            joint.parent >= 0
-            and not joint.keeps_offset
-            and any(kind == "position" for kind, _ in joint.channels)
-        ):
+        if joint.parent >= 0 and not joint.keeps_offset and any(kind == "position" for kind, _ in joint.channels):
             bone = positions[:, index] - positions[:, joint.parent]
             bones[index] = np.median(np.linalg.norm(bone, axis=-1))
         elif joint.parent >= 0:

@@ -47,9 +47,7 @@ def parse_hierarchy(text: str, label: str) -> list[Joint]:
         names = [joint.name for joint in joints[first:stop]]
         for joint in joints[first:stop]:
             if names.count(joint.name) > 1 and not joint.is_end:
-                raise InputError(
-                    f"{label}, line {joint.line}: two joints are named {joint.name}: rename one."
-                )
+                raise InputError(f"{label}, line {joint.line}: two joints are named {joint.name}: rename one.")
     return joints
 
 
@@ -139,7 +137,5 @@ def _channels(words: list[str], where: str, joint: str) -> list[tuple[str, int]]
             raise InputError(f"{where}: joint {joint} has an unknown channel {word[:40]!r}.")
         found.append((match[2].lower(), _AXES[match[1].lower()]))
     if not words or words[0] != str(len(found)) or len(set(found)) != len(found):
-        raise InputError(
-            f"{where}: CHANNELS of joint {joint} must be a count and that many different channels."
-        )
+        raise InputError(f"{where}: CHANNELS of joint {joint} must be a count and that many different channels.")
     return found

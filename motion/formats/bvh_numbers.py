@@ -22,8 +22,7 @@ _PIECE = 2**20
 _LARGEST = 1e7
 _BLANK = re.compile(rb"\s*+")
 _HEAD = re.compile(
-    rb"Frames:[ \t]*+(\S{1,99}+)[ \t]*+\r?\n\s*+Frame[ \t]++Time:[ \t]*+(\S{1,99}+)[ \t]*+(?:\r?\n|$)",
-    re.IGNORECASE,
+    rb"Frames:[ \t]*+(\S{1,99}+)[ \t]*+\r?\n\s*+Frame[ \t]++Time:[ \t]*+(\S{1,99}+)[ \t]*+(?:\r?\n|$)", re.IGNORECASE
 )
 
 
@@ -73,8 +72,7 @@ class Motion:
                 frame, column = np.argwhere(~(np.abs(block) <= _LARGEST))[0]
                 joint = _joint_of_column(self.joints, column)
                 raise InputError(
-                    f"{self.label}: joint {joint} has no usable number in frame {done + frame + 1}: "
-                    "remove that frame."
+                    f"{self.label}: joint {joint} has no usable number in frame {done + frame + 1}: remove that frame."
                 )
             start, done = stop, done + whole
             if whole:
@@ -93,16 +91,12 @@ class Motion:
                 except ValueError:
                     joint = _joint_of_column(self.joints, count % self.width)
                     shown = word[:20].decode("latin-1")
-                    return (
-                        f"{self.label}, line {number}: {shown!r} ({joint}) is not a number: export it again."
-                    )
+                    return f"{self.label}, line {number}: {shown!r} ({joint}) is not a number: export it again."
                 count += 1
         return f"{self.label}, line {number}: something here is not a number: export it again."
 
 
-def find_motion(
-    data: bytes, start: int, joints: list[Joint], label: str, file_fps: float | None = None
-) -> Motion:
+def find_motion(data: bytes, start: int, joints: list[Joint], label: str, file_fps: float | None = None) -> Motion:
     """The MOTION part whose head is at ``start``; a given rate stands for the file's, whatever that says.
 
     Raises:
@@ -112,9 +106,7 @@ def find_motion(
     assert blank is not None  # nothing is blank, too
     head = _HEAD.match(data, blank.end())
     if not head:
-        raise InputError(
-            f"{label}: after MOTION there must be the lines 'Frames: N' and 'Frame Time: SECONDS'."
-        )
+        raise InputError(f"{label}: after MOTION there must be the lines 'Frames: N' and 'Frame Time: SECONDS'.")
     count, seconds = (words[:20].decode("latin-1") for words in head.groups())
     try:
         frames, frame_time = int(count), float(seconds.replace(",", "."))

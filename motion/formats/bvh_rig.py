@@ -87,9 +87,14 @@ def _learned(rig: RigMotion, turned: Array, upright: Array, pairs: dict[int, int
 
 
 def _text(
-    reference: str | Path | bytes, name: str | None, joints: list[Joint], local: Array, root: Array,
-    values: Array, fps: float,
-) -> bytes:  # fmt: skip
+    reference: str | Path | bytes,
+    name: str | None,
+    joints: list[Joint],
+    local: Array,
+    root: Array,
+    values: Array,
+    fps: float,
+) -> bytes:
     data, label = read_bytes(reference, name)
     data = ascii_bytes(data, label, "a BVH file")
     head = re.search(rb"^[ \t]*MOTION[ \t]*\r?$", data, re.MULTILINE | re.IGNORECASE)

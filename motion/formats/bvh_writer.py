@@ -42,9 +42,7 @@ def write_bvh(duet: Duet, path: str | Path) -> list[Path]:
     """
     path = Path(path)
     stem = path.name[: -len(".bvh")] if path.name.lower().endswith(".bvh") else path.name
-    files = {
-        path.with_name(f"{stem}_{letter}.bvh"): clip for letter, clip in zip("ab", duet.people, strict=True)
-    }
+    files = {path.with_name(f"{stem}_{letter}.bvh"): clip for letter, clip in zip("ab", duet.people, strict=True)}
     return write_files({file: bvh_text(clip).encode("ascii") for file, clip in files.items()})
 
 

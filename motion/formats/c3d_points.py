@@ -72,9 +72,7 @@ def _points(data: bytes, label: str, fps: float | None) -> tuple[list[str], Arra
         raise InputError(f"{label} holds no frames: export it again.")
     check_duration(frames, rate, label)
     if 4 * count * frames > _MOST_VALUES:
-        raise InputError(
-            f"{label} holds {frames:,} frames of {count} points: cut it or lower its frame rate."
-        )
+        raise InputError(f"{label} holds {frames:,} frames of {count} points: cut it or lower its frame rate.")
     dtype = np.dtype(f"{order}f4" if scale < 0 else f"{order}i2")
     row, begin = dtype.itemsize * (4 * count + analog), _BLOCK * (start - 1)
     if begin < _BLOCK or begin + frames * row > len(data):

@@ -32,12 +32,7 @@ def calibration_frames(places: Places, fps: float) -> int:
     joints = np.stack([joint for limb in limbs for joint in limb], axis=1).astype(np.float64)
     joints -= (joints[:, :1] + joints[:, 3:4]) / 2
     leg = float(np.median(np.linalg.norm(np.diff(joints[:, :3], axis=1), axis=-1).sum(axis=1)))
-    speed = (
-        np.linalg.norm(np.diff(joints, axis=0), axis=-1).max(axis=1, initial=0.0)
-        * fps
-        * _LEG
-        / max(leg, 1e-9)
-    )
+    speed = np.linalg.norm(np.diff(joints, axis=0), axis=-1).max(axis=1, initial=0.0) * fps * _LEG / max(leg, 1e-9)
     if len(speed) < 4:
         return 0
     jump = int(np.argmax(speed[: max(1, round(_LONGEST * fps))]))

@@ -46,9 +46,7 @@ class ImportChoices:
         if self.fps is not None and not RATES[0] <= self.fps <= RATES[1]:
             raise InputError(f"A frame rate of {self.fps:g} is not possible: give {RATES[0]:g} to 1,000.")
         if self.order is not None and self.order not in SKELETONS:
-            raise InputError(
-                f"Joint order {self.order!r:.20} is not known: choose one of {', '.join(SKELETONS)}."
-            )
+            raise InputError(f"Joint order {self.order!r:.20} is not known: choose one of {', '.join(SKELETONS)}.")
 
 
 def check_animation(animation: Animation | None) -> None:
@@ -56,6 +54,4 @@ def check_animation(animation: Animation | None) -> None:
     if animation is None or (type(animation) is int and animation >= 1):
         return
     if not isinstance(animation, str) or not animation.strip():
-        raise InputError(
-            f"Animation {animation!r:.40} is neither a name nor a number from 1: give one of them."
-        )
+        raise InputError(f"Animation {animation!r:.40} is neither a name nor a number from 1: give one of them.")

@@ -31,10 +31,7 @@ MAX_PARTS = 100_000
 
 
 def read_bytes(
-    source: str | Path | bytes,
-    name: str | None = None,
-    *,
-    remedy: str = "cut the motion or lower its frame rate",
+    source: str | Path | bytes, name: str | None = None, *, remedy: str = "cut the motion or lower its frame rate"
 ) -> tuple[bytes, str]:
     """A file's bytes and what to call it in messages.
 
@@ -58,9 +55,7 @@ def read_bytes(
         except OSError as error:
             raise InputError(f"{label} cannot be read ({error.strerror}): check the path.") from None
     if size > MAX_BYTES:
-        raise InputError(
-            f"{label} has {size / 2**20:.0f} MB, more than the {MAX_BYTES // 2**20} MB allowed: {remedy}."
-        )
+        raise InputError(f"{label} has {size / 2**20:.0f} MB, more than the {MAX_BYTES // 2**20} MB allowed: {remedy}.")
     if not data:
         raise InputError(f"{label} is empty: export it again.")
     return data, label
@@ -136,9 +131,7 @@ def check_duration(frames: int, fps: float, label: str) -> None:
             "or give its true rate."
         )
     if frames > MAX_FRAMES:
-        raise InputError(
-            f"{label} has {frames:,} frames, more than the {MAX_FRAMES:,} allowed: lower its frame rate."
-        )
+        raise InputError(f"{label} has {frames:,} frames, more than the {MAX_FRAMES:,} allowed: lower its frame rate.")
 
 
 def check_smpl(motion: Clip | Duet, kind: str) -> None:

@@ -65,9 +65,7 @@ def chosen(
     moved = [{who for who, nodes in enumerate(joints) if moves(each, nodes)} for each in known]
     theirs = [number for number, who in enumerate(moved) if who]
     if set().union(*moved) < set(range(len(people))):
-        raise InputError(
-            f"{file.label} has an animation, but it moves no joint of the skeleton: export it again."
-        )
+        raise InputError(f"{file.label} has an animation, but it moves no joint of the skeleton: export it again.")
     names = [known[number].get("name") for number in theirs]
     first = theirs[0 if animation is None else _found(names, animation, file.label)]
     taken = [

@@ -73,12 +73,7 @@ class Buffer:
         }
 
     def primitive(
-        self,
-        vertices: dict[str, int],
-        faces: NDArray[np.integer],
-        name: str,
-        colour: list[float],
-        rough: float,
+        self, vertices: dict[str, int], faces: NDArray[np.integer], name: str, colour: list[float], rough: float
     ) -> dict[str, Any]:
         """Triangles of these vertices, in a material of their own of a linear colour (r, g, b)."""
         surface = {"baseColorFactor": [*colour, 1.0], "metallicFactor": 0.0, "roughnessFactor": rough}

@@ -54,15 +54,7 @@ def opened(
     data, label = read_bytes(source, name, remedy="reduce its mesh or leave out its pictures")
     try:
         yield GlbFile(data, label, purpose, harmless)
-    except (
-        KeyError,
-        IndexError,
-        TypeError,
-        ValueError,
-        OverflowError,
-        RecursionError,
-        AttributeError,
-    ) as error:
+    except (KeyError, IndexError, TypeError, ValueError, OverflowError, RecursionError, AttributeError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{label} is damaged: export it again as glTF binary (.glb).") from None
@@ -111,10 +103,7 @@ class GlbFile:
         self.label, self.purpose = label, purpose
         self.document, self.blob = self._chunks(data)
         for key in _LISTS:
-            if (
-                not isinstance(self.document.get(key, []), list)
-                or len(self.document.get(key, [])) > MOST_ITEMS
-            ):
+            if not isinstance(self.document.get(key, []), list) or len(self.document.get(key, [])) > MOST_ITEMS:
                 self.refuse(f"its list of {key} is too long or none")
         if len(self.document.get("skins", [])) > MOST_SKINS:
             self.refuse(
@@ -123,13 +112,9 @@ class GlbFile:
             )
         needed = [str(each)[:40] for each in list(self.document.get("extensionsRequired", []))]
         if needed := [each for each in needed if not each.startswith((*_LOOKS, *harmless))]:
-            self.refuse(
-                f"it needs {', '.join(needed[:3])}", "export it without compression or other extensions"
-            )
+            self.refuse(f"it needs {', '.join(needed[:3])}", "export it without compression or other extensions")
 
-    def refuse(
-        self, what: str, remedy: str = "export it again as glTF binary (.glb) with its skin"
-    ) -> NoReturn:
+    def refuse(self, what: str, remedy: str = "export it again as glTF binary (.glb) with its skin") -> NoReturn:
         """Raises the sentence."""
         raise InputError(f"{self.label} cannot be {self.purpose} because {what}: {remedy}.")
 
@@ -170,8 +155,7 @@ class GlbFile:
         count, component = found["count"], found["componentType"]
         if type(count) is not int or not 0 < count <= most:
             self.refuse(
-                f"it has {count!r:.20} {what}, and {most:,} are the limit",
-                "reduce the mesh or the skeleton first",
+                f"it has {count!r:.20} {what}, and {most:,} are the limit", "reduce the mesh or the skeleton first"
             )
         if component not in _TYPES:
             self.refuse(f"its {what} are of an unknown kind")
@@ -231,9 +215,7 @@ class GlbFile:
         """Index of each node's parent, -1 for none; a node has one parent and is not above itself."""
         nodes = self.document.get("nodes", [])
         if len(nodes) > MOST_NODES:
-            self.refuse(
-                f"it has {len(nodes):,} nodes", f"export the character alone, with {MOST_NODES:,} at most"
-            )
+            self.refuse(f"it has {len(nodes):,} nodes", f"export the character alone, with {MOST_NODES:,} at most")
         parents = [-1] * len(nodes)
         for number, node in enumerate(nodes):
             for child in node.get("children", []):
@@ -251,11 +233,7 @@ class GlbFile:
     def skin_joints(self, skin: Any) -> list[int]:
         """The checked nodes of a skin's joints."""
         joints = skin["joints"]
-        if (
-            not isinstance(joints, list)
-            or not 0 < len(joints) <= MOST_JOINTS
-            or len(set(joints)) < len(joints)
-        ):
+        if not isinstance(joints, list) or not 0 < len(joints) <= MOST_JOINTS or len(set(joints)) < len(joints):
             self.refuse(f"its skin has no joints, or more than {MOST_JOINTS}")
         return [self.index(joint, len(self.document["nodes"]), "joint") for joint in joints]
 
@@ -282,9 +260,7 @@ class GlbFile:
         """The bones of a VRM character or animation by their nodes: "leftUpperArm" …"""
         found: dict[int, str] = {}
         for kind in ("VRM", "VRMC_vrm", "VRMC_vrm_animation"):
-            bones = (
-                self.document.get("extensions", {}).get(kind, {}).get("humanoid", {}).get("humanBones", {})
-            )
+            bones = self.document.get("extensions", {}).get(kind, {}).get("humanoid", {}).get("humanBones", {})
             if isinstance(bones, list):  # of VRM 0
                 bones = {each["bone"]: each for each in bones}
             found |= {each["node"]: str(bone) for bone, each in bones.items()}

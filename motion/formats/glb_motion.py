@@ -71,8 +71,7 @@ def read_glb(
         for its in places:
             its *= scale
         return tuple(
-            person.motion(its, rate / every, float(scale), every)
-            for person, its in zip(whole, places, strict=True)
+            person.motion(its, rate / every, float(scale), every) for person, its in zip(whole, places, strict=True)
         ), animations
 
 
@@ -89,8 +88,7 @@ def _whole(file: GlbFile) -> list[_Person]:
     parents = file.node_parents()
     if not file.document.get("animations"):
         raise InputError(
-            f"{file.label} has no animation: export it with one, or put it on both people with "
-            "“Wear a character”."
+            f"{file.label} has no animation: export it with one, or put it on both people with “Wear a character”."
         )
     found = [_Person(file, parents, rig) for rig in people(file, parents)]
     whole = [person for person in found if person.problem is None]
@@ -125,10 +123,17 @@ class _Person:
         rest = positions[0] if bound is None else bound[:, :3, 3] * across
         above = np.array(self.rig.above)
         found = RigMotion(
-            self.names, self.rig.above, rest - np.where(above[:, None] < 0, 0.0, rest[np.maximum(above, 0)]),
-            positions, None, fps, scale, self.file.label, every=every,
+            self.names,
+            self.rig.above,
+            rest - np.where(above[:, None] < 0, 0.0, rest[np.maximum(above, 0)]),
+            positions,
+            None,
+            fps,
+            scale,
+            self.file.label,
+            every=every,
             mirrored=self.mirrored,
-        )  # fmt: skip
+        )
         lengths = np.linalg.norm(found.offsets[above >= 0], axis=-1).sum()
         longer = found.bone_lengths.sum() / lengths if lengths > 1e-9 else 1.0
         return replace(found, offsets=found.offsets * longer)

@@ -73,9 +73,11 @@ class Channel:
             leaving, arriving = self.values[before, 2] * span[:, None], self.values[after, 0] * span[:, None]
             square, cube = share**2, share**3
             return (
-                (2 * cube - 3 * square + 1) * one + (cube - 2 * square + share) * leaving
-                + (3 * square - 2 * cube) * other + (cube - square) * arriving
-            )  # fmt: skip
+                (2 * cube - 3 * square + 1) * one
+                + (cube - 2 * square + share) * leaving
+                + (3 * square - 2 * cube) * other
+                + (cube - square) * arriving
+            )
         if self.path != "rotation":
             return one + share * (other - one)
         return _slerp(one, other, share)
@@ -158,17 +160,18 @@ def channels(file: GlbFile, animation: Any, nodes: set[int]) -> list[Channel]:
     clocks = {times: tables[times][:, 0] for *_, times, _ in found}
     if any((np.diff(times) < 0).any() or times[0] < 0 for times in clocks.values()):
         file.refuse(_NO_FIT)
-    splines = {values: tables[values].reshape(-1, 3, tables[values].shape[1])
-               for _, _, way, _, values in found if way == "CUBICSPLINE"}  # fmt: skip
+    splines = {
+        values: tables[values].reshape(-1, 3, tables[values].shape[1])
+        for _, _, way, _, values in found
+        if way == "CUBICSPLINE"
+    }
     return [
         Channel(node, path, clocks[times], (splines if way == "CUBICSPLINE" else tables)[values], way)
         for node, path, way, times, values in found
     ]
 
 
-def _stored_channels(
-    file: GlbFile, animation: Any, nodes: set[int]
-) -> list[tuple[int, str, str, Stored, Stored]]:
+def _stored_channels(file: GlbFile, animation: Any, nodes: set[int]) -> list[tuple[int, str, str, Stored, Stored]]:
     """Node, path, way, times and values of each channel, not decoded yet."""
     count = len(file.document.get("nodes", []))
     samplers = animation["samplers"]
@@ -225,9 +228,12 @@ def matrices(parts: dict[str, Array]) -> Array:
 
 
 def placed(
-    file: GlbFile, nodes: Sequence[int], parents: Sequence[int], moved: Sequence[Channel] = (),
+    file: GlbFile,
+    nodes: Sequence[int],
+    parents: Sequence[int],
+    moved: Sequence[Channel] = (),
     moments: Array | None = None,
-) -> dict[int, Array]:  # fmt: skip
+) -> dict[int, Array]:
     """World matrices (T, 4, 4) of nodes with those above them, at moments in seconds; (1, 4, 4) at rest.
 
     Args:

@@ -71,9 +71,7 @@ def _character(file: GlbFile) -> Character:
             skin = file.index(node["skin"], len(skins), "skin")
             bound.setdefault(skin, []).append(meshes[file.index(node["mesh"], len(meshes), "mesh")])
     if not bound:
-        file.refuse(
-            "it has no mesh that is bound to a skeleton", "skin the mesh and export it with its armature"
-        )
+        file.refuse("it has no mesh that is bound to a skeleton", "skin the mesh and export it with its armature")
     skin = max(bound, key=lambda each: _triangles(file, bound[each]))
     vertices, faces, slots, weights = _surface(file, bound[skin])
     joints = file.skin_joints(skins[skin])

@@ -241,9 +241,7 @@ def _lift(skeleton: _Skeleton, reference: str | Path | bytes, name: str | None) 
     character = read_character(reference, name=name)
     rest = skeleton.rest
     parts = match_joints(rest)
-    names = [
-        rest.joint_names[joint] for side in (parts.left, parts.right) if (joint := side["ankle"]) is not None
-    ]
+    names = [rest.joint_names[joint] for side in (parts.left, parts.right) if (joint := side["ankle"]) is not None]
     ankles = [character.joint_names.index(each) for each in names if each in character.joint_names]
     if not ankles:
         return 0.0
@@ -291,11 +289,7 @@ def _shifted(node: dict[str, Any], nodes: int, skins: int) -> dict[str, Any]:
 
 
 def _animated(
-    document: dict[str, Any],
-    blob: bytes,
-    moves: Sequence[Mapping[tuple[int, str], Array]],
-    fps: float,
-    name: str,
+    document: dict[str, Any], blob: bytes, moves: Sequence[Mapping[tuple[int, str], Array]], fps: float, name: str
 ) -> bytes:
     """The file with one animation of these channels; nodes lose what they were turned by."""
     document["animations"] = [{"name": name}]

@@ -36,9 +36,7 @@ def add_things(buffer: Buffer, things: Sequence[Thing], times: int) -> None:
         vertices = buffer.vertices(thing.mesh.vertices, thing.mesh.faces)
         colours, which = thing.mesh.by_colour()
         parts = [  # one for each colour
-            buffer.primitive(
-                vertices, thing.mesh.faces[which == number], f"{name}_{number + 1}", light, ROUGH
-            )
+            buffer.primitive(vertices, thing.mesh.faces[which == number], f"{name}_{number + 1}", light, ROUGH)
             for number, light in enumerate([*linear(hex_of(colour))] for colour in colours.tolist())
         ]
         mesh = buffer.append("meshes", {"name": name, "primitives": parts})

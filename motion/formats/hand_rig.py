@@ -17,8 +17,10 @@ FINGER_JOINTS = tuple(f"{side}_{finger}{k}" for side in SIDES for finger in FING
 """Their names, such as "left_index2"."""
 PARENTS = tuple(
     SMPL22.index(f"{side}_wrist") if k == 0 else SMPL22.num_joints + 15 * s + 3 * f + k - 1
-    for s, side in enumerate(SIDES) for f in range(len(FINGERS)) for k in range(3)
-)  # fmt: skip
+    for s, side in enumerate(SIDES)
+    for f in range(len(FINGERS))
+    for k in range(3)
+)
 """The joint above each, where SMPL22's come first."""
 _WRISTS = np.array([SMPL22.index(f"{side}_wrist") for side in SIDES])
 

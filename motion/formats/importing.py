@@ -147,9 +147,7 @@ def without_calibration(person: Any) -> Any:
         return person
     note = _CALIBRATION.format(person.name, "frame was" if count == 1 else f"{count} frames were")
     rotations = None if person.rotations is None else person.rotations[count:]
-    return replace(
-        person, positions=person.positions[count:], rotations=rotations, notes=(*person.notes, note)
-    )
+    return replace(person, positions=person.positions[count:], rotations=rotations, notes=(*person.notes, note))
 
 
 def _with_note(people: Sequence[Any], up: str, usual: str, label: str, choices: ImportChoices) -> list[Any]:
@@ -211,9 +209,7 @@ def _import_clips(clips: list[Clip], recording: Recording, label: str, choices: 
     up = choices.up or find_up(places, recording.usual_up or "y")
     unit = choices.unit or _unit_of(places[0], up)
     turn, metres = turn_of(up), UNITS[unit]
-    people = [
-        _turned(clip, turn, metres) for clip in _with_note(clips, up, recording.usual_up, label, choices)
-    ]
+    people = [_turned(clip, turn, metres) for clip in _with_note(clips, up, recording.usual_up, label, choices)]
     lowest = min(float(clip.positions[..., 1].min()) for clip in people)
     changed = people[0].positions is not clips[0].positions
     if (recording.on_floor and len(people) == 1) or (

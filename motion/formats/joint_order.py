@@ -61,9 +61,7 @@ def _shape(frames: Array, skeleton: Skeleton) -> float:
     def against(one: Array, other: Array) -> float:
         return float(np.mean(1 - np.sum(one * other, axis=-1))) / 2
 
-    bent = np.sum((knees - (hips + ankles) / 2) * ahead, axis=-1) / np.linalg.norm(
-        hips - ankles, axis=-1
-    ).clip(1e-9)
+    bent = np.sum((knees - (hips + ankles) / 2) * ahead, axis=-1) / np.linalg.norm(hips - ankles, axis=-1).clip(1e-9)
     return (
         against(across, unit(at["left_shoulder"] - at["right_shoulder"]))
         + against(trunk, unit(hips - ankles))

@@ -82,9 +82,7 @@ def _lines(text: str, label: str) -> Iterator[tuple[int, str]]:
         stop = text.find("\n", start)
         stop = len(text) if stop < 0 else stop
         if stop - start > _LONGEST_LINE:
-            raise InputError(
-                f"{label}, line {number} is too long for a Kinect's text: is it of another kind?"
-            )
+            raise InputError(f"{label}, line {number} is too long for a Kinect's text: is it of another kind?")
         if number > _MOST_LINES:
             raise InputError(f"{label} has more than {_MOST_LINES:,} lines: cut the motion.")
         line = text[start:stop]
@@ -104,9 +102,7 @@ def _read_sbu(text: str, label: str, fps: float) -> list[Array]:
         check_duration(frames + 1, fps, label)
         words = line.split(",")
         if len(words) not in (90, 91):
-            raise InputError(
-                f"{label}, line {number}: {len(words)} numbers where a frame's number and 90 are needed."
-            )
+            raise InputError(f"{label}, line {number}: {len(words)} numbers where a frame's number and 90 are needed.")
         rows[frames] = _numbers(words[-90:], f"{label}, line {number}")
         frames += 1
     x, y, z = rows[:frames].reshape(-1, 2, 15, 3).transpose(3, 1, 0, 2)
@@ -210,9 +206,7 @@ def _read_skeleton(text: str, label: str, fps: float) -> list[tuple[Array, tuple
     for letter, body in zip("ABCDEF", kept, strict=False):
         positions = np.full((frames, 25, 3), np.nan, dtype=np.float32)
         positions[list(body)] = list(body.values())
-        people.append(
-            (filled(positions, label), (*_gap(body, frames, fps, f"{label}: person {letter}"), *more))
-        )
+        people.append((filled(positions, label), (*_gap(body, frames, fps, f"{label}: person {letter}"), *more)))
     return people
 
 

@@ -37,15 +37,8 @@ _SIDED = {
     "wrist": "*wjc, *wra *wrb, *wri, *wrist, %wrist, *wrb, *wra",
 }
 """Markers whose mean is the joint, by preference, between commas; "*" is l or r, "%" left or right."""
-_MIDDLE = {
-    "head": "lfhd rfhd lbhd rbhd, lfhd rfhd, head, lear rear, nose",
-    "neck": "c7 clav, neck, c7, t1",
-}
-_PELVIS = (
-    ("lasi", "rasi", "lpsi", "rpsi"),
-    ("lasis", "rasis", "lpsis", "rpsis"),
-    ("lfwt", "rfwt", "lbwt", "rbwt"),
-)
+_MIDDLE = {"head": "lfhd rfhd lbhd rbhd, lfhd rfhd, head, lear rear, nose", "neck": "c7 clav, neck, c7, t1"}
+_PELVIS = (("lasi", "rasi", "lpsi", "rpsi"), ("lasis", "rasis", "lpsis", "rpsis"), ("lfwt", "rfwt", "lbwt", "rbwt"))
 """Four markers around the pelvis: both in front, both behind."""
 _NEEDED = ("hip", "knee", "ankle", "shoulder", "elbow", "wrist")
 _SACRUM = ("sacr", "vsacr")
@@ -67,9 +60,7 @@ def people_of(names: Sequence[str], points: Array, fps: float, label: str) -> tu
         InputError: if nobody has the markers of a whole body, or places are not possible.
     """
     points[(points == 0).all(axis=-1)] = np.nan
-    if (
-        max(-np.fmin.reduce(points, axis=None), np.fmax.reduce(points, axis=None)) > _FARTHEST
-    ):  # NaN is left out
+    if max(-np.fmin.reduce(points, axis=None), np.fmax.reduce(points, axis=None)) > _FARTHEST:  # NaN is left out
         raise InputError(f"{label} holds points more than {_FARTHEST:g} m away: is its unit right?")
     people, missing = [], ""
     for markers in _by_person(names, points):
@@ -137,9 +128,7 @@ def _add_hips(found: dict[str, Array], markers: Points) -> None:
         behind = unit(behind)
         down = np.cross(behind, across)
         for side, sign in (("left", 1.0), ("right", -1.0)):
-            found.setdefault(
-                f"{side}_hip", front + width * (0.36 * sign * across + 0.19 * behind + 0.30 * down)
-            )
+            found.setdefault(f"{side}_hip", front + width * (0.36 * sign * across + 0.19 * behind + 0.30 * down))
         return
 
 
@@ -155,9 +144,7 @@ def _clip(joints: Mapping[str, Array], fps: float, label: str) -> Clip:
     places.setdefault("head", places["neck"] + 0.1 * trunk)
     for side in ("left", "right"):
         shank = unit(places[f"{side}_knee"] - places[f"{side}_ankle"])
-        places.setdefault(
-            f"{side}_foot", places[f"{side}_ankle"] + 0.13 * np.cross(across, shank) - 0.06 * shank
-        )
+        places.setdefault(f"{side}_foot", places[f"{side}_ankle"] + 0.13 * np.cross(across, shank) - 0.06 * shank)
     positions = np.stack([places[name] for name in POINTS17.joint_names], axis=1)
     often = [name.replace("_", " ") for name, share in unseen.items() if share > _OFTEN_UNSEEN]
     note = f"Interpolated, as their markers were often not seen: {', '.join(often)}."

@@ -32,18 +32,35 @@ from .smpl import FPS_KEYS, PARAMETER_KEYS, has_parameters, read_parameters
 Array = NDArray[Any]
 
 _SMPL24 = 24
-_JOINT_COUNTS = (
-    "15 (Kinect v1), 17 (CMU, Human3.6M, COCO), 22 or 24 (SMPL), 25 (Kinect v2), 30 or 77 joints (SOMA)"
-)
+_JOINT_COUNTS = "15 (Kinect v1), 17 (CMU, Human3.6M, COCO), 22 or 24 (SMPL), 25 (Kinect v2), 30 or 77 joints (SOMA)"
 _INTERHUMAN = 492
 """InterHuman's processed frames: 62 joints' positions and 51 joints' rotations, the body's first in both."""
 _BODY_POSITIONS, _BODY_ROTATIONS = slice(0, 66), slice(186, 312)
 _HUMANML3D, _HUMANML3D_FPS = 263, 20.0
 _SOMA_NAMES = (
-    "Hips", "LeftLeg", "RightLeg", "Spine1", "LeftShin", "RightShin", "Spine2", "LeftFoot", "RightFoot", "Chest",
-    "LeftToeBase", "RightToeBase", "Neck1", "LeftShoulder", "RightShoulder", "Head", "LeftArm", "RightArm",
-    "LeftForeArm", "RightForeArm", "LeftHand", "RightHand",
-)  # fmt: skip
+    "Hips",
+    "LeftLeg",
+    "RightLeg",
+    "Spine1",
+    "LeftShin",
+    "RightShin",
+    "Spine2",
+    "LeftFoot",
+    "RightFoot",
+    "Chest",
+    "LeftToeBase",
+    "RightToeBase",
+    "Neck1",
+    "LeftShoulder",
+    "RightShoulder",
+    "Head",
+    "LeftArm",
+    "RightArm",
+    "LeftForeArm",
+    "RightForeArm",
+    "LeftHand",
+    "RightHand",
+)
 """The joints of SOMA's skeleton that SMPL22 has too, in its order, so that its parents are theirs."""
 _SOMA = {
     30: [0, 22, 26, 1, 23, 27, 2, 24, 28, 3, 25, 29, 4, 10, 16, 6, 11, 17, 12, 18, 13, 19],
@@ -149,9 +166,13 @@ def read_npy(data: bytes, label: str, choices: ImportChoices) -> Recording:
 
 
 def _recording(
-    array: Array, rate: float, label: str, choices: ImportChoices, notes: tuple[str, ...],
+    array: Array,
+    rate: float,
+    label: str,
+    choices: ImportChoices,
+    notes: tuple[str, ...],
     named: Mapping[str, Array] | None = None,
-) -> Recording:  # fmt: skip
+) -> Recording:
     """Positions (T, J, 3) or (people, T, J, 3), on known joints or a rig's; MDM's (J, 3, T) are turned round."""
     if array.ndim in (3, 4) and array.shape[-1] != 3 == array.shape[-2] and array.shape[-3] in _COUNTS:
         array = np.moveaxis(array, -1, -3)
@@ -172,15 +193,11 @@ def _recording(
         if names is not None:
             still = np.zeros((len(names[0]), 3))
             return Recording(
-                tuple(
-                    RigMotion(*names, still, person, None, rate, name=label, notes=notes) for person in people
-                )
+                tuple(RigMotion(*names, still, person, None, rate, name=label, notes=notes) for person in people)
             )
         skeleton, more = _skeleton(named or {}, people, label, choices.order)
         people = people[:, :, : skeleton.num_joints]  # the hands of SMPL's 24 come last
-        return Recording(
-            tuple(Clip(its, rate, skeleton, name=label, notes=(*notes, *more)) for its in people)
-        )
+        return Recording(tuple(Clip(its, rate, skeleton, name=label, notes=(*notes, *more)) for its in people))
     except InputError as error:
         raise InputError(f"{label}: {str(error).removeprefix(f'{label} ')}") from None
 

@@ -33,17 +33,27 @@ from .files import read_json
 Array = NDArray[Any]
 
 KEYS = (
-    "thing_kinds", "thing_names", "thing_places", "thing_rotations", "thing_sizes", "thing_vertices",
-    "thing_faces", "thing_colours",
-)  # fmt: skip
+    "thing_kinds",
+    "thing_names",
+    "thing_places",
+    "thing_rotations",
+    "thing_sizes",
+    "thing_vertices",
+    "thing_faces",
+    "thing_colours",
+)
 GRIPS = "grips"
 """Name of the array of grips."""
 LOOKS = "looks"
 """Name of the array of looks."""
 _SHAPES = {
-    "thing_places": ("f", 3), "thing_rotations": ("f", 4), "thing_sizes": ("iu", 2), "thing_vertices": ("f", 2),
-    "thing_faces": ("iu", 2), "thing_colours": ("u", 2),
-}  # fmt: skip
+    "thing_places": ("f", 3),
+    "thing_rotations": ("f", 4),
+    "thing_sizes": ("iu", 2),
+    "thing_vertices": ("f", 2),
+    "thing_faces": ("iu", 2),
+    "thing_colours": ("u", 2),
+}
 """Kind of number and number of axes of each array of numbers."""
 
 

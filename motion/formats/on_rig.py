@@ -39,6 +39,4 @@ def check_rig(reference: Path) -> None:
 
 def _check_kind(reference: Path) -> None:
     if reference.suffix.lower() not in RIGS:
-        raise InputError(
-            f"A partner is taken on the rig of a BVH or .glb file, and {reference.name} is none."
-        )
+        raise InputError(f"A partner is taken on the rig of a BVH or .glb file, and {reference.name} is none.")

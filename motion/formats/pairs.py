@@ -44,9 +44,7 @@ def in_zip(source: str | Path | bytes, suffixes: Sequence[str], *, name: str | N
             parts = {info.filename: info for info in archive.infolist() if not info.is_dir()}
             chosen = _chosen(list(parts), [suffix for suffix in suffixes if suffix != ".zip"], label)
             if sum(parts[part].file_size for part in chosen) > MAX_BYTES:
-                raise InputError(
-                    f"{label} would unpack to more than {MAX_BYTES // 2**20} MB: cut the motion."
-                )
+                raise InputError(f"{label} would unpack to more than {MAX_BYTES // 2**20} MB: cut the motion.")
             found: list[Source] = []
             for part in chosen:
                 with archive.open(parts[part]) as stream:  # gives no more than the size that was checked

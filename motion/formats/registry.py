@@ -93,9 +93,7 @@ FORMATS: dict[str, Format] = {
 READABLE = [f.suffix for f in FORMATS.values() if f.reader]
 
 
-def recordings(
-    source: str | Path | bytes, name: str | None, choices: ImportChoices
-) -> tuple[list[Recording], str]:
+def recordings(source: str | Path | bytes, name: str | None, choices: ImportChoices) -> tuple[list[Recording], str]:
     """Reads a file, or two files of one folder or archive; also gives what to call it.
 
     Raises:
@@ -120,11 +118,7 @@ def _recording(source: str | Path | bytes, name: str | None, choices: ImportChoi
         raise InputError(
             f"{Path(label).name} is no .glb file and has no animations to choose from: leave the choice out."
         )
-    remedy = (
-        "reduce its mesh or leave out its pictures"
-        if suffix in GLBS
-        else "cut the motion or lower its frame rate"
-    )
+    remedy = "reduce its mesh or leave out its pictures" if suffix in GLBS else "cut the motion or lower its frame rate"
     data, label = read_bytes(source, name and Path(name).name, remedy=remedy)
     return known.reader(data, label, choices)
 

@@ -18,19 +18,12 @@ from motion.vectors import unit
 
 Array = NDArray[np.floating]
 
-_NEXT = {
-    "collar": "shoulder",
-    "shoulder": "elbow",
-    "elbow": "wrist",
-    "hip": "knee",
-    "knee": "ankle",
-    "ankle": "foot",
-}
+_NEXT = {"collar": "shoulder", "shoulder": "elbow", "elbow": "wrist", "hip": "knee", "knee": "ankle", "ankle": "foot"}
 
 
 def posed(
     rig: RigMotion, bones: Array, clip: Clip, pairs: Mapping[int, int], constants: Mapping[int, Array], usual: Array
-) -> Array:  # fmt: skip
+) -> Array:
     """Rotations of a rig's joints in a person's pose, whose limbs point exactly where the person's do.
 
     Args:
@@ -73,9 +66,15 @@ def local_of(world: Array, parents: tuple[int, ...]) -> Array:
 
 
 def reached(
-    rig: RigMotion, bones: Array, clip: Clip, pairs: Mapping[int, int], usual: Array, world: Array, lift: float,
+    rig: RigMotion,
+    bones: Array,
+    clip: Clip,
+    pairs: Mapping[int, int],
+    usual: Array,
+    world: Array,
+    lift: float,
     near: Mapping[str, Array],
-) -> Array:  # fmt: skip
+) -> Array:
     """The rotations of :func:`posed` with wrists where the person's are; hands stay as turned as they were.
 
     Args:
@@ -109,9 +108,7 @@ def reached(
 
 def _bent(shoulder: Array, elbow: Array, wrist: Array, goal: Array) -> tuple[Array, Array]:
     """(T, 3) elbows and wrists of arms of the same length that reach for a goal in the plane in which they bend."""
-    upper, lower = (
-        np.linalg.norm(bone, axis=-1, keepdims=True) for bone in (elbow - shoulder, wrist - elbow)
-    )
+    upper, lower = (np.linalg.norm(bone, axis=-1, keepdims=True) for bone in (elbow - shoulder, wrist - elbow))
     away = np.linalg.norm(goal - shoulder, axis=-1, keepdims=True)
     far = np.clip(away, np.abs(upper - lower) + 1e-4, 0.9999 * (upper + lower))
     along = unit(goal - shoulder)

@@ -69,12 +69,17 @@ def _skinned(clip: Clip, role: str, body: Body, colours: Mapping[str, str], shap
     offsets = np.concatenate([bone_offsets(positions, world), rig.offsets])
     offsets[0] = positions[0, 0]
     return Skinned(
-        role, body, colours, positions, offsets,
+        role,
+        body,
+        colours,
+        positions,
+        offsets,
         turns=np.concatenate([local_rotations(world), rig.rotations(body, shapes)], axis=1),
         bound_turns=np.concatenate([body.turns, rig.turns]),
         bound_places=np.concatenate([body.joints, rig.joints]),
-        weights=rig.weights, bones=np.where(rig.weights > 0, rig.bones, 0),
-    )  # fmt: skip
+        weights=rig.weights,
+        bones=np.where(rig.weights > 0, rig.bones, 0),
+    )
 
 
 def bone_offsets(positions: Array, world: Array) -> Array:

@@ -169,9 +169,7 @@ def smpl_bytes(clip: Clip) -> bytes:
         InputError: for joints other than SMPL22's.
     """
     check_smpl(clip, SUFFIX)
-    rotations = (
-        fit_rotations(clip.positions) if clip.rotations is None else np.array(clip.rotations, np.float64)
-    )
+    rotations = fit_rotations(clip.positions) if clip.rotations is None else np.array(clip.rotations, np.float64)
     rotations[:, 0] = _Z_UP_TO_Y_UP.T @ rotations[:, 0]
     vectors = scipy.spatial.transform.Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec()
     poses = np.zeros((clip.num_frames, _POSES))

@@ -56,9 +56,7 @@ def read_thing(source: str | Path | bytes, *, name: str | None = None) -> Mesh:
         raise InputError(f"{label or 'This file'} is no thing: give a .glb, .obj, .stl or .ply file.")
     data, label = read_bytes(source, label, remedy="reduce its mesh")
     if len(data) > MOST_BYTES:
-        raise InputError(
-            f"{label} has {len(data) / 2**20:.0f} MB: reduce its mesh to {MOST_BYTES // 2**20} MB."
-        )
+        raise InputError(f"{label} has {len(data) / 2**20:.0f} MB: reduce its mesh to {MOST_BYTES // 2**20} MB.")
     if suffix == ".glb":
         with opened(data, label, "used as a thing") as file:
             vertices, faces, colours = _from_glb(file)
@@ -84,9 +82,7 @@ def _check_counts(data: bytes, suffix: str, label: str) -> None:
     else:
         counted = data.count(b"\nf ") + data.count(b"\nf\t") + data.count(b"\nv ") + data.count(b"\nv\t")
     if not 0 < counted <= 2 * MOST_TRIANGLES:
-        raise InputError(
-            f"{label} has {counted:,} triangles and vertices: give 1 to {MOST_TRIANGLES:,} triangles."
-        )
+        raise InputError(f"{label} has {counted:,} triangles and vertices: give 1 to {MOST_TRIANGLES:,} triangles.")
 
 
 def _from_trimesh(data: bytes, suffix: str, label: str) -> tuple[Array, NDArray, NDArray]:
@@ -94,12 +90,7 @@ def _from_trimesh(data: bytes, suffix: str, label: str) -> tuple[Array, NDArray,
 
     try:
         made: Any = trimesh.load(
-            io.BytesIO(data),
-            file_type=suffix[1:],
-            force="mesh",
-            process=False,
-            resolver=None,
-            skip_materials=True,
+            io.BytesIO(data), file_type=suffix[1:], force="mesh", process=False, resolver=None, skip_materials=True
         )
         vertices, faces = np.asarray(made.vertices, dtype=np.float64), np.asarray(made.faces, dtype=np.int64)
         colours = np.tile(np.array(_PLAIN, dtype=np.uint8), (len(faces), 1))
@@ -117,12 +108,8 @@ def _from_glb(file: GlbFile) -> tuple[Array, NDArray, NDArray]:
     """All triangles of the file as its nodes place them, each in the colour of its material."""
     parents = file.node_parents()
     nodes, meshes = (file.document.get(key, []) for key in ("nodes", "meshes"))
-    used = [
-        (i, file.index(node["mesh"], len(meshes), "mesh")) for i, node in enumerate(nodes) if "mesh" in node
-    ]
-    corners = sum(
-        file.corners(part, MOST_TRIANGLES) for _, mesh in used for part in meshes[mesh]["primitives"]
-    )
+    used = [(i, file.index(node["mesh"], len(meshes), "mesh")) for i, node in enumerate(nodes) if "mesh" in node]
+    corners = sum(file.corners(part, MOST_TRIANGLES) for _, mesh in used for part in meshes[mesh]["primitives"])
     if not 0 < corners <= 3 * MOST_TRIANGLES:
         file.refuse(f"it has {corners // 3:,} triangles", f"give 1 to {MOST_TRIANGLES:,}")
     vertices, faces, colours, first = [], [], [], 0
@@ -164,9 +151,7 @@ def _fitted(vertices: Array, faces: NDArray, colours: NDArray, label: str) -> Me
         raise InputError(f"{label} has too many triangles, or corners that are not there: export it again.")
     used = vertices[np.unique(faces)]
     if not (np.isfinite(used).all() and np.abs(used).max() < 1e9):
-        raise InputError(
-            f"{label} holds places that are not finite or very far away: scale it, or export it again."
-        )
+        raise InputError(f"{label} holds places that are not finite or very far away: scale it, or export it again.")
     vertices = vertices - (used.min(axis=0) + used.max(axis=0)) / 2
     longest = float(np.ptp(used, axis=0).max())
     scale = 0.001 if longest > LARGEST else 1.0
@@ -198,9 +183,7 @@ def _split(vertices: Array, faces: NDArray, colours: NDArray, label: str) -> Mes
     """The surface with the vertices of sharp edges split."""
     if not len(faces):
         raise InputError(f"{label} has no triangles with an area: export it again.")
-    normals = np.cross(
-        vertices[faces[:, 1]] - vertices[faces[:, 0]], vertices[faces[:, 2]] - vertices[faces[:, 0]]
-    )
+    normals = np.cross(vertices[faces[:, 1]] - vertices[faces[:, 0]], vertices[faces[:, 2]] - vertices[faces[:, 0]])
     normals = unit(normals)
     # Corners that meet in a vertex stay together where their triangles face the same way, roughly.
     towards = np.rint(1.2 * np.repeat(normals, 3, axis=0)).astype(np.int64)

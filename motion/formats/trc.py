@@ -85,9 +85,7 @@ def _rows(text: str, start: int, markers: int, mark: str | None, rate: float, la
         stop = len(text) if stop < 0 else stop
         number += 1
         if stop - start > longest:
-            raise InputError(
-                f"{label}, line {number} is longer than {markers} markers need: export it again."
-            )
+            raise InputError(f"{label}, line {number} is longer than {markers} markers need: export it again.")
         line, start = text[start:stop].strip("\r\n"), stop + 1
         if not line.strip("\t ;,"):
             continue

@@ -37,9 +37,20 @@ _RADII = {
 """Radius in metres of the capsule of the bone that ends in a joint, by the joint's name without its side."""
 _OTHER = 0.03
 _TRUNK = {
-    "pelvis", "base_of_spine", "spine1", "spine2", "spine3", "middle_of_spine", "spine_shoulder", "torso",
-    "neck", "head", "collar", "hip", "shoulder",
-}  # fmt: skip
+    "pelvis",
+    "base_of_spine",
+    "spine1",
+    "spine2",
+    "spine3",
+    "middle_of_spine",
+    "spine_shoulder",
+    "torso",
+    "neck",
+    "head",
+    "collar",
+    "hip",
+    "shoulder",
+}
 _HANDS = {"hand", "hand_tip", "thumb"}
 
 
@@ -79,11 +90,7 @@ def capsules(skeleton: Skeleton) -> Capsules:
 
     Hands are left out because people who hold hands are not inside each other.
     """
-    kept = [
-        (parent, child)
-        for parent, child in skeleton.bones
-        if sideless(skeleton.joint_names[child]) not in _HANDS
-    ]
+    kept = [(parent, child) for parent, child in skeleton.bones if sideless(skeleton.joint_names[child]) not in _HANDS]
     names = [sideless(name) for name in skeleton.joint_names]
     return Capsules(
         starts=np.array([parent for parent, _ in kept], dtype=np.intp),

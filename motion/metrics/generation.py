@@ -18,9 +18,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.floating]
 
 
-def r_precision(
-    motion: Array, text: Array, *, rng: np.random.Generator, pool: int = 32, top: int = 3
-) -> Array:
+def r_precision(motion: Array, text: Array, *, rng: np.random.Generator, pool: int = 32, top: int = 3) -> Array:
     """Motion-to-text retrieval: how often the motion's own sentence is among the nearest of a pool.
 
     Args:
@@ -104,6 +102,4 @@ def share(passed: int, count: int) -> str:
     if not count:
         return "–"
     bounds = scipy.stats.binomtest(passed, count).proportion_ci(method="wilson")
-    return (
-        f"{100 * passed / count:.0f} % ({passed}/{count}; {100 * bounds.low:.0f}–{100 * bounds.high:.0f} %)"
-    )
+    return f"{100 * passed / count:.0f} % ({passed}/{count}; {100 * bounds.low:.0f}–{100 * bounds.high:.0f} %)"

@@ -109,16 +109,14 @@ def contact_events(duet: Duet) -> list[Contact]:
         on_body = hand_touching(duet, me, body)
         for start, stop in meeting:
             on_body[start:stop] = False  # one contact, not two
-        found += [
-            Contact(*ends, "touch", f"hand of {mine} on {theirs}") for ends in _stretches(on_body, duet.fps)
-        ]
+        found += [Contact(*ends, "touch", f"hand of {mine} on {theirs}") for ends in _stretches(on_body, duet.fps)]
         kicks = touching(
-            duet.people[me].positions[:, feet], duet.people[other].positions,
-            above_ground(body, duet.skeleton), margin=SKIN_TOUCH,
-        )  # fmt: skip
-        found += [
-            Contact(*ends, "foot", f"foot of {mine} on {theirs}") for ends in _stretches(kicks, duet.fps)
-        ]
+            duet.people[me].positions[:, feet],
+            duet.people[other].positions,
+            above_ground(body, duet.skeleton),
+            margin=SKIN_TOUCH,
+        )
+        found += [Contact(*ends, "foot", f"foot of {mine} on {theirs}") for ends in _stretches(kicks, duet.fps)]
     return sorted(found, key=lambda contact: (contact.start, contact.kind, contact.label))
 
 
@@ -135,9 +133,7 @@ def hand_touching(duet: Duet, me: int, body: Capsules) -> NDArray[np.bool_]:
 
 def touching(points: Array, target: Array, body: Capsules, *, margin: float) -> NDArray[np.bool_]:
     """(T,) whether any of points (T, P, 3) is within ``margin`` of the surface of a body (T, J, 3)."""
-    gaps = point_segment_distance(
-        points[:, :, None], target[:, None, body.starts], target[:, None, body.ends]
-    )
+    gaps = point_segment_distance(points[:, :, None], target[:, None, body.starts], target[:, None, body.ends])
     return np.asarray((gaps - body.radii < margin).any(axis=(1, 2)))
 
 

@@ -21,7 +21,5 @@ PHYSICAL = {
 
 def physical(duets: Sequence[Duet]) -> dict[str, float]:
     """The mean of each measure of :data:`PHYSICAL` over duets."""
-    values = [
-        (foot_skate(duet).speed, jerk(duet), penetration(duet).mean, bone_drift(duet)) for duet in duets
-    ]
+    values = [(foot_skate(duet).speed, jerk(duet), penetration(duet).mean, bone_drift(duet)) for duet in duets]
     return {key: round(float(mean), 4) for key, mean in zip(PHYSICAL, np.mean(values, axis=0), strict=True)}

@@ -61,9 +61,7 @@ def foot_skate(duet: Duet) -> FootSkate:
         return FootSkate(0.0, 0.0, 0.0)
     planted = np.array(speeds)[np.array(standing)]
     return FootSkate(
-        speed=float(planted.mean() * 100),
-        ratio=float((planted > SKATE_SPEED).mean()),
-        contact=float(np.mean(standing)),
+        speed=float(planted.mean() * 100), ratio=float((planted > SKATE_SPEED).mean()), contact=float(np.mean(standing))
     )
 
 
@@ -112,12 +110,7 @@ def penetration(duet: Duet) -> Penetration:
     body = capsules(duet.skeleton)
     radii_a, radii_b = (body.of_size(size_of(look)).radii for look in duet.looks)
     a, b = duet.positions
-    starts_a, ends_a, starts_b, ends_b = (
-        a[:, body.starts],
-        a[:, body.ends],
-        b[:, body.starts],
-        b[:, body.ends],
-    )
+    starts_a, ends_a, starts_b, ends_b = (a[:, body.starts], a[:, body.ends], b[:, body.starts], b[:, body.ends])
     reach_a = np.linalg.norm(ends_a - starts_a, axis=-1) / 2 + radii_a
     reach_b = np.linalg.norm(ends_b - starts_b, axis=-1) / 2 + radii_b
     # |m_a − m_b|² of all pairs as one matrix product; middles are taken from a nearby origin so that
@@ -133,9 +126,7 @@ def penetration(duet: Duet) -> Penetration:
     frame, i, j = np.nonzero(gap2 < reach * reach)
     depth = np.zeros(duet.num_frames)
     if len(frame):
-        distance = segment_segment_distance(
-            starts_a[frame, i], ends_a[frame, i], starts_b[frame, j], ends_b[frame, j]
-        )
+        distance = segment_segment_distance(starts_a[frame, i], ends_a[frame, i], starts_b[frame, j], ends_b[frame, j])
         np.maximum.at(depth, frame, radii_a[i] + radii_b[j] - distance)
     depth *= 100
     return Penetration(depth, float(depth.mean()), float(depth.max()))

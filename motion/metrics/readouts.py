@@ -34,27 +34,17 @@ class Measure:
 
 
 MEASURES = (
-    Measure(
-        "foot_skate", "Foot skate", "cm/s", 1, "Mean speed of feet while they stand on the floor.", "lower"
-    ),
-    Measure(
-        "skate_ratio", "Skating frames", "%", 1, "Standing feet that slide faster than 50 cm/s.", "lower"
-    ),
-    Measure(
-        "penetration", "Penetration", "cm", 2, "Mean over time of the deepest overlap of the bodies.", "lower"
-    ),
+    Measure("foot_skate", "Foot skate", "cm/s", 1, "Mean speed of feet while they stand on the floor.", "lower"),
+    Measure("skate_ratio", "Skating frames", "%", 1, "Standing feet that slide faster than 50 cm/s.", "lower"),
+    Measure("penetration", "Penetration", "cm", 2, "Mean over time of the deepest overlap of the bodies.", "lower"),
     Measure("penetration_max", "Deepest overlap", "cm", 1, "At the worst frame.", "lower"),
     Measure("jerk", "Jerk", "m/s³", 0, "Mean third derivative of the joints: shaking and snapping.", "lower"),
     Measure("bone_drift", "Bone drift", "%", 2, "How much the bones change in length.", "lower"),
     Measure("distance", "Distance, mean", "m", 2, "Between the two pelvises, along the floor."),
     Measure("distance_min", "Distance, closest", "m", 2, "Between the two pelvises, along the floor."),
     Measure("hands_min", "Hands, closest", "m", 2, "Between the two nearest hands, one of each person."),
-    Measure(
-        "facing", "Facing, mean", "°", 0, "Mean angle between where a person faces and where the other is."
-    ),
-    Measure(
-        "contact_seconds", "In contact", "s", 1, "Time during which a hand or foot is on the other person."
-    ),
+    Measure("facing", "Facing, mean", "°", 0, "Mean angle between where a person faces and where the other is."),
+    Measure("contact_seconds", "In contact", "s", 1, "Time during which a hand or foot is on the other person."),
     Measure(
         "response_delay",
         "Response delay",
@@ -81,12 +71,7 @@ def readouts(duet: Duet) -> dict[str, Any]:
         ``contacts``: dictionaries with ``start``, ``stop`` (frames), ``kind`` and ``label``.
     """
     skate, overlap = foot_skate(duet), penetration(duet)
-    distance, hands, body, angles = (
-        pelvis_distance(duet),
-        hand_distance(duet),
-        hand_to_body(duet),
-        facing_angle(duet),
-    )
+    distance, hands, body, angles = (pelvis_distance(duet), hand_distance(duet), hand_to_body(duet), facing_angle(duet))
     contacts = contact_events(duet)
     touched = {frame for contact in contacts for frame in range(contact.start, contact.stop)}
     numbers = {

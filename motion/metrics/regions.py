@@ -53,9 +53,7 @@ def region_contacts(duet: Duet) -> dict[str, Mask]:
     solid = above_ground(body, duet.skeleton)
     found["foot–body"] = np.stack(
         [
-            touching(
-                duet.people[me].positions[:, feet], duet.people[1 - me].positions, solid, margin=SKIN_TOUCH
-            )
+            touching(duet.people[me].positions[:, feet], duet.people[1 - me].positions, solid, margin=SKIN_TOUCH)
             for me in (0, 1)
         ]
     )

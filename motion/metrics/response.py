@@ -24,11 +24,7 @@ def joint_speed(person: Clip) -> Array:
     """(T − 1,) mean speed of a person's joints in m/s, smoothed over 0.1 s."""
     steps = np.diff(person.positions.astype(np.float64), axis=0)
     speed = np.linalg.norm(steps, axis=-1).mean(axis=-1) * person.fps
-    return (
-        scipy.ndimage.gaussian_filter1d(speed, _SMOOTHING * person.fps, mode="nearest")
-        if len(speed)
-        else speed
-    )
+    return scipy.ndimage.gaussian_filter1d(speed, _SMOOTHING * person.fps, mode="nearest") if len(speed) else speed
 
 
 def response_delay(duet: Duet) -> float | None:

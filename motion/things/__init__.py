@@ -9,6 +9,18 @@ from .shapes import FIXTURES, FURNITURE, HELD, HIGH, KINDS, LEAVES, WIDE, shape
 from .thing import MOST_FACES, MOST_THINGS, MOST_VERTICES, Mesh, Thing
 
 __all__ = [
-    "FIXTURES", "FURNITURE", "HELD", "HIGH", "KINDS", "LEAVES", "MOST_FACES", "MOST_THINGS", "MOST_VERTICES", "WIDE",
-    "Mesh", "Thing", "room", "shape",
-]  # fmt: skip
+    "FIXTURES",
+    "FURNITURE",
+    "HELD",
+    "HIGH",
+    "KINDS",
+    "LEAVES",
+    "MOST_FACES",
+    "MOST_THINGS",
+    "MOST_VERTICES",
+    "WIDE",
+    "Mesh",
+    "Thing",
+    "room",
+    "shape",
+]

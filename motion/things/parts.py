@@ -20,9 +20,7 @@ _SHARP = np.deg2rad(40)
 """Angle between two triangles from which their edge is sharp."""
 
 
-def box(
-    size: Sequence[float], at: Sequence[float], colour: str, *, lean: float = 0.0, yaw: float = 0.0
-) -> Part:
+def box(size: Sequence[float], at: Sequence[float], colour: str, *, lean: float = 0.0, yaw: float = 0.0) -> Part:
     """A box of ``size`` (3,) with its middle ``at`` (3,), turned about X by ``lean`` and then about Y by ``yaw``."""
     made = trimesh.creation.box(size)
     made.apply_transform(trimesh.transformations.rotation_matrix(lean, [1, 0, 0]))
@@ -55,9 +53,7 @@ def turned(profile: Sequence[Sequence[float]], colour: str, *, sides: int = 16) 
     return made, colour
 
 
-def hoop(
-    radius: float, thick: float, colour: str, *, arc: float = 2 * np.pi, sides: int = 6, steps: int = 20
-) -> Part:
+def hoop(radius: float, thick: float, colour: str, *, arc: float = 2 * np.pi, sides: int = 6, steps: int = 20) -> Part:
     """A ring of round wire about the Z axis, or an arc of it that begins on +X."""
     angles = np.linspace(0.0, arc, steps + 1)
     around = np.linspace(0.0, 2 * np.pi, sides, endpoint=False)
@@ -88,21 +84,14 @@ def slab(outline: Array | Sequence[Sequence[float]], thick: float, colour: str) 
 def pleated(line: Array, height: float, thick: float, colour: str) -> Part:
     """A sheet of this thickness that stands on the floor along a line (N, 2) of x and z, from -X to +X."""
     count = len(line)
-    rows = [
-        np.insert(line + np.array([0.0, z]), 1, y, axis=1)
-        for z in (thick / 2, -thick / 2)
-        for y in (0.0, height)
-    ]
+    rows = [np.insert(line + np.array([0.0, z]), 1, y, axis=1) for z in (thick / 2, -thick / 2) for y in (0.0, height)]
     i = np.arange(count - 1)
     front, back = (0, count), (2 * count, 3 * count)  # the first vertices of the lower and the upper row
     loops = [(front[0], front[1]), (back[1], back[0]), (front[1], back[1]), (back[0], front[0])]
     faces = [
         face
         for low, high in loops
-        for face in (
-            np.stack([low + i, low + i + 1, high + i + 1], 1),
-            np.stack([low + i, high + i + 1, high + i], 1),
-        )
+        for face in (np.stack([low + i, low + i + 1, high + i + 1], 1), np.stack([low + i, high + i + 1, high + i], 1))
     ]
     last = count - 1
     for j, flip in ((0, True), (last, False)):
@@ -125,9 +114,7 @@ def upper(part: Part, axis: str, colour: str) -> list[Part]:
     """A part in two colours: the triangles that face along +``axis`` take ``colour``."""
     made, other = part
     facing = made.face_normals[:, "xyz".index(axis)] > 0.9
-    rest, top = (
-        trimesh.Trimesh(made.vertices, made.faces[chosen], process=False) for chosen in (~facing, facing)
-    )
+    rest, top = (trimesh.Trimesh(made.vertices, made.faces[chosen], process=False) for chosen in (~facing, facing))
     return [(rest, other), (top, colour)]
 
 

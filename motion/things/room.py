@@ -34,10 +34,12 @@ def window() -> list[Part]:
     ends = [box((0.05, 0.05, 0.05), (s * 1.24, RAIL, 0.14), WALNUT) for s in (-1, 1)]
     return [
         box((2 * side + 0.16, SILL, 0.12), (0, SILL / 2, 0), PLASTER),
-        box((2 * side + 0.16, 0.18, 0.12), (0, top + 0.09, 0), PLASTER), *posts,
+        box((2 * side + 0.16, 0.18, 0.12), (0, top + 0.09, 0), PLASTER),
+        *posts,
         box((2 * PANE_WIDTH + 0.14, 0.035, 0.13), (0, SILL, 0.03), OAK),
-        box((2.48, 0.028, 0.028), (0, RAIL, 0.14), WALNUT), *ends,
-    ]  # fmt: skip
+        box((2.48, 0.028, 0.028), (0, RAIL, 0.14), WALNUT),
+        *ends,
+    ]
 
 
 def sash() -> list[Part]:
@@ -69,8 +71,7 @@ def door_leaf() -> list[Part]:
 
     wide, high = DOOR_WIDTH, DOOR_HEIGHT
     panels = [
-        box((0.62 * wide, part * high, 0.055), (wide / 2, y * high, 0), OAK)
-        for y, part in ((0.27, 0.36), (0.72, 0.4))
+        box((0.62 * wide, part * high, 0.055), (wide / 2, y * high, 0), OAK) for y, part in ((0.27, 0.36), (0.72, 0.4))
     ]
     knobs = [ball(0.03, (wide - 0.08, 1.02, z), STEEL, fine=1) for z in (-0.07, 0.07)]
     pin = rod((wide - 0.08, 1.02, -0.07), (wide - 0.08, 1.02, 0.07), 0.01, STEEL, sides=6)
@@ -98,12 +99,20 @@ def hifi() -> list[Part]:
         for x, radius in ((0.16, 0.036), (0.06, 0.018), (-0.02, 0.018))
     ]
     return [
-        *legs, box((1.08, top - 0.12, 0.38), (0, (top + 0.12) / 2, 0), WALNUT), *doors, *speakers,
-        box((0.5, 0.18, 0.28), (0, top + 0.09, 0), INK), box((0.14, 0.05, 0.01), (-0.15, top + 0.11, 0.143), SKY),
+        *legs,
+        box((1.08, top - 0.12, 0.38), (0, (top + 0.12) / 2, 0), WALNUT),
+        *doors,
+        *speakers,
+        box((0.5, 0.18, 0.28), (0, top + 0.09, 0), INK),
+        box((0.14, 0.05, 0.01), (-0.15, top + 0.11, 0.143), SKY),
         *knobs,
-    ]  # fmt: skip
+    ]
 
 
 BUILD: dict[str, Callable[..., list[Part]]] = {
-    "window": window, "curtain": curtain, "hi-fi": hifi, "sash": sash, "door": door_leaf,
-}  # fmt: skip
+    "window": window,
+    "curtain": curtain,
+    "hi-fi": hifi,
+    "sash": sash,
+    "door": door_leaf,
+}

@@ -25,9 +25,20 @@ FIXTURES = ("door frame", "window", "curtain", "hi-fi")
 FURNITURE = ("chair", "bench", "table", "computer", "bed", *FIXTURES)
 """What stands on the floor: the origin is on the floor in its middle, and its front is +Z."""
 HELD = (
-    "box", "ball", "book", "cup", "phone", "umbrella", "flower", "ring", "sword", "stick", "guitar", "bag",
+    "box",
+    "ball",
+    "book",
+    "cup",
+    "phone",
+    "umbrella",
+    "flower",
+    "ring",
+    "sword",
+    "stick",
+    "guitar",
+    "bag",
     "cigarette",
-)  # fmt: skip
+)
 """What hands hold: the origin is where a hand holds it, and its length or its upright is +Y."""
 KINDS = (*FURNITURE, *HELD)
 """The kinds of things there are."""
@@ -70,20 +81,17 @@ def _legs(width: float, depth: float, height: float, thick: float, colour: str) 
     from .parts import box
 
     x, z = width / 2 - thick / 2, depth / 2 - thick / 2
-    return [
-        box((thick, height, thick), (sx * x, height / 2, sz * z), colour) for sx in (-1, 1) for sz in (-1, 1)
-    ]
+    return [box((thick, height, thick), (sx * x, height / 2, sz * z), colour) for sx in (-1, 1) for sz in (-1, 1)]
 
 
 def _chair(height: float = 0.45, width: float = 0.44) -> list[Part]:
     from .parts import box
 
-    back = [
-        box((0.035, 0.46, 0.03), (s * (width / 2 - 0.03), height + 0.22, -0.215), OAK, lean=-0.1)
-        for s in (-1, 1)
+    back = [box((0.035, 0.46, 0.03), (s * (width / 2 - 0.03), height + 0.22, -0.215), OAK, lean=-0.1) for s in (-1, 1)]
+    rails = [
+        box((width - 0.06, 0.075, 0.018), (0, height + up, -0.215 - 0.1 * (up - 0.22)), OAK, lean=-0.1)
+        for up in (0.21, 0.39)
     ]
-    rails = [box((width - 0.06, 0.075, 0.018), (0, height + up, -0.215 - 0.1 * (up - 0.22)), OAK, lean=-0.1)
-             for up in (0.21, 0.39)]  # fmt: skip
     seat = [
         box((width, 0.035, 0.43), (0, height - 0.0375, 0), OAK),
         box((width - 0.04, 0.025, 0.39), (0, height - 0.0125, 0), CLOTH),
@@ -111,13 +119,12 @@ def _table(height: float = 0.74, width: float = 1.2) -> list[Part]:
     from .parts import box
 
     depth = min(0.75, 0.9 * width)
-    apron = [
-        box((width - 0.12, 0.07, 0.02), (0, height - 0.07, s * (depth / 2 - 0.07)), WALNUT) for s in (-1, 1)
-    ]
+    apron = [box((width - 0.12, 0.07, 0.02), (0, height - 0.07, s * (depth / 2 - 0.07)), WALNUT) for s in (-1, 1)]
     return [
-        *_legs(width - 0.08, depth - 0.08, height - 0.035, 0.06, WALNUT), *apron,
+        *_legs(width - 0.08, depth - 0.08, height - 0.035, 0.06, WALNUT),
+        *apron,
         box((width, 0.035, depth), (0, height - 0.0175, 0), OAK),
-    ]  # fmt: skip
+    ]
 
 
 def _computer() -> list[Part]:
@@ -126,11 +133,12 @@ def _computer() -> list[Part]:
 
     top = 0.74
     return [
-        *_table(top), *upper(box((0.56, 0.34, 0.025), (0, top + 0.3, -0.1), INK), "z", "#9cc7e8"),
+        *_table(top),
+        *upper(box((0.56, 0.34, 0.025), (0, top + 0.3, -0.1), INK), "z", "#9cc7e8"),
         box((0.05, 0.16, 0.03), (0, top + 0.08, -0.115), STEEL),
         box((0.22, 0.012, 0.16), (0, top + 0.006, -0.1), STEEL),
         *upper(box((0.42, 0.018, 0.14), (0, top + 0.009, 0.2), INK), "y", STEEL),
-    ]  # fmt: skip
+    ]
 
 
 def _bed(height: float = 0.48, width: float = 1.0) -> list[Part]:
@@ -151,9 +159,10 @@ def _door_frame(height: float = 2.05, width: float = 0.95) -> list[Part]:
 
     posts = [box((0.09, height, 0.14), (s * (width / 2 + 0.045), height / 2, 0), CREAM) for s in (-1, 1)]
     return [
-        *posts, box((width + 0.18, 0.09, 0.14), (0, height + 0.045, 0), CREAM),
+        *posts,
+        box((width + 0.18, 0.09, 0.14), (0, height + 0.045, 0), CREAM),
         box((width, 0.015, 0.14), (0, 0.0075, 0), OAK),
-    ]  # fmt: skip
+    ]
 
 
 def _box(height: float = 0.28, width: float = 0.38) -> list[Part]:
@@ -187,15 +196,7 @@ def _cup() -> list[Part]:
     """The origin is in its middle, its handle towards +X."""
     from .parts import hoop, placed, turned
 
-    wall = [
-        (0, -0.045),
-        (0.032, -0.045),
-        (0.04, -0.035),
-        (0.042, 0.045),
-        (0.037, 0.045),
-        (0.035, -0.036),
-        (0, -0.036),
-    ]
+    wall = [(0, -0.045), (0.032, -0.045), (0.04, -0.035), (0.042, 0.045), (0.037, 0.045), (0.035, -0.036), (0, -0.036)]
     drink = turned([(0.0355, 0.026), (0, 0.026)], "#6b4226", sides=14)
     handle = placed(hoop(0.026, 0.006, CREAM, arc=np.pi, steps=10), (0.036, 0, 0), [(-np.pi / 2, "z")])
     return [turned(wall, CREAM, sides=14), drink, handle]
@@ -223,10 +224,11 @@ def _umbrella() -> list[Part]:
         (0, 0.845),
     ]
     return [
-        turned(canopy, RED, sides=10), rod((0, -0.02, 0), (0, 0.9, 0), 0.008, STEEL, sides=6),
+        turned(canopy, RED, sides=10),
+        rod((0, -0.02, 0), (0, 0.9, 0), 0.008, STEEL, sides=6),
         rod((0, -0.09, 0), (0, 0.06, 0), 0.015, WALNUT),
         placed(hoop(0.035, 0.012, WALNUT, arc=np.pi, steps=8), (0.035, -0.09, 0), [(np.pi, "z")]),
-    ]  # fmt: skip
+    ]
 
 
 def _flower() -> list[Part]:
@@ -234,15 +236,27 @@ def _flower() -> list[Part]:
     from .parts import ball, placed, rod
 
     petals = [
-        placed(ball(0.036, (0.042, 0, 0), ROSE, fine=1, stretch=(1, 0.38, 0.8)), (0, 0.3, 0),
-               [(0.5, "z"), (k * np.pi / 3, "y")]) for k in range(6)
-    ]  # fmt: skip
-    leaves = [placed(ball(0.04, (0.04, 0, 0), GREEN, fine=1, stretch=(1, 0.12, 0.45)), (0, 0.1 + 0.05 * k, 0),
-                     [(0.6, "z"), (2.5 * k, "y")]) for k in range(2)]  # fmt: skip
+        placed(
+            ball(0.036, (0.042, 0, 0), ROSE, fine=1, stretch=(1, 0.38, 0.8)),
+            (0, 0.3, 0),
+            [(0.5, "z"), (k * np.pi / 3, "y")],
+        )
+        for k in range(6)
+    ]
+    leaves = [
+        placed(
+            ball(0.04, (0.04, 0, 0), GREEN, fine=1, stretch=(1, 0.12, 0.45)),
+            (0, 0.1 + 0.05 * k, 0),
+            [(0.6, "z"), (2.5 * k, "y")],
+        )
+        for k in range(2)
+    ]
     return [
-        rod((0, -0.08, 0), (0, 0.3, 0), 0.006, GREEN, sides=6), ball(0.026, (0, 0.312, 0), GOLD, fine=1),
-        *petals, *leaves,
-    ]  # fmt: skip
+        rod((0, -0.08, 0), (0, 0.3, 0), 0.006, GREEN, sides=6),
+        ball(0.026, (0, 0.312, 0), GOLD, fine=1),
+        *petals,
+        *leaves,
+    ]
 
 
 def _ring() -> list[Part]:
@@ -258,9 +272,11 @@ def _sword() -> list[Part]:
 
     blade = [(-0.022, 0.11), (0.022, 0.11), (0.018, 0.82), (0, 0.92), (-0.018, 0.82)]
     return [
-        slab(blade, 0.007, STEEL), box((0.2, 0.022, 0.03), (0, 0.1, 0), GOLD), ball(0.022, (0, -0.1, 0), GOLD, fine=1),
+        slab(blade, 0.007, STEEL),
+        box((0.2, 0.022, 0.03), (0, 0.1, 0), GOLD),
+        ball(0.022, (0, -0.1, 0), GOLD, fine=1),
         rod((0, -0.09, 0), (0, 0.09, 0), 0.015, WALNUT),
-    ]  # fmt: skip
+    ]
 
 
 def _stick() -> list[Part]:
@@ -280,10 +296,13 @@ def _guitar() -> list[Part]:
     hole = np.stack([0.045 * np.cos(angles[::2]), 0.045 * np.sin(angles[::2]) + 0.06], axis=1)
     head = [(-0.03, 0.66), (0.03, 0.66), (0.04, 0.8), (-0.04, 0.8)]
     return [
-        slab(lower, 0.09, OAK), slab(upper, 0.09, OAK), slab(hole, 0.1, INK),
-        box((0.05, 0.42, 0.03), (0, 0.45, 0.008), WALNUT), box((0.1, 0.025, 0.11), (0, -0.13, 0), WALNUT),
+        slab(lower, 0.09, OAK),
+        slab(upper, 0.09, OAK),
+        slab(hole, 0.1, INK),
+        box((0.05, 0.42, 0.03), (0, 0.45, 0.008), WALNUT),
+        box((0.1, 0.025, 0.11), (0, -0.13, 0), WALNUT),
         slab(head, 0.02, WALNUT),
-    ]  # fmt: skip
+    ]
 
 
 def _cigarette() -> list[Part]:
@@ -291,9 +310,10 @@ def _cigarette() -> list[Part]:
     from .parts import rod
 
     return [
-        rod((0, -0.03, 0), (0, 0, 0), 0.0045, OAK, sides=6), rod((0, 0, 0), (0, 0.055, 0), 0.0045, "#ffffff", sides=6),
+        rod((0, -0.03, 0), (0, 0, 0), 0.0045, OAK, sides=6),
+        rod((0, 0, 0), (0, 0.055, 0), 0.0045, "#ffffff", sides=6),
         rod((0, 0.055, 0), (0, 0.06, 0), 0.0045, RED, sides=6),
-    ]  # fmt: skip
+    ]
 
 
 def _bag() -> list[Part]:
@@ -301,17 +321,28 @@ def _bag() -> list[Part]:
     from .parts import box, hoop, placed
 
     handles = [placed(hoop(0.07, 0.007, WALNUT, arc=np.pi, steps=10), (0, -0.07, z)) for z in (-0.03, 0.03)]
-    return [
-        box((0.34, 0.2, 0.13), (0, -0.23, 0), TEAL),
-        box((0.345, 0.06, 0.135), (0, -0.1, 0), WALNUT),
-        *handles,
-    ]
+    return [box((0.34, 0.2, 0.13), (0, -0.23, 0), TEAL), box((0.345, 0.06, 0.135), (0, -0.1, 0), WALNUT), *handles]
 
 
 _BUILD: dict[str, Callable[..., list[Part]]] = {
-    "chair": _chair, "bench": _bench, "table": _table, "computer": _computer, "bed": _bed,
-    "door frame": _door_frame, "box": _box,
-    "ball": _ball, "book": _book, "cup": _cup, "phone": _phone, "umbrella": _umbrella, "flower": _flower,
-    "ring": _ring, "sword": _sword, "stick": _stick, "guitar": _guitar, "bag": _bag,
-    "cigarette": _cigarette, **room.BUILD,
-}  # fmt: skip
+    "chair": _chair,
+    "bench": _bench,
+    "table": _table,
+    "computer": _computer,
+    "bed": _bed,
+    "door frame": _door_frame,
+    "box": _box,
+    "ball": _ball,
+    "book": _book,
+    "cup": _cup,
+    "phone": _phone,
+    "umbrella": _umbrella,
+    "flower": _flower,
+    "ring": _ring,
+    "sword": _sword,
+    "stick": _stick,
+    "guitar": _guitar,
+    "bag": _bag,
+    "cigarette": _cigarette,
+    **room.BUILD,
+}

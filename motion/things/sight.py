@@ -44,19 +44,13 @@ def distance(surface: Trimesh, eye: Array, ahead: Array) -> float:
 
     corners, count = surface.triangles, len(surface.faces)
     points, on, along = planes_lines(
-        corners[:, 0],
-        surface.face_normals,
-        np.tile(eye, (count, 1)),
-        np.tile(ahead, (count, 1)),
-        return_distance=True,
+        corners[:, 0], surface.face_normals, np.tile(eye, (count, 1)), np.tile(ahead, (count, 1)), return_distance=True
     )
     inside = (points_to_barycentric(corners[on], points) > -1e-9).all(axis=1) & (along > 1e-9)
     return float(along[inside].min(initial=np.inf))
 
 
-def looked_at(
-    things: Sequence[Thing], person: Array, other: Array, *, most: float = 8.0
-) -> NDArray[np.integer]:
+def looked_at(things: Sequence[Thing], person: Array, other: Array, *, most: float = 8.0) -> NDArray[np.integer]:
     """The number of the thing that a person's face points to in each frame.
 
     Args:

@@ -46,9 +46,7 @@ class Mesh:
         if colours.shape != faces.shape:
             raise InputError(f"A thing has a colour a triangle, not {colours.shape} for {faces.shape}.")
         if not np.isfinite(vertices).all() or faces.min() < 0 or faces.max() >= len(vertices):
-            raise InputError(
-                "The surface of a thing is damaged: its vertices are not finite, or a corner is missing."
-            )
+            raise InputError("The surface of a thing is damaged: its vertices are not finite, or a corner is missing.")
         for name, value in (("vertices", vertices), ("faces", faces), ("colours", colours)):
             object.__setattr__(self, name, value)
 
@@ -73,9 +71,7 @@ class Mesh:
     def spots(self) -> Array:
         """(N, 4) a few places in its own frame and the square metres about each, for soft shadows."""
         corners = self.vertices[self.faces].astype(np.float64)
-        area = (
-            np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-        )
+        area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
         middles = corners.mean(axis=1)
         cell = max(float(self.size.max()) / 4, 0.05)
         keys = np.floor(middles / cell).astype(np.int64)
@@ -114,9 +110,7 @@ class Thing:
             )
         square = np.swapaxes(rotations, 1, 2) @ rotations - np.eye(3, dtype=np.float32)
         if not np.isfinite(places).all() or not np.abs(square).max(initial=0.0) < 0.01:
-            raise InputError(
-                "The track of a thing holds places that are not finite, or matrices that do not rotate."
-            )
+            raise InputError("The track of a thing holds places that are not finite, or matrices that do not rotate.")
         object.__setattr__(self, "places", places)
         object.__setattr__(self, "rotations", rotations)
         object.__setattr__(self, "name", self.name or self.kind)
@@ -124,9 +118,7 @@ class Thing:
     @classmethod
     def at_rest(cls, kind: str, mesh: Mesh, place: Array, yaw: float, frames: int, name: str = "") -> Thing:
         """A thing that stands still, turned by ``yaw`` radians about the vertical from +Z towards +X."""
-        turned = np.array(
-            [[np.cos(yaw), 0.0, np.sin(yaw)], [0.0, 1.0, 0.0], [-np.sin(yaw), 0.0, np.cos(yaw)]]
-        )
+        turned = np.array([[np.cos(yaw), 0.0, np.sin(yaw)], [0.0, 1.0, 0.0], [-np.sin(yaw), 0.0, np.cos(yaw)]])
         return cls(kind, mesh, np.tile(place, (frames, 1)), np.tile(turned, (frames, 1, 1)), name)
 
     @property

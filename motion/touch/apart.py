@@ -108,9 +108,14 @@ def _leg_depth(pair: Array, person: int, leg: Sequence[int], way: Array, raised:
     own = np.flatnonzero(np.isin(_body().ends, leg[2:]))
     other = np.flatnonzero(~lower)
     depth = _depth(
-        starts[person][:, own], ends[person][:, own], radii[own],
-        starts[1 - person][:, other], ends[1 - person][:, other], radii[other], way[at],
-    )  # fmt: skip
+        starts[person][:, own],
+        ends[person][:, own],
+        radii[own],
+        starts[1 - person][:, other],
+        ends[1 - person][:, other],
+        radii[other],
+        way[at],
+    )
     found[at] = depth.max(axis=(1, 2))
     return found
 
@@ -161,13 +166,7 @@ def _pushes(pair: Array, way: Array, near: NDArray[np.bool_]) -> tuple[Array, Ar
 
 
 def _depth(
-    start: Array,
-    end: Array,
-    radii: Array,
-    other_start: Array,
-    other_end: Array,
-    other_radii: Array,
-    way: Array,
+    start: Array, end: Array, radii: Array, other_start: Array, other_end: Array, other_radii: Array, way: Array
 ) -> Array:
     """(N, C, D) metres that capsules are in others along a way (N, 3)."""
     shape = (len(way), len(radii), len(other_radii), 3)

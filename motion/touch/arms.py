@@ -69,9 +69,7 @@ def _touching(pair: Array, near: NDArray[np.bool_], sizes: tuple[float, float]) 
     at = np.flatnonzero(near)
     grips = grips_of_hands(pair[:, at])
     for person in (0, 1):
-        push = _pushes(
-            pair[person][at], pair[1 - person][at], grips[person], sizes[person], sizes[1 - person]
-        )
+        push = _pushes(pair[person][at], pair[1 - person][at], grips[person], sizes[person], sizes[1 - person])
         found[at] |= np.abs(push).max(axis=(1, 2, 3)) > 0
     return found
 
@@ -87,9 +85,7 @@ def _resolved(pair: Array, share: Array, sizes: tuple[float, float]) -> Array:
     """Some frames (2, N, 22, 3) with their arms pushed out."""
     result, grips = pair.copy(), grips_of_hands(pair)
     for _ in range(_ROUNDS):
-        pushes = np.stack(
-            [_pushes(result[p], result[1 - p], grips[p], sizes[p], sizes[1 - p]) for p in (0, 1)]
-        )
+        pushes = np.stack([_pushes(result[p], result[1 - p], grips[p], sizes[p], sizes[1 - p]) for p in (0, 1)])
         if not pushes.any():
             break
         moved = (result - pair)[:, :, _BENDS] + pushes
@@ -120,9 +116,7 @@ def _bent(person: Array, moved: Array, grips: Array) -> Array:
         goal = person[:, wrist] + moved[:, side, 1]
         upper = bend - person[:, shoulder]
         length = np.linalg.norm(person[:, elbow] - person[:, shoulder], axis=-1, keepdims=True)
-        bend = person[:, shoulder] + upper * length / np.maximum(
-            np.linalg.norm(upper, axis=-1, keepdims=True), 1e-9
-        )
+        bend = person[:, shoulder] + upper * length / np.maximum(np.linalg.norm(upper, axis=-1, keepdims=True), 1e-9)
         lower = np.linalg.norm(person[:, wrist] - person[:, elbow], axis=-1, keepdims=True)
         ahead = goal - bend
         end = bend + ahead * lower / np.maximum(np.linalg.norm(ahead, axis=-1, keepdims=True), 1e-9)
@@ -155,9 +149,7 @@ def _pushes(own: Array, other: Array, grips: Array, own_size: float, other_size:
     for side, (shoulder, elbow, wrist) in enumerate(ARMS):
         points = np.stack(
             [
-                own[:, shoulder]
-                + upper * (own[:, elbow] - own[:, shoulder])
-                + lower * (own[:, wrist] - own[:, elbow])
+                own[:, shoulder] + upper * (own[:, elbow] - own[:, shoulder]) + lower * (own[:, wrist] - own[:, elbow])
                 for lower, upper in _SHARES
             ],
             axis=1,

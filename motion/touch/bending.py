@@ -21,9 +21,7 @@ def across(bone: Array, line: Array) -> Array:
 
 def bent_towards(root: Array, middle: Array, end: Array, goal: Array, pole: Array) -> tuple[Array, Array]:
     """The elbow and the wrist (T, 3) of an arm that reaches for a goal and bends towards a pole, however it bent."""
-    upper, lower = (
-        np.linalg.norm(tip - base, axis=-1, keepdims=True) for base, tip in ((root, middle), (middle, end))
-    )
+    upper, lower = (np.linalg.norm(tip - base, axis=-1, keepdims=True) for base, tip in ((root, middle), (middle, end)))
     reach = np.linalg.norm(goal - root, axis=-1, keepdims=True)
     axis = (goal - root) / np.maximum(reach, 1e-9)
     reach = np.clip(reach, np.abs(upper - lower) + 1e-3, _STRAIGHT * (upper + lower))

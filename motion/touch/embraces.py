@@ -78,9 +78,7 @@ def embraced(pair: Array, free: Array | None = None) -> Array:
     if close.any():
         drawn = [_drawn(result[p], result[1 - p], close) for p in (0, 1)]
         ways = [_way(drawn[p], drawn[1 - p]) for p in (0, 1)]
-        result = np.stack(
-            [_wrapped(drawn[p], drawn[1 - p][:, _SPINE], ways[p], _HANDS, close) for p in (0, 1)]
-        )
+        result = np.stack([_wrapped(drawn[p], drawn[1 - p][:, _SPINE], ways[p], _HANDS, close) for p in (0, 1)])
     for holder in (0, 1):
         own, other = result[[holder, 1 - holder]]
         close = share * _eased(_holds_from_behind(own, other), result)
@@ -116,9 +114,7 @@ def _around(own: Array, other: Array, least: float = _AROUND[0]) -> NDArray[np.b
 def _hugs(pair: Array) -> NDArray[np.bool_]:
     """(T,) frames at which two who stand face to face have at least three arms around each other."""
     a, b = pair
-    hands = np.stack([_around(a, b), _around(b, a)]) & (
-        grips_of_hands(pair) < 0.5
-    )  # hands that are held hold no back
+    hands = np.stack([_around(a, b), _around(b, a)]) & (grips_of_hands(pair) < 0.5)  # hands that are held hold no back
     around = hands.sum(axis=(0, 2))
     way = _way(a, b)
     face = np.einsum("ti,ti->t", facing(a), way) > _FACES
@@ -149,12 +145,7 @@ def _on_their_feet(marked: NDArray[np.bool_], pair: Array) -> NDArray[np.bool_]:
 
 
 def _drawn(
-    own: Array,
-    other: Array,
-    weight: Array,
-    share: float = 0.5,
-    close: float = CLOSE,
-    aside: float = _ASIDE / 2,
+    own: Array, other: Array, weight: Array, share: float = 0.5, close: float = CLOSE, aside: float = _ASIDE / 2
 ) -> Array:
     """A person (T, 22, 3) who comes a share of the way to the other by ``weight`` (T,), over feet that stay."""
     way = _way(own, other)
@@ -189,9 +180,7 @@ def _wrapped(own: Array, spine: Array, way: Array, hands: Hands, weight: Array) 
     result = own.copy()
     left, up = _left(way), np.array([0.0, 1.0, 0.0])
     w = weight[:, None]
-    for (shoulder, elbow, wrist), side, (past, beside, height, hang) in zip(
-        ARMS, (1.0, -1.0), hands, strict=True
-    ):
+    for (shoulder, elbow, wrist), side, (past, beside, height, hang) in zip(ARMS, (1.0, -1.0), hands, strict=True):
         goal = spine + past * way + beside * side * left + height * up
         opened = spine + _OPEN[0] * way + _OPEN[1] * side * left + _OPENS * height * up
         goal = (1 - w) ** 2 * own[:, wrist] + 2 * w * (1 - w) * opened + w**2 * goal

@@ -30,9 +30,7 @@ _STRAIGHT, _MOST = -0.1, 0.5
 _SPINE, _NECK = SMPL22.index("spine3"), SMPL22.index("neck")
 _HANGS = {joint: arm[0] for arm in ARMS for joint in arm[1:]}
 """The shoulder that an elbow and a wrist hang from."""
-_BACK = [
-    joint for joint in UPPER if joint not in _HANGS and not SMPL22.joint_names[joint].startswith("spine")
-]
+_BACK = [joint for joint in UPPER if joint not in _HANGS and not SMPL22.joint_names[joint].startswith("spine")]
 
 
 def backs_straight(pair: Array, free: Array) -> Array:

@@ -89,8 +89,7 @@ def landmarks_of(fields: dict[str, Any]) -> Landmarks:
     poses = int(counts.sum())
     points = len(POINTS)
     world, image, seen = (
-        _numbers(fields.get(name), kind)
-        for name, kind in (("world", "<i2"), ("image", "<i2"), ("seen", "u1"))
+        _numbers(fields.get(name), kind) for name, kind in (("world", "<i2"), ("image", "<i2"), ("seen", "u1"))
     )
     if (len(world), len(image), len(seen)) != (3 * points * poses, 2 * points * poses, points * poses):
         raise InputError(_BROKEN)

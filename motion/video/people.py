@@ -45,10 +45,14 @@ _SEEN = 0.5
 _LEGS = [[INDEX[f"{side}_{part}"] for part in ("knee", "ankle")] for side in ("left", "right")]
 
 POINT_OF = {
-    "left_hip": "left_hip", "left_knee": "left_knee", "left_ankle": "left_ankle",
-    "left_foot": "left_foot_index", "left_shoulder": "left_shoulder", "left_elbow": "left_elbow",
+    "left_hip": "left_hip",
+    "left_knee": "left_knee",
+    "left_ankle": "left_ankle",
+    "left_foot": "left_foot_index",
+    "left_shoulder": "left_shoulder",
+    "left_elbow": "left_elbow",
     "left_wrist": "left_wrist",
-}  # fmt: skip
+}
 POINT_OF |= {ours.replace("left", "right"): its.replace("left", "right") for ours, its in POINT_OF.items()}
 
 
@@ -92,9 +96,7 @@ class Filmed:
         return Duet(*self.people) if len(self.people) == 2 else self.people[0]
 
 
-def people_of(
-    landmarks: Landmarks, *, lens: float = LENS, tilt: float | None = None, name: str = "Film"
-) -> Filmed:
+def people_of(landmarks: Landmarks, *, lens: float = LENS, tilt: float | None = None, name: str = "Film") -> Filmed:
     """The people in a film on SMPL22 at 30 frames a second.
 
     Args:
@@ -229,9 +231,7 @@ def _notes(tracks: Sequence[Track], landmarks: Landmarks) -> tuple[str, ...]:
     notes = []
     hidden = max(1 - _legs_seen(track, landmarks)[track.found].mean() for track in tracks)
     if hidden > 0.2:
-        notes.append(
-            f"The legs are hidden or out of the picture for {100 * hidden:.0f} % of the time: step back."
-        )
+        notes.append(f"The legs are hidden or out of the picture for {100 * hidden:.0f} % of the time: step back.")
     lost = max(1 - track.found.mean() for track in tracks)
     if lost > 0.05:
         notes.append(f"Nobody was found for {100 * lost:.0f} % of the time: the motion is made up there.")

@@ -54,8 +54,7 @@ class Track:
     def cut(self, start: int, stop: int) -> Track:
         """Frames ``start`` to ``stop`` (exclusive)."""
         part = slice(start, stop)
-        return Track(self.fps, self.start + start / self.fps, self.world[part], self.pixels[part],
-                     self.seen[part])  # fmt: skip
+        return Track(self.fps, self.start + start / self.fps, self.world[part], self.pixels[part], self.seen[part])
 
 
 def tracks_of(landmarks: Landmarks) -> tuple[Track, ...]:
@@ -69,8 +68,7 @@ def tracks_of(landmarks: Landmarks) -> tuple[Track, ...]:
     if len(landmarks.frames) == 0:
         raise InputError(_NOBODY)
     by_frame = [
-        _distinct(landmarks, np.flatnonzero(landmarks.frames == frame))
-        for frame in range(len(landmarks.times))
+        _distinct(landmarks, np.flatnonzero(landmarks.frames == frame)) for frame in range(len(landmarks.times))
     ]
     filled = [poses for poses in by_frame if len(poses)]
     people = 2 if sum(len(poses) > 1 for poses in filled) >= _BOTH * len(filled) else 1
@@ -119,9 +117,7 @@ def _follow(landmarks: Landmarks, by_frame: list[NDArray[np.integer]], people: i
             # A place is more certain than no place; a pose far from where the person was is somebody else.
             best = min(
                 itertools.permutations([*poses, *([-1] * people)], people),
-                key=lambda order: sum(
-                    _doubt(landmarks, latest[i], pose, since[i]) for i, pose in enumerate(order)
-                ),
+                key=lambda order: sum(_doubt(landmarks, latest[i], pose, since[i]) for i, pose in enumerate(order)),
             )
             for person, pose in enumerate(best):
                 since[person] += 1

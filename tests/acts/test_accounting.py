@@ -68,9 +68,7 @@ def test_what_is_done_is_said_without_what_was_not_measured() -> None:
         ("They spin next to each other.", "spin next to each other"),
     ],
 )
-def test_an_act_that_says_none_of_its_words_is_shown_as_what_they_were_read_as(
-    sentence: str, wrote: str
-) -> None:
+def test_an_act_that_says_none_of_its_words_is_shown_as_what_they_were_read_as(sentence: str, wrote: str) -> None:
     assert checked(read(sentence), duet())[0].wrote == wrote
     row = checked(read(sentence), duet())[0].to_dict() | {"done": True}
     assert (f"“{wrote}”, read as: " in note([[row]])) == bool(wrote)

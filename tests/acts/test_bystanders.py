@@ -18,9 +18,23 @@ STANDS = {"stand-still", "freeze", "keep-distance"}
 TALKS = {"talk", "argue", "nod", "bend-arm", "look-up", "lift-head"}
 """What a person does who talks with hands and head."""
 WALKS = {
-    "walk-up", "walk-away", "walk-past", "walk-ahead", "move-about", "step-forward", "part",
-    "step-over", "cross-way", "return", "go-back", "exit", "enter", "back-turned", "copy", "mirror",
-}  # fmt: skip
+    "walk-up",
+    "walk-away",
+    "walk-past",
+    "walk-ahead",
+    "move-about",
+    "step-forward",
+    "part",
+    "step-over",
+    "cross-way",
+    "return",
+    "go-back",
+    "exit",
+    "enter",
+    "back-turned",
+    "copy",
+    "mirror",
+}
 """What two people do who walk past each other: come near, go away, leave the other behind, step alike."""
 PAIRS = {
     "idle": [
@@ -61,8 +75,6 @@ def test_no_rule_holds_on_bystanders_but_for_what_they_do(kind: str) -> None:
         for name, entry in lexicon().entries.items()
         for motion in motions
         for who, whom in (("a", "b"), ("b", "a"))
-        if entry.rule
-        and name not in does
-        and all(check(cast(rule, who, whom), motion) for rule in entry.rule)
+        if entry.rule and name not in does and all(check(cast(rule, who, whom), motion) for rule in entry.rule)
     }
     assert not found

@@ -11,10 +11,7 @@ from acts.captions import beats, gerund, short, singular
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (
-            "He pats her on the back, then she leaves.",
-            ["Person A pats person B on the back.", "Person B walks away."],
-        ),
+        ("He pats her on the back, then she leaves.", ["Person A pats person B on the back.", "Person B walks away."]),
         ("They hug.", ["They hug each other."]),
         ("He tries to hug her.", ["Person A stands still."]),
         ("She bows twice.", ["Person A bows twice."]),
@@ -40,10 +37,7 @@ def test_third_persons_of_verbs() -> None:
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
-        (
-            {"act": "pat", "patient": "b", "part": "shoulder", "side": "right", "times": 2},
-            "pats right shoulder ×2",
-        ),
+        ({"act": "pat", "patient": "b", "part": "shoulder", "side": "right", "times": 2}, "pats right shoulder ×2"),
         ({"act": "walk-up", "patient": "b", "direction": "up"}, "walks up"),
         ({"act": "skip"}, "skips"),
         ({"act": "skip", "patient": "b"}, "skips past"),
@@ -76,8 +70,7 @@ def test_every_act_has_few_words_without_slots() -> None:
 
 
 @pytest.mark.parametrize(
-    ("verb", "form"),
-    [("lie", "lying"), ("tie", "tying"), ("hug", "hugging"), ("wave", "waving"), ("be", "being")],
+    ("verb", "form"), [("lie", "lying"), ("tie", "tying"), ("hug", "hugging"), ("wave", "waving"), ("be", "being")]
 )
 def test_verbs_have_their_ing_form(verb: str, form: str) -> None:
     assert gerund(verb) == form

@@ -14,12 +14,7 @@ ENTRIES = lexicon().entries
 
 @pytest.mark.parametrize("group", sorted({entry.group for entry in ENTRIES.values()}))
 def test_every_entry_is_read_as_its_examples_say(group: str) -> None:
-    wrong = [
-        problem
-        for name, entry in ENTRIES.items()
-        if entry.group == group
-        for problem in check_entry(name, entry)
-    ]
+    wrong = [problem for name, entry in ENTRIES.items() if entry.group == group for problem in check_entry(name, entry)]
     assert not wrong
 
 
@@ -29,10 +24,7 @@ def test_every_synset_is_one_of_wordnet() -> None:
 
 def test_names_stand_in_one_file_each() -> None:
     names = [
-        line.strip()[1:-1]
-        for path in OURS.glob("*.toml")
-        for line in path.read_text().splitlines()
-        if line[:1] == "["
+        line.strip()[1:-1] for path in OURS.glob("*.toml") for line in path.read_text().splitlines() if line[:1] == "["
     ]
     assert len(names) == len(set(names)) == len(ENTRIES)
 
@@ -52,7 +44,7 @@ WRONG = {
         '[zig]\nframes = ["{a} zigzag"]\ncaption = ["x"]\nreads = ["She zigzags."]\nrule = ["happens(flies(who))"]',
         "flies",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", sorted(WRONG))

@@ -39,9 +39,7 @@ def folder_of(path: Path, **files: str) -> Path:
     return path
 
 
-def test_folders_of_the_environment_count_for_every_reader(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_folders_of_the_environment_count_for_every_reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert acts_of("She ollies.") == [] and lexicon().own == ()
     first, second = folder_of(tmp_path / "one", own=OLLIE), folder_of(tmp_path / "two", more=_bow("Two"))
     monkeypatch.setenv("PASDEDEUX_ACTS", f"{first}{os.pathsep}{second}")
@@ -56,9 +54,7 @@ def _bow(who: str) -> str:
     return f'[bow]\nframes = ["{{a}} bow"]\ncaption = ["{{a}} [bow]"]\nreads = ["{who} people bow."]\n'
 
 
-def test_folders_of_the_settings_file_are_relative_to_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_folders_of_the_settings_file_are_relative_to_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder_of(tmp_path / "ours", own=OLLIE)
     (tmp_path / "lab.toml").write_text('acts = ["ours"]\nport = 8000\n')
     monkeypatch.setenv("PASDEDEUX_SETTINGS", str(tmp_path / "lab.toml"))
@@ -85,9 +81,7 @@ def test_what_is_wrong_is_said_with_file_and_line_and_the_rest_is_used(
     assert all(problem in caplog.text for problem in said)
 
 
-def test_a_file_that_is_saved_is_read_with_the_next_sentence(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_that_is_saved_is_read_with_the_next_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = folder_of(tmp_path / "own", own=OLLIE)
     monkeypatch.setenv("PASDEDEUX_ACTS", str(folder))
     assert acts_of("She ollies.") == ["ollie"] and acts_of("She zigzoops.") == []
@@ -95,9 +89,7 @@ def test_a_file_that_is_saved_is_read_with_the_next_sentence(
     assert acts_of("She zigzoops.") == ["zigzoop"] and acts_of("She ollies.") == []
 
 
-def test_between_two_looks_the_folders_are_left_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_between_two_looks_the_folders_are_left_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PASDEDEUX_ACTS", str(folder_of(tmp_path / "own", own=OLLIE)))
     look_again()
     monkeypatch.setattr(own, "LOOK_EVERY", 1000.0)
@@ -115,9 +107,7 @@ def test_a_setting_that_is_no_list_is_said(text: str, monkeypatch: pytest.Monkey
 
 
 @pytest.mark.parametrize("text", ['acts = "own"', "acts = [3]", "acts = ["])
-def test_a_settings_file_that_is_wrong_is_said(
-    text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_settings_file_that_is_wrong_is_said(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "lab.toml").write_text(text)
     monkeypatch.setenv("PASDEDEUX_SETTINGS", str(tmp_path / "lab.toml"))
     with pytest.raises(InputError, match=r"setting acts must be a list|lab.toml cannot be read"):

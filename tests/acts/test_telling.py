@@ -40,7 +40,5 @@ def test_what_is_not_seen_is_never_told_as_done() -> None:
         "A walks up to B. Asked for but not seen: A and B hug each other."
     )
     assert tell("One person does not wave.") == ""
-    assert tell("One person does not wave.", missed={"wave"}) == (
-        "Seen although the words rule it out: A waves."
-    )
+    assert tell("One person does not wave.", missed={"wave"}) == ("Seen although the words rule it out: A waves.")
     assert tell("A wants to hug B.", missed={"hug"}) == ""

@@ -13,10 +13,18 @@ from motion.things import KINDS
 @pytest.mark.parametrize(
     ("noun", "kind"),
     [
-        ("mugs", "cup"), ("a red rose", "flower"), ("paper bag", "bag"), ("knives", "sword"), ("boxes", "box"),
-        ("Sofa", "bench"), ("piano", ""), ("", ""), ("the boss's desk", "table"), ("happiness", ""),
+        ("mugs", "cup"),
+        ("a red rose", "flower"),
+        ("paper bag", "bag"),
+        ("knives", "sword"),
+        ("boxes", "box"),
+        ("Sofa", "bench"),
+        ("piano", ""),
+        ("", ""),
+        ("the boss's desk", "table"),
+        ("happiness", ""),
     ],
-)  # fmt: skip
+)
 def test_nouns_name_kinds(noun, kind):
     assert kind_of(noun) == kind
 

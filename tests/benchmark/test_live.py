@@ -30,9 +30,7 @@ def run_live(**options: Any) -> dict[str, Any]:
         return pool.submit(lambda: live.run_live(**options)).result()
 
 
-def test_twenty_people_are_answered_and_one_more_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_twenty_people_are_answered_and_one_more_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "app.py").write_text(AT_ANY_PACE)
     monkeypatch.setattr(served, "ROOT", tmp_path)
     figures = run_live(people=20, minutes=0.03)

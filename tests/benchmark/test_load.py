@@ -70,10 +70,7 @@ def test_what_attackers_leave_is_compared_with_a_fair_share() -> None:
     """As many attackers as people are entitled to half, so that waits twice as long are fair."""
     calm = Tally(kinds={0: {"generate": [(1.0, 1.0)], "render": [(4.0, 1.0)]}, 1: {"generate": [(3.0, 1.0)]}})
     attacked = Tally(
-        kinds={
-            0: {"generate": [(9.0, 1.0), (15.0, 5.0)]},
-            1: {"generate": [(8.0, 1.0)], "render": [(40.0, 1.0)]},
-        }
+        kinds={0: {"generate": [(9.0, 1.0), (15.0, 5.0)]}, 1: {"generate": [(8.0, 1.0)], "render": [(40.0, 1.0)]}}
     )
     calm.live = Person(delays=[0.2, 0.1, 0.3], frames=60, seconds=2.0)
     attacked.live = Person(delays=[1.2], frames=30, seconds=2.0)
@@ -93,12 +90,20 @@ def test_the_command_says_which_goals_are_missed(
 ) -> None:
     asked: dict[str, Any] = {}
     good: dict[str, Any] = {
-        "runs_lost": 0, "runs_swapped": 0, "runs_refused_or_failed": 0, "log_lines_of_errors": 0,
-        "longest_wait_over_fair_share": 2.9, "attacked_longest_wait_over_fair_share": 2.9,
-        "attacked_runs_lost": 0, "attacked_runs_swapped": 0, "attacked_runs_refused_or_failed": 0,
-        "attacked_live_wait_over_fair_share": 1.0, "attacked_live_frames_over_fair_share": 1.0,
-        "page_worst_seconds": 0.9, "memory_last_over_first_quarter": 1.0,
-    }  # fmt: skip
+        "runs_lost": 0,
+        "runs_swapped": 0,
+        "runs_refused_or_failed": 0,
+        "log_lines_of_errors": 0,
+        "longest_wait_over_fair_share": 2.9,
+        "attacked_longest_wait_over_fair_share": 2.9,
+        "attacked_runs_lost": 0,
+        "attacked_runs_swapped": 0,
+        "attacked_runs_refused_or_failed": 0,
+        "attacked_live_wait_over_fair_share": 1.0,
+        "attacked_live_frames_over_fair_share": 1.0,
+        "page_worst_seconds": 0.9,
+        "memory_last_over_first_quarter": 1.0,
+    }
 
     def measured(**options: Any) -> dict[str, Any]:
         asked.update(options)

@@ -98,9 +98,7 @@ class Tabs:
         self.errors: list[str] = []
         self.foreign: list[str] = []
 
-    def open(
-        self, url: str, *, width: int = 1280, height: int = 800, before: Callable | None = None, **options
-    ):
+    def open(self, url: str, *, width: int = 1280, height: int = 800, before: Callable | None = None, **options):
         """A tab at an address.
 
         Args:
@@ -195,9 +193,7 @@ def open_kept(kept_tabs: Tabs) -> Iterator[Callable]:
 
 
 @pytest.fixture
-def shared_page(
-    request: pytest.FixtureRequest, server: SimpleNamespace, open_kept, kept_tabs: Tabs
-) -> Iterator:
+def shared_page(request: pytest.FixtureRequest, server: SimpleNamespace, open_kept, kept_tabs: Tabs) -> Iterator:
     """The application in a tab that the module's tests share: each finds the settings that the one before left.
 
     A test that fails leaves the next one a new tab.
@@ -226,21 +222,13 @@ def start_server() -> Iterator[Callable[..., str]]:
     running: list[subprocess.Popen] = []
 
     def start(
-        arguments: list[str], *, seconds: float = 180.0, env: dict[str, str] | None = None,
-        log: Path | None = None,
-    ) -> str:  # fmt: skip
+        arguments: list[str], *, seconds: float = 180.0, env: dict[str, str] | None = None, log: Path | None = None
+    ) -> str:
         port = free_port()
         command = [sys.executable, *(argument.format(port=port) for argument in arguments)]
-        environment = {
-            **os.environ,
-            "GRADIO_ANALYTICS_ENABLED": "False",
-            "OMP_NUM_THREADS": "1",
-            **(env or {}),
-        }
+        environment = {**os.environ, "GRADIO_ANALYTICS_ENABLED": "False", "OMP_NUM_THREADS": "1", **(env or {})}
         kept = log.open("wb") if log is not None else None
-        server = subprocess.Popen(
-            command, cwd=REPOSITORY, env=environment, stdout=subprocess.DEVNULL, stderr=kept
-        )
+        server = subprocess.Popen(command, cwd=REPOSITORY, env=environment, stdout=subprocess.DEVNULL, stderr=kept)
         running.append(server)
         url = f"http://127.0.0.1:{port}/"
         until = time.monotonic() + seconds

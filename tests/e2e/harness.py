@@ -27,9 +27,7 @@ FPS = 30.0
 HOSTILE = ('<img src=x onerror="window.__hacked=1">', "${window.__hacked=2}{{value}}")
 
 
-def walking_duet(
-    seconds: float = 5.0, *, roles: tuple[str, str] = ("actor", "reactor"), phase: float = 0.0
-) -> Duet:
+def walking_duet(seconds: float = 5.0, *, roles: tuple[str, str] = ("actor", "reactor"), phase: float = 0.0) -> Duet:
     """Two people who walk up to each other and hold out their right hands. Made by hand, not captured."""
     frames = int(seconds * FPS)
     t = np.arange(frames) / FPS
@@ -135,12 +133,8 @@ def ask_nobody() -> dict[str, object]:
 
 
 UPDATES: dict[str, Callable[[], dict[str, Any]]] = {
-    "load": lambda: show(
-        player_payload(walking_duet(), title="two people walk up to each other and shake hands")
-    ),
-    "several": lambda: show(
-        player_payload([walking_duet(phase=0.8 * i) for i in range(4)], title="four takes")
-    ),
+    "load": lambda: show(player_payload(walking_duet(), title="two people walk up to each other and shake hands")),
+    "several": lambda: show(player_payload([walking_duet(phase=0.8 * i) for i in range(4)], title="four takes")),
     "futures": lambda: show(
         {**player_payload([walking_duet(4.0), apart_duet(4.0), walking_duet(4.0, phase=1.0)]), "futures": 30}
     ),

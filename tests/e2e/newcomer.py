@@ -80,9 +80,7 @@ class Newcomer:
         """Does what starts a run and waits until its motion is there."""
         before = self.page.evaluate("window.__pasdedeux.id")
         act()
-        until(
-            self.page, f"window.__pasdedeux.id !== {json.dumps(before)} && window.__pasdedeux.id", SLOW / 1000
-        )
+        until(self.page, f"window.__pasdedeux.id !== {json.dumps(before)} && window.__pasdedeux.id", SLOW / 1000)
         until(self.page, "!document.querySelector('.pdd[aria-busy=true]')", SLOW / 1000)
 
     def saved(self, act: Callable[[], None], suffix: str) -> None:

@@ -9,8 +9,15 @@ from webdemo.server.http.admin_html import page, table
 pytestmark = pytest.mark.e2e
 BUTTONS = "<form><button>Set room</button></form><form><button>Sign out everywhere</button></form>"
 HEADS = ("Account", "Runs kept", "Runs computed", "Minutes computed", "Runs and studies", "Waiting", "Acts")
-ROW = ["<strong>a.person.of.a.long.name</strong>", "1,234", "2,345", "678.9", "0.9 of 0.8 MB", "3",
-       f'<div class="acts">{BUTTONS}</div>']  # fmt: skip
+ROW = [
+    "<strong>a.person.of.a.long.name</strong>",
+    "1,234",
+    "2,345",
+    "678.9",
+    "0.9 of 0.8 MB",
+    "3",
+    f'<div class="acts">{BUTTONS}</div>',
+]
 
 
 @pytest.mark.parametrize("width", [390, 1280])
@@ -20,7 +27,5 @@ def test_every_act_is_in_reach(open_page, tmp_path, width: int) -> None:
     for button in shown.get_by_role("button").all():
         box = button.bounding_box()
         assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width
-    names = shown.eval_on_selector_all(
-        "td", "cells => cells.map(c => getComputedStyle(c, '::before').content)"
-    )
+    names = shown.eval_on_selector_all("td", "cells => cells.map(c => getComputedStyle(c, '::before').content)")
     assert ('"Runs kept"' in names) == (width == 390), "a card says what each number is"

@@ -52,9 +52,7 @@ def modules() -> Iterator[str]:
         def log_message(self, *_: Any) -> None:
             """Says nothing."""
 
-    server = http.server.ThreadingHTTPServer(
-        ("127.0.0.1", 0), functools.partial(Quiet, directory=str(STATIC))
-    )
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=str(STATIC)))
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()
     yield f"http://127.0.0.1:{server.server_port}"
@@ -72,9 +70,7 @@ def page(open_page: Callable[..., Page], modules: str) -> Page:
 
 def said(page: Page, job: str, argument: Any = None) -> str:
     """What a job of the modules ends with."""
-    return str(
-        page.evaluate(f"async (given) => {{ {PRELUDE} return said(async () => {{ {job} }}); }}", argument)
-    )
+    return str(page.evaluate(f"async (given) => {{ {PRELUDE} return said(async () => {{ {job} }}); }}", argument))
 
 
 def test_a_camera_that_is_refused_absent_or_taken(page: Page) -> None:
@@ -83,15 +79,11 @@ def test_a_camera_that_is_refused_absent_or_taken(page: Page) -> None:
         ("NotFoundError", "No camera was found: connect one, or choose a video."),
         ("NotReadableError", "The camera does not start: close other programs that use it and try again."),
     ):
-        refused = (
-            f"navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('', '{error}'));"
-        )
+        refused = f"navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('', '{error}'));"
         opens = "await openWebcam(document.querySelector('video'));"
         assert said(page, refused + opens) == f"FilmError: {sentence}"
     hidden = "Object.defineProperty(navigator, 'mediaDevices', { value: undefined, configurable: true });"
-    assert "open the page by https" in said(
-        page, hidden + "await openWebcam(document.querySelector('video'));"
-    )
+    assert "open the page by https" in said(page, hidden + "await openWebcam(document.querySelector('video'));")
 
 
 def test_nobody_and_too_many_people(page: Page) -> None:
@@ -114,9 +106,7 @@ def encoded(path: Path, codec: str, times: list[float], size: tuple[int, int] = 
         stream = film.add_stream(codec, rate=30)
         stream.width, stream.height, stream.pix_fmt = *size, "yuv420p"
         for time in times:
-            picture = av.VideoFrame.from_ndarray(
-                np.full((size[1], size[0], 3), 128, np.uint8), format="rgb24"
-            )
+            picture = av.VideoFrame.from_ndarray(np.full((size[1], size[0], 3), 128, np.uint8), format="rgb24")
             picture.pts, picture.time_base = round(30 * time), Fraction(1, 30)
             film.mux(stream.encode(picture))
         film.mux(stream.encode(None))
@@ -136,14 +126,8 @@ OPENS = "await openFilm(document.querySelector('video'), document.querySelector(
     ],
     ids=["one frame", "75 seconds", "HEVC", "uneven times"],
 )
-def test_films_of_the_wrong_kind(
-    page: Page, tmp_path: Path, codec: str, times: list[float], sentence: str
-) -> None:
-    film = {
-        "name": "film.mp4",
-        "mimeType": "video/mp4",
-        "buffer": encoded(tmp_path / "film.mp4", codec, times),
-    }
+def test_films_of_the_wrong_kind(page: Page, tmp_path: Path, codec: str, times: list[float], sentence: str) -> None:
+    film = {"name": "film.mp4", "mimeType": "video/mp4", "buffer": encoded(tmp_path / "film.mp4", codec, times)}
     page.set_input_files("input", film)
     assert sentence in said(page, OPENS)
 

@@ -23,9 +23,7 @@ page.launch(server_name="127.0.0.1", server_port=int(os.environ["PASDEDEUX_PORT"
 """
 
 
-def test_page_and_player_are_measured(
-    chromium: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_page_and_player_are_measured(chromium: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """``chromium`` says whether there is a browser; the benchmark starts one of its own."""
     (tmp_path / "app.py").write_text(STUB_APP)
     monkeypatch.setattr(benchmark_browser, "ROOT", tmp_path)

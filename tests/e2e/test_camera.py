@@ -78,9 +78,7 @@ def test_a_video_and_then_the_webcam_become_an_actor_who_gets_a_partner(
         expect(line).to_contain_text(sentence, timeout=SLOW)
 
     file.set_input_files(FILM)
-    filming.wait_for_function(
-        "document.querySelector('#react-camera .pdcam-line').textContent.includes('picture')"
-    )
+    filming.wait_for_function("document.querySelector('#react-camera .pdcam-line').textContent.includes('picture')")
     filming.click("#react-camera .pdcam-cancel")
     expect(line).to_have_text("Cancelled.")
     file.set_input_files(FILM)

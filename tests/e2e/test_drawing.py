@@ -30,9 +30,7 @@ def drawing(shared_page: Page) -> Page:
         player.director.open([]); player.directing.drawing.toggle(false); player.refresh(); }"""
     )
     page.click(TOOL)
-    until(
-        page, "document.querySelector('#player .pdd-grip')?.style.transform && window.__pasdedeux.loops === 0"
-    )
+    until(page, "document.querySelector('#player .pdd-grip')?.style.transform && window.__pasdedeux.loops === 0")
     return page
 
 

@@ -82,8 +82,7 @@ def test_the_switches_of_a_player_that_comes_late_are_found(
     """Whoever opens the search as soon as there is a page has it open before the player has loaded."""
     held: list[Route] = []
     page = open_page(
-        server.url,
-        before=lambda page: page.route("**/static/player/main.js", lambda route: held.append(route)),
+        server.url, before=lambda page: page.route("**/static/player/main.js", lambda route: held.append(route))
     )
     live(page)
     page.locator("#finder button").click()

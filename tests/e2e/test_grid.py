@@ -37,10 +37,7 @@ def sweep(page: Page, side: str, what: str, values: str) -> None:
 def test_nine_results_share_one_context_and_one_opens_large(
     server: SimpleNamespace, open_page: Callable[..., Page], tmp_path: Path
 ) -> None:
-    page = open_page(
-        server.url, width=1280, height=900,
-        before=lambda tab: tab.add_init_script(COUNT_CONTEXTS),
-    )  # fmt: skip
+    page = open_page(server.url, width=1280, height=900, before=lambda tab: tab.add_init_script(COUNT_CONTEXTS))
     live(page, slow=SLOW)
     page.fill("#prompt textarea", "Two people shake hands.")
     unfold(page, "#grid")
@@ -60,9 +57,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
         ["seed 1", "seed 2", "seed 3", "damping 0", "damping 0.4", "damping 0.7"]
     )
     expect(page.locator("#readouts .pd-grid-table tbody tr")).to_have_count(9)
-    assert (
-        page.locator("#readouts .pd-better").count() > 0 and page.locator("#readouts .pd-worse").count() > 0
-    )
+    assert page.locator("#readouts .pd-better").count() > 0 and page.locator("#readouts .pd-worse").count() > 0
     page.evaluate(f"{PLAYER}.act('play')")
     page.wait_for_function("window.__pasdedeux?.loops === 0")
     until(page, f"{PLAYER}.panes[0].figures.length === 2")

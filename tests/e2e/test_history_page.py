@@ -37,9 +37,7 @@ def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open
     page.click("#history-link")
     box = page.locator("#history-address textarea, #history-address input")
     box.wait_for()
-    page.wait_for_function(
-        "document.querySelector('#history-address textarea, #history-address input').value"
-    )
+    page.wait_for_function("document.querySelector('#history-address textarea, #history-address input').value")
     link = box.input_value()
     assert re.fullmatch(re.escape(lab) + r"\?run=[\w-]{24}", link)
     page.click("#history-again")
@@ -94,9 +92,7 @@ def test_a_reload_keeps_the_last_result(lab: str, open_page: Callable) -> None:
     assert fresh.input_value("#prompt textarea") == ""
 
 
-def test_a_prediction_opens_with_its_marker_and_its_ghost(
-    lab: str, open_page: Callable, tmp_path: Path
-) -> None:
+def test_a_prediction_opens_with_its_marker_and_its_ghost(lab: str, open_page: Callable, tmp_path: Path) -> None:
     page = open_page(lab)
     page.set_default_timeout(SLOW)
     page.click("button[role=tab]:has-text('Predict')")
@@ -116,9 +112,7 @@ def test_a_prediction_opens_with_its_marker_and_its_ghost(
     page.click("#history-open")
     page.wait_for_selector("#predict-status .pd-done:has-text('Made on')")
     sample = "window.__pasdedeux.player.sample"
-    page.wait_for_function(
-        f"{sample}?.past_until === 75 && {sample}.frames === 120 && {sample}.ghost !== null"
-    )
+    page.wait_for_function(f"{sample}?.past_until === 75 && {sample}.frames === 120 && {sample}.ghost !== null")
     for control, value in (("marker", "2.5"), ("seconds", "1.5")):
         assert page.input_value(f"#predict-{control} input[type=number]") == value
     page.wait_for_selector("#predict-curves .legendtext:has-text('What really followed')")
@@ -160,9 +154,7 @@ def test_a_class_and_a_reaction_open_with_their_method(lab: str, open_page: Call
     expect(other.locator("#prompt")).to_be_hidden()
 
 
-def test_a_run_opens_with_the_very_file_that_was_uploaded(
-    lab: str, open_page: Callable, tmp_path: Path
-) -> None:
+def test_a_run_opens_with_the_very_file_that_was_uploaded(lab: str, open_page: Callable, tmp_path: Path) -> None:
     file = write(walking(2.0).a, tmp_path / "my walk.bvh")[0]
     page = open_page(lab)
     page.set_default_timeout(SLOW)
@@ -182,9 +174,7 @@ def test_a_run_opens_with_the_very_file_that_was_uploaded(
     assert other.request.get(address).body() == file.read_bytes()
 
 
-def test_a_notebook_is_searched_written_in_and_taken_along(
-    lab: str, open_page: Callable, tmp_path: Path
-) -> None:
+def test_a_notebook_is_searched_written_in_and_taken_along(lab: str, open_page: Callable, tmp_path: Path) -> None:
     page = open_page(lab)
     page.set_default_timeout(SLOW)
     prompts = ("They bow in the rehearsal.", "They salute in the rehearsal.")
@@ -206,18 +196,11 @@ def test_a_notebook_is_searched_written_in_and_taken_along(
     cards = page.locator(".pdn-card")
     page.fill("[data-find=words]", "rehearsal")
     expect(cards).to_have_count(2, timeout=SLOW)
-    drawn = (
-        "[...document.querySelector('.pdn-thumb').getContext('2d').getImageData(0, 0, 88, 88).data].join()"
-    )
+    drawn = "[...document.querySelector('.pdn-thumb').getContext('2d').getImageData(0, 0, 88, 88).data].join()"
     first = page.evaluate(drawn)
     page.wait_for_function(f"({drawn}) !== {first!r}")  # it moves
     page.click(".pdn-card >> nth=0 >> summary")
-    for field, value in (
-        ("title", "<b>The salute</b>"),
-        ("tags", "paper"),
-        ("note", "Hands late"),
-        ("frame", "40"),
-    ):
+    for field, value in (("title", "<b>The salute</b>"), ("tags", "paper"), ("note", "Hands late"), ("frame", "40")):
         page.fill(f"[data-field={field}]", value)
     page.click("[data-save]")
     expect(cards.first).to_contain_text("<b>The salute</b>")

@@ -86,13 +86,9 @@ def test_a_recorded_person_is_answered_as_they_move(
     expect(line).to_contain_text("Nobody is chosen yet", timeout=SLOW)
     the_lens_is_remembered(page)
 
-    for name, sentence in (
-        ("NotAllowedError", "The camera may not be used"),
-        ("NotFoundError", "No camera was found"),
-    ):
+    for name, sentence in (("NotAllowedError", "The camera may not be used"), ("NotFoundError", "No camera was found")):
         page.evaluate(
-            "name => { navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('', name)); }",
-            name,
+            "name => { navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('', name)); }", name
         )
         start(page, "webcam")
         expect(line).to_contain_text(sentence, timeout=SLOW)
@@ -123,8 +119,6 @@ def test_a_recorded_person_is_answered_as_they_move(
     expect(line).to_contain_text("The connection was lost", timeout=SLOW)
     page.unroute("**/live/*")
     two_people(page)
-    opened = page.evaluate(
-        "fetch('live', {method: 'POST', body: '{\"partner\": \"agent\"}'}).then((a) => a.status)"
-    )
+    opened = page.evaluate("fetch('live', {method: 'POST', body: '{\"partner\": \"agent\"}'}).then((a) => a.status)")
     assert opened == 200
     expect(line).to_contain_text("Another live stream of yours has begun", timeout=SLOW)

@@ -22,9 +22,7 @@ TABLE = Path(__file__).resolve().parents[2] / "docs" / "newcomer.md"
     "PASDEDEUX_NEWCOMER" not in os.environ,
     reason="takes minutes, and has hung once on a busy machine: set PASDEDEUX_NEWCOMER=1",
 )
-def test_twenty_tasks_take_the_presses_of_the_table(
-    lab: str, open_page: Callable[..., Page], tmp_path: Path
-) -> None:
+def test_twenty_tasks_take_the_presses_of_the_table(lab: str, open_page: Callable[..., Page], tmp_path: Path) -> None:
     page = live(open_page(lab, width=1440, height=1800, accept_downloads=True))
     page.wait_for_function("window.__pasdedeux?.frame > 0")
     me = Newcomer(page, tmp_path)
@@ -38,8 +36,6 @@ def test_twenty_tasks_take_the_presses_of_the_table(
 
 
 def test_the_table_is_told() -> None:
-    rows = re.findall(
-        r"^\| \d+ \| ([^|]+?) \| [^|]* \| (\d+) \|$", TABLE.read_text(encoding="utf-8"), re.MULTILINE
-    )
+    rows = re.findall(r"^\| \d+ \| ([^|]+?) \| [^|]* \| (\d+) \|$", TABLE.read_text(encoding="utf-8"), re.MULTILINE)
     assert rows == [(task.name, str(task.presses)) for task in TASKS]
     assert len(rows) == 20

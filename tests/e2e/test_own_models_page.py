@@ -48,9 +48,7 @@ def generate(page: Page, label: str, words: str) -> None:
     expect(page.locator("button#cancel")).to_be_disabled(timeout=SLOW)
 
 
-def test_models_of_the_settings_are_on_the_page_and_in_the_api(
-    lab: str, open_page: Callable[..., Page]
-) -> None:
+def test_models_of_the_settings_are_on_the_page_and_in_the_api(lab: str, open_page: Callable[..., Page]) -> None:
     page = open_page(lab)
     expect(page.locator("#way")).to_contain_text("InterGen (authors)", timeout=SLOW)
     assert "broken" not in page.locator("#way").inner_text()

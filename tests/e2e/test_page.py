@@ -108,9 +108,7 @@ def test_enter_and_ctrl_enter_generate(page: Page) -> None:
 
 def test_chips_fill_the_prompt(page: Page) -> None:
     page.click("button.pd-chip >> nth=0")
-    expect(page.locator("#prompt textarea")).to_have_value(
-        "Two people walk up to each other and shake hands."
-    )
+    expect(page.locator("#prompt textarea")).to_have_value("Two people walk up to each other and shake hands.")
     expect(page.locator("#prompt textarea")).to_be_focused()
 
 
@@ -226,9 +224,7 @@ def test_hostile_prompts_are_shown_literally_and_run_nothing(page: Page) -> None
     assert page.locator("img[src='x']").count() == 0
 
 
-def test_the_used_seed_is_shown_and_repeats_the_motion(
-    page: Page, server: SimpleNamespace, slow_steps: None
-) -> None:
+def test_the_used_seed_is_shown_and_repeats_the_motion(page: Page, server: SimpleNamespace, slow_steps: None) -> None:
     unfold(page, "#more")
     page.locator("#seed input").fill("")
     ask(page, "two people walk")

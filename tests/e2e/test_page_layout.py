@@ -62,9 +62,7 @@ def test_axe_finds_nothing_against_wcag_aa_and_reduced_motion_keeps_the_example_
     page = live(open_page(server.url, before=lambda tab: tab.emulate_media(reduced_motion="reduce")))
     page.wait_for_function("window.__pasdedeux?.player?.data", timeout=SLOW)
     assert not page.evaluate("window.__pasdedeux.player.clock.playing")
-    page.add_style_tag(
-        content="*, ::before, ::after { transition: none !important; animation: none !important; }"
-    )
+    page.add_style_tag(content="*, ::before, ::after { transition: none !important; animation: none !important; }")
     found = against_wcag(axe, page, "idle")
     ask(page, "Two people walk home.")
     status(page, "done")

@@ -37,12 +37,8 @@ def set_number(page: Page, selector: str, value: str) -> None:
 
 def generate(page: Page, prompt: str) -> None:
     page.fill("#prompt textarea", prompt)
-    with page.expect_request(
-        lambda sent: "queue/join" in sent.url and '"intergen"' in (sent.post_data or "")
-    ):
-        page.click(
-            "button#generate"
-        )  # the sentence is read first, while the line still tells of the last run
+    with page.expect_request(lambda sent: "queue/join" in sent.url and '"intergen"' in (sent.post_data or "")):
+        page.click("button#generate")  # the sentence is read first, while the line still tells of the last run
     expect(page.locator("#player .pdd-title")).to_have_text(prompt, timeout=SLOW)
     expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
 

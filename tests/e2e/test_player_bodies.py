@@ -61,9 +61,7 @@ def test_bodies_stand_where_python_puts_them(player, button, width):
 
 def bodies_alone(page) -> None:
     """Takes the skeletons off."""
-    page.evaluate(
-        "() => { const { player } = window.__pasdedeux; player.show.skeletons = false; player.refresh(); }"
-    )
+    page.evaluate("() => { const { player } = window.__pasdedeux; player.show.skeletons = false; player.refresh(); }")
 
 
 def lit_over_shaded(pixels: np.ndarray) -> float:

@@ -85,8 +85,11 @@ def test_the_trunk_leans_after_a_hand_that_the_arm_does_not_reach(still: Any) ->
     arm = np.linalg.norm(elbow - shoulder) + np.linalg.norm(pose[WRIST] - elbow)
     ahead = np.cross(pose[1] - pose[2], [0, 0, 1])
     ahead /= np.linalg.norm(ahead)
-    legs = [i for i, name in enumerate(SMPL22.joint_names) if any(
-        part in name for part in ("pelvis", "hip", "knee", "ankle", "foot"))]  # fmt: skip
+    legs = [
+        i
+        for i, name in enumerate(SMPL22.joint_names)
+        if any(part in name for part in ("pelvis", "hip", "knee", "ankle", "foot"))
+    ]
 
     def pulled(way: np.ndarray, reach: float) -> np.ndarray:
         target = shoulder + reach * arm * way
@@ -143,8 +146,10 @@ def test_a_hand_is_dragged_given_up_and_kept(still: Any) -> None:
     still.mouse.up()
     dragged = positions(still)
     assert np.linalg.norm(dragged[WRIST] - before[WRIST]) > 0.1
-    np.testing.assert_allclose(positions(still, 1), np.array(still.evaluate(
-        "window.__pasdedeux.player.everybody(60)[1].map(([z, x, y]) => [x, y, z])")))  # fmt: skip
+    np.testing.assert_allclose(
+        positions(still, 1),
+        np.array(still.evaluate("window.__pasdedeux.player.everybody(60)[1].map(([z, x, y]) => [x, y, z])")),
+    )
     # Another moment is not shown before it is kept or given up.
     still.keyboard.press("Home")
     still.locator(".pdd-range").fill("90")

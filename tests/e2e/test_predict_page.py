@@ -143,9 +143,7 @@ def test_a_result_of_another_tab_goes_on(page: Page) -> None:
     expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
     page.click("button#continue")
     expect(page.get_by_role("tab", name="Predict")).to_have_attribute("aria-selected", "true", timeout=SLOW)
-    expect(page.locator("#predict-status")).to_contain_text(
-        "two people walk: two people, 5.0 s", timeout=SLOW
-    )
+    expect(page.locator("#predict-status")).to_contain_text("two people walk: two people, 5.0 s", timeout=SLOW)
     page.wait_for_function("document.querySelector('#predict-marker input[type=number]').value === '5'")
     predict(page)
     page.wait_for_function(f"{SAMPLE}.frames === 210 && {SAMPLE}.past_until === 150")

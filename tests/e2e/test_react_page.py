@@ -83,9 +83,7 @@ def test_a_result_of_the_other_tab_is_taken_and_bad_files_are_a_sentence(page: P
 def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     page: Page, server: SimpleNamespace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(
-        server.engine, "live_waits_at", 72
-    )  # so that a slow browser sees the run while it goes on
+    monkeypatch.setattr(server.engine, "live_waits_at", 72)  # so that a slow browser sees the run while it goes on
     (file, _) = write(walking(4.0), tmp_path / "walker.bvh")
     page.set_input_files("#react-file input[type=file]", file)
     people(page, 1)
@@ -144,9 +142,7 @@ def test_the_console_stays_quiet_while_runs_are_started(
     server: SimpleNamespace, open_page: Callable[..., Page]
 ) -> None:
     said: list[str] = []
-    page = open_page(
-        server.url, before=lambda tab: tab.on("console", lambda message: said.append(message.text))
-    )
+    page = open_page(server.url, before=lambda tab: tab.on("console", lambda message: said.append(message.text)))
     page.set_default_timeout(SLOW)
     page.fill("#prompt textarea", "two people walk")
     page.click("button#generate")

@@ -73,10 +73,7 @@ def test_a_motion_is_as_long_as_its_acts_where_enter_follows_the_last_letter(pag
     prompt, seconds = page.locator("#prompt textarea"), page.locator("#seconds input[type=number]")
     page.wait_for_function("document.querySelector('#reading .pdr')?.view")
     runs = []
-    page.on(
-        "request",
-        lambda sent: "queue/join" in sent.url and '"intergen"' in sent.post_data and runs.append(sent),
-    )
+    page.on("request", lambda sent: "queue/join" in sent.url and '"intergen"' in sent.post_data and runs.append(sent))
     for sentence, length in (("A bows to B. Then they hug.", 7), ("They hug.", 5)):
         prompt.fill(sentence)
         prompt.press("Enter")

@@ -25,9 +25,7 @@ COUNT = """
 @pytest.fixture
 def rested(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
     """The page when its first motion is paused."""
-    page = live(
-        open_page(server.url, before=lambda tab: tab.add_init_script(COUNT), reduced_motion="no-preference")
-    )
+    page = live(open_page(server.url, before=lambda tab: tab.add_init_script(COUNT), reduced_motion="no-preference"))
     page.wait_for_function("window.__pasdedeux && window.__pasdedeux.mode !== null", timeout=SLOW)
     page.evaluate("window.__pasdedeux.player.act('pause')")
     page.wait_for_function("window.__pasdedeux?.loops === 0", timeout=SLOW)

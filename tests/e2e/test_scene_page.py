@@ -45,11 +45,7 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.locator("#scene-generate").click()
     page.wait_for_selector("#scene-status .pd-done")
     page.wait_for_selector(".pds-cell")
-    assert page.locator(".pds-lane-words .pds-cell").all_inner_texts() == [
-        "They meet.",
-        "They hug.",
-        "They bow.",
-    ]
+    assert page.locator(".pds-lane-words .pds-cell").all_inner_texts() == ["They meet.", "They hug.", "They bow."]
 
     def words() -> list[str]:
         return [beat["words"] for beat in story(page)["beats"]]

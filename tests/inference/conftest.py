@@ -17,14 +17,7 @@ CAPTIONS = ("Two people shake hands.", "One person waves.", "They walk away from
 
 def tiny_weights(folder: Path, *, words: bool) -> Path:
     torch.manual_seed(0)
-    sizes = {
-        "latent_dim": 32,
-        "ff_size": 32,
-        "num_layers": 2,
-        "num_heads": 2,
-        "cond_dim": 64,
-        "text_layers": 1,
-    }
+    sizes = {"latent_dim": 32, "ff_size": 32, "num_layers": 2, "num_heads": 2, "cond_dim": 64, "text_layers": 1}
     model = CompactInterGen(CompactConfig(**sizes, words=words))
     for parameter in model.parameters():  # the zero-initialised layers would hide what the input does
         torch.nn.init.normal_(parameter, std=0.05)

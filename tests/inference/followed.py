@@ -35,9 +35,7 @@ class Follower:
         patch.setattr(Setting, "scene", lambda setting, pipeline: setting)
         self.settings: list[Setting] = []
 
-    def run(
-        self, asked: Any, cancel: Any, timer: Any, passes: Any = None, given: Any = None
-    ) -> Iterator[Result]:
+    def run(self, asked: Any, cancel: Any, timer: Any, passes: Any = None, given: Any = None) -> Iterator[Result]:
         """One result: upright people at the given places, in the given poses where whole legs are given."""
         self.settings.append(given)
         people = np.stack([followed(given, person) for person in (0, 1)])

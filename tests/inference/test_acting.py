@@ -37,9 +37,7 @@ def test_the_network_reads_the_caption_of_the_act() -> None:
 
 @pytest.mark.usefixtures("with_ollie")
 def test_more_acts_than_the_seconds_have_room_for_share_a_beat() -> None:
-    asked = acted(
-        GenerateRequest(prompt="She ollies, then he waves, then she bows, then he ollies.", seconds=1)
-    )
+    asked = acted(GenerateRequest(prompt="She ollies, then he waves, then she bows, then he ollies.", seconds=1))
     scene = as_scene(asked)
     assert scene is not None and len(scene.beats) == 1
     assert {act.act for act in scene.beats[0].acts} == {"ollie", "wave", "bow"}

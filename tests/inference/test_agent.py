@@ -38,9 +38,7 @@ def folder(weights: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     torch.manual_seed(0)
     network = MotionMLP(MotionMLPConfig(width=32, blocks=1))
     save_predictor(made / "motion-mlp", network, kind="mlp", fps=30.0)
-    eye = Recogniser(
-        RecogniserConfig(LABELS, SENTENCES, joint_width=4, latent_dim=16, ff_size=16, num_heads=2)
-    )
+    eye = Recogniser(RecogniserConfig(LABELS, SENTENCES, joint_width=4, latent_dim=16, ff_size=16, num_heads=2))
     save_network(made / "agent", eye)
     return made
 
@@ -80,10 +78,7 @@ def test_a_look_depends_on_the_second_before_it_alone(agent: AgentPipeline) -> N
 @pytest.mark.parametrize(
     ("looks", "decided"),
     [
-        (
-            [look(45, 0.02, 0.95, 0.03), look(60, 0.0, 0.9, 0.1), look(75, 0.0, 0.0, 1.0)],
-            (60, 1, True),
-        ),  # once sure
+        ([look(45, 0.02, 0.95, 0.03), look(60, 0.0, 0.9, 0.1), look(75, 0.0, 0.0, 1.0)], (60, 1, True)),  # once sure
         ([look(45, 1.0, 0.0, 0.0), look(60, 0.9, 0.1, 0.0), look(75, 0.0, 0.01, 0.99)], (75, 2, False)),
         ([look(45, 0.1, 0.5, 0.4), look(60, 0.1, 0.5, 0.4)], (60, 1, False)),  # the likeliest of all
         ([look(45, 0.8, 0.1, 0.1), look(60, 0.8, 0.2, 0.0)], (60, None, False)),
@@ -108,9 +103,7 @@ def test_it_says_what_it_saw_and_answers_with_the_gestures_sentence(
     asked = []
     conditioning = agent.answers.conditioning
     monkeypatch.setattr(
-        agent.answers,
-        "conditioning",
-        lambda request: (asked.append(request.prompt), conditioning(request))[1],
+        agent.answers, "conditioning", lambda request: (asked.append(request.prompt), conditioning(request))[1]
     )
     monkeypatch.setattr(agent.eye, "looks", lambda positions: SEEN)
     found = react(engine)
@@ -126,10 +119,7 @@ def test_it_says_what_it_saw_and_answers_with_the_gestures_sentence(
     ("looks", "said"),
     [
         ([look(45, 0.9, 0.05, 0.05)] * 2, "saw no gesture"),
-        (
-            [look(45, 0.0, 0.5, 0.5)] * 2,
-            "was not sure of a gesture, so it stands and waits. The likeliest was “wave”",
-        ),
+        ([look(45, 0.0, 0.5, 0.5)] * 2, "was not sure of a gesture, so it stands and waits. The likeliest was “wave”"),
     ],
 )
 def test_who_is_not_sure_attends(
@@ -195,9 +185,7 @@ def test_what_it_cannot_do_is_a_sentence(engine: Engine) -> None:
         list(engine.run(REQUEST, cancel))
 
 
-@pytest.mark.parametrize(
-    ("name", "gesture"), [("shake-hands", "shake hands"), ("wave", "wave"), ("push", "push")]
-)
+@pytest.mark.parametrize(("name", "gesture"), [("shake-hands", "shake hands"), ("wave", "wave"), ("push", "push")])
 def test_the_shipped_agent_names_the_example_actors(name: str, gesture: str) -> None:
     person = to_smpl(read(CLIPS / f"{name}.npz").people[0])
     eye = Eye(WEIGHTS / "agent", PredictorPipeline(WEIGHTS / "motion-mlp"))

@@ -118,10 +118,13 @@ def test_padding_is_not_attended_to(engine: Engine, lengths: tuple[int, int]) ->
     questions = [
         _Question(
             torch.randn(1, n, 2 * model.layout.token_features, generator=generator),
-            torch.tensor([500]), torch.randn(1, 64, generator=generator), None, scale,
+            torch.tensor([500]),
+            torch.randn(1, 64, generator=generator),
+            None,
+            scale,
         )
         for n, scale in zip(lengths, (3.0, 1.0), strict=True)
-    ]  # fmt: skip
+    ]
     with torch.no_grad():
         together = answer_together(model.denoiser, questions)
         for q, answer in zip(questions, together, strict=True):

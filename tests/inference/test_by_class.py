@@ -27,10 +27,16 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     torch.manual_seed(0)
     model = CompactBiGraphDiff(
         CompactBiGraphDiffConfig(
-            LABELS, ((("right_wrist", "right_wrist"),), ()), latent_dim=32, ff_size=32, num_layers=2,
-            num_heads=2, embed_dim=32, cond_dim=16,
+            LABELS,
+            ((("right_wrist", "right_wrist"),), ()),
+            latent_dim=32,
+            ff_size=32,
+            num_layers=2,
+            num_heads=2,
+            embed_dim=32,
+            cond_dim=16,
         )
-    )  # fmt: skip
+    )
     for parameter in model.parameters():
         torch.nn.init.normal_(parameter, std=0.05)
     rest = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([0.0, 0.98, 0.0])
@@ -49,9 +55,7 @@ def engine(folder: Path) -> Engine:
 
 
 def result(engine: Engine, label: str = "shake hands", **asked: object) -> Result:
-    (found,) = (
-        e for e in engine.run(GenerateRequest(prompt=label, **{**QUICK, **asked})) if isinstance(e, Result)
-    )
+    (found,) = (e for e in engine.run(GenerateRequest(prompt=label, **{**QUICK, **asked})) if isinstance(e, Result))
     return found
 
 
@@ -104,9 +108,7 @@ def test_requests_share_passes(engine: Engine) -> None:
         GenerateRequest(prompt=label, **QUICK | {"seconds": seconds, "seed": 4})
         for label, seconds in (("shake hands", 1.5), ("wave to each other", 1.3))
     ]
-    together = {
-        i: e for i, e in run_batch(engine, [(r, CancelToken()) for r in requests]) if isinstance(e, Result)
-    }
+    together = {i: e for i, e in run_batch(engine, [(r, CancelToken()) for r in requests]) if isinstance(e, Result)}
     for i, request in enumerate(requests):
         (alone,) = (e for e in engine.run(request) if isinstance(e, Result))
         assert np.allclose(together[i].duets[0].positions, alone.duets[0].positions, atol=2e-3)

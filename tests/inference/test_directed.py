@@ -24,9 +24,7 @@ def walker(frames: int = FRAMES, angle: float = 0.0, speed: float = 1.0) -> np.n
 
 def make(engine: Engine, parts: Sequence[Part], **changes: float) -> Duet:
     pipeline = engine.pipeline("intergen")
-    request = GenerateRequest(
-        prompt="They walk away from each other.", seconds=FRAMES / 30, steps=4, **changes
-    )
+    request = GenerateRequest(prompt="They walk away from each other.", seconds=FRAMES / 30, steps=4, **changes)
     scene = directed(pipeline.model, FRAMES, parts)
     *_, result = pipeline.run(request, CancelToken(), StageTimer.start(), scene=scene)
     return result.duets[0]
@@ -60,19 +58,12 @@ def test_a_path_is_followed(either_engine: Engine, frames: Sequence[int]) -> Non
         duet = make(either_engine, parts, damping=damping)
         found = duet.b.positions[list(frames)][:, 0][:, [0, 2]]
         assert np.linalg.norm(found - way, axis=-1).max() < 0.01
-    assert (
-        np.linalg.norm(
-            make(either_engine, []).b.positions[list(frames)][:, 0][:, [0, 2]] - way, axis=-1
-        ).max()
-        > 0.2
-    )
+    assert np.linalg.norm(make(either_engine, []).b.positions[list(frames)][:, 0][:, [0, 2]] - way, axis=-1).max() > 0.2
 
 
 def test_a_given_heading_is_shown_to_a_network_that_sees_it(reading_engine: Engine) -> None:
     way = walker()[:, 0][:, [0, 2]]
-    turned = [
-        make(reading_engine, [KnownPath(0, range(FRAMES), way, np.full(FRAMES, h))]) for h in (0.0, 2.0)
-    ]
+    turned = [make(reading_engine, [KnownPath(0, range(FRAMES), way, np.full(FRAMES, h))]) for h in (0.0, 2.0)]
     assert not np.allclose(turned[0].a.positions, turned[1].a.positions, atol=1e-4)
 
 
@@ -101,9 +92,7 @@ def test_a_single_pose_moves_only_what_is_near_it() -> None:
 def test_poses_in_a_row_are_led_through_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
     """A bystander's poses, one every half second, leave nothing to smooth; a pose by itself does."""
     smoothed: list[list[int]] = []
-    monkeypatch.setattr(
-        "webdemo.inference.directed.passing", lambda made, at, *_: smoothed.append(at.tolist()) or made
-    )
+    monkeypatch.setattr("webdemo.inference.directed.passing", lambda made, at, *_: smoothed.append(at.tolist()) or made)
     made = np.stack([walker(), walker(speed=0.8)]).astype(np.float32)
     row = [KnownFrames(0, [20, 35, 50], made[0, [20, 35, 50]]), KnownFrames(1, [30], made[1, 30:31])]
     Directed(FRAMES, None, parts=row).duet(made, lambda person: person)

@@ -131,10 +131,7 @@ def test_what_cannot_be_shown_is_said(engine: Engine) -> None:
 
 def test_strange_prompts_are_only_text(engine: Engine) -> None:
     for prompt in ("二人が握手する", "🤝🤝", "<img src=x onerror=alert(1)> ${alert(1)}", "a" * 500):
-        assert (
-            result_of(engine, replace(REQUEST, prompt=prompt, steps=1)).manifest["request"]["prompt"]
-            == prompt
-        )
+        assert result_of(engine, replace(REQUEST, prompt=prompt, steps=1)).manifest["request"]["prompt"] == prompt
 
 
 @pytest.mark.parametrize(
@@ -169,9 +166,7 @@ def test_an_unknown_model_is_refused(engine: Engine) -> None:
 
 @pytest.mark.parametrize("name", ["config.json", "model.safetensors", "captions.safetensors"])
 @pytest.mark.parametrize("damage", ["missing", "altered", "empty"])
-def test_missing_or_altered_weights_are_refused(
-    weights: Path, tmp_path: Path, name: str, damage: str
-) -> None:
+def test_missing_or_altered_weights_are_refused(weights: Path, tmp_path: Path, name: str, damage: str) -> None:
     copy = tmp_path / "weights"
     shutil.copytree(weights, copy)
     file = copy / "intergen" / name

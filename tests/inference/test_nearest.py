@@ -16,10 +16,7 @@ from .people import waver
 def folder_of(folder: Path) -> Path:
     """A folder with a waver who is answered by somebody raised, and one who stands and is answered by one aside."""
     one = waver().positions.astype(np.float64)
-    for name, actor, off in (
-        ("waves", one, [0.5, 0.2, 1.5]),
-        ("stands", one[:1].repeat(60, axis=0), [2.0, 0.0, 0.0]),
-    ):
+    for name, actor, off in (("waves", one, [0.5, 0.2, 1.5]), ("stands", one[:1].repeat(60, axis=0), [2.0, 0.0, 0.0])):
         people = np.stack([actor, one + off]).astype(np.float32)
         write(Duet.from_positions(people, fps=30.0), folder / f"{name}.npz")
     return folder

@@ -94,9 +94,7 @@ def test_both_people_begin_on_their_own_paths(follower: Follower) -> None:
 
 
 @pytest.mark.parametrize("degrees", [0.0, 90.0, -135.0])
-def test_one_whose_partner_has_a_path_begins_before_them_and_faces_them(
-    follower: Follower, degrees: float
-) -> None:
+def test_one_whose_partner_has_a_path_begins_before_them_and_faces_them(follower: Follower, degrees: float) -> None:
     angle = np.radians(degrees)
     ahead = np.array([np.sin(angle), np.cos(angle)])
     end = np.array([2.0, 1.0]) + 1.2 * ahead
@@ -128,8 +126,7 @@ def test_random_paths_are_possible(follower: Follower) -> None:
         points = draw.uniform(-3, 3, 2) + np.cumsum(steps, axis=0)
         motion, shift = (standing(), 2.0) if tried % 3 else (None, 0.0)
         drawn = path(
-            "ab"[tried % 2],
-            *((shift + t, float(x), float(z)) for t, (x, z) in zip(times, points, strict=True)),
+            "ab"[tried % 2], *((shift + t, float(x), float(z)) for t, (x, z) in zip(times, points, strict=True))
         )
         try:
             request = SceneRequest(beats=beats, paths=(drawn,), motion=motion)
@@ -142,9 +139,13 @@ def test_random_paths_are_possible(follower: Follower) -> None:
 
 SENTENCES = [sentence.words for sentence in load_sentences()]
 CARRIES = [
-    "Person A carries person B away.", "My son runs to me and I lift him up.", "A drags B across the floor.",
-    "Person B picks person A up and spins them round.", "They dance a waltz.", "A twirls B under the arm.",
-]  # fmt: skip
+    "Person A carries person B away.",
+    "My son runs to me and I lift him up.",
+    "A drags B across the floor.",
+    "Person B picks person A up and spins them round.",
+    "They dance a waltz.",
+    "A twirls B under the arm.",
+]
 
 
 @pytest.mark.parametrize("seed", range(4))

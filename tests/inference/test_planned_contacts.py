@@ -36,11 +36,7 @@ def nearest(motion: np.ndarray, giver: int, joints: list[str], others: list[str]
         ("While person B kneels, person A lays a hand on person B's head.", 0, ["head"]),
         ("Person A is tapped on the back by person B.", 1, ["left_shoulder", "right_shoulder", "spine3"]),
         ("Person A puts both hands on person B's shoulders.", 0, ["left_shoulder", "right_shoulder"]),
-        (
-            "Person B lies on the floor. Person A touches person B's shoulder.",
-            0,
-            ["left_shoulder", "right_shoulder"],
-        ),
+        ("Person B lies on the floor. Person A touches person B's shoulder.", 0, ["left_shoulder", "right_shoulder"]),
         ("Person A bends down and ties person B's shoe.", 0, ["left_ankle", "right_ankle"]),
     ],
 )
@@ -53,9 +49,7 @@ def test_a_hand_touches_what_the_words_name(engine: Engine, prompt: str, giver: 
 
 @pytest.mark.parametrize("before", ["", "Person A walks up to person B. "])
 def test_a_head_is_laid_on_the_shoulder_of_the_one_beside(engine: Engine, before: str) -> None:
-    found = made(
-        engine, before + "Person A rests the head on person B's shoulder.", seconds=4.0 + len(before) / 10
-    )
+    found = made(engine, before + "Person A rests the head on person B's shoulder.", seconds=4.0 + len(before) / 10)
     gap = nearest(found, 0, ["head"], ["left_shoulder", "right_shoulder"])
     assert gap.min() < 0.25
     rests = int(gap.argmin())
@@ -78,9 +72,7 @@ def test_an_arm_around_somebody_lies_on_their_far_shoulder_behind_them(engine: E
 def test_who_whispers_leans_to_the_ear_of_the_one_beside_with_a_hand_before_the_mouth(engine: Engine) -> None:
     found = made(engine, "Person A whispers something in person B's ear.")[:, 30:90]
     assert nearest(found, 0, ["head"], ["head"]).max() < 0.45
-    assert (
-        nearest(found, 0, ["left_elbow", "left_wrist", "right_elbow", "right_wrist"], ["head"]).min() > 0.13
-    )
+    assert nearest(found, 0, ["left_elbow", "left_wrist", "right_elbow", "right_wrist"], ["head"]).min() > 0.13
     hands = found[0][:, [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]]
     gap = np.linalg.norm(hands - found[0, :, SMPL22.index("head")][:, None], axis=-1)
     assert gap.min(axis=1).max() < 0.3
@@ -88,10 +80,7 @@ def test_who_whispers_leans_to_the_ear_of_the_one_beside_with_a_hand_before_the_
 
 def test_a_pat_is_given_twice(engine: Engine) -> None:
     gap = nearest(
-        made(engine, "Person B pats person A on the shoulder."),
-        1,
-        ["right_wrist"],
-        ["left_shoulder", "right_shoulder"],
+        made(engine, "Person B pats person A on the shoulder."), 1, ["right_wrist"], ["left_shoulder", "right_shoulder"]
     )
     on = gap < gap.min() + 0.08
     assert np.count_nonzero(on[1:] & ~on[:-1]) + on[0] >= 2
@@ -111,9 +100,7 @@ def test_who_is_tapped_and_turns_round_is_tapped_first(engine: Engine) -> None:
     assert turned[-1] and gap[: int(np.flatnonzero(turned)[0])].min() < 0.25
 
 
-@pytest.mark.parametrize(
-    "prompt", ["A couple dances a waltz.", "They take each other by both hands and spin around."]
-)
+@pytest.mark.parametrize("prompt", ["A couple dances a waltz.", "They take each other by both hands and spin around."])
 def test_those_in_a_hold_have_their_hands_joined_while_they_turn(engine: Engine, prompt: str) -> None:
     found = made(engine, prompt)
     joined = nearest(found, 0, ["left_wrist"], ["right_wrist"])[30:110]
@@ -132,9 +119,7 @@ def test_who_bows_brings_the_head_down_and_up_again(engine: Engine) -> None:
 
 def test_a_phone_is_held_to_the_ear(engine: Engine) -> None:
     found = made(engine, "She is on the phone, he waits.")
-    gap = np.linalg.norm(
-        found[0, :, SMPL22.index("right_wrist")] - found[0, :, SMPL22.index("head")], axis=-1
-    )
+    gap = np.linalg.norm(found[0, :, SMPL22.index("right_wrist")] - found[0, :, SMPL22.index("head")], axis=-1)
     assert np.mean(gap[30:110] < 0.3) > 0.8
 
 
@@ -191,8 +176,7 @@ def test_a_hand_that_is_offered_stays_out_and_nobody_takes_it(engine: Engine) ->
 
 
 @pytest.mark.parametrize(
-    ("prompt", "same"),
-    [("They practise side by side.", True), ("They sit on the floor back to back.", False)],
+    ("prompt", "same"), [("They practise side by side.", True), ("They sit on the floor back to back.", False)]
 )
 def test_people_begin_and_stay_where_the_words_put_them(engine: Engine, prompt: str, same: bool) -> None:
     found = made(engine, prompt)
@@ -231,9 +215,7 @@ def test_two_who_fight_both_strike_and_reach_each_other(engine: Engine) -> None:
     for giver in (0, 1):
         gap = nearest(found, giver, ["left_wrist", "right_wrist"], ["head", "neck", "spine3"])
         assert gap.min() < 0.35 and speed_of_hands(found, giver).max() > 2.0
-        assert (
-            gap.min() < nearest(free, giver, ["left_wrist", "right_wrist"], ["head", "neck", "spine3"]).min()
-        )
+        assert gap.min() < nearest(free, giver, ["left_wrist", "right_wrist"], ["head", "neck", "spine3"]).min()
 
 
 def test_who_is_slapped_is_hit_on_the_cheek_and_does_not_guard_before(engine: Engine) -> None:
@@ -305,9 +287,7 @@ def test_who_turns_their_back_keeps_the_trunk_over_the_feet(
             for part in ("hip", "shoulder")
         )
         flat = hips[:, [0, 2]], shoulders[:, [0, 2]]
-        cosine = (flat[0] * flat[1]).sum(-1) / np.prod(
-            [np.linalg.norm(each, axis=-1) for each in flat], axis=0
-        )
+        cosine = (flat[0] * flat[1]).sum(-1) / np.prod([np.linalg.norm(each, axis=-1) for each in flat], axis=0)
         assert cosine[10:-10].min() > 0.3, prompt
 
 
@@ -324,8 +304,7 @@ def test_who_is_pulled_up_has_their_hand_held_while_they_are_down(engine: Engine
 def test_both_hands_are_held_where_the_words_say_so(engine: Engine) -> None:
     found = made(engine, "Person A kneels. Person B helps person A up with both hands.", seconds=7.0)
     held = [
-        nearest(found, 1, [f"{one}_wrist"], [f"{two}_wrist"])
-        for one, two in (("left", "right"), ("right", "left"))
+        nearest(found, 1, [f"{one}_wrist"], [f"{two}_wrist"]) for one, two in (("left", "right"), ("right", "left"))
     ]
     assert np.maximum(*held).min() < 0.2
 
@@ -334,17 +313,13 @@ def test_both_hands_are_held_where_the_words_say_so(engine: Engine) -> None:
     ("prompt", "near"),
     [("Then person B hugs person A.", 0.4), ("Then they hug.", 0.4), ("Then they shake hands.", 0.75)],
 )
-def test_who_is_far_away_comes_up_first_and_both_face_each_other(
-    engine: Engine, prompt: str, near: float
-) -> None:
+def test_who_is_far_away_comes_up_first_and_both_face_each_other(engine: Engine, prompt: str, near: float) -> None:
     found = made(engine, f"Person A walks away. {prompt}", seconds=8.0)
     gap = np.linalg.norm((found[1] - found[0])[:, 0, [0, 2]], axis=-1)
     assert gap[115] > 2.0 and gap[-1] == pytest.approx(near, abs=0.1)
     for who in (0, 1):
         for side in ("hip", "shoulder"):
-            across = (
-                found[who, -1, SMPL22.index(f"left_{side}")] - found[who, -1, SMPL22.index(f"right_{side}")]
-            )
+            across = found[who, -1, SMPL22.index(f"left_{side}")] - found[who, -1, SMPL22.index(f"right_{side}")]
             assert np.cross(across, [0.0, 1.0, 0.0]) @ (found[1 - who, -1, 0] - found[who, -1, 0]) > 0
 
 
@@ -353,9 +328,7 @@ def test_nobody_comes_up_who_is_there_or_has_a_way_of_their_own() -> None:
     far = Standing(np.array([[0.0, 0.0], [0.0, 2.5]]), np.array([np.pi, np.pi]))
     near = Standing(np.array([[0.0, 0.0], [0.0, 1.0]]), np.array([np.pi, np.pi]))
     assert [(m.person, m.way) for m in coming(reaching, far, ())] == [("b", Way.TO), ("a", Way.FACE)]
-    assert [(m.person, m.way) for m in coming(reaching, far, (0,))] == [("b", Way.TO)], (
-        "who lies does not turn"
-    )
+    assert [(m.person, m.way) for m in coming(reaching, far, (0,))] == [("b", Way.TO)], "who lies does not turn"
     assert coming(reaching, near, ()) == ()
     own = (Move("a", Way.AWAY),)
     assert coming(replace(reaching, moves=own), far, ()) == own

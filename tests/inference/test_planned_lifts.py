@@ -84,22 +84,15 @@ def test_who_is_dragged_lies_and_is_pulled_along_by_the_feet(engine: Engine) -> 
     assert pelvis[1, 10:, 1].max() < 0.35 and pelvis[0, :, 1].min() > 0.6
     gone = pelvis[:, -1] - pelvis[:, 0]
     assert np.linalg.norm(gone, axis=-1).min() > 1.0 and np.linalg.norm(gone[0] - gone[1]) < 0.3
-    wrists, ankles = (
-        [SMPL22.index(f"{side}_{part}") for side in ("left", "right")] for part in ("wrist", "ankle")
-    )
+    wrists, ankles = ([SMPL22.index(f"{side}_{part}") for side in ("left", "right")] for part in ("wrist", "ankle"))
     apart = found[0][20:-20, wrists][:, :, None] - found[1][20:-20, ankles][:, None]
     assert np.median(np.linalg.norm(apart, axis=-1).min(axis=(1, 2))) < 0.25
 
 
 def test_nobody_is_carried_by_somebody_who_is_sent_elsewhere(engine: Engine) -> None:
-    beats = (
-        Beat("A couple dances a waltz.", seconds=2.0),
-        Beat("Person A carries person B away.", seconds=3.0),
-    )
+    beats = (Beat("A couple dances a waltz.", seconds=2.0), Beat("Person A carries person B away.", seconds=3.0))
     away = FloorPath("a", (FloorPoint(2.0, 0.0, 3.5), FloorPoint(3.0, 0.0, 4.9)))
-    carried, left = (
-        positions(run(engine, SceneRequest(beats=beats, paths=paths, **QUICK))) for paths in ((), (away,))
-    )
+    carried, left = (positions(run(engine, SceneRequest(beats=beats, paths=paths, **QUICK))) for paths in ((), (away,)))
     assert low(carried, 1)[100:].min() > 0.15 > low(left, 1)[100:].min()
 
 
@@ -119,8 +112,7 @@ def test_a_note_says_who_lifts_twirls_or_strikes(words: str, said: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "words",
-    ["My son runs to me and I lift him up.", "Person A runs to person B and person B lifts person A up."],
+    "words", ["My son runs to me and I lift him up.", "Person A runs to person B and person B lifts person A up."]
 )
 def test_who_runs_up_first_begins_apart_and_is_lifted_after_the_run(
     monkeypatch: pytest.MonkeyPatch, words: str

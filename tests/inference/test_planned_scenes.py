@@ -44,8 +44,7 @@ def test_who_sits_down_stays_seated_until_they_get_up(engine: Engine) -> None:
 
 
 @pytest.mark.parametrize(
-    ("prompt", "low"),
-    [("Person A is lying on the floor.", 0.3), ("While person A kneels, person B looks on.", 0.75)],
+    ("prompt", "low"), [("Person A is lying on the floor.", 0.3), ("While person A kneels, person B looks on.", 0.75)]
 )
 def test_who_is_down_already_is_so_from_the_start(engine: Engine, prompt: str, low: float) -> None:
     found = made(engine, prompt)
@@ -122,13 +121,8 @@ def test_notes_say_what_was_read(engine: Engine) -> None:
     assert any("person A sits" in note for note in notes)
     beats = (Beat("They sit down."), Beat("Person A gets up and walks away."))
     (read,) = (n for n in run(engine, SceneRequest(beats=beats, **QUICK)).notes if "From the words" in n)
-    assert (
-        "in beat 1 person A sits and person B sits; in beat 2 person A gets up and person A walks away"
-        in read
-    )
-    free = run(
-        engine, GenerateRequest(prompt="Person A sits down.", seconds=3.0, planned=False, **QUICK)
-    ).notes
+    assert "in beat 1 person A sits and person B sits; in beat 2 person A gets up and person A walks away" in read
+    free = run(engine, GenerateRequest(prompt="Person A sits down.", seconds=3.0, planned=False, **QUICK)).notes
     assert not any("From the words" in note for note in free)
 
 
@@ -163,19 +157,27 @@ def test_who_lies_is_given_the_trunk_and_who_sits_the_legs_alone() -> None:
     assert {"pelvis", "left_ankle", "right_foot"} < given[seated]
     ((joints, *_),) = led([(3, stooping(np.zeros(2), 0.0))], 0, 10, arms=True)
     assert {SMPL22.joint_names[joint] for joint in joints} - given[stooping] == {
-        "left_elbow", "right_elbow", "left_wrist", "right_wrist"
-    }  # fmt: skip
+        "left_elbow",
+        "right_elbow",
+        "left_wrist",
+        "right_wrist",
+    }
     ((joints, *_),) = led([(3, lying(np.zeros(2), 0.0))], 0, 10, loose=True)
     assert {SMPL22.index("left_wrist"), SMPL22.index("right_elbow")} < set(joints)
     down = [(f, lying(np.zeros(2), 0.0)) for f in range(20, 60, 4)]
     groups = list(led([(3, upright(np.zeros(2), 0.0)), *down], 0, 60, loose=True))
-    hands = {
-        frame for joints, frames, _ in groups for frame in frames if SMPL22.index("left_wrist") in joints
-    }
+    hands = {frame for joints, frames, _ in groups for frame in frames if SMPL22.index("left_wrist") in joints}
     assert min(hands) == 40 and max(hands) == 56, "a hand comes to lie on the belly a little later"
     assert given[lying] - given[seated] == {
-        "spine2", "spine3", "neck", "head", "left_collar", "right_collar", "left_shoulder", "right_shoulder"
-    }  # fmt: skip
+        "spine2",
+        "spine3",
+        "neck",
+        "head",
+        "left_collar",
+        "right_collar",
+        "left_shoulder",
+        "right_shoulder",
+    }
 
 
 def test_who_bends_down_brings_the_head_forward(engine: Engine) -> None:
@@ -261,11 +263,7 @@ def test_hands_are_at_a_window_from_when_the_person_has_come_to_it(engine: Engin
 def test_a_look_at_a_window_is_judged_where_the_window_is_made(engine: Engine) -> None:
     result = run(engine, GenerateRequest(prompt="A looks out of the window.", **{"seconds": 5.0, **QUICK}))
     (row,) = result.manifest["checked"]
-    assert (
-        row["act"] == "look-at-thing"
-        and row["done"] is not None
-        and row["measure"].startswith("looks at it for ")
-    )
+    assert row["act"] == "look-at-thing" and row["done"] is not None and row["measure"].startswith("looks at it for ")
 
 
 @pytest.mark.parametrize(
@@ -276,9 +274,7 @@ def test_a_look_at_a_window_is_judged_where_the_window_is_made(engine: Engine) -
         ("He marches on the spot.", "left_foot", 0.15),
     ],
 )
-def test_clean_up_leaves_a_foot_that_is_raised_or_a_heel(
-    engine: Engine, prompt: str, joint: str, least: float
-) -> None:
+def test_clean_up_leaves_a_foot_that_is_raised_or_a_heel(engine: Engine, prompt: str, joint: str, least: float) -> None:
     motion = made(engine, prompt)
     assert motion[0, :, SMPL22.index(joint), 1].max() > least
     bones = np.array(SMPL22.bones)

@@ -84,9 +84,7 @@ def changed_stage(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(prompted, "_beats", lambda *_: (Beat("They hug."), Beat("They bow.")))
 
 
-@pytest.mark.parametrize(
-    "asked", [STORY, DRAWN, SPLIT, AS_IT_IS], ids=["story", "drawn", "split", "as it is"]
-)
+@pytest.mark.parametrize("asked", [STORY, DRAWN, SPLIT, AS_IT_IS], ids=["story", "drawn", "split", "as it is"])
 def test_a_replayed_plan_gives_the_same_bytes_whatever_the_words_now_mean(
     reading_engine: Engine, monkeypatch: pytest.MonkeyPatch, asked: Any
 ) -> None:
@@ -105,9 +103,7 @@ def test_a_replayed_plan_gives_the_same_bytes_whatever_the_words_now_mean(
     assert read_now.shape != positions(first).shape or np.abs(read_now - positions(first)).max() > 1e-3
 
 
-def test_a_continuation_is_replayed_from_its_own_plan(
-    engine: Engine, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_continuation_is_replayed_from_its_own_plan(engine: Engine, monkeypatch: pytest.MonkeyPatch) -> None:
     given = run(engine, SceneRequest(beats=(Beat("They wave.", seconds=1.5),), **QUICK)).duets[0]
     asked = SceneRequest(beats=(Beat("Person A walks away.", seconds=2.0),), motion=given, start=1.0, **QUICK)
     first = run(engine, asked)
@@ -120,12 +116,19 @@ def test_a_continuation_is_replayed_from_its_own_plan(
 
 
 SENTENCES = (
-    "Two people shake hands.", "A girl waves at her mother.", "A boy throws a ball to his sister and she catches it.",
-    "She hands him a cup and he drinks from it.", "A man punches another man, who falls down.", "A opens the window.",
-    "They walk up to each other and hug, then they dance.", "They sit down at a table and talk.",
-    "A mother and her little son wave, then he runs away.", "The old man sits down and reads a newspaper.",
-    "He flurbles gravely.", "A kneels. B does not bow.",
-)  # fmt: skip
+    "Two people shake hands.",
+    "A girl waves at her mother.",
+    "A boy throws a ball to his sister and she catches it.",
+    "She hands him a cup and he drinks from it.",
+    "A man punches another man, who falls down.",
+    "A opens the window.",
+    "They walk up to each other and hug, then they dance.",
+    "They sit down at a table and talk.",
+    "A mother and her little son wave, then he runs away.",
+    "The old man sits down and reads a newspaper.",
+    "He flurbles gravely.",
+    "A kneels. B does not bow.",
+)
 
 
 def _asked() -> Iterator[Any]:
@@ -151,9 +154,7 @@ def test_twenty_results_are_read_once_and_made_again_by_a_reader_that_knows_noth
             texts = reading(reader)
             asked = ask()
             result = run(reading_engine, asked)
-            sentences = (
-                {beat.sentence for beat in asked.beats} if isinstance(asked, SceneRequest) else {asked.prompt}
-            )
+            sentences = {beat.sentence for beat in asked.beats} if isinstance(asked, SceneRequest) else {asked.prompt}
             assert sorted(texts) == sorted(sentences)
             kept.append((asked, result))
     assert len(kept) == 20 and sum(bool(result.duets[0].things) for _, result in kept) >= 4
@@ -170,10 +171,7 @@ def test_twenty_results_are_read_once_and_made_again_by_a_reader_that_knows_noth
             assert [(t.kind, t.name) for t in one.things] == [(t.kind, t.name) for t in other.things]
             for thing, same in zip(one.things, other.things, strict=True):
                 np.testing.assert_array_equal(thing.places, same.places)
-        assert (
-            again.manifest.get("checked") == manifest.get("checked")
-            and again.manifest["plan"] == manifest["plan"]
-        )
+        assert again.manifest.get("checked") == manifest.get("checked") and again.manifest["plan"] == manifest["plan"]
         said = [note for note in first.notes if " tries" not in note]
         assert [note for note in again.notes if note in said] == said
 
@@ -231,16 +229,32 @@ def damaged(change: str) -> dict[str, Any]:
 @pytest.mark.parametrize(
     "change",
     [
-        "plan['windows'] = {}", "plan['windows'] = [0]", "plan['windows'] *= 2000", "plan['beats'] = 'x'",
-        "plan['alone'] = ['']", "plan['notes'] = [3]", "part['frames'] = [1, 1]", "part['frames'] = [-1, 2]",
-        "part['frames'] = [True, 2]", "part['frames'] = []", "part['frames'] = list(range(9999))",
-        "part['person'] = 2", "part['which'] = [0, 5]", "part['which'] = [0]", "part['joints'] = [22]",
-        "part['joints'] = [1, 1]", "part['poses'] = [[0] * 65]", "part['poses'] = [[0.5] * 66]",
-        "part['poses'] = [[10 ** 12] * 66]", "part['poses'] = [[float('nan')] * 66]", "part['places'] = [1]",
-        "plan['windows'][0]['place'] = [0, 0]", "plan['windows'][0]['place'] = [0, 0, float('inf')]",
+        "plan['windows'] = {}",
+        "plan['windows'] = [0]",
+        "plan['windows'] *= 2000",
+        "plan['beats'] = 'x'",
+        "plan['alone'] = ['']",
+        "plan['notes'] = [3]",
+        "part['frames'] = [1, 1]",
+        "part['frames'] = [-1, 2]",
+        "part['frames'] = [True, 2]",
+        "part['frames'] = []",
+        "part['frames'] = list(range(9999))",
+        "part['person'] = 2",
+        "part['which'] = [0, 5]",
+        "part['which'] = [0]",
+        "part['joints'] = [22]",
+        "part['joints'] = [1, 1]",
+        "part['poses'] = [[0] * 65]",
+        "part['poses'] = [[0.5] * 66]",
+        "part['poses'] = [[10 ** 12] * 66]",
+        "part['poses'] = [[float('nan')] * 66]",
+        "part['places'] = [1]",
+        "plan['windows'][0]['place'] = [0, 0]",
+        "plan['windows'][0]['place'] = [0, 0, float('inf')]",
         "plan['windows'][0]['parts'] *= 100",
     ],
-)  # fmt: skip
+)
 def test_a_damaged_plan_is_refused_in_one_sentence(change: str) -> None:
     with pytest.raises(InputError, match="plan that was kept with this result is damaged"):
         KeptPlan.from_dict(damaged(change))

@@ -134,14 +134,8 @@ def test_other_frame_rates_are_resampled(predicting: Engine) -> None:
         ({"marker": 0.4}, "The past is 0.40 s long, and 1 s or more is needed: move the marker"),
         ({"marker": 5.0}, "The marker, 5 s, is after the end of the motion, which lasts 3.00 s."),
         ({"marker": float("nan")}, "Marker must be a number"),
-        (
-            {"motion": walker(0.5)},
-            "The past is 0.50 s long, and 1 s or more is needed: give a longer motion.",
-        ),
-        (
-            {"motion": walker(0.5), "marker": 1.0},
-            "The past is 0.50 s long, and 1 s or more is needed: give a",
-        ),
+        ({"motion": walker(0.5)}, "The past is 0.50 s long, and 1 s or more is needed: give a longer motion."),
+        ({"motion": walker(0.5), "marker": 1.0}, "The past is 0.50 s long, and 1 s or more is needed: give a"),
         ({"motion": walker(61.0)}, "The motion lasts 61 s: cut it to 60 s or less."),
         ({"seconds": 9.0}, "Length must be from 0.5 to 4 seconds, not 9."),
         ({"model": "oracle"}, "There is no model 'oracle': choose one of"),
@@ -159,9 +153,7 @@ def test_teleporting_joints_are_refused_where_they_are_looked_at() -> None:
     positions = walker().positions.copy()
     positions[50, 20] += 2.0
     broken = walker().with_positions(positions)
-    with pytest.raises(
-        InputError, match=r"The left wrist jumps 3\.\d m from one frame to the next at 1\.\d\d s"
-    ):
+    with pytest.raises(InputError, match=r"The left wrist jumps 3\.\d m from one frame to the next at 1\.\d\d s"):
         PredictRequest(motion=broken, marker=2.0)
     assert PredictRequest(motion=broken, marker=1.5).past_frames == 45
     with pytest.raises(InputError, match="NaN"):

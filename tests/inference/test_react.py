@@ -127,8 +127,7 @@ def test_a_network_that_sees_what_is_known_sees_the_given_person(reading_engine:
     seen = []
     denoiser = reading_engine.pipeline("intergen").model.denoiser
     handle = denoiser.register_forward_pre_hook(
-        lambda module, args, named: seen.append(named["known"].unflatten(-1, (2, -1)).movedim(2, 0)),
-        with_kwargs=True,
+        lambda module, args, named: seen.append(named["known"].unflatten(-1, (2, -1)).movedim(2, 0)), with_kwargs=True
     )
     try:
         react(reading_engine, damping=0.0)

@@ -85,9 +85,7 @@ def test_a_reaction_begins_in_the_given_first_pose(engine: Engine, mode: str) ->
 
 def test_the_first_pose_reaches_the_network(network: CompactReGenNet) -> None:
     """Beyond the half second of settling, too, the reaction is another one."""
-    poses = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor(
-        [[[0.0, 1.0, 1.5]], [[0.0, 1.0, 3.0]]]
-    )
+    poses = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([[[0.0, 1.0, 1.5]], [[0.0, 1.0, 3.0]]])
     rows = network.begin_row(poses)
     assert rows.shape == (2, 67) and (rows[:, -1] == 1).all()
     x, seen = torch.zeros(2, 20, FEATURES), torch.zeros(2, 20, 132)

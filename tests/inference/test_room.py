@@ -21,12 +21,7 @@ from webdemo.inference.story import Beat
 
 from .followed import Follower, speeds
 
-FEET = [
-    SMPL22.index("left_foot"),
-    SMPL22.index("right_foot"),
-    SMPL22.index("left_ankle"),
-    SMPL22.index("right_ankle"),
-]
+FEET = [SMPL22.index("left_foot"), SMPL22.index("right_foot"), SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
 
 
 @pytest.fixture
@@ -66,19 +61,24 @@ def test_two_sit_back_to_back_on_the_floor_and_not_in_each_other(follower: Follo
 @pytest.mark.parametrize(
     "words",
     [
-        "They sit down back to back.", "Two people sit back to back.", "They sit side by side on the ground.",
-        "They sit on the floor facing each other.", "Two people kneel side by side.", "They lie down side by side.",
-        "Person A lies down and person B sits down.", "They lie on the floor.", "Both bow deeply.",
-        "Person A kneels while person B is sitting.", "They crouch back to back.",
+        "They sit down back to back.",
+        "Two people sit back to back.",
+        "They sit side by side on the ground.",
+        "They sit on the floor facing each other.",
+        "Two people kneel side by side.",
+        "They lie down side by side.",
+        "Person A lies down and person B sits down.",
+        "They lie on the floor.",
+        "Both bow deeply.",
+        "Person A kneels while person B is sitting.",
+        "They crouch back to back.",
     ],
-)  # fmt: skip
+)
 def test_two_poses_never_overlap(follower: Follower, words: str) -> None:
     assert clear(scene(follower, words)) >= BODY - 0.01
 
 
-@pytest.mark.parametrize(
-    "words", ["They bow to each other.", "Person A bows.", "Both bow deeply.", "They kneel down."]
-)
+@pytest.mark.parametrize("words", ["They bow to each other.", "Person A bows.", "Both bow deeply.", "They kneel down."])
 @pytest.mark.parametrize("gap", [0.45, 0.7])
 def test_who_stands_too_close_steps_apart_first(follower: Follower, words: str, gap: float) -> None:
     made = scene(follower, words, motion=close(gap))
@@ -126,19 +126,14 @@ def test_who_gets_up_sits_up_first_and_keeps_the_feet_low() -> None:
 @pytest.mark.parametrize("words", ["sits down", "kneels down", "falls over", "sits down on the floor"])
 def test_nobody_drops_into_a_posture(words: str) -> None:
     stand = Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi]))
-    poses = postures(
-        told("They wave.", f"Person A {words}."), 1, 0, 60, 180, stand, upright(np.zeros(2), 0.0)
-    )
+    poses = postures(told("They wave.", f"Person A {words}."), 1, 0, 60, 180, stand, upright(np.zeros(2), 0.0))
     low = poses[-1][1][0, 1]
     frame = next(frame for frame, pose in poses if pose[0, 1] < low + 0.02)
     assert low < 0.7 and 1.0 <= (frame - 60) / FPS <= 2.0, "seconds that people take for it"
 
 
 def test_who_lies_down_sits_down_first_and_takes_longer_than_who_falls() -> None:
-    stand, up = (
-        Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi])),
-        upright(np.zeros(2), 0.0),
-    )
+    stand, up = (Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi])), upright(np.zeros(2), 0.0))
     flat = {}
     for words in ("lies down", "falls over"):
         poses = postures(told("They wave.", f"Person A {words}."), 1, 0, 60, 180, stand, up)

@@ -19,11 +19,7 @@ from webdemo.inference.story.prompted import as_scene
 from webdemo.inference.story.understood import of_each
 
 QUICK: dict[str, Any] = {"steps": 3}
-BEATS = (
-    Beat("They wave.", seconds=2.0),
-    Beat("They walk away.", seconds=2.5),
-    Beat("They bow.", seconds=1.5),
-)
+BEATS = (Beat("They wave.", seconds=2.0), Beat("They walk away.", seconds=2.5), Beat("They bow.", seconds=1.5))
 
 
 def run(engine: Engine, request: Any, cancel: CancelToken | None = None) -> Result:
@@ -62,9 +58,7 @@ def test_windows_join_without_a_jump(story: Result) -> None:
     assert step[[59, 134]].max() < 2 * np.percentile(step, 95) + 0.01
 
 
-def test_a_window_that_another_follows_is_made_longer_and_cut(
-    engine: Engine, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_window_that_another_follows_is_made_longer_and_cut(engine: Engine, monkeypatch: pytest.MonkeyPatch) -> None:
     lengths, pipeline = [], engine.pipeline("intergen")
     inner = pipeline.run
 
@@ -82,9 +76,7 @@ def test_a_window_that_another_follows_is_made_longer_and_cut(
 
 def test_parts_that_did_not_change_are_not_made_again(engine: Engine, story: Result) -> None:
     changed = SceneRequest(beats=(*BEATS[:2], Beat("They hug.", seconds=1.5)), **QUICK)
-    steps = [
-        e.step for e in engine.run(changed) if e.__class__.__name__ == "Progress" and e.stage == "sample"
-    ]
+    steps = [e.step for e in engine.run(changed) if e.__class__.__name__ == "Progress" and e.stage == "sample"]
     assert min(steps) == 2 * QUICK["steps"] + 1
     again = run(engine, changed)
     # The finish of a scene looks a few frames ahead, and arms swing as is usual over a stride and two.
@@ -111,9 +103,7 @@ def test_a_kept_window_is_not_taken_for_one_elsewhere(engine: Engine) -> None:
 
 
 @pytest.mark.parametrize(("start", "end"), [(2.0, 4.0), (0.0, 1.0), (5.0, 6.0)])
-def test_outside_a_remade_span_nothing_changes(
-    engine: Engine, story: Result, start: float, end: float
-) -> None:
+def test_outside_a_remade_span_nothing_changes(engine: Engine, story: Result, start: float, end: float) -> None:
     motion = story.duets[0]
     request = SceneRequest(beats=(Beat("They hug."),), motion=motion, start=start, end=end, **QUICK)
     made, first, last = positions(run(engine, request)), round(30 * start), round(30 * end)
@@ -178,9 +168,7 @@ def test_what_was_finished_before_a_cancellation_stays(engine: Engine) -> None:
                 seen.append(event)
                 cancel.cancel()
     assert len(seen) == 1 and seen[0].motion.num_frames == 60 and seen[0].beat == 0
-    steps = [
-        e.step for e in engine.run(request) if e.__class__.__name__ == "Progress" and e.stage == "sample"
-    ]
+    steps = [e.step for e in engine.run(request) if e.__class__.__name__ == "Progress" and e.stage == "sample"]
     assert min(steps) == QUICK["steps"] + 1
 
 
@@ -202,9 +190,7 @@ def test_a_sentence_of_several_beats_is_split_by_plain_generation_too(engine: En
     assert split is not None and [b.words for b in split.beats] == [b.words for b in beats]
     np.testing.assert_array_equal(positions(made), positions(run(engine, split)))
     whole = run(engine, GenerateRequest(prompt=prompt, seconds=4.0, split=False, **QUICK))
-    assert np.abs(positions(whole) - positions(made)).max() > 0.01 and not any(
-        "beats" in n for n in whole.notes
-    )
+    assert np.abs(positions(whole) - positions(made)).max() > 0.01 and not any("beats" in n for n in whole.notes)
 
 
 @pytest.mark.parametrize(
@@ -235,15 +221,11 @@ def test_a_scene_shares_its_passes_with_other_requests(engine: Engine) -> None:
 def test_a_network_that_reads_them_is_given_each_persons_own_words(reading_engine: Engine) -> None:
     pipeline = reading_engine.pipeline("intergen")
     beats = [Beat(a="waves with both hands"), Beat(b="waves with both hands"), Beat("They wave.")]
-    asked = [
-        WindowRequest(prompt="They wave.", seconds=2.0, plan=KeptPlan(alone=beat.alone)) for beat in beats
-    ]
+    asked = [WindowRequest(prompt="They wave.", seconds=2.0, plan=KeptPlan(alone=beat.alone)) for beat in beats]
     first, second, neither = (pipeline.conditioning(each).condition for each in asked)
     assert first[:, 1].any() and not first[:, 2].any()
     assert torch.equal(first[:, 1], second[:, 2]) and not second[:, 1].any()
-    assert not neither[:, 1:].any() and torch.allclose(
-        neither[:, 0], first[:, 0, : neither.shape[2]], atol=1e-5
-    )
+    assert not neither[:, 1:].any() and torch.allclose(neither[:, 0], first[:, 0, : neither.shape[2]], atol=1e-5)
     motions = [
         positions(run(reading_engine, SceneRequest(beats=(beat,), **QUICK)))
         for beat in (Beat("They wave.", seconds=2.0), Beat("They wave.", b="waves slowly", seconds=2.0))
@@ -321,9 +303,7 @@ def test_a_span_and_a_loop_are_left_to_the_network(engine: Engine, story: Result
     words = Beat("They walk away from each other.")
     span = SceneRequest(beats=(words,), motion=given, start=2.0, end=5.0, **QUICK)
     assert not [note for note in run(engine, span).notes if "From the words" in note]
-    np.testing.assert_array_equal(
-        positions(run(engine, span)), positions(run(engine, replace(span, planned=False)))
-    )
+    np.testing.assert_array_equal(positions(run(engine, span)), positions(run(engine, replace(span, planned=False))))
 
 
 def apart(result: Result) -> np.ndarray:

@@ -18,9 +18,7 @@ def kinds_of_stage() -> list[str]:
     found = {}
     for entry in lexicon().entries.values():
         if entry.stage and entry.reads:
-            shapes = tuple(
-                tuple(getattr(shape, kind, "") for kind in ("do", *KINDS)) for shape in entry.stage
-            )
+            shapes = tuple(tuple(getattr(shape, kind, "") for kind in ("do", *KINDS)) for shape in entry.stage)
             found.setdefault(shapes, entry.reads[0])
     return list(found.values())
 
@@ -36,10 +34,7 @@ def test_an_act_of_each_kind_may_come_second_in_a_second(engine: Engine) -> None
 
 
 def test_nobody_is_carried_who_is_out_of_reach_in_a_second(engine: Engine) -> None:
-    beats = (
-        Beat("They walk away from each other.", seconds=4.0),
-        Beat("He carries her across the room.", seconds=1.0),
-    )
+    beats = (Beat("They walk away from each other.", seconds=4.0), Beat("He carries her across the room.", seconds=1.0))
     *_, result = engine.run(SceneRequest(beats=beats, steps=1))
     assert isinstance(result, Result)
     assert result.duets[0].positions[1, :, 0, 1].max() < 1.05, "nobody is off the floor"

@@ -30,9 +30,7 @@ print(seen[0], THREADS, CORES)
 
 
 @pytest.mark.parametrize(("running", "free"), [(1, 4), (2, 3), (4, 1), (30, 1), (0, 4)])
-def test_what_runs_is_counted(
-    running: int, free: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_runs_is_counted(running: int, free: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(threads, "CORES", 4)
     load = tmp_path / "loadavg"
     load.write_text(f"0.10 0.20 0.30 {running}/345 6789\n")
@@ -63,8 +61,6 @@ def test_a_run_takes_more_than_one_thread_only_for_a_plain_network(
 
 def test_a_network_is_loaded_by_one_thread_and_passes_keep_theirs() -> None:
     """Two threads would wait for each other, spinning: three times the processor time beside other work."""
-    said = subprocess.run(
-        [sys.executable, "-c", LOADING], capture_output=True, text=True, check=True, cwd=ROOT
-    )
+    said = subprocess.run([sys.executable, "-c", LOADING], capture_output=True, text=True, check=True, cwd=ROOT)
     loading, passes, cores = map(int, said.stdout.split())
     assert loading == 1 and passes == min(cores, 8)

@@ -149,9 +149,7 @@ def test_each_beat_is_judged_on_its_own_frames() -> None:
 
 def test_the_acts_of_a_plan_take_the_place_of_the_words() -> None:
     order = (Relation(kind="after", act="9"),)
-    act = Act(
-        id="1", act="raise-arm", agents=("a",), side="left", order=order
-    )  # after an act of another beat
+    act = Act(id="1", act="raise-arm", agents=("a",), side="left", order=order)  # after an act of another beat
     beat = Beat("They wave.", seconds=4.0, acts=(act,))
     rows = judged(SceneRequest(beats=(beat,)), made(ONE)).rows[0]
     assert [(row["act"], row["done"]) for row in rows] == [("raise-arm", True)]

@@ -19,14 +19,21 @@ from models.intergen import InterGenConfig, InterGenDenoiser
 from models.intergen.words import WordDenoiser
 
 SIZES: dict[str, Any] = {
-    "input_features": 10, "latent_dim": 32, "ff_size": 64, "num_layers": 1, "num_heads": 2, "cond_dim": 16,
-    "role_embedding": True, "role_text": True,
-}  # fmt: skip
+    "input_features": 10,
+    "latent_dim": 32,
+    "ff_size": 64,
+    "num_layers": 1,
+    "num_heads": 2,
+    "cond_dim": 16,
+    "role_embedding": True,
+    "role_text": True,
+}
 
 
 def bigraphdiff() -> nn.Module:
-    sizes = CompactBiGraphDiffConfig(labels=("wave",), latent_dim=32, ff_size=16, num_layers=1, num_heads=2,
-                                     embed_dim=24, cond_dim=16, max_tokens=20)  # fmt: skip
+    sizes = CompactBiGraphDiffConfig(
+        labels=("wave",), latent_dim=32, ff_size=16, num_layers=1, num_heads=2, embed_dim=24, cond_dim=16, max_tokens=20
+    )
     return CompactBiGraphDiff(sizes).denoiser
 
 
@@ -72,9 +79,7 @@ def test_the_numbers_are_the_same_at_other_lengths_and_from_the_cache(name: str,
             given = inputs(plain, batch, tokens)
             real = given[3].all(-1)
             torch.testing.assert_close(made(*given)[real], plain(*given)[real], atol=1e-5, rtol=1e-5)
-            short = [
-                value for value, key in zip(given, made.varying, strict=True) if key in ("x", "t", "cond")
-            ]
+            short = [value for value, key in zip(given, made.varying, strict=True) if key in ("x", "t", "cond")]
             if name != "distilled":
                 torch.testing.assert_close(made.guided(*short, scale=2.0), plain.guided(*short, scale=2.0))
     assert len(list(tmp_path.iterdir())) == 1
@@ -172,9 +177,7 @@ def test_openvino_reports_nothing_over_the_network() -> None:
 
 
 @pytest.mark.parametrize(("precision", "least", "most"), [("bf16", 1e-5, 5e-2), ("int8", 1e-4, 1e-1)])
-def test_coarser_numbers_stay_near(
-    tmp_path: Path, precision: compiled.Precision, least: float, most: float
-) -> None:
+def test_coarser_numbers_stay_near(tmp_path: Path, precision: compiled.Precision, least: float, most: float) -> None:
     plain, coarse = network(), network()
     if not compile_network(coarse, "coarse", tmp_path, precision=precision):
         assert find_spec("openvino") is None

@@ -6,16 +6,7 @@ import torch
 from torch import Tensor
 
 from models.known import KNOWN_FEATURES, Hold, Known
-from models.motion_tokens import (
-    FEATURES,
-    TokenLayout,
-    decode,
-    encode,
-    feature_rows,
-    foot_contacts,
-    pack,
-    unpack,
-)
+from models.motion_tokens import FEATURES, TokenLayout, decode, encode, feature_rows, foot_contacts, pack, unpack
 from motion import SMPL22
 from motion.transforms import heading_matrix
 
@@ -130,9 +121,7 @@ def test_features_say_what_is_known_and_when():
     known.add_path(0, [16], motion[0, 16:17, 0][:, [0, 2]], headings=torch.tensor([0.5]))
     features = Hold(known, LAYOUT, MEAN, STD).features
     assert features.shape == (1, TOKENS, 2 * 2 * KNOWN_FEATURES)
-    knots = (
-        features.view(1, TOKENS, 2, 2, KNOWN_FEATURES).permute(0, 2, 1, 3, 4).reshape(2, -1, KNOWN_FEATURES)
-    )
+    knots = features.view(1, TOKENS, 2, 2, KNOWN_FEATURES).permute(0, 2, 1, 3, 4).reshape(2, -1, KNOWN_FEATURES)
     assert knots[1].abs().max() == 0
     values, mask, turned, given = knots[0].split([FEATURES, FEATURES, 2, 1], -1)
     at = 16 // 4 + 1  # the knot that lies at frame 16
@@ -164,9 +153,7 @@ def test_a_bend_meets_the_past_with_less_of_a_jolt_than_the_least_move():
     least, bent = positions(hold(x))[0], positions(hold.bend(x))[0]
     for made in (least, bent):
         assert torch.linalg.vector_norm(made[:, :20] - motion[:, :20], dim=-1).max() < 0.02
-    jolts = [
-        torch.linalg.vector_norm(made[:, 18:26].diff(n=2, dim=1), dim=-1).mean() for made in (least, bent)
-    ]
+    jolts = [torch.linalg.vector_norm(made[:, 18:26].diff(n=2, dim=1), dim=-1).mean() for made in (least, bent)]
     assert jolts[1] < 0.7 * jolts[0]
     moved = bent - positions(x)[0]
     assert moved[:, -1].abs().max() < 0.2 * moved.abs().max(), "far from what is known the motion stays"
@@ -185,9 +172,7 @@ def test_the_share_that_is_laid_out_is_that_which_a_network_no_longer_moves():
     assert spread < 0.02 * free
     known.add_person(1, motion[1, :3], range(3))
     after = shares(known)
-    assert (
-        after[:3].min() > 0.99 and after[3:].diff().max() < 0.01 and after[12] == pytest.approx(0.5, abs=0.01)
-    )
+    assert after[:3].min() > 0.99 and after[3:].diff().max() < 0.01 and after[12] == pytest.approx(0.5, abs=0.01)
     both = Known.nothing(FRAMES, batch=2)
     both.add_joints(1, motion[1], range(FRAMES), range(11))
     assert shares(both) == pytest.approx(0.25, abs=1e-3), "half of the joints of one of two people"

@@ -19,12 +19,7 @@ def resident(path: Path) -> int:
 
 
 def test_tensors_are_those_of_the_file(tmp_path: Path) -> None:
-    stored = {
-        "a": torch.randn(3, 4),
-        "b": torch.arange(5),
-        "c": torch.randn(2, 2).half(),
-        "d": torch.tensor(2.0),
-    }
+    stored = {"a": torch.randn(3, 4), "b": torch.arange(5), "c": torch.randn(2, 2).half(), "d": torch.tensor(2.0)}
     save_file(stored, tmp_path / "x.safetensors", metadata={"format": "pt"})
     found = mapped_tensors(tmp_path / "x.safetensors")
     assert found.keys() == stored.keys()

@@ -65,9 +65,7 @@ def test_mirror_twice_is_the_same() -> None:
 
 def test_mirror_is_that_of_positions_and_contacts() -> None:
     positions = smooth(6)
-    contacts = (
-        torch.rand(2, positions.shape[1], 4, generator=torch.Generator().manual_seed(0)) > 0.5
-    ).float()
+    contacts = (torch.rand(2, positions.shape[1], 4, generator=torch.Generator().manual_seed(0)) > 0.5).float()
     seen = positions[:, :, list(SMPL22.mirror)] * torch.tensor([-1.0, 1.0, 1.0])
     expected = encode(seen, contacts[..., [2, 3, 0, 1]], LAYOUT)
     mirrored = mirror_control(encode(positions, contacts, LAYOUT), SMPL22.mirror)

@@ -54,14 +54,7 @@ def sinusoids(places: Array, width: int) -> Array:
 
 
 def attention(
-    w: Weights,
-    name: str,
-    query: Array,
-    memory: Array,
-    heads: int,
-    *,
-    zero: bool = False,
-    causal: bool = False,
+    w: Weights, name: str, query: Array, memory: Array, heads: int, *, zero: bool = False, causal: bool = False
 ) -> Array:
     """Multi-head attention (B, T, d); ``zero`` adds a key and a value of zeros, as ``add_zero_attn`` does."""
     parts = zip(np.split(w[f"{name}.in_proj_weight"], 3), np.split(w[f"{name}.in_proj_bias"], 3), strict=True)
@@ -133,9 +126,7 @@ def regennet(w: Weights, x: Array, t: Array, actor: Array, *, layers: int, heads
         layer = f"seqTransDecoder.layers.{i}"
         h = affine(f"{layer}.norm1", h + attention(w, f"{layer}.self_attn", h, h, heads, causal=True))
         h = affine(f"{layer}.norm2", h + attention(w, f"{layer}.multihead_attn", h, memory, heads))
-        h = affine(
-            f"{layer}.norm3", h + linear(w, f"{layer}.linear2", gelu(linear(w, f"{layer}.linear1", h)))
-        )
+        h = affine(f"{layer}.norm3", h + linear(w, f"{layer}.linear2", gelu(linear(w, f"{layer}.linear1", h))))
     made = linear(w, "output_process.poseFinal", h)
     return made.reshape(len(x), frames, rows, 6).transpose(0, 2, 3, 1)
 
@@ -255,9 +246,7 @@ def compared(
     network = load(weights, num_heads=heads).requires_grad_(False)
     tensors = [torch.from_numpy(value).float() for value in inputs]
     tensors[1] = tensors[1].long()
-    wanted = second(
-        as_arrays(weights), inputs[0], inputs[1].astype(float), inputs[2], layers=layers, heads=heads
-    )
+    wanted = second(as_arrays(weights), inputs[0], inputs[1].astype(float), inputs[2], layers=layers, heads=heads)
     check(network(*tensors), wanted)
 
 

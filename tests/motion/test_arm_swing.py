@@ -112,9 +112,7 @@ def test_arms_carried_out_and_bent_hang_in_a_walk_and_not_in_a_run(speed: float,
     person[:, elbow] = person[:, shoulder] + 0.26 * unit(np.array([0.7, -0.7, 0.1]))
     person[:, wrist] = person[:, elbow] + 0.25 * unit(np.array([0.2, 0.1, 1.0]))
     found = swinging(person, FPS, FREE)
-    out = np.degrees(
-        np.arctan2(*np.moveaxis((found[:, elbow] - found[:, shoulder])[MIDDLE, :2] * [1, -1], -1, 0))
-    )
+    out = np.degrees(np.arctan2(*np.moveaxis((found[:, elbow] - found[:, shoulder])[MIDDLE, :2] * [1, -1], -1, 0)))
     if lowers:
         assert out.mean() < 35 and bent(found, 0) < 60 < 75 < bent(person, 0)
     else:

@@ -118,9 +118,7 @@ def test_nothing_jumps_between_frames():
     with np.load(EXAMPLES / "push.npz") as stored:
         positions, fps = stored["positions"][1], float(stored["fps"])
     turned = bone_rotations(positions)
-    steps = Rotation.from_matrix(
-        (np.swapaxes(turned[:-1], -1, -2) @ turned[1:]).reshape(-1, 3, 3)
-    ).magnitude()
+    steps = Rotation.from_matrix((np.swapaxes(turned[:-1], -1, -2) @ turned[1:]).reshape(-1, 3, 3)).magnitude()
     assert np.degrees(steps).max() * fps < 1500, "degrees a second"
 
 
@@ -171,8 +169,7 @@ def test_a_hand_that_is_put_on_the_floor_lies_flat_and_one_in_the_air_goes_on_wi
         assert world[1, J[f"{side}_wrist"]] == pytest.approx(world[1, J[f"{side}_elbow"]])
     body = load_body("man")
     hands = np.isin(
-        body.bones[np.arange(len(body.bones)), body.weights.argmax(axis=1)],
-        [J["left_wrist"], J["right_wrist"]],
+        body.bones[np.arange(len(body.bones)), body.weights.argmax(axis=1)], [J["left_wrist"], J["right_wrist"]]
     )
     flat = np.broadcast_to(SHAPES["flat"], (2, 2, 20))
     lowest = skin(body, poses, flat)[:, hands, 1].min(axis=1)

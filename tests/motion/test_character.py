@@ -21,9 +21,7 @@ from tests.motion.formats.rigs import RIGS
 REST = SMPL22.rest_positions()
 Z_UP = Rotation.from_euler("x", 90, degrees=True).as_matrix()
 TURNED = Rotation.from_euler("y", 130, degrees=True).as_matrix()
-DUET = Duet(
-    Clip(marching(20)[0], 30), Clip(marching(20, seed=5)[0] + np.float64([0, 0, 1]), 30), ("actor", "reactor")
-)
+DUET = Duet(Clip(marching(20)[0], 30), Clip(marching(20, seed=5)[0] + np.float64([0, 0, 1]), 30), ("actor", "reactor"))
 
 
 def off_bones(vertices: np.ndarray, joints: np.ndarray, bones: np.ndarray) -> np.ndarray:
@@ -83,8 +81,11 @@ def test_what_hangs_on_neighbouring_joints_stays_together() -> None:
 
 def _child(found: Character, joint: int) -> int:
     """The next joint of the trunk."""
-    return next(c for c, parent in enumerate(found.parents) if parent == joint and "Left" not in found.joint_names[c]
-                and "Right" not in found.joint_names[c])  # fmt: skip
+    return next(
+        c
+        for c, parent in enumerate(found.parents)
+        if parent == joint and "Left" not in found.joint_names[c] and "Right" not in found.joint_names[c]
+    )
 
 
 def test_thighs_meet_the_pelvis_above_the_hips() -> None:
@@ -107,9 +108,7 @@ def test_the_last_joint_of_any_spine_carries_the_shoulders(length: int, numbers:
     offsets = np.zeros((len(names), 3))
     rig = RigMotion(names, tuple(parents), offsets, offsets[None], None, 30.0)
     found = pairs_of(rig)
-    assert [SMPL22.joint_names[found[1 + number]] for number in range(length)] == [
-        f"spine{n}" for n in numbers
-    ]
+    assert [SMPL22.joint_names[found[1 + number]] for number in range(length)] == [f"spine{n}" for n in numbers]
     assert {found[names.index(name)] for name in ours} == {SMPL22.index(name) for name in ours}
 
 

@@ -15,9 +15,7 @@ from .bodies import FPS, gliding, marching
 
 
 def _bones(positions):
-    return np.stack(
-        [np.linalg.norm(positions[:, j] - positions[:, p], axis=-1) for p, j in SMPL22.bones], axis=-1
-    )
+    return np.stack([np.linalg.norm(positions[:, j] - positions[:, p], axis=-1) for p, j in SMPL22.bones], axis=-1)
 
 
 def test_a_gliding_person_stands_still_after_planting():

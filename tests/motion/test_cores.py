@@ -24,9 +24,7 @@ from motion.cores import usable_cores
         (None, 8),
     ],
 )
-def test_a_quota_is_rounded_up(
-    quota: str | None, cores: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_quota_is_rounded_up(quota: str | None, cores: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(8)), raising=False)
     if quota is not None:
         (tmp_path / "cpu.max").write_text(quota)
@@ -44,7 +42,5 @@ from motion.cores import usable_cores
 from models.compiled import THREADS
 print(usable_cores(), Settings().live, THREADS)
 """
-    done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=300
-    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=300)
     assert done.stdout.split() == ["1", "2", "1"]

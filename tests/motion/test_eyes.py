@@ -45,9 +45,7 @@ def test_eyes_turn_to_what_is_seen(name: str) -> None:
 
 
 def test_eyes_do_not_turn_to_what_is_behind() -> None:
-    np.testing.assert_allclose(
-        irises("girl", FACE + np.array([0.5, 0.0, -1.0])), irises("girl", None), atol=1e-6
-    )
+    np.testing.assert_allclose(irises("girl", FACE + np.array([0.5, 0.0, -1.0])), irises("girl", None), atol=1e-6)
 
 
 def test_only_eyes_move() -> None:

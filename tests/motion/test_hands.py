@@ -47,9 +47,7 @@ def test_fingers_bend_towards_the_palm():
     body = load_body("man")
     for side in range(2):
         middle = 15 * side + 3 * FINGERS.index("middle") + 2
-        mine = body.fingers.vertices[
-            (body.fingers.bones[:, 0] == middle) & (body.fingers.weights[:, 0] > 0.5)
-        ]
+        mine = body.fingers.vertices[(body.fingers.bones[:, 0] == middle) & (body.fingers.weights[:, 0] > 0.5)]
         flat, bent = (skin(body, POSE, np.tile(SHAPES[s], (1, 2, 1)))[0][mine] for s in ("flat", "grasp"))
         assert bent[:, 1].mean() < flat[:, 1].mean() - 0.02, "palms face down in the T-pose"
 
@@ -93,11 +91,20 @@ def test_grips_come_back_from_our_file(tmp_path):
 @pytest.mark.parametrize(
     "text",
     [
-        "nonsense", "{}", "[1]", "[[0, 1, 2, 3, 4]]", '[[2, "left", "fist", 0, 9]]', '[[0, "left", "paw", 0, 9]]',
-        '[[0, "left", "fist", 9, 9]]', '[[0, "left", "fist", -1, 9]]', '[[true, "left", "fist", 0, 9]]',
-        '[[0, ["left"], "fist", 0, 9]]', "[" * 5000, '[[0, "left", "fist", 0, 1e9]]',
+        "nonsense",
+        "{}",
+        "[1]",
+        "[[0, 1, 2, 3, 4]]",
+        '[[2, "left", "fist", 0, 9]]',
+        '[[0, "left", "paw", 0, 9]]',
+        '[[0, "left", "fist", 9, 9]]',
+        '[[0, "left", "fist", -1, 9]]',
+        '[[true, "left", "fist", 0, 9]]',
+        '[[0, ["left"], "fist", 0, 9]]',
+        "[" * 5000,
+        '[[0, "left", "fist", 0, 1e9]]',
     ],
-)  # fmt: skip
+)
 def test_damaged_grips_are_one_sentence(text):
     buffer = io.BytesIO()
     np.savez(buffer, positions=PEOPLE.positions, fps=np.float64(30), grips=np.array(text))

@@ -90,9 +90,7 @@ def test_people_who_walk_touch_or_may_not_be_changed_stay_as_they_are() -> None:
 def test_a_raised_hand_goes_along_but_makes_its_own_movement() -> None:
     pair = _pair()
     shoulder = pair[0, :, J("right_shoulder")]
-    swing = np.stack(
-        [-0.2 + 0.1 * np.sin(0.6 * np.arange(FRAMES)), np.full(FRAMES, 0.4), np.zeros(FRAMES)], axis=-1
-    )
+    swing = np.stack([-0.2 + 0.1 * np.sin(0.6 * np.arange(FRAMES)), np.full(FRAMES, 0.4), np.zeros(FRAMES)], axis=-1)
     pair[0, :, J("right_elbow")] = shoulder + np.array([-0.2, 0.1, 0.0])
     pair[0, :, J("right_wrist")] = shoulder + swing
     found = alive(pair, FPS, seed=2)[0]

@@ -13,8 +13,11 @@ from motion.layouts import LAYOUTS, find_layout
 from motion.skeleton import CMU17, K3HI15, SBU15, SMPL22, Skeleton
 
 # Without collars, ankles and most of the spine: what cheap trackers give.
-SPARSE = [name for name in SMPL22.joint_names if not name.endswith(("collar", "ankle")) and name not in
-          ("pelvis", "spine1", "spine3")]  # fmt: skip
+SPARSE = [
+    name
+    for name in SMPL22.joint_names
+    if not name.endswith(("collar", "ankle")) and name not in ("pelvis", "spine1", "spine3")
+]
 
 
 def plausible_motion(seed: int, frames: int = 60) -> tuple[np.ndarray, np.ndarray]:
@@ -142,9 +145,7 @@ def test_large_people_shrink_to_the_skeleton_and_keep_their_path() -> None:
 def test_one_and_two_frames() -> None:
     truth = forward_kinematics(*plausible_motion(2))
     for frames in (1, 2):
-        assert (
-            np.abs(fit_skeleton(truth[:frames], SMPL22.joint_names).positions - truth[:frames]).max() < 1e-3
-        )
+        assert np.abs(fit_skeleton(truth[:frames], SMPL22.joint_names).positions - truth[:frames]).max() < 1e-3
 
 
 @pytest.mark.parametrize(

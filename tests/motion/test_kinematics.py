@@ -23,17 +23,14 @@ quick = settings(max_examples=25, deadline=None)
 
 def _pose(seed: int, spread: float) -> tuple[np.ndarray, np.ndarray]:
     rng = np.random.default_rng(seed)
-    rotations = (
-        Rotation.from_rotvec(rng.normal(scale=spread, size=(3 * 22, 3))).as_matrix().reshape(3, 22, 3, 3)
-    )
+    rotations = Rotation.from_rotvec(rng.normal(scale=spread, size=(3 * 22, 3))).as_matrix().reshape(3, 22, 3, 3)
     root = rng.normal(size=(3, 3))
     return rotations, root
 
 
 def _bones(positions: np.ndarray) -> np.ndarray:
     return np.stack(
-        [np.linalg.norm(positions[..., j, :] - positions[..., p, :], axis=-1) for p, j in SMPL22.bones],
-        axis=-1,
+        [np.linalg.norm(positions[..., j, :] - positions[..., p, :], axis=-1) for p, j in SMPL22.bones], axis=-1
     )
 
 
@@ -70,9 +67,7 @@ def test_local_and_global_rotations_are_inverse(seed):
 @given(st.integers(0, 10**6))
 def test_projection_restores_bones_and_changes_nothing_twice(seed):
     rotations, root = _pose(seed, 0.5)
-    noisy = forward_kinematics(rotations, root) + np.random.default_rng(seed).normal(
-        scale=0.03, size=(3, 22, 3)
-    )
+    noisy = forward_kinematics(rotations, root) + np.random.default_rng(seed).normal(scale=0.03, size=(3, 22, 3))
     projected, _ = project_to_skeleton(noisy)
     np.testing.assert_allclose(_bones(projected), np.tile(SMPL22.bone_lengths[1:], (3, 1)), atol=1e-9)
     again, _ = project_to_skeleton(projected)

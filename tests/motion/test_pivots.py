@@ -41,9 +41,7 @@ def test_no_legs_are_crossed_in_a_turn(angle: float) -> None:
     before = turned(angle)
     found = pivoting(before, FPS)
     assert apart(before).min() < -0.05 and apart(found).min() > 0.0
-    upper = [
-        j for j in range(22) if not any(part in SMPL22.joint_names[j] for part in ("knee", "ankle", "foot"))
-    ]
+    upper = [j for j in range(22) if not any(part in SMPL22.joint_names[j] for part in ("knee", "ankle", "foot"))]
     np.testing.assert_allclose(found[:, upper], before[:, upper])
     parents, children = np.array(SMPL22.bones).T
     lengths = [np.linalg.norm(each[:, children] - each[:, parents], axis=-1) for each in (before, found)]

@@ -117,9 +117,7 @@ def test_a_hand_on_the_head_is_on_the_childs_head() -> None:
     child = child @ heading_matrix(np.pi).T + np.array([0.0, 0.0, 0.6])
     hand = child[:, J("head")] + [0.0, 0.06, -0.09]
     shoulder = man[:, J("right_shoulder")]
-    man[:, J("right_wrist")] = (
-        shoulder + 0.5 * (hand - shoulder) / np.linalg.norm(hand - shoulder, axis=-1)[:, None]
-    )
+    man[:, J("right_wrist")] = shoulder + 0.5 * (hand - shoulder) / np.linalg.norm(hand - shoulder, axis=-1)[:, None]
     man[:, J("right_elbow")] = 0.5 * (shoulder + man[:, J("right_wrist")]) - [0.0, 0.08, 0.0]
     found = at_sizes(np.stack([man, child]), MIXED)
     wrist, head = found[0, :, J("right_wrist")], found[1, :, J("head")]

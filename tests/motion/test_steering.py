@@ -44,9 +44,7 @@ def test_it_turns_to_somebody_in_steps(degrees: float, side: int) -> None:
     moved = np.linalg.norm(np.diff(made[:, ANKLES], axis=0), axis=-1)
     assert (moved.min(axis=1) < 0.2 * REST_FROM).all(), "one foot stands, but for what is left in the end"
     assert moved.max() > 0.01
-    np.testing.assert_allclose(
-        bones(made), np.broadcast_to(bones(STANDING[None]), bones(made).shape), atol=1e-6
-    )
+    np.testing.assert_allclose(bones(made), np.broadcast_to(bones(STANDING[None]), bones(made).shape), atol=1e-6)
     np.testing.assert_allclose(made[:, 0] - STANDING[0], 0, atol=0.04)  # a wide stand is a lower one
 
 

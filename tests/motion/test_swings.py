@@ -47,9 +47,7 @@ def test_only_toes_of_swinging_feet_move_and_bones_keep_their_length() -> None:
 
 
 def test_longer_steps_raise_the_toe_higher() -> None:
-    short, long = (
-        (lift_swinging_feet(step(length), FPS) - step(length))[:, TOE, 1].max() for length in (0.4, 1.0)
-    )
+    short, long = ((lift_swinging_feet(step(length), FPS) - step(length))[:, TOE, 1].max() for length in (0.4, 1.0))
     assert long > 1.8 * short > 0.01
 
 

@@ -7,16 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from motion import SMPL22
-from motion.transforms import (
-    canonicalize,
-    facing,
-    heading,
-    heading_matrix,
-    mirrored,
-    put_on_floor,
-    resample,
-    turn,
-)
+from motion.transforms import canonicalize, facing, heading, heading_matrix, mirrored, put_on_floor, resample, turn
 
 from .bodies import FPS, marching
 

@@ -85,9 +85,7 @@ def main() -> None:
     found = {
         "blender": bpy.app.version_string,
         "armatures": {o.name: len(o.data.bones) for o in people},
-        "heights_m": {
-            o.name: round(max((o.matrix_world @ b.head).z for b in o.pose.bones), 3) for o in people
-        },
+        "heights_m": {o.name: round(max((o.matrix_world @ b.head).z for b in o.pose.bones), 3) for o in people},
         "glb_frames": glb_actions,
         "bvh_frames": bvh_actions,
         "glb_bvh_apart_m": round(apart, 7),

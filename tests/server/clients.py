@@ -83,9 +83,7 @@ def find_fn(client: TestClient, headers: dict[str, str], api_name: str) -> int:
     return next(d["id"] for d in config["dependencies"] if d["api_name"] == api_name)
 
 
-def events_of(
-    client: TestClient, endpoint: str, data: list[Any], headers: dict[str, str] | None = None
-) -> str:
+def events_of(client: TestClient, endpoint: str, data: list[Any], headers: dict[str, str] | None = None) -> str:
     """What a call of an endpoint ends with."""
     joined = client.post(f"{CALL}/{endpoint}", json={"data": data}, headers=headers)
     if joined.status_code != 200:

@@ -35,9 +35,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(accounts, "COST", 2**4)
         add_accounts(folder / "users", "ada", "eve")
-        settings = settings_for(
-            folder, users=folder / "users", host="0.0.0.0", hosts=["127.0.0.1"], rate=OFTEN
-        )
+        settings = settings_for(folder, users=folder / "users", host="0.0.0.0", hosts=["127.0.0.1"], rate=OFTEN)
         with client_of(settings) as client:
             yield client
 
@@ -53,9 +51,7 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient,
         add_accounts(folder / "users", "ada", "eve")
         common = {"users": folder / "users", "host": "0.0.0.0", "hosts": ["127.0.0.1"]}
         common |= {"running": 1, "waiting": 1}
-        one, two = (
-            client_of(settings_for(folder, node=node, **common), pause=0.1) for node in ("one", "two")
-        )
+        one, two = (client_of(settings_for(folder, node=node, **common), pause=0.1) for node in ("one", "two"))
         with one, two:
             yield one, two
 

@@ -23,9 +23,7 @@ def database(tmp_path: Path) -> Database:
     return Database(f"sqlite:///{tmp_path / 'lab.db'}")
 
 
-def test_all_processes_are_read_and_lost_ones_forgotten(
-    database: Database, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_all_processes_are_read_and_lost_ones_forgotten(database: Database, monkeypatch: pytest.MonkeyPatch) -> None:
     one, two = Activity(database), Activity(database)
     one.publish("one", [RUN], streams=0)
     two.publish("two", [STREAM], streams=1)

@@ -45,16 +45,17 @@ def act(lab: Target, **form: str) -> Any:
 
 def test_only_administrators_and_only_their_own_page(lab: Target) -> None:
     assert lab.ask("ada", "GET", "/admin").status_code == 403
-    assert lab.ask("ada", "POST", "/admin", data={"act": "suspend", "name": "eve"},
-                   headers={"origin": lab.url}).status_code == 403  # fmt: skip
+    assert (
+        lab.ask(
+            "ada", "POST", "/admin", data={"act": "suspend", "name": "eve"}, headers={"origin": lab.url}
+        ).status_code
+        == 403
+    )
     shown = lab.ask("eve", "GET", "/admin")
     assert shown.status_code == 200 and "<script" not in shown.text and "ada" in shown.text
     for headers in ({}, {"origin": "https://evil.example"}):
         assert (
-            lab.ask(
-                "eve", "POST", "/admin", data={"act": "suspend", "name": "ada"}, headers=headers
-            ).status_code
-            == 403
+            lab.ask("eve", "POST", "/admin", data={"act": "suspend", "name": "ada"}, headers=headers).status_code == 403
         )
     assert act(lab, act="burn", name="ada").status_code == 422
 
@@ -132,10 +133,7 @@ def test_a_stream_is_ended_and_its_person_told(lab: Target) -> None:
     assert answer.status_code == 410 and "The person who runs this server ended this" in answer.text
     assert act(lab, act="end-stream", id=key).status_code == 422
     lines = [line for line in lab.audited() if line["act"] == "admin-end-stream"][:2]
-    assert [(line["person"], line["ok"], line["id"]) for line in lines] == [
-        ("eve", False, key),
-        ("eve", True, key),
-    ]
+    assert [(line["person"], line["ok"], line["id"]) for line in lines] == [("eve", False, key), ("eve", True, key)]
 
 
 def test_suspended_and_signed_out_everywhere(lab: Target) -> None:

@@ -95,9 +95,11 @@ def test_the_documents_examples_run(
     text = (ROOT / "docs" / "hosting.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     assert len(blocks) == 2 and "https://lab.example/motion/" in blocks[0] and '"PASSWORD"' in blocks[0]
-    monkeypatch.setattr(gradio_client.Client, "__init__", partialmethod(
-        gradio_client.Client.__init__, verbose=False, download_files=str(tmp_path)
-    ))  # fmt: skip
+    monkeypatch.setattr(
+        gradio_client.Client,
+        "__init__",
+        partialmethod(gradio_client.Client.__init__, verbose=False, download_files=str(tmp_path)),
+    )
     names: dict[str, Any] = {}
     for block in blocks:
         block = block.replace("https://lab.example/motion/", url).replace("PASSWORD", "correct horse")

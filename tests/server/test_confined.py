@@ -45,27 +45,69 @@ class Confined:
         settings = " ".join(re.findall(r"^Environment=(.+)$", UNIT, re.MULTILINE)).replace("%S", "/var/lib")
         given = dict(each.split("=", 1) for each in settings.split())
         given |= {
-            "PASDEDEUX_PORT": str(port), "PASDEDEUX_FREE_MEGABYTES": "16", "PASDEDEUX_NODE": "confined",
-            "PASDEDEUX_HOSTS": '["lab.example"]', "PASDEDEUX_GRACE_SECONDS": "5", "OMP_NUM_THREADS": "1",
-            "NOTIFY_SOCKET": f"@pas-de-deux {port}", "HOME": "/nowhere",
-        }  # fmt: skip
+            "PASDEDEUX_PORT": str(port),
+            "PASDEDEUX_FREE_MEGABYTES": "16",
+            "PASDEDEUX_NODE": "confined",
+            "PASDEDEUX_HOSTS": '["lab.example"]',
+            "PASDEDEUX_GRACE_SECONDS": "5",
+            "OMP_NUM_THREADS": "1",
+            "NOTIFY_SOCKET": f"@pas-de-deux {port}",
+            "HOME": "/nowhere",
+        }
         start = re.findall(r"^ExecStart=(\S+) (.+)$", UNIT, re.MULTILINE)
         assert start == [("/opt/pas-de-deux/.venv/bin/python", "app.py")]
         reading, writing = os.pipe()
         packages = str(Path(sys.prefix).resolve())
         words = [
-            "bwrap", "--ro-bind", "/", "/", "--dev", "/dev", "--tmpfs", "/tmp", "--tmpfs", "/run",
-            "--size", str(SIZE), "--tmpfs", "/var/lib", "--dir", DATA, "--ro-bind", str(ROOT), str(ROOT),
-            "--ro-bind", packages, packages, "--file", "9", f"{DATA}/users",
-            "--unshare-user", "--uid", "64321", "--gid", "64321", "--cap-drop", "ALL", "--die-with-parent",
-            "--info-fd", str(writing), "--chdir", str(ROOT), sys.executable, "app.py",
-        ]  # fmt: skip
+            "bwrap",
+            "--ro-bind",
+            "/",
+            "/",
+            "--dev",
+            "/dev",
+            "--tmpfs",
+            "/tmp",
+            "--tmpfs",
+            "/run",
+            "--size",
+            str(SIZE),
+            "--tmpfs",
+            "/var/lib",
+            "--dir",
+            DATA,
+            "--ro-bind",
+            str(ROOT),
+            str(ROOT),
+            "--ro-bind",
+            packages,
+            packages,
+            "--file",
+            "9",
+            f"{DATA}/users",
+            "--unshare-user",
+            "--uid",
+            "64321",
+            "--gid",
+            "64321",
+            "--cap-drop",
+            "ALL",
+            "--die-with-parent",
+            "--info-fd",
+            str(writing),
+            "--chdir",
+            str(ROOT),
+            sys.executable,
+            "app.py",
+        ]
         with open(folder / "users", "rb") as users, open(self.log, "w") as log:
             words[words.index("9")] = str(users.fileno())
             self.process = subprocess.Popen(
-                words, env={"PATH": os.environ["PATH"], **given}, stdout=log, stderr=log,
+                words,
+                env={"PATH": os.environ["PATH"], **given},
+                stdout=log,
+                stderr=log,
                 pass_fds=(writing, users.fileno()),
-            )  # fmt: skip
+            )
         os.close(writing)
         with os.fdopen(reading) as told:
             text = told.read()

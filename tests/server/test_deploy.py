@@ -39,11 +39,7 @@ def settings_in(text: str) -> dict[str, str]:
 
 def test_the_image_runs_without_rights_and_has_what_it_needs() -> None:
     assert instructions("USER") == ["10001:10001"]
-    assert (
-        "--uid 10001" in DOCKERFILE
-        and "--gid 10001" in DOCKERFILE
-        and "-o lab -g lab -m 700 /data" in DOCKERFILE
-    )
+    assert "--uid 10001" in DOCKERFILE and "--gid 10001" in DOCKERFILE and "-o lab -g lab -m 700 /data" in DOCKERFILE
     copied = [line.split()[0] for line in instructions("COPY") if not line.startswith("--from")]
     assert copied and all((ROOT / name).exists() for name in copied)
     let_in = (ROOT / ".dockerignore").read_text().splitlines()
@@ -60,9 +56,7 @@ def locked_in(name: str) -> dict[str, str]:
     """The versions by package in a lock, each of whose lines must have a hash and none the address of an index."""
     text = (ROOT / name).read_text()
     blocks = re.findall(
-        r"^([a-z0-9-]+)(?:\[\S+\])?==(\S+) \\\n((?: +--hash=sha256:[0-9a-f]{64}(?: \\)?\n)+)",
-        text,
-        re.MULTILINE,
+        r"^([a-z0-9-]+)(?:\[\S+\])?==(\S+) \\\n((?: +--hash=sha256:[0-9a-f]{64}(?: \\)?\n)+)", text, re.MULTILINE
     )
     lines = [line for line in text.splitlines() if not line.startswith(("#", " "))]
     assert len(lines) == len(blocks) > 50 and "://" not in text
@@ -149,13 +143,9 @@ def test_the_bill_of_materials_has_every_package_with_its_hashes(tmp_path: Path)
     rule = re.search(r"\$\(BIN\)/cyclonedx-py (.+)", (ROOT / "Makefile").read_text())
     assert rule is not None
     words = rule[1].replace("$@", str(tmp_path / "sbom.json")).split()
-    made = subprocess.run(
-        [sys.executable, "-m", "cyclonedx_py", *words], cwd=ROOT, capture_output=True, text=True
-    )
+    made = subprocess.run([sys.executable, "-m", "cyclonedx_py", *words], cwd=ROOT, capture_output=True, text=True)
     assert made.returncode == 0, made.stderr
     bill = json.loads((tmp_path / "sbom.json").read_text())
     assert bill["bomFormat"] == "CycloneDX"
     assert {each["name"]: each["version"] for each in bill["components"]} == locked_in("requirements.lock")
-    assert all(
-        any(place.get("hashes") for place in each["externalReferences"]) for each in bill["components"]
-    )
+    assert all(any(place.get("hashes") for place in each["externalReferences"]) for each in bill["components"])

@@ -25,11 +25,7 @@ def patched(whole: Any, patch: Any) -> Any:
     """A strategic merge, as ``kubectl patch`` does it: lists of named things by their names."""
     if isinstance(whole, dict) and isinstance(patch, dict):
         return {k: patched(whole.get(k), patch.get(k)) for k in [*whole, *(set(patch) - set(whole))]}
-    if (
-        isinstance(whole, list)
-        and isinstance(patch, list)
-        and all("name" in each for each in [*whole, *patch])
-    ):
+    if isinstance(whole, list) and isinstance(patch, list) and all("name" in each for each in [*whole, *patch]):
         new = {each["name"]: each for each in patch}
         kept = [patched(each, new.pop(each["name"], None)) for each in whole]
         return [*kept, *new.values()]
@@ -44,9 +40,7 @@ def with_ray() -> dict[str, Any]:
     return patched(deployment("pas-de-deux", "lab.yaml"), *documents("lab-with-ray.yaml"))
 
 
-WHOLE = [
-    *documents("lab.yaml"), *documents("ingress.yaml"), *documents("ray.yaml"), with_ray(),
-]  # fmt: skip
+WHOLE = [*documents("lab.yaml"), *documents("ingress.yaml"), *documents("ray.yaml"), with_ray()]
 PODS = [each["spec"]["template"]["spec"] for each in WHOLE if each["kind"] == "Deployment"]
 
 
@@ -85,9 +79,7 @@ def test_the_lab_s_settings_are_settings(whole: dict[str, Any], monkeypatch: pyt
             monkeypatch.setenv(name, value)
     settings = read_settings()
     settings.check()
-    assert {n.removeprefix(PREFIX).lower() for n in given if n.startswith(PREFIX)} <= set(
-        type(settings).model_fields
-    )
+    assert {n.removeprefix(PREFIX).lower() for n in given if n.startswith(PREFIX)} <= set(type(settings).model_fields)
     assert settings.exit_when_stuck and str(settings.users).startswith(f"{settings.data}/")
     assert settings.hosts == documents("ingress.yaml")[0]["spec"]["tls"][0]["hosts"]
     assert lab["ports"][0]["containerPort"] == settings.port

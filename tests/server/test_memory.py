@@ -33,9 +33,7 @@ def client(tmp_path: Path) -> Iterator[TestClient]:
 
 
 def states_of(client: TestClient) -> LeanStates:
-    found: list[Any] = [
-        getattr(getattr(route, "app", None), "state_holder", None) for route in client.app.routes
-    ]  # type: ignore[attr-defined]
+    found: list[Any] = [getattr(getattr(route, "app", None), "state_holder", None) for route in client.app.routes]  # type: ignore[attr-defined]
     (states,) = [states for states in found if states is not None]
     return states
 

@@ -40,9 +40,13 @@ class Way(Target):
     def shell(self, *words: str, given: str = "", code: int = 0) -> dict[str, Any]:
         """What ``python -m webdemo …`` answers."""
         said = subprocess.run(
-            [sys.executable, "-m", "webdemo", *words], cwd=ROOT, env={**os.environ, **self.env}, input=given,
-            capture_output=True, text=True,
-        )  # fmt: skip
+            [sys.executable, "-m", "webdemo", *words],
+            cwd=ROOT,
+            env={**os.environ, **self.env},
+            input=given,
+            capture_output=True,
+            text=True,
+        )
         assert said.returncode == code, said.stderr
         return json.loads(said.stdout.splitlines()[-1]) if code == 0 else {"error": said.stderr}
 

@@ -48,16 +48,19 @@ class Process:
             port = probe.getsockname()[1]
         self.url, self.data = f"http://127.0.0.1:{port}", data
         env = os.environ | {
-            "STUB_PAUSE": str(pause), "PASDEDEUX_NODE": "tested", "PASDEDEUX_GRACE_SECONDS": "120",
-            "PASDEDEUX_FREE_MEGABYTES": "0", "PASDEDEUX_PORT": str(port), "PASDEDEUX_DATA": str(data),
+            "STUB_PAUSE": str(pause),
+            "PASDEDEUX_NODE": "tested",
+            "PASDEDEUX_GRACE_SECONDS": "120",
+            "PASDEDEUX_FREE_MEGABYTES": "0",
+            "PASDEDEUX_PORT": str(port),
+            "PASDEDEUX_DATA": str(data),
             "OMP_NUM_THREADS": "1",
-        }  # fmt: skip
+        }
         stub = [str(ROOT / "tests" / "server" / "lab.py"), str(port), str(data)]
         command = ["-c", WATCH, str(ROOT / "app.py")] if real else stub
         self.process = subprocess.Popen(
-            [sys.executable, *command], cwd=ROOT, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            text=True,
-        )  # fmt: skip
+            [sys.executable, *command], cwd=ROOT, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
         self.wait_for(lambda: self.get("/healthz") is not None)
 
     def wait_for(self, condition: Callable[[], bool]) -> None:
@@ -83,9 +86,7 @@ class Process:
         return [entry.state for entry in self.history().entries("local")]
 
     def history(self) -> History:
-        return History(
-            Database(f"sqlite:///{self.data / 'history.db'}"), self.data / "motions", node="tested"
-        )
+        return History(Database(f"sqlite:///{self.data / 'history.db'}"), self.data / "motions", node="tested")
 
 
 @pytest.fixture

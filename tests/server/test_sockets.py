@@ -104,9 +104,7 @@ def answer_to(connection: socket.socket) -> bytes:
     while b"\r\n\r\n" not in got:
         got += connection.recv(65536)
     head, _, body = got.partition(b"\r\n\r\n")
-    length = int(
-        next(line.split(b":")[1] for line in head.lower().split(b"\r\n") if b"content-length" in line)
-    )
+    length = int(next(line.split(b":")[1] for line in head.lower().split(b"\r\n") if b"content-length" in line))
     while len(body) < length:
         body += connection.recv(65536)
     return head

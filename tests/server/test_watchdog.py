@@ -34,9 +34,7 @@ asyncio.run(main(sys.argv[1] == "freeze"))
 
 @pytest.mark.parametrize(("what", "code"), [("freeze", 1), ("go on", 0)])
 def test_a_frozen_interpreter_is_ended_from_outside_of_it(what: str, code: int) -> None:
-    ended = subprocess.run(
-        [sys.executable, "-c", WATCHED, what], cwd=ROOT, capture_output=True, text=True, timeout=300
-    )
+    ended = subprocess.run([sys.executable, "-c", WATCHED, what], cwd=ROOT, capture_output=True, text=True, timeout=300)
     assert ended.returncode == code, ended.stderr
     assert ended.stdout == "watched\n" and ("re/" in ended.stderr or "re.py" in ended.stderr) == bool(code)
 

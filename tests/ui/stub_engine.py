@@ -179,11 +179,7 @@ class StubEngine:
             self.steps_done = step + 1
             unit = "frame" if getattr(request, "mode", "") == "online" else "step"
             yield Progress(
-                stage="sample",
-                step=step + 1,
-                total=request.steps,
-                elapsed=time.monotonic() - started,
-                unit=unit,
+                stage="sample", step=step + 1, total=request.steps, elapsed=time.monotonic() - started, unit=unit
             )
         seeds = range(request.seed, request.seed + request.samples)
         if isinstance(request, ReactRequest):
@@ -224,9 +220,13 @@ class StubEngine:
                 so_far = Duet.from_positions(whole[:, :stop], fps=FPS)
                 step = sample * len(request.beats) + beat + 1
                 yield SceneProgress(
-                    stage="sample", step=step, total=request.samples * len(request.beats), sample=sample,
-                    beat=beat, motion=so_far,
-                )  # fmt: skip
+                    stage="sample",
+                    step=step,
+                    total=request.samples * len(request.beats),
+                    sample=sample,
+                    beat=beat,
+                    motion=so_far,
+                )
         duets = tuple(Duet.from_positions(whole, fps=FPS) for whole in wholes)
         yield Result(
             duets=duets,
@@ -243,6 +243,4 @@ class StubEngine:
                 time.sleep(0.01)
             if cancel is not None and cancel.cancelled:
                 raise Cancelled("The run was cancelled.")
-            yield LiveProgress(
-                stage="sample", step=frame.index + 1, total=len(other), unit="frame", frame=frame
-            )
+            yield LiveProgress(stage="sample", step=frame.index + 1, total=len(other), unit="frame", frame=frame)

@@ -57,9 +57,7 @@ def opened_run(asked: Any, manifest: dict[str, Any]) -> Any:
     )
 
 
-@pytest.mark.parametrize(
-    "asked", [GenerateRequest(prompt="They wave."), SceneRequest(beats=(Beat("They wave."),))]
-)
+@pytest.mark.parametrize("asked", [GenerateRequest(prompt="They wave."), SceneRequest(beats=(Beat("They wave."),))])
 def test_a_stored_run_is_made_again_from_its_plan(asked: Any) -> None:
     plan = KeptPlan(notes=("From the words: nothing.",), windows=(WindowPlan((1.0, 2.0, 0.5)),))
     found: Any = request_of(opened_run(asked, {"plan": plan.to_dict()}))

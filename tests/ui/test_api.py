@@ -88,10 +88,7 @@ def test_a_class_is_enough_too(client: Client) -> None:
         ({"prompt": "x", "seed": -1}, "Seed must be from 0 to 4,294,967,295, not -1."),
         ({"prompt": "x", "guidance": "much"}, "Guidance scale must be a number from 0 to 10, not 'much'."),
         ({"prompt": "x", "sampler": "euler"}, "Sampler 'euler' is not known: choose one of ddim, dpm++."),
-        (
-            {"prompt": "crash"},
-            "Something went wrong inside the program (RuntimeError); its log says more. Try again.",
-        ),
+        ({"prompt": "crash"}, "Something went wrong inside the program (RuntimeError); its log says more. Try again."),
     ],
 )
 def test_errors_are_the_requests_own_sentences(client: Client, fields: dict[str, Any], sentence: str) -> None:
@@ -105,16 +102,23 @@ def test_the_endpoint_is_documented(client: Client) -> None:
     endpoint = client.view_api(return_format="dict", print_info=False)["named_endpoints"]["/generate"]
     parameters = {p["parameter_name"]: p for p in endpoint["parameters"]}
     assert list(parameters) == [
-        "prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "sampler", "model", "tries",
-    ]  # fmt: skip
+        "prompt",
+        "seconds",
+        "seed",
+        "samples",
+        "guidance",
+        "steps",
+        "damping",
+        "sampler",
+        "model",
+        "tries",
+    ]
     assert all(p["parameter_has_default"] for name, p in parameters.items() if name != "prompt")
     assert "two-person .npz" in endpoint["description"]
 
 
 def test_react_takes_a_file_and_gives_files(client: Client, walkers: Path) -> None:
-    answer, files = client.predict(
-        actor=handle_file(walkers), person="b", start=1, end=3, steps=2, api_name="/react"
-    )
+    answer, files = client.predict(actor=handle_file(walkers), person="b", start=1, end=3, steps=2, api_name="/react")
     assert answer["manifest"]["request"]["actor"]["name"] == "walkers.npz"
     motion = next(Path(path) for path in files if path.endswith(".npz"))
     assert re.fullmatch("reaction-to-walkers-seed0-[0-9a-f]{4}.npz", motion.name)
@@ -144,12 +148,8 @@ def test_one_animation_of_several_is_chosen_and_noted(client: Client, walkers: P
         ({}, "1 (“walk”)", "2 (“glide”)"),
         ({"animation": "glide"}, "2 (“glide”)", "1 (“walk”)"),
     ):
-        answer, files = client.predict(
-            actor=handle_file(robot), own_rig=True, steps=2, api_name="/react", **fields
-        )
-        assert answer["notes"][0] == note.format(taken, other) and any(
-            path.endswith("rig.glb") for path in files
-        )
+        answer, files = client.predict(actor=handle_file(robot), own_rig=True, steps=2, api_name="/react", **fields)
+        assert answer["notes"][0] == note.format(taken, other) and any(path.endswith("rig.glb") for path in files)
     with pytest.raises(AppError, match="no such animation"):
         client.predict(past=handle_file(robot), marker=0, animation="run", api_name="/predict")
     with pytest.raises(AppError, match="no such animation"):
@@ -161,10 +161,12 @@ def test_one_animation_of_several_is_chosen_and_noted(client: Client, walkers: P
 def test_errors_of_react_are_sentences(client: Client, walkers: Path, walker: Path) -> None:
     for fields, sentence in (
         ({"actor": handle_file(walkers)}, "walkers.npz holds two people: choose person a or b."),
-        ({"actor": handle_file(walkers), "person": "a"},
-         "The actor's motion lasts 12.0 s: trim it to 10 s or less by its start and end."),
+        (
+            {"actor": handle_file(walkers), "person": "a"},
+            "The actor's motion lasts 12.0 s: trim it to 10 s or less by its start and end.",
+        ),
         ({"actor": handle_file(walker), "role": "z"}, "Role 'z' is not known: choose one of a, b."),
-    ):  # fmt: skip
+    ):
         with pytest.raises(AppError) as caught:
             client.predict(api_name="/react", **fields)
         assert str(caught.value) == sentence
@@ -179,9 +181,7 @@ def test_of_react_only_the_actor_is_needed(client: Client, walker: Path) -> None
 
 
 def test_render_films_a_motion_file(client: Client, walkers: Path) -> None:
-    path = client.predict(
-        motion=handle_file(walkers), kind="gif", width=96, height=64, fps=5, api_name="/render"
-    )
+    path = client.predict(motion=handle_file(walkers), kind="gif", width=96, height=64, fps=5, api_name="/render")
     with Image.open(path) as picture:
         assert picture.size == (96, 64) and picture.n_frames == 60
     sheet = client.predict(motion=handle_file(walkers), kind="svg", look="skeletons", api_name="/render")

@@ -21,8 +21,6 @@ def test_runs_that_can_be_opened_are_listed() -> None:
         Entry(id="two", kind="react", title="Broken", state="failed"),
     )
     asked: list[Any] = []
-    history: Any = SimpleNamespace(
-        search=lambda owner, wanted: asked.append(wanted.limit) or Found(runs, len(runs))
-    )
+    history: Any = SimpleNamespace(search=lambda owner, wanted: asked.append(wanted.limit) or Found(runs, len(runs)))
     assert known(history)["runs"] == [["one", "A hug", "generate"]]
     assert asked and asked[0] <= 500

@@ -19,10 +19,7 @@ def of(text: Any) -> dict[str, Any]:
 
 def test_a_sentence_becomes_chips_in_the_order_of_the_beats() -> None:
     found = of("He pats her on the back twice, then she leaves.")
-    assert [[found["said"][act] for act in beat] for beat in found["beats"]] == [
-        ["pats back ×2"],
-        ["walks away"],
-    ]
+    assert [[found["said"][act] for act in beat] for beat in found["beats"]] == [["pats back ×2"], ["walks away"]]
     assert found["text"] == found["plan"]["sentence"]
     first, second = found["plan"]["acts"]
     assert (first["agents"], first["patient"], second["agents"]) == (["a"], "b", ["b"])
@@ -31,9 +28,10 @@ def test_a_sentence_becomes_chips_in_the_order_of_the_beats() -> None:
 
 def test_what_is_near_to_words_that_were_not_read_is_said_in_few_words() -> None:
     plan = Plan(
-        sentence="He flumps.", acts=(Act(id="1", act="bow", agents=("a",)),),
+        sentence="He flumps.",
+        acts=(Act(id="1", act="bow", agents=("a",)),),
         unread=(Unread(words=Span(start=0, stop=9), why="No act is known.", nearest=("walk-up", "gone-act")),),
-    )  # fmt: skip
+    )
     found = shown(plan)["nearest"]
     assert set(found) == {"walk-up"}, "an act that is gone is not offered"
     assert (found["walk-up"]["said"], found["walk-up"]["patient"]) == ("walks up", True)
@@ -42,9 +40,7 @@ def test_what_is_near_to_words_that_were_not_read_is_said_in_few_words() -> None
 def test_a_text_that_cannot_be_read_is_answered_by_a_sentence() -> None:
     found = of("They wave. " * 300)
     assert "shorten it" in found["error"] and "plan" not in found
-    assert of("They wave. " * 300)["text"].startswith("They wave."), (
-        "the browser knows by it which text it is for"
-    )
+    assert of("They wave. " * 300)["text"].startswith("They wave."), "the browser knows by it which text it is for"
 
 
 def test_whatever_else_is_sent_is_read_as_nothing() -> None:
@@ -100,13 +96,7 @@ def test_the_list_of_acts_comes_when_it_is_wanted() -> None:
     found = reread({"text": "They bow.", "list": True})["acts"]
     assert len(found) > 200 and found == sorted(found, key=lambda act: act["said"])
     (hug,) = (act for act in found if act["name"] == "hug")
-    assert hug == {
-        "name": "hug",
-        "said": "hugs",
-        "caption": "hugs the other",
-        "patient": True,
-        "mutual": True,
-    }
+    assert hug == {"name": "hug", "said": "hugs", "caption": "hugs the other", "patient": True, "mutual": True}
 
 
 def test_marks_are_of_the_acts_that_were_checked() -> None:

@@ -26,9 +26,7 @@ def test_two_people_in_two_colours_a_on_the_left(tmp_path):
     assert Image.open(tmp_path / "sheet.png").size == picture.size == (8 * 200, 512)
     assert _share(picture, BLUE) > 0.002 and _share(picture, ORANGE) > 0.002
     first_tile = np.asarray(picture)[26 : 26 + 270, :200]
-    columns = [
-        np.flatnonzero((first_tile == colour).all(axis=-1).any(axis=0)).mean() for colour in (BLUE, ORANGE)
-    ]
+    columns = [np.flatnonzero((first_tile == colour).all(axis=-1).any(axis=0)).mean() for colour in (BLUE, ORANGE)]
     assert columns[0] < columns[1]
 
 

@@ -93,8 +93,10 @@ def test_a_single_pane_is_not_copied():
 
 def test_panes_stand_side_by_side_under_their_captions(tmp_path):
     near = Duet(DUET.a, DUET.b.with_positions(DUET.b.positions + np.array([0, 0, 0.5])))
-    one, two = (film.write_film(panes, tmp_path / f"{len(panes)}.gif", size=(320, 120))
-                for panes in ([Pane(DUET)], [Pane(DUET, "left"), Pane(near, "right")]))  # fmt: skip
+    one, two = (
+        film.write_film(panes, tmp_path / f"{len(panes)}.gif", size=(320, 120))
+        for panes in ([Pane(DUET)], [Pane(DUET, "left"), Pane(near, "right")])
+    )
     with Image.open(one) as alone, Image.open(two) as both:
         assert alone.size == both.size == (320, 120)
         halves = np.asarray(both.convert("RGB")).reshape(120, 2, 160, 3).swapaxes(0, 1)
@@ -105,10 +107,14 @@ def test_panes_stand_side_by_side_under_their_captions(tmp_path):
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"path": "x.avi"}, "Films end in"), ({"fps": 0.0}, "frames a second"), ({"size": (10, 10)}, "64 to 3840"),
-        ({"size": (101, 100)}, "are even"), ({"view": "moon"}, "no view"), ({"panes": []}, "no motion"),
+        ({"path": "x.avi"}, "Films end in"),
+        ({"fps": 0.0}, "frames a second"),
+        ({"size": (10, 10)}, "64 to 3840"),
+        ({"size": (101, 100)}, "are even"),
+        ({"view": "moon"}, "no view"),
+        ({"panes": []}, "no motion"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_filmed_is_one_sentence(tmp_path, change, sentence):
     asked = {"panes": [Pane(DUET)], "path": "x.gif", "size": SMALL} | change
     panes, path = asked.pop("panes"), tmp_path / str(asked.pop("path"))
@@ -158,18 +164,14 @@ def test_films_and_sheets_wear_the_character(tmp_path, suffix, theme):
 def test_other_skeletons_and_one_person_are_drawn():
     clip = Clip(np.random.default_rng(0).normal(1, 0.3, size=(3, 15, 3)), 15, SBU15)
     times = np.zeros(1)
-    (picture,) = Stage(Pane(clip), Style(), SMALL).pictures(
-        times, cameras([clip], size=SMALL, times=times)[0]
-    )
+    (picture,) = Stage(Pane(clip), Style(), SMALL).pictures(times, cameras([clip], size=SMALL, times=times)[0])
     assert _look(picture, False) > 0.003
 
 
 def _parting() -> Duet:
     """Two who stand for a second and then run away from each other for three, at three metres a second each."""
     rest = SMPL22.rest_positions() + np.array([0, 0.98, 0])
-    way = np.array([0.4 + 3.0 * max(i / 30 - 1, 0) for i in range(120)])[:, None, None] * np.array(
-        [0.3, 0, 1]
-    )
+    way = np.array([0.4 + 3.0 * max(i / 30 - 1, 0) for i in range(120)])[:, None, None] * np.array([0.3, 0, 1])
     return Duet.from_positions(np.stack([rest - way, rest + way]).astype(np.float32), fps=30)
 
 
@@ -182,9 +184,7 @@ FAR = Duet(DUET.a, DUET.b.with_positions(DUET.b.positions + np.array([1.0, 0, 1.
 def test_every_view_holds_everybody_in_each_pane(view, size):
     """Two who run away from each other for three seconds stay in the picture, at each moment and from every side."""
     rest = SMPL22.rest_positions() + np.array([0, 0.98, 0])
-    way = np.array([0.4 + 3.0 * max(i / 30 - 1, 0) for i in range(120)])[:, None, None] * np.array(
-        [0.3, 0, 1]
-    )
+    way = np.array([0.4 + 3.0 * max(i / 30 - 1, 0) for i in range(120)])[:, None, None] * np.array([0.3, 0, 1])
     running = Duet.from_positions(np.stack([rest - way, rest + way]).astype(np.float32), fps=30)
     times = np.arange(48) / 12
     for follow in (True, False):
@@ -282,7 +282,7 @@ def test_floor_and_sky_meet_at_a_horizon(theme):
 def test_sheets_of_chosen_width_open(tmp_path, suffix, look):
     path = write_sheet(
         DUET, tmp_path / f"x{suffix}", frames=[0, 6], width=600, title="March", style=Style(look=look, names=False)
-    )  # fmt: skip
+    )
     data = path.read_bytes()
     if suffix == ".png":
         with Image.open(path) as picture:

@@ -46,9 +46,7 @@ def test_the_move_and_the_haze_are_the_player_s() -> None:
 
 @pytest.mark.parametrize("view", ["threequarter", "side", "top"])
 @pytest.mark.parametrize("size", [(1280, 720), (360, 640)])
-def test_the_camera_goes_to_and_fro_about_its_view_and_holds_everybody(
-    view: str, size: tuple[int, int]
-) -> None:
+def test_the_camera_goes_to_and_fro_about_its_view_and_holds_everybody(view: str, size: tuple[int, int]) -> None:
     """Two who run away from each other stay in the picture, beside two others who are seen from the same side."""
     still = cameras([PARTING, FAR], size=size, times=TIMES, view=view)
     moving = moving_cameras([PARTING, FAR], size=size, times=TIMES, view=view)

@@ -22,9 +22,7 @@ def test_the_file_holds_both_bodies_at_the_frame(suffix: str, tmp_path: Path) ->
     path = write_mesh(DUET, tmp_path / f"x{suffix}", frame=7)
     found = trimesh.load(path, process=False, maintain_order=True)
     bodies = [load_body("man"), load_body("woman")]
-    wanted = [
-        skin(body, person.positions[7][None])[0] for body, person in zip(bodies, DUET.people, strict=True)
-    ]
+    wanted = [skin(body, person.positions[7][None])[0] for body, person in zip(bodies, DUET.people, strict=True)]
     assert len(found.faces) == sum(len(body.faces) for body in bodies)
     np.testing.assert_allclose(found.bounds[0], np.concatenate(wanted).min(axis=0), atol=1e-4)
     np.testing.assert_allclose(found.bounds[1], np.concatenate(wanted).max(axis=0), atol=1e-4)

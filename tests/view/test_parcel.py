@@ -27,9 +27,7 @@ def job(**changed: object) -> Job:
     times = np.arange(4) / 30
     views = cameras([DUET, DUET.a], size=(160, 120), times=times, view="front", follow=True)
     panes = (Pane(DUET, "one"), Pane(DUET.a, ghost=DUET.b, past_until=3))
-    whole = Job(
-        panes, Style(trails=True, body=load_body("man", small=True)), (320, 120), times, views, "“two” ♥"
-    )
+    whole = Job(panes, Style(trails=True, body=load_body("man", small=True)), (320, 120), times, views, "“two” ♥")
     return dataclasses.replace(whole, **changed)
 
 
@@ -50,9 +48,7 @@ def test_a_job_arrives_as_it_was_sent() -> None:
 
 
 def test_a_motion_that_says_how_it_was_made_can_be_drawn() -> None:
-    made = dataclasses.replace(
-        DUET, manifest={"seed": 3, "request": {"prompt": "they “hug”", "beats": [1, None]}}
-    )
+    made = dataclasses.replace(DUET, manifest={"seed": 3, "request": {"prompt": "they “hug”", "beats": [1, None]}})
     (pane,) = unpacked(packed(job(panes=(Pane(made, "one"),)))).panes
     assert isinstance(pane.motion, Duet) and pane.motion.manifest == made.manifest
 

@@ -37,9 +37,7 @@ def test_quantisation_is_finer_than_a_fifth_of_a_millimetre_over_ten_metres():
 
 
 @settings(max_examples=50, deadline=None)
-@given(
-    size=st.floats(1e-3, 100), centre=st.floats(-50, 50), frames=st.integers(1, 6), seed=st.integers(0, 2**16)
-)  # fmt: skip
+@given(size=st.floats(1e-3, 100), centre=st.floats(-50, 50), frames=st.integers(1, 6), seed=st.integers(0, 2**16))
 def test_round_trip_error_is_half_a_level(size, centre, frames, seed):
     positions = centre + size * np.random.default_rng(seed).standard_normal((2, frames, 5, 3))
     packed = pack_positions(positions)
@@ -129,7 +127,7 @@ def test_ghost_and_past():
         lambda: sample_payload(duet(4), past_until=5),
         lambda: player_payload([duet(), Clip(np.zeros((3, 15, 3)), 30.0, SKELETONS["sbu15"])]),
     ],
-)  # fmt: skip
+)
 def test_refuses_in_one_sentence(make):
     with pytest.raises(InputError) as error:
         make()

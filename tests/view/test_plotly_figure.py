@@ -14,9 +14,7 @@ from tests.motion.bodies import marching
 from webdemo.view import figure, write_figure
 
 POSITIONS, _ = marching(31)
-DUET = Duet.from_positions(
-    np.stack([POSITIONS, POSITIONS + np.array([0, 0, 1.5])]), fps=30, roles=("Anna", "<b>Ben")
-)
+DUET = Duet.from_positions(np.stack([POSITIONS, POSITIONS + np.array([0, 0, 1.5])]), fps=30, roles=("Anna", "<b>Ben"))
 
 
 def test_a_figure_has_frames_a_button_a_slider_a_floor_and_names() -> None:

@@ -18,9 +18,7 @@ from webdemo.view.stage import Pane, Stage, Style
 from webdemo.view.things import divided, thing_payload
 
 REST = SMPL22.rest_positions() + np.array([0.0, 0.95, 0.0])
-PEOPLE = Duet.from_positions(
-    np.repeat(np.stack([REST, REST + np.array([0, 0, 3.0])])[:, None], 4, axis=1), fps=30
-)
+PEOPLE = Duet.from_positions(np.repeat(np.stack([REST, REST + np.array([0, 0, 3.0])])[:, None], 4, axis=1), fps=30)
 BALL = Thing.at_rest("ball", shape("ball", width=0.6), np.array([1.6, 0.5, 1.5]), 0.0, 4)
 WITH_BALL = replace(PEOPLE, things=(BALL,))
 
@@ -43,18 +41,13 @@ def test_a_film_shows_things_with_every_look(look):
 
 
 def test_things_throw_a_shadow_on_the_floor():
-    low = replace(
-        PEOPLE, things=(replace(BALL, mesh=shape("table", width=1.2), places=BALL.places * [1, 0, 1]),)
-    )
+    low = replace(PEOPLE, things=(replace(BALL, mesh=shape("table", width=1.2), places=BALL.places * [1, 0, 1]),))
     assert drawn(low)[..., :3].astype(int).sum() < drawn(PEOPLE)[..., :3].astype(int).sum()
 
 
 @pytest.mark.parametrize("suffix", [".png", ".svg"])
 def test_sheets_show_things(suffix, tmp_path):
-    paths = [
-        write_sheet(d, tmp_path / f"{i}{suffix}", frames=1, width=400)
-        for i, d in enumerate((PEOPLE, WITH_BALL))
-    ]
+    paths = [write_sheet(d, tmp_path / f"{i}{suffix}", frames=1, width=400) for i, d in enumerate((PEOPLE, WITH_BALL))]
     if suffix == ".png":
         assert red(np.asarray(Image.open(paths[0]))) < 50 < red(np.asarray(Image.open(paths[1])))
     else:
@@ -70,9 +63,7 @@ def test_dividing_changes_neither_area_nor_colours(kind):
     def areas(mesh):
         a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
         area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-        return {
-            tuple(c): area[(mesh.colours == c).all(axis=1)].sum() for c in np.unique(mesh.colours, axis=0)
-        }
+        return {tuple(c): area[(mesh.colours == c).all(axis=1)].sum() for c in np.unique(mesh.colours, axis=0)}
 
     whole, fine = shape(kind), divided(shape(kind))
     assert areas(fine) == pytest.approx(areas(whole), rel=1e-4)

@@ -82,9 +82,7 @@ def restore_part(path: Path, name: str, module: nn.Module) -> None:
     try:
         module.load_state_dict(own)
     except RuntimeError as error:
-        raise InputError(
-            f"{path} holds a network of other sizes: give the settings it was trained with."
-        ) from error
+        raise InputError(f"{path} holds a network of other sizes: give the settings it was trained with.") from error
 
 
 def restore(path: Path, parts: Parts, settings: str) -> int:
@@ -96,9 +94,7 @@ def restore(path: Path, parts: Parts, settings: str) -> int:
         return 0
     tensors, metadata = _read(path)
     if metadata.get("settings") != settings:
-        raise InputError(
-            f"{path} belongs to a run of other settings: give another --out, or the same settings."
-        )
+        raise InputError(f"{path} belongs to a run of other settings: give another --out, or the same settings.")
     for name, part in parts.items():
         own = {key.removeprefix(f"{name}/"): v for key, v in tensors.items() if key.startswith(f"{name}/")}
         if isinstance(part, nn.Module):

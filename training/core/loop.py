@@ -44,9 +44,7 @@ def warm_cosine(peak: float, step: int, *, warmup: int, steps: int) -> float:
 
 def adamw(parameters: Iterable[nn.Parameter], settings: Any) -> torch.optim.AdamW:
     """The optimiser of most trainers, at the learning rate and weight decay of a run's settings."""
-    return torch.optim.AdamW(
-        parameters, lr=settings.learning_rate, weight_decay=settings.weight_decay, fused=True
-    )
+    return torch.optim.AdamW(parameters, lr=settings.learning_rate, weight_decay=settings.weight_decay, fused=True)
 
 
 class Loop(ABC):
@@ -96,12 +94,7 @@ class Loop(ABC):
         """Takes one optimiser step and counts it; returns the loss terms."""
 
     def optimizer_step(
-        self,
-        loss: Tensor,
-        optimizer: torch.optim.Optimizer,
-        trained: Iterable[nn.Parameter],
-        *,
-        clip: float = 1.0,
+        self, loss: Tensor, optimizer: torch.optim.Optimizer, trained: Iterable[nn.Parameter], *, clip: float = 1.0
     ) -> None:
         """Takes one optimiser step at the learning rate of :func:`warm_cosine`, and counts it.
 

@@ -35,9 +35,9 @@ def write_sheet(
     condition = model.condition(tokens)
     layout = model.layout
     generator = torch.Generator().manual_seed(0)
-    noise = torch.randn(
-        len(PROMPTS), layout.num_tokens(frames), 2 * layout.token_features, generator=generator
-    ).to(device)
+    noise = torch.randn(len(PROMPTS), layout.num_tokens(frames), 2 * layout.token_features, generator=generator).to(
+        device
+    )
     x = denoise(
         lambda x, t: model.denoiser.guided(x, t, condition, scale=guidance),
         noise,

@@ -54,9 +54,7 @@ def add_options(parser: argparse.ArgumentParser, *names: str) -> None:
         parser.add_argument(flag, **given)
 
 
-def add_run_options(
-    parser: argparse.ArgumentParser, settings: type, *, leave_out: Collection[str] = ()
-) -> None:
+def add_run_options(parser: argparse.ArgumentParser, settings: type, *, leave_out: Collection[str] = ()) -> None:
     """Options that every training takes: its folder, its minutes and each of its settings by name.
 
     Args:
@@ -65,9 +63,7 @@ def add_run_options(
         leave_out: fields without a flag.
     """
     parser.add_argument("--out", type=Path, required=True, help="folder of the checkpoint and the log")
-    parser.add_argument(
-        "--minutes", type=float, default=1e9, help="stop after this long; start again to go on"
-    )
+    parser.add_argument("--minutes", type=float, default=1e9, help="stop after this long; start again to go on")
     for setting in fields(settings):
         if setting.name in leave_out:
             continue

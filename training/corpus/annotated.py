@@ -78,9 +78,7 @@ def motions_in(data: Path, second_acts: Collection[str] = ()) -> list[Motion]:
     ]
 
 
-def read_annotated(
-    data: Path, *, fps: float | None = None, second_acts: Collection[str] = ()
-) -> Iterator[Scene]:
+def read_annotated(data: Path, *, fps: float | None = None, second_acts: Collection[str] = ()) -> Iterator[Scene]:
     """Every motion with a sentence, on SMPL22's own bones; what cannot be read is reported and left out.
 
     Args:
@@ -97,10 +95,9 @@ def read_annotated(
         except InputError as error:
             print(f"left out: {motion.name}: {error}", file=sys.stderr)
             continue
-        people = np.stack([
-            project_to_skeleton(resample(person.astype(np.float64), duet.fps, FPS))[0]
-            for person in duet.positions
-        ])  # fmt: skip
+        people = np.stack(
+            [project_to_skeleton(resample(person.astype(np.float64), duet.fps, FPS))[0] for person in duet.positions]
+        )
         if sentences and people.shape[1] >= SHORTEST:
             split = splits.get(motion.name, "train")
             yield Scene(canonicalize(people), "annotated", (motion.source,), split, captions=sentences)
@@ -134,12 +131,8 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m training.corpus.annotated", description=__doc__)
     parser.add_argument("--data", type=Path, required=True, help="folder of InterHuman or Inter-X")
     parser.add_argument("--out", type=Path, required=True, help="folder of the corpus")
-    parser.add_argument(
-        "--fps", type=float, help="frames a second of the files, where they do not say it (30)"
-    )
-    parser.add_argument(
-        "--second-acts", type=Path, help="text file of the motions in which the second person acts"
-    )
+    parser.add_argument("--fps", type=float, help="frames a second of the files, where they do not say it (30)")
+    parser.add_argument("--second-acts", type=Path, help="text file of the motions in which the second person acts")
     options = parser.parse_args(argv)
 
     def job() -> None:

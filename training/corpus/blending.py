@@ -18,9 +18,7 @@ def slerp(first: Array, second: Array, weight: Array) -> Array:
     relative = np.swapaxes(first, -1, -2) @ second
     trace = relative[..., 0, 0] + relative[..., 1, 1] + relative[..., 2, 2]
     skew = (relative - np.swapaxes(relative, -1, -2)) / 2
-    angle = np.arctan2(
-        np.sqrt(skew[..., 2, 1] ** 2 + skew[..., 0, 2] ** 2 + skew[..., 1, 0] ** 2), (trace - 1) / 2
-    )
+    angle = np.arctan2(np.sqrt(skew[..., 2, 1] ** 2 + skew[..., 0, 2] ** 2 + skew[..., 1, 0] ** 2), (trace - 1) / 2)
     sine = np.sin(angle)
     share = np.broadcast_to(weight, angle.shape) * angle
     axis = skew / np.where(sine > 1e-7, sine, 1.0)[..., None, None]

@@ -62,14 +62,10 @@ class Tally:
             f"{name}: {self.scenes[name]} scenes, {self.frames[name] / FPS / 60:.1f} min"
             for name in sorted(self.frames)
         ]
-        return lines + [
-            f"rejected {count}: {name}: {why}" for (name, why), count in self.rejected.most_common()
-        ]
+        return lines + [f"rejected {count}: {name}: {why}" for (name, why), count in self.rejected.most_common()]
 
 
-def draw(
-    rng: np.random.Generator, library: Library, kinds: dict[str, Kind], frames: int, tally: Tally
-) -> list[Scene]:
+def draw(rng: np.random.Generator, library: Library, kinds: dict[str, Kind], frames: int, tally: Tally) -> list[Scene]:
     """Checked scenes of ``frames`` frames in all, spread over the kinds by their weights.
 
     A kind whose scenes fail :data:`TRIES` times in a row is left out from then on, with a warning.
@@ -101,12 +97,7 @@ def draw(
 
 
 def build(
-    data_dir: str | Path,
-    *,
-    hours: float = 5.0,
-    seed: int = 0,
-    recorded: bool = True,
-    cache: Path | None = None,
+    data_dir: str | Path, *, hours: float = 5.0, seed: int = 0, recorded: bool = True, cache: Path | None = None
 ) -> tuple[list[Scene], Tally]:
     """All scenes of a corpus.
 

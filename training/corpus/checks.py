@@ -14,21 +14,38 @@ from .compose import FPS
 from .scene import Scene
 
 Array = NDArray[np.floating]
-FEET = tuple(
-    tuple(SMPL22.index(f"{side}_{joint}") for joint in ("ankle", "foot")) for side in ("left", "right")
-)
+FEET = tuple(tuple(SMPL22.index(f"{side}_{joint}") for joint in ("ankle", "foot")) for side in ("left", "right"))
 TRUNK = tuple(SMPL22.index(name) for name in ("pelvis", "spine1", "spine2", "spine3", "neck", "head"))
-FLYING = {"run", "jump", "jumping", "dance", "spin", "crawl", "somersault", "cartwheel", "kick", "push", "fall",
-          "cheer", "chase", "throw", "rage", "swing", "punch", "shadow", "skip", "lie",
-          "shoot", "squats"}  # fmt: skip
+FLYING = {
+    "run",
+    "jump",
+    "jumping",
+    "dance",
+    "spin",
+    "crawl",
+    "somersault",
+    "cartwheel",
+    "kick",
+    "push",
+    "fall",
+    "cheer",
+    "chase",
+    "throw",
+    "rage",
+    "swing",
+    "punch",
+    "shadow",
+    "skip",
+    "lie",
+    "shoot",
+    "squats",
+}
 """First words of entries during which nobody stands on a foot, or pivots on it."""
 
 
 def allowed_skate(scene: Scene) -> float:
     """Foot skate allowed in a scene, metres a second."""
-    acts = {
-        name.split("-")[0] for beat in scene.beats for cue in beat["acts"] for name in re.split("[>+]", cue)
-    }
+    acts = {name.split("-")[0] for beat in scene.beats for cue in beat["acts"] for name in re.split("[>+]", cue)}
     if "run" in acts or "chase" in acts:
         return 0.8
     return 0.3 if acts & FLYING or scene.family == "salsa" else 0.15

@@ -26,9 +26,15 @@ WINDOW, PAST, FUTURE = 75, 50, 25
 HORIZONS = (2, 4, 8, 10, 25)
 """Predicted frames at which the papers report errors: "80, 160, 320, 400 and 1000 ms"."""
 ACTIONS = (
-    "basketball", "basketball_signal", "directing_traffic", "jumping", "running", "soccer", "walking",
+    "basketball",
+    "basketball_signal",
+    "directing_traffic",
+    "jumping",
+    "running",
+    "soccer",
+    "walking",
     "washwindow",
-)  # fmt: skip
+)
 """The papers' eight actions; some releases also hold ``walking_extra``."""
 LEGS = slice(1, 7)
 """The legs among the 17 joints; root and upper body are the others."""

@@ -51,9 +51,7 @@ class Motion:
         return len(self.root)
 
     def __getitem__(self, frames: slice) -> Motion:
-        return replace(
-            self, rotations=self.rotations[frames], root=self.root[frames], contacts=self.contacts[frames]
-        )
+        return replace(self, rotations=self.rotations[frames], root=self.root[frames], contacts=self.contacts[frames])
 
     @property
     def headings(self) -> Array:
@@ -110,9 +108,7 @@ def travel_heading(motion: Motion) -> float:
     return float(np.arctan2(step[0], step[2]))
 
 
-def place(
-    motion: Motion, x: float, z: float, angle: float, *, frame: int = 0, along: str = "facing"
-) -> Motion:
+def place(motion: Motion, x: float, z: float, angle: float, *, frame: int = 0, along: str = "facing") -> Motion:
     """Moves a motion so that at ``frame`` its root is at (x, z) and it looks towards heading ``angle``.
 
     Args:
@@ -185,9 +181,7 @@ def layer(base: Motion, over: Motion, *, start: int, joints: tuple[int, ...], bl
     weight[:blend], weight[frames - blend :] = ease(blend), ease(blend)[::-1]
     rotations = base.rotations.copy()
     inside, chosen = slice(start, start + frames), list(joints)
-    rotations[inside, chosen] = slerp(
-        base.rotations[inside, chosen], over.rotations[:frames, chosen], weight[:, None]
-    )
+    rotations[inside, chosen] = slerp(base.rotations[inside, chosen], over.rotations[:frames, chosen], weight[:, None])
     return replace(base, rotations=rotations, sources=tuple(dict.fromkeys(base.sources + over.sources)))
 
 
@@ -214,9 +208,7 @@ def look_at(motion: Motion, target: Array, *, amount: float = 0.8) -> Motion:
     for name, share in _GAZE.items():
         joint = SMPL22.index(name)
         parent = world[:, SMPL22.parents[joint]]
-        rotations[:, joint] = (
-            np.swapaxes(parent, -1, -2) @ heading_matrix(angle * share) @ parent @ rotations[:, joint]
-        )
+        rotations[:, joint] = np.swapaxes(parent, -1, -2) @ heading_matrix(angle * share) @ parent @ rotations[:, joint]
     return replace(motion, rotations=rotations)
 
 
@@ -230,7 +222,5 @@ def blend_for(first: Motion, second: Motion) -> int:
     ends = np.stack([first.rotations[-1], second.rotations[0]])
     pose = forward_kinematics(ends * 1.0, np.zeros((2, 3)))
     own = np.linalg.inv(ends[:, 0])
-    gap = np.linalg.norm(
-        np.einsum("aij,akj->aki", own, pose)[0] - np.einsum("aij,akj->aki", own, pose)[1], axis=-1
-    )
+    gap = np.linalg.norm(np.einsum("aij,akj->aki", own, pose)[0] - np.einsum("aij,akj->aki", own, pose)[1], axis=-1)
     return int(np.clip(8 + 22 * gap.max(), 10, 24))

@@ -78,9 +78,7 @@ def towards(origin: Array, target: Array) -> Array:
     return gap / np.maximum(np.linalg.norm(gap, axis=-1, keepdims=True), 1e-6)
 
 
-def meeting(
-    a: Array, b: Array, side_a: str, side_b: str, *, height: float, apart: float = 0.08
-) -> tuple[Array, Array]:
+def meeting(a: Array, b: Array, side_a: str, side_b: str, *, height: float, apart: float = 0.08) -> tuple[Array, Array]:
     """Targets of two wrists when two hands meet between two people.
 
     Args:
@@ -193,9 +191,7 @@ def reach(
     return positions
 
 
-def _least_trunk(
-    pose: Array, goals: Mapping[str, Array], trunk: Callable[[float], Array]
-) -> tuple[float, float]:
+def _least_trunk(pose: Array, goals: Mapping[str, Array], trunk: Callable[[float], Array]) -> tuple[float, float]:
     """Finds how far the trunk must help the arms reach their goals at one pose.
 
     Args:
@@ -209,8 +205,7 @@ def _least_trunk(
 
     def missing(body: Array) -> float:
         return max(
-            float(np.linalg.norm(goal - body[:, ARMS[side][1]], axis=-1)[0])
-            - FULL_REACH * _arm_length(body, side)
+            float(np.linalg.norm(goal - body[:, ARMS[side][1]], axis=-1)[0]) - FULL_REACH * _arm_length(body, side)
             for side, goal in goals.items()
         )
 
@@ -234,12 +229,7 @@ def _arm_length(positions: Array, side: str) -> float:
 
 
 def reach_arm(
-    positions: Array,
-    side: str,
-    target: Array,
-    weight: Array,
-    *,
-    elbow: tuple[float, float, float] = ELBOW_DOWN,
+    positions: Array, side: str, target: Array, weight: Array, *, elbow: tuple[float, float, float] = ELBOW_DOWN
 ) -> Array:
     """Two-bone IK of one arm towards ``target`` (T, 3) by ``weight`` (T,); nothing but the arm moves."""
     _, shoulder, middle, wrist = ARMS[side]

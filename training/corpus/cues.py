@@ -22,11 +22,25 @@ from motion import InputError
 STILL = "stand-still"
 """The entry of a person who does nothing."""
 STYLES = {
-    "active": "energetically", "angry": "angrily", "childish": "playfully", "chimpira": "roughly",
-    "elderly": "stiffly", "exhausted": "wearily", "giant": "heavily", "happy": "happily", "musical": "rhythmically",
-    "not-confident": "shyly", "old": "stiffly", "proud": "proudly", "sad": "sadly", "tired": "tiredly",
-    "youthful": "youthfully", "slow": "slowly", "fast": "quickly", "brisk": "briskly",
-}  # fmt: skip
+    "active": "energetically",
+    "angry": "angrily",
+    "childish": "playfully",
+    "chimpira": "roughly",
+    "elderly": "stiffly",
+    "exhausted": "wearily",
+    "giant": "heavily",
+    "happy": "happily",
+    "musical": "rhythmically",
+    "not-confident": "shyly",
+    "old": "stiffly",
+    "proud": "proudly",
+    "sad": "sadly",
+    "tired": "tiredly",
+    "youthful": "youthfully",
+    "slow": "slowly",
+    "fast": "quickly",
+    "brisk": "briskly",
+}
 """The manner of a recording's style; other styles are told without one."""
 SPEEDS = {"slow": 0.7, "fast": 1.4, "brisk": 1.2}
 """Speed of a style or pace against the usual one."""
@@ -116,9 +130,7 @@ class Label:
 
     def cut(self, frames: int) -> Label:
         """The label of the scene's first ``frames`` frames: acts that begin later are left out."""
-        spans = {
-            act: (start, min(stop, frames)) for act, (start, stop) in self.spans.items() if start < frames
-        }
+        spans = {act: (start, min(stop, frames)) for act, (start, stop) in self.spans.items() if start < frames}
         acts = [
             act.model_copy(update={"order": tuple(one for one in act.order if one.act in spans)})
             for act in self.plan.acts
@@ -148,9 +160,7 @@ def steps(cue: str) -> Groups:
         for text in step.split("+"):
             match = _STEP.fullmatch(text)
             if match is None:
-                raise KeyError(
-                    f"{text!r} in the cue {cue!r} is no act: write an entry's name, as in pat:shoulder."
-                )
+                raise KeyError(f"{text!r} in the cue {cue!r} is no act: write an entry's name, as in pat:shoulder.")
             entry(match[1])
             found.append((match[1], match[2], match[3], bool(match[4])))
         groups.append(tuple(found))

@@ -79,6 +79,5 @@ def read_deepmimic(data: bytes, *, name: str = "", fps: float = 30.0) -> RigMoti
         world.append(own if parent < 0 else world[parent] @ own)
     offsets = np.array([offset for _, _, offset in joints])
     return RigMotion(
-        tuple(n for n, _, _ in joints), tuple(p for _, p, _ in joints), offsets, places, None, fps,
-        name=name, up="y",
-    )  # fmt: skip
+        tuple(n for n, _, _ in joints), tuple(p for _, p, _ in joints), offsets, places, None, fps, name=name, up="y"
+    )

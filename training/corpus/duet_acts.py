@@ -112,11 +112,7 @@ def _merged(kinds: NDArray[np.object_]) -> list[str]:
     merged = [str(kind) for kind in kinds]
     while True:
         runs = list(_runs(merged))
-        brief = [
-            run
-            for run in enumerate(runs)
-            if run[1][2] - run[1][1] < BRIEF and not run[1][0].startswith("twirl")
-        ]
+        brief = [run for run in enumerate(runs) if run[1][2] - run[1][1] < BRIEF and not run[1][0].startswith("twirl")]
         if not brief or len(runs) == 1:
             return merged
         number, (_, start, stop) = min(brief, key=lambda run: run[1][2] - run[1][1])

@@ -15,9 +15,15 @@ from motion.skeleton import K3HI15
 from .sbu import KinectPair, read_clips
 
 CLASSES = {
-    "approaching": "approach", "departing": "depart", "exchanging": "exchange", "kicking": "kick",
-    "pointing": "point", "punching": "punch", "pushing": "push", "shaking": "handshake",
-}  # fmt: skip
+    "approaching": "approach",
+    "departing": "depart",
+    "exchanging": "exchange",
+    "kicking": "kick",
+    "pointing": "point",
+    "punching": "punch",
+    "pushing": "push",
+    "shaking": "handshake",
+}
 """The folders and the corpus' family of each."""
 
 FPS = 30.0

@@ -181,11 +181,7 @@ def calm(motion: Motion, *, radius: float = 0.35, shortest: int = 120) -> list[M
     for frame in range(30, len(motion) + 1, 30):
         inside = flat[start:frame]
         turn = np.ptp(motion.headings[start:frame])
-        if (
-            np.linalg.norm(inside - inside.mean(0), axis=-1).max() > radius
-            or turn > 0.7
-            or frame - start > 600
-        ):
+        if np.linalg.norm(inside - inside.mean(0), axis=-1).max() > radius or turn > 0.7 or frame - start > 600:
             if frame - 30 - start >= shortest:
                 parts.append(motion[start : frame - 30])
             start = frame - 30

@@ -75,9 +75,7 @@ class Report:
         return lines + [f"dropped {count}: {reason}" for reason, count in sorted(self.dropped.items())]
 
 
-def load_pairs(
-    data_dir: str | Path, cache: str | Path | None = None, *, report: Report | None = None
-) -> list[Scene]:
+def load_pairs(data_dir: str | Path, cache: str | Path | None = None, *, report: Report | None = None) -> list[Scene]:
     """All good recorded pairs as scenes, fitted once and then read from a cache.
 
     Args:
@@ -113,9 +111,7 @@ def build_scene(pair: KinectPair, report: Report | None = None) -> Scene | None:
             report.dropped[f"{name}: who acts is not known"] += 1
             return None
         # The person who walks farther is the one who approaches or departs.
-        travel = [
-            np.linalg.norm(np.ptp(person[:, :, [0, 2]].mean(axis=1), axis=0)) for person in pair.positions
-        ]
+        travel = [np.linalg.norm(np.ptp(person[:, :, [0, 2]].mean(axis=1), axis=0)) for person in pair.positions]
         pair = pair.swapped() if travel[1] > travel[0] else pair
     people, error = fit_pair(pair)
     people = np.stack([_settle(person) for person in _meet(people, pair.family)])
@@ -164,9 +160,7 @@ def _settle(positions: Array) -> Array:
     """
     lowest = positions[:, _TOES, 1].min(axis=1)
     lowest = np.minimum(lowest, positions[:, _ANKLES, 1].min(axis=1) - ANKLE)
-    positions = positions - gaussian_filter1d(lowest, 4.0, mode="nearest")[:, None, None] * np.array(
-        [0.0, 1.0, 0.0]
-    )
+    positions = positions - gaussian_filter1d(lowest, 4.0, mode="nearest")[:, None, None] * np.array([0.0, 1.0, 0.0])
     return plant_feet(positions, np.repeat(_stands(positions), 2, axis=1))
 
 
@@ -196,9 +190,7 @@ def _hands(people: Array) -> tuple[str, str]:
 
 def _wrists(people: Array, sides: tuple[str, str]) -> tuple[Array, Array]:
     """(T, 3) the wrist of each person on its side."""
-    first, second = (
-        person[:, SMPL22.index(f"{side}_wrist")] for person, side in zip(people, sides, strict=True)
-    )
+    first, second = (person[:, SMPL22.index(f"{side}_wrist")] for person, side in zip(people, sides, strict=True))
     return first, second
 
 
@@ -235,18 +227,14 @@ def _meet(people: Array, family: str) -> Array:
 def _fade(mask: NDArray[np.bool_], *, frames: int) -> Array:
     """1 inside the mask, falling smoothly to 0 over ``frames`` outside it."""
     index = np.arange(len(mask))
-    distance = (
-        np.abs(index[:, None] - index[mask][None]).min(axis=1) if mask.any() else np.full(len(mask), frames)
-    )
+    distance = np.abs(index[:, None] - index[mask][None]).min(axis=1) if mask.any() else np.full(len(mask), frames)
     return 0.5 + 0.5 * np.cos(np.pi * np.clip(distance / frames, 0, 1))
 
 
 def _reach(positions: Array, side: str, goal: Array) -> Array:
     """One person's wrist at ``goal`` (T, 3)."""
     shoulder, elbow, wrist = (SMPL22.index(f"{side}_{part}") for part in ("shoulder", "elbow", "wrist"))
-    pole = (
-        positions[:, elbow] - (positions[:, shoulder] + positions[:, wrist]) / 2 + np.array([0.0, -0.02, 0.0])
-    )
+    pole = positions[:, elbow] - (positions[:, shoulder] + positions[:, wrist]) / 2 + np.array([0.0, -0.02, 0.0])
     result = positions.copy()
     result[:, elbow], result[:, wrist] = solve_two_bones(
         positions[:, shoulder], positions[:, elbow], positions[:, wrist], goal, pole
@@ -270,10 +258,7 @@ def _fault(people: Array, family: str, error: float) -> str | None:
     if family in _MEANT_TO_FACE:
         towards = (people[1, :, 0] - people[0, :, 0]) * np.array([1.0, 0.0, 1.0])
         towards = unit(towards)
-        cos = [
-            np.mean(np.sum(facing(people[0]) * towards, -1)),
-            np.mean(np.sum(facing(people[1]) * -towards, -1)),
-        ]
+        cos = [np.mean(np.sum(facing(people[0]) * towards, -1)), np.mean(np.sum(facing(people[1]) * -towards, -1))]
         if min(cos) < 0.5:
             return "the two do not face each other"
     if family in _TOUCH and _hand_gap(people).min() > _TOUCH[family] + 0.05:
@@ -334,9 +319,7 @@ def _striking_side(people: Array, part: str, *, up: bool = False) -> str | None:
     towards = unit(towards)
     direction = np.array([0.0, 1.0, 0.0]) if up else towards
     reach = {
-        side: np.max(
-            np.sum((people[0, :, SMPL22.index(f"{side}_{part}")] - people[0, :, 0]) * direction, axis=-1)
-        )
+        side: np.max(np.sum((people[0, :, SMPL22.index(f"{side}_{part}")] - people[0, :, 0]) * direction, axis=-1))
         for side in (_LEFT, _RIGHT)
     }
     if abs(reach[_LEFT] - reach[_RIGHT]) < 0.12:
@@ -348,11 +331,7 @@ def _save(path: Path, scenes: list[Scene], report: Report) -> None:
     meta = [{"family": s.family, "source": s.sources[0], "split": s.split} for s in scenes]
     summary = {"kept": report.kept, "dropped": report.dropped, "errors": report.errors}
     lengths = np.array([scene.positions.shape[1] for scene in scenes])
-    joined = (
-        np.concatenate([s.positions for s in scenes], axis=1)
-        if scenes
-        else np.zeros((2, 0, 22, 3), np.float32)
-    )
+    joined = np.concatenate([s.positions for s in scenes], axis=1) if scenes else np.zeros((2, 0, 22, 3), np.float32)
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".npz", delete=False) as file:
         np.savez(file, positions=joined, lengths=lengths, meta=json.dumps(meta), report=json.dumps(summary))

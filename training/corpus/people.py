@@ -44,16 +44,85 @@ _PLAIN = (
     Cast(("one dancer", "the other dancer"), ("the first dancer", "the second dancer"), group="two dancers"),
 )
 _ROLES = {
-    "he": ("a man", "a man", "a boy", "an old man", "a young man", "a waiter", "a gentleman", "a policeman",
-           "a father", "a brother", "a husband", "a grandfather", "a king", "a businessman", "an actor", "a guy"),
-    "she": ("a woman", "a woman", "a girl", "an old woman", "a young woman", "a waitress", "a lady", "an actress",
-            "a mother", "a sister", "a wife", "a grandmother", "a queen", "a businesswoman", "a bride", "a daughter"),
-    "they": ("a stranger", "a child", "a teacher", "a student", "a dancer", "a neighbour", "a guest", "a colleague",
-             "a doctor", "a player", "a coach", "a tourist", "a customer", "a guard", "a soldier", "a visitor",
-             "a boxer", "a runner", "a nurse", "a clown", "a thief", "a driver", "a boss", "a worker", "a passenger",
-             "a patient", "a toddler", "a partner", "an opponent", "a rival", "an artist", "a cook", "a drunk",
-             "a commuter", "a shopkeeper", "a referee", "a hiker", "a monk", "a pilot", "a farmer"),
-}  # fmt: skip
+    "he": (
+        "a man",
+        "a man",
+        "a boy",
+        "an old man",
+        "a young man",
+        "a waiter",
+        "a gentleman",
+        "a policeman",
+        "a father",
+        "a brother",
+        "a husband",
+        "a grandfather",
+        "a king",
+        "a businessman",
+        "an actor",
+        "a guy",
+    ),
+    "she": (
+        "a woman",
+        "a woman",
+        "a girl",
+        "an old woman",
+        "a young woman",
+        "a waitress",
+        "a lady",
+        "an actress",
+        "a mother",
+        "a sister",
+        "a wife",
+        "a grandmother",
+        "a queen",
+        "a businesswoman",
+        "a bride",
+        "a daughter",
+    ),
+    "they": (
+        "a stranger",
+        "a child",
+        "a teacher",
+        "a student",
+        "a dancer",
+        "a neighbour",
+        "a guest",
+        "a colleague",
+        "a doctor",
+        "a player",
+        "a coach",
+        "a tourist",
+        "a customer",
+        "a guard",
+        "a soldier",
+        "a visitor",
+        "a boxer",
+        "a runner",
+        "a nurse",
+        "a clown",
+        "a thief",
+        "a driver",
+        "a boss",
+        "a worker",
+        "a passenger",
+        "a patient",
+        "a toddler",
+        "a partner",
+        "an opponent",
+        "a rival",
+        "an artist",
+        "a cook",
+        "a drunk",
+        "a commuter",
+        "a shopkeeper",
+        "a referee",
+        "a hiker",
+        "a monk",
+        "a pilot",
+        "a farmer",
+    ),
+}
 
 
 def draw_cast(rng: Rng, *, joint: bool = False) -> Cast:
@@ -92,9 +161,7 @@ class Names:
         fresh = who not in self.named
         self.named.add(who)
         if fresh and self.together and self.cast.group is None:  # "two people …, one of them …"
-            return (
-                ("one of them", "the other")[slot] if len(self.named) < 2 or slot else self.cast.later[slot]
-            )
+            return ("one of them", "the other")[slot] if len(self.named) < 2 or slot else self.cast.later[slot]
         return self.cast.first[slot] if fresh and not self.together else self.cast.later[slot]
 
     def subject(self, people: str) -> str:

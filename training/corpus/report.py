@@ -126,9 +126,7 @@ def _acts_table(motions: NDArray[np.floating], index: list[dict[str, Any]], pict
             sum(stop - start for start, stop, scene in found if not only or is_recorded(scene)) / FPS / 60
             for only in (False, True)
         )
-        gaps = [
-            100 * gap for start, stop, scene in found[:20] if (gap := _touch(motions, scene, start, stop))
-        ]
+        gaps = [100 * gap for start, stop, scene in found[:20] if (gap := _touch(motions, scene, start, stop))]
         link = "–"
         if name != STILL:
             # A short scene shows an act best.

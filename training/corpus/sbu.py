@@ -23,9 +23,14 @@ from motion.skeleton import SBU15, Skeleton
 Array = NDArray[np.floating]
 
 CLASSES = {
-    "01": "approach", "02": "depart", "03": "kick", "04": "push", "05": "handshake", "07": "exchange",
+    "01": "approach",
+    "02": "depart",
+    "03": "kick",
+    "04": "push",
+    "05": "handshake",
+    "07": "exchange",
     "08": "punch",
-}  # fmt: skip
+}
 """The folders' numbers and the corpus' family of each; 06 (hug) is not in the release."""
 
 FPS = 15.0
@@ -82,18 +87,14 @@ def read_sbu(data_dir: str | Path) -> list[KinectPair]:
         InputError: if the data are not there.
     """
     pairs = []
-    for actor, reactor, name, split in read_clips(
-        data_dir, "sbu", "skeletons_check.tar.xz", "Skeletons_Check"
-    ):
+    for actor, reactor, name, split in read_clips(data_dir, "sbu", "skeletons_check.tar.xz", "Skeletons_Check"):
         family = CLASSES[name.split("/")[1]]
         both = np.stack([actor, reactor])
         pairs.append(KinectPair(both, family, name, split, "sbu", SBU15, FPS, CAMERA_PITCH))
     return pairs
 
 
-def read_clips(
-    data_dir: str | Path, dataset: str, archive: str, top: str
-) -> Iterator[tuple[Array, Array, str, str]]:
+def read_clips(data_dir: str | Path, dataset: str, archive: str, top: str) -> Iterator[tuple[Array, Array, str, str]]:
     """(actor (T, 15, 3), reactor, name, split) of every clip in a release of this shape."""
     files = _files(Path(data_dir), dataset, archive, top)
     order: dict[str, tuple[str, str, str]] = {}

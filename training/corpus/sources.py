@@ -61,9 +61,7 @@ def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -
     """
     root = Path(data_dir)
     if not root.is_dir():
-        raise InputError(
-            f"The data folder {root} does not exist: give the folder that holds {' and '.join(_FOLDERS)}."
-        )
+        raise InputError(f"The data folder {root} does not exist: give the folder that holds {' and '.join(_FOLDERS)}.")
     found = _find_files(root)
     free = vocabulary.files(root)
     if not found + free:
@@ -182,15 +180,9 @@ def _splits(described: list[tuple[str, str, str | None, str, str]]) -> dict[str,
 
 
 def _cache_path(root: Path, files: list[Path], cache_dir: str | Path | None) -> Path:
-    folder = Path(
-        cache_dir or Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "pas-de-deux"
-    )
-    state = [
-        (path.relative_to(root).as_posix(), path.stat().st_size, path.stat().st_mtime_ns) for path in files
-    ]
-    digest = hashlib.sha256(json.dumps([_CACHE_VERSION, repr(vocabulary.CUTS), state]).encode()).hexdigest()[
-        :16
-    ]
+    folder = Path(cache_dir or Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "pas-de-deux")
+    state = [(path.relative_to(root).as_posix(), path.stat().st_size, path.stat().st_mtime_ns) for path in files]
+    digest = hashlib.sha256(json.dumps([_CACHE_VERSION, repr(vocabulary.CUTS), state]).encode()).hexdigest()[:16]
     return folder / f"sources-{digest}.npz"
 
 

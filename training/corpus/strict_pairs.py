@@ -61,10 +61,7 @@ def strict_pairs(data: str | Path, cache: str | Path | None = None) -> list[Stri
     if not path.is_file():
         pairs = list(_fitted_of([*read_sbu(data), *read_k3hi(data)]))
         arrays = {f"positions{number}": pair.positions for number, pair in enumerate(pairs)}
-        kept = {
-            key: np.array([getattr(pair, key) for pair in pairs])
-            for key in ("label", "dataset", "test", "name")
-        }
+        kept = {key: np.array([getattr(pair, key) for pair in pairs]) for key in ("label", "dataset", "test", "name")}
         with replacing(path) as temporary, open(temporary, "wb") as file:
             np.savez_compressed(file, **arrays, **kept)
     with np.load(path, allow_pickle=False) as stored:

@@ -27,14 +27,44 @@ JOINT, ALONE, ONE_BEAT = 8, 3, 2
 """Numbers of captions of a scene, of each single person, and of each beat."""
 LONGEST = 320
 """Characters of a caption, at most."""
-_THEN = (", then {}", ", and then {}", " and then {}", ". Then {}", ". Then {}", ". After that, {}", ". Next, {}",
-         ". {}")  # fmt: skip
+_THEN = (
+    ", then {}",
+    ", and then {}",
+    " and then {}",
+    ". Then {}",
+    ". Then {}",
+    ". After that, {}",
+    ". Next, {}",
+    ". {}",
+)
 _PAIRS = ("After {}, {}", "First {}, then {}", "{} and then {}")
 """How two clauses that follow each other may stand in one sentence."""
-_WHERE = ("in a park", "in the street", "at a party", "in a gym", "on a stage", "in an office", "in a kitchen",
-          "in a school", "outside a shop", "at the station", "in a garden", "in a hall", "at home",
-          "on the beach", "in a corridor", "at night", "in the morning", "one day", "as usual",
-          "for no reason", "without a word", "in this scene", "in this clip", "here")  # fmt: skip
+_WHERE = (
+    "in a park",
+    "in the street",
+    "at a party",
+    "in a gym",
+    "on a stage",
+    "in an office",
+    "in a kitchen",
+    "in a school",
+    "outside a shop",
+    "at the station",
+    "in a garden",
+    "in a hall",
+    "at home",
+    "on the beach",
+    "in a corridor",
+    "at night",
+    "in the morning",
+    "one day",
+    "as usual",
+    "for no reason",
+    "without a word",
+    "in this scene",
+    "in this clip",
+    "here",
+)
 """Where and when it may happen, which the motion does not show."""
 
 
@@ -67,8 +97,7 @@ def describe(rng: Rng, scene: Scene, *, sides: bool = True) -> Scene:
     scene.alone = (texts(teller.alone("a")), texts(teller.alone("b")))
     if scene.family.startswith("beats"):
         scene.beats = [
-            beat.row(frames, texts(teller.beat(ids)))
-            for beat, ids in zip(scene.played, scene.label.beats, strict=True)
+            beat.row(frames, texts(teller.beat(ids))) for beat, ids in zip(scene.played, scene.label.beats, strict=True)
         ]
     return scene
 
@@ -136,11 +165,7 @@ class Teller:
         active = [act for act in acts if act.act != STILL]
         keep_still = len(people) == 1 or self.rng.random() < 0.25
         chosen = acts if keep_still or not active else active
-        main = [
-            act
-            for act in chosen
-            if only is not None or act.id not in self.label.minor or self.rng.random() < 0.5
-        ]
+        main = [act for act in chosen if only is not None or act.id not in self.label.minor or self.rng.random() < 0.5]
         kept = {act.id for act in main or chosen}
         told = {act.id: act for act in acts}
         groups = [[told[act.id] for act in group if act.id in kept] for group in self._groups]
@@ -222,9 +247,7 @@ class _Writer:
         parts = []
         for subject in subjects:
             name = self.names.subject(subject)
-            parts.append(
-                f"{name} {self._phrases([a for a in group if ''.join(sorted(a.agents)) == subject], subject)}"
-            )
+            parts.append(f"{name} {self._phrases([a for a in group if ''.join(sorted(a.agents)) == subject], subject)}")
         return " while ".join(parts), subjects
 
     def _phrases(self, acts: Sequence[Act], subject: str) -> str:
@@ -269,11 +292,7 @@ class _Writer:
         for group in groups:
             now: list[str] = []
             for act in group:
-                order = (
-                    [Relation(kind="while", act=now[0])]
-                    if now
-                    else [Relation(kind="after", act=x) for x in before]
-                )
+                order = [Relation(kind="while", act=now[0])] if now else [Relation(kind="after", act=x) for x in before]
                 one = by_id[act.id].model_copy(update={"order": tuple(order)})
                 told.append(_swapped(one) if swap else one)
                 now.append(act.id)

@@ -245,9 +245,7 @@ def hug(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> Touch
         low = on_body(other, "spine2", -0.15 * sign, rng.uniform(0.0, 0.06), -rng.uniform(0.02, 0.07))
         body = reach_arm(body, side, high, weight, elbow=(1.0, 0.1, 0.25))
         solved.append(reach_arm(body, under, low, weight, elbow=(1.0, -0.45, 0.2)))
-    touches = [
-        (f"{hand}_wrist", joint, arrive, leave) for hand, joint in ((side, "spine3"), (under, "spine2"))
-    ]
+    touches = [(f"{hand}_wrist", joint, arrive, leave) for hand, joint in ((side, "spine3"), (under, "spine2"))]
     return solved[0], solved[1], touches
 
 
@@ -317,12 +315,7 @@ def whisper(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> T
         a = lean_to(a, way, weight * float(np.clip(missing / 0.62, -0.2, 0.4)))
     missing = float(np.linalg.norm((b - a)[middle, head][[0, 2]])) - near
     a = shift_hips(a, way * (weight * np.clip(missing, 0, 0.15))[:, None])
-    mouth = (
-        a[:, head]
-        + 0.1 * way
-        + np.array([0, -0.06, 0])
-        + 0.07 * (axes(a)[0] if side == "left" else -axes(a)[0])
-    )
+    mouth = a[:, head] + 0.1 * way + np.array([0, -0.06, 0]) + 0.07 * (axes(a)[0] if side == "left" else -axes(a)[0])
     return reach_arm(a, side, mouth, weight, elbow=(0.7, -0.8, 0.2)), b, []
 
 
@@ -363,9 +356,7 @@ def chosen_side(rng: Rng) -> tuple[str, bool]:
 TOUCHES: dict[str, Touch] = {
     "handshake": Touch(handshake, (0.82, 0.98), (1.5, 3.2)),
     "high-five": Touch(Slap((1.48, 1.65), 0.5), (0.76, 0.92), (1.3, 2.0)),
-    "low-five": Touch(
-        Slap((0.9, 1.02), 1.0, approach=(0.2, 1.2), elbow=(0.45, -1.0, -0.25)), (0.68, 0.82), (1.3, 2.0)
-    ),
+    "low-five": Touch(Slap((0.9, 1.02), 1.0, approach=(0.2, 1.2), elbow=(0.45, -1.0, -0.25)), (0.68, 0.82), (1.3, 2.0)),
     "high-ten": Touch(Slap((1.45, 1.6), 0.4, mirrored=True), (0.66, 0.8), (1.3, 2.0)),
     "fist-bump": Touch(
         Slap((1.1, 1.26), 0.5, elbow=(0.7, -1.0, -0.2), pause=(2, 9), apart=0.09), (0.82, 0.98), (1.3, 2.0)

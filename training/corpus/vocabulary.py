@@ -134,20 +134,14 @@ CUTS: dict[str, tuple[Cut, ...]] = {
         Cut("006_14", "basketball"),
         Cut("006_15", "basketball"),
     ),
-    "perfume": (
-        Cut("A_test", "formation-a"),
-        Cut("B_test", "formation-b"),
-        Cut("C_test", "formation-c"),
-    ),
-}  # fmt: skip
+    "perfume": (Cut("A_test", "formation-a"), Cut("B_test", "formation-b"), Cut("C_test", "formation-c")),
+}
 _LISTED = tomllib.loads(Path(__file__).with_name("cuts.toml").read_text(encoding="utf-8"))
 CUTS |= {dataset: tuple(Cut(**cut) for cut in listed["cuts"]) for dataset, listed in _LISTED.items()}
 _TIPS = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("wrist", "ankle")]
 
 
-def read_vocabulary(
-    root: Path, *, fps: float = 30.0
-) -> Iterator[tuple[tuple[str, str, str | None, str, str], Array]]:
+def read_vocabulary(root: Path, *, fps: float = 30.0) -> Iterator[tuple[tuple[str, str, str | None, str, str], Array]]:
     """((action, style, side, source, dataset), (T, 22, 3) metres) of every cut whose file is there.
 
     Files that are missing or unreadable are left out; :func:`training.corpus.sources.load_sources` says so.

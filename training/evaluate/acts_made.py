@@ -80,14 +80,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     for each in made(run, steps=options.steps, seed=options.seed):
         found.append(each)
         if not each.done:
-            print(
-                f"{each.act}: {each.words} {each.measure or 'read as something else' * (each.done is None)}"
-            )
+            print(f"{each.act}: {each.words} {each.measure or 'read as something else' * (each.done is None)}")
     print(f"{sum(each.done is True for each in found)} of {len(found)} acts are made.")
     if options.out is not None:
-        options.out.write_text(
-            json.dumps([asdict(each) for each in found], indent=1) + "\n", encoding="utf-8"
-        )
+        options.out.write_text(json.dumps([asdict(each) for each in found], indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

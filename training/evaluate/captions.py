@@ -125,9 +125,7 @@ class Features:
     def text(self, captions: Sequence[str]) -> Array:
         """(N, D) float64."""
         with torch.no_grad():
-            parts = [
-                self.extractor.text(self.encoder(captions[i : i + 64])) for i in range(0, len(captions), 64)
-            ]
+            parts = [self.extractor.text(self.encoder(captions[i : i + 64])) for i in range(0, len(captions), 64)]
         return torch.cat(parts).double().numpy()
 
 
@@ -177,9 +175,7 @@ def measure(
         several = [task for task in tasks[:many] for _ in range(samples)]
         again = dict(draw(several, seed + 1000 * repeat + 500))
         spread = features.motion([again[i] for i in range(len(several))]).reshape(many, samples, -1)
-        found["generated"].append(
-            [*_scores(made, text, rng), frechet_distance(made, real), multimodality(spread)]
-        )
+        found["generated"].append([*_scores(made, text, rng), frechet_distance(made, real), multimodality(spread)])
     result: dict[str, dict[str, list[float]]] = {}
     for kind, lines in found.items():
         if lines:

@@ -67,9 +67,7 @@ def padded(clips: Sequence[Array]) -> tuple[Tensor, Tensor]:
     return batch, lengths
 
 
-def fit(
-    clips: Sequence[Array], labels: Sequence[int], *, seed: int, epochs: int = 80, batch: int = 32
-) -> DeepGRU:
+def fit(clips: Sequence[Array], labels: Sequence[int], *, seed: int, epochs: int = 80, batch: int = 32) -> DeepGRU:
     """A classifier trained on clips (T_i, F) and their labels; eval mode.
 
     Every epoch sees the clips cut at random (80 % or more is kept), shifted and scaled a little.
@@ -131,9 +129,7 @@ def diversity_score(real: Array, made: Array) -> float:
     return 100 * abs(spread(real) - spread(made)) / spread(real)
 
 
-def measured(
-    network: DeepGRU, clips: Sequence[Array], labels: Sequence[int], real: Array
-) -> dict[str, float]:
+def measured(network: DeepGRU, clips: Sequence[Array], labels: Sequence[int], real: Array) -> dict[str, float]:
     """Accuracy, FVD and diversity of clips beside the deep features of recorded ones."""
     found = deep_features(network, clips)
     return {

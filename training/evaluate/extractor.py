@@ -120,9 +120,7 @@ def fit(scenes: Scenes, settings: Settings, cache: Path, *, device: str = "cpu")
     model = Extractor(settings, scenes.layout).to(device)
     model.mean.copy_(data.mean)
     model.std.copy_(data.std)
-    optimizer = torch.optim.AdamW(
-        model.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay
-    )
+    optimizer = torch.optim.AdamW(model.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay)
     schedule = torch.optim.lr_scheduler.OneCycleLR(
         optimizer, settings.learning_rate, total_steps=settings.steps, pct_start=0.05
     )
@@ -180,9 +178,7 @@ def main(argv: list[str] | None = None) -> int:
     options = parser.parse_args(argv)
     settings = Settings(steps=options.steps, batch=options.batch, seed=options.seed)
     return exit_code(
-        lambda: save(
-            fit(load(options.scenes), settings, options.out.parent, device=options.device), options.out
-        )
+        lambda: save(fit(load(options.scenes), settings, options.out.parent, device=options.device), options.out)
     )
 
 

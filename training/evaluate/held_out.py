@@ -58,9 +58,7 @@ def errors(model: CompactInterGen, data: Data, kind: str, batches: int) -> Tenso
         batch = data.batch(step)
         cond = condition(model, batch)
         frames = batch.frame_mask.sum(1).int().tolist()
-        known = known_parts(
-            model.control(batch.x0), frames, [0] * len(frames), layout, GIVEN[kind], seeded(step, 1)
-        )
+        known = known_parts(model.control(batch.x0), frames, [0] * len(frames), layout, GIVEN[kind], seeded(step, 1))
         hold = None if known is None else Hold(known, layout, model.mean, model.std)
         seen = {"known": hold.features} if hold is not None and model.reads_known else {}
         noise = torch.randn(batch.x0.shape, generator=seeded(step, 2))
@@ -82,17 +80,11 @@ def of_test_split(scenes: Scenes) -> Scenes:
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    parser = argparse.ArgumentParser(
-        description="Compare networks by their errors on scenes of the test split."
-    )
+    parser = argparse.ArgumentParser(description="Compare networks by their errors on scenes of the test split.")
     add_options(parser, "scenes")
-    parser.add_argument(
-        "--cache", type=Path, required=True, help="folder that keeps the features of sentences"
-    )
+    parser.add_argument("--cache", type=Path, required=True, help="folder that keeps the features of sentences")
     parser.add_argument("--models", type=Path, nargs="+", required=True, help="weights folders or runs")
-    parser.add_argument(
-        "--given", nargs="+", choices=GIVEN, default=["nothing"], help="what is given (nothing)"
-    )
+    parser.add_argument("--given", nargs="+", choices=GIVEN, default=["nothing"], help="what is given (nothing)")
     parser.add_argument("--alone", action="store_true", help="read the sentences for each person, too")
     parser.add_argument("--batches", type=int, default=4, help="of 16 scenes (4)")
     options = parser.parse_args(argv)

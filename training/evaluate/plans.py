@@ -83,9 +83,7 @@ def read_plans(path: Path) -> tuple[Reading, ...]:
             acts = tuple(_act(act) for act in row["acts"])
             found.append(Reading(row["id"], row["words"], acts, tuple(row.get("unread", ())), sealed))
         except (KeyError, TypeError, AttributeError):
-            raise InputError(
-                f"Reading {row.get('id')} of {path.name} has a field that cannot be used."
-            ) from None
+            raise InputError(f"Reading {row.get('id')} of {path.name} has a field that cannot be used.") from None
     return tuple(found)
 
 

@@ -65,9 +65,6 @@ def average(scores: list[Scores]) -> Scores:
     """The mean over actions, each with the same weight, as in the papers' tables."""
     return Scores(
         sum(s.windows for s in scores),
-        *(
-            np.mean([getattr(s, name) for s in scores], axis=0)
-            for name in ("error", "rms", "speed", "true_speed")
-        ),
+        *(np.mean([getattr(s, name) for s in scores], axis=0) for name in ("error", "rms", "speed", "true_speed")),
         float(np.mean([s.seam for s in scores])),
     )

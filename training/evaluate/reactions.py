@@ -71,9 +71,7 @@ SENTENCES = {
     "walking": "One person walks and the other stands still.",
 }
 """What the actor, named first, and the reactor do, by class. *Meet* and *part* are of the filtered pairs."""
-CLASS_TOLD = {
-    f"{name}, class told": chosen for name, chosen in METHODS.items() if chosen["model"] == "regennet"
-}
+CLASS_TOLD = {f"{name}, class told": chosen for name, chosen in METHODS.items() if chosen["model"] == "regennet"}
 """Request fields of ReGenNet with the sentence of a clip's class, at the page's guidance scale."""
 DATASETS = {"sbu": "SBU", "k3hi": "K3HI"}
 STRIDE = 2
@@ -132,9 +130,7 @@ def seen(person: Array) -> Array:
     return person[::STRIDE].reshape(-1, 66)
 
 
-def recorded(
-    data: Path, cache: Path | None, dataset: str
-) -> tuple[list[Reaction], list[Reaction], list[str]]:
+def recorded(data: Path, cache: Path | None, dataset: str) -> tuple[list[Reaction], list[Reaction], list[str]]:
     """Training and test pairs of a data set, and its classes."""
     scenes = [
         scene
@@ -152,9 +148,7 @@ def recorded(
     return kinds[True], kinds[False], classes
 
 
-def strictly(
-    data: Path, cache: Path | None, dataset: str
-) -> tuple[list[Reaction], list[Reaction], list[str]]:
+def strictly(data: Path, cache: Path | None, dataset: str) -> tuple[list[Reaction], list[Reaction], list[str]]:
     """Every listed training and test pair of a data set, and its classes."""
     pairs = [pair for pair in strict_pairs(data, cache) if pair.dataset == dataset]
     classes = sorted({pair.label for pair in pairs})
@@ -251,8 +245,7 @@ def table(scores: dict[str, Any]) -> str:
             f"## {DATASETS[dataset]}: {found['train']} training and {found['test']} test clips, "
             f"{len(found['classes'])} classes",
             "",
-            "| Method | Accuracy % | FVD | Diversity %, 0 is best | "
-            f"{' | '.join(head for _, head in READOUTS)} |",
+            f"| Method | Accuracy % | FVD | Diversity %, 0 is best | {' | '.join(head for _, head in READOUTS)} |",
             f"|---|---|---|---{'|---' * len(READOUTS)}|",
         ]
         for method, values in found["scores"].items():

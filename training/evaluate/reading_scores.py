@@ -97,9 +97,7 @@ def _same(expected: Expected, act: Act, plan: Plan) -> bool:
 
 def _verb_of(phrase: str) -> set[str]:
     tokens = parse(f"They {phrase}.")
-    return {tokens[1].lemma_.lower(), phrase.split()[0].lower()} | (
-        {phrase.split()[-1]} if " " in phrase else set()
-    )
+    return {tokens[1].lemma_.lower(), phrase.split()[0].lower()} | ({phrase.split()[-1]} if " " in phrase else set())
 
 
 def _verbs(act: Act, plan: Plan) -> set[str]:

@@ -77,9 +77,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         if self.latent_dim % 16 or self.latent_dim % self.num_heads:
-            raise InputError(
-                f"latent_dim {self.latent_dim} must be a multiple of 16 and of {self.num_heads} heads."
-            )
+            raise InputError(f"latent_dim {self.latent_dim} must be a multiple of 16 and of {self.num_heads} heads.")
         if self.graph not in ("bipartite", "simple", "none"):
             raise InputError(f"graph is {self.graph!r:.40}: give bipartite, simple or none.")
 
@@ -93,8 +91,7 @@ def of_classes(scenes: Scenes) -> Scenes:
     rows = [
         row
         for row in scenes.rows
-        if (row.get("label") or row.get("class"))
-        and sum(not beat["minor"] for beat in row.get("beats") or ()) <= 1
+        if (row.get("label") or row.get("class")) and sum(not beat["minor"] for beat in row.get("beats") or ()) <= 1
     ]
     if not rows:
         raise InputError(

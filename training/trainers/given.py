@@ -67,12 +67,7 @@ class Draw:
 
 
 def known_parts(
-    control: Tensor,
-    frames: list[int],
-    past: list[int],
-    layout: TokenLayout,
-    shares: Shares,
-    generator: torch.Generator,
+    control: Tensor, frames: list[int], past: list[int], layout: TokenLayout, shares: Shares, generator: torch.Generator
 ) -> Known | None:
     """Draws the parts of each motion of a batch that are given.
 
@@ -213,6 +208,11 @@ def _kept(mask: Tensor, times: Tensor, joints: Iterable[int]) -> None:
 
 
 _KINDS = {
-    "person": _person, "past": _past, "span": _span, "poses": _poses, "path": _path, "joints": _joints,
+    "person": _person,
+    "past": _past,
+    "span": _span,
+    "poses": _poses,
+    "path": _path,
+    "joints": _joints,
     "staged": _staged,
-}  # fmt: skip
+}

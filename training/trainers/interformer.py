@@ -126,9 +126,7 @@ def _between(people: Array, times: Array) -> Array:
 def collate(scenes: Sequence[Array]) -> Batch:
     """A batch of 15 joints from scenes (2, T, 22, 3) at the network's rate, padded with their last poses."""
     longest = max(scene.shape[1] for scene in scenes)
-    padded = np.stack(
-        [np.pad(s, ((0, 0), (0, longest - s.shape[1]), (0, 0), (0, 0)), mode="edge") for s in scenes]
-    )
+    padded = np.stack([np.pad(s, ((0, 0), (0, longest - s.shape[1]), (0, 0), (0, 0)), mode="edge") for s in scenes])
     people = torch.from_numpy(padded[..., list(JOINTS_15), :]).float()
     lengths = torch.tensor([scene.shape[1] for scene in scenes])
     return Batch(people[:, 0], people[:, 1], torch.arange(longest) < lengths[:, None])
@@ -150,9 +148,7 @@ class Trainer(Loop):
 
     def __init__(self, scenes: Sequence[Array], settings: Settings, out: Path) -> None:
         if len(scenes) <= settings.hold:
-            raise InputError(
-                f"{len(scenes)} training pairs are too few to keep {settings.hold}: lower --hold."
-            )
+            raise InputError(f"{len(scenes)} training pairs are too few to keep {settings.hold}: lower --hold.")
         self.settings, self.out = settings, out
         out.mkdir(parents=True, exist_ok=True)
         torch.manual_seed(settings.seed)
@@ -171,9 +167,7 @@ class Trainer(Loop):
         self.optimizer = torch.optim.AdamW(
             self.trained(), lr=settings.learning_rate, weight_decay=settings.weight_decay
         )
-        weights = [
-            next((w for part, w in _IMPORTANCE.items() if part in name), 1.0) for name in SBU15.joint_names
-        ]
+        weights = [next((w for part, w in _IMPORTANCE.items() if part in name), 1.0) for name in SBU15.joint_names]
         self.importance = torch.tensor(weights) / np.mean(weights)
         self.restore(asdict(settings))
 
@@ -248,9 +242,7 @@ class Trainer(Loop):
         noise = torch.randn(s.tries * size, self.model.config.noise, generator=generator)
         actor, mask = actor.repeat(s.tries, 1, 1, 1), batch.mask.repeat(s.tries, 1)
         self.model.eval()
-        made = ReactionDecoder(self.model).react(
-            actor, batch.reactor[:, 0].repeat(s.tries, 1, 1), noise, mask
-        )
+        made = ReactionDecoder(self.model).react(actor, batch.reactor[:, 0].repeat(s.tries, 1, 1), noise, mask)
         self.model.train()
         made = made.unflatten(0, (s.tries, size))
         error = ((made - batch.reactor).square().sum(-1) * self.importance).mean(-1)
@@ -316,13 +308,9 @@ class Trainer(Loop):
         if not self.held:
             return {}
         batch = collate([scene[:, ::2][:, : self.settings.window] for scene in self.held])
-        noise = torch.randn(
-            8, len(self.held), self.ema.config.noise, generator=torch.Generator().manual_seed(1)
-        )
+        noise = torch.randn(8, len(self.held), self.ema.config.noise, generator=torch.Generator().manual_seed(1))
         decoder = ReactionDecoder(self.ema)
-        made = torch.stack(
-            [decoder.react(batch.actor, batch.reactor[:, 0], one, batch.mask) for one in noise]
-        )
+        made = torch.stack([decoder.react(batch.actor, batch.reactor[:, 0], one, batch.mask) for one in noise])
         still = batch.reactor[:, :1].expand_as(batch.reactor)
 
         def distance(people: Tensor) -> Tensor:

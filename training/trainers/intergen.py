@@ -148,9 +148,7 @@ class Trainer(Loop):
         """The given parts of each motion, drawn by the settings' shares."""
         control = self.data.control(batch.x0)
         frames = batch.frame_mask.sum(1).int().tolist()
-        return known_parts(
-            control, frames, batch.past.tolist(), self.scenes.layout, self.settings.given, generator
-        )
+        return known_parts(control, frames, batch.past.tolist(), self.scenes.layout, self.settings.given, generator)
 
     def hold(self, known: Known | None) -> Hold | Held | None:
         """The given parts, to be written into motions, in the form that suits the device."""
@@ -222,9 +220,7 @@ def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train the compact InterGen on prepared scenes.")
     add_options(parser, "scenes", "threads", "device", "workers")
-    parser.add_argument(
-        "--init", type=Path, help="begin with another run's last.safetensors, or a shipped folder"
-    )
+    parser.add_argument("--init", type=Path, help="begin with another run's last.safetensors, or a shipped folder")
     parser.add_argument(
         "--sheets", type=float, default=20.0, help="minutes between contact sheets of samples; 0: none (20)"
     )
@@ -241,12 +237,7 @@ def _run(options: argparse.Namespace) -> None:
     if settings.staged:
         settings = replace(settings, given=AS_STAGED)
     trainer = Trainer(
-        load(options.scenes),
-        settings,
-        options.out,
-        init=options.init,
-        device=options.device,
-        workers=options.workers,
+        load(options.scenes), settings, options.out, init=options.init, device=options.device, workers=options.workers
     )
     if options.compile:
         trainer.model.denoiser.compile(dynamic=True)

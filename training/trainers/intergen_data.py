@@ -187,9 +187,7 @@ class Data:
 
     captions: CaptionFeatures | CaptionTokens
 
-    def __init__(
-        self, scenes: Scenes, settings: Settings, cache: Path, device: str, *, captions: bool = True
-    ) -> None:
+    def __init__(self, scenes: Scenes, settings: Settings, cache: Path, device: str, *, captions: bool = True) -> None:
         self.scenes, self.settings, self.device = scenes, settings, device
         self.rows = balanced(scenes.split("train"))
         if len(self.rows) < settings.batch:

@@ -105,15 +105,7 @@ class Settings:
     def __post_init__(self) -> None:
         if self.width % 8 or self.width < 32:
             raise InputError(f"width is {self.width}: give a multiple of 8, 32 or more.")
-        least = {
-            "past": 2,
-            "future": 2,
-            "fc": 2,
-            "batch": 2,
-            "critic_steps": 1,
-            "critic_stride": 1,
-            "groups": 1,
-        }
+        least = {"past": 2, "future": 2, "fc": 2, "batch": 2, "critic_steps": 1, "critic_stride": 1, "groups": 1}
         for name, number in least.items():
             if getattr(self, name) < number:
                 raise InputError(f"{name} is {getattr(self, name)}: give {number} or more.")
@@ -129,26 +121,48 @@ class Settings:
     def network(self, joints: int) -> MAWGANConfig:
         """The sizes of predictor and critic."""
         return MAWGANConfig(
-            joints, self.past, self.future, self.fc,
+            joints,
+            self.past,
+            self.future,
+            self.fc,
             channels=tuple(self.width >> i for i in range(4)),
             critic=tuple(self.width // 8 >> i for i in range(3)),
-            critic_fc=self.critic_fc, critic_stride=self.critic_stride,
-            linear=self.linear, length=self.length, pose=self.pose,
-            coefficients=self.coefficients, shortcut=self.shortcut, dropout=self.dropout,
-        )  # fmt: skip
+            critic_fc=self.critic_fc,
+            critic_stride=self.critic_stride,
+            linear=self.linear,
+            length=self.length,
+            pose=self.pose,
+            coefficients=self.coefficients,
+            shortcut=self.shortcut,
+            dropout=self.dropout,
+        )
 
     def weights(self) -> MAWGANLossWeights:
         """The weights of the losses."""
         return MAWGANLossWeights(
-            self.adversarial, self.reconstruction, self.skeleton, self.bone, self.gradient_penalty,
-            self.position, self.speed,
-        )  # fmt: skip
+            self.adversarial,
+            self.reconstruction,
+            self.skeleton,
+            self.bone,
+            self.gradient_penalty,
+            self.position,
+            self.speed,
+        )
 
 
 LEAN = {
-    "fc": 1024, "width": 32, "critic_fc": 128, "critic_steps": 1, "learning_rate": 1e-3, "final_rate": 0.02,
-    "ema": 0.995, "position": 100.0, "linear": True, "length": True, "steps": 1500,
-}  # fmt: skip
+    "fc": 1024,
+    "width": 32,
+    "critic_fc": 128,
+    "critic_steps": 1,
+    "learning_rate": 1e-3,
+    "final_rate": 0.02,
+    "ema": 0.995,
+    "position": 100.0,
+    "linear": True,
+    "length": True,
+    "steps": 1500,
+}
 """Settings of a run that a share of one CPU core finishes in an hour."""
 
 
@@ -175,9 +189,7 @@ class Trainer(PredictionTrainer):
             network.generator.convolutions = s.convolutions
         self.ema.requires_grad_(False)
         self.optimizer, self.critic_optimizer = (
-            torch.optim.AdamW(
-                part.parameters(), lr=s.learning_rate, betas=(0.5, 0.9), weight_decay=decay, fused=True
-            )
+            torch.optim.AdamW(part.parameters(), lr=s.learning_rate, betas=(0.5, 0.9), weight_decay=decay, fused=True)
             for part, decay in ((self.model, s.weight_decay), (self.critic, 0.0))
         )
 
@@ -199,9 +211,12 @@ class Trainer(PredictionTrainer):
     def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
         """The contents of a checkpoint, by name."""
         return {
-            "model": self.model, "ema": self.ema, "critic": self.critic,
-            "optimizer": self.optimizer, "critic_optimizer": self.critic_optimizer,
-        }  # fmt: skip
+            "model": self.model,
+            "ema": self.ema,
+            "critic": self.critic,
+            "optimizer": self.optimizer,
+            "critic_optimizer": self.critic_optimizer,
+        }
 
     def curves(self, windows: Tensor) -> tuple[Tensor, Tensor]:
         """Past (B, past, D), and the future with the last pose before it (B, future + 1, D)."""
@@ -309,9 +324,13 @@ class Trainer(PredictionTrainer):
     def export(self, folder: Path) -> None:
         """Writes the averaged predictor as a predictor's folder."""
         save_predictor(
-            folder, self.ema, kind="mawgan", fps=self.windows.fps, bones=self.windows.bones,
+            folder,
+            self.ema,
+            kind="mawgan",
+            fps=self.windows.fps,
+            bones=self.windows.bones,
             training={**asdict(self.settings), "steps": self.step, "init": Path(self.settings.init).name},
-        )  # fmt: skip
+        )
 
 
 _STILL = 1e-3

@@ -118,9 +118,15 @@ class Trainer(PredictionTrainer):
         """Makes the network, its average and the optimizers."""
         s = self.settings
         config = MotionMLPConfig(
-            self.windows.joints, s.past, s.future, s.past_coefficients, s.future_coefficients, s.width,
-            s.blocks, s.dropout,
-        )  # fmt: skip
+            self.windows.joints,
+            s.past,
+            s.future,
+            s.past_coefficients,
+            s.future_coefficients,
+            s.width,
+            s.blocks,
+            s.dropout,
+        )
         self.model, self.ema = (MotionMLP(config).to(self.device) for _ in range(2))
         self.ema.eval()
         if s.init:
@@ -173,9 +179,13 @@ class Trainer(PredictionTrainer):
     def export(self, folder: Path) -> None:
         """Writes the averaged network as a predictor's folder."""
         save_predictor(
-            folder, self.ema, kind="mlp", fps=self.windows.fps, bones=self.windows.bones,
+            folder,
+            self.ema,
+            kind="mlp",
+            fps=self.windows.fps,
+            bones=self.windows.bones,
             training={**asdict(self.settings), "steps": self.step, "init": Path(self.settings.init).name},
-        )  # fmt: skip
+        )
 
 
 def add_predictor_options(parser: argparse.ArgumentParser, settings: type) -> None:

@@ -147,9 +147,7 @@ def distance_loss(predicted: Tensor, reactor: Tensor, actor: Tensor, mask: Tenso
     return masked_mean(error.sum((-1, -2)) / (true < NEAR).sum((-1, -2)).clamp_min(1), mask)
 
 
-def motion_losses(
-    predicted: Tensor, wanted: Tensor, actor: Tensor, mask: Tensor, stands: Tensor
-) -> dict[str, Tensor]:
+def motion_losses(predicted: Tensor, wanted: Tensor, actor: Tensor, mask: Tensor, stands: Tensor) -> dict[str, Tensor]:
     """The losses on positions, not weighted, each (B,).
 
     Args:
@@ -225,9 +223,7 @@ class Trainer(Loop):
             seed=settings.seed,
             device=device,
         )
-        self.conditions = Conditions(
-            self.data.captions(), conditioner.to(device), out, source.digest, device=device
-        )
+        self.conditions = Conditions(self.data.captions(), conditioner.to(device), out, source.digest, device=device)
         self.model = CompactReGenNet(self.config)
         if init is None:
             self.model.conditioner.load_state_dict(conditioner.state_dict())
@@ -284,9 +280,7 @@ class Trainer(Loop):
             made: Tensor = self.model(x, t, causal=causal, **seen)
         return made.float()
 
-    def past(
-        self, x0: Tensor, batch: Batch, seen: dict[str, Tensor], share: float, generator: torch.Generator
-    ) -> Past:
+    def past(self, x0: Tensor, batch: Batch, seen: dict[str, Tensor], share: float, generator: torch.Generator) -> Past:
         """The noised motion of a batch, with a past of the network's own for a share of the scenes."""
         s = self.settings
         t = draw_timesteps(len(x0), self.schedule.timesteps, s.noisiest, generator).to(self.device)
@@ -316,16 +310,13 @@ class Trainer(Loop):
 
         # A knot is where three control points meet: of those that are past, it takes the network's own.
         rows = past.learned[..., None]
-        full, wanted = (
-            torch.where(rows, x, past.past) * model.std + model.mean for x in (predicted, past.wanted)
-        )
+        full, wanted = (torch.where(rows, x, past.past) * model.std + model.mean for x in (predicted, past.wanted))
         mask = learned[:, 2:]
         early = past.t <= s.t_bar * self.schedule.timesteps
         stands = batch.reactor[:, 2:, -NUM_CONTACTS:] > 0.5
         losses = motion_losses(full, wanted, knot_positions(batch.actor), mask, stands)
         return terms | {
-            name: getattr(s, name) * (value * early).sum() / early.sum().clamp_min(1)
-            for name, value in losses.items()
+            name: getattr(s, name) * (value * early).sum() / early.sum().clamp_min(1) for name, value in losses.items()
         }, past.used.float().mean()
 
     def train_step(self) -> dict[str, float]:
@@ -345,9 +336,11 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train the compact ReGenNet on prepared scenes.")
     add_options(parser, "scenes", "threads", "device")
     parser.add_argument(
-        "--words", type=Path, default=Path("models/weights/intergen"),
+        "--words",
+        type=Path,
+        default=Path("models/weights/intergen"),
         help="a shipped InterGen, whose text conditioner is taken over",
-    )  # fmt: skip
+    )
     parser.add_argument("--init", type=Path, help="begin with a shipped ReGenNet, its words and all")
     parser.add_argument("--export", type=Path, help="after that, write the averaged weights to this folder")
     add_run_options(parser, Settings)

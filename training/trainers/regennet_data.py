@@ -48,13 +48,7 @@ class Conditions:
     """
 
     def __init__(
-        self,
-        captions: list[str],
-        conditioner: torch.nn.Module,
-        cache: Path,
-        digest: str,
-        *,
-        device: str = "cpu",
+        self, captions: list[str], conditioner: torch.nn.Module, cache: Path, digest: str, *, device: str = "cpu"
     ) -> None:
         named = hashlib.sha256("\n".join([digest, *captions]).encode()).hexdigest()[:16]
         path = cache / f"conditions_{named}.safetensors"
@@ -199,6 +193,4 @@ class Data:
         people = torch.where(flipped, mirror_control(people, SMPL22.mirror), people)
         people = torch.where(begun, at_the_origin(people), people)
         actor, reactor = people.unbind(1)
-        return Batch(
-            reactor, actor, mask.to(self.device), known.batch(words), crop.to(self.device), knots - left_out
-        )
+        return Batch(reactor, actor, mask.to(self.device), known.batch(words), crop.to(self.device), knots - left_out)

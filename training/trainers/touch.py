@@ -107,12 +107,8 @@ def with_touches(model: Network, scenes: Scenes) -> tuple[Network, float]:
         return result, float((reader(inputs).argmax(-1) == labels).float().mean())
 
 
-def _tensors(
-    model: CompactInterGen | CompactReGenNet, found: list[tuple[str, Touch]]
-) -> tuple[Tensor, Tensor]:
+def _tensors(model: CompactInterGen | CompactReGenNet, found: list[tuple[str, Touch]]) -> tuple[Tensor, Tensor]:
     reader = model.touch_reader
     assert reader is not None
     kept = [(caption, reader.touches.index(t)) for caption, t in found if t in reader.touches]
-    return conditions(model.conditioner, [caption for caption, _ in kept]), torch.tensor(
-        [label for _, label in kept]
-    )
+    return conditions(model.conditioner, [caption for caption, _ in kept]), torch.tensor([label for _, label in kept])

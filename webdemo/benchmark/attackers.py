@@ -68,21 +68,7 @@ async def _fill(client: httpx.AsyncClient, counts: Counter[str]) -> None:
     """Sends contact sheets and generations, of which nobody fetches the results."""
     sent = await client.post("gradio_api/upload", files={"files": (Path(_HANDS).name, _HANDS.read_bytes())})
     file = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}
-    sheet = [
-        file,
-        *["png", "bodies", "light", "threequarter"],
-        False,
-        24,
-        640,
-        360,
-        None,
-        "",
-        0,
-        0,
-        False,
-        "",
-        "",
-    ]
+    sheet = [file, *["png", "bodies", "light", "threequarter"], False, 24, 640, 360, None, "", 0, 0, False, "", ""]
     run = ["Two people dance together.", 5, 0, 2, 3, 20, 0.7, "ddim", "intergen", 1]
 
     async def ask(i: int) -> None:
@@ -189,14 +175,7 @@ async def _send_large(client: httpx.AsyncClient, counts: Counter[str]) -> None:
 def _large_trc() -> bytes:
     """Markers of a still body and 160 points beside it, in 30,000 frames."""
     pose = read_actor(_WAVE, person="a")[0]
-    parts = {
-        "hip": "Hip",
-        "knee": "Knee",
-        "ankle": "Ankle",
-        "shoulder": "Shoulder",
-        "elbow": "Elbow",
-        "wrist": "Wrist",
-    }
+    parts = {"hip": "Hip", "knee": "Knee", "ankle": "Ankle", "shoulder": "Shoulder", "elbow": "Elbow", "wrist": "Wrist"}
     joints = dict(zip(pose.skeleton.joint_names, pose.positions[0], strict=True))
     points = {
         f"{side[0].upper()}{name}": joints[f"{side}_{part}"]

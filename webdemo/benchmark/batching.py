@@ -15,9 +15,7 @@ BATCHED_GOAL = 1.8
 """Throughput of eight requests of four seconds that share passes, over that of the same in turn."""
 
 
-def measure_batching(
-    *, requests: int = 8, steps: int = 50, seconds: float = 4.0, repeats: int = 3
-) -> dict[str, float]:
+def measure_batching(*, requests: int = 8, steps: int = 50, seconds: float = 4.0, repeats: int = 3) -> dict[str, float]:
     """Throughput of requests that share passes over that of the same requests in turn, and the largest difference
     of their motions. Both run alternately ``repeats`` times, and the figures are medians. The ratio is also given by
     processor time, which other work on the machine does not change."""
@@ -50,11 +48,11 @@ def measure_batching(
         "batched_seconds": batched,
         "batched_over_serial_throughput": statistics.median(t[0] / t[2] for t in times),
         "batched_over_serial_by_processor_time": statistics.median(t[1] / t[3] for t in times),
-        "batched_largest_difference_mm": 1000 * max(
-            float(np.abs(together[i].duets[0].positions - alone[i].duets[0].positions).max())
-            for i in range(requests)
+        "batched_largest_difference_mm": 1000
+        * max(
+            float(np.abs(together[i].duets[0].positions - alone[i].duets[0].positions).max()) for i in range(requests)
         ),
-    }  # fmt: skip
+    }
     return figures
 
 

@@ -23,8 +23,14 @@ from motion import InputError
 
 ROOT = Path(__file__).resolve().parents[2]
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
-SOFTWARE_GL = ("--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader",
-               "--enable-unsafe-swiftshader", "--disable-background-networking")  # fmt: skip
+SOFTWARE_GL = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+)
 STAGE = (960, 640)
 PROMPT = "Two people walk up to each other and shake hands."
 LONGEST_START = 120.0
@@ -155,11 +161,7 @@ def _served() -> Iterator[tuple[str, int]]:
         "PASDEDEUX_DATA": data.name,
     }
     server = subprocess.Popen(
-        [sys.executable, "app.py"],
-        cwd=ROOT,
-        env=environment,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
+        [sys.executable, "app.py"], cwd=ROOT, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )
     url = f"http://127.0.0.1:{port}/"
     try:
@@ -266,9 +268,7 @@ def _wait_for_a_long_run(page: Any, browser: Any) -> float:
     page.wait_for_timeout(1000)
     share = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
     if not stop.count():
-        raise InputError(
-            "The run ended before the waiting page was measured: this machine is too fast for it."
-        )
+        raise InputError("The run ended before the waiting page was measured: this machine is too fast for it.")
     stop.click()  # to its end it would take a minute or more on two cores
     page.locator("button#generate:enabled").wait_for(timeout=1000 * LONGEST_RUN)
     return share

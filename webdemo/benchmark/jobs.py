@@ -40,12 +40,13 @@ class Job:
 
 def _generation(dice: random.Random, steps: int) -> Job:
     r = GenerateRequest(
-        prompt=dice.choice(PROMPTS), seconds=dice.choice((2.0, 4.0, 5.0)), seed=dice.randrange(2**32),
-        samples=dice.choice((1, 1, 1, 2)), steps=dice.choice((max(steps // 2, 1), steps)),
-    )  # fmt: skip
-    run = (
-        r.prompt, r.seconds, r.seed, r.samples, r.guidance, r.steps, r.damping, r.sampler, r.model, r.tries
-    )  # fmt: skip
+        prompt=dice.choice(PROMPTS),
+        seconds=dice.choice((2.0, 4.0, 5.0)),
+        seed=dice.randrange(2**32),
+        samples=dice.choice((1, 1, 1, 2)),
+        steps=dice.choice((max(steps // 2, 1), steps)),
+    )
+    run = (r.prompt, r.seconds, r.seed, r.samples, r.guidance, r.steps, r.damping, r.sampler, r.model, r.tries)
     return Job("generate", run, json.loads(json.dumps(r.to_dict())), units(r))
 
 

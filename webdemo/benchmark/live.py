@@ -114,9 +114,7 @@ async def _person(client: httpx.AsyncClient, poses: np.ndarray, seconds: float, 
         if len(frames):
             data = base64.b64encode(poses[frames % len(poses)].tobytes()).decode()
             asked = time.monotonic()
-            answer = await client.post(
-                address, json={"times": (frames / FPS).tolist(), "poses": data}, headers=cookies
-            )
+            answer = await client.post(address, json={"times": (frames / FPS).tolist(), "poses": data}, headers=cookies)
             person.delays.append(time.monotonic() - asked)
             if answer.status_code != 200:
                 raise InputError(f"A live stream broke off: {answer.text}")

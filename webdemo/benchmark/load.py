@@ -139,9 +139,7 @@ def attacked_figures(calm: Tally, attacked: Tally, people: int) -> dict[str, Any
     for person, kinds in attacked.kinds.items():
         known = {endpoint: waits for endpoint, waits in kinds.items() if endpoint in usual}
         waited = sum(took for waits in known.values() for took, _ in waits)
-        fair = sum(
-            work * seconds_a_unit(usual[endpoint]) for endpoint, waits in known.items() for _, work in waits
-        )
+        fair = sum(work * seconds_a_unit(usual[endpoint]) for endpoint, waits in known.items() for _, work in waits)
         if known:
             ratios[person] = waited / fair / more
     figures: dict[str, Any] = {
@@ -171,9 +169,7 @@ def attacked_figures(calm: Tally, attacked: Tally, people: int) -> dict[str, Any
 def goals_missed(figures: Mapping[str, Any]) -> list[str]:
     """The names of the :data:`GOALS` that the figures miss, or that were not measured."""
     return [
-        name
-        for name, (least, most) in GOALS.items()
-        if figures.get(name) is None or not least <= figures[name] <= most
+        name for name, (least, most) in GOALS.items() if figures.get(name) is None or not least <= figures[name] <= most
     ]
 
 
@@ -231,9 +227,7 @@ async def _load(
     }
 
 
-async def _crowd(
-    client: httpx.AsyncClient, tally: Tally, people: int, seconds: float, steps: int, seed: str
-) -> float:
+async def _crowd(client: httpx.AsyncClient, tally: Tally, people: int, seconds: float, steps: int, seed: str) -> float:
     """Many people at once, and one more with a live stream; returns the seconds until the last of them is done."""
     began = time.monotonic()
     probe = asyncio.create_task(_probe(client, tally))
@@ -295,8 +289,7 @@ async def _ask(client: httpx.AsyncClient, cookies: dict[str, str], job: Job) -> 
     try:
         data = list(job.data)
         if None in data:
-            sent = await client.post(f"{_API}/upload", files={"files": (CLIP.name, CLIP.read_bytes())},
-                                     headers=cookies)  # fmt: skip
+            sent = await client.post(f"{_API}/upload", files={"files": (CLIP.name, CLIP.read_bytes())}, headers=cookies)
             if sent.status_code != 200:
                 return "error", f"{sent.status_code} {sent.text}"
             data[data.index(None)] = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}

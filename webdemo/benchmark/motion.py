@@ -116,9 +116,7 @@ def _measured(duet: Duet, people: str = "ab") -> list[Naturalness]:
     return [naturalness(pair[i], duet.fps, pair[1 - i]) for i in ("ab".index(who) for who in people)]
 
 
-def _figures(
-    columns: Sequence[Sequence[Naturalness]], real: Mapping[str, float]
-) -> dict[str, dict[str, float]]:
+def _figures(columns: Sequence[Sequence[Naturalness]], real: Mapping[str, float]) -> dict[str, dict[str, float]]:
     return {
         measure: {
             **{name: _median(measure, found) for name, found in zip(COLUMNS, columns, strict=False)},

@@ -156,11 +156,7 @@ def measure_busy(run: Callable[[], Any], alone: float, repeats: int) -> dict[str
             run()
             times.append(time.perf_counter() - began)
     seconds = statistics.median(times)
-    return {
-        "busy_request_seconds": seconds,
-        "busy_request_seconds_goal": BUSY_GOAL,
-        "busy_over_alone": seconds / alone,
-    }
+    return {"busy_request_seconds": seconds, "busy_request_seconds_goal": BUSY_GOAL, "busy_over_alone": seconds / alone}
 
 
 @contextlib.contextmanager

@@ -22,9 +22,7 @@ class PlainSampler:
     prompt is encoded anew at every step: how the papers' equations read, and what the ratios are against.
     """
 
-    def __init__(
-        self, denoiser: InterGenDenoiser, pipeline: Any, request: Any, *, spacing: Spacing = "top"
-    ) -> None:
+    def __init__(self, denoiser: InterGenDenoiser, pipeline: Any, request: Any, *, spacing: Spacing = "top") -> None:
         self.denoiser, self.pipeline, self.request, self.spacing = denoiser, pipeline, request, spacing
 
     def run(self) -> Tensor:

@@ -44,14 +44,10 @@ def measure_released(name: str, *, seconds: float, steps: int, repeats: int) -> 
     ours: Any = engine.pipeline(name)
     entry = read_entries()[0].get(name)
     if entry is None or not isinstance(ours, ReleasedInterGenPipeline):
-        raise InputError(
-            f'{name} is no released InterGen of the settings: name one with method = "intergen".'
-        )
+        raise InputError(f'{name} is no released InterGen of the settings: name one with method = "intergen".')
     vocabulary = entry.file("vocabulary") if "vocabulary" in entry.files else find_vocabulary()
     whole = load_released(entry.file("checkpoint"), entry.file("mean"), entry.file("std"), vocabulary)
-    request = GenerateRequest(
-        prompt=PROMPT, seconds=seconds, steps=steps, model=name, guidance=3.5, cleanup=False
-    )
+    request = GenerateRequest(prompt=PROMPT, seconds=seconds, steps=steps, model=name, guidance=3.5, cleanup=False)
     plain = PlainSampler(whole.denoiser, ours, request, spacing=ours.spacing)
 
     def run_plain() -> None:

@@ -33,13 +33,9 @@ def serving(folder: Path, **settings: object) -> Iterator[tuple[str, subprocess.
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     chosen = {"host": "127.0.0.1", "port": port, "data": folder, "free_megabytes": 0, "log_level": "warning"}
-    env = os.environ | {
-        f"PASDEDEUX_{name.upper()}": str(value) for name, value in (chosen | settings).items()
-    }
+    env = os.environ | {f"PASDEDEUX_{name.upper()}": str(value) for name, value in (chosen | settings).items()}
     with open(folder / "log", "w", encoding="utf-8") as log:
-        server = subprocess.Popen(
-            [sys.executable, "app.py"], cwd=ROOT, env=env, stdout=subprocess.DEVNULL, stderr=log
-        )
+        server = subprocess.Popen([sys.executable, "app.py"], cwd=ROOT, env=env, stdout=subprocess.DEVNULL, stderr=log)
         try:
             yield f"http://127.0.0.1:{port}/", server
         finally:

@@ -38,9 +38,7 @@ def add_admin(commands: Any) -> None:
     parser.add_argument(
         "name", nargs="?", help="of the account; with announce: the line (empty: none); with end: the id"
     )
-    parser.add_argument(
-        "--megabytes", type=float, help="with room: the person's room; without it, everybody's"
-    )
+    parser.add_argument("--megabytes", type=float, help="with room: the person's room; without it, everybody's")
     parser.set_defaults(job=admin)
 
 
@@ -88,6 +86,4 @@ def _activity(activity: Activity, action: str, key: str) -> dict[str, Any]:
     if action == "jobs":
         return {"jobs": [asdict(item) for item in activity.items()]}
     states = activity.states()
-    return {
-        "processes": {node: {k: v for k, v in state.items() if k != "work"} for node, state in states.items()}
-    }
+    return {"processes": {node: {k: v for k, v in state.items() if k != "work"} for node, state in states.items()}}

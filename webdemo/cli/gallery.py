@@ -21,9 +21,12 @@ def add_gallery(commands: Any) -> None:
     """Adds ``gallery`` to the shell's commands."""
     parser = commands.add_parser("gallery", help="make the scenes of the page's examples anew")
     parser.add_argument(
-        "file", type=Path, nargs="?", default=Path("static/gallery/scenes.json"),
+        "file",
+        type=Path,
+        nargs="?",
+        default=Path("static/gallery/scenes.json"),
         help="JSON whose scenes have a prompt, seconds and a seed; it is written again",
-    )  # fmt: skip
+    )
     parser.add_argument("--sheets", type=Path, metavar="FOLDER", help="also draw a contact sheet of each")
     parser.set_defaults(job=gallery)
 
@@ -34,9 +37,7 @@ def gallery(options: argparse.Namespace) -> dict[str, Any]:
         scenes = json.loads(options.file.read_text(encoding="utf-8"))["scenes"]
         asked = [(str(each["prompt"]), float(each["seconds"]), int(each["seed"])) for each in scenes]
     except (OSError, ValueError, KeyError, TypeError):
-        raise InputError(
-            f"{options.file} holds no scenes: each needs a prompt, seconds and a seed."
-        ) from None
+        raise InputError(f"{options.file} holds no scenes: each needs a prompt, seconds and a seed.") from None
     made = [_made(*one, sheet=_sheet(options.sheets, i)) for i, one in enumerate(asked)]
     lines = ",\n".join(json.dumps(each, ensure_ascii=False) for each in made)
     write_text(options.file, f'{{"scenes": [\n{lines}\n]}}\n')

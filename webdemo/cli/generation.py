@@ -19,15 +19,7 @@ from webdemo.inference.methods import AUTOMATIC, automatic, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 
-from .parser import (
-    add_reading,
-    add_sampling,
-    add_tries,
-    names_of,
-    reading_choices,
-    sampling_fields,
-    with_notes,
-)
+from .parser import add_reading, add_sampling, add_tries, names_of, reading_choices, sampling_fields, with_notes
 from .running import check_out, run, write_result
 
 MOST_PLAN_BYTES = 200_000
@@ -51,9 +43,11 @@ def add_generate(commands: Any) -> None:
         help="do not read from the words where people go and whether they stand by, sit down or jump",
     )
     parser.add_argument(
-        "--thing", type=Path, metavar="FILE",
+        "--thing",
+        type=Path,
+        metavar="FILE",
         help="a .glb, .obj, .stl or .ply whose shape the first thing of the words has",
-    )  # fmt: skip
+    )
     add_sampling(parser, "generate")
     add_tries(parser, GenerateRequest.tries)
     parser.set_defaults(job=generate)
@@ -106,23 +100,20 @@ def add_react(commands: Any) -> None:
     parser.add_argument("--end", type=float, help="last second of the file to use; the end by default")
     parser.add_argument("--prompt", default=ReactRequest.prompt, help="what the two people do (optional)")
     parser.add_argument(
-        "--keep-start", action="store_true",
+        "--keep-start",
+        action="store_true",
         help="start the new person in the first pose of the file's other person (not intergen)",
-    )  # fmt: skip
+    )
+    parser.add_argument("--role", default=ReactRequest.role, help="whether the given person acts (a) or reacts (b)")
+    parser.add_argument("--mode", help="offline sees the whole motion; online (regennet) sees the frames so far")
     parser.add_argument(
-        "--role", default=ReactRequest.role, help="whether the given person acts (a) or reacts (b)"
+        "--stream", action="store_true", help="react online at the actor's pace and print each frame as a line of JSON"
     )
     parser.add_argument(
-        "--mode", help="offline sees the whole motion; online (regennet) sees the frames so far"
-    )
-    parser.add_argument(
-        "--stream", action="store_true",
-        help="react online at the actor's pace and print each frame as a line of JSON",
-    )  # fmt: skip
-    parser.add_argument(
-        "--own-rig", action="store_true",
+        "--own-rig",
+        action="store_true",
         help="of a .bvh or .glb: also the partner on that file's rig, as NAME_rig, in its unit and rest pose",
-    )  # fmt: skip
+    )
     add_sampling(parser, "react")
     parser.set_defaults(job=react)
 
@@ -131,9 +122,13 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
     """Runs a :class:`ReactRequest` on one person of a motion file and writes the duets."""
     check_out(options.out)
     actor, pose = read_actor(
-        options.actor, person=options.person, start=options.start, end=options.end,
-        keep_start=options.keep_start, choices=reading_choices(options),
-    )  # fmt: skip
+        options.actor,
+        person=options.person,
+        start=options.start,
+        end=options.end,
+        keep_start=options.keep_start,
+        choices=reading_choices(options),
+    )
     mode = options.mode or ("online" if options.stream else ReactRequest.mode)
     if options.model == AUTOMATIC:
         options.model = automatic(options.prompt, options.role, mode).name
@@ -190,12 +185,8 @@ def add_predict(commands: Any) -> None:
     parser.add_argument("--past", type=Path, required=True, help="the motion: .bvh, .glb, .npz …")
     add_reading(parser, "the past")
     parser.add_argument("--marker", type=float, help="second at which the past ends; the end by default")
-    parser.add_argument(
-        "--seconds", type=float, default=PredictRequest.seconds, help="how many seconds to predict"
-    )
-    parser.add_argument(
-        "--seed", type=int, default=PredictRequest.seed, help="of a method that draws its futures"
-    )
+    parser.add_argument("--seconds", type=float, default=PredictRequest.seconds, help="how many seconds to predict")
+    parser.add_argument("--seed", type=int, default=PredictRequest.seed, help="of a method that draws its futures")
     parser.add_argument("--model", default=PredictRequest.model, help=names_of("predict"))
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh …")
     parser.set_defaults(job=predict)
@@ -216,6 +207,4 @@ def predict(options: argparse.Namespace) -> dict[str, Any]:
     result = run(request)
     assert isinstance(result, PredictResult)
     figures = {name: getattr(result, name) for name in ("past_frames", "error", "speed", "true_speed")}
-    return with_notes(
-        write_result(result, options.out) | figures, options.past, options.animation, request.motion
-    )
+    return with_notes(write_result(result, options.out) | figures, options.past, options.animation, request.motion)

@@ -104,10 +104,17 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         write_text(options.out, json.dumps(scores, indent=1, ensure_ascii=False) + "\n")
     passed, count = scores["tags"][ALL]
     return {
-        "model": found.name, "sentences": len(sentences), "motions": sum(map(len, duets)), "passed": passed,
-        "judged": count, "tags": scores["tags"], "any": scores["any"], "conditions": scores["conditions"],
-        "physical": scores["physical"], "files": [] if options.out is None else [str(options.out)],
-    }  # fmt: skip
+        "model": found.name,
+        "sentences": len(sentences),
+        "motions": sum(map(len, duets)),
+        "passed": passed,
+        "judged": count,
+        "tags": scores["tags"],
+        "any": scores["any"],
+        "conditions": scores["conditions"],
+        "physical": scores["physical"],
+        "files": [] if options.out is None else [str(options.out)],
+    }
 
 
 def silence(pipeline: Any) -> None:
@@ -138,9 +145,7 @@ def _check(found: Method) -> None:
     if "class" in found.takes:
         raise InputError(f"{found.label} takes the name of a class, not a sentence: choose another model.")
     if not {"generate", "react"} & set(found.tasks):
-        raise InputError(
-            f"{found.label} predicts and takes no sentence: choose a model that generates or reacts."
-        )
+        raise InputError(f"{found.label} predicts and takes no sentence: choose a model that generates or reacts.")
 
 
 def _folder(folder: Path | None, scoring: Scoring, digest: str) -> Motions | None:
@@ -158,10 +163,7 @@ def _motion(engine: Any, scoring: Scoring, sentence: Sentence, seed: int, kept: 
     found, actor = method(scoring.model), None
     if "generate" not in found.tasks:  # the actor is person a of the default model's motion of the sentence
         default = Scoring(
-            SamplingRequest.model,
-            method(SamplingRequest.model).steps,
-            SamplingRequest.guidance,
-            scoring.damping,
+            SamplingRequest.model, method(SamplingRequest.model).steps, SamplingRequest.guidance, scoring.damping
         )
         actor = _made(engine, default.request(sentence, seed, None))
     duet = _made(engine, scoring.request(sentence, seed, actor))

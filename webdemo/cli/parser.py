@@ -32,22 +32,22 @@ def names_of(task: Task) -> str:
 def add_reading(parser: argparse.ArgumentParser, of: str) -> None:
     """The options that say what is known of a motion file; ``of`` is the argument that names it."""
     parser.add_argument(
-        "--animation", metavar="NAME", help=f"of a .glb with several, the animation of {of} to read: name or number, "
-        "from 1; the first by default",
-    )  # fmt: skip
-    parser.add_argument(
-        "--file-fps", type=float, metavar="FPS", help="true frames a second of a file that gives none, such "
-        "as InterHuman's .npy (30 by default) or Inter-X' .npz (120), or gives a wrong one",
-    )  # fmt: skip
-    parser.add_argument(
-        "--file-up",
-        metavar="AXIS",
-        help=f"what points up in the file, where that is not found: {', '.join(AXES)}",
+        "--animation",
+        metavar="NAME",
+        help=f"of a .glb with several, the animation of {of} to read: name or number, from 1; the first by default",
     )
     parser.add_argument(
-        "--file-order",
-        metavar="ORDER",
-        help=f"order of joints without names: {', '.join(ORDERS)}; found by default",
+        "--file-fps",
+        type=float,
+        metavar="FPS",
+        help="true frames a second of a file that gives none, such "
+        "as InterHuman's .npy (30 by default) or Inter-X' .npz (120), or gives a wrong one",
+    )
+    parser.add_argument(
+        "--file-up", metavar="AXIS", help=f"what points up in the file, where that is not found: {', '.join(AXES)}"
+    )
+    parser.add_argument(
+        "--file-order", metavar="ORDER", help=f"order of joints without names: {', '.join(ORDERS)}; found by default"
     )
 
 
@@ -76,27 +76,24 @@ def add_sampling(parser: argparse.ArgumentParser, task: Task) -> None:
     default = {field.name: field.default for field in fields(asked)}
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
     parser.add_argument("--seed", type=int, default=default["seed"])
-    parser.add_argument(
-        "--samples", type=int, default=default["samples"], help="how many motions to generate"
-    )
-    parser.add_argument(
-        "--guidance", type=float, help="guidance scale s; the model's own default if not given"
-    )
+    parser.add_argument("--samples", type=int, default=default["samples"], help="how many motions to generate")
+    parser.add_argument("--guidance", type=float, help="guidance scale s; the model's own default if not given")
     parser.add_argument("--steps", type=int, help="denoising steps; the model's own default if not given")
     parser.add_argument("--damping", type=float, default=default["damping"], help="damping threshold, 0 to 1")
     parser.add_argument("--sampler", default=default["sampler"], help="ddim or dpm++")
     parser.add_argument("--model", default=default["model"], help=names_of(task))
-    parser.add_argument(
-        "--no-cleanup", action="store_true", help="keep bones and feet as the network outputs them"
-    )
+    parser.add_argument("--no-cleanup", action="store_true", help="keep bones and feet as the network outputs them")
 
 
 def add_tries(parser: argparse.ArgumentParser, default: int | None = None) -> None:
     """The option that tries further seeds; without a ``default`` it is the story's own."""
     parser.add_argument(
-        "--tries", type=int, default=default, metavar="N",
+        "--tries",
+        type=int,
+        default=default,
+        metavar="N",
         help="try up to N seeds (1 to 4) until the motion shows all that is said, and keep the best",
-    )  # fmt: skip
+    )
 
 
 def sampling_fields(options: argparse.Namespace) -> dict[str, Any]:

@@ -15,12 +15,7 @@ def add_read(commands: Any) -> None:
     parser = commands.add_parser("read", help="print what is understood of a sentence, as a plan")
     parser.add_argument("sentence", help="English text, at most 2,000 characters")
     parser.add_argument(
-        "--acts",
-        type=Path,
-        nargs="*",
-        default=[],
-        metavar="FOLDER",
-        help="folders of acts beside the lexicon",
+        "--acts", type=Path, nargs="*", default=[], metavar="FOLDER", help="folders of acts beside the lexicon"
     )
     parser.set_defaults(job=lambda options: {"plan": _plan(options)})
 

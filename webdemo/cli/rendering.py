@@ -14,24 +14,19 @@ from .parser import add_reading, reading_choices, with_notes
 
 def add_render(commands: Any) -> None:
     """Adds ``render`` to the shell's commands."""
-    parser = commands.add_parser(
-        "render", help="draw a film, a contact sheet, a figure or a mesh of any motion file"
-    )
+    parser = commands.add_parser("render", help="draw a film, a contact sheet, a figure or a mesh of any motion file")
     parser.add_argument("file", type=Path, help="motion file: .npz, .bvh, .glb …")
     parser.add_argument("second", type=Path, nargs="?", help="the other person, if each has a file")
     add_reading(parser, "the file")
     parser.add_argument(
-        "--out", type=Path,
+        "--out",
+        type=Path,
         help="film: .mp4, .webm or .gif; contact sheet: .png, .svg or .pdf; plotly figure: .html; mesh: .ply or .obj; "
         "a .png beside the file by default",
-    )  # fmt: skip
-    parser.add_argument(
-        "--beside", type=Path, action="append", default=[], help="film: a motion to show beside it"
     )
+    parser.add_argument("--beside", type=Path, action="append", default=[], help="film: a motion to show beside it")
     parser.add_argument("--look", default="bodies", help="bodies, skeletons or both")
-    parser.add_argument(
-        "--character", type=Path, metavar="FILE.glb", help="a skinned character for everybody to wear"
-    )
+    parser.add_argument("--character", type=Path, metavar="FILE.glb", help="a skinned character for everybody to wear")
     parser.add_argument("--theme", default="light", help="light or dark")
     parser.add_argument("--view", default="threequarter", help="threequarter, front, side, top, a or b")
     parser.add_argument("--title", help="title in the picture; the file's name by default")
@@ -39,19 +34,16 @@ def add_render(commands: Any) -> None:
     parser.add_argument("--size", default="1280x720", help="film: width and height in pixels")
     parser.add_argument("--trails", action="store_true", help="film: lines behind hands and pelvis")
     parser.add_argument(
-        "--film-look", action="store_true",
+        "--film-look",
+        action="store_true",
         help="film: a camera that moves slowly about the people, a floor that fades into the sky, darker edges",
-    )  # fmt: skip
-    parser.add_argument(
-        "--still-camera", action="store_true", help="film: the camera does not follow the people"
     )
+    parser.add_argument("--still-camera", action="store_true", help="film: the camera does not follow the people")
     parser.add_argument(
         "--frames", default="8", help="contact sheet: how many moments, 1 to 24, or which, as in 0,30,75"
     )
     parser.add_argument("--frame", type=int, help="mesh: which frame; the middle one by default")
-    parser.add_argument(
-        "--width", type=int, default=1600, help="contact sheet: pixels (points for .svg, .pdf)"
-    )
+    parser.add_argument("--width", type=int, default=1600, help="contact sheet: pixels (points for .svg, .pdf)")
     parser.set_defaults(job=render)
 
 

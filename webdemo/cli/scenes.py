@@ -27,9 +27,7 @@ def add_scene(commands: Any) -> None:
     parser.add_argument(
         "--start", type=float, help="with --motion: second at which the story begins; the end by default"
     )
-    parser.add_argument(
-        "--end", type=float, help="with --motion: second at which the motion goes on unchanged"
-    )
+    parser.add_argument("--end", type=float, help="with --motion: second at which the motion goes on unchanged")
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
     parser.add_argument(
         "--no-plan",
@@ -59,9 +57,7 @@ def scene(options: argparse.Namespace) -> dict[str, Any]:
         asked["planned"] = False
     choices = reading_choices(options)
     if choices != ImportChoices() and options.motion is None:
-        raise InputError(
-            "--animation and --file-… say how a motion is read: give --motion as well, or leave them out."
-        )
+        raise InputError("--animation and --file-… say how a motion is read: give --motion as well, or leave them out.")
     motion = _motion(options.motion, choices) if options.motion is not None else None
     request = SceneRequest(**asked, motion=motion, start=options.start, end=options.end)
     written = write_result(run(request), options.out)

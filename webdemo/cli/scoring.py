@@ -16,21 +16,15 @@ def add_score(commands: Any) -> None:
     parser = commands.add_parser("score", help="judge a model on sentences that no training has seen")
     parser.add_argument("--model", default=SamplingRequest.model, help=" or ".join(names))
     parser.add_argument(
-        "--sentences",
-        type=Path,
-        help="JSON, or text with a sentence a line; the eighty shipped ones by default",
+        "--sentences", type=Path, help="JSON, or text with a sentence a line; the eighty shipped ones by default"
     )
     parser.add_argument("--seeds", type=int, default=4, help="motions of each sentence (4)")
     parser.add_argument("--steps", type=int, help="denoising steps; the model's own default if not given")
-    parser.add_argument(
-        "--guidance", type=float, help="guidance scale s; the model's own default if not given"
-    )
+    parser.add_argument("--guidance", type=float, help="guidance scale s; the model's own default if not given")
     parser.add_argument("--damping", type=float, default=SamplingRequest.damping)
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="only these sentences or tags")
     parser.add_argument(
-        "--plain",
-        action="store_true",
-        help="give the sentences to the network as they are: no beats, no plan",
+        "--plain", action="store_true", help="give the sentences to the network as they are: no beats, no plan"
     )
     parser.add_argument(
         "--zeros",

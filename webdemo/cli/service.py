@@ -23,12 +23,8 @@ def add_service(commands: Any) -> None:
     bench.add_argument("--steps", type=int, help="denoising steps (50; with --motion 8)")
     bench.add_argument("--repeats", type=int, default=3)
     bench.add_argument("--browser", action="store_true", help="also the page and the player, in Chromium")
-    bench.add_argument(
-        "--load", action="store_true", help="instead: load a server on loopback with many people"
-    )
-    bench.add_argument(
-        "--model", help="instead: a released InterGen of the settings beside a plain run of it"
-    )
+    bench.add_argument("--load", action="store_true", help="instead: load a server on loopback with many people")
+    bench.add_argument("--model", help="instead: a released InterGen of the settings beside a plain run of it")
     bench.add_argument("--live", action="store_true", help="instead: many people with live partners")
     bench.add_argument(
         "--motion",
@@ -36,14 +32,9 @@ def add_service(commands: Any) -> None:
         help="instead: planned motion beside the network's own and recorded motion, by kind of act",
     )
     bench.add_argument(
-        "--recorded",
-        type=Path,
-        metavar="FOLDER",
-        help="with --motion: measure the recordings in FOLDER/KIND anew",
+        "--recorded", type=Path, metavar="FOLDER", help="with --motion: measure the recordings in FOLDER/KIND anew"
     )
-    bench.add_argument(
-        "--kinds", nargs="+", default=[], metavar="KIND", help="with --motion: only these kinds"
-    )
+    bench.add_argument("--kinds", nargs="+", default=[], metavar="KIND", help="with --motion: only these kinds")
     bench.add_argument("--people", type=int, default=20, help="with --load or --live")
     bench.add_argument("--minutes", type=float, default=5.0, help="with --load or --live")
     bench.set_defaults(job=benchmark)
@@ -56,10 +47,13 @@ def add_service(commands: Any) -> None:
         "clock", help="show the machine's clock beside the lab's time, and confirm it after a jump"
     )
     clock_parser.add_argument(
-        "action", nargs="?", choices=("show", "passed", "corrected"), default="show",
+        "action",
+        nargs="?",
+        choices=("show", "passed", "corrected"),
+        default="show",
         help="passed: the time of the jump has really passed, so runs are older by it; "
         "corrected: the clock was wrong before, so runs are as old as they were",
-    )  # fmt: skip
+    )
     clock_parser.set_defaults(job=clock)
     user_parser = commands.add_parser("user", help="accounts: add, remove, list")
     user_parser.add_argument("action", choices=("add", "remove", "list"))
@@ -110,9 +104,7 @@ def benchmark(options: argparse.Namespace) -> dict[str, Any]:
     if options.model:
         from webdemo.benchmark.released import measure_released
 
-        return measure_released(
-            options.model, seconds=options.seconds, steps=options.steps, repeats=options.repeats
-        )
+        return measure_released(options.model, seconds=options.seconds, steps=options.steps, repeats=options.repeats)
     if options.live:
         from webdemo.benchmark.live import run_live
 
@@ -126,9 +118,7 @@ def benchmark(options: argparse.Namespace) -> dict[str, Any]:
             print(f"{name:40} {value:.3f}")
         figures |= run_load(people=options.people, minutes=options.minutes, steps=options.steps)
         return figures | {"goals_missed": goals_missed(figures)}
-    return run_benchmark(
-        seconds=options.seconds, steps=options.steps, repeats=options.repeats, browser=options.browser
-    )
+    return run_benchmark(seconds=options.seconds, steps=options.steps, repeats=options.repeats, browser=options.browser)
 
 
 def serve(options: argparse.Namespace) -> dict[str, Any]:

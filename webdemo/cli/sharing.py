@@ -25,9 +25,7 @@ def add_share(commands: Any) -> None:
     made.add_argument(
         "run", metavar="RUN", help="id of a run, or how it begins, after -- if with a dash; see `share runs`"
     )
-    made.add_argument(
-        "--days", type=float, help="days until it ends; the most that the lab allows by default"
-    )
+    made.add_argument("--days", type=float, help="days until it ends; the most that the lab allows by default")
     made.add_argument("--base", help="address of the lab, as https://lab.example/; its own by default")
     made.set_defaults(job=link)
 
@@ -109,10 +107,7 @@ def revoke(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def _about(page: Any) -> dict[str, Any]:
-    return {
-        "key": page.key, "title": page.title, "created": _moment(page.created),
-        "until": _moment(page.until),
-    }  # fmt: skip
+    return {"key": page.key, "title": page.title, "created": _moment(page.created), "until": _moment(page.until)}
 
 
 def _moment(seconds: float) -> str:

@@ -17,20 +17,12 @@ if TYPE_CHECKING:
 
 def add_upkeep(commands: Any) -> None:
     """Adds ``backup`` and ``restore`` to the shell's commands."""
-    backup_parser = commands.add_parser(
-        "backup", help="copy the lab's database and motions, while people work"
-    )
-    backup_parser.add_argument(
-        "folder", type=Path, help="holds all backups; each has a folder of its own in it"
-    )
+    backup_parser = commands.add_parser("backup", help="copy the lab's database and motions, while people work")
+    backup_parser.add_argument("folder", type=Path, help="holds all backups; each has a folder of its own in it")
     backup_parser.add_argument("--keep", type=int, default=0, metavar="N", help="remove all but the newest N")
     backup_parser.set_defaults(job=backup)
-    restore_parser = commands.add_parser(
-        "restore", help="put a backup into an empty data folder and database"
-    )
-    restore_parser.add_argument(
-        "backup", type=Path, help="a backup, or a folder of backups, whose newest is taken"
-    )
+    restore_parser = commands.add_parser("restore", help="put a backup into an empty data folder and database")
+    restore_parser.add_argument("backup", type=Path, help="a backup, or a folder of backups, whose newest is taken")
     restore_parser.set_defaults(job=restore)
 
 

@@ -14,9 +14,17 @@ if TYPE_CHECKING:
     from .engine import Engine
 
 __all__ = [
-    "CancelToken", "Cancelled", "Engine", "GenerateRequest", "PredictRequest", "PredictResult", "Progress",
-    "ReactRequest", "Result", "SceneRequest",
-]  # fmt: skip
+    "CancelToken",
+    "Cancelled",
+    "Engine",
+    "GenerateRequest",
+    "PredictRequest",
+    "PredictResult",
+    "Progress",
+    "ReactRequest",
+    "Result",
+    "SceneRequest",
+]
 
 
 def __getattr__(name: str) -> Any:

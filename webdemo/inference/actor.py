@@ -77,9 +77,7 @@ def choose_actor(
     """
     clip = people[choose_person(people, person, name)]
     if start >= clip.seconds:
-        raise InputError(
-            f"The start, {start:g} s, is after the end of the motion, which lasts {clip.seconds:.1f} s."
-        )
+        raise InputError(f"The start, {start:g} s, is after the end of the motion, which lasts {clip.seconds:.1f} s.")
     stop = clip.seconds if end is None else end
     if not (math.isfinite(start) and math.isfinite(stop) and 0 <= start < stop):
         raise InputError(f"Start and end must be seconds with 0 ≤ start < end, not {start:g} and {stop:g}.")
@@ -87,9 +85,7 @@ def choose_actor(
     return at_30_fps(clip.cut(first, max(last, first + 1)))
 
 
-def other_pose(
-    people: Sequence[Clip], *, person: str | None, start: float = 0.0, name: str = "The file"
-) -> Array:
+def other_pose(people: Sequence[Clip], *, person: str | None, start: float = 0.0, name: str = "The file") -> Array:
     """Pose of the other person at the first frame of the actor's part: (22, 3) metres.
 
     Args:
@@ -165,9 +161,7 @@ def check_actor(clip: Any, seconds: tuple[float, float]) -> Clip:
     lengths = np.linalg.norm(actor.positions[:, children] - actor.positions[:, parents], axis=-1)
     size = float(lengths.sum(-1).mean() / SMPL22.bone_lengths[children].sum())
     if not _BODY_SIZES[0] <= size <= _BODY_SIZES[1]:
-        raise InputError(
-            f"The actor's bones are {size:.3g} times as long as an adult's: give positions in metres."
-        )
+        raise InputError(f"The actor's bones are {size:.3g} times as long as an adult's: give positions in metres.")
     if np.abs(actor.positions).max() > _FARTHEST:
         raise InputError(f"The actor is more than {_FARTHEST:g} m from the origin: move the motion there.")
     return actor
@@ -181,6 +175,5 @@ def check_length(clip: Clip, seconds: tuple[float, float]) -> None:
     # From the first frame to the last: ten seconds at 30 fps are often stored as 301 frames.
     if (clip.num_frames - 1) / clip.fps > longest:
         raise InputError(
-            f"The actor's motion lasts {clip.seconds:.1f} s: trim it to {longest:g} s or less by its start "
-            "and end."
+            f"The actor's motion lasts {clip.seconds:.1f} s: trim it to {longest:g} s or less by its start and end."
         )

@@ -44,9 +44,7 @@ class Directed(Scene):
         """As :meth:`Scene.duet`; what is given is met exactly, and what was made leads there smoothly."""
         people = [finish(person) for person in pair]
         for person in range(2):
-            given = [
-                p for p in self.parts if isinstance(p, KnownFrames) and p.person == person and not p.joints
-            ]
+            given = [p for p in self.parts if isinstance(p, KnownFrames) and p.person == person and not p.joints]
             if given:
                 at = np.concatenate([np.asarray(p.frames) for p in given])
                 wanted = np.concatenate([p.positions for p in given])
@@ -103,9 +101,7 @@ def with_joints(positions: Array, part: KnownFrames) -> Array:
     moved = positions.copy()
     for joint, parent in enumerate(SMPL22.parents):
         held = joint in part.joints
-        moved[:, joint] = (
-            whole[:, joint] if held else positions[:, joint] + moved[:, parent] - positions[:, parent]
-        )
+        moved[:, joint] = whole[:, joint] if held else positions[:, joint] + moved[:, parent] - positions[:, parent]
     return np.asarray(project_to_skeleton(moved)[0])
 
 
@@ -123,13 +119,7 @@ def _every_frame(frames: Array, poses: Array) -> tuple[Array, Array]:
     return time, (1 - ahead) * poses[i] + ahead * poses[i + 1] + bends
 
 
-def directed(
-    model: DuetSpace,
-    frames: int,
-    parts: Sequence[Part],
-    *,
-    check: bool = True,
-) -> Directed:
+def directed(model: DuetSpace, frames: int, parts: Sequence[Part], *, check: bool = True) -> Directed:
     """A scene of so many frames with what is given of it.
 
     Args:
@@ -148,9 +138,7 @@ def directed(
         at = _frames(part, frames)
         beside = isinstance(part, KnownFrames) and part.joints and 0 not in part.joints
         if not beside and known.mask[0, part.person, at][:, 0].any():
-            raise InputError(
-                f"Two given parts say where person {'ab'[part.person]} is at one time: give one."
-            )
+            raise InputError(f"Two given parts say where person {'ab'[part.person]} is at one time: give one.")
         if isinstance(part, KnownFrames):
             if check:
                 _check_poses(part, at)
@@ -174,10 +162,7 @@ def _hold_hips(known: Known, person: int, at: list[int], headings: torch.Tensor)
     """Marks the places of the hips beside the pelvis as known, so that the person faces the headings."""
     for hip in _HIPS:
         across, along = (float(SMPL22.offsets[hip, axis]) for axis in (0, 2))
-        turned = (
-            across * headings.cos() + along * headings.sin(),
-            along * headings.cos() - across * headings.sin(),
-        )
+        turned = (across * headings.cos() + along * headings.sin(), along * headings.cos() - across * headings.sin())
         for axis, values in zip((0, 2), turned, strict=True):
             known.rows[:, person, at, 3 * hip + axis] = values
             known.mask[:, person, at, 3 * hip + axis] = True

@@ -69,9 +69,7 @@ class Engine:
         """Loads the default network and runs one step, which makes the first request fast; once."""
         with self._warming:
             if SamplingRequest.model not in self._warm:
-                for _ in self.run(
-                    GenerateRequest(prompt="Two people wave.", seconds=2.0, steps=1, damping=0.0)
-                ):
+                for _ in self.run(GenerateRequest(prompt="Two people wave.", seconds=2.0, steps=1, damping=0.0)):
                     pass
                 self._warm.add(SamplingRequest.model)
 
@@ -83,9 +81,7 @@ class Engine:
         meta = WeightsFolder(self.weights / name).meta
         return {"name": name, "ready": self.ready, **meta.get("card", {})}
 
-    def run(
-        self, request: Request, cancel: CancelToken | None = None, **options: Any
-    ) -> Iterator[Progress | Result]:
+    def run(self, request: Request, cancel: CancelToken | None = None, **options: Any) -> Iterator[Progress | Result]:
         """Yields :class:`Progress` events, then exactly one :class:`Result`.
 
         The same request on the same machine gives the same bytes.

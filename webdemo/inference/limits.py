@@ -20,9 +20,7 @@ SAMPLERS = ("ddim", "dpm++")
 def number(name: str, value: Any, low: float, high: float, unit: str = "") -> float:
     """The value if it is a finite number from ``low`` to ``high``; raises InputError, a sentence, if it is not."""
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise InputError(
-            f"{name} must be a number from {_plain(low)} to {_plain(high)}{unit}, not {value!r:.40}."
-        )
+        raise InputError(f"{name} must be a number from {_plain(low)} to {_plain(high)}{unit}, not {value!r:.40}.")
     if not low <= value <= high:
         raise InputError(f"{name} must be from {_plain(low)} to {_plain(high)}{unit}, not {_plain(value)}.")
     return float(value)
@@ -37,9 +35,7 @@ def whole(name: str, value: Any, low: int, high: int) -> int:
     """As :func:`number`, for a whole one."""
     found = number(name, value, low, high)
     if found != int(found):
-        raise InputError(
-            f"{name} must be a whole number from {_plain(low)} to {_plain(high)}, not {value:g}."
-        )
+        raise InputError(f"{name} must be a whole number from {_plain(low)} to {_plain(high)}, not {value:g}.")
     return int(found)
 
 

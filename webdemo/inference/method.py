@@ -59,9 +59,7 @@ def load_pipeline(place: str, *parts: Any) -> Pipeline:
         parts: what :attr:`Method.load` is called with.
     """
     module, _, name = place.partition(".")
-    pipeline: Pipeline = getattr(importlib.import_module(f"webdemo.inference.pipelines.{module}"), name)(
-        *parts
-    )
+    pipeline: Pipeline = getattr(importlib.import_module(f"webdemo.inference.pipelines.{module}"), name)(*parts)
     return pipeline
 
 

@@ -92,9 +92,7 @@ class FloorPath:
             raise InputError(f"The path of {who} has {len(self.points)} points: give 1 to {MOST_POINTS}.")
         for i, point in enumerate(self.points, 1):
             numbers = [v for v in (point.x, point.z, point.seconds, point.heading) if v is not None]
-            if not all(
-                isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v) for v in numbers
-            ):
+            if not all(isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v) for v in numbers):
                 raise InputError(f"Point {i} of the path of {who} needs finite numbers.")
             if max(abs(point.x), abs(point.z)) > FLOOR:
                 raise InputError(
@@ -115,9 +113,7 @@ class FloorPath:
             if before is not None:
                 gap = seconds - (before.seconds or 0.0)
                 if round(gap * FPS) < 1:
-                    raise InputError(
-                        f"Points {i - 1} and {i} of the path of {who} are at one time: give later times."
-                    )
+                    raise InputError(f"Points {i - 1} and {i} of the path of {who} are at one time: give later times.")
                 speed = math.hypot(point.x - before.x, point.z - before.z) / gap
                 if speed > MOST_SPEED:
                     raise InputError(

@@ -159,17 +159,11 @@ class KeptPlan:
         return cls(
             _acts(values),
             True,
-            tuple(
-                {name: beat.get(name) for name in ("words", "a", "b", "seconds", "seed", "acts")}
-                for beat in beats
-            ),
+            tuple({name: beat.get(name) for name in ("words", "a", "b", "seconds", "seed", "acts")} for beat in beats),
             _pair(values.get("alone")),
             tuple(WindowPlan.from_dict(window) for window in _list(values.get("windows"), MOST_WINDOWS)),
             tuple(_text(note) for note in _list(values.get("notes"), 20)),
-            tuple(
-                BeatFinish.from_dict(_mapping(each))
-                for each in _list(values.get("finishes") or [], MOST_WINDOWS)
-            ),
+            tuple(BeatFinish.from_dict(_mapping(each)) for each in _list(values.get("finishes") or [], MOST_WINDOWS)),
         )
 
 

@@ -61,13 +61,10 @@ class PredictRequest:
         marker = length if self.marker is None else number("Marker", self.marker, 0.0, 1e6, " seconds")
         if round(length * FPS) < round(PAST_SECONDS * FPS):
             raise InputError(
-                f"The past is {length:.2f} s long, and {PAST_SECONDS:g} s or more is needed: "
-                "give a longer motion."
+                f"The past is {length:.2f} s long, and {PAST_SECONDS:g} s or more is needed: give a longer motion."
             )
         if marker > length + 0.5 / FPS:
-            raise InputError(
-                f"The marker, {marker:g} s, is after the end of the motion, which lasts {length:.2f} s."
-            )
+            raise InputError(f"The marker, {marker:g} s, is after the end of the motion, which lasts {length:.2f} s.")
         if round(marker * FPS) < round(PAST_SECONDS * FPS):
             raise InputError(
                 f"The past is {marker:.2f} s long, and {PAST_SECONDS:g} s or more is needed: "
@@ -104,9 +101,13 @@ class PredictRequest:
             "sha256": hashlib.sha256(positions.tobytes()).hexdigest(),
         }
         return {
-            "kind": "predict", "motion": motion, "marker": self.marker, "seconds": self.seconds,
-            "seed": self.seed, "model": self.model,
-        }  # fmt: skip
+            "kind": "predict",
+            "motion": motion,
+            "marker": self.marker,
+            "seconds": self.seconds,
+            "seed": self.seed,
+            "model": self.model,
+        }
 
 
 def with_people(motion: Clip | Duet, positions: Array) -> Clip | Duet:
@@ -172,9 +173,7 @@ class PredictResult(Result):
         motion = self.duets[0].cut(0, self.past_frames)
         if self.truth is None:
             return motion
-        return with_people(
-            motion, np.concatenate([stacked_positions(motion), stacked_positions(self.truth)], axis=1)
-        )
+        return with_people(motion, np.concatenate([stacked_positions(motion), stacked_positions(self.truth)], axis=1))
 
 
 def mean_steps(positions: Array) -> Array:
@@ -182,9 +181,7 @@ def mean_steps(positions: Array) -> Array:
     return np.linalg.norm(np.diff(positions, axis=-3), axis=-1).mean(-1)
 
 
-def predicted(
-    request: PredictRequest, futures: Sequence[Array], timer: StageTimer, now: float
-) -> PredictResult:
+def predicted(request: PredictRequest, futures: Sequence[Array], timer: StageTimer, now: float) -> PredictResult:
     """The result, without a manifest, of a request and its futures.
 
     Args:
@@ -214,9 +211,7 @@ def compared(request: PredictRequest, futures: Sequence[Array]) -> dict[str, Any
     truth, error, true_speed = request.truth, np.empty(0), np.empty(0)
     if truth is not None:
         real = stacked_positions(truth).astype(np.float64)
-        error = np.linalg.norm(whole[:, :, first : first + real.shape[1]] - real, axis=-1).mean(
-            axis=(0, 1, 3)
-        )
+        error = np.linalg.norm(whole[:, :, first : first + real.shape[1]] - real, axis=-1).mean(axis=(0, 1, 3))
         true_speed = mean_steps(np.concatenate([past[:, -1:], real], axis=1)).mean(0)
     speed = mean_steps(whole[:, :, first - 1 :]).mean(axis=(0, 1))
     return {

@@ -32,16 +32,30 @@ from .limits import (
     number,
     prompt_of,
     whole,
-)  # fmt: skip
+)
 from .method import Method
 from .paths import FloorPath, path_of, timed_paths
 from .plans import KeptPlan
 from .results import Cancelled, Progress, Result
 
 __all__ = [
-    "DAMPING", "GUIDANCE", "MAX_PROMPT", "MAX_SEED", "OWN_STEPS", "SAMPLES", "STEPS", "TRIES", "Cancelled",
-    "GenerateRequest", "Progress", "ReactRequest", "Result", "SamplingRequest", "clip_facts", "with_current_names",
-]  # fmt: skip
+    "DAMPING",
+    "GUIDANCE",
+    "MAX_PROMPT",
+    "MAX_SEED",
+    "OWN_STEPS",
+    "SAMPLES",
+    "STEPS",
+    "TRIES",
+    "Cancelled",
+    "GenerateRequest",
+    "Progress",
+    "ReactRequest",
+    "Result",
+    "SamplingRequest",
+    "clip_facts",
+    "with_current_names",
+]
 
 
 def _others(needed: str) -> str:
@@ -210,9 +224,7 @@ class ReactRequest(SamplingRequest):
         if self.mode not in modes:
             raise InputError(f"{method.label} has no mode {self.mode!r:.40}: choose {' or '.join(modes)}.")
         if self.role != "a" and "either role" not in method.takes:
-            raise InputError(
-                f"{method.label} makes the person who reacts: choose role a, or {_others('either role')}."
-            )
+            raise InputError(f"{method.label} makes the person who reacts: choose role a, or {_others('either role')}.")
         object.__setattr__(self, "actor", check_actor(self.actor, method.seconds))
         if self.first_pose is not None:
             self._check_first_pose(method)
@@ -223,14 +235,10 @@ class ReactRequest(SamplingRequest):
 
     def _check_first_pose(self, method: Method) -> None:
         if "first pose" not in method.takes:
-            raise InputError(
-                f"{method.label} takes no first pose: leave it out, or choose {_others('first pose')}."
-            )
+            raise InputError(f"{method.label} takes no first pose: leave it out, or choose {_others('first pose')}.")
         pose = np.asarray(self.first_pose, dtype=np.float64)
         if pose.shape != (22, 3) or not np.isfinite(pose).all():
-            raise InputError(
-                "The first pose must be finite and of 22 joints, in metres of the actor's world."
-            )
+            raise InputError("The first pose must be finite and of 22 joints, in metres of the actor's world.")
         # Checked like an actor who holds this pose for a second.
         check_actor(Clip(np.repeat(pose[None], 30, axis=0), 30.0), (0.0, 2.0))
         object.__setattr__(self, "first_pose", pose.round(5))  # as in the manifest

@@ -135,16 +135,14 @@ def note(rows: Sequence[Rows], tries: Mapping[str, Any] | None = None, unread: S
 
 
 def _unchecked(column: Sequence[Mapping[str, Any]]) -> str:
-    """What is left out of an act that is done, or that nothing measures; "" for nothing."""
+    """Parts left out of an act that is done, or that nothing measures; "" for nothing."""
     row = column[0]
     words = str(row["words"])
     if row.get("wrote"):
         return f"“{row['wrote']}”, read as: {words}"
     if row["done"] is None:
         return words if row["measure"] == NO_RULE else _with_why(words, row["measure"])
-    return _with_why(" and ".join(row.get("unchecked", ())), " ".join(words.split()[:2])) * bool(
-        row.get("unchecked")
-    )
+    return _with_why(" and ".join(row.get("unchecked", ())), " ".join(words.split()[:2])) * bool(row.get("unchecked"))
 
 
 def _with_why(words: str, why: str) -> str:

@@ -106,9 +106,7 @@ class Activity:
         until = time.monotonic() + wait
         while any(item.id == key for item in self.items()):
             if time.monotonic() > until:
-                raise InputError(
-                    f"The process {found.node} has not ended it yet: look again with `admin jobs`."
-                )
+                raise InputError(f"The process {found.node} has not ended it yet: look again with `admin jobs`.")
             time.sleep(_LOOK_EVERY)
         audit("admin-end-stream" if found.state == "open" else "admin-end-run", id=key)
 
@@ -162,11 +160,11 @@ def work_of(node: str, queue: FairQueue, streams: Streams) -> list[Item]:
         return round(now - clock + moment, 0)
 
     runs = [
-        Item(job.id, node, job.person, job.group, "runs" if begun else "waits",
-             since(job.started if begun else job.came))
+        Item(
+            job.id, node, job.person, job.group, "runs" if begun else "waits", since(job.started if begun else job.came)
+        )
         for job, begun in queue.jobs()
-    ]  # fmt: skip
+    ]
     return runs + [
-        Item(stream.id, node, stream.person, "live stream", "open", since(stream.began))
-        for stream in streams.opened()
+        Item(stream.id, node, stream.person, "live stream", "open", since(stream.began)) for stream in streams.opened()
     ]

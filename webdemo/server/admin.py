@@ -59,13 +59,7 @@ class Administration:
     """
 
     def __init__(
-        self,
-        database: Database,
-        users: Users | None,
-        data: Path,
-        person_bytes: float,
-        *,
-        elsewhere: bool = False,
+        self, database: Database, users: Users | None, data: Path, person_bytes: float, *, elsewhere: bool = False
     ) -> None:
         self.database, self.users, self.data, self.person_bytes = database, users, data, person_bytes
         self.people, self.elsewhere = People(database), elsewhere
@@ -93,9 +87,7 @@ class Administration:
             counts = dict(session.execute(select(Run.owner, func.count()).group_by(Run.owner)).tuples().all())
             sizes: dict[str, float] = {}
             for table in (Run, Study):
-                for owner, size in session.execute(
-                    select(table.owner, func.sum(table.size)).group_by(table.owner)
-                ):
+                for owner, size in session.execute(select(table.owner, func.sum(table.size)).group_by(table.owner)):
                     sizes[owner] = sizes.get(owner, 0.0) + (size or 0)
         known, computed = self.people.all(), self.people.computed()
         found = []
@@ -109,10 +101,19 @@ class Administration:
             runs, seconds = computed.get(owner, (0, 0.0))
             found.append(
                 Row(
-                    name, row.role if row else "", bool(row and row.suspended), counts.get(owner, 0),
-                    megabytes, allowed, kept, full, room is not None, runs, seconds / 60,
+                    name,
+                    row.role if row else "",
+                    bool(row and row.suspended),
+                    counts.get(owner, 0),
+                    megabytes,
+                    allowed,
+                    kept,
+                    full,
+                    room is not None,
+                    runs,
+                    seconds / 60,
                 )
-            )  # fmt: skip
+            )
         return found
 
     def set_role(self, name: str, *, admin: bool) -> None:

@@ -96,10 +96,17 @@ def create_app(
         engine, batcher = engine_of(settings)
     lab = make_lab(settings, engine, batcher, node, scratch)
     page = build_page(
-        engine, loader=Loader(engine), runs=Recorder(lab.queue, lab.history, lab.places), history=lab.history,
-        studies=lab.studies, sharing=lab.publishing, files=Path(get_upload_folder()), owner=visitors_folder,
-        admit=lambda size: lab.storage.admit(visitor(), size), announced=lab.people.announced,
-    )  # fmt: skip
+        engine,
+        loader=Loader(engine),
+        runs=Recorder(lab.queue, lab.history, lab.places),
+        history=lab.history,
+        studies=lab.studies,
+        sharing=lab.publishing,
+        files=Path(get_upload_folder()),
+        owner=visitors_folder,
+        admit=lambda size: lab.storage.admit(visitor(), size),
+        announced=lab.people.announced,
+    )
     app = FastAPI(title="Pas de Deux", docs_url=None, redoc_url=None, openapi_url=None, lifespan=_lifespan)
     app.state.lab = lab
     app.state.tidy = lambda: lab.storage.tidy(kept_in_cache(page))
@@ -116,9 +123,14 @@ def create_app(
     app.add_middleware(CORSMiddleware)  # no other site may read anything; Gradio's own would let some
     app.add_middleware(PageCache)
     app.add_middleware(
-        Guard, settings=settings, visitors=visitors, figures=lab.figures, answers=lab.answers,
-        payloads=Payloads(page), admit=lab.storage.admit,
-    )  # fmt: skip
+        Guard,
+        settings=settings,
+        visitors=visitors,
+        figures=lab.figures,
+        answers=lab.answers,
+        payloads=Payloads(page),
+        admit=lab.storage.admit,
+    )
     _mount(app, page, lab)
     return app
 

@@ -47,9 +47,7 @@ def fingerprint(secret: str) -> str:
 def _sender() -> tuple[str, str, str]:
     """The person, the address and the id of the request that this thread answers."""
     event = LocalContext.request.get(None)
-    client = getattr(
-        getattr(event, "request", None), "client", None
-    )  # an event of the page, perhaps in a queue
+    client = getattr(getattr(event, "request", None), "client", None)  # an event of the page, perhaps in a queue
     if client is None:
         return *SENDER.get(), REFERENCE.get()
     who = visitor()

@@ -80,10 +80,14 @@ class Lab:
         self.people.write()
         self.activity.heed(self.end)
         self.activity.publish(
-            self.name, work_of(self.name, self.queue, self.streams), health=self.health.lately(),
-            queue={"waiting": self.queue.waiting, "running": self.queue.running}, streams=self.streams.count,
-            versions=versions(), errors=list(LAST_ERRORS.lines),
-        )  # fmt: skip
+            self.name,
+            work_of(self.name, self.queue, self.streams),
+            health=self.health.lately(),
+            queue={"waiting": self.queue.waiting, "running": self.queue.running},
+            streams=self.streams.count,
+            versions=versions(),
+            errors=list(LAST_ERRORS.lines),
+        )
 
     def end(self, key: str) -> bool:
         """Ends a run or a live stream of this process; its person is told so. False if it has none of that id."""
@@ -104,9 +108,12 @@ class Lab:
 
 
 def make_lab(
-    settings: Settings, engine: EngineLike, batcher: Batcher | None, node: InstanceLock | None,
+    settings: Settings,
+    engine: EngineLike,
+    batcher: Batcher | None,
+    node: InstanceLock | None,
     scratch: Scratch | None = None,
-) -> Lab:  # fmt: skip
+) -> Lab:
     """Puts the parts together.
 
     Args:
@@ -130,32 +137,47 @@ def make_lab(
     if users is not None:
         _ = users.names  # reports an unreadable file at start
         wants["accounts"] = lambda: users.names
-    works: dict[str, Callable[[], float]] = {
-        "queue": lambda: queue.stuck,
-        "live stream": lambda: streams.stuck,
-    }
+    works: dict[str, Callable[[], float]] = {"queue": lambda: queue.stuck, "live stream": lambda: streams.stuck}
     health = Health(engine, wants, works=works, stuck_seconds=settings.stuck_seconds)
     shares, people = Shares(database, name), People(database)
     queue = FairQueue(
-        engine, _limits(settings, engine), batcher=batcher, figures=figures, broken=health.broken,
-        served=shares.add, computed=people.add,
-    )  # fmt: skip
+        engine,
+        _limits(settings, engine),
+        batcher=batcher,
+        figures=figures,
+        broken=health.broken,
+        served=shares.add,
+        computed=people.add,
+    )
     streams = _streams(settings, engine)
     figures.watch(
-        waiting=lambda: queue.waiting, running=lambda: queue.running, ready=lambda: health.ready,
+        waiting=lambda: queue.waiting,
+        running=lambda: queue.running,
+        ready=lambda: health.ready,
         live=lambda: streams.count,
-    )  # fmt: skip
+    )
     storage = storage_of(settings, database, scratch)
     history = history_of(settings, storage, name)
     return Lab(
-        settings=settings, database=database, history=history, queue=queue,
+        settings=settings,
+        database=database,
+        history=history,
+        queue=queue,
         publishing=Publishing(history, days=settings.publish_days),
-        studies=studies_of(settings, database, storage), storage=storage,
-        places=Places(database, name, settings.running + settings.waiting), shares=shares, health=health,
-        figures=figures, answers=OpenAnswers(), streams=streams, node=node, people=people, activity=Activity(database),
+        studies=studies_of(settings, database, storage),
+        storage=storage,
+        places=Places(database, name, settings.running + settings.waiting),
+        shares=shares,
+        health=health,
+        figures=figures,
+        answers=OpenAnswers(),
+        streams=streams,
+        node=node,
+        people=people,
+        activity=Activity(database),
         administration=administration_of(settings, database, users) if settings.accounts else None,
         sign_ins=SignIns(database, users, settings.session_hours) if users is not None else None,
-    )  # fmt: skip
+    )
 
 
 def administration_of(settings: Settings, database: Database, users: Users | None) -> Administration:
@@ -169,18 +191,28 @@ def storage_of(settings: Settings, database: Database, scratch: Scratch | None =
     total = settings.keep_megabytes * 2**20
     address = min(settings.address_people * settings.person_bytes, ADDRESS_SHARE * total)
     return Storage(
-        database, settings.motions, person_bytes=settings.person_bytes, total_bytes=total, address_bytes=address,
-        scratch=scratch, bytes_of=People(database).bytes_of,
-    )  # fmt: skip
+        database,
+        settings.motions,
+        person_bytes=settings.person_bytes,
+        total_bytes=total,
+        address_bytes=address,
+        scratch=scratch,
+        bytes_of=People(database).bytes_of,
+    )
 
 
 def history_of(settings: Settings, storage: Storage, name: str) -> Notebook:
     """The history of a lab, for the process of a name."""
     return Notebook(
-        storage.database, settings.motions, node=name, storage=storage, keep_days=settings.keep_days,
-        keep_favourites=settings.keep_favourites, link_days=settings.link_days,
+        storage.database,
+        settings.motions,
+        node=name,
+        storage=storage,
+        keep_days=settings.keep_days,
+        keep_favourites=settings.keep_favourites,
+        link_days=settings.link_days,
         free_bytes=settings.free_megabytes * 2**20,
-    )  # fmt: skip
+    )
 
 
 def _streams(settings: Settings, engine: EngineLike) -> Streams:
@@ -191,17 +223,19 @@ def _streams(settings: Settings, engine: EngineLike) -> Streams:
 
 def studies_of(settings: Settings, database: Database, storage: Storage | None = None) -> Studies:
     """The blind studies of a lab."""
-    return Studies(
-        database, settings.data / "studies", storage=storage or storage_of(settings, database)
-    )  # fmt: skip
+    return Studies(database, settings.data / "studies", storage=storage or storage_of(settings, database))
 
 
 def _limits(settings: Settings, engine: EngineLike) -> QueueLimits:
     return QueueLimits(
-        running=settings.running, waiting=settings.waiting, queue=settings.queue, batch=settings.batch,
-        address=settings.waiting * settings.address_people, workers=getattr(engine, "parallel", 1),
+        running=settings.running,
+        waiting=settings.waiting,
+        queue=settings.queue,
+        batch=settings.batch,
+        address=settings.waiting * settings.address_people,
+        workers=getattr(engine, "parallel", 1),
         seconds=settings.run_seconds,
-    )  # fmt: skip
+    )
 
 
 def engine_of(settings: Settings) -> tuple[EngineLike, Batcher | None]:
@@ -214,8 +248,10 @@ def engine_of(settings: Settings) -> tuple[EngineLike, Batcher | None]:
         from webdemo.server.cluster.ray_engine import RayEngine
 
         return RayEngine(
-            address=settings.ray_address, replicas=(1, settings.ray_replicas), cores=settings.ray_cores,
+            address=settings.ray_address,
+            replicas=(1, settings.ray_replicas),
+            cores=settings.ray_cores,
             batch=settings.batch,
-        ), None  # fmt: skip
+        ), None
     shared = SharedEngine()
     return shared, shared

@@ -33,8 +33,7 @@ class JsonLines(logging.Formatter):
         """The record as one line of JSON."""
         ours = record.name.partition(".")[0] in _OURS
         line: dict[str, Any] = {
-            "time": time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created))
-            + f".{int(record.msecs):03d}Z",
+            "time": time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created)) + f".{int(record.msecs):03d}Z",
             "level": record.levelname.lower(),
             "logger": record.name,
             # Another package's message may quote what a user sent; its template does not.

@@ -178,12 +178,21 @@ def make_server(settings: Settings, *, scratch: bool = False, **parts: Any) -> S
     app = create_app(settings, node=node, **parts)
     forwarded: Any = ProxyHeadersMiddleware
     config = uvicorn.Config(
-        PeerNoted(forwarded(app, trusted_hosts=settings.proxies)), host=settings.host,
-        port=settings.port, http=bounded_protocol(settings), ws="none", proxy_headers=False, access_log=False,
+        PeerNoted(forwarded(app, trusted_hosts=settings.proxies)),
+        host=settings.host,
+        port=settings.port,
+        http=bounded_protocol(settings),
+        ws="none",
+        proxy_headers=False,
+        access_log=False,
         log_config=None,
-        server_header=False, timeout_graceful_shutdown=CLOSING_SECONDS, timeout_keep_alive=30,
-        loop="asyncio", h11_max_incomplete_event_size=32 * 1024, backlog=512,
-    )  # fmt: skip
+        server_header=False,
+        timeout_graceful_shutdown=CLOSING_SECONDS,
+        timeout_keep_alive=30,
+        loop="asyncio",
+        h11_max_incomplete_event_size=32 * 1024,
+        backlog=512,
+    )
     return Server(config, app.state.lab)
 
 

@@ -61,9 +61,7 @@ class Settings(BaseSettings):
         default_factory=lambda: "0.0.0.0" if on_a_space() else "127.0.0.1", description="address to listen on"
     )
     port: int = Field(7860, ge=1, le=65535, description="port to listen on")
-    root_path: str = Field(
-        "", pattern=r"^(/[\w.~-]+)*$", description="path under which a proxy serves the page"
-    )
+    root_path: str = Field("", pattern=r"^(/[\w.~-]+)*$", description="path under which a proxy serves the page")
     proxies: list[str] = Field(
         default_factory=lambda: [*PRIVATE] if on_a_space() else ["127.0.0.1", "::1"],
         description="addresses of proxies whose X-Forwarded headers are trusted",
@@ -75,15 +73,14 @@ class Settings(BaseSettings):
     # ---- who may use it
     users: Path | None = Field(None, description="file of accounts; without one there are no accounts")
     proxy_user: str = Field(
-        "", pattern=r"^[A-Za-z0-9-]*$",
+        "",
+        pattern=r"^[A-Za-z0-9-]*$",
         description="header by which a trusted proxy says who signed in there, as X-Remote-User; empty: none",
-    )  # fmt: skip
+    )
     proxy_groups: str = Field(
         "", pattern=r"^[A-Za-z0-9-]*$", description="header by which it lists the person's groups"
     )
-    groups: list[str] = Field(
-        [], description="groups, of which a person must be in one; empty: anybody may sign in"
-    )
+    groups: list[str] = Field([], description="groups, of which a person must be in one; empty: anybody may sign in")
     admin_groups: list[str] = Field(
         [], description="groups whose members are administrators; empty: administrators are made by hand"
     )
@@ -97,39 +94,29 @@ class Settings(BaseSettings):
     data: Path = Field(default_factory=_data_folder, description="folder that holds the history")
     database: str = Field("", description="SQLAlchemy URL; empty: SQLite in the data folder")
     node: str = Field(default_factory=socket.gethostname, description="name of this process among several")
-    keep_days: float = Field(
-        30, gt=0, description="age in days at which a run is removed unless it is a favourite"
-    )
+    keep_days: float = Field(30, gt=0, description="age in days at which a run is removed unless it is a favourite")
     keep_megabytes: float = Field(
-        2000,
-        gt=0,
-        description="total size of all people's runs and studies; none is removed for another person's",
+        2000, gt=0, description="total size of all people's runs and studies; none is removed for another person's"
     )
     person_megabytes: float | None = Field(
-        None, gt=0,
+        None,
+        gt=0,
         description="room of one person for runs, studies, uploads and downloads together; by default an eighth of "
         "keep_megabytes and scratch_megabytes, or all of it where there is one history",
-    )  # fmt: skip
+    )
     keep_favourites: int = Field(200, ge=0, description="favourites per person")
     link_days: float = Field(30, gt=0, le=3650, description="days for which a link opens a run for others")
     publish_days: float = Field(
         30, ge=0, le=3650, description="days for which a public page lasts at most; 0: no public pages"
     )
     frame_sites: list[Annotated[str, Field(pattern=r"^(\*|https?://[\w.*-]+(:\d+)?)$")]] = Field(
-        ["*"],
-        description="sites that may show the player of a public page in a frame, as https://lab.example",
+        ["*"], description="sites that may show the player of a public page in a frame, as https://lab.example"
     )
-    free_megabytes: float = Field(
-        100, ge=0, description="free disk space below which runs and uploads are refused"
-    )
-    scratch_megabytes: float = Field(
-        2000, gt=0, description="total size of all people's uploads and download files"
-    )
+    free_megabytes: float = Field(100, ge=0, description="free disk space below which runs and uploads are refused")
+    scratch_megabytes: float = Field(2000, gt=0, description="total size of all people's uploads and download files")
 
     # ---- backups
-    backup: Path | None = Field(
-        None, description="folder in which backups are made regularly; without one, none are"
-    )
+    backup: Path | None = Field(None, description="folder in which backups are made regularly; without one, none are")
     backup_hours: float = Field(24, gt=0, le=8760, description="hours between two backups")
     backup_keep: int = Field(7, ge=1, le=1000, description="newest backups that are kept")
 
@@ -154,17 +141,14 @@ class Settings(BaseSettings):
 
     # ---- live streams
     live: int = Field(
-        default_factory=lambda: 2 * usable_cores(), ge=0, le=200,
-        description="live streams at the same time; 0: none",
-    )  # fmt: skip
+        default_factory=lambda: 2 * usable_cores(), ge=0, le=200, description="live streams at the same time; 0: none"
+    )
 
     # ---- where the networks run
     engine: Literal["local", "ray"] = Field(
         "local", description="local: in this process; ray: in replicas of Ray Serve"
     )
-    ray_address: str = Field(
-        "", description="address of the Ray cluster to join; empty: start one on this machine"
-    )
+    ray_address: str = Field("", description="address of the Ray cluster to join; empty: start one on this machine")
     ray_replicas: int = Field(2, ge=1, le=64, description="largest number of replicas of the default model")
     ray_cores: float = Field(1, gt=0, le=256, description="cores per replica")
 
@@ -175,20 +159,18 @@ class Settings(BaseSettings):
 
     # ---- acts of the lab's own
     acts: Annotated[list[Path], NoDecode] = Field(
-        [],
-        description="folders of acts beside ours, with : between them in the environment: see docs/acts.md",
+        [], description="folders of acts beside ours, with : between them in the environment: see docs/acts.md"
     )
 
     director: dict[str, Any] = Field(
-        {}, description="language model that reads what the lexicon does not: PASDEDEUX_DIRECTOR_URL, _MODEL and "
+        {},
+        description="language model that reads what the lexicon does not: PASDEDEUX_DIRECTOR_URL, _MODEL and "
         "_KEY, or a table with url, model and key: see docs/acts.md",
-    )  # fmt: skip
+    )
 
     # ---- limits
     rate: int = Field(240, ge=1, description="requests per person and minute that change something")
-    address_people: int = Field(
-        8, ge=1, description="on an open server: how many people's share one address may take"
-    )
+    address_people: int = Field(8, ge=1, description="on an open server: how many people's share one address may take")
     upload_megabytes: float = Field(50, gt=0, le=50, description="largest upload")
     body_megabytes: float = Field(2, gt=0, description="largest body of any other request")
     body_seconds: float = Field(60, gt=0, description="time for a request's body to arrive")
@@ -202,9 +184,7 @@ class Settings(BaseSettings):
     )
 
     # ---- logs
-    log_level: str = Field(
-        "info", pattern="^(debug|info|warning|error)$", description="lowest level that is logged"
-    )
+    log_level: str = Field("info", pattern="^(debug|info|warning|error)$", description="lowest level that is logged")
     log_content: bool = Field(False, description="let logs contain prompts and what errors say about them")
 
     @field_validator("acts", mode="before")
@@ -301,9 +281,7 @@ def read_settings(**given: Any) -> Settings:
         first = error.errors()[0]
         name = ".".join(str(part) for part in first["loc"]) or "the settings"
         if first["type"] == "extra_forbidden":
-            raise InputError(
-                f"There is no setting {name!r}: see `python -m webdemo serve --print-settings`."
-            ) from None
+            raise InputError(f"There is no setting {name!r}: see `python -m webdemo serve --print-settings`.") from None
         if name.startswith("director"):  # which holds a key
             raise InputError("The setting director must be a table with url and model.") from None
         raise InputError(

@@ -69,9 +69,7 @@ class Apart(Generic[T]):
             going.get_loop().call_soon_threadsafe(told)
 
 
-async def watch(
-    stuck: Callable[[], str], *, silent_seconds: float = SILENT_SECONDS, every: float = EVERY
-) -> None:
+async def watch(stuck: Callable[[], str], *, silent_seconds: float = SILENT_SECONDS, every: float = EVERY) -> None:
     """Ends the process if something is stuck, or if this coroutine or a thread gets no turn for too long.
 
     The second holds even where native code keeps Python's interpreter lock for good, since ``faulthandler`` waits in a

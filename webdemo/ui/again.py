@@ -13,13 +13,7 @@ from motion import Duet, InputError
 from webdemo.inference.actor import ROLES
 from webdemo.inference.plans import kept_plan
 from webdemo.inference.predict_request import PredictRequest, PredictResult
-from webdemo.inference.requests import (
-    GenerateRequest,
-    ReactRequest,
-    Result,
-    SamplingRequest,
-    with_current_names,
-)
+from webdemo.inference.requests import GenerateRequest, ReactRequest, Result, SamplingRequest, with_current_names
 from webdemo.inference.story import SceneRequest
 from webdemo.inference.tries import replayed
 from webdemo.ui.components.actors import Source
@@ -28,8 +22,11 @@ from .history import Entry, Opened
 
 Request = SamplingRequest | PredictRequest
 _KINDS: dict[str, type[Request]] = {
-    "generate": GenerateRequest, "react": ReactRequest, "predict": PredictRequest, "scene": SceneRequest,
-}  # fmt: skip
+    "generate": GenerateRequest,
+    "react": ReactRequest,
+    "predict": PredictRequest,
+    "scene": SceneRequest,
+}
 
 
 def request_of(opened: Opened) -> Request:
@@ -46,9 +43,7 @@ def request_of(opened: Opened) -> Request:
         )
     kind = _KINDS.get(opened.entry.kind)
     if kind is None:
-        raise InputError(
-            f"A run of the kind {opened.entry.kind!r} cannot be run again from here: use its tab."
-        )
+        raise InputError(f"A run of the kind {opened.entry.kind!r} cannot be run again from here: use its tab.")
     if kind is SceneRequest:
         kept = opened.result.duets[0]  # what was made of it is not read again
         motion = kept if "motion" in asked and isinstance(kept, Duet) else None

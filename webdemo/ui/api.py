@@ -17,14 +17,7 @@ from webdemo.inference.acting import acted
 from webdemo.inference.actor import read_actor
 from webdemo.inference.methods import AUTOMATIC, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
-from webdemo.inference.requests import (
-    OWN_STEPS,
-    Cancelled,
-    GenerateRequest,
-    ReactRequest,
-    Result,
-    SamplingRequest,
-)
+from webdemo.inference.requests import OWN_STEPS, Cancelled, GenerateRequest, ReactRequest, Result, SamplingRequest
 from webdemo.ui.components.exports import RIG, Record, write_files, write_on_rig
 from webdemo.ui.text.classes import class_method
 from webdemo.ui.text.words import error_line, progress_line
@@ -124,9 +117,9 @@ class Endpoint:
             "files": {key: [path.name for path in paths] for key, paths in files.items()},
         }
         if isinstance(result, PredictResult):
-            answer["prediction"] = {
-                key: list(getattr(result, key)) for key in ("error", "speed", "true_speed")
-            } | {"past_frames": result.past_frames}
+            answer["prediction"] = {key: list(getattr(result, key)) for key in ("error", "speed", "true_speed")} | {
+                "past_frames": result.past_frames
+            }
         return answer, [str(path) for paths in files.values() for path in paths]
 
     def _run(self, request: SamplingRequest | PredictRequest, progress: gr.Progress) -> Result:
@@ -156,8 +149,7 @@ class GenerateEndpoint(Endpoint):
                 gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
                 *self._sampling(),
                 gr.Textbox(
-                    GenerateRequest.model,
-                    label=" or ".join(m.name for m in methods("generate") if "words" in m.takes),
+                    GenerateRequest.model, label=" or ".join(m.name for m in methods("generate") if "words" in m.takes)
                 ),
                 gr.Number(
                     GenerateRequest.tries,
@@ -189,13 +181,21 @@ class GenerateEndpoint(Endpoint):
         return self._answer(
             lambda: acted(
                 GenerateRequest(
-                    prompt=prompt, seconds=seconds, seed=seed, samples=samples, guidance=guidance, steps=steps,
-                    damping=damping, sampler=sampler, model=model, tries=tries,
+                    prompt=prompt,
+                    seconds=seconds,
+                    seed=seed,
+                    samples=samples,
+                    guidance=guidance,
+                    steps=steps,
+                    damping=damping,
+                    sampler=sampler,
+                    model=model,
+                    tries=tries,
                 )
             ),
             prompt,
             progress,
-        )  # fmt: skip
+        )
 
 
 class ClassEndpoint(Endpoint):
@@ -229,12 +229,19 @@ class ClassEndpoint(Endpoint):
         """
         return self._answer(
             lambda: GenerateRequest(
-                prompt=name, seconds=seconds, seed=seed, samples=samples, guidance=guidance, steps=steps,
-                damping=damping, sampler=sampler, model=class_method().name,
+                prompt=name,
+                seconds=seconds,
+                seed=seed,
+                samples=samples,
+                guidance=guidance,
+                steps=steps,
+                damping=damping,
+                sampler=sampler,
+                model=class_method().name,
             ),
             name,
             progress,
-        )  # fmt: skip
+        )
 
 
 class ReactEndpoint(Endpoint):
@@ -254,16 +261,10 @@ class ReactEndpoint(Endpoint):
                 gr.Number(0, label="its end, in seconds; 0 is the end of the file"),
                 gr.Textbox(ReactRequest.role, label="a: the given person acts first; b: they react"),
                 *self._sampling(),
-                gr.Textbox(
-                    ReactRequest.model, label=" or ".join([AUTOMATIC, *(m.name for m in methods("react"))])
-                ),
+                gr.Textbox(ReactRequest.model, label=" or ".join([AUTOMATIC, *(m.name for m in methods("react"))])),
                 gr.Textbox(ReactRequest.mode, label=f"offline; or online ({streaming})"),
-                gr.Checkbox(
-                    False, label=f"start in the first pose of the other person in the file ({posed})"
-                ),
-                gr.Checkbox(
-                    False, label="also the new person on the rig of the file: a .bvh or .glb of one person"
-                ),
+                gr.Checkbox(False, label=f"start in the first pose of the other person in the file ({posed})"),
+                gr.Checkbox(False, label="also the new person on the rig of the file: a .bvh or .glb of one person"),
                 gr.Textbox("", label=WHICH),
                 gr.Number(0, label=RATE),
                 gr.Textbox("", label=UP),
@@ -307,19 +308,31 @@ class ReactEndpoint(Endpoint):
             if not actor:
                 raise InputError("There is no actor: send a motion file, such as a .bvh.")
             clip, pose = read_actor(
-                actor, person=person or None, start=start, end=end or None, keep_start=keep_start,
+                actor,
+                person=person or None,
+                start=start,
+                end=end or None,
+                keep_start=keep_start,
                 choices=reading_choices(animation, fps, up, order),
-            )  # fmt: skip
+            )
             return ReactRequest(
-                actor=clip, prompt=prompt, role=role, seed=seed, samples=samples, guidance=guidance,
-                steps=steps, damping=damping, sampler=sampler, model=model, mode=mode, first_pose=pose,
-            )  # fmt: skip
+                actor=clip,
+                prompt=prompt,
+                role=role,
+                seed=seed,
+                samples=samples,
+                guidance=guidance,
+                steps=steps,
+                damping=damping,
+                sampler=sampler,
+                model=model,
+                mode=mode,
+                first_pose=pose,
+            )
 
         title = prompt.strip() or f"Reaction to {Path(actor or '').stem}"
         file = Path(actor or "")
-        return self._answer(
-            request, title, progress, file if own_rig and actor else None, (file, animation or None)
-        )
+        return self._answer(request, title, progress, file if own_rig and actor else None, (file, animation or None))
 
 
 class PredictEndpoint(Endpoint):
@@ -342,9 +355,18 @@ class PredictEndpoint(Endpoint):
             self._publish(self.predict, "predict", inputs)
 
     def predict(
-        self, past: str, marker: float, seconds: float, model: str, animation: str = "", fps: float = 0.0,
-        seed: int = 0, up: str = "", order: str = "", progress: gr.Progress = PROGRESS,
-    ) -> Answer:  # fmt: skip
+        self,
+        past: str,
+        marker: float,
+        seconds: float,
+        model: str,
+        animation: str = "",
+        fps: float = 0.0,
+        seed: int = 0,
+        up: str = "",
+        order: str = "",
+        progress: gr.Progress = PROGRESS,
+    ) -> Answer:
         """Predicts what comes after the past of a motion, for one person or two.
 
         Returns the manifest, timings, notes and file names, and under "prediction" the error (mm) and speed
@@ -357,8 +379,11 @@ class PredictEndpoint(Endpoint):
                 raise InputError("There is no past: send a motion file, such as a .bvh.")
             return PredictRequest(
                 motion=read(Path(past), choices=reading_choices(animation, fps, up, order), longest=LONGEST),
-                marker=marker or None, seconds=seconds, seed=seed, model=model,
-            )  # fmt: skip
+                marker=marker or None,
+                seconds=seconds,
+                seed=seed,
+                model=model,
+            )
 
         file = Path(past or "")
         return self._answer(request, f"After {file.stem}", progress, given=(file, animation or None))

@@ -29,9 +29,7 @@ class _WithScript(BaseLoader):
     def __init__(self, loader: BaseLoader) -> None:
         self.loader = loader
 
-    def get_source(
-        self, environment: Environment, template: str
-    ) -> tuple[str, str | None, Callable[[], bool] | None]:
+    def get_source(self, environment: Environment, template: str) -> tuple[str, str | None, Callable[[], bool] | None]:
         source, name, fresh = self.loader.get_source(environment, template)
         return (source.replace("<head>", f"<head>{SCRIPT}", 1) if template == PAGE else source), name, fresh
 

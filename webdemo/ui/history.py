@@ -196,9 +196,15 @@ class HistoryLike(Protocol):
         """Marks a run as one to keep, or no longer."""
 
     def describe(
-        self, run: str, owner: str, *, title: str | None = None, tags: str | None = None,
-        note: str | None = None, frame: int | None = None,
-    ) -> None:  # fmt: skip
+        self,
+        run: str,
+        owner: str,
+        *,
+        title: str | None = None,
+        tags: str | None = None,
+        note: str | None = None,
+        frame: int | None = None,
+    ) -> None:
         """Names a run, tags it, or writes a note about one of its frames; what is None stays."""
 
     def remove(self, runs: Sequence[str], owner: str) -> int:

@@ -46,8 +46,14 @@ TITLE = "Pas de Deux"
 TABS = (GenerateTab, SceneTab, ReactTab, PredictTab)
 """A class a job, with a ``label``, the key of its shown name, ``named``, and ``build(demo, record)``."""
 ENDPOINTS = (
-    PredictEndpoint, GenerateEndpoint, ClassEndpoint, ReactEndpoint, RenderEndpoint, SceneEndpoint, ReadEndpoint,
-)  # fmt: skip
+    PredictEndpoint,
+    GenerateEndpoint,
+    ClassEndpoint,
+    ReactEndpoint,
+    RenderEndpoint,
+    SceneEndpoint,
+    ReadEndpoint,
+)
 """Gradio's client in the browser takes the page's first function for "/predict", so that one comes first."""
 
 _HEADER = f'<div class="pd-brand"><h1>Pas de Deux</h1><p>{say("page.intro")}</p></div>'
@@ -186,9 +192,7 @@ def _build_announcement(announced: Callable[[], str] | None, demo: gr.Blocks) ->
 def _announcement(announced: Callable[[], str]) -> gr.HTML:
     text = announced()
     style = "border:1px solid var(--border-color-primary);border-radius:10px;padding:.6em 1em"
-    return gr.HTML(
-        f'<p role="status" style="{style}">{html.escape(text)}</p>' if text else "", visible=bool(text)
-    )
+    return gr.HTML(f'<p role="status" style="{style}">{html.escape(text)}</p>' if text else "", visible=bool(text))
 
 
 def _own_acts() -> str:

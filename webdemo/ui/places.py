@@ -52,9 +52,7 @@ class Places:
                 self._inside.discard(person)
                 now = time.monotonic()
                 self._used[person] = (self._seconds(person, now) + now - began, now)
-                self._used = {
-                    name: used for name, used in self._used.items() if self._seconds(name, now) > 0.01
-                }
+                self._used = {name: used for name, used in self._used.items() if self._seconds(name, now) > 0.01}
                 self._change.notify_all()
 
     def _next(self) -> str | None:

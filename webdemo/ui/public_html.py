@@ -27,10 +27,7 @@ FILES = {
     "plotly.min.js": PLOTLY_JS,
     **{f"share/{name}": SHARE_FOLDER / name for name in ("share.js", "share.css")},
     "player/player.css": PLAYER_FOLDER / "player.css",
-    **{
-        f"player/{path.relative_to(PLAYER_FOLDER).as_posix()}": path
-        for path in sorted(PLAYER_FOLDER.rglob("*.js"))
-    },
+    **{f"player/{path.relative_to(PLAYER_FOLDER).as_posix()}": path for path in sorted(PLAYER_FOLDER.rglob("*.js"))},
     **{f"bodies/{path.name}": path for path in sorted(BODIES_FOLDER.glob("*.json"))},
     TEXTS_JS.name: TEXTS_JS,
     **{f"texts/{path.name}": path for path in sorted(TEXTS_FOLDER.glob("*.json"))},
@@ -117,9 +114,7 @@ def _end(until: float) -> str:
 def _page(kind: str, heading: str, body: str, place: Place) -> str:
     files = _text(place.files)
     parts = {"kind": kind, "heading": _text(heading), "body": body, "files": files}
-    return re.sub(
-        r"@(\w+)@", lambda found: parts[found[1]], _template()
-    )  # once: nothing in a part is replaced
+    return re.sub(r"@(\w+)@", lambda found: parts[found[1]], _template())  # once: nothing in a part is replaced
 
 
 @cache

@@ -55,9 +55,7 @@ class RenderEndpoint:
                 gr.Number(FPS, label="frames a second of a film, 1 to 60"),
                 gr.Number(SIZE[0], label="width in pixels: even, 64 to 1920"),
                 gr.Number(SIZE[1], label="height of a film in pixels: even, 64 to 1080"),
-                gr.File(
-                    label="a skinned character for everybody to wear: .glb, up to 50 MB; may be left out"
-                ),
+                gr.File(label="a skinned character for everybody to wear: .glb, up to 50 MB; may be left out"),
                 gr.Textbox("", label=WHICH),
                 gr.Number(0, label=RATE),
                 gr.Number(0, label="second of the motion that a mesh shows"),
@@ -66,15 +64,33 @@ class RenderEndpoint:
                 gr.Textbox("", label=ORDER),
             ]
             gr.Button().click(
-                self.render, inputs=inputs, outputs=gr.File(label="the film, sheet, figure or mesh"), api_name="render",
-                concurrency_limit=1, concurrency_id="film",
-            )  # fmt: skip
+                self.render,
+                inputs=inputs,
+                outputs=gr.File(label="the film, sheet, figure or mesh"),
+                api_name="render",
+                concurrency_limit=1,
+                concurrency_id="film",
+            )
 
     def render(
-        self, motion: str, kind: str, look: str, theme: str, view: str, trails: bool, fps: float, width: float,
-        height: float, character: str | None = None, animation: str = "", file_fps: float = 0.0, second: float = 0.0,
-        film_look: bool = False, up: str = "", order: str = "",
-    ) -> str:  # fmt: skip
+        self,
+        motion: str,
+        kind: str,
+        look: str,
+        theme: str,
+        view: str,
+        trails: bool,
+        fps: float,
+        width: float,
+        height: float,
+        character: str | None = None,
+        animation: str = "",
+        file_fps: float = 0.0,
+        second: float = 0.0,
+        film_look: bool = False,
+        up: str = "",
+        order: str = "",
+    ) -> str:
         """A film, a contact sheet, a plotly figure or a mesh of a motion file. An error is one sentence."""
         folder = self.page.shelf.folder()
         try:
@@ -88,16 +104,18 @@ class RenderEndpoint:
             if width > 1920 or height > 1080:
                 raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
             with READING.place():
-                found = read(
-                    Path(motion), choices=reading_choices(animation, file_fps, up, order), longest=LONGEST
-                )
+                found = read(Path(motion), choices=reading_choices(animation, file_fps, up, order), longest=LONGEST)
                 body = character_body(read_character(Path(character))) if character else None
             name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
             out = folder / f"{file_name(name, {})}{suffix}"
             style = Style(
-                look=look, theme=theme, trails=trails, film=bool(film_look) and suffix in FILMS,
-                names=suffix not in SHEETS, body=body,
-            )  # fmt: skip
+                look=look,
+                theme=theme,
+                trails=trails,
+                film=bool(film_look) and suffix in FILMS,
+                names=suffix not in SHEETS,
+                body=body,
+            )
             if suffix in SHEETS:
                 return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
             if suffix == FIGURE:

@@ -22,15 +22,9 @@ class SceneEndpoint(Endpoint):
         """Adds the endpoint to the page that is being built."""
         with gr.Row(visible=False):
             inputs = [
-                gr.Textbox(
-                    label="the story: TOML (docs/scenes.md), or sentences, which are split into beats"
-                ),
-                gr.File(
-                    label="a motion of two people that the story goes on from, up to 50 MB; may be empty"
-                ),
-                gr.Number(
-                    0, label="with a motion: the second at which the story begins; 0 is the motion's end"
-                ),
+                gr.Textbox(label="the story: TOML (docs/scenes.md), or sentences, which are split into beats"),
+                gr.File(label="a motion of two people that the story goes on from, up to 50 MB; may be empty"),
+                gr.Number(0, label="with a motion: the second at which the story begins; 0 is the motion's end"),
                 gr.Number(0, label="with a motion: the second at which it goes on unchanged; 0: it does not"),
                 gr.Number(None, label="how many scenes or futures, 1 to 8; the story's own by default"),
                 gr.Number(None, label="seed; the story's own by default"),
@@ -64,9 +58,7 @@ class SceneEndpoint(Endpoint):
 
         def request() -> SceneRequest:
             fields = read_words(story, in_time())
-            fields |= {
-                key: value for key, value in (("samples", samples), ("seed", seed)) if value is not None
-            }
+            fields |= {key: value for key, value in (("samples", samples), ("seed", seed)) if value is not None}
             given = _two_people(motion, reading_choices(animation, fps, up, order)) if motion else None
             return SceneRequest(**fields, motion=given, start=start or None, end=end or None)
 

@@ -8,16 +8,7 @@ import gradio as gr
 
 STYLE = Path(__file__).resolve().parents[2] / "static" / "ui.css"
 
-_SANS = (
-    "system-ui",
-    "-apple-system",
-    "Segoe UI",
-    "Roboto",
-    "Noto Sans",
-    "Helvetica Neue",
-    "Arial",
-    "sans-serif",
-)
+_SANS = ("system-ui", "-apple-system", "Segoe UI", "Roboto", "Noto Sans", "Helvetica Neue", "Arial", "sans-serif")
 _MONO = ("ui-monospace", "SFMono-Regular", "Menlo", "Consolas", "DejaVu Sans Mono", "monospace")
 
 _VALUES = {

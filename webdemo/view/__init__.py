@@ -4,12 +4,4 @@ from .curves import Curve, distance_curves
 from .payload import Payload, player_payload, sample_payload
 from .plotly_figure import figure, write_figure
 
-__all__ = [
-    "Curve",
-    "Payload",
-    "distance_curves",
-    "figure",
-    "player_payload",
-    "sample_payload",
-    "write_figure",
-]
+__all__ = ["Curve", "Payload", "distance_curves", "figure", "player_payload", "sample_payload", "write_figure"]

@@ -137,9 +137,7 @@ def cameras(
     axes = Camera(np.zeros(3), yaw, elevation, 1.0, size).axes * [[1.0], [1.0], [-1.0]]
     half = np.array([size[0] / size[1], size[0] / size[1], 1.0, 1.0])
     slopes = np.tan(FIELD_OF_VIEW / 2) * np.maximum(half - 2 * np.array(_INSETS), 0.1)
-    reaches, depths = zip(
-        *(_reach(motion, times, axes, slopes, around, follow) for motion in panes), strict=True
-    )
+    reaches, depths = zip(*(_reach(motion, times, axes, slopes, around, follow) for motion in panes), strict=True)
     pairs = np.stack([reach[:, ::2] + reach[:, 1::2] for reach in reaches])
     least = (pairs / (slopes[::2] + slopes[1::2])).max(axis=2) - np.stack(depths)
     distances = least.max(axis=0).clip(min=_LEAST)

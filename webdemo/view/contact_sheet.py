@@ -60,9 +60,7 @@ def contact_sheet(
             pixels = (view[:, frame, :, :2] - (low + high) / 2) * scale * np.array([1, -1]) + centre
             if row == 0:
                 ground = centre[1] + (low[1] + high[1]) / 2 * scale
-                draw.line(
-                    [(tile * column + 3, ground), (tile * (column + 1) - 3, ground)], fill=_GROUND, width=2
-                )
+                draw.line([(tile * column + 3, ground), (tile * (column + 1) - 3, ground)], fill=_GROUND, width=2)
             # The person who is farther away is drawn first.
             for person in np.argsort(view[:, frame, 0, 2]):
                 _draw_person(draw, pixels[person], motion, person)

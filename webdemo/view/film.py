@@ -115,9 +115,7 @@ def _check(suffix: str, fps: float, size: tuple[int, int], panes: Sequence[Pane]
     if suffix not in SUFFIXES:
         raise InputError(f"Films end in .mp4, .webm or .gif, not in {suffix or 'nothing'}.")
     if not can_write(suffix):
-        raise InputError(
-            "MP4 and WebM need the package av: install it with `pip install av`, or write a .gif."
-        )
+        raise InputError("MP4 and WebM need the package av: install it with `pip install av`, or write a .gif.")
     if not panes:
         raise InputError("There is no motion to film: give at least one.")
     if not RATES[0] <= fps <= RATES[1]:
@@ -216,9 +214,7 @@ def _pictures(job: Job) -> Generator[Picture, None, None]:
             # Frames go round the workers, so that each draws the next while the others are read.
             data = outputs[frame % workers].read(count)
             if len(data) < count:
-                raise InputError(
-                    "The film could not be drawn: a process that draws it ended early. Try again."
-                )
+                raise InputError("The film could not be drawn: a process that draws it ended early. Try again.")
             yield np.frombuffer(data, np.uint8).reshape(job.shape)
 
 
@@ -226,13 +222,16 @@ def _pictures(job: Job) -> Generator[Picture, None, None]:
 def _worker() -> Iterator[subprocess.Popen[bytes]]:
     """A Python process that draws what it reads; it is ended with the block."""
     environment = os.environ | {
-        "PYTHONPATH": os.pathsep.join(place for place in sys.path if place), "OMP_NUM_THREADS": "1",
+        "PYTHONPATH": os.pathsep.join(place for place in sys.path if place),
+        "OMP_NUM_THREADS": "1",
         "OPENBLAS_NUM_THREADS": "1",
-    }  # fmt: skip
+    }
     process = subprocess.Popen(
         [sys.executable, "-c", "from webdemo.view.film import draw_for_parent; draw_for_parent()"],
-        stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment,
-    )  # fmt: skip
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env=environment,
+    )
     try:
         yield process
     finally:
@@ -254,18 +253,14 @@ def draw_for_parent() -> None:
     sys.stdout.buffer.flush()
 
 
-def _counted(
-    pictures: Iterator[Picture], total: int, progress: Callable[[int, int], None] | None
-) -> Iterator[Picture]:
+def _counted(pictures: Iterator[Picture], total: int, progress: Callable[[int, int], None] | None) -> Iterator[Picture]:
     for done, picture in enumerate(pictures, start=1):
         yield picture
         if progress is not None:
             progress(done, total)
 
 
-def _write_video(
-    pictures: Iterator[Picture], path: Path, suffix: str, fps: float, size: tuple[int, int]
-) -> None:
+def _write_video(pictures: Iterator[Picture], path: Path, suffix: str, fps: float, size: tuple[int, int]) -> None:
     import av
 
     codec, options = _CODECS[suffix]
@@ -287,13 +282,7 @@ def _write_gif(pictures: Iterator[Picture], path: Path, fps: float) -> None:
             yield _opaque(picture).quantize(palette=first, dither=Image.Dither.NONE)
 
     first.save(
-        path,
-        format="GIF",
-        save_all=True,
-        append_images=others(),
-        duration=round(1000 / fps),
-        loop=0,
-        optimize=False,
+        path, format="GIF", save_all=True, append_images=others(), duration=round(1000 / fps), loop=0, optimize=False
     )
 
 

@@ -62,9 +62,7 @@ def moving_cameras(
     aside, away = move(np.clip(times / last, 0.0, 1.0), seconds)
 
     def placed(middle: float | None) -> list[list[Camera]]:
-        return cameras(
-            panes, size=size, times=times, view=view, follow=follow, yaw=middle, elevation=elevation
-        )  # fmt: skip
+        return cameras(panes, size=size, times=times, view=view, follow=follow, yaw=middle, elevation=elevation)
 
     middle = placed(yaw)[0][0].yaw
     widest = float(np.abs(aside).max()) or 1.0

@@ -86,9 +86,7 @@ class Shadow:
         span: metres across the picture.
     """
 
-    def __init__(
-        self, poses: Array, skeleton: Skeleton, surfaces: Sequence[Array], spots: Array | None = None
-    ) -> None:
+    def __init__(self, poses: Array, skeleton: Skeleton, surfaces: Sequence[Array], spots: Array | None = None) -> None:
         """Shades the floor under poses (people, J, 3); the soles of surfaces (V, 3) darken it at contact.
 
         ``spots`` (N, 4) are places of things in the world and the square metres about each.
@@ -107,9 +105,7 @@ class Shadow:
         length = np.linalg.norm(ends - starts, axis=-1)[..., None] / _SAMPLES
         fade = np.maximum(1 - height / _HIGHEST, 0.0)
         amount = 6 * radii[:, None] * length * fade**2
-        field = self._splats(
-            points.reshape(-1, 3), 0.05 + 0.17 * np.maximum(height, 0).ravel(), amount.ravel()
-        )
+        field = self._splats(points.reshape(-1, 3), 0.05 + 0.17 * np.maximum(height, 0).ravel(), amount.ravel())
         if spots is not None and len(spots):
             height = np.maximum(spots[:, 1], 0.0)
             amount = THING_SHADE * spots[:, 3] * np.maximum(1 - height / _HIGHEST, 0.0) ** 2

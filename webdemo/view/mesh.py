@@ -40,15 +40,11 @@ def mesh(motion: Clip | Duet, frame: int, *, style: Style | None = None) -> list
         raise InputError(f"The motion has frames 0 to {motion.num_frames - 1}, but not {frame}.")
     style, people = style or Style(), stacked_positions(motion)
     found = []
-    for person, (body, zones) in enumerate(
-        zip(style.worn(motion, small=False), style.colours.bodies, strict=False)
-    ):
+    for person, (body, zones) in enumerate(zip(style.worn(motion, small=False), style.colours.bodies, strict=False)):
         shades = np.array([(*zones.get(zone, zones["top"]), 1.0) for zone in body.zones])
         found.append(
             trimesh.Trimesh(
-                skin(body, people[person, frame][None], seen=seen_by(people[:, [frame]], person))[0].astype(
-                    np.float64
-                ),
+                skin(body, people[person, frame][None], seen=seen_by(people[:, [frame]], person))[0].astype(np.float64),
                 body.faces,
                 vertex_colors=(255 * shades[_zone_of_vertices(body)]).round().astype(np.uint8),
                 process=False,

@@ -55,12 +55,7 @@ def pack_positions(positions: Array) -> dict[str, Any]:
     extent = positions.max(axis=(0, 1, 2)) - low
     scale = np.where(extent > 0, extent, 1.0) / _LEVELS
     levels = np.rint((positions - low) / scale).astype("<u2")
-    return {
-        "data": in_base64(levels, "<u2"),
-        "min": low.tolist(),
-        "scale": scale.tolist(),
-        "shape": list(levels.shape),
-    }
+    return {"data": in_base64(levels, "<u2"), "min": low.tolist(), "scale": scale.tolist(), "shape": list(levels.shape)}
 
 
 def unpack_positions(packed: dict[str, Any]) -> Array:
@@ -108,9 +103,7 @@ def sample_payload(
                 f"of the {frames} frames."
             )
     if ghost is not None and ghost.skeleton.num_joints != len(names):
-        raise InputError(
-            f"The ghost has {ghost.skeleton.num_joints} joints but the motion {len(names)}: retarget one."
-        )
+        raise InputError(f"The ghost has {ghost.skeleton.num_joints} joints but the motion {len(names)}: retarget one.")
     if past_until is not None and not 0 <= past_until <= frames:
         raise InputError(f"past_until must be a frame from 0 to {frames}, not {past_until}.")
     return {
@@ -120,8 +113,7 @@ def sample_payload(
         "frames": frames,
         "positions": pack_positions(positions),
         "curves": [
-            {"key": c.key, "label": c.label, "unit": c.unit, "values": np.round(c.values, 4).tolist()}
-            for c in curves
+            {"key": c.key, "label": c.label, "unit": c.unit, "values": np.round(c.values, 4).tolist()} for c in curves
         ],
         "contacts": [{"start": c.start, "stop": c.stop, "kind": c.kind, "label": c.label} for c in contacts],
         "ghost": None if ghost is None else pack_positions(stacked_positions(ghost)),
@@ -170,9 +162,7 @@ def build_payload(samples: Sequence[dict[str, Any]], *, skeleton: Any, title: st
     return {"id": digest.hexdigest(), **payload}
 
 
-def grid_sample(
-    cells: Sequence[dict[str, Any]], columns: Sequence[str], rows: Sequence[str]
-) -> dict[str, Any]:
+def grid_sample(cells: Sequence[dict[str, Any]], columns: Sequence[str], rows: Sequence[str]) -> dict[str, Any]:
     """Samples of :func:`sample_payload` as the cells of a grid: one clock, as long as the longest, and one camera.
 
     Args:
@@ -182,9 +172,17 @@ def grid_sample(
     """
     longest = max(cells, key=lambda cell: float(cell["frames"]) / float(cell["fps"]))
     return {
-        **longest, "label": "1", "curves": [], "contacts": [], "ghost": None, "past_until": None, "caption": "",
-        "cells": list(cells), "columns": list(columns), "rows": list(rows),
-    }  # fmt: skip
+        **longest,
+        "label": "1",
+        "curves": [],
+        "contacts": [],
+        "ghost": None,
+        "past_until": None,
+        "caption": "",
+        "cells": list(cells),
+        "columns": list(columns),
+        "rows": list(rows),
+    }
 
 
 def player_payload(
@@ -215,7 +213,6 @@ def player_payload(
     if any(s.joint_names != skeletons[0].joint_names for s in skeletons):
         raise InputError("Samples shown together must have the same joints: retarget them first.")
     samples = [
-        sample_payload(motion, label=str(i + 1), ghost=ghost, past_until=past_until)
-        for i, motion in enumerate(several)
+        sample_payload(motion, label=str(i + 1), ghost=ghost, past_until=past_until) for i, motion in enumerate(several)
     ]
     return build_payload(samples, skeleton=skeletons[0], title=title)

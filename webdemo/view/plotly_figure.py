@@ -88,10 +88,7 @@ def write_figure(
     """
     path = Path(path)
     text = figure(motion, title=title, theme=theme, fps=fps).to_html(
-        include_plotlyjs=True,
-        full_html=True,
-        auto_play=False,
-        config={"displaylogo": False, "responsive": True},
+        include_plotlyjs=True, full_html=True, auto_play=False, config={"displaylogo": False, "responsive": True}
     )
     write_text(path, text)
     return path
@@ -120,16 +117,30 @@ def _people(
         shade = colours.people[person % len(colours.people)]
         for limb, colour in zip(LIMBS, shade, strict=True):
             x, y, z = _lines(joints, skeleton, limb).T
-            looks: dict[str, Any] = {} if only_places else {
-                "mode": "lines+markers", "line": {"color": _css(colour), "width": 7},
-                "marker": {"color": _css(colour), "size": 3}, "hoverinfo": "skip", "showlegend": False,
-            }  # fmt: skip
+            looks: dict[str, Any] = (
+                {}
+                if only_places
+                else {
+                    "mode": "lines+markers",
+                    "line": {"color": _css(colour), "width": 7},
+                    "marker": {"color": _css(colour), "size": 3},
+                    "hoverinfo": "skip",
+                    "showlegend": False,
+                }
+            )
             traces.append(go.Scatter3d(x=x, y=y, z=z, connectgaps=False, **looks))
         x, y, z = joints[np.argmax(joints[:, 1])] + np.array([0.0, _ABOVE_HEAD, 0.0])
-        looks = {} if only_places else {
-            "mode": "text", "text": [html.escape(str(name)[:40])], "hoverinfo": "skip", "showlegend": False,
-            "textfont": {"color": _css(shade[0]), "size": 15},
-        }  # fmt: skip
+        looks = (
+            {}
+            if only_places
+            else {
+                "mode": "text",
+                "text": [html.escape(str(name)[:40])],
+                "hoverinfo": "skip",
+                "showlegend": False,
+                "textfont": {"color": _css(shade[0]), "size": 15},
+            }
+        )
         traces.append(go.Scatter3d(x=[x], y=[y], z=[z], **looks))
     return traces
 
@@ -154,10 +165,18 @@ def _floor(people: Array, colours: Theme) -> Any:
 
     (x, _, z), (far_x, _, far_z) = _bounds(people)
     return go.Mesh3d(
-        x=[x, far_x, far_x, x], y=[0.0] * 4, z=[z, z, far_z, far_z], i=[0, 0], j=[1, 2], k=[2, 3],
-        color=_css(colours.floor), opacity=1.0, hoverinfo="skip", lighting={"ambient": 1.0, "diffuse": 0.0},
+        x=[x, far_x, far_x, x],
+        y=[0.0] * 4,
+        z=[z, z, far_z, far_z],
+        i=[0, 0],
+        j=[1, 2],
+        k=[2, 3],
+        color=_css(colours.floor),
+        opacity=1.0,
+        hoverinfo="skip",
+        lighting={"ambient": 1.0, "diffuse": 0.0},
         name="floor",
-    )  # fmt: skip
+    )
 
 
 def _bounds(people: Array) -> tuple[Array, Array]:
@@ -170,13 +189,9 @@ def _css(colour: Colour) -> str:
     return "#" + "".join(f"{round(255 * part):02x}" for part in colour)
 
 
-def _layout(
-    people: Array, colours: Theme, title: str, steps: list[str], milliseconds: float
-) -> dict[str, Any]:
+def _layout(people: Array, colours: Theme, title: str, steps: list[str], milliseconds: float) -> dict[str, Any]:
     low, high = _bounds(people)
-    axis = {
-        "showbackground": False, "gridcolor": _css(colours.grid), "zeroline": False, "color": _css(colours.ink),
-    }  # fmt: skip
+    axis = {"showbackground": False, "gridcolor": _css(colours.grid), "zeroline": False, "color": _css(colours.ink)}
     at_once = {"frame": {"duration": milliseconds, "redraw": True}, "transition": {"duration": 0}}
     still = {"frame": {"duration": 0, "redraw": True}, "transition": {"duration": 0}, "mode": "immediate"}
     return {
@@ -192,17 +207,31 @@ def _layout(
                 for name, a, b in zip(("xaxis", "yaxis", "zaxis"), low, high, strict=True)
             },
         },
-        "updatemenus": [{
-            "type": "buttons", "direction": "left", "x": 0.0, "y": 0.0, "xanchor": "left", "yanchor": "top",
-            "pad": {"t": 20, "l": 10}, "showactive": False,
-            "buttons": [
-                {"label": "▶ Play", "method": "animate", "args": [None, {**at_once, "fromcurrent": True}]},
-                {"label": "❚❚ Pause", "method": "animate", "args": [[None], still]},
-            ],
-        }],
-        "sliders": [{
-            "active": 0, "x": 0.2, "len": 0.78, "y": 0.0, "pad": {"t": 10},
-            "currentvalue": {"suffix": " s", "xanchor": "right"},
-            "steps": [{"label": step, "method": "animate", "args": [[step], still]} for step in steps],
-        }],
-    }  # fmt: skip
+        "updatemenus": [
+            {
+                "type": "buttons",
+                "direction": "left",
+                "x": 0.0,
+                "y": 0.0,
+                "xanchor": "left",
+                "yanchor": "top",
+                "pad": {"t": 20, "l": 10},
+                "showactive": False,
+                "buttons": [
+                    {"label": "▶ Play", "method": "animate", "args": [None, {**at_once, "fromcurrent": True}]},
+                    {"label": "❚❚ Pause", "method": "animate", "args": [[None], still]},
+                ],
+            }
+        ],
+        "sliders": [
+            {
+                "active": 0,
+                "x": 0.2,
+                "len": 0.78,
+                "y": 0.0,
+                "pad": {"t": 10},
+                "currentvalue": {"suffix": " s", "xanchor": "right"},
+                "steps": [{"label": step, "method": "animate", "args": [[step], still]} for step in steps],
+            }
+        ],
+    }

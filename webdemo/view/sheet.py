@@ -126,10 +126,7 @@ def write_grid_sheet(
     tile = (WIDTH // _IN_ROW, round(WIDTH / _IN_ROW * _TALL))
     times = np.linspace(0.0, max((m.num_frames - 1) / m.fps for m in motions.values()), _IN_ROW)
     ways = cameras(list(motions.values()), size=tile, times=times, follow=False)
-    rows = [
-        _row(motion, name, style, times, own)
-        for (name, motion), own in zip(motions.items(), ways, strict=True)
-    ]
+    rows = [_row(motion, name, style, times, own) for (name, motion), own in zip(motions.items(), ways, strict=True)]
     small = _text_size(tile)
     head = np.full((2 * small if title else 0, rows[0].shape[1], 4), 255, dtype=np.uint8)
     head[..., :3] = [round(255 * c) for c in style.colours.horizon]
@@ -141,9 +138,7 @@ def write_grid_sheet(
     return path
 
 
-def _row(
-    motion: Clip | Duet, name: str, style: Style, times: Array, views: Sequence[Camera]
-) -> NDArray[np.uint8]:
+def _row(motion: Clip | Duet, name: str, style: Style, times: Array, views: Sequence[Camera]) -> NDArray[np.uint8]:
     """Pictures of a motion beside each other, its name above and the times below."""
     tile, ink = views[0].size, style.colours.ink
     small = _text_size(tile)
@@ -153,21 +148,14 @@ def _row(
     for place, picture in enumerate(Stage(Pane(motion), style, tile).pictures(times, views)):
         left = place * tile[0]
         row[2 * small : 2 * small + tile[1], left : left + tile[0]] = picture
-        paste(
-            row,
-            words(f"{times[place]:.2f} s", ink, small),
-            left + small // 2,
-            tile[1] + 2 * small + small // 4,
-        )
+        paste(row, words(f"{times[place]:.2f} s", ink, small), left + small // 2, tile[1] + 2 * small + small // 4)
     return row
 
 
 def _places(count: int, tile: tuple[int, int], head: int) -> list[tuple[int, int]]:
     """The upper left corner of each picture; under each row is a line for the times."""
     foot = _text_size(tile) * 2
-    return [
-        (tile[0] * (i % _COLUMNS), head + (tile[1] + foot) * (i // _COLUMNS)) for i in range(count)
-    ]  # fmt: skip
+    return [(tile[0] * (i % _COLUMNS), head + (tile[1] + foot) * (i // _COLUMNS)) for i in range(count)]
 
 
 def _text_size(tile: tuple[int, int]) -> int:
@@ -180,12 +168,7 @@ def _whole(count: int, tile: tuple[int, int], head: int) -> tuple[int, int]:
 
 
 def _raster(
-    motion: Clip | Duet,
-    style: Style,
-    moments: list[int],
-    views: list[Camera],
-    tile: tuple[int, int],
-    title: str,
+    motion: Clip | Duet, style: Style, moments: list[int], views: list[Camera], tile: tuple[int, int], title: str
 ) -> Image.Image:
     small, ink = _text_size(tile), style.colours.ink
     head = 2 * small if title else 0
@@ -195,18 +178,22 @@ def _raster(
     pictures = Stage(Pane(motion), style, tile).pictures(np.array(moments) / motion.fps, views)
     for frame, (x, y), picture in zip(moments, _places(len(moments), tile, head), pictures, strict=True):
         sheet[y : y + tile[1], x : x + tile[0]] = picture
-        paste(
-            sheet, words(f"{frame / motion.fps:.2f} s", ink, small), x + small // 2, y + tile[1] + small // 4
-        )
+        paste(sheet, words(f"{frame / motion.fps:.2f} s", ink, small), x + small // 2, y + tile[1] + small // 4)
     if title:
         paste(sheet, words(title, ink, small), small // 2, small // 4)
     return Image.fromarray(sheet).convert("RGB")
 
 
 def _vector(
-    motion: Clip | Duet, style: Style, moments: list[int], views: list[Camera], tile: tuple[int, int],
-    title: str, path: Path, kind: str,
-) -> None:  # fmt: skip
+    motion: Clip | Duet,
+    style: Style,
+    moments: list[int],
+    views: list[Camera],
+    tile: tuple[int, int],
+    title: str,
+    path: Path,
+    kind: str,
+) -> None:
     import matplotlib
     from matplotlib.figure import Figure
 
@@ -223,29 +210,27 @@ def _vector(
     for frame, camera, (x, y) in zip(moments, views, _places(len(moments), tile, head), strict=True):
         seen = [(thing.mesh, thing.at(frame)) for thing in things]
         _draw_tile(axes, motion, frame, people[:, frame], seen, camera, np.array([x, y]), style)
-        axes.text(
-            x + small / 2,
-            y + tile[1] + small * 1.3,
-            f"{frame / motion.fps:.2f} s",
-            size=small,
-            color=theme.ink,
-        )
+        axes.text(x + small / 2, y + tile[1] + small * 1.3, f"{frame / motion.fps:.2f} s", size=small, color=theme.ink)
     with matplotlib.rc_context(_VECTOR):
         metadata = {"Date": None} if kind == "svg" else {"CreationDate": None}
         figure.savefig(path, format=kind, metadata=metadata)
 
 
 def _draw_tile(
-    axes, motion: Clip | Duet, frame_number: int, pose: Array, seen_things: list[tuple[Mesh, Array]], camera: Camera,
-    corner: Array, style: Style,
-) -> None:  # fmt: skip
+    axes,
+    motion: Clip | Duet,
+    frame_number: int,
+    pose: Array,
+    seen_things: list[tuple[Mesh, Array]],
+    camera: Camera,
+    corner: Array,
+    style: Style,
+) -> None:
     from matplotlib.collections import LineCollection, PolyCollection
     from matplotlib.patches import PathPatch, Rectangle
 
     theme = style.colours
-    frame = Rectangle(
-        (float(corner[0]), float(corner[1])), *camera.size, facecolor=theme.floor, edgecolor="none"
-    )
+    frame = Rectangle((float(corner[0]), float(corner[1])), *camera.size, facecolor=theme.floor, edgecolor="none")
     axes.add_patch(frame)
 
     def add(kind, shapes: Array, **look) -> None:
@@ -276,9 +261,7 @@ def _draw_tile(
         colours.append(shades[seen].mean(axis=1))
         shade = camera.project(project_shadow(surface))[0][faces]
         dark = np.array(theme.floor) * (1 + np.array(theme.shade)) / 2
-        shadow = PathPatch(
-            _outlines(shade[_facing(shade)] + corner), facecolor=dark, edgecolor="none", zorder=2
-        )
+        shadow = PathPatch(_outlines(shade[_facing(shade)] + corner), facecolor=dark, edgecolor="none", zorder=2)
         axes.add_patch(shadow)
         shadow.set_clip_path(frame)
     if triangles:
@@ -298,9 +281,7 @@ def _draw_tile(
 def _outlines(triangles: Array):
     from matplotlib.path import Path as Outline
 
-    codes = np.array(
-        [Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY], dtype=Outline.code_type
-    )
+    codes = np.array([Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY], dtype=Outline.code_type)
     closed = np.concatenate([triangles, triangles[:, :1]], axis=1)
     return Outline(closed.reshape(-1, 2), np.tile(codes, len(triangles)))
 

@@ -276,8 +276,11 @@ class _Pen:
         self.lines(points[bones][order], [limbs[sides[bones[i, 1]]] for i in order], widths[order])
         depth = self.camera.project(points)[1]
         dots = np.maximum(0.044 * self.camera.focal / np.maximum(depth, 0.1), 3.0)
-        self.lines(np.repeat(points[:, None], 2, axis=1) + np.array([[0, 0, 0], [1e-4, 0, 0]]),
-                   [limbs[side] for side in sides], dots)  # fmt: skip
+        self.lines(
+            np.repeat(points[:, None], 2, axis=1) + np.array([[0, 0, 0], [1e-4, 0, 0]]),
+            [limbs[side] for side in sides],
+            dots,
+        )
 
     def surfaces(self, solid: Sequence[tuple[NDArray[np.integer], Array, Array, float]]) -> None:
         """Smooth triangles of surfaces as (faces, vertices, colours, alpha), the farthest first."""

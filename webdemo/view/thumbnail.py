@@ -17,10 +17,21 @@ FRAMES = 20
 JOINTS = tuple(
     SMPL22.index(name)
     for name in (
-        "pelvis", "neck", "head", "left_shoulder", "right_shoulder", "left_elbow", "right_elbow", "left_wrist",
-        "right_wrist", "left_knee", "right_knee", "left_ankle", "right_ankle",
+        "pelvis",
+        "neck",
+        "head",
+        "left_shoulder",
+        "right_shoulder",
+        "left_elbow",
+        "right_elbow",
+        "left_wrist",
+        "right_wrist",
+        "left_knee",
+        "right_knee",
+        "left_ankle",
+        "right_ankle",
     )
-)  # fmt: skip
+)
 _LEVELS = 255
 
 

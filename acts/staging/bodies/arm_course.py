@@ -44,14 +44,28 @@ _IN_THE_AIR = (Hand.HIGH, Hand.UP, Hand.AHEAD, Hand.SPREAD, Hand.WAVES)
 _POLE = (0.4, -1.0, -0.2)
 """Outwards, up and ahead: where the elbow is beside the line from shoulder to wrist. It hangs."""
 _POLES = {
-    Hand.SALUTES: (1.0, -0.25, 0.0), Hand.HIPS: (1.0, 0.0, -0.5), Hand.BEHIND: (1.0, -0.2, -0.6),
-    Hand.HEAD: (1.0, 0.1, 0.3), Hand.HIGH: (1.0, -0.3, 0.4), Hand.UP: (0.8, -0.8, 0.3),
-    Hand.EARS: (0.9, -1.0, 0.2), Hand.EYES: (0.7, -1.0, 0.1), Hand.PHOTO: (0.7, -1.0, 0.1),
-    Hand.PHONE: (0.6, -1.0, 0.3), Hand.WAVES: (0.5, -1.0, 0.0), Hand.CROSSED: (0.6, -1.0, 0.0),
-    Hand.CONDUCTS: (0.9, -0.8, 0.0), Hand.BRUSHES: (0.8, -0.8, 0.0), Hand.DRUMS: (0.7, -1.0, -0.2),
-    Hand.COMBS: (1.0, -0.4, 0.2), Hand.BEATS: (1.0, -0.5, 0.0), Hand.BENDS: (0.3, -1.0, 0.1),
-    Hand.PRAYS: (0.7, -1.0, -0.1), Hand.OFFERS: (0.25, -1.0, -0.2), Hand.CHEST: (0.6, -1.0, -0.1),
-}  # fmt: skip
+    Hand.SALUTES: (1.0, -0.25, 0.0),
+    Hand.HIPS: (1.0, 0.0, -0.5),
+    Hand.BEHIND: (1.0, -0.2, -0.6),
+    Hand.HEAD: (1.0, 0.1, 0.3),
+    Hand.HIGH: (1.0, -0.3, 0.4),
+    Hand.UP: (0.8, -0.8, 0.3),
+    Hand.EARS: (0.9, -1.0, 0.2),
+    Hand.EYES: (0.7, -1.0, 0.1),
+    Hand.PHOTO: (0.7, -1.0, 0.1),
+    Hand.PHONE: (0.6, -1.0, 0.3),
+    Hand.WAVES: (0.5, -1.0, 0.0),
+    Hand.CROSSED: (0.6, -1.0, 0.0),
+    Hand.CONDUCTS: (0.9, -0.8, 0.0),
+    Hand.BRUSHES: (0.8, -0.8, 0.0),
+    Hand.DRUMS: (0.7, -1.0, -0.2),
+    Hand.COMBS: (1.0, -0.4, 0.2),
+    Hand.BEATS: (1.0, -0.5, 0.0),
+    Hand.BENDS: (0.3, -1.0, 0.1),
+    Hand.PRAYS: (0.7, -1.0, -0.1),
+    Hand.OFFERS: (0.25, -1.0, -0.2),
+    Hand.CHEST: (0.6, -1.0, -0.1),
+}
 
 
 def arm(gesture: Gesture, side: str, seconds: Array, length: float, towards: Array, before: Array) -> Array:
@@ -97,9 +111,7 @@ def raised(side: str) -> Array:
 
 def directions(poses: Array, side: str) -> Array:
     """(…, 2, 3) directions of the upper arm and the forearm in poses (…, 22, 3)."""
-    shoulder, elbow, hand = (
-        poses[..., SMPL22.index(f"{side}_{j}"), :] for j in ("shoulder", "elbow", "wrist")
-    )
+    shoulder, elbow, hand = (poses[..., SMPL22.index(f"{side}_{j}"), :] for j in ("shoulder", "elbow", "wrist"))
     return np.stack([unit(elbow - shoulder), unit(hand - elbow)], axis=-2)
 
 

@@ -25,9 +25,21 @@ Array = NDArray[np.floating]
 
 _SIDES = (("left", 1.0), ("right", -1.0))
 _CLEAR = {
-    "foot": SOLE, "ankle": 0.07, "knee": 0.045, "hip": 0.1, "wrist": 0.055, "elbow": 0.045, "shoulder": 0.08,
-    "collar": 0.08, "pelvis": 0.11, "spine1": 0.11, "spine2": 0.12, "spine3": 0.12, "neck": 0.07, "head": 0.11,
-}  # fmt: skip
+    "foot": SOLE,
+    "ankle": 0.07,
+    "knee": 0.045,
+    "hip": 0.1,
+    "wrist": 0.055,
+    "elbow": 0.045,
+    "shoulder": 0.08,
+    "collar": 0.08,
+    "pelvis": 0.11,
+    "spine1": 0.11,
+    "spine2": 0.12,
+    "spine3": 0.12,
+    "neck": 0.07,
+    "head": 0.11,
+}
 """Metres from a joint to the skin below it, on which a body lies or stands."""
 _CLEARANCES = np.array([_CLEAR[name.split("_")[-1]] for name in SMPL22.joint_names])
 _CROWN, _OVER_CROWN = 0.14, 0.02

@@ -34,16 +34,7 @@ PAIRED = ("hip", "out", "turnout", "knee", "ankle", "arm", "side", "rotate", "el
 and turned in, an elbow bent, a shoulder raised; "free" is 1 for a leg that does not carry the body, as it swings past
 the floor. A number for both sides, or [left, right]."""
 NAMES = (*SINGLE, *METRES, *(f"{side}_{name}" for side in ("left", "right") for name in PAIRED))
-_SWAY = {
-    "lean": 0.8,
-    "twist": 1.5,
-    "neck": 2.0,
-    "look": 3.0,
-    "tilt": 1.0,
-    "arm": 2.5,
-    "side": 2.0,
-    "elbow": 2.5,
-}
+_SWAY = {"lean": 0.8, "twist": 1.5, "neck": 2.0, "look": 3.0, "tilt": 1.0, "arm": 2.5, "side": 2.0, "elbow": 2.5}
 """Degrees by which parts of the body waver."""
 
 
@@ -201,9 +192,7 @@ def _keys(rows: Sequence[Mapping[str, Any]], poses: Mapping[str, Any]) -> tuple[
 
 def _row(row: Mapping[str, Any], poses: Mapping[str, Any]) -> Array:
     """The angles (1, angles) in radians of a row: those of its pose, with what it says beside."""
-    said = (
-        _STANDS | poses[row.get("pose", "stand")] | {k: v for k, v in row.items() if k not in ("in", "pose")}
-    )
+    said = _STANDS | poses[row.get("pose", "stand")] | {k: v for k, v in row.items() if k not in ("in", "pose")}
     found = np.zeros(len(NAMES))
     for name, value in said.items():
         if name in METRES:

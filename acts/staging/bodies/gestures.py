@@ -90,11 +90,18 @@ class Gesture:
 OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS, Hand.RUBS)
 """Gestures of both hands."""
 _AT_BODY = {
-    Hand.HIPS: (0.21, 0.1, 0.0), Hand.CHEST: (0.02, 0.36, 0.2), Hand.BELLY: (0.04, 0.14, 0.2),
-    Hand.HEAD: (0.12, 0.66, -0.05), Hand.MOUTH: (0.07, 0.48, 0.17), Hand.BEHIND: (0.04, 0.02, -0.18),
-    Hand.FANS: (0.12, 0.42, 0.22), Hand.CROSSED: (-0.1, 0.24, 0.17), Hand.SHAKES: (0.28, 0.08, 0.12),
-    Hand.WORKS: (0.1, 0.16, 0.28), Hand.RUBS: (0.05, 0.24, 0.26),
-}  # fmt: skip
+    Hand.HIPS: (0.21, 0.1, 0.0),
+    Hand.CHEST: (0.02, 0.36, 0.2),
+    Hand.BELLY: (0.04, 0.14, 0.2),
+    Hand.HEAD: (0.12, 0.66, -0.05),
+    Hand.MOUTH: (0.07, 0.48, 0.17),
+    Hand.BEHIND: (0.04, 0.02, -0.18),
+    Hand.FANS: (0.12, 0.42, 0.22),
+    Hand.CROSSED: (-0.1, 0.24, 0.17),
+    Hand.SHAKES: (0.28, 0.08, 0.12),
+    Hand.WORKS: (0.1, 0.16, 0.28),
+    Hand.RUBS: (0.05, 0.24, 0.26),
+}
 """Metres from the pelvis to the left wrist of hands that are held at one's own body."""
 AT_OTHER = (Hand.LINKED, Hand.AROUND)
 """Gestures at the other's body."""

@@ -172,15 +172,15 @@ def _lunged(limb: Limb, held: Array, since: Array) -> Turns:
     front = _legs(limb)[0]
     back = "left" if front == "right" else "right"
     return _leg(limb, 1.1 * down, 1.25 * down) | {
-        f"{back}_hip": about(0, 0.4 * down), f"{back}_knee": about(0, 0.75 * down),
-        f"{back}_ankle": about(0, -0.55 * down), f"{front}_ankle": about(0, -0.15 * down),
-    }  # fmt: skip
+        f"{back}_hip": about(0, 0.4 * down),
+        f"{back}_knee": about(0, 0.75 * down),
+        f"{back}_ankle": about(0, -0.55 * down),
+        f"{front}_ankle": about(0, -0.15 * down),
+    }
 
 
 def _turned_out(limb: Limb, held: Array, since: Array) -> Turns:
-    return {
-        f"{side}_hip": heading_matrix(sign * 0.7 * held) for side, sign in (("left", 1.0), ("right", -1.0))
-    }
+    return {f"{side}_hip": heading_matrix(sign * 0.7 * held) for side, sign in (("left", 1.0), ("right", -1.0))}
 
 
 def _reached_down(limb: Limb, held: Array, since: Array) -> Turns:
@@ -221,9 +221,7 @@ def _dipped(limb: Limb, held: Array, since: Array) -> Turns:
 
 
 def _twisted(limb: Limb, held: Array, since: Array) -> Turns:
-    turned = (
-        _aside(limb) * held if limb.direction or limb.side != "both" else _swing(since, held, limb.times, 2.2)
-    )
+    turned = _aside(limb) * held if limb.direction or limb.side != "both" else _swing(since, held, limb.times, 2.2)
     return {joint: heading_matrix(0.26 * turned) for joint in ("spine1", "spine2", "spine3")}
 
 
@@ -322,15 +320,6 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
 WITH_ARMS = frozenset(("reaches down",))
 """Those that the hands belong to."""
 RAISES = frozenset(
-    (
-        "raises leg",
-        "raises knee",
-        "swings leg",
-        "kicks",
-        "stamps",
-        "stands on one leg",
-        "crosses legs",
-        "lunges",
-    )
+    ("raises leg", "raises knee", "swings leg", "kicks", "stamps", "stands on one leg", "crosses legs", "lunges")
 )
 """Those in which a foot leaves the floor."""

@@ -24,14 +24,20 @@ LYING = 0.6
 LOWER = tuple(
     SMPL22.index(name)
     for name in (
-        "pelvis", "left_hip", "right_hip", "spine1", "left_knee", "right_knee", "left_ankle", "right_ankle",
-        "left_foot", "right_foot",
+        "pelvis",
+        "left_hip",
+        "right_hip",
+        "spine1",
+        "left_knee",
+        "right_knee",
+        "left_ankle",
+        "right_ankle",
+        "left_foot",
+        "right_foot",
     )
-)  # fmt: skip
-"""Joints of the pelvis and the legs: with these known, the arms and the head are free for other acts."""
-ARMS = tuple(
-    SMPL22.index(f"{side}_{name}") for side in ("left", "right") for name in ("shoulder", "elbow", "wrist")
 )
+"""Joints of the pelvis and the legs: with these known, the arms and the head are free for other acts."""
+ARMS = tuple(SMPL22.index(f"{side}_{name}") for side in ("left", "right") for name in ("shoulder", "elbow", "wrist"))
 HANDS = tuple(SMPL22.index(f"{side}_{name}") for side in ("left", "right") for name in ("elbow", "wrist"))
 """Joints that move where the shoulders are held."""
 FLAT = (
@@ -39,10 +45,17 @@ FLAT = (
     *(
         SMPL22.index(name)
         for name in (
-            "spine2", "spine3", "neck", "head", "left_collar", "right_collar", "left_shoulder", "right_shoulder",
+            "spine2",
+            "spine3",
+            "neck",
+            "head",
+            "left_collar",
+            "right_collar",
+            "left_shoulder",
+            "right_shoulder",
         )
     ),
-)  # fmt: skip
+)
 """The same with the trunk, the head and the shoulders, for those who lie or bend down."""
 TRUNK = tuple(joint for joint in FLAT if joint not in LOWER or joint == SMPL22.index("spine1"))
 """Joints of the trunk, the head and the shoulders."""
@@ -91,48 +104,19 @@ def standing(place: Array, angle: float, seconds: Array, *, seed: int = 0) -> Ar
     return _on_floor(poses, place, angle)
 
 
-_SITS: Mapping[str, float] = {
-    "hip": -1.45,
-    "knee": 1.5,
-    "ankle": -0.05,
-    "shoulder": 1.2,
-    "elbow": 0.6,
-    "spine": 0.08,
-}
-_CROUCHES: Mapping[str, float] = {
-    "hip": -1.75,
-    "knee": 2.2,
-    "ankle": -0.5,
-    "shoulder": 1.2,
-    "elbow": 0.5,
-    "spine": 0.2,
-}
-_BENDS: Mapping[str, float] = {
-    "hip": -0.6, "knee": 0.95, "ankle": -0.38, "shoulder": 1.2, "elbow": 0.3, "spine": 0.1,
-}  # fmt: skip
-_STOOPS: Mapping[str, float] = {
-    "hip": -0.7, "knee": 0.9, "ankle": -0.2, "shoulder": 1.4, "elbow": 0.3, "spine": 0.05,
-}  # fmt: skip
-_LIES: Mapping[str, float] = {
-    "hip": -0.12, "knee": 0.25, "ankle": 0.4, "shoulder": 0.9, "elbow": 0.2, "spine": 0.0,
-}  # fmt: skip
+_SITS: Mapping[str, float] = {"hip": -1.45, "knee": 1.5, "ankle": -0.05, "shoulder": 1.2, "elbow": 0.6, "spine": 0.08}
+_CROUCHES: Mapping[str, float] = {"hip": -1.75, "knee": 2.2, "ankle": -0.5, "shoulder": 1.2, "elbow": 0.5, "spine": 0.2}
+_BENDS: Mapping[str, float] = {"hip": -0.6, "knee": 0.95, "ankle": -0.38, "shoulder": 1.2, "elbow": 0.3, "spine": 0.1}
+_STOOPS: Mapping[str, float] = {"hip": -0.7, "knee": 0.9, "ankle": -0.2, "shoulder": 1.4, "elbow": 0.3, "spine": 0.05}
+_LIES: Mapping[str, float] = {"hip": -0.12, "knee": 0.25, "ankle": 0.4, "shoulder": 0.9, "elbow": 0.2, "spine": 0.0}
 _BELLY, _ELBOW_LIES = (-0.03, 0.14, -0.19), (-1.0, -0.6, 0.2)
 """Metres from the pelvis of a person on the back, the feet towards +Z, to a wrist on the belly, and its elbow's way."""
-_SITS_UP: Mapping[str, float] = {
-    "hip": -2.4, "knee": 1.9, "ankle": 0.1, "shoulder": 1.2, "elbow": 0.3, "spine": 0.15,
-}  # fmt: skip
+_SITS_UP: Mapping[str, float] = {"hip": -2.4, "knee": 1.9, "ankle": 0.1, "shoulder": 1.2, "elbow": 0.3, "spine": 0.15}
 _STOOPED = 1.6
 """Radians by which the trunk of a person leans who bends down to the floor."""
 _BENT = 0.9
 """Radians of a bend from the hips."""
-STANDS: Mapping[str, float] = {
-    "hip": -0.06,
-    "knee": 0.12,
-    "ankle": -0.06,
-    "shoulder": 1.4,
-    "elbow": 0.3,
-    "spine": 0.0,
-}
+STANDS: Mapping[str, float] = {"hip": -0.06, "knee": 0.12, "ankle": -0.06, "shoulder": 1.4, "elbow": 0.3, "spine": 0.0}
 BOW_BEGINS = 0.25
 """Seconds of a beat before a bow, and after it."""
 BOW_TAKES = (1.2, 2.0)
@@ -141,14 +125,7 @@ _BOW_DOWN, _BOW_UP = 0.42, 0.52
 """Shares of a bow at which somebody is down, and from which they rise."""
 _WITH_TRUNK = {"left": 0.3, "right": 0.4}
 """How far arms turn with a trunk that bows."""
-_FLIES: Mapping[str, float] = {
-    "hip": -0.2,
-    "knee": 0.4,
-    "ankle": 0.45,
-    "shoulder": 1.3,
-    "elbow": 0.3,
-    "spine": 0.0,
-}
+_FLIES: Mapping[str, float] = {"hip": -0.2, "knee": 0.4, "ankle": 0.45, "shoulder": 1.3, "elbow": 0.3, "spine": 0.0}
 
 
 def upright(place: Array, angle: float) -> Array:
@@ -163,9 +140,7 @@ def seated(place: Array, angle: float) -> Array:
 
 def grounded(place: Array, angle: float) -> Array:
     """A person sitting on the ground, the feet where they stood: (22, 3) metres."""
-    pose = _posed(
-        angle, {"hip": -1.8, "knee": 0.35, "ankle": 0.0, "shoulder": 1.3, "elbow": 0.3, "spine": 0.1}
-    )
+    pose = _posed(angle, {"hip": -1.8, "knee": 0.35, "ankle": 0.0, "shoulder": 1.3, "elbow": 0.3, "spine": 0.1})
     pose[:, 1] += 0.08 - pose[:, 1].min()
     ahead = STANCE * np.array([np.sin(angle), 0.0, np.cos(angle)])
     return pose + (np.array([place[0], 0.0, place[1]]) + ahead - pose[list(TOES)].mean(axis=0)) * [1, 0, 1]
@@ -279,9 +254,7 @@ def bowing(place: Array, angle: float, lean: float = _BENT) -> Sequence[tuple[fl
     return ((-0.7, up), (-0.15, low), (0.15, low), (0.85, up))
 
 
-def bowed(
-    poses: Array, angle: float, seconds: Array, length: float, times: int = 1, lean: float = _BENT
-) -> Array:
+def bowed(poses: Array, angle: float, seconds: Array, length: float, times: int = 1, lean: float = _BENT) -> Array:
     """Standing poses (N, 22, 3) of a person who bows so many times, the arms hanging.
 
     Trunk and head bend down and rise along minimum-jerk courses, slowly where there is time. The arms follow them
@@ -330,9 +303,7 @@ def _on_floor(poses: Array, place: Array, angle: float) -> Array:
     soles = poses[:, TOES]
     moved = poses - soles.mean(axis=1, keepdims=True) * [1, 0, 1]
     moved[..., 1] += SOLE - soles[..., 1].mean(axis=1)[:, None]
-    return (
-        moved + np.array([place[0], 0.0, place[1]]) + STANCE * np.array([np.sin(angle), 0.0, np.cos(angle)])
-    )
+    return moved + np.array([place[0], 0.0, place[1]]) + STANCE * np.array([np.sin(angle), 0.0, np.cos(angle)])
 
 
 def about(axis: int, angle: Array | float) -> Array:

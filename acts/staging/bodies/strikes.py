@@ -110,8 +110,7 @@ def blows(struck: Strike, frames: int, *, first: int = 0) -> list[Blow]:
     last = frames - (_FLIGHT + 6 if struck.bout is Bout.THROWS else _DRAWN)
     at = range(first + FIRST, last, period)
     made = [
-        Blow(frame, "ab".index(struck.turns[i % len(struck.turns)]), _hand(struck, i))
-        for i, frame in enumerate(at)
+        Blow(frame, "ab".index(struck.turns[i % len(struck.turns)]), _hand(struck, i)) for i, frame in enumerate(at)
     ]
     return made if struck.goes_on else made[: len(struck.turns)]
 

@@ -44,13 +44,9 @@ class Stroke:
 STROKES: Mapping[str, Stroke] = {
     "drums": Stroke((0.17, 0.2, 0.34), by=(0.0, 0.09, 0.02), rate=2.0, in_turn=True),
     "types": Stroke((0.1, 0.24, 0.38), by=(0.01, 0.014, 0.0), rate=2.6, in_turn=True),
-    "juggles": Stroke(
-        (0.17, 0.22, 0.28), by=(0.07, 0.0, 0.0), around=(0.0, 0.11, 0.0), rate=1.3, in_turn=True
-    ),
+    "juggles": Stroke((0.17, 0.22, 0.28), by=(0.07, 0.0, 0.0), around=(0.0, 0.11, 0.0), rate=1.3, in_turn=True),
     "dribbles": Stroke((0.23, 0.16, 0.23), by=(0.0, 0.1, 0.0), rate=1.5),
-    "conducts": Stroke(
-        (0.24, 0.46, 0.32), by=(0.14, 0.0, 0.0), around=(0.0, 0.1, 0.02), rate=0.8, twice=True
-    ),
+    "conducts": Stroke((0.24, 0.46, 0.32), by=(0.14, 0.0, 0.0), around=(0.0, 0.1, 0.02), rate=0.8, twice=True),
     "pumps": Stroke((0.1, 0.24, 0.32), by=(0.0, 0.09, 0.02), rate=1.5),
     "knocks": Stroke((0.1, 0.46, 0.4), by=(0.0, 0.01, 0.045), rate=2.4),
     "paints": Stroke((0.12, 0.46, 0.4), by=(0.0, 0.2, 0.0), around=(0.05, 0.0, 0.0), rate=0.7),

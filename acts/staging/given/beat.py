@@ -29,16 +29,7 @@ from ..sampled import Way2D
 from ..told import Told
 from ..ways import Way
 from ..window import Window
-from .bodies import (
-    SETTLES,
-    all_but,
-    figure_poses,
-    given_bow,
-    given_figure,
-    given_limbs,
-    given_steps,
-    halted,
-)
+from .bodies import SETTLES, all_but, figure_poses, given_bow, given_figure, given_limbs, given_steps, halted
 from .contacts import coming, given_contact, given_hold, given_twirl, meeting, towards_touched
 from .hands import hands, outer_hands
 from .lifts import Carrying
@@ -145,12 +136,7 @@ def _parts(request: _Story, window: Window, scene: Array, placement: Placement) 
 
 
 def _on_their_ways(
-    request: _Story,
-    scene: Array,
-    found: Sequence[Move],
-    touch: Contact | None,
-    posed: dict[int, Array],
-    beat: Stretch,
+    request: _Story, scene: Array, found: Sequence[Move], touch: Contact | None, posed: dict[int, Array], beat: Stretch
 ) -> list[Part]:
     """The ways of a beat, and the touches, holds, blows and gestures on them."""
     told, ways, parts = request.told[beat.window.beat], beat.ways, list[Part]()
@@ -199,9 +185,7 @@ def _until_posed(way: Way2D, hand: KnownFrames | None, beat: Stretch) -> Way2D:
     return Way2D(way.person, np.asarray(way.frames)[kept].tolist(), way.places[kept], headings)
 
 
-def _room(
-    request: _Story, scene: Array, still: Collection[str], found: Sequence[Move], beat: Stretch
-) -> Room:
+def _room(request: _Story, scene: Array, still: Collection[str], found: Sequence[Move], beat: Stretch) -> Room:
     """The room that the postures of a beat need, in which nobody goes anywhere or touches the other."""
     told, stand = request.told[beat.window.beat], beat.stand
     met = any(figure.meets for figure in told.figures.values())
@@ -228,12 +212,7 @@ def _going(found: Sequence[Move]) -> set[str]:
 
 
 def _held(
-    request: _Story,
-    scene: Array,
-    room: Room,
-    still: Collection[str],
-    found: Sequence[Move],
-    beat: Stretch,
+    request: _Story, scene: Array, room: Room, still: Collection[str], found: Sequence[Move], beat: Stretch
 ) -> tuple[list[Part], dict[int, Array]]:
     """The poses of bystanders and of those whose posture is given, and a pose of each of the latter."""
     beat = replace(beat, start=beat.start + room.delay)
@@ -273,9 +252,7 @@ def _held(
             busy = who in told.gestures or (told.contact is not None and told.contact.person == who)
             down = still_down(poses, stop, tail)
             loose = who in told.loose
-            for joints, frames, known in led(
-                down, window.start, window.stop + tail, arms=not busy, loose=loose
-            ):
+            for joints, frames, known in led(down, window.start, window.stop + tail, arms=not busy, loose=loose):
                 parts.append(beat.given(person, np.asarray(frames) - start, known, joints))
     return parts, posed
 
@@ -306,9 +283,7 @@ def plan_note(request: _Story, go_on: Callable[[], None] = lambda: None) -> list
             *(f"person {m.person.upper()} {m.way.value}" for m in told.moves if _is_said(m)),
         ]
         if ways:
-            said.append(
-                (f"in beat {number} " if len(request.beats) > 1 else "") + " and ".join(dict.fromkeys(ways))
-            )
+            said.append((f"in beat {number} " if len(request.beats) > 1 else "") + " and ".join(dict.fromkeys(ways)))
     if not request.plans_words or not said:
         return []
     return [f"From the words: {'; '.join(said)}. A path that you draw takes the place of this."]
@@ -366,11 +341,7 @@ def _apart(request: _Story, window: Window, placement: Placement) -> list[Part]:
     for beat, told in zip(request.beats[1:], request.told[1:], strict=True):
         found = told.moves
         if goes(found):
-            if (
-                not any(move.way in (Way.TO, Way.AWAY) for move in found)
-                or window.part
-                or request.told[0].reaching
-            ):
+            if not any(move.way in (Way.TO, Way.AWAY) for move in found) or window.part or request.told[0].reaching:
                 return []
             return _given_places(starting(found, beat.length), window, placement)
     return []

@@ -80,9 +80,7 @@ def given_steps(gait: str, person: int, told: Told, beat: Stretch) -> list[Part]
     return [replace(beat.given(person, frames, poses[frames], joints), kept=True)]
 
 
-def given_figure(
-    story: Sequence[Told], person: int, beat: Stretch, last: Array | None, seed: int
-) -> list[Part]:
+def given_figure(story: Sequence[Told], person: int, beat: Stretch, last: Array | None, seed: int) -> list[Part]:
     """The body of a person who does a figure, as far as it falls into a window; one who is down gets up before.
 
     Args:
@@ -109,14 +107,10 @@ def given_figure(
 def figure_poses(told: Told, person: int, beat: Stretch, seed: int) -> list[Pose]:
     """Some poses of a figure, with their frames of the scene, that show the room it needs."""
     frames, poses = _figure(told, person, beat, 0, seed)
-    return [(int(frame) + beat.start, pose) for frame, pose in zip(frames, poses, strict=True)][
-        :: _SEEN // LIMBED
-    ]
+    return [(int(frame) + beat.start, pose) for frame, pose in zip(frames, poses, strict=True)][:: _SEEN // LIMBED]
 
 
-def _figure(
-    told: Told, person: int, beat: Stretch, first: int, seed: int
-) -> tuple[NDArray[np.integer], Array]:
+def _figure(told: Told, person: int, beat: Stretch, first: int, seed: int) -> tuple[NDArray[np.integer], Array]:
     """Frames (N,) of a beat and the poses (N, 22, 3) of a figure that begins with its ``first`` frame, or later."""
     figure, angle = told.figures["ab"[person]], float(beat.stand.headings[person])
     together = figure.meets or figure.in_time

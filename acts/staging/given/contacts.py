@@ -12,17 +12,7 @@ from motion import FPS, SMPL22
 
 from ..bodies.curves import direction
 from ..bodies.poses import LOWER, TRUNK, bending, upright
-from ..contacts import (
-    LOWEST,
-    Contact,
-    arms_beside,
-    beside,
-    kneels,
-    middle,
-    reach,
-    touched,
-    touching,
-)
+from ..contacts import LOWEST, Contact, arms_beside, beside, kneels, middle, reach, touched, touching
 from ..floor import ABEAM, Standing
 from ..holds import Hold, joined, raised
 from ..moves import Move
@@ -88,9 +78,7 @@ def meeting(
     lies = 1 - giver in posed and beside(pose, stand.places[giver]) is not None
     way = Way.BEHIND if touch.behind or lies else Way.BESIDE if touch.beside else Way.TO
     comes = [
-        Move(m.person, way if m.way is Way.TO else m.way, m.speed, late=m.late, near=near)
-        if m.way in _COMES[:3]
-        else m
+        Move(m.person, way if m.way is Way.TO else m.way, m.speed, late=m.late, near=near) if m.way in _COMES[:3] else m
         for m in own
     ]
     if not any(move.near for move in comes):
@@ -126,9 +114,7 @@ def coming(told: Told, stand: Standing, down: Collection[int]) -> tuple[Move, ..
     return (*(Move(who, Way.TO, until=True, near=told.reaching[who]) for who in comes), *waits)
 
 
-def towards_touched(
-    touch: Contact | None, posed: Mapping[int, Array], stand: Standing, pulls: str = ""
-) -> Standing:
+def towards_touched(touch: Contact | None, posed: Mapping[int, Array], stand: Standing, pulls: str = "") -> Standing:
     """The places that a way to the other is planned from: of a person who is posed, the one that is touched.
 
     A person who lies is taken to face away from the one who comes, so that they are touched from the side. A person

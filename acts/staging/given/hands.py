@@ -104,14 +104,7 @@ def _linked(moves: Sequence[Move]) -> bool:
 
 
 def _arms(
-    gesture: Gesture,
-    person: int,
-    at: Frames,
-    stretch: Stretch,
-    before: Array | None,
-    *,
-    both: bool,
-    late: float,
+    gesture: Gesture, person: int, at: Frames, stretch: Stretch, before: Array | None, *, both: bool, late: float
 ) -> tuple[list[int], Array]:
     """Joints of a person's arms and their places (N, joints, 3) beside the pelvis in the scene's world.
 
@@ -161,9 +154,7 @@ def _there(places: Array, frames: Frames) -> Frames:
     return frames[short < ARRIVED] if (short < ARRIVED).any() else frames[-1:]
 
 
-def _given(
-    person: int, joints: Sequence[int], frames: Frames, places: Array, stretch: Stretch
-) -> KnownFrames:
+def _given(person: int, joints: Sequence[int], frames: Frames, places: Array, stretch: Stretch) -> KnownFrames:
     """Joints (N, joints, 3) of a person at some frames of a beat, as the network is given them."""
     poses = np.zeros((len(frames), SMPL22.num_joints, 3))
     poses[:, list(joints)] = places

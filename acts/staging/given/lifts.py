@@ -125,10 +125,7 @@ class Carrying:
         """The body of the person carried, and the carrier's pelvis, trunk and hands, as the network is given them."""
         course, parts = self.course, []
         first, last = self.off
-        held = [
-            *range(first, last, OFTEN),
-            *range(max(first, last - 1), last),
-        ]  # none in a beat that is too short
+        held = [*range(first, last, OFTEN), *range(max(first, last - 1), last)]  # none in a beat that is too short
         at = self.stretch.shown(np.unique(np.array(held, dtype=int)))
         if len(at):
             walking = self._walking()[at - first]

@@ -144,16 +144,12 @@ def _on_the_way(
     lies = Posture.LIES in (now, change.posture)
     if now in _LOW and change.posture is Posture.STANDS:
         ends = min(at + RISING, stop - 1)
-        return ends, {
-            at + round(share * (ends - at)): pose for share, pose in rising(place, angle, lies=lies)
-        }
+        return ends, {at + round(share * (ends - at)): pose for share, pose in rising(place, angle, lies=lies)}
     ends = min(at + SETTLING, stop - 1)
     if {now, change.posture} == {Posture.BENDS, Posture.STANDS}:
         shares = minimum_jerk(np.arange(HELD, ends - at, HELD) / (ends - at))
         down = shares if change.posture is Posture.BENDS else 1 - shares
-        return ends, {
-            at + HELD * (i + 1): stooping(place, angle, float(share)) for i, share in enumerate(down)
-        }
+        return ends, {at + HELD * (i + 1): stooping(place, angle, float(share)) for i, share in enumerate(down)}
     falls = lies and not change.gently
     if now is not Posture.STANDS or change.posture not in _LOW or not (change.gently or falls):
         return ends, {}
@@ -186,9 +182,7 @@ def led(
     gets_down = (frame for (frame, _), was, now in zip(poses[1:], down, down[1:], strict=False) if now > was)
     folds = next(gets_down, first - FOLDS) + FOLDS
     for joints, lies in ((LOWER, False), (FLAT, True)):
-        inside = [
-            each for each, low in zip(poses, down, strict=True) if first <= each[0] < last and low is lies
-        ]
+        inside = [each for each, low in zip(poses, down, strict=True) if first <= each[0] < last and low is lies]
         stoops = bool(inside) and inside[-1][1][0, 1] > _KNEELS
         laid = [
             lies and (arms if stoops else loose and frame >= folds and bool(pose[_HEAD, 1] < _FLAT))

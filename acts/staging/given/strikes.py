@@ -11,17 +11,7 @@ from motion import FPS, SMPL22
 
 from ..bodies.gestures import SIDES
 from ..bodies.poses import HANDS, TRUNK, standing, upright
-from ..bodies.strikes import (
-    CATCHING,
-    FIRST,
-    Blow,
-    Bout,
-    Strike,
-    blows,
-    catching,
-    poses,
-    ready,
-)
+from ..bodies.strikes import CATCHING, FIRST, Blow, Bout, Strike, blows, catching, poses, ready
 from ..parts import KnownFrames
 from ..told import Told
 from .postures import DUCKING
@@ -90,9 +80,7 @@ def given_blows(struck: Strike, told: Told, stretch: Stretch) -> list[KnownFrame
     ] + [*_rests(struck, after, courses, stretch), *_unwarned(struck, told, listed, stretch)]
 
 
-def _rests(
-    struck: Strike, after: Mapping[int, int], courses: Sequence[Course], stretch: Stretch
-) -> list[KnownFrames]:
+def _rests(struck: Strike, after: Mapping[int, int], courses: Sequence[Course], stretch: Stretch) -> list[KnownFrames]:
     """The bodies of people once their last blow or throw is over, where the network would strike again.
 
     Args:
@@ -108,9 +96,7 @@ def _rests(
         frames = stretch.shown(np.arange(after[person] + RESTS, stretch.frames, EVERY))
         course = courses[person]
         poses = [
-            standing(
-                course.places[frame], float(course.headings[frame]), np.array([frame / FPS]), seed=person
-            )
+            standing(course.places[frame], float(course.headings[frame]), np.array([frame / FPS]), seed=person)
             for frame in frames
         ]
         if poses:

@@ -109,9 +109,7 @@ def read_sentences(path: Path) -> tuple[Sentence, ...]:
             raise InputError(f"{path.name} is larger than {_MOST_BYTES // 2**20} MB: split it.")
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise InputError(
-            f"{path} cannot be read ({type(error).__name__}): name a text or JSON file."
-        ) from None
+        raise InputError(f"{path} cannot be read ({type(error).__name__}): name a text or JSON file.") from None
     if path.suffix.lower() == ".toml":
         try:
             tables = tomllib.loads(text)

@@ -71,9 +71,7 @@ class Motion:
     @cached_property
     def roots(self) -> Array:
         """(2, T, 2) smoothed paths of the pelvises over the floor (X, Z)."""
-        return gaussian_filter1d(
-            self.positions[:, :, 0][..., [0, 2]], _SMOOTH * self.fps, axis=1, mode="nearest"
-        )
+        return gaussian_filter1d(self.positions[:, :, 0][..., [0, 2]], _SMOOTH * self.fps, axis=1, mode="nearest")
 
     @cached_property
     def velocities(self) -> Array:

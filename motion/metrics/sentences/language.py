@@ -189,9 +189,7 @@ def _calls(node: ast.expr) -> Iterator[ast.Call]:
 
 def _holds(node: ast.expr, rule: str, motion: Motion) -> bool:
     if isinstance(node, ast.BoolOp):
-        held = [
-            _holds(part, rule, motion) for part in node.values
-        ]  # all of them, so that a wrong word is found
+        held = [_holds(part, rule, motion) for part in node.values]  # all of them, so that a wrong word is found
         return all(held) if isinstance(node.op, ast.And) else any(held)
     if not isinstance(node, ast.Call) or _name(node.func) not in CONDITIONS:
         raise RuleError(f"The rule {rule!r} must begin with one of {', '.join(CONDITIONS)}.")

@@ -100,17 +100,7 @@ def _orbits(m: Motion, who: int, *_: object) -> str:
 
 
 # ---- ways ------------------------------------------------------------------------------------------------
-@measure(
-    "walks",
-    "goes_at",
-    "goes_ahead",
-    "goes_way",
-    "goes_metres",
-    "sidesteps",
-    "steps_aside",
-    "passes",
-    "follows",
-)
+@measure("walks", "goes_at", "goes_ahead", "goes_way", "goes_metres", "sidesteps", "steps_aside", "passes", "follows")
 def _walks(m: Motion, who: int, *_: object, **__: object) -> str:
     return f"{_NAMES[who]} goes {_gone(m, m.speeds[who]):.1f} m"
 
@@ -133,9 +123,7 @@ def _away(m: Motion, who: int, metres: float = 0.0) -> str:
 
 @measure("backs")
 def _backs(m: Motion, who: int, metres: float = 0.0) -> str:
-    return (
-        f"{_NAMES[who]} goes {_gone(m, -np.sum(m.velocities[who] * m.forward[who], axis=-1)):.1f} m backwards"
-    )
+    return f"{_NAMES[who]} goes {_gone(m, -np.sum(m.velocities[who] * m.forward[who], axis=-1)):.1f} m backwards"
 
 
 @measure("stays")

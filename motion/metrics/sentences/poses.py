@@ -76,9 +76,7 @@ def jumps(m: Motion, who: int, rise: float = 0.06) -> Mask:
 @predicate
 def hops(m: Motion, who: int, rise: float = 0.05) -> Mask:
     """One of two or more moments at which no foot is on the floor: the pelvis goes up and down by ``rise`` in each."""
-    feet = np.minimum(
-        m.pair(who, "foot")[..., 1].min(axis=0), m.pair(who, "ankle")[..., 1].min(axis=0) - 0.06
-    )
+    feet = np.minimum(m.pair(who, "foot")[..., 1].min(axis=0), m.pair(who, "ankle")[..., 1].min(axis=0) - 0.06)
     up = feet > np.percentile(feet, 10) + 0.03
     bobs = scipy.signal.find_peaks(m.joint(who, "pelvis")[:, 1], prominence=rise)[0]
     found = np.zeros(m.frames, dtype=bool)

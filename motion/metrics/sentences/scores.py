@@ -69,12 +69,7 @@ def _count(tally: dict[str, list[int]], sentence: Sentence, flags: Sequence[bool
 
 def table(scores: Mapping[str, Any], beside: Mapping[str, Any] | None = None) -> str:
     """The scores as Markdown, with a column of other weights' scores where they are given."""
-    heads = [
-        "Sentences",
-        "Obey (95 % interval)",
-        *(["Before"] if beside else []),
-        "Motion of other sentences",
-    ]
+    heads = ["Sentences", "Obey (95 % interval)", *(["Before"] if beside else []), "Motion of other sentences"]
     lines = [scores["about"], "", f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
     order = [ALL, *sorted(set(scores["tags"]) - {ALL})]
     for tag in order:

@@ -64,9 +64,7 @@ def holds_in_front(m: Motion, who: int, metres: float = 0.45) -> Mask:
     """Both hands before the body as if on one thing: ``metres`` apart at most, above the waist and ahead of it."""
     wrists, pelvis = m.pair(who, "wrist"), m.joint(who, "pelvis")
     ahead = (_flat(wrists - pelvis, m.forward[who]) > 0.15).all(axis=0)
-    over = (wrists[..., 1] > pelvis[:, 1]).all(axis=0) & (wrists[..., 1] < m.joint(who, "head")[:, 1]).all(
-        axis=0
-    )
+    over = (wrists[..., 1] > pelvis[:, 1]).all(axis=0) & (wrists[..., 1] < m.joint(who, "head")[:, 1]).all(axis=0)
     return ahead & over & (np.linalg.norm(wrists[0] - wrists[1], axis=-1) < metres)
 
 
@@ -173,14 +171,7 @@ def leans(m: Motion, who: int, way: str, degrees: float = 15.0) -> Mask:
         return m.lean(who) > degrees
     trunk = m.joint(who, "neck") - m.joint(who, "pelvis")
     ahead, left, to_other = m.forward[who], _left(m, who), m.towards(who)
-    axes = {
-        "forward": ahead,
-        "back": -ahead,
-        "left": left,
-        "right": -left,
-        "towards": to_other,
-        "away": -to_other,
-    }
+    axes = {"forward": ahead, "back": -ahead, "left": left, "right": -left, "towards": to_other, "away": -to_other}
     return np.degrees(np.arctan2(_flat(trunk, axes[way]), trunk[:, 1])) > degrees
 
 

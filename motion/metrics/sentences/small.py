@@ -62,9 +62,7 @@ def head_aside(m: Motion, who: int, degrees: float = 10.0) -> Mask:
 
 
 @predicate
-def beats(
-    m: Motion, who: int, side: str = "any", strokes: int = 3, metres: float = 0.05, over: float = -0.6
-) -> Mask:
+def beats(m: Motion, who: int, side: str = "any", strokes: int = 3, metres: float = 0.05, over: float = -0.6) -> Mask:
     """A hand goes to and fro ``strokes`` times within 2 s, by ``metres`` or more each time.
 
     Args:
@@ -80,9 +78,7 @@ def beats(
         busy = np.zeros(m.frames, dtype=bool)
         for axis in path.T:
             peaks = np.sort(
-                np.concatenate(
-                    [scipy.signal.find_peaks(sign * axis, prominence=metres)[0] for sign in (1, -1)]
-                )
+                np.concatenate([scipy.signal.find_peaks(sign * axis, prominence=metres)[0] for sign in (1, -1)])
             )
             for i, j in zip(peaks, peaks[strokes - 1 :], strict=False):
                 if j - i <= 2.0 * m.fps and np.all(lift[i : j + 1] > over):

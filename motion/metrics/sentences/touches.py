@@ -10,10 +10,18 @@ from .vocabulary import predicate
 
 BODY = {
     "shoulder": ("left_shoulder", "right_shoulder", "left_collar", "right_collar"),
-    "back": ("spine1", "spine2", "spine3", "neck", "left_collar", "right_collar", "left_shoulder",
-             "right_shoulder"),
-    "trunk": ("pelvis", "spine1", "spine2", "spine3", "neck", "left_collar", "right_collar", "left_shoulder",
-              "right_shoulder"),
+    "back": ("spine1", "spine2", "spine3", "neck", "left_collar", "right_collar", "left_shoulder", "right_shoulder"),
+    "trunk": (
+        "pelvis",
+        "spine1",
+        "spine2",
+        "spine3",
+        "neck",
+        "left_collar",
+        "right_collar",
+        "left_shoulder",
+        "right_shoulder",
+    ),
     "chest": ("spine2", "spine3", "left_collar", "right_collar"),
     "head": ("head", "neck"),
     "face": ("head",),
@@ -27,10 +35,27 @@ BODY = {
     "knee": ("left_knee", "right_knee"),
     "leg": ("left_hip", "right_hip", "left_knee", "right_knee", "left_ankle", "right_ankle"),
     "foot": ("left_foot", "right_foot", "left_ankle", "right_ankle"),
-    "body": ("pelvis", "spine1", "spine2", "spine3", "neck", "head", "left_collar", "right_collar",
-             "left_shoulder", "right_shoulder", "left_elbow", "right_elbow", "left_wrist", "right_wrist",
-             "left_hip", "right_hip", "left_knee", "right_knee"),
-}  # fmt: skip
+    "body": (
+        "pelvis",
+        "spine1",
+        "spine2",
+        "spine3",
+        "neck",
+        "head",
+        "left_collar",
+        "right_collar",
+        "left_shoulder",
+        "right_shoulder",
+        "left_elbow",
+        "right_elbow",
+        "left_wrist",
+        "right_wrist",
+        "left_hip",
+        "right_hip",
+        "left_knee",
+        "right_knee",
+    ),
+}
 """Joints by the words for a part of the body."""
 
 
@@ -45,8 +70,7 @@ def _hand_gaps(m: Motion) -> Array:
     """(2, 2, T) metres between each hand of a (left, right) and each of b: wrists or palms, what is less."""
     wrists = [m.pair(who, "wrist") for who in (0, 1)]
     gaps = [
-        np.linalg.norm(mine[:, None] - theirs[None], axis=-1)
-        for mine, theirs in (wrists, (m.palms[0], m.palms[1]))
+        np.linalg.norm(mine[:, None] - theirs[None], axis=-1) for mine, theirs in (wrists, (m.palms[0], m.palms[1]))
     ]
     return np.minimum(*gaps)
 

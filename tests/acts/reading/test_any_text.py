@@ -19,10 +19,20 @@ def test_too_long_a_text_is_refused() -> None:
 
 
 LONG = {
-    "one word": "slowly ", "acts": "he hugs her and ", "commas": ",", "letters": "A B ", "stops": "a. ",
-    "names": "Bob ", "digits": "7", "of": "the hand of ", "apostrophes": "'s ", "while": "while he hugs ",
-    "to": "tries to ", "brackets": "([{", "unicode": "é ",
-}  # fmt: skip
+    "one word": "slowly ",
+    "acts": "he hugs her and ",
+    "commas": ",",
+    "letters": "A B ",
+    "stops": "a. ",
+    "names": "Bob ",
+    "digits": "7",
+    "of": "the hand of ",
+    "apostrophes": "'s ",
+    "while": "while he hugs ",
+    "to": "tries to ",
+    "brackets": "([{",
+    "unicode": "é ",
+}
 
 
 @pytest.mark.parametrize("kind", sorted(LONG))

@@ -22,17 +22,23 @@ def told(text: str) -> Told:
     ("text", "acts"),
     [
         ("A, run at B and leap.", [("run-up", "a", "b"), ("jump", "a", None)]),
-        ("B, catch A at the hips, turn once, and set A down.",
-         [("catch-person", "b", "a"), ("turn-around", "b", None), ("set-down-person", "b", "a")]),
+        (
+            "B, catch A at the hips, turn once, and set A down.",
+            [("catch-person", "b", "a"), ("turn-around", "b", None), ("set-down-person", "b", "a")],
+        ),
         ("A: walks to B. B: steps back.", [("walk-up", "a", "b"), ("step-back", "b", None)]),
-        ("Staccato: A nods, B nods, A shrugs, B shrugs.",
-         [("nod", "a", None), ("nod", "b", None), ("shrug", "a", None), ("shrug", "b", None)]),
+        (
+            "Staccato: A nods, B nods, A shrugs, B shrugs.",
+            [("nod", "a", None), ("nod", "b", None), ("shrug", "a", None), ("shrug", "b", None)],
+        ),
         ("In canon: lunge right.", [("lunge", "a", None), ("lunge", "b", None)]),
         ("Lunge left, then step back.", [("lunge", "ab", None), ("step-back", "ab", None)]),
         ("They take turns bowing.", [("bow", "a", None), ("bow", "b", None)]),
         ("Performer B freezes mid-step as A circles her twice.", [("freeze", "b", None), ("walk-around", "a", "b")]),
-        ("They rise, hold for four counts, then collapse.",
-         [("stand-up", "ab", None), ("stand-still", "ab", None), ("fall-down", "ab", None)]),
+        (
+            "They rise, hold for four counts, then collapse.",
+            [("stand-up", "ab", None), ("stand-still", "ab", None), ("fall-down", "ab", None)],
+        ),
         ("Both rise onto the balls of the feet.", [("on-tiptoe", "ab", None)]),
         ("B is on all fours.", [("all-fours", "b", None)]),
         ("They are both seated.", [("sit-down", "ab", None)]),
@@ -45,7 +51,7 @@ def told(text: str) -> Told:
         ("A kid and a toddler wave.", [("wave", "ab", None)]),
         ("2 ppl playing rock paper scissors", [("rock-paper-scissors", "ab", None)]),
     ],
-)  # fmt: skip
+)
 def test_a_direction_is_read(text: str, acts: Told) -> None:
     assert told(text) == acts
 
@@ -55,10 +61,12 @@ def test_roles_are_exchanged_of_all_that_each_did_alone() -> None:
     plan = read(text)
     assert told(text) == [
         ("bow", "ab", None),
-        ("push", "a", "b"), ("step-back", "b", None),
-        ("push", "b", "a"), ("step-back", "a", None),
+        ("push", "a", "b"),
+        ("step-back", "b", None),
+        ("push", "b", "a"),
+        ("step-back", "a", None),
         ("hug", "ab", None),
-    ]  # fmt: skip
+    ]
     again = [act for act in plan.acts if act.act == "push"][1]
     assert all(int(relation.act) < int(again.id) for relation in again.order)
 
@@ -89,10 +97,13 @@ def test_a_text_is_read_alike_in_every_process() -> None:
         subprocess.run(
             [sys.executable, "-c", code],
             env={**os.environ, "PYTHONHASHSEED": seed},
-            capture_output=True, text=True, check=True, timeout=120,
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=120,
         ).stdout
         for seed in ("1", "2", "3")
-    }  # fmt: skip
+    }
     assert len(found) == 1 and "talk" in found.pop()
 
 
@@ -155,8 +166,7 @@ def test_what_is_thrown_into_the_air_is_what_is_caught() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "act"),
-    [("push-ups", "push-ups"), ("synchronized jumping jacks", "jumping-jacks"), ("Slow bows.", "bow")],
+    ("text", "act"), [("push-ups", "push-ups"), ("synchronized jumping jacks", "jumping-jacks"), ("Slow bows.", "bow")]
 )
 def test_a_headline_is_done_by_both(text: str, act: str) -> None:
     assert [(each.agents, each.act) for each in read(text).acts] == [(("a", "b"), act)]
@@ -167,7 +177,4 @@ def test_a_pronoun_makes_no_headline() -> None:
 
 
 def test_where_somebody_came_from_is_a_place() -> None:
-    assert [act.act for act in read("She bows to him and goes back to where she came from.").acts] == [
-        "bow",
-        "go-back",
-    ]
+    assert [act.act for act in read("She bows to him and goes back to where she came from.").acts] == ["bow", "go-back"]

@@ -76,10 +76,7 @@ def test_another_language_is_read_once_and_kept(fake: Fake) -> None:
     fake.answers = [chat({"acts": [HUG, WAVE], "people": [{"id": "b", "sex": "f", "words": ["sie"]}]})]
     plan = directed(GERMAN)
     assert plan.reader == "small:1b" and plan.sentence == GERMAN and not plan.notes
-    assert [(act.act, act.agents, act.patient) for act in plan.acts] == [
-        ("hug", ("a",), "b"),
-        ("wave", ("b",), None),
-    ]
+    assert [(act.act, act.agents, act.patient) for act in plan.acts] == [("hug", ("a",), "b"), ("wave", ("b",), None)]
     assert plan.acts[0].words is not None and plan.text(plan.acts[0].words) == "umarmt sie"
     assert [[act.id for act in group] for group in plan.beats()] == [["1"], ["2"]]
     assert plan.people[1].sex == "f"
@@ -212,20 +209,17 @@ def test_what_fails_leaves_the_reading_of_the_lexicon(
 
 def test_a_hostile_answer_stays_data(fake: Fake) -> None:
     hostile = HUG | {
-        "thing": "../../etc/passwd", "part": "<img src=x onerror=alert(1)>", "direction": "file:///etc/passwd",
-        "manner": ["<b>slowly</b>", "gently"], "words": "/etc/passwd",
-    }  # fmt: skip
+        "thing": "../../etc/passwd",
+        "part": "<img src=x onerror=alert(1)>",
+        "direction": "file:///etc/passwd",
+        "manner": ["<b>slowly</b>", "gently"],
+        "words": "/etc/passwd",
+    }
     more = {"reader": "hand", "sentence": "<script>", "file": "/etc/passwd", "notes": ["<script>"]}
     fake.answers = [chat({"acts": [hostile], "people": [{"id": "a", "words": ["<b>"]}], **more})]
     plan = directed(GERMAN)
     (act,) = plan.acts
-    assert (act.thing, act.part, act.direction, act.manner, act.words) == (
-        None,
-        None,
-        None,
-        ("gently",),
-        None,
-    )
+    assert (act.thing, act.part, act.direction, act.manner, act.words) == (None, None, None, ("gently",), None)
     assert plan.reader == "small:1b" and plan.sentence == GERMAN
     assert not any(mark in plan.model_dump_json() for mark in ("<", "passwd"))
     fake.answers = [chat({"acts": [HUG | {"<script>" + "x" * 9000: 1}]})]

@@ -15,10 +15,7 @@ from tests.acts.reading.reading import told
         ("Two hops, a half turn, then a bow.", "perform two hops . turn around , then perform a bow ."),
         ("Therapist behind, arms crossed.", "Therapist is behind , with arms crossed ."),
         ("Both in a deep plie.", "Both are in a deep plie ."),
-        (
-            "She throws left, right, left.",
-            "She throws to the left and throws to the right and throws to the left .",
-        ),
+        ("She throws left, right, left.", "She throws to the left and throws to the right and throws to the left ."),
         # no ellipsis: another clause, an act's own noun, a person
         ("A hug makes her happy.", "A hug makes her happy ."),
         ("He gives her a hug.", "He gives her a hug ."),
@@ -72,9 +69,7 @@ def test_a_verb_is_supplied_where_one_is_left_out(text: str, parsed: str) -> Non
 )
 def test_a_sentence_without_a_verb_has_its_acts(text: str, acts: list[str]) -> None:
     found = read(text).acts
-    assert [
-        " ".join(filter(None, (a.act, "".join(a.agents), a.side, str(a.times or "")))) for a in found
-    ] == acts
+    assert [" ".join(filter(None, (a.act, "".join(a.agents), a.side, str(a.times or "")))) for a in found] == acts
 
 
 def test_formations_without_a_verb_go_with_the_act_before() -> None:

@@ -38,9 +38,7 @@ def test_a_letter_before_a_noun_in_ly_is_an_article() -> None:
     assert plan.people[0].words == ("bully",)
 
 
-@pytest.mark.parametrize(
-    ("word", "is_one"), [("tiredly", True), ("happily", True), ("family", False), ("fly", False)]
-)
+@pytest.mark.parametrize(("word", "is_one"), [("tiredly", True), ("happily", True), ("family", False), ("fly", False)])
 def test_adverbs_are_told_by_their_adjective(word: str, is_one: bool) -> None:
     assert is_adverb(word) is is_one
 
@@ -50,12 +48,7 @@ def test_what_somebody_is_like_is_nobody_else() -> None:
     assert [(act.act, act.patient, act.manner) for act in walks.acts] == [("walk-ahead", None, ("softly",))]
     looks = read("A looks like a ghost while B dances.")
     assert [(act.act, act.agents) for act in looks.acts] == [("dance", ("b",))]
-    assert [person.words for person in (*walks.people, *looks.people)] == [
-        ("person",),
-        (),
-        ("person",),
-        ("person",),
-    ]
+    assert [person.words for person in (*walks.people, *looks.people)] == [("person",), (), ("person",), ("person",)]
 
 
 @pytest.mark.parametrize(

@@ -30,8 +30,12 @@ def test_two_who_hold_hands_spin_or_swing_their_arms_meanwhile() -> None:
 
 @pytest.mark.parametrize(
     ("text", "acts"),
-    [("After work, one person bows.", ["bow"]), ("After the work the two hug.", ["build", "hug"]),
-     ("After a quick hug they part.", ["hug", "part"]), ("After dance they hug.", ["dance", "hug"])],
-)  # fmt: skip
+    [
+        ("After work, one person bows.", ["bow"]),
+        ("After the work the two hug.", ["build", "hug"]),
+        ("After a quick hug they part.", ["hug", "part"]),
+        ("After dance they hug.", ["dance", "hug"]),
+    ],
+)
 def test_a_bare_noun_that_names_a_time_is_no_act(text: str, acts: list[str]) -> None:
     assert [act.act for act in read(text).acts] == acts

@@ -147,12 +147,7 @@ def test_order(text: str, beats: list[list[str]]) -> None:
 
 
 def test_what_is_about_others_or_means_nothing_stays_unread() -> None:
-    for text in (
-        "The lamp hugs the man.",
-        "He considers his taxes.",
-        "She smurfs him.",
-        "Rain falls on hugs.",
-    ):
+    for text in ("The lamp hugs the man.", "He considers his taxes.", "She smurfs him.", "Rain falls on hugs."):
         plan = read(text)
         assert not plan.acts and plan.unread, text
     assert "third" in " ".join(read("A man and a woman hug. A waiter pats them.").notes) or read(
@@ -169,9 +164,7 @@ def test_spans_are_those_of_the_text_as_written() -> None:
     assert "pats mum on the back" in plan.text(plan.acts[1].words)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(
-    "text", ["", "   ", "…!?", "木の下で二人が踊る", "Zwei Leute umarmen sich herzlich draussen"]
-)
+@pytest.mark.parametrize("text", ["", "   ", "…!?", "木の下で二人が踊る", "Zwei Leute umarmen sich herzlich draussen"])
 def test_what_is_no_english_is_said(text: str) -> None:
     plan = read(text)
     assert not plan.acts and (plan.notes or plan.unread)
@@ -181,10 +174,7 @@ def test_what_is_no_english_is_said(text: str) -> None:
     ("text", "beats"),
     [
         ("She taps him on the shoulder, he turns around, and she hugs him.", ["pat", "turn-around", "hug"]),
-        (
-            "They walk past each other, then both stop and turn around.",
-            ["walk-past", "stand-still", "turn-around"],
-        ),
+        ("They walk past each other, then both stop and turn around.", ["walk-past", "stand-still", "turn-around"]),
         ("Two fighters bow, fight for a moment and bow again.", ["bow", "fight", "bow"]),
         ("A sits on the chair until B taps A, then A gets up.", ["sit-down", "pat", "stand-up"]),
         ("He bows and waves at the same time.", ["bow wave"]),
@@ -197,12 +187,18 @@ def test_clauses_follow_each_other_as_the_text_says_them(text: str, beats: list[
 @pytest.mark.parametrize(
     "text",
     [
-        "She inherits a fortune.", "They postponed the wedding.", "He resembles his brother.", "The company hired her.",
+        "She inherits a fortune.",
+        "They postponed the wedding.",
+        "He resembles his brother.",
+        "The company hired her.",
         "Quantum fluctuations hug the vacuum.",
-        "They agree on the contract.", "He owns a house.", "She deserves a prize.",
-        "The water evaporates.", "They love each other deeply.",
+        "They agree on the contract.",
+        "He owns a house.",
+        "She deserves a prize.",
+        "The water evaporates.",
+        "They love each other deeply.",
     ],
-)  # fmt: skip
+)
 def test_what_no_body_shows_is_reported_and_not_invented(text: str) -> None:
     plan = read(text)
     assert not plan.acts and plan.unread
@@ -239,9 +235,7 @@ def test_what_goes_on_when_the_text_begins(text: str, already: list[bool]) -> No
 
 def test_an_act_that_the_parser_takes_for_a_noun_behind_to_is_read() -> None:
     """Spoken captions such as these have been taken as "to <noun>", which named no order and broke the reading."""
-    plan = read(
-        "First one player offers to hug the other player, then the second player says no with their head."
-    )
+    plan = read("First one player offers to hug the other player, then the second player says no with their head.")
     assert [(act.act, act.agents) for act in plan.acts] == [("hug", ("a",)), ("shake-head", ("b",))]
 
 
@@ -297,9 +291,7 @@ def test_what_the_stage_cannot_do_is_said() -> None:
     notes = read("Both walk downstage in canon.").notes
     assert len(notes) == 2 and "audience" in notes[0] and "canon" in notes[1]
     assert not read("Both walk.").notes
-    assert read("The fox chases the hen.").notes == (
-        "Only people can be shown: animals that act are people here.",
-    )
+    assert read("The fox chases the hen.").notes == ("Only people can be shown: animals that act are people here.",)
 
 
 def test_a_formation_goes_on_as_its_verb_does() -> None:

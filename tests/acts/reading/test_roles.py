@@ -73,11 +73,7 @@ def test_her_back_is_a_part_of_the_body_where_something_is_done_to_it() -> None:
 
 
 def test_the_knee_of_the_one_who_is_handled() -> None:
-    assert told("The physio holds the ankle of the patient and bends the knee.")[1] == (
-        "move-other",
-        "a",
-        "b",
-    )
+    assert told("The physio holds the ankle of the patient and bends the knee.")[1] == ("move-other", "a", "b")
     assert told("She holds the ankle of the patient and raises a hand.")[1][0] == "raise-arm"
 
 
@@ -124,10 +120,7 @@ def test_it_is_no_plural() -> None:
 
 
 def test_a_name_that_looks_like_a_plural_is_one_person() -> None:
-    assert told("Romeo kneels before Juliet and kisses her hand.") == [
-        ("kneel", "a", "b"),
-        ("kiss-hand", "a", "b"),
-    ]
+    assert told("Romeo kneels before Juliet and kisses her hand.") == [("kneel", "a", "b"), ("kiss-hand", "a", "b")]
 
 
 def test_an_object_that_the_parser_took_for_a_remark() -> None:

@@ -67,10 +67,7 @@ def test_hands_behind_a_person_without_a_verb_are_no_verb() -> None:
 
 
 def test_a_verb_beside_a_clause_has_the_subject_of_that_clause() -> None:
-    assert told("One steps back as the other points at her chest and comes closer.")[-1][:2] == (
-        "walk-up",
-        "b",
-    )
+    assert told("One steps back as the other points at her chest and comes closer.")[-1][:2] == ("walk-up", "b")
     assert told("One steps back as the other points at her, and bows.")[-1][:2] == ("bow", "a")
 
 

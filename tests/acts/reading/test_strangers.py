@@ -44,7 +44,7 @@ from tests.acts.reading.reading import told
         ("An elderly lady pats an old man on the back.", [("pat", "a", "b")]),
         ("She crawls on hands and knees around him.", [("crawl-under", "a", "b")]),
     ],
-)  # fmt: skip
+)
 def test_a_sentence_is_read(text: str, acts: list[tuple[str, str, str | None]]) -> None:
     assert told(text) == acts
 
@@ -79,9 +79,7 @@ def test_a_noun_is_not_forced_to_be_a_verb() -> None:
 
 
 def test_names_are_no_misspelt_verbs() -> None:
-    assert [(act.act, act.agents, act.patient) for act in read("Tom pushes Leah.").acts] == [
-        ("push", ("a",), "b")
-    ]
+    assert [(act.act, act.agents, act.patient) for act in read("Tom pushes Leah.").acts] == [("push", ("a",), "b")]
 
 
 def test_a_repeated_act_is_done_with_the_same_side_or_the_one_that_is_named() -> None:

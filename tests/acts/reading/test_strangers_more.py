@@ -27,16 +27,20 @@ from tests.acts.reading.reading import told
         ("It is a tango where he dips her.", [("dip", "a", "b")]),
         ("The lead bows and the follow curtsies.", [("bow", "a", None), ("curtsy", "b", None)]),
         ("Lead dips the follow.", [("dip", "a", "b")]),
-        ("He walks up to her, hands over a parcel and leaves.",
-         [("walk-up", "a", "b"), ("hand-over", "a", "b"), ("walk-away", "a", "b")]),
+        (
+            "He walks up to her, hands over a parcel and leaves.",
+            [("walk-up", "a", "b"), ("hand-over", "a", "b"), ("walk-away", "a", "b")],
+        ),
         (
             "hold hands, swing arms, walk",
             [("hold-hands", "ab", None), ("swing-arms", "ab", None), ("walk-together", "ab", None)],
         ),
         ("couple slow dancing", [("waltz", "ab", None)]),
         ("Spin her out, and dip her low.", [("twirl", "a", "b"), ("dip", "a", "b")]),
-        ("One grabs the other by the wrist and drags her a few steps to the left.",
-         [("hold-hands", "a", "b"), ("drag", "a", "b")]),
+        (
+            "One grabs the other by the wrist and drags her a few steps to the left.",
+            [("hold-hands", "a", "b"), ("drag", "a", "b")],
+        ),
         ("person 2 tails person 1 down the street", [("follow", "b", "a")]),
         ("ninjas circling one another", [("circle-together", "ab", None)]),
         ("they bump heads picking up the same pencil", [("headbutt", "ab", None), ("pick-up-thing", "ab", None)]),
@@ -45,7 +49,7 @@ from tests.acts.reading.reading import told
         ("two dudes leaning on eachother lol", [("head-on-shoulder", "ab", None)]),
         ("The one on the left waves, and the one on the right bows.", [("wave", "a", "b"), ("bow", "b", None)]),
     ],
-)  # fmt: skip
+)
 def test_a_sentence_is_read(text: str, acts: list[tuple[str, str, str | None]]) -> None:
     assert told(text) == acts
 
@@ -75,9 +79,8 @@ def test_verbs_of_distant_meaning_are_left_alone() -> None:
 @pytest.mark.parametrize("joined", ["{}, and {}", "{} and {}"])
 @pytest.mark.parametrize("start", ["Two people walk up to each other", "They walk up"])
 @pytest.mark.parametrize(
-    ("said", "act"),
-    [*((verb, verb) for verb in ("hug", "kiss", "dance", "fight", "talk")), ("high five", "high-five")],
-)  # fmt: skip
+    ("said", "act"), [*((verb, verb) for verb in ("hug", "kiss", "dance", "fight", "talk")), ("high five", "high-five")]
+)
 def test_a_list_keeps_its_middle(start: str, said: str, act: str, joined: str) -> None:
     acts = [name for name, _, _ in told(joined.format(f"{start}, {said}", "walk away."))]
     assert acts == ["walk-up", act, "walk-away"]
@@ -121,8 +124,10 @@ def test_a_list_keeps_its_middle(start: str, said: str, act: str, joined: str) -
         ("A man does the motion of digging.", [("dig", "a", None)]),
         ("A woman jogs forward.", [("run-ahead", "a", None)]),
         ("A man walks back and returns to the original position.", [("return", "a", "b"), ("go-back", "a", None)]),
-        ("A offers a handshake, but B declines, turning away.",
-         [("shake-hands", "a", "b"), ("shake-hands", "b", "a"), ("turn-away", "b", "a")]),
+        (
+            "A offers a handshake, but B declines, turning away.",
+            [("shake-hands", "a", "b"), ("shake-hands", "b", "a"), ("turn-away", "b", "a")],
+        ),
         ("B takes both of A's hands and pulls A up.", [("hold-hands", "b", "a"), ("help-up", "b", "a")]),
         ("They hold hands and spin around each other.", [("hold-hands", "ab", None), ("ring", "ab", None)]),
         ("A calls out and B comes running.", [("beckon", "a", "b"), ("run-up", "b", None)]),
@@ -130,7 +135,7 @@ def test_a_list_keeps_its_middle(start: str, said: str, act: str, joined: str) -
         ("A person who is standing takes two steps.", [("stand-still", "a", None), ("step-forward", "a", None)]),
         ("The person raises its arms.", [("raise-arm", "a", None)]),
     ],
-)  # fmt: skip
+)
 def test_no_act_is_lost_and_none_gained(text: str, acts: list[tuple[str, str, str | None]]) -> None:
     assert told(text) == acts
 

@@ -82,9 +82,7 @@ def test_hands_sink_again_after_what_passes_and_stay_up_in_what_is_held() -> Non
         assert np.linalg.norm(course(hand)[-1, 1] - course(hand)[0, 1]) > 0.1
 
 
-@pytest.mark.parametrize(
-    "hand", [Hand.HIGH, Hand.UP, Hand.AHEAD, Hand.SPREAD, Hand.CLAPS, Hand.CROSSED, Hand.FLAPS]
-)
+@pytest.mark.parametrize("hand", [Hand.HIGH, Hand.UP, Hand.AHEAD, Hand.SPREAD, Hand.CLAPS, Hand.CROSSED, Hand.FLAPS])
 def test_two_hands_are_no_mirror_images(hand: Hand) -> None:
     left, right = (course(hand, side, both=True)[:, 1] for side in ("left", "right"))
     gap = np.linalg.norm(left - right * [-1, 1, 1], axis=1)

@@ -17,8 +17,7 @@ from .staged_words import beginning
 
 
 @pytest.mark.parametrize(
-    "words",
-    ["They practise tai chi side by side.", "Two strangers sit next to each other.", "A stands beside B."],
+    "words", ["They practise tai chi side by side.", "Two strangers sit next to each other.", "A stands beside B."]
 )
 def test_those_beside_each_other_look_the_same_way(words: str) -> None:
     placed = beginning(words.replace("beside B", "beside person B"))
@@ -27,8 +26,7 @@ def test_those_beside_each_other_look_the_same_way(words: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "pose"),
-    [("They stand back to back.", upright), ("sitting on the floor back to back", grounded)],
+    ("words", "pose"), [("They stand back to back.", upright), ("sitting on the floor back to back", grounded)]
 )
 def test_those_back_to_back_touch_with_their_backs(words: str, pose: Callable[..., np.ndarray]) -> None:
     placed = beginning(words)

@@ -6,17 +6,7 @@ import numpy as np
 import pytest
 
 from acts.staging.bodies.poses import bending, kneeling, lying, upright
-from acts.staging.contacts import (
-    Contact,
-    Region,
-    beside,
-    kneels,
-    lean,
-    middle,
-    reach,
-    touched,
-    touching,
-)
+from acts.staging.contacts import Contact, Region, beside, kneels, lean, middle, reach, touched, touching
 from motion import SMPL22
 
 from .staged_words import contact

@@ -6,16 +6,7 @@ import numpy as np
 import pytest
 
 from acts.staging.beginnings import REACH, starting
-from acts.staging.floor import (
-    ABREAST,
-    ACROSS,
-    BEHIND,
-    CLOSE,
-    FARTHEST,
-    LINKED,
-    Standing,
-    plan,
-)
+from acts.staging.floor import ABREAST, ACROSS, BEHIND, CLOSE, FARTHEST, LINKED, Standing, plan
 from acts.staging.moves import Move
 from acts.staging.sampled import EVERY, Way2D
 from acts.staging.track import EVENLY, MOST
@@ -28,9 +19,7 @@ FACING = Standing(np.array([[0.0, 0.0], [0.0, 1.2]]), np.array([0.0, math.pi]))
 BEHIND_B = Standing(np.array([[0.0, 0.0], [0.0, 3.0]]), np.zeros(2))
 
 
-def ways(
-    sentence: str, seconds: float = 4.0, standing: Standing | None = None
-) -> tuple[Standing, dict[int, Way2D]]:
+def ways(sentence: str, seconds: float = 4.0, standing: Standing | None = None) -> tuple[Standing, dict[int, Way2D]]:
     found = moves(sentence)
     begin = starting(found, seconds) if standing is None else standing
     planned = plan(found, begin, round(seconds * FPS), first=standing is None)
@@ -90,9 +79,7 @@ def test_who_walks_past_keeps_clear_and_gets_beyond() -> None:
     assert found[0].places[-1, 1] > begin.places[1, 1] + 1.0
 
 
-@pytest.mark.parametrize(
-    ("words", "degrees"), [("walks around", 330), ("walks once all the way around", 330)]
-)
+@pytest.mark.parametrize(("words", "degrees"), [("walks around", 330), ("walks once all the way around", 330)])
 def test_who_walks_around_goes_around(words: str, degrees: float) -> None:
     begin, found = ways(f"Person A {words} person B.", seconds=8.0)
     line = found[0].places - begin.places[1]
@@ -149,12 +136,21 @@ def test_a_walk_takes_a_step_to_stop() -> None:
 @pytest.mark.parametrize(
     "sentence",
     [
-        "They walk up to each other.", "They run off.", "Person A walks past person B.", "She walks once around him.",
-        "They circle each other.", "They walk side by side.", "Person A chases person B.", "Both step back.",
-        "They turn around.", "Person A sneaks up behind person B.", "They walk side by side until one of them stops.",
-        "Person A spins all the way round.", "They turn to face each other.",
+        "They walk up to each other.",
+        "They run off.",
+        "Person A walks past person B.",
+        "She walks once around him.",
+        "They circle each other.",
+        "They walk side by side.",
+        "Person A chases person B.",
+        "Both step back.",
+        "They turn around.",
+        "Person A sneaks up behind person B.",
+        "They walk side by side until one of them stops.",
+        "Person A spins all the way round.",
+        "They turn to face each other.",
     ],
-)  # fmt: skip
+)
 @pytest.mark.parametrize("near", [0.0, 0.3, 3.0, None])
 def test_every_way_is_one_that_people_can_go(sentence: str, seconds: float, near: float | None) -> None:
     standing = None if near is None else Standing(np.array([[0.0, 0.0], [near, 0.0]]), np.zeros(2))
@@ -232,9 +228,7 @@ def test_a_move_told_after_something_else_begins_late_but_following_does_not() -
     assert max(way.frames[0] for way in found.values()) < FPS
 
 
-@pytest.mark.parametrize(
-    "words", ["A couple dances a waltz.", "They take each other's hands and spin around."]
-)
+@pytest.mark.parametrize("words", ["A couple dances a waltz.", "They take each other's hands and spin around."])
 def test_those_in_a_hold_turn_about_the_middle_and_face_each_other(words: str) -> None:
     kind = hold(words)
     assert kind is not None
@@ -276,9 +270,7 @@ def test_what_ends_with_until_leaves_time() -> None:
         ("Person A walks past person B.", [0.0, 2.2], [0.0, math.pi]),
     ],
 )
-def test_a_first_beat_begins_where_its_move_can(
-    sentence: str, apart: list[float], headings: list[float]
-) -> None:
+def test_a_first_beat_begins_where_its_move_can(sentence: str, apart: list[float], headings: list[float]) -> None:
     begin = starting(moves(sentence), 4.0)
     assert begin.places[1] - begin.places[0] == pytest.approx(apart, abs=1e-3)
     assert begin.headings == pytest.approx(headings)
@@ -306,9 +298,7 @@ def test_who_comes_up_beside_the_other_walks_straight_there_and_looks_the_same_w
     b = FACING.places[1]
     assert abs(found.places[-1, 1] - b[1]) < 0.05 and abs(abs(found.places[-1, 0]) - 0.5) < 0.05
     assert math.cos(found.headings[-1] - FACING.headings[1]) > 0.99
-    assert np.linalg.norm(np.diff(found.places, axis=0), axis=1).sum() < 1.1 * np.linalg.norm(
-        found.places[-1]
-    )
+    assert np.linalg.norm(np.diff(found.places, axis=0), axis=1).sum() < 1.1 * np.linalg.norm(found.places[-1])
 
 
 def test_who_runs_away_gets_up_to_the_speed_of_a_run() -> None:
@@ -387,9 +377,7 @@ def test_a_person_who_watches_the_other_go_round_them_turns_with_them() -> None:
     watched, watcher = found[0], found[1]
     assert watcher.headings is not None and np.ptp(watcher.headings) > math.pi
     shared = [f for f in watched.frames if f in watcher.frames]
-    line = np.stack(
-        [watched.places[watched.frames.index(f)] - watcher.places[watcher.frames.index(f)] for f in shared]
-    )
+    line = np.stack([watched.places[watched.frames.index(f)] - watcher.places[watcher.frames.index(f)] for f in shared])
     facing = np.array([watcher.headings[watcher.frames.index(f)] for f in shared])
     off = np.arctan2(line[:, 0], line[:, 1]) - facing
     assert np.cos(off).min() > math.cos(0.5)

@@ -90,11 +90,7 @@ def test_hands_are_where_the_gesture_has_them(side: str) -> None:
     assert (out * way(Hand.PRAYS)[:, 0] < 0.1).all()
     assert (way(Hand.POINTS)[:, 2] > 0.4).all()
     offered = way(Hand.OFFERS)
-    assert (
-        (offered[:, 2] > 0.3).all()
-        and (offered[:, 1] < shoulder[1] - 0.1).all()
-        and (offered[:, 1] > 0.1).all()
-    )
+    assert (offered[:, 2] > 0.3).all() and (offered[:, 1] < shoulder[1] - 0.1).all() and (offered[:, 1] > 0.1).all()
     assert np.sign(way(Hand.LINKED)[0, 0]) == out
     drum, ball = way(Hand.DRUMS), way(Hand.DRIBBLES)
     assert np.ptp(drum[:, 1]) > 0.15 and (drum[:, 2] > 0.25).all()

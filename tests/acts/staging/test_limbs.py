@@ -64,20 +64,15 @@ def test_an_act_of_limbs_does_what_its_rule_asks_for(name: str) -> None:
     plain = np.tile(upright(np.zeros(2), 0.0), (len(SECONDS), 1, 1))
     plan = Plan(acts=(act,))
     (still,), (done,) = (
-        checked(plan, Duet.from_positions(np.stack([own, other]), fps=FPS, roles=NAMES))
-        for own in (plain, moved)
+        checked(plan, Duet.from_positions(np.stack([own, other]), fps=FPS, roles=NAMES)) for own in (plain, moved)
     )
     assert done.done and not still.done
 
 
 def test_sides_directions_and_numbers_reach_the_limbs() -> None:
-    (limb,) = staged(
-        (Act(id="1", act="raise-leg", agents=("b",), side="left", direction="back", times=2),)
-    ).limbs["b"]
+    (limb,) = staged((Act(id="1", act="raise-leg", agents=("b",), side="left", direction="back", times=2),)).limbs["b"]
     assert limb == Limb("raises leg", "left", "back", 2)
-    ahead, back = (
-        motion("raises leg", direction=d)[75, SMPL22.index("right_foot")] for d in ("forward", "back")
-    )
+    ahead, back = (motion("raises leg", direction=d)[75, SMPL22.index("right_foot")] for d in ("forward", "back"))
     towards = np.array([np.sin(0.7), 0.0, np.cos(0.7)])
     assert (ahead - back) @ towards > 0.5
     once, twice = (motion("kicks", times=t)[:, SMPL22.index("right_foot"), 1] for t in (1, 2))

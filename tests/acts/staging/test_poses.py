@@ -45,7 +45,7 @@ def test_poses_are_of_this_body_and_on_the_floor(make) -> None:
 
 @pytest.mark.parametrize(
     ("make", "rule"), [(upright, is_upright), (seated, sits), (kneeling, kneels), (lying, lies), (crouching, low)]
-)  # fmt: skip
+)
 def test_poses_are_what_they_are_called(make, rule) -> None:
     duet = np.stack([np.tile(upright(PLACE, 0.0), (40, 1, 1)), np.tile(upright(PLACE + 1, 0.0), (40, 1, 1))])
     duet[0, 20:] = make(PLACE, 0.0)  # a body's height is seen while it stands

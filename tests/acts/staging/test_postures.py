@@ -31,29 +31,20 @@ CROUCHES, STANDS = Posture.CROUCHES, Posture.STANDS
         ("Person A pushes person B to the ground.", {"b": [LIES]}),
         ("Person A kneels down, holds out a hand and is pulled to their feet by person B.", {"a": [KNEELS, STANDS]}),
         ("B sits; A pulls up B", {"b": [SITS, STANDS]}),
-
         ("A woman plops onto the sofa.", {"a": [SITS]}),
         ("He falls into a chair.", {"a": [SITS]}),
         ("Person A hits the floor.", {"a": [LIES]}),
-
-
         ("She walks away and leaves him sitting there.", {"b": [SITS]}),
         ("B is in the barber's chair.", {"b": [SITS]}),
-
-
-
-
         # nobody goes down
         ("They walk to the table.", {}),
         ("Person A does not sit down.", {}),
         ("Person A nearly falls over.", {}),
-
-
         ("Person A falls into step with person B.", {}),
         ("They shake hands.", {}),
         ("", {}),
     ],
-)  # fmt: skip
+)
 def test_changes_are_read_in_order(sentence: str, found: dict[str, list[Posture]]) -> None:
     assert {who: [c.posture for c in listed] for who, listed in changes(sentence).items()} == found
 

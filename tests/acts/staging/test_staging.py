@@ -61,9 +61,7 @@ def test_who_refuses_leaves_the_other_with_a_hand_held_out() -> None:
     assert refused.gestures["a"].hand is Hand.OFFERS and "b" in refused.idle
 
 
-@pytest.mark.parametrize(
-    ("name", "hand"), [("shake-hands", Hand.OFFERS), ("hug", Hand.AHEAD), ("high-five", Hand.UP)]
-)
+@pytest.mark.parametrize(("name", "hand"), [("shake-hands", Hand.OFFERS), ("hug", Hand.AHEAD), ("high-five", Hand.UP)])
 def test_who_would_like_to_touch_reaches_out_in_vain(name: str, hand: Hand) -> None:
     wished = staged((Act(id="1", act=name, agents=("a",), patient="b", modality="wished"),))
     assert set(wished.gestures) == {"a"} and wished.gestures["a"].hand is hand
@@ -112,9 +110,7 @@ def test_hands_that_are_tied_are_behind_the_back() -> None:
     assert tied.gestures["b"].hand is Hand.BEHIND and tied.contact is not None and tied.contact.behind
 
 
-@pytest.mark.parametrize(
-    ("name", "carry"), [("carry", Carry.ARMS), ("ride-back", Carry.BACK), ("drag", Carry.DRAGS)]
-)
+@pytest.mark.parametrize(("name", "carry"), [("carry", Carry.ARMS), ("ride-back", Carry.BACK), ("drag", Carry.DRAGS)])
 def test_who_carries(name: str, carry: Carry) -> None:
     lifted = staged((Act(id="1", act=name, agents=("a",), patient="b"),)).lift
     assert lifted is not None
@@ -135,9 +131,7 @@ def test_numbers_sides_and_speeds_reach_the_stage() -> None:
     wave = staged((Act(id="1", act="wave", agents=("a",), side="left"),))
     assert wave.gestures["a"].sides == ("left",)
     assert staged((Act(id="1", act="jump", agents=("b",), times=3),)).leaps == {"b": 3}
-    slow, fast = (
-        staged((Act(id="1", act="walk-up", agents=("a",), speed=s),)).moves[0].speed for s in (0.6, 1.5)
-    )
+    slow, fast = (staged((Act(id="1", act="walk-up", agents=("a",), speed=s),)).moves[0].speed for s in (0.6, 1.5))
     assert fast == pytest.approx(2.5 * slow)
     squats = staged((Act(id="1", act="squats", agents=("a",)),)).changes["a"]
     assert len(squats) == 3 and all(change.passing for change in squats)
@@ -240,9 +234,7 @@ def test_a_blow_that_is_only_tried_is_struck_past_the_other() -> None:
     assert struck is not None and struck.turns == "a"
 
 
-@pytest.mark.parametrize(
-    "text", ["A opens the window.", "A turns the hi-fi on.", "A looks out of the window."]
-)
+@pytest.mark.parametrize("text", ["A opens the window.", "A turns the hi-fi on.", "A looks out of the window."])
 def test_who_does_something_with_a_window_goes_to_it(text: str) -> None:
     stage = told(text)
     assert next((move.person, move.way) for move in stage.moves) == ("a", Way.THING)
@@ -268,9 +260,7 @@ def test_who_lets_hands_be_laid_on_them_keeps_still(text: str) -> None:
 
 def test_who_is_carried_was_picked_up_first_if_the_words_say_so() -> None:
     picked, carried = told("A picks B up and carries her away."), told("A carries B away.")
-    assert picked.lift is not None and picked.lift.comes == "a", (
-        "somebody walks up and picks up who stands there"
-    )
+    assert picked.lift is not None and picked.lift.comes == "a", "somebody walks up and picks up who stands there"
     assert carried.lift is not None and not carried.lift.comes
 
 

@@ -85,14 +85,11 @@ def test_who_limps_takes_a_short_step_with_one_leg_and_leans_over_the_other() ->
     left, right = (ahead[1:, side][landed[:, side]][1:-1].mean() for side in (0, 1))
     assert left < right - 0.1
     over = poses[:, J["neck"], 0] - poses[:, 0, 0]
-    assert over[~stands[:, 0]].mean() < over[~stands[:, 1]].mean() - 0.02, (
-        "to the right while the left foot swings"
-    )
+    assert over[~stands[:, 0]].mean() < over[~stands[:, 1]].mean() - 0.02, "to the right while the left foot swings"
 
 
 @pytest.mark.parametrize(
-    ("words", "gait"),
-    [("He limps.", "limps"), ("She tiptoes out of the room.", "on tiptoe"), ("He walks away.", "")],
+    ("words", "gait"), [("He limps.", "limps"), ("She tiptoes out of the room.", "on tiptoe"), ("He walks away.", "")]
 )
 def test_words_name_the_gait(words: str, gait: str) -> None:
     assert moves(words)[0].gait == gait

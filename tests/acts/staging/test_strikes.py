@@ -107,10 +107,7 @@ def test_a_fist_shoots_out_to_the_head_and_not_into_it(side: str) -> None:
     assert 0.08 < away[landed] < 0.2 < 0.3 < away[0]
     assert np.linalg.norm(wrist[landed] - wrist[0]) / (frames[landed] - frames[0]) * 30 > 2.5  # m/s
     other = "left" if side == "right" else "right"
-    assert (
-        found[landed, SMPL22.index(f"{side}_shoulder"), 2]
-        > found[landed, SMPL22.index(f"{other}_shoulder"), 2]
-    )
+    assert found[landed, SMPL22.index(f"{side}_shoulder"), 2] > found[landed, SMPL22.index(f"{other}_shoulder"), 2]
 
 
 def test_a_slap_comes_from_the_side_and_lands_on_the_cheek() -> None:

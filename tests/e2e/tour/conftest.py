@@ -27,9 +27,7 @@ def tour(_app: SimpleNamespace) -> Tour:
 
 
 @pytest.fixture(scope="module")
-def visit(
-    chromium, lab: str, tour: Tour, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[SimpleNamespace]:
+def visit(chromium, lab: str, tour: Tour, tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
     """The page in a browser with a webcam, which shows a film of a person waving."""
     film = as_mjpeg(FILM, tmp_path_factory.mktemp("film") / "wave.mjpeg")
     flags = ["--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream"]

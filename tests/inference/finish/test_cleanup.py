@@ -35,17 +35,13 @@ def test_bones_become_constant_and_wrists_stay() -> None:
     shaking = trembling()
     steady = on_constant_bones(shaking)
     assert lengths(shaking).std(axis=0).max() > 0.002
-    np.testing.assert_allclose(
-        lengths(steady), SMPL22.bone_lengths[1:].reshape(1, -1).repeat(60, 0), atol=1e-6
-    )
+    np.testing.assert_allclose(lengths(steady), SMPL22.bone_lengths[1:].reshape(1, -1).repeat(60, 0), atol=1e-6)
     assert np.linalg.norm(steady[:, WRISTS] - shaking[:, WRISTS], axis=-1).max() < 0.02
 
 
 def test_standing_feet_slide_less() -> None:
     shaking = trembling()
-    slide = [
-        np.abs(np.diff(x[:, TOES][..., [0, 2]], axis=0)).mean() for x in (shaking, clean_person(shaking))
-    ]
+    slide = [np.abs(np.diff(x[:, TOES][..., [0, 2]], axis=0)).mean() for x in (shaking, clean_person(shaking))]
     assert slide[1] < 0.5 * slide[0]
 
 

@@ -112,9 +112,7 @@ def test_trembling_is_smoothed(model):
     control[:, ::2, 0] += 0.03  # every other control point of the pelvis, and all joints with it
     x = pack(control[None], model.layout)
     made = settled(model, x)
-    jerk = [
-        float(model.positions(one)[0][0, :, :61].diff(n=3, dim=1).norm(dim=-1).mean()) for one in (x, made)
-    ]
+    jerk = [float(model.positions(one)[0][0, :, :61].diff(n=3, dim=1).norm(dim=-1).mean()) for one in (x, made)]
     assert jerk[1] < 0.5 * jerk[0]
 
 
@@ -220,9 +218,7 @@ def test_with_many_steps_the_threshold_is_that_of_the_paper(steps):
 
 def test_beside_a_given_actor_the_reactor_alone_moves(model):
     """ReGenNet's space holds one person, who brings their hand to where the actor holds out theirs."""
-    reactor = CompactReGenNet(
-        CompactReGenNetConfig(latent_dim=32, ff_size=32, num_layers=1, num_heads=2, cond_dim=16)
-    )
+    reactor = CompactReGenNet(CompactReGenNetConfig(latent_dim=32, ff_size=32, num_layers=1, num_heads=2, cond_dim=16))
     reactor.std.fill_(0.5)
     actor, other = model.positions(standing(model, 0.4))[0][0, :, :61]
     space = Beside(reactor, actor)
@@ -239,9 +235,7 @@ def test_beside_a_given_actor_the_reactor_alone_moves(model):
 
 def test_actors_of_one_batch_are_not_mixed(model):
     """Two dampings beside different actors are corrected one by one, each as if alone."""
-    reactor = CompactReGenNet(
-        CompactReGenNetConfig(latent_dim=32, ff_size=32, num_layers=1, num_heads=2, cond_dim=16)
-    )
+    reactor = CompactReGenNet(CompactReGenNetConfig(latent_dim=32, ff_size=32, num_layers=1, num_heads=2, cond_dim=16))
     asked = []
     for apart in (0.3, 0.6):
         actor, other = model.positions(standing(model, apart))[0][0, :, :61]

@@ -83,7 +83,5 @@ def test_arms_swing_in_the_beats_in_which_they_have_nothing_to_do(monkeypatch: p
 def test_two_who_stand_in_each_other_are_moved_apart() -> None:
     request = SceneRequest(beats=(Beat("They wait.", seconds=6.0),))
     found = finished(request, _still(0.12), seed=1)
-    chests = np.linalg.norm(
-        found[0, :, SMPL22.index("spine3")] - found[1, :, SMPL22.index("spine3")], axis=-1
-    )
+    chests = np.linalg.norm(found[0, :, SMPL22.index("spine3")] - found[1, :, SMPL22.index("spine3")], axis=-1)
     assert chests.min() > 0.17

@@ -68,9 +68,7 @@ def test_a_scene_goes_on_from_a_girl_as_she_was(engine: Engine) -> None:
     np.testing.assert_array_equal(duet.positions[:, : first.num_frames], first.positions)
     np.testing.assert_allclose(bones(duet.cut(first.num_frames)), (1.0, CHILD), atol=0.01)
     steps = np.linalg.norm(np.diff(duet.positions, axis=1), axis=-1).max(axis=(0, 2))
-    assert steps[first.num_frames - 1] < 0.1, (
-        "metres from the last frame that is kept to the first that is made"
-    )
+    assert steps[first.num_frames - 1] < 0.1, "metres from the last frame that is kept to the first that is made"
 
 
 def test_people_of_a_given_motion_stay_who_they_are(engine: Engine) -> None:
@@ -89,9 +87,7 @@ def test_a_childs_pose_is_asked_for_as_an_adults() -> None:
     pose = Pose("b", 1.0, CHILD * rest + [0.5, 0.0, 0.0])
     request = SceneRequest(beats=(Beat("A man waves at a girl.", seconds=3.0),), poses=(pose,), **QUICK)
     (large,) = enlarged(request).poses
-    np.testing.assert_allclose(
-        large.positions, rest + np.array([0.5 / floor_scale((1.0, CHILD)), 0.0, 0.0]), atol=1e-3
-    )
+    np.testing.assert_allclose(large.positions, rest + np.array([0.5 / floor_scale((1.0, CHILD)), 0.0, 0.0]), atol=1e-3)
     same = replace(pose, positions=rest)
     (kept,) = enlarged(replace(request, poses=(same,))).poses
     np.testing.assert_allclose(kept.positions, rest, atol=1e-3)

@@ -15,16 +15,7 @@ from tests.inference.people import waver
 from tests.inference.test_reactor import bones_off, engine, folder
 from webdemo.inference.engine import Engine
 from webdemo.inference.live import partner_pipeline as live_partner
-from webdemo.inference.live.agent import (
-    ANSWER,
-    BACK,
-    BESIDE,
-    IGNORED,
-    LEAVES,
-    LEFT,
-    LISTENS,
-    LiveAgent,
-)
+from webdemo.inference.live.agent import ANSWER, BACK, BESIDE, IGNORED, LEAVES, LEFT, LISTENS, LiveAgent
 from webdemo.inference.live.partner_pipeline import ReactingPartner
 from webdemo.inference.pipelines.agent import BETWEEN, FIRST, Eye, Look
 
@@ -154,9 +145,7 @@ STANDING = STANDING - STANDING[0] * [1, 0, 1]
 NOTHING, MAYBE, WAVE, BOW = (1.0, 0.0, 0.0), (0.1, 0.5, 0.4), (0.02, 0.95, 0.03), (0.02, 0.02, 0.96)
 
 
-def watched(
-    *rows: tuple[float, ...], frames: int, turned: int | None = None
-) -> tuple[LiveAgent, Recorded, list[str]]:
+def watched(*rows: tuple[float, ...], frames: int, turned: int | None = None) -> tuple[LiveAgent, Recorded, list[str]]:
     """The agent after it has watched somebody, what it was given, and its state in every frame."""
     partner = Recorded()
     agent = LiveAgent(Scripted(*rows), partner)  # type: ignore[arg-type]
@@ -214,8 +203,7 @@ ELSEWHERE = Gaze(np.array([-1.0, 0, 0]), 0.1)
 
 
 @pytest.mark.parametrize(
-    ("gaze", "answers"),
-    [(None, True), (AT_CAMERA, True), (AT_AGENT, True), (ELSEWHERE, False), (HIDDEN, False)],
+    ("gaze", "answers"), [(None, True), (AT_CAMERA, True), (AT_AGENT, True), (ELSEWHERE, False), (HIDDEN, False)]
 )
 def test_the_agent_answers_only_who_addresses_it(gaze: Gaze | None, answers: bool) -> None:
     partner = Recorded()

@@ -47,11 +47,7 @@ def rubbing(speed: float = 2.0, frames: int = 60) -> np.ndarray:
     for side, other in (("left", "right"), ("right", "left")):
         arm = (found[:, J(f"{other}_shoulder")] + found[:, J(f"{other}_elbow")]) / 2
         found[:, J(f"{side}_wrist")] = arm + np.stack([0 * up, up, 0.09 + 0 * up], axis=1)
-        found[:, J(f"{side}_elbow")] = found[:, J(f"{side}_wrist")] + [
-            0.2 if side == "left" else -0.2,
-            -0.12,
-            0,
-        ]
+        found[:, J(f"{side}_elbow")] = found[:, J(f"{side}_wrist")] + [0.2 if side == "left" else -0.2, -0.12, 0]
     for side, other in (("left", "right"), ("right", "left")):  # the arms have moved: once more
         arm = (found[:, J(f"{other}_shoulder")] + found[:, J(f"{other}_elbow")]) / 2
         found[:, J(f"{side}_wrist")] = arm + np.stack([0 * up, up, 0.05 + 0 * up], axis=1)
@@ -66,13 +62,7 @@ def fanning(frames: int = 60, rate: float = 2.0, wide: float = 0.12) -> np.ndarr
 
 
 def at_nose(
-    *,
-    since: int = 0,
-    until: int = 60,
-    higher: float = 0.0,
-    aside: float = 0.0,
-    rubs: float = 0.0,
-    guard: bool = False,
+    *, since: int = 0, until: int = 60, higher: float = 0.0, aside: float = 0.0, rubs: float = 0.0, guard: bool = False
 ) -> np.ndarray:
     """The right hand at the nose in some of 60 frames, and hanging before and after; a guard has the left one up."""
     frames = np.arange(60)
@@ -86,25 +76,35 @@ def at_nose(
 @pytest.mark.parametrize(
     ("seen", "said"),
     [
-        (at_nose(), SMELLS), (at_nose(since=20), SMELLS), (at_nose(since=34, until=54), None),
-        (at_nose(rubs=0.04), None), (at_nose(higher=0.12), None), (at_nose(aside=0.075), None),
+        (at_nose(), SMELLS),
+        (at_nose(since=20), SMELLS),
+        (at_nose(since=34, until=54), None),
+        (at_nose(rubs=0.04), None),
+        (at_nose(higher=0.12), None),
+        (at_nose(aside=0.075), None),
         (at_nose(guard=True), None),
-        (gesture(Hand.EARS), LOUD), (gesture(Hand.EYES), BRIGHT), (rubbing(), COLD), (fanning(), HOT),
+        (gesture(Hand.EARS), LOUD),
+        (gesture(Hand.EYES), BRIGHT),
+        (rubbing(), COLD),
+        (fanning(), HOT),
         (gesture(Hand.FANS), HOT),
         (fanning(rate=0.7, wide=0.24), None),
-        (rubbing(speed=0.1), None), (bent({}, 60), None), (gesture(Hand.WAVES), None), (gesture(Hand.HIGH), None),
-        (gesture(Hand.CROSSED), None), (gesture(Hand.AHEAD), None), (gesture(Hand.CLAPS), None),
+        (rubbing(speed=0.1), None),
+        (bent({}, 60), None),
+        (gesture(Hand.WAVES), None),
+        (gesture(Hand.HIGH), None),
+        (gesture(Hand.CROSSED), None),
+        (gesture(Hand.AHEAD), None),
+        (gesture(Hand.CLAPS), None),
         (gesture(Hand.EARS, FRAMES - 1), None),
     ],
-)  # fmt: skip
+)
 def test_complaints_are_told_from_other_gestures(seen: np.ndarray, said: Complaint | None) -> None:
     turned = seen @ heading_matrix(2.0).T + [1.0, 0.0, -2.0]
     assert complaint(seen, 30) is said and complaint(turned, 30) is said
 
 
-def watched(
-    complaining: np.ndarray, *, frames: int = LONG, gaze=None
-) -> tuple[LiveAgent, np.ndarray, list[str]]:
+def watched(complaining: np.ndarray, *, frames: int = LONG, gaze=None) -> tuple[LiveAgent, np.ndarray, list[str]]:
     """The agent, its poses and its beliefs, before a person who complains for two seconds and then stands."""
     agent = LiveAgent(Scripted(NOTHING), Recorded())  # type: ignore[arg-type]
     agent.gaze = gaze
@@ -119,9 +119,7 @@ def watched(
 @pytest.mark.parametrize(
     ("seen", "said", "kind"), [(gesture(Hand.EARS), LOUD, "hi-fi"), (gesture(Hand.EYES), BRIGHT, "window")]
 )
-def test_the_agent_goes_to_the_thing_uses_it_and_comes_back(
-    seen: np.ndarray, said: Complaint, kind: str
-) -> None:
+def test_the_agent_goes_to_the_thing_uses_it_and_comes_back(seen: np.ndarray, said: Complaint, kind: str) -> None:
     agent, poses, beliefs = watched(seen)
     assert any(said.said in text and said.act in text for text in beliefs)
     (body,) = [thing for thing in agent.things if thing.kind == kind]

@@ -84,18 +84,13 @@ def toy(tmp_path: Path) -> Iterator[Path]:
     sys.modules.pop("toy_pipeline", None)
 
 
-def test_a_method_of_two_files_is_everywhere(
-    toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_method_of_two_files_is_everywhere(toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     # on the page
     assert ("Toy twins", "toy") in generate_choices()
     assert ("Toy twins", "toy") in react_choices()
     # in the shell
     out = tmp_path / "toy.npz"
-    assert (
-        cli.main(["generate", "--prompt", "Sway.", "--model", "toy", "--seconds", "2", "--out", str(out)])
-        == 0
-    )
+    assert cli.main(["generate", "--prompt", "Sway.", "--model", "toy", "--seconds", "2", "--out", str(out)]) == 0
     printed = json.loads(capsys.readouterr().out.splitlines()[-1])
     assert printed["manifest"]["model"] == "toy" and printed["manifest"]["request"]["steps"] == 3
     assert read(out).num_frames == 60
@@ -171,11 +166,7 @@ def test_automatic_is_the_best_of_the_table_for_what_is_given(monkeypatch: pytes
         for line in (Path(__file__).resolve().parents[3] / "docs/reactions.md").read_text().splitlines()
         if line.startswith("|") and "±" in line
     ]
-    known = {
-        "ReGenNet, offline": "regennet",
-        "InterGen, person to person": "intergen",
-        "Virtual agent": "agent",
-    }
+    known = {"ReGenNet, offline": "regennet", "InterGen, person to person": "intergen", "Virtual agent": "agent"}
     scores: dict[str, float] = {}
     for label, accuracy in rows:  # the first two tables: SBU and K3HI
         scores.setdefault(known.get(label.strip(), ""), float(accuracy.split("±")[0]))

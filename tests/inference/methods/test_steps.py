@@ -56,9 +56,7 @@ def test_a_reactor_has_its_own_steps_everywhere(name: str) -> None:
 
 def test_steps_that_are_given_are_kept_and_written() -> None:
     request = SceneRequest(beats=BEATS, steps=50)
-    assert (
-        "steps = 50" in write_story(request) and SceneRequest(**read_story(write_story(request))).steps == 50
-    )
+    assert "steps = 50" in write_story(request) and SceneRequest(**read_story(write_story(request))).steps == 50
     assert "steps" not in write_story(SceneRequest(beats=BEATS))
     with pytest.raises(InputError, match="DDIM steps must be from 1"):
         SceneRequest(beats=BEATS, steps=0)

@@ -50,9 +50,13 @@ def write_intergen(
     small = {"latent_dim": 128, "ff_size": 64, "num_layers": 2, "num_heads": 1}
     denoiser = InterGenDenoiser(InterGenConfig(**(sizes or small), cond_dim=text_width))
     text = ClipTextEncoder(
-        vocabulary=512 + len(MERGES) + 2, context_length=77, width=text_width, num_layers=layers, ff_size=64,
+        vocabulary=512 + len(MERGES) + 2,
+        context_length=77,
+        width=text_width,
+        num_layers=layers,
+        ff_size=64,
         encoder_layers=2,
-    )  # fmt: skip
+    )
     state = {f"model.decoder.net.{name}": value for name, value in drawn(denoiser).items()}
     state |= {f"model.{name}": value for name, value in drawn(text).items()}
     state["model.decoder.net.sequence_pos_encoder.pe"] = torch.zeros(4, 1, 8)
@@ -70,9 +74,7 @@ FILES = {"checkpoint": "intergen.ckpt", "mean": "global_mean.npy", "std": "globa
 def write_regennet(path: Path, *, online: bool, actions: int = 0) -> None:
     """A file as ReGenNet's trainer writes it, with the position tables that the release stores."""
     network = ReGenNet(
-        ReGenNetConfig(
-            latent_dim=128, ff_size=32, num_layers=2, num_heads=1, online=online, num_actions=actions
-        )
+        ReGenNetConfig(latent_dim=128, ff_size=32, num_layers=2, num_heads=1, online=online, num_actions=actions)
     )
     state = drawn(network) | {"sequence_pos_encoder.pe": torch.zeros(9, 1, 128)}
     state["embed_timestep.sequence_pos_encoder.pe"] = torch.zeros(9, 1, 128)

@@ -194,9 +194,7 @@ def test_swapped_normalisers_are_noticed(settings: Path, files: Path, tmp_path: 
         result_of(Engine(), GenerateRequest(prompt="Two people wave.", model="my-run"))
 
 
-def test_a_model_that_does_not_fit_is_refused(
-    settings: Path, files: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_model_that_does_not_fit_is_refused(settings: Path, files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     use(settings, TABLE, files)
     monkeypatch.setattr(cost, "free_memory", lambda: 1e6)
     with pytest.raises(InputError, match=r"needs about .* GB of memory and 0\.0 GB are free"):
@@ -210,9 +208,7 @@ def test_the_benchmark_times_it_beside_a_plain_run(
     settings: Path, files: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     use(settings, TABLE.replace("label", 'precision = "int8"\nlabel'), files)
-    assert (
-        cli.main(["benchmark", "--model", "my-run", "--seconds", "1", "--steps", "2", "--repeats", "1"]) == 0
-    )
+    assert cli.main(["benchmark", "--model", "my-run", "--seconds", "1", "--steps", "2", "--repeats", "1"]) == 0
     figures = json.loads(capsys.readouterr().out.splitlines()[-1])
     assert figures["released_plain_over_ours"] > 0 and figures["released_plain_over_ours_goal"] == 3
     assert cli.main(["benchmark", "--model", "intergen"]) == 2

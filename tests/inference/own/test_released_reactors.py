@@ -11,12 +11,7 @@ import pytest
 from models.regennet.released import decode, encode
 from motion import Clip, Duet, InputError
 from motion.formats import read
-from tests.inference.own.released_files import (
-    write_bigraphdiff,
-    write_interformer,
-    write_regennet,
-    write_vocabulary,
-)
+from tests.inference.own.released_files import write_bigraphdiff, write_interformer, write_regennet, write_vocabulary
 from webdemo.inference import Engine, GenerateRequest, ReactRequest, Result
 from webdemo.inference.methods import failed, method, register_settings, variants
 from webdemo.inference.own import entries

@@ -39,10 +39,33 @@ def test_an_adverb_repeated_is_read_at_once(word):
 
 
 REPEATED = (
-    "Anna, ", "Tom, with, ", "ran , ", "A. ", "a. ", "a, ", ", ", "(", '"', "a and ", "the ", "man who ", "ing",
-    "lets him ", "he hugs him and ", "then he sits down. ", "she - p1 as ", "\u3042", "\U0001f600 ", "x", "1 ",
-    "Two people walk up to each other and shake hands. ", "slowly ", "the a b ", "helps ", "throws the ",
-)  # fmt: skip
+    "Anna, ",
+    "Tom, with, ",
+    "ran , ",
+    "A. ",
+    "a. ",
+    "a, ",
+    ", ",
+    "(",
+    '"',
+    "a and ",
+    "the ",
+    "man who ",
+    "ing",
+    "lets him ",
+    "he hugs him and ",
+    "then he sits down. ",
+    "she - p1 as ",
+    "\u3042",
+    "\U0001f600 ",
+    "x",
+    "1 ",
+    "Two people walk up to each other and shake hands. ",
+    "slowly ",
+    "the a b ",
+    "helps ",
+    "throws the ",
+)
 
 
 @pytest.mark.parametrize("part", REPEATED)
@@ -90,9 +113,13 @@ def making_a_scene(token: CancelToken) -> Iterator[Any]:
 @pytest.mark.parametrize(("run", "reader", "name"), [(making_a_scene, scene_floor, "_said_together")])
 @pytest.mark.parametrize(("late", "ends"), [(False, Cancelled), (True, InputError)])
 def test_a_run_that_ends_reads_no_further(
-    run: Callable[[CancelToken], Iterator[Any]], reader: Any, name: str, late: bool, ends: type[Exception],
+    run: Callable[[CancelToken], Iterator[Any]],
+    reader: Any,
+    name: str,
+    late: bool,
+    ends: type[Exception],
     monkeypatch: pytest.MonkeyPatch,
-) -> None:  # fmt: skip
+) -> None:
     """It is cancelled, or its time is over, while the third sentence is read."""
     now, sentences, original = 0.0, 0, getattr(reader, name)
     monkeypatch.setattr(cancel, "monotonic", lambda: now)

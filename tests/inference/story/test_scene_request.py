@@ -66,28 +66,13 @@ def path(*points: tuple[float, ...], person: str = "a") -> FloorPath:
         ({"beats": (WAVE,), "paths": (path((1, 0, 0)), path((1, 0, 0)))}, "two paths"),
         ({"beats": (WAVE,), "paths": (path((1, 0, 0), person="c"),)}, "person a or b"),
         ({"beats": (WAVE,), "poses": (Pose("a", 1, REST), Pose("a", 1, REST))}, "Two poses of person a"),
-        (
-            {"beats": (WAVE,), "poses": (Pose("a", 1, REST), Pose("a", 1.5, REST + np.array([4.0, 0, 0])))},
-            "4.0 m",
-        ),
+        ({"beats": (WAVE,), "poses": (Pose("a", 1, REST), Pose("a", 1.5, REST + np.array([4.0, 0, 0])))}, "4.0 m"),
         ({"beats": (WAVE,), "poses": (Pose("a", 1, REST * 2),)}, "bones"),
-        (
-            {"beats": (WAVE,), "poses": (Pose("a", 1, bent("left_knee", -np.pi / 2)),)},
-            "the left knee is bent forward",
-        ),
-        (
-            {"beats": (WAVE,), "poses": (Pose("a", 1, bent("right_elbow", np.pi)),)},
-            "the right elbow is bent too far",
-        ),
+        ({"beats": (WAVE,), "poses": (Pose("a", 1, bent("left_knee", -np.pi / 2)),)}, "the left knee is bent forward"),
+        ({"beats": (WAVE,), "poses": (Pose("a", 1, bent("right_elbow", np.pi)),)}, "the right elbow is bent too far"),
         ({"beats": (WAVE,), "poses": (Pose("a", 9, REST),)}, "the scene lasts 3 s"),
-        (
-            {"beats": (WAVE,), "poses": (Pose("a", 1, REST),), "paths": (path((0, 2, 0), (2, 2, 0)),)},
-            "off their path",
-        ),
-        (
-            {"beats": (WAVE,), "motion": still(), "start": 2.0, "end": 4.0, "paths": (path((1, 0, 0)),)},
-            "is kept",
-        ),
+        ({"beats": (WAVE,), "poses": (Pose("a", 1, REST),), "paths": (path((0, 2, 0), (2, 2, 0)),)}, "off their path"),
+        ({"beats": (WAVE,), "motion": still(), "start": 2.0, "end": 4.0, "paths": (path((1, 0, 0)),)}, "is kept"),
     ],
 )
 def test_what_cannot_be_made_is_refused_in_one_sentence(fields: dict[str, Any], says: str) -> None:
@@ -112,9 +97,7 @@ def test_lengths_are_set_and_fill_a_span() -> None:
 
 def test_a_request_comes_back_from_its_dictionary() -> None:
     pose = Pose("b", 2.0, REST + np.array([0, 0, 1.5]))
-    request = SceneRequest(
-        beats=(WAVE, Beat(a="bows")), paths=(path((0, 0, 0), (2, 1, 1)),), poses=(pose,), seed=3
-    )
+    request = SceneRequest(beats=(WAVE, Beat(a="bows")), paths=(path((0, 0, 0), (2, 1, 1)),), poses=(pose,), seed=3)
     written = json.loads(json.dumps(request.to_dict()))
     assert SceneRequest.from_dict(written).to_dict() == request.to_dict()
     span = SceneRequest(beats=(WAVE,), motion=still(), start=1.0, end=4.0)

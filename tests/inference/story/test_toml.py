@@ -34,9 +34,7 @@ points = [[0, 0, 1.5], [2, 0.5, 2, 90], [3, 0, 2]]
 def test_a_story_is_read_and_written() -> None:
     found = read_story(STORY)
     assert [beat.words for beat in found["beats"]] == ['They "meet".', ""]
-    assert (
-        found["beats"][1].seed == 9 and found["seed"] == 4 and found["tries"] == 3 and found["loop"] is True
-    )
+    assert found["beats"][1].seed == 9 and found["seed"] == 4 and found["tries"] == 3 and found["loop"] is True
     assert found["paths"][0].points[1] == FloorPoint(0.5, 2, 2, 90)
     request = SceneRequest(**found)
     again = SceneRequest(**read_story(write_story(request)))
@@ -126,13 +124,7 @@ def test_a_text_that_is_too_large_is_refused_in_time(text, says):
 
 def test_full_stops_in_a_sentence_are_no_parts_of_a_key():
     words = "They walk. Sit. Bow. Run. Hop. Wave. Nod. Clap. Part... a.b.c.d.e.f.g.h.i.j"
-    for quoted in (
-        f'"{words}"',
-        f"'{words}'",
-        f'"""\n{words} "x" {words}"""',
-        f"'''{words}''''",
-        f'"\\"{words}"',
-    ):
+    for quoted in (f'"{words}"', f"'{words}'", f'"""\n{words} "x" {words}"""', f"'''{words}''''", f'"\\"{words}"'):
         assert words in read_story(f"[[beat]]\nwords = {quoted}  # {words}\nseconds = 3.5")["beats"][0].words
 
 

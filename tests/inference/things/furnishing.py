@@ -37,11 +37,7 @@ def put_hand(person: np.ndarray, side: str, place: np.ndarray) -> None:
 def sitting() -> np.ndarray:
     """Both sit, half a metre lower than they stand."""
     people = standing()
-    upper = [
-        j
-        for j, name in enumerate(SMPL22.joint_names)
-        if not any(p in name for p in ("knee", "ankle", "foot"))
-    ]
+    upper = [j for j, name in enumerate(SMPL22.joint_names) if not any(p in name for p in ("knee", "ankle", "foot"))]
     people[:, :, upper, 1] -= 0.4
     for person, ahead in zip(people, (1.0, -1.0), strict=True):
         for side in ("left", "right"):
@@ -84,8 +80,6 @@ def reaching() -> np.ndarray:
     """Both reach out with their right hands, which meet in the middle at frame 60."""
     people = standing()
     reach = np.exp(-(((np.arange(FRAMES) - 60) / 12.0) ** 2))[:, None]
-    for person, hang in zip(
-        people, (np.array([-0.22, 0.9, 0.12]), np.array([0.22, 0.9, GAP - 0.12])), strict=True
-    ):
+    for person, hang in zip(people, (np.array([-0.22, 0.9, 0.12]), np.array([0.22, 0.9, GAP - 0.12])), strict=True):
         put_hand(person, "right", hang + reach * (np.array([0.0, 1.15, GAP / 2]) - hang))
     return people

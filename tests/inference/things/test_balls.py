@@ -24,9 +24,7 @@ def test_a_ball_that_is_rolled_leaves_the_lowest_hand_and_rolls_over_the_floor_t
     x, _, z = ball.places[-1]
     assert 0.2 < np.hypot(x, z - GAP) < 0.4, "at b's feet"
     way = np.linalg.norm(np.diff(ball.places[55:, [0, 2]], axis=0), axis=1)
-    turned = np.arccos(
-        np.clip((np.einsum("tij,tij->t", ball.rotations[56:], ball.rotations[55:-1]) - 1) / 2, -1, 1)
-    )
+    turned = np.arccos(np.clip((np.einsum("tij,tij->t", ball.rotations[56:], ball.rotations[55:-1]) - 1) / 2, -1, 1))
     assert turned == pytest.approx(way / radius, abs=0.02), "it does not slide"
 
 

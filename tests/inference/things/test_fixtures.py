@@ -103,12 +103,7 @@ def test_a_foot_that_steps_ahead_does_not_step_into_the_hi_fi():
 
 
 def test_nothing_stands_there_for_what_is_wished_or_denied_or_is_no_fixture():
-    for sentence in (
-        "A does not open the window.",
-        "A wants to open the window.",
-        "A opens a gift.",
-        "A waves.",
-    ):
+    for sentence in ("A does not open the window.", "A wants to open the window.", "A opens a gift.", "A waves."):
         assert not {"window", "door frame", "hi-fi"} & made(sentence)[0].keys(), sentence
 
 
@@ -137,12 +132,7 @@ def test_a_window_opens_away_from_the_person_when_hands_are_at_it(verb, opens):
 def test_curtains_close_and_leave_the_window_alone():
     kinds, _ = made("A draws the curtains.")
     left, right = kinds["curtain"]
-    assert (
-        abs(left.places[0, 0] - right.places[0, 0])
-        > 1.5
-        > 0.7
-        > abs(left.places[-1, 0] - right.places[-1, 0])
-    )
+    assert abs(left.places[0, 0] - right.places[0, 0]) > 1.5 > 0.7 > abs(left.places[-1, 0] - right.places[-1, 0])
     assert not any(sash.moves for sash in kinds["sash"])
 
 
@@ -185,9 +175,7 @@ def test_what_is_put_out_at_a_desk_is_on_it(seat, desk):
 
     kinds, _ = made(f"A {seat}. Then A puts out the cigarette.", sitting())
     ((cigarette,), (top,)) = kinds["cigarette"], kinds[desk]
-    assert cigarette.places[-1, 1] == pytest.approx(
-        0.74 if desk == "computer" else top.mesh.size[1], abs=0.03
-    )
+    assert cigarette.places[-1, 1] == pytest.approx(0.74 if desk == "computer" else top.mesh.size[1], abs=0.03)
     assert not {"table", "computer"} - {desk} & kinds.keys(), "there is one desk"
 
 

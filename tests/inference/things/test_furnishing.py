@@ -24,9 +24,7 @@ def test_a_seat_is_under_the_hips_of_a_person_who_sits():
     seat = top[np.abs(top[:, 1] - (hips[1] - 0.095)) < 0.02]
     assert chair.kind == "chair" and len(seat) and not chair.moves
     assert np.abs(seat.mean(axis=0) - hips)[[0, 2]].max() < 0.12
-    assert chair.rotations[0] @ [0, 0, 1] == pytest.approx([0, 0, 1], abs=0.1), (
-        "it faces where the person does"
-    )
+    assert chair.rotations[0] @ [0, 0, 1] == pytest.approx([0, 0, 1], abs=0.1), "it faces where the person does"
 
 
 def test_nobody_has_a_seat_who_stands_or_sits_on_the_floor():
@@ -56,9 +54,7 @@ def test_a_table_stands_before_people_who_sit_at_one():
 
 
 # ---- hands -----------------------------------------------------------------------------------------------
-@pytest.mark.parametrize(
-    "thing", ["cup", "sword", "umbrella", "phone", "book", "flower", "bag", "stick", "ring"]
-)
+@pytest.mark.parametrize("thing", ["cup", "sword", "umbrella", "phone", "book", "flower", "bag", "stick", "ring"])
 def test_a_held_thing_follows_the_hand(thing):
     people = standing()
     swing = 0.2 * np.sin(np.linspace(0, 6, FRAMES))

@@ -19,8 +19,9 @@ from models.agent.recogniser import (
 from models.weights_io import save_network
 from motion import SMPL22
 
-CONFIG = RecogniserConfig(("nothing", "wave"), ("", "They wave."), joint_width=4, latent_dim=16, ff_size=16,
-                          num_layers=1, num_heads=2)  # fmt: skip
+CONFIG = RecogniserConfig(
+    ("nothing", "wave"), ("", "They wave."), joint_width=4, latent_dim=16, ff_size=16, num_layers=1, num_heads=2
+)
 
 
 def test_joints_see_their_neighbours_alone() -> None:

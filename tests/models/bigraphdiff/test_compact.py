@@ -14,9 +14,16 @@ from models.weights_io import save_network
 
 SHAKE = (("right_wrist", "right_wrist"),)
 CONFIG = CompactBiGraphDiffConfig(
-    ("shake hands", "wave"), (SHAKE, ()), latent_dim=32, ff_size=16, num_layers=2, num_heads=2, embed_dim=24,
-    cond_dim=8, max_tokens=12,
-)  # fmt: skip
+    ("shake hands", "wave"),
+    (SHAKE, ()),
+    latent_dim=32,
+    ff_size=16,
+    num_layers=2,
+    num_heads=2,
+    embed_dim=24,
+    cond_dim=8,
+    max_tokens=12,
+)
 
 
 @pytest.fixture

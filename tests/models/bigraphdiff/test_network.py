@@ -12,14 +12,7 @@ from models.errors import WeightsError
 from tests.models.reference_arrays import Reference, assert_equal
 
 SMALL = BiGraphDiffConfig(
-    input_features=6,
-    latent_dim=32,
-    ff_size=16,
-    num_layers=2,
-    num_heads=2,
-    text_dim=8,
-    max_frames=12,
-    num_nodes=4,
+    input_features=6, latent_dim=32, ff_size=16, num_layers=2, num_heads=2, text_dim=8, max_frames=12, num_nodes=4
 )
 
 

@@ -116,9 +116,13 @@ def test_noise_drawn_while_sampling_follows_the_generator():
 
 @pytest.mark.parametrize(
     ("name", "steps", "words"),
-    [("ddim", 0, "between 1 and 1000"), ("ddim", 1001, "between 1 and 1000"),
-     ("ddim", 600, "do not spread"), ("euler", 10, "no sampler named 'euler'")],
-)  # fmt: skip
+    [
+        ("ddim", 0, "between 1 and 1000"),
+        ("ddim", 1001, "between 1 and 1000"),
+        ("ddim", 600, "do not spread"),
+        ("euler", 10, "no sampler named 'euler'"),
+    ],
+)
 def test_what_cannot_be_sampled_is_said(name, steps, words):
     with pytest.raises(SamplerError, match=words):
         make_scheduler(name, steps)

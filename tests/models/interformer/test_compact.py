@@ -81,9 +81,7 @@ def test_the_whole_actor_and_the_noise_are_seen(model, scene):
     later = actor.clone()
     later[0, 12] += 0.5
     assert (ReactionDecoder(model).react(later, reactor[:, 0], noise, mask) - before)[0, 1].abs().max() > 1e-5
-    assert (ReactionDecoder(model).react(actor, reactor[:, 0], -noise, mask) - before)[
-        :, 1
-    ].abs().max() > 1e-5
+    assert (ReactionDecoder(model).react(actor, reactor[:, 0], -noise, mask) - before)[:, 1].abs().max() > 1e-5
 
 
 def test_attention_does_not_see_padding(model, scene):

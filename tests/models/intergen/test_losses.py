@@ -104,8 +104,9 @@ def test_padding_is_not_counted():
 def test_bone_lengths_ignore_where_people_stand():
     true = scene()
     assert losses.bone_length_loss(true + torch.tensor([3.0, 0, 1]), true).max() < 1e-10
-    assert torch.allclose(losses.bone_length_loss(true * 1.1, true)[0, 0],
-                          (0.1 * losses.bone_lengths(REST)).square().mean())  # fmt: skip
+    assert torch.allclose(
+        losses.bone_length_loss(true * 1.1, true)[0, 0], (0.1 * losses.bone_lengths(REST)).square().mean()
+    )
 
 
 def test_a_foot_that_slides_on_the_floor_costs_its_squared_step():
@@ -123,9 +124,7 @@ def test_the_contact_loss_counts_a_touch_for_more_than_a_gap():
     pairs = 22 * 22
     for gap in (0.0, 0.4, 3.0):
         true = torch.zeros(1, 3, 2, 22, 3)
-        true[:, :, 0] += (
-            100 * torch.arange(22)[:, None]
-        )  # every other pair is so far apart that it weighs nothing
+        true[:, :, 0] += 100 * torch.arange(22)[:, None]  # every other pair is so far apart that it weighs nothing
         true[:, :, 1] = true[:, :, 0].flip(2) + 37
         true[:, :, 1, 0] = true[:, :, 0, 0] + torch.tensor([gap, 0, 0])
         pred = true.clone()

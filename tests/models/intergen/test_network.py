@@ -68,9 +68,7 @@ def test_ddim_equals_the_reference(ref, network, steps):
     cond, scale = ref["cond"][:1], float(ref["cfg_weight"])
     scheduler = make_scheduler("ddim", steps)
     assert scheduler.timesteps.flip(0).tolist() == ref[f"ddim{steps}_timesteps"].tolist()
-    *_, last = sample_steps(
-        lambda x, t: network.guided(x, t, cond, scale=scale), ref[f"ddim{steps}_noise"], scheduler
-    )
+    *_, last = sample_steps(lambda x, t: network.guided(x, t, cond, scale=scale), ref[f"ddim{steps}_noise"], scheduler)
     assert_equal(last.sample, ref[f"ddim{steps}_sample"])
 
 

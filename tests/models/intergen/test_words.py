@@ -98,9 +98,7 @@ def test_padding_and_missing_sentences_are_not_heard(grown):
     x, t = inputs()
     both, a = words(5, 3), words(0, 4, seed=1)
     alone = model.condition(TokenFeatures(both.features[1:, :3], both.mask[1:, :3]), words(4, seed=9))
-    together = model.condition(
-        both, TokenFeatures(torch.cat([a.features[:1], words(4, seed=9).features]), a.mask)
-    )
+    together = model.condition(both, TokenFeatures(torch.cat([a.features[:1], words(4, seed=9).features]), a.mask))
     assert together.shape[2] > alone.shape[2]
     expected = model.denoiser(x[1:], t[1:], alone)
     assert torch.allclose(model.denoiser(x, t, together)[1:], expected, atol=1e-3)
@@ -148,9 +146,7 @@ def test_what_is_known_is_seen(grown):
     assert (seen - plain).abs().max() > 1e-4
     halves = [model.denoiser(x, t, c, None, known.expand(2, -1, -1)) for c in (condition, 0 * condition)]
     assert torch.allclose(
-        model.denoiser.guided(x, t, condition, None, known, scale=2.5),
-        2.5 * halves[0] - 1.5 * halves[1],
-        atol=1e-4,
+        model.denoiser.guided(x, t, condition, None, known, scale=2.5), 2.5 * halves[0] - 1.5 * halves[1], atol=1e-4
     )
 
 

@@ -20,9 +20,7 @@ from models.mawgan import (
 )
 from models.mawgan.srvf import exp_map, inner, log_map, norm, to_srvf, velocity
 
-SMALL = MAWGANConfig(
-    joints=5, past=8, future=12, fc=64, channels=(16, 8, 8, 4), critic=(4, 4, 4), critic_fc=8
-)
+SMALL = MAWGANConfig(joints=5, past=8, future=12, fc=64, channels=(16, 8, 8, 4), critic=(4, 4, 4), critic_fc=8)
 
 
 def poses(seed: int, *size: int) -> torch.Tensor:

@@ -14,9 +14,7 @@ from models.mawgan import MAWGANConfig, PredictiveMAWGAN
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import load_predictor, save_predictor, without_jump
 
-SMALL = MotionMLPConfig(
-    joints=4, past=10, future=8, past_coefficients=5, future_coefficients=4, width=16, blocks=1
-)
+SMALL = MotionMLPConfig(joints=4, past=10, future=8, past_coefficients=5, future_coefficients=4, width=16, blocks=1)
 
 
 def waves(count: int, frames: int = 18) -> torch.Tensor:
@@ -65,9 +63,7 @@ def test_the_linear_part_predicts_waves() -> None:
 
 @pytest.mark.parametrize("kind", ["mlp", "mawgan"])
 def test_folder_round_trip(tmp_path: Path, network: MotionMLP, kind: str) -> None:
-    made = network if kind == "mlp" else PredictiveMAWGAN(
-        MAWGANConfig(4, 10, 8, fc=64, channels=(8, 8, 4, 4))
-    ).eval()  # fmt: skip
+    made = network if kind == "mlp" else PredictiveMAWGAN(MAWGANConfig(4, 10, 8, fc=64, channels=(8, 8, 4, 4))).eval()
     save_predictor(tmp_path, made, kind=kind, fps=30.0)
     read = load_predictor(tmp_path)
     assert (read.past, read.future, read.fps, read.joints) == (10, 8, 30.0, 4)

@@ -10,9 +10,7 @@ from motion import SMPL22
 
 
 def test_a_stream_decodes_each_interval_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    config = CompactReGenNetConfig(
-        latent_dim=16, ff_size=16, num_layers=1, num_heads=2, cond_dim=16, window=8
-    )
+    config = CompactReGenNetConfig(latent_dim=16, ff_size=16, num_layers=1, num_heads=2, cond_dim=16, window=8)
     model = CompactReGenNet(config).eval()
     decoded = []
     decode = compact.decode

@@ -38,9 +38,7 @@ def test_unconditional_equals_the_reference():
 def test_guidance_mixes_both_in_one_batch():
     ref, network = load("regennet_online_action")
     inputs = ref["x"], ref["t"], ref["actor"], ref["action"]
-    assert_equal(
-        network.guided(*inputs, scale=2.5), 2.5 * ref["forward"] - 1.5 * ref["forward_unconditional"], 5e-4
-    )
+    assert_equal(network.guided(*inputs, scale=2.5), 2.5 * ref["forward"] - 1.5 * ref["forward_unconditional"], 5e-4)
     assert torch.equal(network.guided(*inputs, scale=1), network(*inputs))
 
 

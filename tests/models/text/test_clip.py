@@ -25,9 +25,7 @@ from tests.models.reference_arrays import Reference, assert_equal
 @pytest.fixture(scope="module")
 def encoder() -> ClipTextEncoder:
     torch.manual_seed(0)
-    encoder = ClipTextEncoder(
-        vocabulary=40, context_length=12, width=128, num_layers=2, ff_size=32, encoder_layers=2
-    )
+    encoder = ClipTextEncoder(vocabulary=40, context_length=12, width=128, num_layers=2, ff_size=32, encoder_layers=2)
     for parameter in encoder.parameters():
         nn.init.normal_(parameter, std=0.1)
     return encoder.eval().requires_grad_(False)

@@ -15,8 +15,22 @@ from motion import SMPL22
 from .rigs import RIGS
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (0, 1) for z in (-1, 1)], dtype=float)
-_FACES = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6],
-                   [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])  # fmt: skip
+_FACES = np.array(
+    [
+        [0, 1, 3],
+        [0, 3, 2],
+        [4, 6, 7],
+        [4, 7, 5],
+        [0, 4, 5],
+        [0, 5, 1],
+        [2, 3, 7],
+        [2, 7, 6],
+        [0, 2, 6],
+        [0, 6, 4],
+        [1, 5, 7],
+        [1, 7, 3],
+    ]
+)
 THICK = 0.04
 """Half of a box's width in metres."""
 
@@ -34,9 +48,14 @@ def a_pose() -> np.ndarray:
 
 
 def glb_character(
-    rig: str = "mixamo", *, places: np.ndarray | None = None, unit: float = 1.0, turn: np.ndarray | None = None,
-    fine: int = 1, **changes: Any,
-) -> bytes:  # fmt: skip
+    rig: str = "mixamo",
+    *,
+    places: np.ndarray | None = None,
+    unit: float = 1.0,
+    turn: np.ndarray | None = None,
+    fine: int = 1,
+    **changes: Any,
+) -> bytes:
     """A character of boxes.
 
     Args:
@@ -67,17 +86,17 @@ def glb_character(
         inverse[slot, :3, 3] = -unit * (turn @ places[joint])
     weights = np.tile([1.0, 0.0, 0.0, 0.0], (8 * len(vertices), 1))
     arrays = [
-        (unit * np.concatenate(vertices) @ turn.T, "<f4", "VEC3"), (np.concatenate(slots), "<u1", "VEC4"),
-        (weights, "<f4", "VEC4"), (np.concatenate(faces).reshape(-1, 1), "<u4", "SCALAR"),
+        (unit * np.concatenate(vertices) @ turn.T, "<f4", "VEC3"),
+        (np.concatenate(slots), "<u1", "VEC4"),
+        (weights, "<f4", "VEC4"),
+        (np.concatenate(faces).reshape(-1, 1), "<u4", "SCALAR"),
         (inverse.swapaxes(1, 2).reshape(-1, 16), "<f4", "MAT4"),
-    ]  # fmt: skip
+    ]
     blob, views, accessors = b"", [], []
     for values, kind, shape in arrays:
         data = np.ascontiguousarray(values).astype(kind).tobytes()
         component = {"<f4": 5126, "<u1": 5121, "<u4": 5125}[kind]
-        accessors.append(
-            {"bufferView": len(views), "componentType": component, "count": len(values), "type": shape}
-        )
+        accessors.append({"bufferView": len(views), "componentType": component, "count": len(values), "type": shape})
         views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(data)})
         blob += data + bytes(-len(data) % 4)
     nodes: list[dict[str, Any]] = []
@@ -90,18 +109,32 @@ def glb_character(
     nodes.append({"mesh": 0, "skin": 0})
     attributes = {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}
     document: dict[str, Any] = {
-        "asset": {"version": "2.0"}, "nodes": nodes, "buffers": [{"byteLength": len(blob)}], "bufferViews": views,
-        "accessors": accessors, "meshes": [{"primitives": [{"attributes": attributes, "indices": 3}]}],
+        "asset": {"version": "2.0"},
+        "nodes": nodes,
+        "buffers": [{"byteLength": len(blob)}],
+        "bufferViews": views,
+        "accessors": accessors,
+        "meshes": [{"primitives": [{"attributes": attributes, "indices": 3}]}],
         "skins": [{"joints": list(range(len(kept))), "inverseBindMatrices": 4}],
-    }  # fmt: skip
+    }
     return packed(document | changes, blob)
 
 
 def glb_motion(
-    rotations: np.ndarray, root: np.ndarray, rig: str | dict[str, str] = "mixamo", *, fps: float = 30.0,
-    unit: float = 1.0, turn: np.ndarray | None = None, start: float = 0.0, way: str = "LINEAR", skinned: bool = True,
-    people: int = 1, axes: np.ndarray | None = None, **changes: Any,
-) -> bytes:  # fmt: skip
+    rotations: np.ndarray,
+    root: np.ndarray,
+    rig: str | dict[str, str] = "mixamo",
+    *,
+    fps: float = 30.0,
+    unit: float = 1.0,
+    turn: np.ndarray | None = None,
+    start: float = 0.0,
+    way: str = "LINEAR",
+    skinned: bool = True,
+    people: int = 1,
+    axes: np.ndarray | None = None,
+    **changes: Any,
+) -> bytes:
     """An animated character of boxes on SMPL22's bones, as Blender writes Mixamo's: the armature turned and scaled.
 
     Args:
@@ -129,9 +162,7 @@ def glb_motion(
         nonlocal blob
         data = np.ascontiguousarray(values).astype("<f4").tobytes()
         views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(data)})
-        accessors.append(
-            {"bufferView": len(views) - 1, "componentType": 5126, "count": len(values), "type": shape}
-        )
+        accessors.append({"bufferView": len(views) - 1, "componentType": 5126, "count": len(values), "type": shape})
         blob += data
         return len(accessors) - 1
 
@@ -153,22 +184,23 @@ def glb_motion(
         first, samplers, channels = len(nodes) + 1, [], []
         back = Rotation.from_matrix(turn.T).as_quat()
         top.append(first - 1)
-        nodes.append({
-            "name": f"Armature{person}", "children": [first], "rotation": back.tolist(), "scale": [1 / unit] * 3,
-            "translation": [2.0 * person, 0.0, 0.0],
-        })  # fmt: skip
+        nodes.append(
+            {
+                "name": f"Armature{person}",
+                "children": [first],
+                "rotation": back.tolist(),
+                "scale": [1 / unit] * 3,
+                "translation": [2.0 * person, 0.0, 0.0],
+            }
+        )
         for joint, name in enumerate(SMPL22.joint_names):
             parent = SMPL22.parents[joint]
             offset = rest[joint] - (rest[parent] if parent >= 0 else 0.0)
             children = [first + child for child in SMPL22.children[joint]]
-            nodes.append(
-                {"name": names[name], "children": children, "translation": (unit * turn @ offset).tolist()}
-            )
+            nodes.append({"name": names[name], "children": children, "translation": (unit * turn @ offset).tolist()})
             # Rotations are about the armature's turned axes.
             turned = Rotation.from_matrix(turn @ rotations[:, joint] @ turn.T).as_quat()
-            turned *= np.where(np.cumsum(np.r_[0, (turned[1:] * turned[:-1]).sum(-1) < 0]) % 2, -1, 1)[
-                :, None
-            ]
+            turned *= np.where(np.cumsum(np.r_[0, (turned[1:] * turned[:-1]).sum(-1) < 0]) % 2, -1, 1)[:, None]
             for path, values in (("rotation", turned), ("translation", unit * root @ turn.T)):
                 if path == "rotation" or joint == 0:
                     output = add(spline(values), "VEC4" if path == "rotation" else "VEC3")
@@ -180,8 +212,14 @@ def glb_motion(
             skins.append({"joints": list(range(first, first + count)), "inverseBindMatrices": bound})
             nodes.append({"mesh": 0, "skin": person})
             top.append(len(nodes) - 1)
-    document |= {"nodes": nodes, "animations": animations, "skins": skins, "scene": 0, "scenes": [{"nodes": top}],
-             "buffers": [{"byteLength": len(blob)}]}  # fmt: skip
+    document |= {
+        "nodes": nodes,
+        "animations": animations,
+        "skins": skins,
+        "scene": 0,
+        "scenes": [{"nodes": top}],
+        "buffers": [{"byteLength": len(blob)}],
+    }
     if not skinned:
         del document["skins"], document["meshes"]
     return packed(document | changes, blob)
@@ -207,9 +245,7 @@ def packed(document: dict[str, Any], blob: bytes) -> bytes:
     """The two chunks of a file."""
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
-    chunks = (
-        struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(blob), 0x004E4942) + blob
-    )
+    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(blob), 0x004E4942) + blob
     return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
 
 

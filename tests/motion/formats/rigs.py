@@ -35,8 +35,12 @@ RIGS = {
     ),
     "mixamo": _rig(
         {
-            "pelvis": "mixamorig:Hips", "spine1": "mixamorig:Spine", "spine2": "mixamorig:Spine1",
-            "spine3": "mixamorig:Spine2", "neck": "mixamorig:Neck", "head": "mixamorig:Head",
+            "pelvis": "mixamorig:Hips",
+            "spine1": "mixamorig:Spine",
+            "spine2": "mixamorig:Spine1",
+            "spine3": "mixamorig:Spine2",
+            "neck": "mixamorig:Neck",
+            "head": "mixamorig:Head",
         },
         _MIXAMO_LIMBS,
         "mixamorig:{Side}{part}",
@@ -107,14 +111,18 @@ RIGS = {
         "{Side}{part}_Bob",
     ),
     "mikumikudance": {
-        "pelvis": "センター", "spine1": "上半身", "spine3": "上半身2", "neck": "首", "head": "頭",
+        "pelvis": "センター",
+        "spine1": "上半身",
+        "spine3": "上半身2",
+        "neck": "首",
+        "head": "頭",
         **{
             f"{side}_{part}": letter + name
             for side, letter in (("left", "左"), ("right", "右"))
             for part, name in zip(_SIDED, ("肩", "腕", "ひじ", "手首", "足", "ひざ", "足首", "つま先"), strict=True)
         },
     },
-}  # fmt: skip
+}
 
 
 def bvh_text(
@@ -158,9 +166,7 @@ def bvh_text(
         shown = offset * unit * (0.5 if positions_everywhere else 1)
         lines.append(f"{'JOINT' if depth else 'ROOT'} {names[SMPL22.joint_names[joint]]}")
         lines.extend(["{", "OFFSET " + " ".join(f"{v:.6f}" for v in shown)])
-        channels = ["Xposition", "Yposition", "Zposition"] * has_positions + [
-            f"{axis}rotation" for axis in order
-        ]
+        channels = ["Xposition", "Yposition", "Zposition"] * has_positions + [f"{axis}rotation" for axis in order]
         lines.append(f"CHANNELS {len(channels)} " + " ".join(channels))
         if has_positions:
             place = root @ tilt.T if parent < 0 else np.tile(offset, (len(root), 1))

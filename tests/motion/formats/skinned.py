@@ -24,13 +24,9 @@ class Skinned:
         self.blob = self.gltf.binary_blob()
         self.animation = self.gltf.animations[0]
         self.times = self.array(self.animation.samplers[0].input)[:, 0]
-        self.parents = {
-            child: number for number, node in enumerate(self.gltf.nodes) for child in node.children or []
-        }
+        self.parents = {child: number for number, node in enumerate(self.gltf.nodes) for child in node.children or []}
         self.tracks = {
-            (channel.target.node, channel.target.path): self.array(
-                self.animation.samplers[channel.sampler].output
-            )
+            (channel.target.node, channel.target.path): self.array(self.animation.samplers[channel.sampler].output)
             for channel in self.animation.channels
         }
 
@@ -38,9 +34,7 @@ class Skinned:
         """(count, width) values of an accessor."""
         found = self.gltf.accessors[accessor]
         view = self.gltf.bufferViews[found.bufferView]
-        raw = np.frombuffer(
-            self.blob, _KINDS[found.componentType], found.count * _WIDTHS[found.type], view.byteOffset
-        )
+        raw = np.frombuffer(self.blob, _KINDS[found.componentType], found.count * _WIDTHS[found.type], view.byteOffset)
         return raw.reshape(found.count, -1)
 
     def world(self, node: int) -> np.ndarray:

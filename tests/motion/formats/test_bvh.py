@@ -22,9 +22,7 @@ from .rigs import RIGS, bvh_text
 
 POSITIONS, ROTATIONS = marching(40)
 ROOT = POSITIONS[:, 0]
-WRISTS_AND_ANKLES = [
-    SMPL22.index(f"{s}_{p}") for s in ("left", "right") for p in ("wrist", "ankle", "knee", "elbow")
-]
+WRISTS_AND_ANKLES = [SMPL22.index(f"{s}_{p}") for s in ("left", "right") for p in ("wrist", "ankle", "knee", "elbow")]
 
 
 @pytest.mark.parametrize("name", RIGS)
@@ -57,9 +55,7 @@ def test_rigs_that_lack_joints(lacking):
     rotations[:, [SMPL22.index(joint) for joint in lacking]] = np.eye(3)
     truth = retarget(read_bvh(bvh_text(rotations, ROOT, RIGS["mixamo"]).encode()), plant=False).positions
     found = retarget(read_bvh(bvh_text(rotations, ROOT, names).encode()), plant=False).positions
-    spared = [
-        SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("elbow", "knee", "ankle")
-    ]
+    spared = [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("elbow", "knee", "ankle")]
     assert np.linalg.norm(found - truth, axis=-1)[:, spared].max() < 0.08
 
 
@@ -99,12 +95,8 @@ def down(kind: str) -> np.ndarray:
     rotations[:, 0] = Rotation.from_euler("x", -88 if kind == "lies" else 88, degrees=True).as_matrix()
     if kind == "crawls":
         for side in ("left", "right"):
-            rotations[:, SMPL22.index(f"{side}_hip")] = Rotation.from_euler(
-                "x", -80, degrees=True
-            ).as_matrix()
-            rotations[:, SMPL22.index(f"{side}_knee")] = Rotation.from_euler(
-                "x", 85, degrees=True
-            ).as_matrix()
+            rotations[:, SMPL22.index(f"{side}_hip")] = Rotation.from_euler("x", -80, degrees=True).as_matrix()
+            rotations[:, SMPL22.index(f"{side}_knee")] = Rotation.from_euler("x", 85, degrees=True).as_matrix()
     turned = Rotation.from_euler("y", 90, degrees=True).as_matrix()
     rotations[:, 0] = turned @ rotations[:, 0]
     return rotations
@@ -136,22 +128,18 @@ def test_a_helper_at_the_root_never_beats_the_hip(helper):
     for side in ("Left", "Right"):
         joint = f"JOINT {side}Hip\n"
         head = head.replace(
-            joint, f"JOINT {side[0]}{helper}\n{{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n"
+            joint,
+            f"JOINT {side[0]}{helper}\n{{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n"
             f"{{\nOFFSET 0 0 0\n}}\n}}\n{joint}",
-        )  # fmt: skip
+        )
     rows = numbers.splitlines()
     for side in ("Right", "Left"):
         before = sum(widths[: names.index(f"{side}Hip")])
         rows[2:] = [" ".join([*(w := row.split())[:before], "0 0 0", *w[before:]]) for row in rows[2:]]
     found = read_bvh("\n".join([head + "MOTION", *rows]).encode())
     parts = match_joints(found)
-    assert (
-        found.joint_names[parts.left["hip"]] == "LeftHip"
-        and found.joint_names[parts.right["hip"]] == "RightHip"
-    )
-    np.testing.assert_allclose(
-        retarget(found).positions, retarget(read_bvh(text.encode())).positions, atol=1e-3
-    )
+    assert found.joint_names[parts.left["hip"]] == "LeftHip" and found.joint_names[parts.right["hip"]] == "RightHip"
+    np.testing.assert_allclose(retarget(found).positions, retarget(read_bvh(text.encode())).positions, atol=1e-3)
 
 
 @pytest.mark.parametrize("floor", [0.0, 0.7])
@@ -175,9 +163,7 @@ def test_position_channels_that_are_all_zero_mean_the_offset():
     head = head.replace("CHANNELS 3 ", "CHANNELS 6 Xposition Yposition Zposition ")
     rows = numbers.splitlines()
     rows[2:] = [
-        " ".join(
-            [*(w := row.split())[:6], *(x for i in range(6, len(w), 3) for x in ["0 0 0", *w[i : i + 3]])]
-        )
+        " ".join([*(w := row.split())[:6], *(x for i in range(6, len(w), 3) for x in ["0 0 0", *w[i : i + 3]])])
         for row in rows[2:]
     ]
     found = read_bvh("\n".join([head + "MOTION", *rows]).encode())
@@ -227,10 +213,7 @@ def test_encodings_and_line_ends(encoding, newline):
 def test_resampling_to_thirty():
     rig = read_bvh(bvh_text(ROTATIONS, ROOT, RIGS["mixamo"], frame_time=1 / 120).encode())
     assert rig.fps == 120
-    assert (
-        formats.read(bvh_text(ROTATIONS, ROOT, RIGS["mixamo"], frame_time=1 / 120).encode(), name="x.bvh").fps
-        == 30
-    )
+    assert formats.read(bvh_text(ROTATIONS, ROOT, RIGS["mixamo"], frame_time=1 / 120).encode(), name="x.bvh").fps == 30
 
 
 GOOD = bvh_text(ROTATIONS[:3], ROOT[:3], RIGS["mixamo"])
@@ -287,10 +270,7 @@ def test_our_own_joints_are_taken_as_they_are():
         (GOOD.replace(LAST, LAST.replace(LAST.split()[7], "nan", 1)), "mixamorig:.*frame 3"),
         (GOOD.replace(LAST, LAST.replace(LAST.split()[3], "abc", 1)), r"line \d+: 'abc'"),
         (GOOD.replace(LAST, LAST[: len(LAST) // 2]), "cut short|not a number"),
-        (
-            GOOD.replace("OFFSET 0.000000 0.000000 0.000000", "OFFSET 0 0", 1),
-            "line 4: OFFSET of joint mixamorig:Hips",
-        ),
+        (GOOD.replace("OFFSET 0.000000 0.000000 0.000000", "OFFSET 0 0", 1), "line 4: OFFSET of joint mixamorig:Hips"),
         (GOOD.replace("OFFSET 0.000000 0.000000 0.000000", "OFFSET 0 0 inf", 1), "usable"),
         (GOOD.replace("CHANNELS 3", "CHANNELS 4", 1), "CHANNELS of joint mixamorig:LeftUpLeg"),
         (GOOD.replace("Zrotation", "Wrotation", 1), "unknown channel"),
@@ -305,10 +285,7 @@ def test_our_own_joints_are_taken_as_they_are():
         ("HIERARCHY\nEnd Site\n{\n}\nMOTION\nFrames: 1\nFrame Time: 0.03\n1", "has no parent"),
         ("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n}\nMOTION\nFrames: 1\nFrame Time: 0.03\n1", "CHANNELS"),
         ("HIERARCHY\nROOT a\n{\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 0.03\n1", "no size"),
-        (
-            "HIERARCHY\n" + "".join(f"ROOT j{i}\n{{\n" for i in range(5000)) + "}" * 5000 + "\nMOTION\n",
-            "200 joints",
-        ),
+        ("HIERARCHY\n" + "".join(f"ROOT j{i}\n{{\n" for i in range(5000)) + "}" * 5000 + "\nMOTION\n", "200 joints"),
         ("HIERARCHY\n" + "".join(f"ROOT {i}\n{{\n}}\n" for i in range(7)) + "MOTION\n", "7 people"),
     ],
 )
@@ -345,9 +322,7 @@ def test_damaged_files_never_raise_anything_else(data):
         elif change == "flip":
             raw[min(at, len(raw) - 1)] = data.draw(st.integers(0, 255))
         elif change == "insert":
-            raw[at:at] = data.draw(
-                st.sampled_from([b"{", b"}", b"nan ", b"1e999 ", b"JOINT x\n", b"\xff", b"-"])
-            )
+            raw[at:at] = data.draw(st.sampled_from([b"{", b"}", b"nan ", b"1e999 ", b"JOINT x\n", b"\xff", b"-"]))
         else:
             raw += raw[at : at + 500]
         if not raw:

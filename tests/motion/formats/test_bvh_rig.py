@@ -27,9 +27,7 @@ def _reference(name: str, **options) -> bytes:
 
 
 @pytest.mark.parametrize("name", RIGS)
-@pytest.mark.parametrize(
-    "options", [{}, {"z_up": True, "unit": 1.0}, {"positions_everywhere": True, "order": "XYZ"}]
-)
+@pytest.mark.parametrize("options", [{}, {"z_up": True, "unit": 1.0}, {"positions_everywhere": True, "order": "XYZ"}])
 def test_a_partner_stands_on_the_rig_where_they_stood(name, options):
     reference = _reference(name, **options)
     made = bvh_on_rig(OTHER, reference, name="rig.bvh")
@@ -39,11 +37,7 @@ def test_a_partner_stands_on_the_rig_where_they_stood(name, options):
     assert rig.metres_per_unit == pytest.approx(read_bvh(reference).metres_per_unit)
     floor = min(0.0, float(OTHER.positions[..., 1].min()))
     found = retarget(rig, plant=False).positions
-    limbs = [
-        SMPL22.index(f"{s}_{p}")
-        for s in ("left", "right")
-        for p in ("hip", "knee", "ankle", "elbow", "wrist")
-    ]
+    limbs = [SMPL22.index(f"{s}_{p}") for s in ("left", "right") for p in ("hip", "knee", "ankle", "elbow", "wrist")]
     away = np.linalg.norm(found[:, limbs] - (OTHER.positions[:, limbs] - np.array([0, floor, 0])), axis=-1)
     assert away.mean() < 0.03 and away.max() < 0.09
 

@@ -39,10 +39,7 @@ VALID = {
     "things.npz": npz(positions=np.stack([POSITIONS, POSITIONS + 1]), fps=np.float64(30), **arrays_of([CUP])),
     "crowd.npz": npz(positions=np.stack([POSITIONS, POSITIONS + 1, POSITIONS - 1])),
     "amass.npz": npz(
-        poses=np.zeros((40, 156)),
-        trans=np.zeros((40, 3)),
-        mocap_framerate=np.float64(120),
-        gender=np.array("x"),
+        poses=np.zeros((40, 156)), trans=np.zeros((40, 3)), mocap_framerate=np.float64(120), gender=np.array("x")
     ),
     "P1.npz": npz(**interx(POSITIONS)),
     "interhuman.npy": npy(interhuman(POSITIONS)),
@@ -52,18 +49,13 @@ VALID = {
     "walk.glb": glb_motion(ROTATIONS, POSITIONS[:, 0], unit=100.0),
     "bones.glb": glb_motion(ROTATIONS, POSITIONS[:, 0], skinned=False, way="CUBICSPLINE"),
     "takes.glb": glb_takes(
-        ROTATIONS,
-        POSITIONS[:, 0],
-        ["idle", "\u202ewalk\n\ud800", "x" * 5000, None, ["2"], "3"],
-        skinned=False,
+        ROTATIONS, POSITIONS[:, 0], ["idle", "\u202ewalk\n\ud800", "x" * 5000, None, ["2"], "3"], skinned=False
     ),
     "22.npy": npy(POSITIONS.astype(np.float32)),
     "15.npy": npy(SKELETONS_15),
     "17.npy": npy(POSITIONS[:, [0, 2, 5, 8, 1, 4, 7, 3, 9, 12, 15, 16, 18, 20, 17, 19, 21]]),
     "humanml3d.npy": npy(np.random.default_rng(2).normal(scale=0.2, size=(6, 263))),
-    "wild.npz": npz(
-        global_orient=np.zeros((9, 1, 3)), body_pose=np.zeros((9, 23, 3)), transl=np.zeros((9, 3))
-    ),
+    "wild.npz": npz(global_orient=np.zeros((9, 1, 3)), body_pose=np.zeros((9, 23, 3)), transl=np.zeros((9, 3))),
     "kimodo.npz": npz(posed_joints=np.random.default_rng(3).normal(size=(6, 77, 3))),
     "commas.trc": trc_text(keypoints()).replace("\t", ",").encode(),
     "bones.vrma": glb_motion(ROTATIONS, POSITIONS[:, 0], skinned=False),
@@ -75,11 +67,39 @@ VALID = {
     "skeleton_pos.txt": sbu_text(np.random.default_rng(1).random((5, 90))).encode(),
 }
 PIECES = [
-    b"{", b"}", b"nan ", b"inf", b"1e999 ", b"-", b",", b"\0", b"\xff\xfe", b"999999999", b"\n", b"\r",
-    b"   ", b"ROOT x\n{\n", b"JOINT x\n", b"End Site", b"CHANNELS 6 ", b"MOTION\n", b"Frames: 1000000000\n",
-    b"PK\x05\x06", b"PK\x01\x02", b"\x93NUMPY", "é\u2028".encode(), b"(9999999, 22, 3)",
-    b"4294967295", b"-1, ", b"1e30", b"[]", b'"node": 0, ', b'"LINEAR"', b"null", b'"count": 99999999, ',
-]  # fmt: skip
+    b"{",
+    b"}",
+    b"nan ",
+    b"inf",
+    b"1e999 ",
+    b"-",
+    b",",
+    b"\0",
+    b"\xff\xfe",
+    b"999999999",
+    b"\n",
+    b"\r",
+    b"   ",
+    b"ROOT x\n{\n",
+    b"JOINT x\n",
+    b"End Site",
+    b"CHANNELS 6 ",
+    b"MOTION\n",
+    b"Frames: 1000000000\n",
+    b"PK\x05\x06",
+    b"PK\x01\x02",
+    b"\x93NUMPY",
+    "é\u2028".encode(),
+    b"(9999999, 22, 3)",
+    b"4294967295",
+    b"-1, ",
+    b"1e30",
+    b"[]",
+    b'"node": 0, ',
+    b'"LINEAR"',
+    b"null",
+    b'"count": 99999999, ',
+]
 EDITS = st.lists(
     st.tuples(
         st.sampled_from(["cut", "flip", "put", "repeat"]),
@@ -96,9 +116,7 @@ CHOICES = st.builds(
     unit=st.sampled_from([None, *UNITS]),
     fps=st.sampled_from([None, 1.0, 30.0, 1000.0]),
     order=st.sampled_from([None, *ORDERS]),
-    animation=st.sampled_from(
-        [None, 1, 2, 6, 7, 10**12, "3", "IDLE", "x" * 5000, "\u202ewalk\n\ud800", "٣", "²"]
-    ),
+    animation=st.sampled_from([None, 1, 2, 6, 7, 10**12, "3", "IDLE", "x" * 5000, "\u202ewalk\n\ud800", "٣", "²"]),
 )
 PATIENT = settings(
     max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]

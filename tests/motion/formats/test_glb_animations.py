@@ -59,7 +59,7 @@ def test_the_first_of_several_is_read_and_the_others_are_named() -> None:
 @pytest.mark.parametrize(
     ("choice", "number"),
     [("Walk", 1), ("walk", 1), (1, 1), ("1", 1), ("glide", 2), (" GLIDE ", 2), (2, 2), ("2", 4), ("3", 3), ("4", 4)],
-)  # fmt: skip
+)
 def test_another_is_chosen_by_its_name_or_else_by_its_number(choice: Any, number: int) -> None:
     found = imported(choice)
     assert found.animations is not None and found.animations.taken == (number,)
@@ -106,9 +106,7 @@ def test_other_formats_have_none_to_choose(tmp_path: Path) -> None:
         lambda: read_everyone(path, choices=ImportChoices(animation=1)),
         lambda: import_motion(path, choices=ImportChoices(animation=1)),
     ):
-        with pytest.raises(
-            InputError, match=r"^x\.bvh is no \.glb file and has no animations to choose from"
-        ):
+        with pytest.raises(InputError, match=r"^x\.bvh is no \.glb file and has no animations to choose from"):
             reading()
 
 
@@ -136,9 +134,11 @@ def test_animations_of_other_things_do_not_count() -> None:
 def test_a_partner_stands_in_the_world_of_the_chosen_animation(tmp_path: Path) -> None:
     high = glb_takes(ROTATIONS, ROOT + np.array([0, 5.0, 0]), ["high"])
     document, blob = unpacked(high)
-    still = {"name": "low", "samplers": document["animations"][0]["samplers"], "channels": [
-        c for c in document["animations"][0]["channels"] if c["target"]["path"] == "rotation"
-    ]}  # fmt: skip
+    still = {
+        "name": "low",
+        "samplers": document["animations"][0]["samplers"],
+        "channels": [c for c in document["animations"][0]["channels"] if c["target"]["path"] == "rotation"],
+    }
     document["animations"].append(still)
     path = tmp_path / "x.glb"
     path.write_bytes(packed(document, blob))
@@ -147,9 +147,7 @@ def test_a_partner_stands_in_the_world_of_the_chosen_animation(tmp_path: Path) -
         for choice in (1, "low")
     }
     lower = made[1][:, 0, 1].mean() - made["low"][:, 0, 1].mean()
-    assert lower == pytest.approx(5.0 + ROOT[:, 1].mean(), abs=0.3), (
-        "the floor is where that animation has it"
-    )
+    assert lower == pytest.approx(5.0 + ROOT[:, 1].mean(), abs=0.3), "the floor is where that animation has it"
 
 
 HOSTILE = ["first\nline\x00\u202e\ud800", "<b>bold</b>", "y" * 100_000, None, {"a": 1}, "z"]
@@ -167,15 +165,8 @@ def test_names_are_shown_on_one_line_and_cut() -> None:
 def test_thousands_of_animations_are_a_short_sentence_soon() -> None:
     data = glb_takes(ROTATIONS[:4], ROOT[:4], [f"take {i}" for i in range(600)])
     document, blob = unpacked(data)
-    tiny = {
-        **document["animations"][1],
-        "samplers": [],
-        "channels": document["animations"][1]["channels"][:1],
-    }
-    document["animations"] = [
-        document["animations"][0],
-        *({**tiny, "name": f"{i}"} for i in range(1, 15_000)),
-    ]
+    tiny = {**document["animations"][1], "samplers": [], "channels": document["animations"][1]["channels"][:1]}
+    document["animations"] = [document["animations"][0], *({**tiny, "name": f"{i}"} for i in range(1, 15_000))]
     data = packed(document, blob)
     began = time.process_time()
     note = noted(imported(data=data))

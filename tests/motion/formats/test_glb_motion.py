@@ -43,15 +43,7 @@ WALK = glb_motion(ROTATIONS, ROOT)
         {"way": "STEP"},
         {"axes": Rotation.random(22, random_state=0).as_matrix()},
     ],
-    ids=[
-        "plain",
-        "a turned armature in centimetres",
-        "later",
-        "bones alone",
-        "splines",
-        "steps",
-        "axes of their own",
-    ],
+    ids=["plain", "a turned armature in centimetres", "later", "bones alone", "splines", "steps", "axes of their own"],
 )
 def test_joints_stand_where_they_do_in_the_file(rig: str, given: dict[str, Any]) -> None:
     (found,) = read_glb_people(glb_motion(ROTATIONS, ROOT, rig, **given), name="walk.glb")
@@ -72,16 +64,12 @@ def test_a_file_in_centimetres_is_found_to_be() -> None:
     assert np.linalg.norm(found.people[0].positions - POSITIONS, axis=-1).max() < 0.1
 
 
-@pytest.mark.parametrize(
-    ("fps", "count", "rate"), [(24.0, 37, 24), (60.0, 15, 60), (120.0, 8, 120), (2.0, 436, 30)]
-)
+@pytest.mark.parametrize(("fps", "count", "rate"), [(24.0, 37, 24), (60.0, 15, 60), (120.0, 8, 120), (2.0, 436, 30)])
 def test_frame_rates_are_those_of_the_keys(fps: float, count: int, rate: float) -> None:
     found = import_motion(glb_motion(ROTATIONS, ROOT, fps=fps), name="walk.glb")
     assert found.fps == rate and found.people[0].fps == 30
     assert abs(found.people[0].num_frames - count) <= 1, "as long as in the file"
-    faster = import_motion(
-        glb_motion(ROTATIONS, ROOT, fps=fps), name="walk.glb", choices=ImportChoices(fps=2 * rate)
-    )
+    faster = import_motion(glb_motion(ROTATIONS, ROOT, fps=fps), name="walk.glb", choices=ImportChoices(fps=2 * rate))
     assert abs(2 * faster.people[0].num_frames - count) <= 3
 
 
@@ -140,9 +128,7 @@ GLTF = unpacked(WALK)[0]
 WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "no animation": ({"animations": []}, "has no animation: export it with one, or put it on"),
     "nothing moves": (_animated(channels=[]), "moves no joint"),
-    "only weights": (
-        _animated(channels=[{"sampler": 0, "target": {"node": 1, "path": "weights"}}]), "moves no joint",
-    ),
+    "only weights": (_animated(channels=[{"sampler": 0, "target": {"node": 1, "path": "weights"}}]), "moves no joint"),
     "keys of another number": (_sampled(output=0), "do not fit|not read here"),
     "keys that are not there": (_sampled(input=999), "is not there"),
     "another way": (_sampled(interpolation="BEZIER"), "is not known"),
@@ -154,7 +140,7 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "everything in one place": ({"nodes": [{**each, "scale": [0, 0, 0]} for each in GLTF["nodes"]]}, "of no length"),
     "wrong kinds": ({"animations": [7]}, "is damaged"),
     "compression": ({"extensionsRequired": ["EXT_meshopt_compression"]}, "EXT_meshopt"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", WRONG)
@@ -171,9 +157,7 @@ def test_a_character_alone_says_where_it_can_be_worn() -> None:
 
 
 def test_compressed_meshes_do_no_harm() -> None:
-    data = glb_motion(
-        ROTATIONS, ROOT, extensionsRequired=["KHR_draco_mesh_compression", "KHR_texture_basisu"]
-    )
+    data = glb_motion(ROTATIONS, ROOT, extensionsRequired=["KHR_draco_mesh_compression", "KHR_texture_basisu"])
     assert len(read_glb_people(data, name="walk.glb")) == 1
 
 
@@ -214,9 +198,7 @@ def _shared(joints: int, keys: int, *, apart: int = 0) -> bytes:
     kinds = {"componentType": 5126, "count": keys}
     accessors.append({"bufferView": len(views) - 2, "type": "SCALAR", **kinds})
     for number in range(joints if apart else 1):
-        accessors.append(
-            {"bufferView": len(views) - 1, "byteOffset": apart * number, "type": "VEC4", **kinds}
-        )
+        accessors.append({"bufferView": len(views) - 1, "byteOffset": apart * number, "type": "VEC4", **kinds})
     outputs = range(len(accessors) - (joints if apart else 1), len(accessors))
     animation["samplers"] = [{"input": outputs[0] - 1, "output": output} for output in outputs]
     animation["channels"] = [
@@ -254,9 +236,7 @@ def test_a_sampler_that_joints_share_is_decoded_and_worked_out_once(monkeypatch:
 def test_key_frames_that_overlap_are_refused_before_they_are_decoded(monkeypatch: pytest.MonkeyPatch) -> None:
     data = _shared(200, 1000, apart=16)
     decoding = Decoding(monkeypatch)
-    with pytest.raises(
-        InputError, match=r"walk\.glb cannot be read as motion because its key frames overlap"
-    ):
+    with pytest.raises(InputError, match=r"walk\.glb cannot be read as motion because its key frames overlap"):
         read_glb_people(data, name="walk.glb")
     assert decoding.rows == 0
 
@@ -271,9 +251,15 @@ def test_thousands_of_skins_are_refused_before_any_is_looked_at(monkeypatch: pyt
 
 
 BONES = {
-    "hip": "UpperLeg", "knee": "LowerLeg", "ankle": "Foot", "foot": "Toes",
-    "collar": "Shoulder", "shoulder": "UpperArm", "elbow": "LowerArm", "wrist": "Hand",
-}  # fmt: skip
+    "hip": "UpperLeg",
+    "knee": "LowerLeg",
+    "ankle": "Foot",
+    "foot": "Toes",
+    "collar": "Shoulder",
+    "shoulder": "UpperArm",
+    "elbow": "LowerArm",
+    "wrist": "Hand",
+}
 """VRM's names of the limbs."""
 
 
@@ -282,10 +268,7 @@ def test_vrm_is_glb_whose_bones_are_named_beside_the_nodes(kind: str) -> None:
     names = {name: f"骨{number}" for number, name in enumerate(SMPL22.joint_names)}
     document, blob = unpacked(glb_motion(ROTATIONS, ROOT, names, skinned=False))
     called = {node.get("name"): number for number, node in enumerate(document["nodes"])}
-    bones: dict[str, Any] = {
-        "hips": {"node": called[names["pelvis"]]},
-        "head": {"node": called[names["head"]]},
-    }
+    bones: dict[str, Any] = {"hips": {"node": called[names["pelvis"]]}, "head": {"node": called[names["head"]]}}
     for name in SMPL22.joint_names:
         side, _, part = name.rpartition("_")
         if side:

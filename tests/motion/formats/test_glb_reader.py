@@ -35,9 +35,7 @@ def test_a_character_is_its_joints_its_surface_and_its_weights() -> None:
     np.testing.assert_allclose(found.weights.sum(axis=1), 1.0)
     hand = found.joint_names.index("mixamorig:LeftHand")
     its = found.vertices[found.slots[:, 0] == hand]
-    assert np.linalg.norm(its - found.joints[hand], axis=1).max() < 0.2, (
-        "vertices are near the joint that moves them"
-    )
+    assert np.linalg.norm(its - found.joints[hand], axis=1).max() < 0.2, "vertices are near the joint that moves them"
 
 
 def _changed(kind: str, number: int, **fields: Any) -> dict[str, Any]:
@@ -76,9 +74,13 @@ def test_what_is_wrong_is_one_sentence(name: str) -> None:
 
 @pytest.mark.parametrize(
     ("data", "says"),
-    [(b"nothing at all, really", "no glTF binary"), (VALID[:-3000], "cut off"), (b"", "is empty"),
-     (VALID[:4] + b"\1\0\0\0" + VALID[8:], "version 1")],
-)  # fmt: skip
+    [
+        (b"nothing at all, really", "no glTF binary"),
+        (VALID[:-3000], "cut off"),
+        (b"", "is empty"),
+        (VALID[:4] + b"\1\0\0\0" + VALID[8:], "version 1"),
+    ],
+)
 def test_other_files_are_one_sentence(data: bytes, says: str) -> None:
     with pytest.raises(InputError, match=says):
         read_character(data, name="box.glb")
@@ -86,9 +88,7 @@ def test_other_files_are_one_sentence(data: bytes, says: str) -> None:
 
 def test_deep_descriptions_are_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     deep = b"[" * 100_000
-    data = (
-        struct.pack("<III", 0x46546C67, 2, 20 + len(deep)) + struct.pack("<II", len(deep), 0x4E4F534A) + deep
-    )
+    data = struct.pack("<III", 0x46546C67, 2, 20 + len(deep)) + struct.pack("<II", len(deep), 0x4E4F534A) + deep
     with pytest.raises(InputError, match="its description is not JSON text"):
         read_character(data, name="box.glb")
     monkeypatch.setattr(files, "MAX_JSON", 100)
@@ -141,6 +141,4 @@ def test_of_many_skins_only_the_largest_is_decoded(monkeypatch: pytest.MonkeyPat
         GlbFile, "decoded", lambda file, stored, what: decoded.append(what) or whole(file, stored, what)
     )
     read_character(packed(document, blob), name="robot.glb")
-    assert sorted(decoded) == [
-        "bind matrices", "corners of triangles", "joints of vertices", "vertices", "weights",
-    ]  # fmt: skip
+    assert sorted(decoded) == ["bind matrices", "corners of triangles", "joints of vertices", "vertices", "weights"]

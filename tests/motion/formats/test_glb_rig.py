@@ -24,10 +24,7 @@ from .skinned import Skinned
 POSITIONS, ROTATIONS = marching(30)
 OTHER = Clip(turn(marching(40, seed=3)[0], 2.0) + np.float64([0.3, 0.0, 1.0]), 30)
 DUET = Duet(
-    Clip(POSITIONS, 30),
-    Clip(OTHER.positions[:30] + np.float32([0, 0, 3]), 30),
-    ("actor", "reactor"),
-    {"model": "x"},
+    Clip(POSITIONS, 30), Clip(OTHER.positions[:30] + np.float32([0, 0, 3]), 30), ("actor", "reactor"), {"model": "x"}
 )
 Z_UP = Rotation.from_euler("x", 90, degrees=True).as_matrix()
 AXES = Rotation.random(22, random_state=0).as_matrix()
@@ -49,15 +46,14 @@ def angles(found: np.ndarray, wanted: np.ndarray) -> np.ndarray:
 def in_our_order(data: bytes, rig: str, person: int = 0) -> np.ndarray:
     """(T, 22, 3) joints of a person in the file as they are."""
     found = read_glb_people(data, name="made.glb")[person]
-    ours = [next(i for i, n in enumerate(found.joint_names) if RIGS[rig][name].endswith(n))
-            for name in SMPL22.joint_names]  # fmt: skip
+    ours = [
+        next(i for i, n in enumerate(found.joint_names) if RIGS[rig][name].endswith(n)) for name in SMPL22.joint_names
+    ]
     return found.positions[:, ours]
 
 
 @pytest.mark.parametrize("rig", ["mixamo", "unreal", "xsens"])
-@pytest.mark.parametrize(
-    "given", [{}, {"unit": 100.0, "turn": Z_UP}], ids=["plain", "turned and in centimetres"]
-)
+@pytest.mark.parametrize("given", [{}, {"unit": 100.0, "turn": Z_UP}], ids=["plain", "turned and in centimetres"])
 def test_a_partner_stands_in_the_file_s_world_on_its_skeleton(rig: str, given: dict[str, Any]) -> None:
     reference = glb_motion(ROTATIONS, POSITIONS[:, 0], rig, **given)
     made = glb_on_rig(OTHER, reference, name="rig.glb")
@@ -138,12 +134,7 @@ def test_meshes_below_an_armature_come_to_the_top() -> None:
     document["nodes"][0]["children"].append(23)
     document["scenes"][0]["nodes"] = [0]
     reference = glb_motion(
-        ROTATIONS,
-        POSITIONS[:, 0],
-        unit=100.0,
-        nodes=document["nodes"],
-        scenes=document["scenes"],
-        animations=[],
+        ROTATIONS, POSITIONS[:, 0], unit=100.0, nodes=document["nodes"], scenes=document["scenes"], animations=[]
     )
     made, _ = unpacked(glb_wearing(DUET, reference, name="x.glb"))
     shown = made["scenes"][0]["nodes"]

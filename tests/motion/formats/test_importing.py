@@ -47,9 +47,7 @@ def test_up_axis_and_unit_of_arrays_are_found(up: str, unit: str, metres: float)
 def test_up_has_a_sign_and_what_was_taken_is_said_and_can_be_corrected(up: str, shift: float) -> None:
     data = npy((standing() + np.array([0.0, shift, 0.0])) @ turn_of(up))
     found = import_motion(data, name="a.npy")
-    assert found.up == up and any(f"{up.upper()} was taken as up" in note for note in found.notes) == (
-        up != "y"
-    )
+    assert found.up == up and any(f"{up.upper()} was taken as up" in note for note in found.notes) == (up != "y")
     ankles = found.motion.positions[:, SMPL22.index("left_ankle"), 1]
     assert (found.motion.positions[:, SMPL22.index("head"), 1] > ankles + 1.2).all() and found.asks
     for other in AXES:
@@ -137,9 +135,7 @@ def test_unknown_arrays_name_what_is_known(shape: tuple[int, ...]) -> None:
     assert "\n" not in str(error.value)
 
 
-def test_a_recording_that_is_too_long_is_refused_before_its_joints_are_fitted(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_recording_that_is_too_long_is_refused_before_its_joints_are_fitted(monkeypatch: pytest.MonkeyPatch) -> None:
     bodies = standing(2000)[:, [15, 12, 6, 16, 18, 20, 17, 19, 21, 1, 4, 7, 2, 5, 8]]
     monkeypatch.setattr(formats, "to_smpl", lambda motion: pytest.fail("fitted"))
     with pytest.raises(InputError, match=r"kinect\.npy lasts 67 s: cut it to 60 s or less\."):
@@ -155,13 +151,7 @@ def test_joints_in_one_place_are_no_body() -> None:
 
 @pytest.mark.parametrize(
     ("data", "text"),
-    [
-        (b"\xef", "ï"),
-        (b"\xef\xbb", "ï»"),
-        (b"\xef\xbb\xbfHi", "Hi"),
-        (b"\xff\xfeH\0", "H"),
-        (b"\xe9t\xe9", "été"),
-    ],
+    [(b"\xef", "ï"), (b"\xef\xbb", "ï»"), (b"\xef\xbb\xbfHi", "Hi"), (b"\xff\xfeH\0", "H"), (b"\xe9t\xe9", "été")],
 )
 def test_text_is_decoded_whatever_breaks_off(data: bytes, text: str) -> None:
     assert decode_text(data, "a.txt", "a text") == text

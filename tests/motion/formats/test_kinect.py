@@ -44,9 +44,7 @@ def test_frames_without_a_body_are_interpolated_and_ghosts_left_out(bodies: np.n
     duet = read(skeleton_text(bodies, {1: {0, 5}}).encode(), name="x.skeleton", keep_skeleton=True)
     np.testing.assert_allclose(duet.b.positions[5], (bodies[1, 4] + bodies[1, 6]) / 2, atol=1e-5)
     np.testing.assert_allclose(duet.b.positions[0], bodies[1, 1], atol=1e-5)
-    alone = read(
-        skeleton_text(bodies, {1: set(range(3, 12))}).encode(), name="x.skeleton", keep_skeleton=True
-    )
+    alone = read(skeleton_text(bodies, {1: set(range(3, 12))}).encode(), name="x.skeleton", keep_skeleton=True)
     np.testing.assert_allclose(alone.positions, bodies[0], atol=1e-5)
 
 
@@ -58,9 +56,7 @@ def test_a_body_that_is_found_again_is_the_same_one_and_a_gap_is_said() -> None:
     assert isinstance(duet, Duet)
     np.testing.assert_allclose(duet.b.positions[[5, 50]], three[1, [5, 50]], atol=1e-5)
     assert duet.b.notes == ("x.skeleton: person B is not seen from 0.7 to 1.2 s and is interpolated there.",)
-    end = read(
-        skeleton_text(three[:2], {1: set(range(35, 60))}).encode(), name="x.skeleton", keep_skeleton=True
-    )
+    end = read(skeleton_text(three[:2], {1: set(range(35, 60))}).encode(), name="x.skeleton", keep_skeleton=True)
     assert isinstance(end, Duet) and "from 1.2 to 2.0 s and is held still" in end.b.notes[0]
 
 
@@ -121,9 +117,7 @@ def test_wrong_files_are_refused_in_one_sentence(case: str) -> None:
 )
 def test_damaged_files_never_raise_anything_else(kind: str, edits: list[tuple[int, bytes, int]]) -> None:
     rng = np.random.default_rng(2)
-    text = (
-        skeleton_text(rng.normal(size=(1, 3, 25, 3))) if kind == "skeleton" else sbu_text(rng.random((4, 90)))
-    )
+    text = skeleton_text(rng.normal(size=(1, 3, 25, 3))) if kind == "skeleton" else sbu_text(rng.random((4, 90)))
     data = bytearray(text.encode())
     for place, new, cut in edits:
         place %= len(data) + 1

@@ -62,10 +62,7 @@ HOSTILE: dict[str, tuple[Callable[[], bytes], str]] = {
     "line.trc": (lambda: trc_text(keypoints()).encode() + b"1\t" * (FULL // 2 - 10_000), "is longer than"),
     "hours.trc": (lambda: trc_text(keypoints()).encode() + b"1\t0\n" * (FULL // 4 - 10_000), "600 s allowed"),
     "noise.c3d": (lambda: b"\x02\x50" * (FULL // 2), "not possible"),
-    "lists.glb": (
-        lambda: packed({"asset": {"version": "2.0"}, "extras": [[]] * 900_000}, b""),
-        "100,000 parts",
-    ),
+    "lists.glb": (lambda: packed({"asset": {"version": "2.0"}, "extras": [[]] * 900_000}, b""), "100,000 parts"),
     "manifest.npz": (lambda: _with_text("manifest"), "100,000 parts"),
     "grips.npz": (lambda: _with_text("grips"), "100,000 parts"),
     "noise.npy": (lambda: b"\x93NUMPY\x01\x00\xff\xff" + b"(" * FULL, "not a NumPy"),
@@ -150,9 +147,7 @@ VALID: dict[str, Callable[[], bytes]] = {
     "full.trc": lambda: _markers(188, 35_400),
     "full.c3d": lambda: _recorded(250, 12_800),
     "full.txt": lambda: b"\n".join([b"1," + b",".join([b"0.4", b"0.5", b"0.6"] * 30)] * 9_000),
-    "full.npy": lambda: _saved(
-        np.linspace(0, 1, 2 * 36_000 * 22 * 3, dtype=np.float32).reshape(2, -1, 22, 3)
-    ),
+    "full.npy": lambda: _saved(np.linspace(0, 1, 2 * 36_000 * 22 * 3, dtype=np.float32).reshape(2, -1, 22, 3)),
 }
 
 

@@ -33,9 +33,7 @@ def keypoints(shift: tuple[float, float, float] = (0, 0, 0)) -> dict[str, np.nda
     return {name: place + np.array(shift) for name, place in both.items()}
 
 
-def trc_text(
-    points: Mapping[str, np.ndarray], *, rate: object = 30, unit: str = "m", scale: float = 1.0
-) -> str:
+def trc_text(points: Mapping[str, np.ndarray], *, rate: object = 30, unit: str = "m", scale: float = 1.0) -> str:
     """A .trc file as OpenSim writes it."""
     names, frames = list(points), len(next(iter(points.values())))
     head = [
@@ -77,9 +75,7 @@ def error_of(found: Clip) -> float:
 
 @pytest.mark.parametrize(("unit", "scale"), [("m", 1.0), ("mm", 1000.0), ("cm", 100.0)])
 def test_key_points_of_a_trc_are_the_joints(unit: str, scale: float) -> None:
-    clip = formats.read(
-        trc_text(keypoints(), unit=unit, scale=scale).encode(), name="walk.trc", keep_skeleton=True
-    )
+    clip = formats.read(trc_text(keypoints(), unit=unit, scale=scale).encode(), name="walk.trc", keep_skeleton=True)
     assert isinstance(clip, Clip) and clip.fps == 30 and clip.notes == ()
     assert error_of(clip) < 1e-4
 
@@ -121,10 +117,7 @@ def test_a_c3d_of_many_points_keeps_their_labels_in_several_lists() -> None:
             (b"USED", b"\2\0" + np.int16(len(names)).tobytes()),
             (b"SCALE", b"\4\0" + np.float32(-1).tobytes()),
             (b"LABELS", b"\xff\2\x09\xff" + "".join(f"{name:9}" for name in names[:255]).encode()),
-            (
-                b"LABELS2",
-                bytes([255, 2, 9, len(names) - 255]) + "".join(f"{name:9}" for name in names[255:]).encode(),
-            ),
+            (b"LABELS2", bytes([255, 2, 9, len(names) - 255]) + "".join(f"{name:9}" for name in names[255:]).encode()),
         )
     )
     parameters = b"\1\x50\x0b\x54" + b"\5\xffPOINT\3\0\0" + text + b"\0\0"
@@ -159,15 +152,15 @@ def test_hips_come_from_the_markers_of_a_pelvis() -> None:
     still = {name: np.repeat(place[:1], 3, axis=0) for name, place in keypoints().items()}
     markers = {name: place for name, place in still.items() if name not in ("LHip", "RHip")}
     markers |= {
-        "LASI": np.full((3, 3), (0.12, 1.0, 0.1)), "RASI": np.full((3, 3), (-0.12, 1.0, 0.1)),
-        "LPSI": np.full((3, 3), (0.05, 1.0, -0.1)), "RPSI": np.full((3, 3), (-0.05, 1.0, -0.1)),
-    }  # fmt: skip
+        "LASI": np.full((3, 3), (0.12, 1.0, 0.1)),
+        "RASI": np.full((3, 3), (-0.12, 1.0, 0.1)),
+        "LPSI": np.full((3, 3), (0.05, 1.0, -0.1)),
+        "RPSI": np.full((3, 3), (-0.05, 1.0, -0.1)),
+    }
     names = list(markers)
     (clip,) = people_of(names, np.stack([markers[name] for name in names], axis=1), 100.0, "x.c3d")
     np.testing.assert_allclose(
-        clip.positions[0, POINTS17.index("left_hip")],
-        [0.36 * 0.24, 1.0 - 0.30 * 0.24, 0.1 - 0.19 * 0.24],
-        atol=1e-6,
+        clip.positions[0, POINTS17.index("left_hip")], [0.36 * 0.24, 1.0 - 0.30 * 0.24, 0.1 - 0.19 * 0.24], atol=1e-6
     )
 
 
@@ -214,9 +207,7 @@ def test_a_row_of_a_trc_that_breaks_off_is_a_frame_without_markers(row: str) -> 
     lines = WHOLE.split("\n")
     lines[15] = row
     clip = formats.read("\n".join(lines).encode(), name="x.trc")
-    assert (
-        isinstance(clip, Clip) and len(clip.positions) == len(lines) - 6 and np.isfinite(clip.positions).all()
-    )
+    assert isinstance(clip, Clip) and len(clip.positions) == len(lines) - 6 and np.isfinite(clip.positions).all()
 
 
 @pytest.mark.parametrize(

@@ -26,9 +26,7 @@ from .rigs import RIGS, bvh_text
 
 A, ROTATIONS = marching(20)
 B = turn(marching(20, seed=1)[0], np.pi) + np.array([0, 0, 2.0])
-DUET = Duet.from_positions(
-    np.stack([A, B]), fps=30, roles=("actor", "reactor"), manifest={"seed": 3, "text": "Gruß"}
-)
+DUET = Duet.from_positions(np.stack([A, B]), fps=30, roles=("actor", "reactor"), manifest={"seed": 3, "text": "Gruß"})
 
 
 def _npz(**arrays) -> bytes:
@@ -75,9 +73,7 @@ def test_npy_forms():
     )
     raw = np.random.default_rng(0).normal(size=(5, 192))
     floor = raw[:, 2:66:3].min()
-    np.testing.assert_allclose(
-        formats.read(_npy(raw), name="a.npy").positions[:, 0, 1], raw[:, 2] - floor, atol=1e-6
-    )
+    np.testing.assert_allclose(formats.read(_npy(raw), name="a.npy").positions[:, 0, 1], raw[:, 2] - floor, atol=1e-6)
 
 
 def test_npy_round_trip(tmp_path):
@@ -91,9 +87,7 @@ def test_amass_is_turned_upright_and_put_on_the_floor():
     rotations[:, 0] = to_z_up @ rotations[:, 0]
     poses = np.zeros((20, 156))
     poses[:, :66] = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec().reshape(20, 66)
-    data = _npz(
-        poses=poses, trans=A[:, 0] @ to_z_up.T - PELVIS, mocap_framerate=np.array(120.0), betas=np.zeros(16)
-    )
+    data = _npz(poses=poses, trans=A[:, 0] @ to_z_up.T - PELVIS, mocap_framerate=np.array(120.0), betas=np.zeros(16))
     clip = formats.read(data, name="amass.npz")
     assert clip.fps == 120
     np.testing.assert_allclose(clip.positions, A, atol=1e-5)
@@ -107,10 +101,7 @@ class _Bomb:
 
 def _zip_bomb() -> bytes:
     buffer = io.BytesIO()
-    with (
-        zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive,
-        archive.open("positions.npy", "w") as member,
-    ):
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("positions.npy", "w") as member:
         header = io.BytesIO()
         np.lib.format.write_array_header_1_0(
             header, {"descr": "<f4", "fortran_order": False, "shape": (2, 10**6, 22, 3)}
@@ -209,9 +200,7 @@ def test_other_layouts_are_brought_onto_smpl(layout):
         _npz(positions=people, fps=30, joint_names=np.array(SKELETONS[layout].joint_names)), name="x.npz"
     )
     assert duet.skeleton is SMPL22 and duet.num_frames == 20
-    bones = [
-        np.linalg.norm(duet.positions[:, :, j] - duet.positions[:, :, p], axis=-1) for p, j in SMPL22.bones
-    ]
+    bones = [np.linalg.norm(duet.positions[:, :, j] - duet.positions[:, :, p], axis=-1) for p, j in SMPL22.bones]
     np.testing.assert_allclose(np.ptp(bones, axis=(1, 2)), 0, atol=1e-4)
     assert duet.positions[..., 1].min() > -0.05
     wrists = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
@@ -238,7 +227,5 @@ def test_mdms_results_are_read_turned_and_never_unpickled():
     np.testing.assert_allclose(clip.positions, A, atol=1e-6)
     buffer = io.BytesIO()
     np.save(buffer, np.array({"motion": _Bomb()}, dtype=object), allow_pickle=True)
-    with pytest.raises(
-        InputError, match=r'`numpy\.save\("motion\.npy", d\["motion"\]\[0\]\.transpose\(2, 0, 1\)\)`'
-    ):
+    with pytest.raises(InputError, match=r'`numpy\.save\("motion\.npy", d\["motion"\]\[0\]\.transpose\(2, 0, 1\)\)`'):
         formats.read(buffer.getvalue(), name="results.npy")

@@ -34,9 +34,13 @@ def interx(positions: np.ndarray, *, z_up: bool = True, flat: bool = True) -> di
     vectors = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec().reshape(-1, 22, 3)
     body = vectors[:, 1:].reshape(len(positions), 63) if flat else vectors[:, 1:]
     return {
-        "root_orient": vectors[:, 0], "pose_body": body, "trans": positions[:, 0] @ turn.T - PELVIS,
-        "pose_lhand": np.zeros((len(positions), 45)), "betas": np.ones((1, 10)), "gender": np.array("male"),
-    }  # fmt: skip
+        "root_orient": vectors[:, 0],
+        "pose_body": body,
+        "trans": positions[:, 0] @ turn.T - PELVIS,
+        "pose_lhand": np.zeros((len(positions), 45)),
+        "betas": np.ones((1, 10)),
+        "gender": np.array("male"),
+    }
 
 
 def interhuman(positions: np.ndarray) -> np.ndarray:
@@ -94,7 +98,7 @@ def test_interhuman_is_read_by_its_body_joints() -> None:
         ({"pose_body": np.zeros((4, 63), dtype="S3")}, "numbers are needed"),
         ({"trans": np.zeros((0, 3)), "pose_body": np.zeros((0, 63)), "root_orient": np.zeros((0, 3))}, "must be"),
     ],
-)  # fmt: skip
+)
 def test_wrong_parameters_are_one_sentence(arrays: dict[str, np.ndarray], says: str) -> None:
     whole = {"root_orient": np.zeros((4, 3)), "pose_body": np.zeros((4, 63)), "trans": np.zeros((4, 3))}
     with pytest.raises(InputError, match=says):
@@ -103,16 +107,14 @@ def test_wrong_parameters_are_one_sentence(arrays: dict[str, np.ndarray], says: 
 
 @pytest.mark.parametrize("flat", [True, False])
 @pytest.mark.parametrize("matrices", [True, False])
-def test_dictionaries_of_estimators_are_read_whichever_axis_of_the_camera_is_up(
-    matrices: bool, flat: bool
-) -> None:
+def test_dictionaries_of_estimators_are_read_whichever_axis_of_the_camera_is_up(matrices: bool, flat: bool) -> None:
     down = turn_of("-y")
     whole = interx(POSITIONS, z_up=False, flat=True)
     turns = (
         Rotation.from_rotvec(
-            np.concatenate(
-                [whole["root_orient"], whole["pose_body"], np.zeros((len(POSITIONS), 6))], axis=1
-            ).reshape(-1, 3)
+            np.concatenate([whole["root_orient"], whole["pose_body"], np.zeros((len(POSITIONS), 6))], axis=1).reshape(
+                -1, 3
+            )
         )
         .as_matrix()
         .reshape(-1, 24, 3, 3)
@@ -168,15 +170,9 @@ def test_wrong_interhuman_is_one_sentence() -> None:
 def pair_of(kind: str) -> tuple[dict[str, bytes], float]:
     lifted = 0.7  # metres above the floor: both people are shifted by the same
     if kind == "interhuman":
-        a, b = (
-            npy(interhuman(person + np.array([0, up, 0])))
-            for person, up in ((POSITIONS, lifted), (APART, 0.9))
-        )
+        a, b = (npy(interhuman(person + np.array([0, up, 0]))) for person, up in ((POSITIONS, lifted), (APART, 0.9)))
         return {"take/person1/3.npy": a, "take/person2/3.npy": b, "annots/3.txt": b"two people meet"}, 30
-    a, b = (
-        npz(**interx(person + np.array([0, up, 0])))
-        for person, up in ((POSITIONS, lifted), (APART[:15], 0.9))
-    )
+    a, b = (npz(**interx(person + np.array([0, up, 0]))) for person, up in ((POSITIONS, lifted), (APART[:15], 0.9)))
     return {"G001/P1.npz": a, "G001/P2.npz": b, "__MACOSX/G001/._P1.npz": b"x"}, 120
 
 

@@ -101,18 +101,32 @@ HOSTILE = {
     "missing.obj": b"\nv 0 0 0\nv 1 0 0\nf 1 2 99999999\n",
     "files.obj": b"mtllib /etc/passwd\nusemtl x\n\nv 0 0 0\nv 0 1 0\nv 1 0 0\n\nf 1 2 9\n",
     "nothing.obj": b"\nv 0 0 0\n",
-    "copies.glb": _glb({**_VIEW, "nodes": [{"mesh": 0}] * 4999 * 1, "accessors": [
-        {"bufferView": 0, "componentType": 5126, "count": 2**30, "type": "VEC3"}]}, POINTS),
+    "copies.glb": _glb(
+        {
+            **_VIEW,
+            "nodes": [{"mesh": 0}] * 4999 * 1,
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 2**30, "type": "VEC3"}],
+        },
+        POINTS,
+    ),
     "circle.glb": _glb({**_VIEW, "nodes": [{"mesh": 0, "children": [1]}, {"children": [0]}]}, POINTS),
-    "outside.glb": _glb({**_VIEW, "nodes": [{"mesh": 0}], "bufferViews": [
-        {"buffer": 0, "byteLength": 2**31 - 1}]}, POINTS),
+    "outside.glb": _glb(
+        {**_VIEW, "nodes": [{"mesh": 0}], "bufferViews": [{"buffer": 0, "byteLength": 2**31 - 1}]}, POINTS
+    ),
     "scale.glb": _glb({**_VIEW, "nodes": [{"mesh": 0, "scale": [1e300, 1, 1]}]}, POINTS),
     "flat.glb": _glb({**_VIEW, "nodes": [{"mesh": 0}]}, POINTS),
-    "colour.glb": _glb({**_VIEW, "nodes": [{"mesh": 0}], "materials": [
-        {"pbrMetallicRoughness": {"baseColorFactor": ["x", 1, 1, 1]}}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}]}, POINTS),
-    "empty.glb": b"", "short.stl": b"solid",
-}  # fmt: skip
+    "colour.glb": _glb(
+        {
+            **_VIEW,
+            "nodes": [{"mesh": 0}],
+            "materials": [{"pbrMetallicRoughness": {"baseColorFactor": ["x", 1, 1, 1]}}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+        },
+        POINTS,
+    ),
+    "empty.glb": b"",
+    "short.stl": b"solid",
+}
 
 
 @pytest.mark.parametrize("name", HOSTILE)
@@ -127,9 +141,7 @@ def test_hostile_files_are_one_sentence_soon(name):
 @settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
     kind=st.sampled_from(sorted(VALID)),
-    edits=st.lists(
-        st.tuples(st.integers(0, 10**6), st.binary(min_size=1, max_size=8)), min_size=1, max_size=6
-    ),
+    edits=st.lists(st.tuples(st.integers(0, 10**6), st.binary(min_size=1, max_size=8)), min_size=1, max_size=6),
     end=st.integers(1, 10**6),
 )
 @example(kind=".obj", edits=[(65, b"\x0b")], end=335)  # trimesh gives vertices of one number

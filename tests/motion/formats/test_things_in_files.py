@@ -31,15 +31,10 @@ def test_a_glb_holds_things_at_their_first_frame_in_their_colours(tmp_path):
     (path,) = formats.write(DUET, tmp_path / "x.glb")
     scene = trimesh.load_scene(path)
     for name, thing in zip(("ball", "chair", "chair 2"), DUET.things, strict=True):
-        parts = [
-            node for node in scene.graph.nodes_geometry if str(scene.graph[node][1]).startswith(f"{name}")
-        ]
+        parts = [node for node in scene.graph.nodes_geometry if str(scene.graph[node][1]).startswith(f"{name}")]
         parts = [p for p in parts if (name == "chair 2") == ("chair 2" in str(scene.graph[p][1]))]
         found = np.concatenate(
-            [
-                trimesh.transform_points(scene.geometry[scene.graph[p][1]].vertices, scene.graph[p][0])
-                for p in parts
-            ]
+            [trimesh.transform_points(scene.geometry[scene.graph[p][1]].vertices, scene.graph[p][0]) for p in parts]
         )
         np.testing.assert_allclose(found.min(axis=0), thing.at(0).min(axis=0), atol=1e-4)
         np.testing.assert_allclose(found.max(axis=0), thing.at(0).max(axis=0), atol=1e-4)
@@ -66,8 +61,12 @@ def test_people_are_read_back_from_a_glb_with_things(tmp_path):
 def test_a_usd_stage_holds_things_beside_people():
     text = usd_text(DUET)
     assert re.findall(r'^    def (?:Xform|Scope) "(\w+)"', text, flags=re.MULTILINE) == [
-        "a", "b", "ball", "chair", "chair_2",
-    ]  # fmt: skip
+        "a",
+        "b",
+        "ball",
+        "chair",
+        "chair_2",
+    ]
     assert text.count("xformOp:transform.timeSamples") == 1, "what stands still has one place"
     assert text.isascii() and text.count("{") == text.count("}")
 

@@ -21,9 +21,7 @@ from tests.motion.bodies import marching
 
 A = marching(24)[0]
 B = turn(marching(24, seed=5)[0], np.pi) + np.array([0.3, 0, 1.5])
-DUET = Duet(
-    Clip(A, 30), Clip(B.astype(np.float32), 30), ("actor", "reactor"), {"prompt": 'They "wave" \\ 😀\n'}
-)
+DUET = Duet(Clip(A, 30), Clip(B.astype(np.float32), 30), ("actor", "reactor"), {"prompt": 'They "wave" \\ 😀\n'})
 
 
 def samples(text: str, what: str, width: int) -> np.ndarray:
@@ -78,9 +76,7 @@ def test_it_is_written_and_only_for_people_with_a_rest_pose(tmp_path: Path) -> N
     (path,) = formats.write(DUET, tmp_path / "take.usda")
     assert path.read_text().startswith("#usda 1.0\n")
     with pytest.raises(InputError, match="needs a rest pose"):
-        formats.write(
-            Duet.from_positions(np.zeros((2, 4, 15, 3)), fps=30, skeleton=SBU15), tmp_path / "x.usda"
-        )
+        formats.write(Duet.from_positions(np.zeros((2, 4, 15, 3)), fps=30, skeleton=SBU15), tmp_path / "x.usda")
     with pytest.raises(InputError, match="one person is written as"):
         formats.write(DUET.a, tmp_path / "x.usda")
     assert [each.name for each in tmp_path.iterdir()] == ["take.usda"]
@@ -109,9 +105,7 @@ def test_openusd_reads_the_same_joints_and_bodies(tmp_path: Path) -> None:
             joints = np.array(skeleton.ComputeJointSkelTransforms(frame))[:22, 3, :3]
             np.testing.assert_allclose(joints, clip.positions[frame], atol=2e-5)
             points = Vt.Vec3fArray(UsdGeom.Mesh(mesh).GetPointsAttr().Get())
-            cache.GetSkinningQuery(mesh).ComputeSkinnedPoints(
-                skeleton.ComputeSkinningTransforms(frame), points, frame
-            )
+            cache.GetSkinningQuery(mesh).ComputeSkinnedPoints(skeleton.ComputeSkinningTransforms(frame), points, frame)
             np.testing.assert_allclose(np.array(points), surfaces[frame], atol=5e-5)
         subsets = UsdShade.MaterialBindingAPI(mesh).GetMaterialBindSubsets()
         assert all(UsdShade.MaterialBindingAPI(each).ComputeBoundMaterial()[0] for each in subsets)

@@ -41,9 +41,7 @@ def test_bvh_pair_gives_the_positions_to_other_readers(tmp_path, size):
     assert [path.name for path in paths] == ["take_a.bvh", "take_b.bvh"]
     for person, path in enumerate(paths):
         for frame in (0, 11, 23):
-            np.testing.assert_allclose(
-                _bvhio_positions(path, frame), duet.positions[person, frame], atol=1e-4
-            )
+            np.testing.assert_allclose(_bvhio_positions(path, frame), duet.positions[person, frame], atol=1e-4)
 
 
 def test_bvh_rest_is_a_t_pose_and_the_clock_is_kept(tmp_path):
@@ -95,8 +93,16 @@ def test_glb_has_a_node_of_their_own_for_each_person(tmp_path):
 def test_every_limb_of_a_glb_lies_along_its_bone(tmp_path, size):
     duet = Duet.from_positions(DUET.positions * size, fps=30)
     found = Skinned(formats.write(duet, tmp_path / "x.glb")[0])
-    limbs = ("left_hip", "right_hip", "left_knee", "right_knee", "left_elbow", "right_elbow",
-             "left_shoulder", "right_shoulder")  # fmt: skip
+    limbs = (
+        "left_hip",
+        "right_hip",
+        "left_knee",
+        "right_knee",
+        "left_elbow",
+        "right_elbow",
+        "left_shoulder",
+        "right_shoulder",
+    )
     for person, clip in enumerate(duet.people):
         surface, owner = found.surface(person)
         for name in limbs:
@@ -145,9 +151,7 @@ def test_nothing_but_smpl_is_posed(tmp_path):
 
 
 def test_unknown_endings_name_the_known_ones(tmp_path):
-    with pytest.raises(
-        InputError, match=r"'.fbx' cannot be written: use .npz, .bvh, .npy, .glb, .usda or .smpl.npz"
-    ):
+    with pytest.raises(InputError, match=r"'.fbx' cannot be written: use .npz, .bvh, .npy, .glb, .usda or .smpl.npz"):
         formats.write(DUET, tmp_path / "x.fbx")
     with pytest.raises(InputError, match=r"'.fbx' cannot be read: use "):
         formats.read(tmp_path / "x.fbx")

@@ -26,10 +26,8 @@ def _examples() -> list[tuple[Duet, str, int, int]]:
     motions = np.split(whole, np.cumsum(stored["frames"])[:-1])
     return [
         (Duet.from_positions(m.reshape(-1, 2, 22, 3).swapaxes(0, 1), fps=30), str(kind), int(start), int(stop))
-        for m, kind, start, stop in zip(
-            motions, stored["kind"], stored["start"], stored["stop"], strict=True
-        )
-    ]  # fmt: skip
+        for m, kind, start, stop in zip(motions, stored["kind"], stored["start"], stored["stop"], strict=True)
+    ]
 
 
 def _agrees(duet: Duet, kind: str, start: int, stop: int) -> bool:

@@ -50,9 +50,7 @@ def test_slow_arms_have_their_energy_under_one_hertz(hertz: float, slow: bool) -
 def test_a_trunk_that_is_twisted_against_the_hips_is_seen(angle: float, share: float) -> None:
     motion = turn(stands(), 2.0)
     trunk = [
-        i
-        for i, name in enumerate(SMPL22.joint_names)
-        if not any(p in name for p in ("hip", "knee", "ankle", "foot"))
+        i for i, name in enumerate(SMPL22.joint_names) if not any(p in name for p in ("hip", "knee", "ankle", "foot"))
     ]
     motion[30:, trunk] = turn(motion[30:], angle)[:, trunk]
     assert naturalness(motion, FPS).twisted == pytest.approx(share)

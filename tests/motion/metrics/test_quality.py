@@ -87,9 +87,7 @@ def test_a_child_is_as_thin_as_it_is_short() -> None:
     scene = face_to_face(0.1)
     adults = duet(scene)
     children = replace(duet(SIZES["boy"] * scene), looks=("boy", "girl"))
-    assert penetration(children).deepest == pytest.approx(
-        SIZES["boy"] * penetration(adults).deepest, rel=1e-3
-    )
+    assert penetration(children).deepest == pytest.approx(SIZES["boy"] * penetration(adults).deepest, rel=1e-3)
 
 
 def test_penetration_agrees_with_all_pairs() -> None:
@@ -100,9 +98,11 @@ def test_penetration_agrees_with_all_pairs() -> None:
     for i in range(len(body.starts)):
         for j in range(len(body.starts)):
             gap = segment_segment_distance(
-                scene[0][:, body.starts[i]], scene[0][:, body.ends[i]],
-                scene[1][:, body.starts[j]], scene[1][:, body.ends[j]],
-            )  # fmt: skip
+                scene[0][:, body.starts[i]],
+                scene[0][:, body.ends[i]],
+                scene[1][:, body.starts[j]],
+                scene[1][:, body.ends[j]],
+            )
             expected = np.maximum(expected, body.radii[i] + body.radii[j] - gap)
     assert (expected > 0).any()
     np.testing.assert_allclose(penetration(duet(scene)).depth, 100 * expected, atol=1e-3)
@@ -131,9 +131,7 @@ def test_parallel_and_point_like_segments_are_measured() -> None:
 def test_every_skeleton_can_be_measured(name: str) -> None:
     skeleton = SKELETONS[name]
     rng = np.random.default_rng(0)
-    scene = Duet.from_positions(
-        rng.normal(0, 0.3, (2, 12, skeleton.num_joints, 3)) + 1, fps=15, skeleton=skeleton
-    )
+    scene = Duet.from_positions(rng.normal(0, 0.3, (2, 12, skeleton.num_joints, 3)) + 1, fps=15, skeleton=skeleton)
     assert penetration(scene).deepest > 0
     assert bone_drift(scene) > 0
     assert jerk(scene) > 0

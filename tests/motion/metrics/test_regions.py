@@ -26,9 +26,8 @@ def touching(name: str, person: int = 0, frames: slice = slice(20, 40)) -> np.nd
 
 @pytest.mark.parametrize(
     ("name", "pair"),
-    [("left_shoulder", "hand–shoulder"), ("spine2", "hand–chest"), ("head", "hand–head"),
-     ("left_elbow", "hand–arm")],
-)  # fmt: skip
+    [("left_shoulder", "hand–shoulder"), ("spine2", "hand–chest"), ("head", "hand–head"), ("left_elbow", "hand–arm")],
+)
 @pytest.mark.parametrize("person", [0, 1])
 def test_a_hand_on_a_region_is_that_persons_touch(name: str, pair: str, person: int) -> None:
     found = region_contacts(duet(touching(name, person)))[pair]
@@ -67,10 +66,7 @@ def test_chests_touch_within_five_centimetres() -> None:
 
 def test_exchanged_people_touch_wrongly() -> None:
     on_b = duet(touching("left_shoulder"))
-    assert contact_precision_recall([on_b], [on_b])["hand–shoulder"] == {
-        "precision": (1, 1),
-        "recall": (1, 1),
-    }
+    assert contact_precision_recall([on_b], [on_b])["hand–shoulder"] == {"precision": (1, 1), "recall": (1, 1)}
     other = contact_precision_recall([on_b.swapped()], [on_b])["hand–shoulder"]
     assert other == {"precision": (0, 1), "recall": (0, 1)}
     nothing = contact_precision_recall([duet(face_to_face(3.0))], [on_b])["hand–shoulder"]

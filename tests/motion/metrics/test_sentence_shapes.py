@@ -140,7 +140,7 @@ DOES: dict[str, tuple[Motion, str]] = {
     "shoulders_touch": (duet(gap=0.15), ""),
     "alike": (duet(swing(0, "left"), swing(1, "left")), ""),
     "copies": (duet(swing(0, "left"), swing(1, "left", 0.8)), "b"),
-}  # fmt: skip
+}
 
 
 IDLE = duet()
@@ -234,10 +234,6 @@ def test_a_child_reaches_out_as_far_as_its_arm() -> None:
     """A wrist that is 25 cm before the shoulder is held out by a child, and not by an adult."""
     adult = duet(put("left_wrist", (0.2, 0.25, 0.25)))
     child = Motion(adult.positions * np.array([[[[0.74]]], [[[1.0]]]]), FPS)
-    child.positions[0, :, index("left_wrist")] = child.positions[0, :, index("left_shoulder")] + [
-        0.0,
-        -0.2,
-        0.25,
-    ]
+    child.positions[0, :, index("left_wrist")] = child.positions[0, :, index("left_shoulder")] + [0.0, -0.2, 0.25]
     assert adult.size(0) == 1.0 and child.size(0) == pytest.approx(0.74)
     assert not PREDICATES["reaches"](adult, 0).any() and PREDICATES["reaches"](child, 0).all()

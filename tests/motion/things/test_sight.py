@@ -35,10 +35,7 @@ def test_a_ray_meets_a_surface_as_far_as_it_is_and_only_ahead():
     for _ in range(20):
         eye, ahead = rng.normal(size=3), rng.normal(size=3)
         eye, ahead = 2.0 * eye / np.linalg.norm(eye), ahead / np.linalg.norm(ahead)
-        along, miss = (
-            -eye @ ahead,
-            4.0 - (eye @ ahead) ** 2,
-        )  # squared distance of the ray's line from the middle
+        along, miss = (-eye @ ahead, 4.0 - (eye @ ahead) ** 2)  # squared distance of the ray's line from the middle
         if miss < 0.24 and along > 0:
             assert distance(ball, eye, ahead) == pytest.approx(along - np.sqrt(0.25 - miss), abs=0.02)
         elif miss > 0.25 or along < 0:

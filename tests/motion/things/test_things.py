@@ -94,10 +94,7 @@ def test_things_come_back_from_our_file(tmp_path):
     duet = Duet(PEOPLE.a, PEOPLE.b, things=(thrown(), chair))
     formats.write(duet, tmp_path / "x.npz")
     back = formats.read(tmp_path / "x.npz")
-    assert isinstance(back, Duet) and [(t.kind, t.name) for t in back.things] == [
-        ("ball", "ball"),
-        ("chair", "stool"),
-    ]
+    assert isinstance(back, Duet) and [(t.kind, t.name) for t in back.things] == [("ball", "ball"), ("chair", "stool")]
     for one, other in zip(duet.things, back.things, strict=True):
         for part in ("places", "rotations"):
             np.testing.assert_array_equal(getattr(one, part), getattr(other, part))

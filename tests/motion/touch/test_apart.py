@@ -34,9 +34,7 @@ def _deepest(pair: np.ndarray) -> float:
 @pytest.mark.parametrize(
     ("gap", "aside", "turned"), [(0.16, 0.03, np.pi), (0.02, 0.36, 0.0)], ids=["face to face", "beside"]
 )
-def test_bodies_and_feet_move_apart_on_bones_as_long_as_before(
-    gap: float, aside: float, turned: float
-) -> None:
+def test_bodies_and_feet_move_apart_on_bones_as_long_as_before(gap: float, aside: float, turned: float) -> None:
     pair = _pair(gap, aside, turned)
     found = bodies_apart(pair, 30.0)
     assert _deepest(pair) > 2 * DEEP

@@ -45,8 +45,11 @@ def test_only_arms_move_and_bones_keep_their_lengths() -> None:
     found = arms_apart(pair)
     moved = np.abs(found - pair).max(axis=(0, 1, 3)) > 1e-9
     assert {SMPL22.joint_names[j] for j in np.flatnonzero(moved)} <= {
-        "left_elbow", "right_elbow", "left_wrist", "right_wrist",
-    }  # fmt: skip
+        "left_elbow",
+        "right_elbow",
+        "left_wrist",
+        "right_wrist",
+    }
     np.testing.assert_allclose(_bones(found), _bones(pair), atol=2e-3)
 
 

@@ -44,9 +44,7 @@ def test_hands_lie_on_the_back_and_the_flank_and_elbows_bend() -> None:
     found = embraced(_pair())[:, HUGS]
     for person in (0, 1):
         for side, past, length in (("left", 0.0, 0.51), ("right", 0.0, 0.45)):
-            shoulder, elbow, wrist = (
-                found[person, :, J(f"{side}_{j}")] for j in ("shoulder", "elbow", "wrist")
-            )
+            shoulder, elbow, wrist = (found[person, :, J(f"{side}_{j}")] for j in ("shoulder", "elbow", "wrist"))
             hand = wrist - found[1 - person, :, SPINE]
             assert ((1 - 2 * person) * hand[:, 2] > past).all(), "past the spine"
             assert (np.linalg.norm(hand[:, [0, 2]], axis=-1) < 0.22).all()

@@ -31,9 +31,7 @@ def stepping(seconds: float = 3.0, *, speed: float = 0.0, heading: float = 0.0) 
         pose[:, J[f"{side}_wrist"]] = shoulder + np.array([0.08 * sign, -0.49, 0.10])
     lift = 0.5 + 0.4 * np.sin(2 * np.pi * 0.7 * t)
     elbow = pose[:, J["right_elbow"]]
-    pose[:, J["right_wrist"]] = elbow + 0.26 * np.stack(
-        [0 * t, np.sin(3 * lift - 1.5), np.cos(3 * lift - 1.5)], -1
-    )
+    pose[:, J["right_wrist"]] = elbow + 0.26 * np.stack([0 * t, np.sin(3 * lift - 1.5), np.cos(3 * lift - 1.5)], -1)
     if speed:
         stride = 0.5 * speed  # metres a step of half a second
         for side, phase in (("left", 0.0), ("right", 0.5)):
@@ -92,9 +90,13 @@ def film(
             image.append((seen[:, :2] / seen[:, 2:] * focal + np.array(size) / 2) / size)
             index.append(frame)
     return Landmarks(
-        *size, np.arange(frames) / RATE, np.array(index), np.array(world), np.array(image),
+        *size,
+        np.arange(frames) / RATE,
+        np.array(index),
+        np.array(world),
+        np.array(image),
         np.ones((len(world), len(POINTS))),
-    )  # fmt: skip
+    )
 
 
 def onto(sight: np.ndarray) -> np.ndarray:
@@ -136,9 +138,14 @@ def packed(landmarks: Landmarks, **known: Any) -> str:
     counts = np.bincount(landmarks.frames, minlength=len(landmarks.times))
     return json.dumps(
         {
-            "landmarks": 1, "width": landmarks.width, "height": landmarks.height,
-            "times": encode(1000 * landmarks.times, "<u4"), "counts": encode(counts, "u1"),
-            "world": encode(1000 * landmarks.world, "<i2"), "image": encode(8000 * landmarks.image, "<i2"),
-            "seen": encode(255 * landmarks.seen, "u1"), **known,
+            "landmarks": 1,
+            "width": landmarks.width,
+            "height": landmarks.height,
+            "times": encode(1000 * landmarks.times, "<u4"),
+            "counts": encode(counts, "u1"),
+            "world": encode(1000 * landmarks.world, "<i2"),
+            "image": encode(8000 * landmarks.image, "<i2"),
+            "seen": encode(255 * landmarks.seen, "u1"),
+            **known,
         }
-    )  # fmt: skip
+    )

@@ -31,13 +31,26 @@ def test_a_film_comes_through_as_it_was_sent() -> None:
 @pytest.mark.parametrize(
     "change",
     [
-        {"landmarks": 2}, {"width": 8}, {"width": True}, {"width": "1280"}, {"height": 10**9}, {"times": None},
-        {"times": ""}, {"times": "AAAA"}, {"counts": "////"}, {"world": "not base64!"}, {"seen": [1, 2]},
-        {"image": FIELDS["image"][:-8]}, {"tilt": "12"}, {"lens": True}, {"tilt": float("nan")}, {"lens": 10**400},
+        {"landmarks": 2},
+        {"width": 8},
+        {"width": True},
+        {"width": "1280"},
+        {"height": 10**9},
+        {"times": None},
+        {"times": ""},
+        {"times": "AAAA"},
+        {"counts": "////"},
+        {"world": "not base64!"},
+        {"seen": [1, 2]},
+        {"image": FIELDS["image"][:-8]},
+        {"tilt": "12"},
+        {"lens": True},
+        {"tilt": float("nan")},
+        {"lens": 10**400},
         {"times": base64.b64encode(np.zeros(len(FILM.times), "<u4").tobytes()).decode()},
         {"times": base64.b64encode((np.arange(len(FILM.times)) * 90_000).astype("<u4").tobytes()).decode()},
     ],
-)  # fmt: skip
+)
 def test_other_fields_are_refused(change: dict) -> None:
     with pytest.raises(InputError):
         unpack_film(json.dumps({**FIELDS, **change}))

@@ -21,9 +21,7 @@ def misplaced(found: np.ndarray, true: np.ndarray) -> float:
     """Mean distance of joints in metres, both about their pelvis."""
     frames = min(len(found), len(true))
     return float(
-        np.linalg.norm(
-            found[:frames] - found[:frames, :1] - true[:frames] + true[:frames, :1], axis=-1
-        ).mean()
+        np.linalg.norm(found[:frames] - found[:frames, :1] - true[:frames] + true[:frames, :1], axis=-1).mean()
     )
 
 
@@ -35,8 +33,7 @@ def test_pose_tilt_and_bones_come_back_from_any_camera(tilt: float, turned: floa
     assert misplaced(person.positions, resample(true, 15.0, 30.0)) < 0.06
     assert filmed.tilt == pytest.approx(tilt, abs=4.0)
     lengths = np.linalg.norm(
-        person.positions[:, [c for _, c in SMPL22.bones]] - person.positions[:, [p for p, _ in SMPL22.bones]],
-        axis=-1,
+        person.positions[:, [c for _, c in SMPL22.bones]] - person.positions[:, [p for p, _ in SMPL22.bones]], axis=-1
     )
     assert np.ptp(lengths, axis=0).max() < 1e-3
     assert abs(person.positions[:, :, 1].min()) < 0.05
@@ -70,9 +67,12 @@ def test_a_gap_is_marked_and_filled() -> None:
     landmarks = film([stepping(3.0)])
     kept = (landmarks.frames < 15) | (landmarks.frames > 26)
     landmarks = replace(
-        landmarks, frames=landmarks.frames[kept], world=landmarks.world[kept], image=landmarks.image[kept],
+        landmarks,
+        frames=landmarks.frames[kept],
+        world=landmarks.world[kept],
+        image=landmarks.image[kept],
         seen=landmarks.seen[kept],
-    )  # fmt: skip
+    )
     filmed = people_of(landmarks)
     ((start, end),) = filmed.gaps
     assert start == pytest.approx(1.0, abs=0.15) and end == pytest.approx(1.8, abs=0.15)
@@ -87,9 +87,12 @@ def test_somebody_who_passes_by_for_a_moment_is_not_a_second_person() -> None:
     landmarks = film([one, other])
     short = np.array([n % 2 == 0 or frame < 6 for n, frame in enumerate(landmarks.frames)])
     landmarks = replace(
-        landmarks, frames=landmarks.frames[short], world=landmarks.world[short], image=landmarks.image[short],
+        landmarks,
+        frames=landmarks.frames[short],
+        world=landmarks.world[short],
+        image=landmarks.image[short],
         seen=landmarks.seen[short],
-    )  # fmt: skip
+    )
     assert len(tracks_of(landmarks)) == 1
 
 

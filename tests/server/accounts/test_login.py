@@ -46,8 +46,13 @@ def test_signing_in_from_the_page(shared: TestClient) -> None:
     html = {"accept": "text/html"}
     wrong = shared.post("/login", data={"username": "ada", "password": "no"}, headers=html)
     assert wrong.status_code == 401 and "password is wrong" in wrong.text
-    for wanted, place in (("/?run=x", "/?run=x"), ("https://evil.example/", "/"), ("//evil.example", "/"),
-                          ("/\\evil.example", "/"), ("/x\r\nSet-Cookie: a=b", "/")):  # fmt: skip
+    for wanted, place in (
+        ("/?run=x", "/?run=x"),
+        ("https://evil.example/", "/"),
+        ("//evil.example", "/"),
+        ("/\\evil.example", "/"),
+        ("/x\r\nSet-Cookie: a=b", "/"),
+    ):
         fields = {"username": "ada", "password": "password of ada", "next": wanted}
         answer = shared.post("/login", data=fields, headers=html)
         assert (answer.status_code, answer.headers["location"]) == (303, place)
@@ -82,11 +87,7 @@ def test_a_full_disk_at_sign_in_is_a_sentence(shared: TestClient) -> None:
         answers = [shared.post("/login", data=fields, headers=HTML) for _ in range(60)]
         full = [answer for answer in answers if answer.status_code != 303]
         assert full and {answer.status_code for answer in full} == {507}
-        assert (
-            "disk" in full[0].text
-            and "Traceback" not in full[0].text
-            and "sqlite" not in full[0].text.lower()
-        )
+        assert "disk" in full[0].text and "Traceback" not in full[0].text and "sqlite" not in full[0].text.lower()
         assert shared.get("/config", headers=before).status_code == 200
     shared.cookies.clear()
     assert shared.get("/config", headers=sign_in(shared, "eve")).status_code == 200
@@ -133,9 +134,7 @@ def test_a_browser_is_remembered_that_somebody_signed_in_with(shared: TestClient
     for _ in range(60):
         sign_ins._throttle._names.take("ada")
     assert shared.post("/login", data=given).status_code == 429
-    assert shared.post("/login", data=given, headers={"cookie": f"pasdedeux_known={known}"}).json() == {
-        "success": True
-    }
+    assert shared.post("/login", data=given, headers={"cookie": f"pasdedeux_known={known}"}).json() == {"success": True}
     sign_ins._throttle._names.take("ada", -60)
     shared.cookies.clear()
 
@@ -155,9 +154,7 @@ def test_a_run_of_another_is_not_opened_by_its_id(shared: TestClient) -> None:
     event = shared.post(f"{CALL}/generate", json={"data": FIELDS}, headers=ada).json()["event_id"]
     assert shared.get(f"{CALL}/generate/{event}").status_code == 401
     assert shared.get("/config", headers={"cookie": "pasdedeux_session=user ada"}).status_code == 401
-    assert (
-        "event: complete" in shared.get(f"{CALL}/generate/{event}", headers=ada).text
-    )  # else it ends in a later test
+    assert "event: complete" in shared.get(f"{CALL}/generate/{event}", headers=ada).text  # else it ends in a later test
 
 
 def page_at(client: TestClient, key: str, headers: dict[str, str]) -> str:
@@ -217,13 +214,21 @@ def test_behind_a_proxy_that_speaks_tls(tmp_path: Path) -> None:
             transport = httpx.HTTPTransport(local_address=address)
             with httpx.Client(base_url=f"http://{host}:{port}", transport=transport) as proxy:
                 answer = proxy.post(
-                    "/login", data={"username": "ada", "password": "password of ada"},
-                    headers={"host": "lab.example", "x-forwarded-proto": "https",
-                             "x-forwarded-for": "203.0.113.9", "origin": "https://lab.example"},
-                )  # fmt: skip
+                    "/login",
+                    data={"username": "ada", "password": "password of ada"},
+                    headers={
+                        "host": "lab.example",
+                        "x-forwarded-proto": "https",
+                        "x-forwarded-for": "203.0.113.9",
+                        "origin": "https://lab.example",
+                    },
+                )
                 assert answer.json() == {"success": True}
                 assert ("; Secure" in answer.headers["set-cookie"]) == secure
-                signed = {"cookie": answer.headers["set-cookie"].split(";")[0], "host": "lab.example",
-                          "x-forwarded-proto": "https"}  # fmt: skip
+                signed = {
+                    "cookie": answer.headers["set-cookie"].split(";")[0],
+                    "host": "lab.example",
+                    "x-forwarded-proto": "https",
+                }
                 root = proxy.get("/config", headers=signed).json()["root"]
                 assert root == f"http{'s' if secure else ''}://lab.example/motion"

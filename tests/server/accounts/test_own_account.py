@@ -20,9 +20,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
         patch.setattr(accounts, "COST", 2**4)
         for name in ("ada", "eve"):
             Users(folder / "users").add(name, f"password of {name}")
-        settings = settings_for(
-            folder, users=folder / "users", host="0.0.0.0", hosts=["127.0.0.1"], rate=10_000
-        )
+        settings = settings_for(folder, users=folder / "users", host="0.0.0.0", hosts=["127.0.0.1"], rate=10_000)
         with client_of(settings) as client:
             yield client
 

@@ -26,9 +26,15 @@ class Proxied(Target):
 
     def __init__(self, folder: Path) -> None:
         super().__init__(
-            folder, accounts=False, host="0.0.0.0", proxies='["127.0.0.1"]', proxy_user=NAME, proxy_groups=GROUPS,
-            groups='["dancers"]', admin_groups='["staff"]',
-        )  # fmt: skip
+            folder,
+            accounts=False,
+            host="0.0.0.0",
+            proxies='["127.0.0.1"]',
+            proxy_user=NAME,
+            proxy_groups=GROUPS,
+            groups='["dancers"]',
+            admin_groups='["staff"]',
+        )
         del self.env["PASDEDEUX_OPEN"]
 
 
@@ -46,10 +52,7 @@ def asked(lab: Target, path: str = "/config", *, source: str = "127.0.0.1", **he
 
 def test_the_proxy_says_who_somebody_is(lab: Target) -> None:
     answer = asked(
-        lab,
-        X_Remote_User="Ada@Lab.example",
-        X_Remote_Groups="singers, dancers",
-        X_Forwarded_For="203.0.113.9",
+        lab, X_Remote_User="Ada@Lab.example", X_Remote_Groups="singers, dancers", X_Forwarded_For="203.0.113.9"
     )
     assert answer.status_code == 200, answer.text
     assert asked(lab, X_Remote_User="ada", X_Remote_Groups="singers").status_code == 403
@@ -106,9 +109,7 @@ def test_groups_make_administrators_who_see_and_suspend_whoever_came(lab: Target
 
 def test_addresses_networks_and_groups_are_read() -> None:
     assert is_among("10.1.2.3", ["10.0.0.0/8"]) and is_among("::1", ["::1"])
-    assert not is_among("10.1.2.3", ["proxy.example", "*", "192.168.0.0/16"]) and not is_among(
-        "", ["0.0.0.0/0"]
-    )
+    assert not is_among("10.1.2.3", ["proxy.example", "*", "192.168.0.0/16"]) and not is_among("", ["0.0.0.0/0"])
     assert groups_of(["a, b;c|d", " e "]) == ["a", "b", "c", "d", "e"]
 
 

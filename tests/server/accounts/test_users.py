@@ -58,9 +58,7 @@ def test_passwords_are_kept_as_salted_hashes(users: Users) -> None:
     assert not users.knows("nobody", "nobody") and not users.knows("", "")
 
 
-def test_passwords_outlive_a_change_of_what_a_try_costs(
-    users: Users, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_passwords_outlive_a_change_of_what_a_try_costs(users: Users, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(accounts, "COST", 2**5)
     users.add("eve", "battery staple")
     for reader in (users, Users(users.path)):
@@ -167,9 +165,7 @@ def test_a_name_is_slowed_down_for_all_addresses_together(sign_ins: SignIns, clo
     guesses = [refused_for(sign_ins, "wrong horse", f"6.6.6.{i}") for i in range(throttle.NAME_TRIES + 20)]
     assert guesses.count(0) == throttle.NAME_TRIES
     assert 0 < refused_for(sign_ins, "correct horse", "1.2.3.4") <= 10
-    assert sign_ins.begin("ada", "correct horse", "1.2.3.4", known), (
-        "where she has signed in before, she still can"
-    )
+    assert sign_ins.begin("ada", "correct horse", "1.2.3.4", known), "where she has signed in before, she still can"
     clock.now += 10
     assert sign_ins.begin("ada", "correct horse", "1.2.3.4"), "elsewhere she waits for seconds"
     sign_ins.users.add("eve", "password of eve")
@@ -188,8 +184,15 @@ def test_a_browser_is_known_for_its_own_name_and_password(sign_ins: SignIns, clo
     sign_ins.users.add("eve", "password of eve")
     browser = known.partition(".")[0]
     assert sign_ins._browser("ada", known) == browser
-    for name, forged in (("eve", known), ("ada", f"{browser}."), ("ada", f".{known.partition('.')[2]}"),
-                         ("ada", known[:-1]), ("nobody", f"{browser}."), ("ada", "é.é"), ("ada", "")):  # fmt: skip
+    for name, forged in (
+        ("eve", known),
+        ("ada", f"{browser}."),
+        ("ada", f".{known.partition('.')[2]}"),
+        ("ada", known[:-1]),
+        ("nobody", f"{browser}."),
+        ("ada", "é.é"),
+        ("ada", ""),
+    ):
         assert not sign_ins._browser(name, forged), forged
     for _ in range(throttle.TRIES):
         assert not refused_for(sign_ins, "wrong horse", "1.2.3.4", known)
@@ -221,9 +224,7 @@ def test_the_environment_goes_before_the_file(monkeypatch: pytest.MonkeyPatch, t
         ("port = ", "cannot be read"),
     ],
 )
-def test_a_wrong_file_is_a_sentence(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, sentence: str
-) -> None:
+def test_a_wrong_file_is_a_sentence(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, sentence: str) -> None:
     file = tmp_path / "p.toml"
     file.write_text(text)
     monkeypatch.setenv("PASDEDEUX_SETTINGS", str(file))

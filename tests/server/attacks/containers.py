@@ -13,19 +13,7 @@ from tests.motion.formats.arrays import npy
 from tests.motion.formats.characters import packed, unpacked
 
 NUMBERS = (-1, 0, 1, 2**31, 2**63, -(2**31), 0.5, 1e308, float("nan"), float("inf"))
-OTHERS: tuple[Any, ...] = (
-    None,
-    True,
-    "",
-    "x" * 5000,
-    [],
-    {},
-    [[]],
-    {"0": 0},
-    [0] * 1000,
-    "data:,x",
-    "../canary.txt",
-)
+OTHERS: tuple[Any, ...] = (None, True, "", "x" * 5000, [], {}, [[]], {"0": 0}, [0] * 1000, "data:,x", "../canary.txt")
 SHAPES = ((0,), (1,), (2, 0, 22, 3), (2, 4, 22, 2), (1, 1, 1, 1, 1), (3, 30, 22, 3), (22, 3))
 KINDS = (np.float64, np.int8, np.uint64, np.complex64, bool, "S3", "U2", "datetime64[s]")
 
@@ -43,10 +31,7 @@ def changed_archive(data: bytes, dice: random.Random) -> bytes:
             members[place] = dice.choice(("../x.npy", "x" * 300, "positions", name.upper())), content
         case 2:
             start = dice.randrange(len(content))
-            members[place] = (
-                name,
-                content[:start] + dice.randbytes(4) + content[start + dice.choice((0, 4, 400)) :],
-            )
+            members[place] = (name, content[:start] + dice.randbytes(4) + content[start + dice.choice((0, 4, 400)) :])
         case _:
             members[place] = name, npy(_changed_array(np.load(io.BytesIO(content)), dice))
     out = io.BytesIO()
@@ -90,9 +75,7 @@ def changed_story(data: bytes, dice: random.Random) -> bytes:
             case 2:
                 lines.insert(dice.randrange(len(lines)), lines[place])
             case _:
-                value = dice.choice(
-                    (*NUMBERS, '""', "[]", "{}", "[[0]]", "true", '"' + "x" * 5000 + '"', "[" * 400)
-                )
+                value = dice.choice((*NUMBERS, '""', "[]", "{}", "[[0]]", "true", '"' + "x" * 5000 + '"', "[" * 400))
                 lines[place] = f"{key} = {value}"
         lines = lines or [""]
     return "\n".join(lines).encode()

@@ -54,9 +54,11 @@ class Target:
         with open(self.folder / "log", "w") as log:
             self.process = subprocess.Popen(
                 [sys.executable, script, str(self.port), str(self.data)],
-                cwd=ROOT, env={**os.environ, "OMP_NUM_THREADS": "1", "STUB_PAUSE": str(self.stub_pause), **self.env},
-                stdout=log, stderr=subprocess.STDOUT,
-            )  # fmt: skip
+                cwd=ROOT,
+                env={**os.environ, "OMP_NUM_THREADS": "1", "STUB_PAUSE": str(self.stub_pause), **self.env},
+                stdout=log,
+                stderr=subprocess.STDOUT,
+            )
         until = time.monotonic() + 240
         while not self.healthy():
             assert self.process.poll() is None, self.log()
@@ -117,12 +119,7 @@ class Target:
 
     def event(self, who: str, function: int, data: list[Any], event_data: Any = None) -> str:
         """What an event of the page ends with, or the refusal of it."""
-        body = {
-            "data": data,
-            "fn_index": function,
-            "session_hash": secrets.token_hex(8),
-            "event_data": event_data,
-        }
+        body = {"data": data, "fn_index": function, "session_hash": secrets.token_hex(8), "event_data": event_data}
         if function not in self.unqueued:
             joined = self.ask(who, "POST", "/gradio_api/queue/join", json=body)
             if joined.status_code != 200:

@@ -18,10 +18,20 @@ def file_data(path: str, **more: Any) -> dict[str, Any]:
 def places(target: Target) -> list[str]:
     """Paths and addresses that are none of a visitor's business, or never end."""
     return [
-        str(target.canary), "/etc/passwd", "/dev/zero", "/proc/self/environ", "app.py", "../../etc/passwd",
-        str(target.data / "history.db"), f"{target.data}/scratch/target/uploads/../../../../canary.txt",
-        f"{target.url}/healthz", "http://127.0.0.1:9/x", "HTTP://127.0.0.1:9/x", "file:///etc/passwd", "",
-    ]  # fmt: skip
+        str(target.canary),
+        "/etc/passwd",
+        "/dev/zero",
+        "/proc/self/environ",
+        "app.py",
+        "../../etc/passwd",
+        str(target.data / "history.db"),
+        f"{target.data}/scratch/target/uploads/../../../../canary.txt",
+        f"{target.url}/healthz",
+        "http://127.0.0.1:9/x",
+        "HTTP://127.0.0.1:9/x",
+        "file:///etc/passwd",
+        "",
+    ]
 
 
 @pytest.mark.parametrize("endpoint", ["generate", "react", "predict"])

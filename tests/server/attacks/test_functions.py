@@ -101,11 +101,7 @@ def test_none_takes_a_value_that_no_page_sends(backend: Backend, anyone: Target,
             tries += [[*data[:place], wrong, *data[place + 1 :]] for wrong in dice.sample(WRONG, 3)]
         for wrong in tries:
             said = anyone.event("eve", number, ada.fill(wrong), ada.fill(dice.choice(WRONG)))
-            assert not [each for each in (*NEVER, "Internal Server Error") if each in said], (
-                number,
-                wrong,
-                said,
-            )
+            assert not [each for each in (*NEVER, "Internal Server Error") if each in said], (number, wrong, said)
             assert "Something went wrong inside" not in said, (number, wrong, said)
             answered += '"process_completed"' in said
     assert answered > 50, "some pass the guard: functions read them"
@@ -115,9 +111,7 @@ def test_none_takes_a_value_that_no_page_sends(backend: Backend, anyone: Target,
 
 
 @pytest.mark.parametrize("path", ["queue/join", "run/predict"])
-def test_none_is_called_in_another_s_session(
-    backend: Backend, target: Target, victims: Victims, path: str
-) -> None:
+def test_none_is_called_in_another_s_session(backend: Backend, target: Target, victims: Victims, path: str) -> None:
     """What the page keeps between two events is with the session: eve has none of ada's, ada has her own."""
     ada = victims(target)
     for number in backend.functions:

@@ -30,11 +30,7 @@ def test_it_fails(attack: Attack, at: str, victims: Victims, request: pytest.Fix
     if attack.body is not None:
         content, kind = json.dumps(fill(attack.body)).encode(), {"content-type": "application/json"}
     answer = target.ask(
-        attack.who,
-        attack.method,
-        fill(attack.path),
-        content=content,
-        headers={**kind, **fill(attack.headers)},
+        attack.who, attack.method, fill(attack.path), content=content, headers={**kind, **fill(attack.headers)}
     )
     assert answer.status_code in attack.expected, answer.text[:500]
     said = answer.text.lower()

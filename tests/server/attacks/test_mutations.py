@@ -38,14 +38,48 @@ GROWTH = 300.0
 """Megabytes by which the server may grow."""
 
 VALUES: tuple[Any, ...] = (
-    None, True, 0, -1, 1e308, 10**30, "", "x" * 5000, "\0", "‮", "${7*7}", "{{7*7}}", "' OR '1'='1", [], {},
-    [[]], {"path": "/etc/passwd"}, {"__type__": "update"}, {"path": 7, "meta": "x"}, {"meta": {"_type": []}},
-    "../../etc/passwd", "\r\nSet-Cookie: a=b", "<img src=x onerror=alert(1)>", "NaN", ["\ud83d"],
-)  # fmt: skip
+    None,
+    True,
+    0,
+    -1,
+    1e308,
+    10**30,
+    "",
+    "x" * 5000,
+    "\0",
+    "‮",
+    "${7*7}",
+    "{{7*7}}",
+    "' OR '1'='1",
+    [],
+    {},
+    [[]],
+    {"path": "/etc/passwd"},
+    {"__type__": "update"},
+    {"path": 7, "meta": "x"},
+    {"meta": {"_type": []}},
+    "../../etc/passwd",
+    "\r\nSet-Cookie: a=b",
+    "<img src=x onerror=alert(1)>",
+    "NaN",
+    ["\ud83d"],
+)
 HEADERS = (
-    "content-type", "accept", "cookie", "origin", "referer", "range", "accept-encoding", "x-forwarded-for",
-    "x-forwarded-proto", "authorization", "if-none-match", "x-gradio-user", "content-encoding", "te",
-)  # fmt: skip
+    "content-type",
+    "accept",
+    "cookie",
+    "origin",
+    "referer",
+    "range",
+    "accept-encoding",
+    "x-forwarded-for",
+    "x-forwarded-proto",
+    "authorization",
+    "if-none-match",
+    "x-gradio-user",
+    "content-encoding",
+    "te",
+)
 BYTES = (b"\0", b"\xff", b"-", b"9" * 400, b"nan", b"\n", b"{", b"}", b"ROOT", b"1e400", b"PK\x03\x04", b"\r")
 
 
@@ -92,32 +126,56 @@ def mutated(data: bytes, dice: random.Random) -> bytes:
 
 def mutated_request(dice: random.Random) -> tuple[str, str, dict[str, Any]]:
     """Method, path and the rest of a request."""
-    path = dice.choice((
-        f"{API}/queue/join", f"{API}/call/generate", f"{API}/call/react", f"{API}/run/predict",
-        f"{API}/api/generate", f"{API}/cancel", f"{API}/reset", f"{API}/component_server", f"{API}/upload",
-        "/login", "/", "/config", f"{API}/info", f"{API}/queue/data?session_hash=mutant",
-        f"{API}/file=x", f"{API}/upload_progress?upload_id=x", f"{API}/heartbeat/mutant2", "/theme.css",
-        "/static/img/logo.svg", "/manifest.json", "/robots.txt", f"{API}/app_id", "/logout",
-    ))  # fmt: skip
+    path = dice.choice(
+        (
+            f"{API}/queue/join",
+            f"{API}/call/generate",
+            f"{API}/call/react",
+            f"{API}/run/predict",
+            f"{API}/api/generate",
+            f"{API}/cancel",
+            f"{API}/reset",
+            f"{API}/component_server",
+            f"{API}/upload",
+            "/login",
+            "/",
+            "/config",
+            f"{API}/info",
+            f"{API}/queue/data?session_hash=mutant",
+            f"{API}/file=x",
+            f"{API}/upload_progress?upload_id=x",
+            f"{API}/heartbeat/mutant2",
+            "/theme.css",
+            "/static/img/logo.svg",
+            "/manifest.json",
+            "/robots.txt",
+            f"{API}/app_id",
+            "/logout",
+        )
+    )
     posted = path.split("/")[-1].split("?")[0] in (
-        "join", "generate", "react", "predict", "cancel", "reset", "component_server", "upload", "login",
-    )  # fmt: skip
+        "join",
+        "generate",
+        "react",
+        "predict",
+        "cancel",
+        "reset",
+        "component_server",
+        "upload",
+        "login",
+    )
     method = "POST" if posted else "GET"
     if dice.random() < 0.1:
         method = dice.choice(("GET", "POST", "PUT", "DELETE", "HEAD", "OPTIONS", "PATCH", "BREW"))
     if dice.random() < 0.2:
         letters = "".join(chr(dice.randrange(33, 127)) for _ in range(dice.randint(1, 30)))
         path += "?" + letters.replace("#", "")
-    form = (
-        b'--x\r\nContent-Disposition: form-data; name="files"; filename="a.bvh"\r\n\r\nHIERARCHY\r\n--x--\r\n'
-    )
+    form = b'--x\r\nContent-Disposition: form-data; name="files"; filename="a.bvh"\r\n\r\nHIERARCHY\r\n--x--\r\n'
     content = mutated(form, dice) if path.startswith((f"{API}/upload", "/login")) else mutated_json(dice)
     kind = "multipart/form-data; boundary=x" if content.startswith(b"-") else "application/json"
     headers = {"content-type": kind}
     if dice.random() < 0.3:
-        headers[dice.choice(HEADERS)] = dice.choice(
-            ("", "x" * 3000, "a=b; c", "bytes=5-1", "*/*;q=x", "gzip")
-        )
+        headers[dice.choice(HEADERS)] = dice.choice(("", "x" * 3000, "a=b; c", "bytes=5-1", "*/*;q=x", "gzip"))
     return method, path, {"content": content if method not in ("GET", "HEAD") else None, "headers": headers}
 
 
@@ -154,9 +212,14 @@ def samples() -> dict[str, bytes]:
     skeleton = b"5\n" + (b"1\n7 0 0 0 0 0 0 0 0 2\n25\n" + body) * 5
     sbu = b"\n".join(b"%d," % i + b",".join(b"0.%d" % (k % 9 + 1) for k in range(90)) for i in range(5))
     return {
-        "a.bvh": bvh, "a.npy": array.getvalue(), "a.npz": archive.getvalue(), "a.skeleton": skeleton,
-        "a.txt": sbu, "a.glb": glb_motion(rotations, positions[:, 0]), "a.toml": STORY,
-    }  # fmt: skip
+        "a.bvh": bvh,
+        "a.npy": array.getvalue(),
+        "a.npz": archive.getvalue(),
+        "a.skeleton": skeleton,
+        "a.txt": sbu,
+        "a.glb": glb_motion(rotations, positions[:, 0]),
+        "a.toml": STORY,
+    }
 
 
 Change = Callable[[bytes, random.Random], bytes]
@@ -165,9 +228,7 @@ Change = Callable[[bytes, random.Random], bytes]
 def read_mutants(name: str, data: bytes, change: Change, count: int, send: Callable[[str], None]) -> None:
     """Reads changed files in a process of bounded memory; says of the first that was no sentence."""
     statm = Path("/proc/self/statm")  # what the tests before it have taken comes on top
-    most = READER_BYTES + (
-        int(statm.read_text().split()[0]) * resource.getpagesize() if statm.exists() else 0
-    )
+    most = READER_BYTES + (int(statm.read_text().split()[0]) * resource.getpagesize() if statm.exists() else 0)
     resource.setrlimit(resource.RLIMIT_AS, (most, most))
     dice = random.Random(count)
     for i in range(count):
@@ -190,9 +251,7 @@ def read_mutants(name: str, data: bytes, change: Change, count: int, send: Calla
 
 
 WHOLE = ("a.bvh", "a.npy", "a.npz", "a.skeleton", "a.txt", "a.glb", "a.toml")
-INSIDE: tuple[tuple[str, Change], ...] = (
-    ("a.npz", changed_archive), ("a.glb", changed_glb), ("a.toml", changed_story),
-)  # fmt: skip
+INSIDE: tuple[tuple[str, Change], ...] = (("a.npz", changed_archive), ("a.glb", changed_glb), ("a.toml", changed_story))
 
 
 @pytest.mark.parametrize(("name", "change"), [*((name, mutated) for name in WHOLE), *INSIDE])

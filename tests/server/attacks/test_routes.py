@@ -14,18 +14,37 @@ from .test_known import SECRETS
 from .victim import Victim
 
 OPEN = {
-    "GET /healthz", "GET /metrics", "GET /login", "POST /login", "POST /login/", "GET /logout", "POST /logout",
-    "GET /share/{key}", "GET /embed/{key}", "GET /shown/{name:path}",
-}  # fmt: skip
+    "GET /healthz",
+    "GET /metrics",
+    "GET /login",
+    "POST /login",
+    "POST /login/",
+    "GET /logout",
+    "POST /logout",
+    "GET /share/{key}",
+    "GET /embed/{key}",
+    "GET /shown/{name:path}",
+}
 """Routes that need no sign-in: /metrics has its own rule, and a public page's key is a secret."""
 THINGS = {
-    "key": ("{study_key}", "{stream}", "{run}", "x"), "path": ("{upload}", "../canary.txt", "x"), "size": ("7", "x"),
-    "session_hash": ("{session}", "x"), "event_id": ("{call}", "{session}", "x"), "api_name": ("generate", "x"),
-    "path_or_url": ("{upload}", "{canary}", "{here}/healthz"), "url_path": ("{here}/healthz",),
-    "run": ("{run}",), "component_id": ("1",), "segment_id": ("x",), "ext": ("ts",), "id": ("1",),
+    "key": ("{study_key}", "{stream}", "{run}", "x"),
+    "path": ("{upload}", "../canary.txt", "x"),
+    "size": ("7", "x"),
+    "session_hash": ("{session}", "x"),
+    "event_id": ("{call}", "{session}", "x"),
+    "api_name": ("generate", "x"),
+    "path_or_url": ("{upload}", "{canary}", "{here}/healthz"),
+    "url_path": ("{here}/healthz",),
+    "run": ("{run}",),
+    "component_id": ("1",),
+    "segment_id": ("x",),
+    "ext": ("ts",),
+    "id": ("1",),
     "name": ("{upload}", "{canary}", "share/page.html"),
-    "environment": ("client",), "type": ("component",), "file_name": ("index.js",),
-}  # fmt: skip
+    "environment": ("client",),
+    "type": ("component",),
+    "file_name": ("index.js",),
+}
 """What stands for each parameter of a path."""
 
 
@@ -36,8 +55,7 @@ def test_every_route_has_an_attack(backend: Backend) -> None:
         for route in sorted(backend.routes)
         for method, path in [route.split(" ", 1)]
         if not any(
-            method == attack.method and compile_path(path)[0].match(re.split(r"\?", attack.path)[0])
-            for attack in KNOWN
+            method == attack.method and compile_path(path)[0].match(re.split(r"\?", attack.path)[0]) for attack in KNOWN
         )
     ]
     assert not without
@@ -49,9 +67,7 @@ def test_strangers_sign_in_first(backend: Backend, closed: Target) -> None:
         method, path = route.split(" ", 1)
         answer = closed.ask("stranger", method, re.sub(r"{\w+(:path)?}", "x", path))
         assert answer.status_code in (401, 404), (route, answer.text)
-        assert answer.status_code == 401 or method == "HEAD" or "nothing here" in answer.text, (
-            route
-        )  # closed to all
+        assert answer.status_code == 401 or method == "HEAD" or "nothing here" in answer.text, route  # closed to all
 
 
 def test_none_hands_out_what_is_another_s(
@@ -60,11 +76,7 @@ def test_none_hands_out_what_is_another_s(
     ada = victims(target)
     for route in sorted(backend.routes):
         method, path = route.split(" ", 1)
-        if (
-            path in ("/logout", "/login", "/login/", "/account/sign-out")
-            or "queue/data" in path
-            or "heartbeat" in path
-        ):
+        if path in ("/logout", "/login", "/login/", "/account/sign-out") or "queue/data" in path or "heartbeat" in path:
             continue  # streams that last; with ada's session they are among the known attacks
         for turn in range(max((len(THINGS[name]) for name in _names(path)), default=1)):
             filled = path

@@ -98,9 +98,7 @@ def test_idle_connections_keep_nobody_out(anyone: Target) -> None:
     try:
         for _ in range(1000):
             idle.append(socket.create_connection(("127.0.0.1", anyone.port), timeout=30))
-        with socket.create_connection(
-            ("127.0.0.1", anyone.port), timeout=30, source_address=("127.0.0.2", 0)
-        ) as other:
+        with socket.create_connection(("127.0.0.1", anyone.port), timeout=30, source_address=("127.0.0.2", 0)) as other:
             other.sendall(b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
             assert read_all(other).startswith(b"HTTP/1.1 200")
     finally:

@@ -12,9 +12,23 @@ from webdemo.ui.components.accepts import accepts, accepts_event
 from webdemo.ui.components.notebook import ACTS
 
 WRONG: tuple[Any, ...] = (
-    {"path": "{upload}", "meta": {"_type": "gradio.FileData"}}, {"__type__": "update", "value": "{run}"}, ["{run}"],
-    {}, [[[]]], True, -1, 0.5, 1e308, 10**30, "", "x" * 5000, "\0", "NaN", "../../canary.txt", None,
-)  # fmt: skip
+    {"path": "{upload}", "meta": {"_type": "gradio.FileData"}},
+    {"__type__": "update", "value": "{run}"},
+    ["{run}"],
+    {},
+    [[[]]],
+    True,
+    -1,
+    0.5,
+    1e308,
+    10**30,
+    "",
+    "x" * 5000,
+    "\0",
+    "NaN",
+    "../../canary.txt",
+    None,
+)
 """Of a type, size or meaning that hardly a component is sent."""
 
 
@@ -31,9 +45,7 @@ def usual(component: Component) -> Any:
 def takes_text(component: Component) -> bool:
     """True if a text somewhere in the component's value passes the guard."""
     schema = accepts(component).json_schema()
-    return '"type": "string"' in str(schema).replace("'", '"') and "Upload" not in str(
-        schema.get("$defs", "")
-    )
+    return '"type": "string"' in str(schema).replace("'", '"') and "Upload" not in str(schema.get("$defs", ""))
 
 
 def filled(component: Component, text: str) -> Any:

@@ -51,11 +51,20 @@ class Victim:
         page = Publishing(history).publish(self.owner, run)
         database.close()
         self.things = {
-            "upload": upload, "download": download, "call": call, "session": "adas own", "run": run,
-            "study": study.id, "study_key": study.key, "public": page.key, "here": target.url,
-            "folder_of_ada": str(Path(upload).parents[1]), "canary": str(target.canary),
-            "folder": str(target.folder), "data": str(target.data),
-        }  # fmt: skip
+            "upload": upload,
+            "download": download,
+            "call": call,
+            "session": "adas own",
+            "run": run,
+            "study": study.id,
+            "study_key": study.key,
+            "public": page.key,
+            "here": target.url,
+            "folder_of_ada": str(Path(upload).parents[1]),
+            "canary": str(target.canary),
+            "folder": str(target.folder),
+            "data": str(target.data),
+        }
         self._kept = self._state()
 
     def live(self) -> str:
@@ -84,10 +93,13 @@ class Victim:
         return [
             self.rows(f"SELECT * FROM {table} WHERE {column} = '{key}'")
             for table, column, key in (
-                ("runs", "id", run), ("links", "run_id", run), ("notes", "run_id", run), ("studies", "id", study),
+                ("runs", "id", run),
+                ("links", "run_id", run),
+                ("notes", "run_id", run),
+                ("studies", "id", study),
                 ("published", "run_id", run),
             )
-        ]  # fmt: skip
+        ]
 
     def check(self, number: Callable[[str], int]) -> None:
         """Fails unless all of it is there, as it was, and opens for her: so nothing failed for want of a target.

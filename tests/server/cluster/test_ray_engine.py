@@ -157,9 +157,7 @@ def test_a_replica_that_is_killed_loses_no_request(replicas: RayEngine, weights:
 def test_it_listens_on_loopback_alone(replicas: RayEngine) -> None:
     ours = descendants(os.getpid())
     assert len(ours) > 3
-    open_to_all = [
-        (port, pid) for pid in ours for port in listening(pid) if not port.startswith("127.0.0.1:")
-    ]
+    open_to_all = [(port, pid) for pid in ours for port in listening(pid) if not port.startswith("127.0.0.1:")]
     assert not open_to_all
 
 

@@ -34,13 +34,27 @@ def test_the_page_and_its_headers(local: TestClient) -> None:
 @pytest.mark.parametrize(
     "path",
     [
-        "/gradio_api/file=/etc/passwd", "/gradio_api/file=../../etc/passwd", "/gradio_api/file=%2e%2e/x",
-        "/gradio_api/file=/proc/self/environ", "/gradio_api/file=https://example.com/x",
-        "/gradio_api/proxy=https://example.com/", "/monitoring", "/gradio_api/vibe-edit/", "/docs",
-        "/openapi.json", "/gradio_api/file=app.py", "/a%00b", "/..%5c..%5cx", "/static/../app.py",
-        "/gradio_api/dev/reload", "/gradio_api/deep_link", "/static//x", f"{HERE}//", f"{HERE}//config",
+        "/gradio_api/file=/etc/passwd",
+        "/gradio_api/file=../../etc/passwd",
+        "/gradio_api/file=%2e%2e/x",
+        "/gradio_api/file=/proc/self/environ",
+        "/gradio_api/file=https://example.com/x",
+        "/gradio_api/proxy=https://example.com/",
+        "/monitoring",
+        "/gradio_api/vibe-edit/",
+        "/docs",
+        "/openapi.json",
+        "/gradio_api/file=app.py",
+        "/a%00b",
+        "/..%5c..%5cx",
+        "/static/../app.py",
+        "/gradio_api/dev/reload",
+        "/gradio_api/deep_link",
+        "/static//x",
+        f"{HERE}//",
+        f"{HERE}//config",
     ],
-)  # fmt: skip
+)
 def test_paths_lead_nowhere(local: TestClient, path: str) -> None:
     answer = local.get(path)
     assert answer.status_code in (400, 403, 404) and "root:" not in answer.text
@@ -54,10 +68,13 @@ def test_the_database_is_not_served(local: TestClient) -> None:
 @pytest.mark.parametrize(
     "headers",
     [
-        {"origin": "https://evil.example"}, {"origin": "null"}, {"sec-fetch-site": "cross-site"},
-        {"origin": "http://127.0.0.1:9999"}, {"origin": "http://127.0.0.1.evil.example"},
+        {"origin": "https://evil.example"},
+        {"origin": "null"},
+        {"sec-fetch-site": "cross-site"},
+        {"origin": "http://127.0.0.1:9999"},
+        {"origin": "http://127.0.0.1.evil.example"},
     ],
-)  # fmt: skip
+)
 def test_other_sites_change_nothing(local: TestClient, headers: dict[str, str]) -> None:
     answer = local.post(JOIN, json={"session_hash": "s1", "data": [], "fn_index": 0}, headers=headers)
     assert answer.status_code == 403 and "Another site's page" in answer.json()["detail"]
@@ -195,9 +212,7 @@ def test_many_who_come_at_once_wait_for_one_page() -> None:
     assert made == ["/"]
 
 
-def test_an_address_that_asks_for_page_after_page_waits(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_address_that_asks_for_page_after_page_waits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(guard, "_GETS", 200)
     with client_of(settings_for(tmp_path, rate=100)) as client:
         assert [client.get("/config").status_code for _ in range(22)].count(429) == 2
@@ -239,9 +254,7 @@ def test_nobody_says_where_the_page_is(local: TestClient) -> None:
 
 
 def test_what_pages_leave_behind_is_bounded(local: TestClient) -> None:
-    mounted = next(
-        route.app for route in local.app.routes if hasattr(getattr(route, "app", None), "state_holder")
-    )
+    mounted = next(route.app for route in local.app.routes if hasattr(getattr(route, "app", None), "state_holder"))
     assert mounted.state_holder.capacity == PAGES
 
 

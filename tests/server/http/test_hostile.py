@@ -35,9 +35,19 @@ def react(client: TestClient, actor: Any) -> str:
 
 @pytest.mark.parametrize(
     "name",
-    ["../../../evil.bvh", "/etc/evil.bvh", "..\\..\\evil.bvh", "a/../../evil.bvh", "%2e%2e%2fevil.bvh",
-     "evil.bvh\r\nSet-Cookie: a=b", "e" * 3000 + ".bvh", "CON.bvh", ".bvh", "evil.bvh/"],
-)  # fmt: skip
+    [
+        "../../../evil.bvh",
+        "/etc/evil.bvh",
+        "..\\..\\evil.bvh",
+        "a/../../evil.bvh",
+        "%2e%2e%2fevil.bvh",
+        "evil.bvh\r\nSet-Cookie: a=b",
+        "e" * 3000 + ".bvh",
+        "CON.bvh",
+        ".bvh",
+        "evil.bvh/",
+    ],
+)
 def test_an_upload_stays_in_its_folder(local: TestClient, name: str, tmp_path: Path) -> None:
     answer = local.post(UPLOAD, files={"files": (name, b"HIERARCHY")})
     assert answer.status_code in (200, 400, 422) and "set-cookie" not in answer.headers
@@ -75,11 +85,15 @@ def test_what_the_page_does_not_offer_is_no_error_of_the_programs(local: TestCli
     """A name or number that is made up is refused before Gradio stumbles over it."""
     errors = lab_of(local).figures.errors.collect()[0].samples
     for path, body in (
-        ("call/nosuch", {"data": []}), ("run/nosuch", {"data": []}), ("api/..", {"data": []}),
-        ("call/refresh", {"data": [None]}), ("queue/join", {"data": [], "fn_index": 99999}),
-        ("queue/join", {"data": [], "fn_index": -1}), ("run/predict", {"data": [], "fn_index": "0"}),
+        ("call/nosuch", {"data": []}),
+        ("run/nosuch", {"data": []}),
+        ("api/..", {"data": []}),
+        ("call/refresh", {"data": [None]}),
+        ("queue/join", {"data": [], "fn_index": 99999}),
+        ("queue/join", {"data": [], "fn_index": -1}),
+        ("run/predict", {"data": [], "fn_index": "0"}),
         ("queue/join", {"data": [], "fn_index": True}),
-    ):  # fmt: skip
+    ):
         answer = local.post(f"/gradio_api/{path}", json=body)
         assert answer.status_code == 404, (path, body, answer.text)
     assert lab_of(local).figures.errors.collect()[0].samples == errors

@@ -31,9 +31,13 @@ def _answer(body: bytes, query: bytes = b"", pieces: int = 1) -> tuple[Mapping[b
         sent.append(message)
 
     scope = {
-        "type": "http", "method": "GET", "path": "/", "scheme": "http", "query_string": query,
+        "type": "http",
+        "method": "GET",
+        "path": "/",
+        "scheme": "http",
+        "query_string": query,
         "headers": [(b"accept-encoding", b"gzip")],
-    }  # fmt: skip
+    }
     asyncio.run(PageCache(app)(scope, receive, send))
     headers = dict(sent[0]["headers"])
     whole = b"".join(message.get("body", b"") for message in sent[1:])

@@ -40,9 +40,11 @@ STORY: dict[str, Any] = json.loads(
     )
 )
 ACTION = {
-    "act": "search", "ids": ["r1"], "limit": None,
+    "act": "search",
+    "ids": ["r1"],
+    "limit": None,
     "search": {"words": "", "kind": "", "model": "", "tag": "", "starred": False, "since": 1.7e9, "until": None},
-}  # fmt: skip
+}
 DESCRIBED = ACTION | {"act": "describe", "title": "A bow", "tags": "x, y", "note": "", "frame": 3}
 TYPICAL: dict[type, Any] = {
     gr.Textbox: "They bow.",
@@ -69,12 +71,30 @@ def deep(value: Any) -> Any:
 
 
 FORGED = (
-    {"value": FILE}, [[FILE]], {"beats": [FILE]}, {"beats": [{"words": FILE}]}, STORY | {"more": FILE},
-    STORY | {"span": [FILE]}, STORY | FILE, {"poses": [{"person": "a", "seconds": 0, "positions": [[FILE]]}]},
-    {"meta": FILE["meta"], "path": "/etc/passwd"}, FILE | {"more": FILE}, {"path": "/uploads/ada/x.glb", "url": FILE},
-    float("nan"), float("inf"), -float("inf"), 10**400, {"span": [float("nan")]}, [float("inf")],
-    {}, [[]], deep(1), {"a": deep(1)}, STORY | {"beats": {"0": "They bow."}}, "\x00" * 3,
-)  # fmt: skip
+    {"value": FILE},
+    [[FILE]],
+    {"beats": [FILE]},
+    {"beats": [{"words": FILE}]},
+    STORY | {"more": FILE},
+    STORY | {"span": [FILE]},
+    STORY | FILE,
+    {"poses": [{"person": "a", "seconds": 0, "positions": [[FILE]]}]},
+    {"meta": FILE["meta"], "path": "/etc/passwd"},
+    FILE | {"more": FILE},
+    {"path": "/uploads/ada/x.glb", "url": FILE},
+    float("nan"),
+    float("inf"),
+    -float("inf"),
+    10**400,
+    {"span": [float("nan")]},
+    [float("inf")],
+    {},
+    [[]],
+    deep(1),
+    {"a": deep(1)},
+    STORY | {"beats": {"0": "They bow."}},
+    "\x00" * 3,
+)
 
 
 @pytest.fixture
@@ -108,9 +128,7 @@ def test_every_component_sends_its_own_value_and_a_typical_one(page: Blocks) -> 
     for component in found.values():
         own = None if isinstance(component, gr.State) else getattr(component, "value", None)
         kind = next((k for k in type(component).__mro__ if k in TYPICAL), None)
-        typical = (
-            TYPICAL[kind] if kind is not None else "a text"
-        )  # the panels of films and streams send texts
+        typical = TYPICAL[kind] if kind is not None else "a text"  # the panels of films and streams send texts
         for value in (None, own, typical):
             assert passes(value, component), (component.label, type(component), value)
 
@@ -118,9 +136,7 @@ def test_every_component_sends_its_own_value_and_a_typical_one(page: Blocks) -> 
 def test_no_component_takes_what_is_forged(page: Blocks) -> None:
     for component in inputs(page).values():
         for value in FORGED:
-            if isinstance(value, str) and isinstance(
-                component, gr.Textbox | gr.HTML | gr.Dropdown | gr.Radio
-            ):
+            if isinstance(value, str) and isinstance(component, gr.Textbox | gr.HTML | gr.Dropdown | gr.Radio):
                 continue  # a text is a text
             if value == {} and isinstance(component, StoryLine | Reading):
                 continue  # a story without anything, or no text
@@ -177,12 +193,7 @@ def test_a_call_names_the_senders_own_upload_alone(component: type) -> None:
         part.upload(lambda file: None, inputs=part)
     calls = Payloads(page)
     calls.check({"fn_index": 0, "data": [FILE]}, None, "ada")
-    for person, value in (
-        ("eve", FILE),
-        ("ada", {"path": "/etc/passwd"}),
-        ("ada", "/uploads/ada/x.glb"),
-        ("ada", {}),
-    ):
+    for person, value in (("eve", FILE), ("ada", {"path": "/etc/passwd"}), ("ada", "/uploads/ada/x.glb"), ("ada", {})):
         with pytest.raises(Refused, match="must be uploaded"):
             calls.check({"fn_index": 0, "data": [value]}, None, person)
 

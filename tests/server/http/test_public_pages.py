@@ -29,9 +29,12 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Target]:
 def share(lab: Target, *words: str, code: int = 0) -> dict[str, Any]:
     """What ``python -m webdemo share`` prints at the end, or its error as ``error``."""
     said = subprocess.run(
-        [sys.executable, "-m", "webdemo", "share", *words], cwd=ROOT, capture_output=True, text=True,
+        [sys.executable, "-m", "webdemo", "share", *words],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
         env={**os.environ, **lab.env, "PASDEDEUX_DATA": str(lab.data)},
-    )  # fmt: skip
+    )
     assert said.returncode == code, said.stderr
     return {"error": said.stderr} if code else json.loads(said.stdout.splitlines()[-1])
 

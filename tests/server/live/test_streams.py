@@ -213,20 +213,28 @@ def test_landmarks_become_the_persons_poses() -> None:
     answers = []
     for picture, time in enumerate(filmed.times):
         chosen = replace(
-            filmed, times=np.array([time]), frames=np.zeros(1, int), world=filmed.world[[picture]],
-            image=filmed.image[[picture]], seen=filmed.seen[[picture]],
-        )  # fmt: skip
+            filmed,
+            times=np.array([time]),
+            frames=np.zeros(1, int),
+            world=filmed.world[[picture]],
+            image=filmed.image[[picture]],
+            seen=filmed.seen[[picture]],
+        )
         answers.append(answered(one, read_message(packed(chosen).encode())))
     frames = [unpack_positions(a["frames"]) for a in answers if a["frames"]]
     person = np.concatenate(frames, axis=1)[0]
     assert len(person) == pytest.approx(30 * 1.5 - 2 * 8, abs=3)
     assert 1.4 < person[..., 1].max() < 2.0 and abs(person[..., 1].min()) < 0.06
-    assert one.partner.gaze is not None and one.partner.gaze.camera > 0.9, (
-        "the partner is told where the face points"
-    )
+    assert one.partner.gaze is not None and one.partner.gaze.camera > 0.9, "the partner is told where the face points"
     one.clock.now += stream_module.LOST + 0.1
-    empty = replace(filmed, times=np.array([3.0]), frames=np.zeros(0, int), world=filmed.world[:0],
-                    image=filmed.image[:0], seen=filmed.seen[:0])  # fmt: skip
+    empty = replace(
+        filmed,
+        times=np.array([3.0]),
+        frames=np.zeros(0, int),
+        world=filmed.world[:0],
+        image=filmed.image[:0],
+        seen=filmed.seen[:0],
+    )
     assert "step into the picture" in answered(one, read_message(packed(empty).encode()))["hint"]
 
 
@@ -299,8 +307,10 @@ def test_a_stream_gets_no_more_frames_than_time_has_passed() -> None:
 
 def test_points_that_lie_in_one_place_do_no_harm() -> None:
     filmed = film([stepping(1.0)])
-    for part in (replace(filmed, image=np.full_like(filmed.image, 0.5), world=np.zeros_like(filmed.world)),
-                 replace(filmed, seen=np.zeros_like(filmed.seen), image=np.zeros_like(filmed.image))):  # fmt: skip
+    for part in (
+        replace(filmed, image=np.full_like(filmed.image, 0.5), world=np.zeros_like(filmed.world)),
+        replace(filmed, seen=np.zeros_like(filmed.seen), image=np.zeros_like(filmed.image)),
+    ):
         answer = answered(stream(), read_message(packed(part).encode()))
         assert answer["frames"] is None or np.isfinite(unpack_positions(answer["frames"])).all()
 

@@ -45,9 +45,7 @@ def turns() -> Iterator[StepTurns]:
 
 def test_owners_take_turns_step_by_step(turns: StepTurns) -> None:
     gate = Gate()
-    answers = [
-        turns.submit(name, lambda name=name, n=n: gate.job(name, n)) for name, n in (("a", 30), ("b", 2))
-    ]
+    answers = [turns.submit(name, lambda name=name, n=n: gate.job(name, n)) for name, n in (("a", 30), ("b", 2))]
     gate.open.set()
     assert [answer.result(20)["name"] for answer in answers] == ["a", "b"]
     assert gate.done[:5] == ["a", "b", "a", "b", "a"] and len(gate.done) == 32
@@ -125,9 +123,7 @@ def test_a_flooded_stream_costs_no_other_its_turns(target: Target) -> None:
             httpx.AsyncClient(base_url=target.url, cookies=cookies["eve"], timeout=300) as eve,
             httpx.AsyncClient(base_url=target.url, cookies=cookies["ada"], timeout=300) as ada,
         ):
-            hers, his = [
-                (await one.post("/live", json={"partner": "agent"})).json()["id"] for one in (ada, eve)
-            ]
+            hers, his = [(await one.post("/live", json={"partner": "agent"})).json()["id"] for one in (ada, eve)]
             sent = [asyncio.create_task(eve.post(f"/live/{his}", content=long)) for _ in range(FLOOD)]
             while not any(task.done() for task in sent):  # the first was replaced: they have come
                 await asyncio.sleep(0.01)

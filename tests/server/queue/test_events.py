@@ -32,9 +32,7 @@ def made(limits: EventLimits | None = None) -> FairEvents:
     with gr.Blocks(analytics_enabled=False) as page:
         for name, limit in (("film", 1), ("list", 4), ("read", 4), ("tidy", 4), ("run", None)):
             gr.Button().click(lambda: None, concurrency_limit=limit, concurrency_id=name, api_name=name)
-    start_queue(
-        page, lambda **options: FairEvents(limits=limits or EventLimits(), figures=Figures(), **options)
-    )
+    start_queue(page, lambda **options: FairEvents(limits=limits or EventLimits(), figures=Figures(), **options))
     queue = page._queue
     assert isinstance(queue, FairEvents)
     queue.active_jobs = [None] * 40
@@ -170,33 +168,13 @@ def sheet(target: Target, who: str) -> list[Any]:
     """What ``/render`` is given for a contact sheet."""
     path = target.upload(who, "hands.npz", CLIP.read_bytes())
     file = {"path": path, "meta": {"_type": "gradio.FileData"}}
-    return [
-        file,
-        "png",
-        "bodies",
-        "light",
-        "threequarter",
-        False,
-        24,
-        640,
-        360,
-        None,
-        "",
-        0,
-        0,
-        False,
-        "",
-        "",
-    ]
+    return [file, "png", "bodies", "light", "threequarter", False, 24, 640, 360, None, "", 0, 0, False, "", ""]
 
 
 def test_one_person_cannot_stop_the_events_of_others(target: Target) -> None:
     """As many events as once stopped everybody's: a few are taken, and others' turn comes after one of them."""
     data = sheet(target, "eve")
-    asked = [
-        target.ask("eve", "POST", "/gradio_api/call/render", json={"data": data})
-        for _ in range(OLD_LIMIT + 5)
-    ]
+    asked = [target.ask("eve", "POST", "/gradio_api/call/render", json={"data": data}) for _ in range(OLD_LIMIT + 5)]
     refused = [answer for answer in asked if answer.status_code != 200]
     assert len(refused) > OLD_LIMIT / 2 and {answer.status_code for answer in refused} == {429}
     assert "things that you asked for are not done yet" in refused[-1].json()["detail"]

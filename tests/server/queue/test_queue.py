@@ -124,9 +124,7 @@ def test_who_has_had_least_goes_first(monkeypatch: pytest.MonkeyPatch) -> None:
     people.ask("later", request("later 0"))
     gate.open.release(6)
     people.end()
-    assert [names[0] for names in gate.order] == [
-        "greedy 0", "late 0", "later 0", "greedy 1", "greedy 2", "greedy 3"
-    ]  # fmt: skip
+    assert [names[0] for names in gate.order] == ["greedy 0", "late 0", "later 0", "greedy 1", "greedy 2", "greedy 3"]
     assert {name: end.manifest["name"] for name, end in people.ends.items()} == {n: n for n in people.ends}
 
 

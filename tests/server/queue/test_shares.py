@@ -12,16 +12,7 @@ from fastapi.testclient import TestClient
 from sqlalchemy import update
 
 from motion import InputError
-from tests.server.clients import (
-    CALL,
-    DATABASES,
-    FIELDS,
-    database_url,
-    drop_tables,
-    events_of,
-    lab_of,
-    sign_in,
-)
+from tests.server.clients import CALL, DATABASES, FIELDS, database_url, drop_tables, events_of, lab_of, sign_in
 from tests.server.lab import ROOT
 from webdemo.inference.requests import GenerateRequest
 from webdemo.server.cluster.instance_lock import InstanceLock
@@ -140,9 +131,8 @@ sys.stdin.read()
 
 def another_process(folder: Path) -> subprocess.Popen[str]:
     return subprocess.Popen(
-        [sys.executable, "-c", HOLD, str(folder)], cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-        text=True,
-    )  # fmt: skip
+        [sys.executable, "-c", HOLD, str(folder)], cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
 
 
 def test_every_process_has_a_name_of_its_own(tmp_path: Path) -> None:

@@ -114,9 +114,7 @@ def test_a_study_whose_motions_are_gone_is_left_out(tmp_path: Path) -> None:
     """As one is that is deleted between the rows and the files."""
     database = Database(f"sqlite:///{tmp_path / 'h.db'}")
     with database.session.begin() as session:
-        session.add(
-            Study(id="0" * 24, owner="user ada", key="k" * 24, question="q", runs="[]", captions="[]")
-        )
+        session.add(Study(id="0" * 24, owner="user ada", key="k" * 24, question="q", runs="[]", captions="[]"))
     parts = Lab(database.engine, tmp_path / "data", None)
     made = back_up(parts, tmp_path / "b")
     assert '"studies"' not in (made / "rows.jsonl").read_text()

@@ -71,13 +71,10 @@ def test_a_reaction_is_run_again_from_its_result(history: History) -> None:
 
 
 @pytest.mark.parametrize(("people", "marker"), [(2, 1.5), (1, 1.5), (2, 3.0)])
-def test_a_prediction_keeps_its_marker_and_what_really_followed(
-    history: History, people: int, marker: float
-) -> None:
+def test_a_prediction_keeps_its_marker_and_what_really_followed(history: History, people: int, marker: float) -> None:
     motion = stub_module().walking(3.0)
     engine = Engine(Path("no weights are needed"))
-    request = PredictRequest(motion=motion if people == 2 else motion.a, marker=marker, seconds=1.0,
-                             model="still")  # fmt: skip
+    request = PredictRequest(motion=motion if people == 2 else motion.a, marker=marker, seconds=1.0, model="still")
     *_, result = engine.run(request)
     run = history.begin(ME, request, "After")
     history.finish(run, result)
@@ -99,9 +96,7 @@ def test_the_verdict_names_what_differs(history: History) -> None:
         manifest=old.manifest | {"weights_sha256": "f" * 64, "versions": {"torch": "9"}},
     )
     sentence = verdict(old, new)
-    assert all(
-        part in sentence for part in ("up to 2 mm", "the weights (unknown → ffffffff)", "torch (none → 9)")
-    )
+    assert all(part in sentence for part in ("up to 2 mm", "the weights (unknown → ffffffff)", "torch (none → 9)"))
     elsewhere = replace(new, manifest=old.manifest)
     assert "same weights and versions; it ran on another machine" in verdict(old, elsewhere)
     shared = replace(old, manifest=old.manifest | {"runs_in_pass": 3})
@@ -246,9 +241,7 @@ def test_what_a_killed_process_left_is_marked(history: History) -> None:
     history.open(whole, ME)
 
 
-def test_a_full_disk_is_a_sentence_and_leaves_nothing(
-    history: History, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_full_disk_is_a_sentence_and_leaves_nothing(history: History, monkeypatch: pytest.MonkeyPatch) -> None:
     before = kept(history)
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1, samples=2)
     run = history.begin(ME, request, "full")

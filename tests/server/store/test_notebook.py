@@ -40,25 +40,22 @@ def test_runs_are_found_by_words_method_tag_star_and_date(notebook: Notebook) ->
     hug = kept(notebook, "Two people hug 100% of the time.")
     kept(notebook, "high five", model="bigraphdiff")
     kept(notebook, "Not mine.", owner=OTHER)
-    notebook.describe(
-        hug, ME, title="  Best   hug ", tags="paper, #figure-3 paper", note="The hands.", frame=12
-    )
+    notebook.describe(hug, ME, title="  Best   hug ", tags="paper, #figure-3 paper", note="The hands.", frame=12)
     notebook.favour(hug, ME, favourite=True)
     entry = notebook.entry(hug, ME)
-    assert (entry.title, entry.tags, entry.note, entry.frame) == (
-        "Best hug",
-        ("paper", "figure-3"),
-        "The hands.",
-        12,
-    )
+    assert (entry.title, entry.tags, entry.note, entry.frame) == ("Best hug", ("paper", "figure-3"), "The hands.", 12)
     assert len(entry.thumbnail) > 1000, "a thumbnail was drawn"
     everything = notebook.search(ME, Search())
     assert (everything.total, list(everything.tags)) == (2, ["figure-3", "paper"])
     assert list(everything.models) == ["bigraphdiff", "intergen"]
     for wanted in (
-        {"words": "HUG best"}, {"words": "hands"}, {"words": "100%"}, {"model": "intergen"}, {"tag": "paper"},
+        {"words": "HUG best"},
+        {"words": "hands"},
+        {"words": "100%"},
+        {"model": "intergen"},
+        {"tag": "paper"},
         {"starred": True},
-    ):  # fmt: skip
+    ):
         assert found(notebook, **wanted) == ["Best hug"], wanted
     now = time.time()
     assert len(found(notebook, since=now - 60, until=now + 60)) == 2
@@ -147,9 +144,7 @@ def test_results_go_out_in_one_file_and_come_in_from_theirs(notebook: Notebook, 
     theirs = notebook.search(OTHER, Search()).entries
     assert [entry.title for entry in theirs] == ["Two: people/walk"] * 2
     mine = notebook.open(run, ME).result
-    copies = sorted(
-        (notebook.open(entry.id, OTHER).result for entry in theirs), key=lambda r: r.manifest["sample"]
-    )
+    copies = sorted((notebook.open(entry.id, OTHER).result for entry in theirs), key=lambda r: r.manifest["sample"])
     for one, copy in zip(mine.duets, copies, strict=True):
         np.testing.assert_array_equal(one.positions, copy.duets[0].positions)
         assert copy.manifest["request"]["seed"] == 9

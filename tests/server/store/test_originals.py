@@ -39,9 +39,7 @@ def size_of(notebook: Notebook, run: str) -> int:
         return session.get_one(Run, run).size
 
 
-def test_an_upload_comes_back_for_its_owner_alone_and_goes_with_its_run(
-    notebook: Notebook, upload: Original
-) -> None:
+def test_an_upload_comes_back_for_its_owner_alone_and_goes_with_its_run(notebook: Notebook, upload: Original) -> None:
     run = reaction(notebook, upload)
     upload.path.unlink()  # uploads are soon cleaned away
     kept = notebook.open(run, ME).kept
@@ -66,9 +64,7 @@ def test_what_is_too_large_gone_or_a_link_is_not_kept(
         smaller.setattr(originals, "LARGEST_ORIGINAL", len(BYTES) - 1)
         run = reaction(notebook, upload)
     assert notebook.open(run, ME).kept.original is None
-    assert {path.name for path in (notebook.folder / run).iterdir()} == {
-        "1.npz", "given-1.npz", "readouts.json",
-    }  # fmt: skip
+    assert {path.name for path in (notebook.folder / run).iterdir()} == {"1.npz", "given-1.npz", "readouts.json"}
     monkeypatch.setattr("webdemo.server.store.history.RUN_BYTES", 0)
     used = sum(size_of(notebook, entry.id) for entry in notebook.entries(ME))
     notebook.storage.person_bytes = 2 * used / 0.75
@@ -80,11 +76,18 @@ def test_what_is_too_large_gone_or_a_link_is_not_kept(
 @pytest.mark.parametrize(
     ("name", "clean"),
     [
-        ("walk.bvh", "walk.bvh"), ("a/b\\c.NPZ", "c.npz"), ("..bvh", "motion.bvh"), (".bvh", ""),
+        ("walk.bvh", "walk.bvh"),
+        ("a/b\\c.NPZ", "c.npz"),
+        ("..bvh", "motion.bvh"),
+        (".bvh", ""),
         ("a\0b\n;rm *.txt", "a-b--rm.txt"),
-        ("Gehen äöü.bvh", "Gehen äöü.bvh"), ("x" * 300 + ".bvh", "x" * 100 + ".bvh"), ("page.html", ""),
-        ("walk.bvh/", ""), ("???.bvh", "motion.bvh"), ("..  .npy", "motion.npy"),
+        ("Gehen äöü.bvh", "Gehen äöü.bvh"),
+        ("x" * 300 + ".bvh", "x" * 100 + ".bvh"),
+        ("page.html", ""),
+        ("walk.bvh/", ""),
+        ("???.bvh", "motion.bvh"),
+        ("..  .npy", "motion.npy"),
     ],
-)  # fmt: skip
+)
 def test_names_are_cleaned(name: str, clean: str) -> None:
     assert clean_name(name) == clean

@@ -59,9 +59,7 @@ def test_a_page_ends_when_it_is_revoked_or_its_time_is_over(publishing: Publishi
     revoked, late = publishing.publish(ME, run), publishing.publish(ME, run, days=0.5)
     publishing.revoke(revoked.key, ME)
     with publishing.database.session.begin() as session:
-        session.execute(
-            update(Published).where(Published.key == late.key).values(until=Published.until - 43_201)
-        )
+        session.execute(update(Published).where(Published.key == late.key).values(until=Published.until - 43_201))
     for key in (revoked.key, late.key, run, "x", "", "../" * 10, "é" * 20):
         with pytest.raises(InputError, match="or it has ended"):
             publishing.shown(key)

@@ -46,8 +46,15 @@ def test_what_is_old_goes_then_the_oldest_of_who_has_too_much(tmp_path: Path) ->
     eve = [put(scratch.uploads / "eve", str(i), age=2000 - i) for i in range(3)]
     assert scratch.clean([str(own)], lambda person: 3.5 * MB) == 3
     assert [path.exists() for path in (old, own, *ada, used, *eve)] == [
-        False, True, False, False, True, True, True, *[True] * 3,
-    ]  # fmt: skip
+        False,
+        True,
+        False,
+        False,
+        True,
+        True,
+        True,
+        *[True] * 3,
+    ]
     os.utime(ada[0].parent, (0, 0))  # its file's removal had made it new
     scratch.clean([str(own)])
     assert not ada[0].parent.exists() and scratch.uploads.exists()
@@ -62,9 +69,7 @@ def test_a_person_s_own_files_make_way_and_no_others(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no room for 6 MB more"):
         scratch.admit("ada", "", 6 * MB, 5 * MB)
     put(scratch.uploads / "bob", "young", age=0, size=4 * MB)
-    with pytest.raises(
-        InputError, match="no room for 3 MB more"
-    ):  # all together have too much, but he has no old ones
+    with pytest.raises(InputError, match="no room for 3 MB more"):  # all together have too much, but he has no old ones
         scratch.admit("bob", "", 3 * MB, 100 * MB)
     assert all(path.exists() for path in eve)
 
@@ -87,9 +92,7 @@ def test_what_a_killed_process_left_goes_at_the_start(tmp_path: Path) -> None:
         Scratch(tmp_path / "file", MB)
 
 
-def test_a_server_keeps_its_files_there_and_tidies_them(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_server_keeps_its_files_there_and_tidies_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(app_module, "TIDY_EVERY", 0.05)
     monkeypatch.setenv("GRADIO_TEMP_DIR", "")
     scratch = Scratch(tmp_path / "s", 100 * MB)
@@ -140,9 +143,7 @@ def test_nothing_is_taken_where_the_disk_is_nearly_full(tmp_path: Path) -> None:
         assert answer.status_code == 507 and "disk is full" in answer.json()["detail"]
 
 
-def test_a_disk_that_fills_and_a_program_that_breaks(
-    local: TestClient, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_disk_that_fills_and_a_program_that_breaks(local: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     client = TestClient(local.app, base_url=HERE, client=("127.0.0.1", 5), raise_server_exceptions=False)
 
     def full(*args: Any, **more: Any) -> None:
@@ -188,13 +189,9 @@ def _fill_the_database(local: TestClient) -> None:
     assert {*before} <= {entry.id for entry in lab.history.entries("local")}
 
 
-def test_an_error_does_not_say_where_the_files_are(
-    local: TestClient, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_error_does_not_say_where_the_files_are(local: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(duet: Any, path: Path) -> None:
-        raise InputError(
-            f"{path} could not be written because the disk is full: free some space and try again."
-        )
+        raise InputError(f"{path} could not be written because the disk is full: free some space and try again.")
 
     monkeypatch.setattr(formats, "write", full)
     said = events_of(local, "generate", ["They walk to the end of the road.", *FIELDS[1:]])

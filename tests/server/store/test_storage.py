@@ -97,9 +97,7 @@ def test_the_total_is_reached_and_one_s_own_runs_make_way_or_the_run_is_refused(
     assert runs_of(notebook, "user ada") == theirs
 
 
-def test_an_import_that_does_not_fit_is_refused_and_removes_nothing(
-    notebook: Notebook, tmp_path: Path
-) -> None:
+def test_an_import_that_does_not_fit_is_refused_and_removes_nothing(notebook: Notebook, tmp_path: Path) -> None:
     mine = {kept(notebook, "user ada", seed) for seed in range(5)}
     file = shutil.copy(notebook.folder / min(mine) / "1.npz", tmp_path)
     notebook.storage.person_bytes = notebook.usage(Visitor("user ada", "user ada")).used / 0.75 + 1000
@@ -124,9 +122,7 @@ def hands(notebook: Notebook) -> Hands:
 
 
 @pytest.mark.parametrize("days", [60, -60])
-def test_a_clock_that_jumps_removes_nothing_even_after_a_run(
-    notebook: Notebook, hands: Hands, days: int
-) -> None:
+def test_a_clock_that_jumps_removes_nothing_even_after_a_run(notebook: Notebook, hands: Hands, days: int) -> None:
     runs = {kept(notebook, "user ada")}
     hands.wall += days * DAY
     runs.add(kept(notebook, "user ada", 1))
@@ -139,9 +135,7 @@ def test_a_clock_that_jumps_removes_nothing_even_after_a_run(
     assert runs_of(notebook, "user ada") == runs
 
 
-def test_cleaning_goes_on_after_a_steady_day_and_ages_are_those_of_the_record(
-    notebook: Notebook, hands: Hands
-) -> None:
+def test_cleaning_goes_on_after_a_steady_day_and_ages_are_those_of_the_record(notebook: Notebook, hands: Hands) -> None:
     run = kept(notebook, "user ada")
     hands.wall += 60 * DAY
     assert not notebook.clock.look()
@@ -154,9 +148,7 @@ def test_cleaning_goes_on_after_a_steady_day_and_ages_are_those_of_the_record(
 
 
 @pytest.mark.parametrize(("passed", "removed"), [(True, 1), (False, 0)])
-def test_an_operator_says_that_the_clock_is_right(
-    notebook: Notebook, hands: Hands, passed: bool, removed: int
-) -> None:
+def test_an_operator_says_that_the_clock_is_right(notebook: Notebook, hands: Hands, passed: bool, removed: int) -> None:
     kept(notebook, "user ada")
     hands.wall += 60 * DAY
     assert notebook.clean() == 0

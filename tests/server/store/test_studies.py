@@ -64,9 +64,7 @@ def test_votes_of_several_people_become_a_result_and_a_table(studies: Studies, t
         assert {row["left"], row["right"]} == {"short", "'=SUM(A1)"}
         assert row["sentence"] == f"They walk {int(row['pair']) - 1}."
     first = [row for row in rows if row["chosen"] != "tie"]
-    assert sorted(row[sides[key]] for row, key in zip(first, pressed, strict=True)).count("short") < len(
-        first
-    )
+    assert sorted(row[sides[key]] for row, key in zip(first, pressed, strict=True)).count("short") < len(first)
 
 
 def test_every_person_has_an_order_of_their_own_and_a_reload_skips_nothing(studies: Studies) -> None:

@@ -62,15 +62,6 @@ def test_the_captions_of_a_beat_stand_for_what_touches_in_it():
         {"start": 40, "end": 90, "captions": ["They bow."]},
     ]
     touch = {"a": "right_wrist", "b": "right_wrist", "start": 20, "end": 35}
-    row = {
-        "captions": ["They shake hands and bow."],
-        "hand": "right",
-        "events": {"contact": [touch]},
-        "beats": beats,
-    }
+    row = {"captions": ["They shake hands and bow."], "hand": "right", "events": {"contact": [touch]}, "beats": beats}
     right = (("right_wrist", "right_wrist"),)
-    assert examples([row]) == [
-        ("They bow.", ()),
-        ("They shake hands and bow.", right),
-        ("They shake hands.", right),
-    ]
+    assert examples([row]) == [("They bow.", ()), ("They shake hands and bow.", right), ("They shake hands.", right)]

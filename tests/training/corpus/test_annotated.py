@@ -33,9 +33,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (folder / "motions_processed" / person).mkdir(parents=True)
         np.save(folder / "motions_processed" / person / "7.npy", frames_of(positions))
     (folder / "annots").mkdir()
-    (folder / "annots" / "7.txt").write_text(
-        "Two people march.\n\nThey walk in step.\nBoth lift their knees.\n"
-    )
+    (folder / "annots" / "7.txt").write_text("Two people march.\n\nThey walk in step.\nBoth lift their knees.\n")
     return folder
 
 
@@ -67,9 +65,7 @@ def test_ten_steps_on_two_files_and_on_from_where_it_stopped(corpus: Path, tmp_p
     for a, b in zip(whole.model.parameters(), again.model.parameters(), strict=True):
         torch.testing.assert_close(a, b)
     fresh = begin(scenes, tmp_path / "fresh", settings)
-    assert any(
-        not torch.equal(a, b) for a, b in zip(fresh.model.parameters(), whole.model.parameters(), strict=True)
-    )
+    assert any(not torch.equal(a, b) for a, b in zip(fresh.model.parameters(), whole.model.parameters(), strict=True))
 
 
 def test_lists_give_the_split_and_what_is_damaged_is_left_out(

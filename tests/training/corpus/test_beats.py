@@ -95,9 +95,7 @@ def test_one_comes_the_other_stands_they_touch_and_one_leaves(library: Library) 
     (contact,) = scene.events["contact"]
     assert touch["start"] <= contact["start"] <= contact["end"] <= touch["end"] + 34
     held = slice(contact["start"] + 2, contact["end"] - 1)
-    gap = np.linalg.norm(
-        scene.positions[0, held, J(contact["a"])] - scene.positions[1, held, J(contact["b"])], axis=-1
-    )
+    gap = np.linalg.norm(scene.positions[0, held, J(contact["a"])] - scene.positions[1, held, J(contact["b"])], axis=-1)
     assert gap.max() < 0.14
     assert last["acts"].index("walk-away") == walker
     ends = np.linalg.norm(path(scene, 0, last)[[0, -1]] - path(scene, 1, last)[[0, -1]], axis=-1)
@@ -156,8 +154,10 @@ def test_bows_are_deep() -> None:
     shallow = motion(bow(80))
     shallow = type(shallow)(
         np.where(np.arange(22)[:, None, None] == J("spine1"), shallow.rotations * 1.0, shallow.rotations),
-        shallow.root, shallow.contacts, shallow.sources,
-    )  # fmt: skip
+        shallow.root,
+        shallow.contacts,
+        shallow.sources,
+    )
     head = realise(deepened(shallow, 0.32))[:, J("head"), 1]
     assert head.max() - head.min() >= 0.25
 

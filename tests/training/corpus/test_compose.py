@@ -115,9 +115,7 @@ def test_join_goes_on_where_the_first_ended_without_a_jump() -> None:
     assert bone_error(positions) < 1e-9
     assert np.abs(joined.headings[-1] - joined.headings[0]) < 0.05
     speeds = np.linalg.norm(np.diff(positions, axis=0), axis=-1).max(axis=-1) * 30
-    own = max(
-        np.linalg.norm(np.diff(p, axis=0), axis=-1).max() * 30 for p in (walk(120), gesture(90, "left"))
-    )
+    own = max(np.linalg.norm(np.diff(p, axis=0), axis=-1).max() * 30 for p in (walk(120), gesture(90, "left")))
     assert speeds.max() < 1.8 * own
     assert np.linalg.norm(joined.root[-1] - joined.root[119]) < 0.2
 

@@ -35,18 +35,18 @@ CONTACT = (*HANDS, "elbow-bump", "hug", "pat:back", "pat:shoulder", "hand-on:sho
 def _rotations(frames: int, **turns: np.ndarray) -> np.ndarray:
     """(frames, 22, 3, 3) arms hanging, and the given joints turned by rotation vectors (frames, 3)."""
     rotations = np.tile(np.eye(3), (frames, 22, 1, 1))
-    hanging = {"left_shoulder": [0, 0, -1.35], "right_shoulder": [0, 0, 1.35],
-               "left_elbow": [0, -0.3, 0], "right_elbow": [0, 0.3, 0]}  # fmt: skip
+    hanging = {
+        "left_shoulder": [0, 0, -1.35],
+        "right_shoulder": [0, 0, 1.35],
+        "left_elbow": [0, -0.3, 0],
+        "right_elbow": [0, 0.3, 0],
+    }
     for name, vector in {**hanging, **turns}.items():
-        rotations[:, SMPL22.index(name)] = Rotation.from_rotvec(
-            np.array(vector) + np.zeros((frames, 3))
-        ).as_matrix()
+        rotations[:, SMPL22.index(name)] = Rotation.from_rotvec(np.array(vector) + np.zeros((frames, 3))).as_matrix()
     return rotations
 
 
-def _body(
-    frames: int = FRAMES, *, away: float = 0.0, heading: float = 0.0, **turns: np.ndarray
-) -> np.ndarray:
+def _body(frames: int = FRAMES, *, away: float = 0.0, heading: float = 0.0, **turns: np.ndarray) -> np.ndarray:
     root = np.tile([0.0, 0.92, 0.0], (frames, 1))
     root[:, 0] += 0.01 * np.sin(np.arange(frames) / 20)
     positions = turn(forward_kinematics(_rotations(frames, **turns), root), heading)
@@ -103,9 +103,7 @@ def test_a_far_target_takes_the_trunk_along_but_not_the_feet():
 
 
 def test_an_impossible_target_is_approached_without_a_jolt():
-    reached = reach(
-        _body(), {"right": np.tile([0.0, 1.0, 3.0], (FRAMES, 1))}, envelope(FRAMES, 20, 40, 55, 75)
-    )
+    reached = reach(_body(), {"right": np.tile([0.0, 1.0, 3.0], (FRAMES, 1))}, envelope(FRAMES, 20, 40, 55, 75))
     assert np.isfinite(reached).all() and _bone_error(reached) < 1e-6
     assert _roughest(reached) < 60
 
@@ -135,9 +133,7 @@ def test_bending_and_shifting_keep_bones_and_feet():
     sunk = shift_hips(body, np.tile([0.05, -0.4, 0.0], (FRAMES, 1)))
     assert _bone_error(sunk) < 1e-6
     np.testing.assert_allclose(sunk[:, 0], body[:, 0] + [0.05, -0.4, 0.0])
-    np.testing.assert_allclose(
-        sunk[:, SMPL22.index("left_foot")], body[:, SMPL22.index("left_foot")], atol=1e-6
-    )
+    np.testing.assert_allclose(sunk[:, SMPL22.index("left_foot")], body[:, SMPL22.index("left_foot")], atol=1e-6)
 
 
 def test_posing_points_both_bones():

@@ -37,10 +37,7 @@ def placed(rows: list[Beat]) -> list[Beat]:
 
 def test_a_cue_names_acts_with_part_side_and_offer() -> None:
     assert steps("walk-up+wave@left") == ((("walk-up", None, None, False), ("wave", None, "left", False)),)
-    assert steps("fall-down>pat:shoulder?") == (
-        (("fall-down", None, None, False),),
-        (("pat", "shoulder", None, True),),
-    )
+    assert steps("fall-down>pat:shoulder?") == ((("fall-down", None, None, False),), (("pat", "shoulder", None, True),))
     assert steps("") == ()
 
 

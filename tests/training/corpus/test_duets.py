@@ -51,8 +51,7 @@ def test_joined_hands_are_a_hold_and_moments_are_none() -> None:
 
 
 @pytest.mark.parametrize(
-    ("degrees", "height", "twirled"),
-    [(360, 1.9, True), (-360, 1.9, True), (180, 1.9, False), (360, 1.0, False)],
+    ("degrees", "height", "twirled"), [(360, 1.9, True), (-360, 1.9, True), (180, 1.9, False), (360, 1.0, False)]
 )
 def test_a_turn_under_a_raised_arm_is_a_twirl(degrees: float, height: float, twirled: bool) -> None:
     people = joined(couple(60, turned=degrees), 0, 60, height)

@@ -39,9 +39,7 @@ def told(number: int, seed: int, split: str = "train") -> list[Told]:
 @cache
 def verbs() -> frozenset[str]:
     """Base forms of the verbs of all phrases in the stories; "back" is an adverb as well ("pushes him back")."""
-    names = {
-        name for pairs in stories() for pair in pairs for cue in pair for g in steps(cue) for name, *_ in g
-    }
+    names = {name for pairs in stories() for pair in pairs for cue in pair for g in steps(cue) for name, *_ in g}
     found = {verb for name in names for text in phrases(name) for verb in re.findall(r"\[([a-z-]+)\]", text)}
     return frozenset(found) - {"back"}
 
@@ -106,10 +104,19 @@ def test_two_people_who_began_together_are_told_apart_later(seed: int) -> None:
 
 @pytest.mark.parametrize(
     ("verb", "third", "ing"),
-    [("hug", "hugs", "hugging"), ("wave", "waves", "waving"), ("lie", "lies", "lying"), ("push", "pushes", "pushing"),
-     ("high-five", "high-fives", "high-fiving"), ("carry", "carries", "carrying"), ("see", "sees", "seeing"),
-     ("listen", "listens", "listening"), ("be", "is", "being"), ("bow", "bows", "bowing")],
-)  # fmt: skip
+    [
+        ("hug", "hugs", "hugging"),
+        ("wave", "waves", "waving"),
+        ("lie", "lies", "lying"),
+        ("push", "pushes", "pushing"),
+        ("high-five", "high-fives", "high-fiving"),
+        ("carry", "carries", "carrying"),
+        ("see", "sees", "seeing"),
+        ("listen", "listens", "listening"),
+        ("be", "is", "being"),
+        ("bow", "bows", "bowing"),
+    ],
+)
 def test_verbs_are_inflected(verb: str, third: str, ing: str) -> None:
     assert (singular(verb), gerund(verb)) == (third, ing)
 

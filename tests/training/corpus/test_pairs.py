@@ -19,9 +19,7 @@ from training.corpus.pairs import Report, build_scene, load_pairs
 from training.corpus.sbu import KinectPair, read_sbu
 
 
-def standing(
-    frames: int, place: tuple[float, float], heading: float, reach: np.ndarray | None = None
-) -> np.ndarray:
+def standing(frames: int, place: tuple[float, float], heading: float, reach: np.ndarray | None = None) -> np.ndarray:
     """(T, 15, 3) SBU joints of a person who stands, the right arm raised by ``reach`` (T,) in 0…1."""
     body = Skeleton("openni", SMPL22.joint_names, SMPL22.parents, LAYOUTS["sbu15"].offsets)
     rotations = np.tile(np.eye(3), (frames, 22, 1, 1))
@@ -47,15 +45,11 @@ def handshake(frames: int = 30) -> np.ndarray:
     )
 
 
-def pair(
-    positions: np.ndarray, family: str = "handshake", split: str = "train", fps: float = 15.0
-) -> KinectPair:
+def pair(positions: np.ndarray, family: str = "handshake", split: str = "train", fps: float = 15.0) -> KinectPair:
     return KinectPair(positions, family, "s01s02/05/001", split, "sbu", SBU15, fps, 0.0)
 
 
-def write_release(
-    folder: Path, top: str, clips: dict[str, np.ndarray], train: list[str], test: list[str]
-) -> None:
+def write_release(folder: Path, top: str, clips: dict[str, np.ndarray], train: list[str], test: list[str]) -> None:
     """A release in the data sets' own shape; the actor of every second listed clip is in file B."""
     for name, people in clips.items():
         (folder / top / name).mkdir(parents=True)
@@ -75,9 +69,7 @@ def write_release(
 def data_dir(tmp_path: Path) -> Path:
     people = handshake()
     sbu = {"s01s02/05/001": people, "s01s03/05/001": people, "s02s06/05/001": people}
-    write_release(
-        tmp_path / "sbu", "Skeletons_Check", sbu, ["s01s02/05/001", "s01s03/05/001"], ["s02s06/05/001"]
-    )
+    write_release(tmp_path / "sbu", "Skeletons_Check", sbu, ["s01s02/05/001", "s01s03/05/001"], ["s02s06/05/001"])
     order = [SBU15.index(name) for name in K3HI15.joint_names]
     k3hi = {"shaking/1": people[:, :, order], "shaking/2": people[:, :, order]}
     write_release(tmp_path / "k3hi", "Skeletons", k3hi, ["shaking/1"], [])
@@ -93,9 +85,7 @@ def test_readers_give_metres_roles_and_splits(data_dir: Path) -> None:
     listed, unlisted = read_k3hi(data_dir / "k3hi")
     assert (listed.split, unlisted.split, listed.fps) == ("train", "unlisted", 30.0)
     wrist = listed.skeleton.index("right_wrist")
-    np.testing.assert_allclose(
-        listed.positions[:, :, wrist], handshake()[:, :, SBU15.index("right_wrist")], atol=1e-9
-    )
+    np.testing.assert_allclose(listed.positions[:, :, wrist], handshake()[:, :, SBU15.index("right_wrist")], atol=1e-9)
 
 
 def test_readers_take_the_archive(data_dir: Path, tmp_path: Path) -> None:
@@ -149,9 +139,7 @@ def test_a_handshake_becomes_a_scene() -> None:
     assert scene is not None and report.kept == {"sbu handshake": 1}
     a, b = scene.positions.astype(np.float64)
     assert len(a) == 59  # 30 frames at 15 fps
-    lengths = np.linalg.norm(
-        scene.positions[:, :, 1:] - scene.positions[:, :, list(SMPL22.parents[1:])], axis=-1
-    )
+    lengths = np.linalg.norm(scene.positions[:, :, 1:] - scene.positions[:, :, list(SMPL22.parents[1:])], axis=-1)
     np.testing.assert_allclose(lengths, np.broadcast_to(SMPL22.bone_lengths[1:], lengths.shape), atol=1e-5)
     np.testing.assert_allclose(a[0, 0, [0, 2]], 0, atol=1e-6)
     assert scene.positions[..., 1].min() > -0.01
@@ -208,6 +196,10 @@ def test_the_second_load_reads_the_cache(data_dir: Path, tmp_path: Path) -> None
     for one, other in zip(first, second, strict=True):
         np.testing.assert_array_equal(one.positions, other.positions)
         assert (one.family, one.captions, one.sources, one.split, one.events) == (
-            other.family, other.captions, other.sources, other.split, other.events
-        )  # fmt: skip
+            other.family,
+            other.captions,
+            other.sources,
+            other.split,
+            other.events,
+        )
     assert [path.suffix for path in (tmp_path / "cache").iterdir()] == [".npz"]

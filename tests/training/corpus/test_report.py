@@ -68,9 +68,7 @@ def test_the_report_counts_acts_people_and_the_share_of_recorded_duets(
     assert drawn == {"dance", "twirl", "shake-hands", "hug-offered"}
     assert Image.open(out / "corpus" / "dance.webp").width == report.PICTURE_WIDTH
     found = report._acts_table(np.load(corpus / "motions.npy"), [index[0]] * 60, out / "corpus")
-    assert found[2].startswith("| dance | 1 | 1.5 | 1.5 |") and found[3].startswith(
-        "| twirl | 1 | 0.5 | 0.5 |"
-    )
+    assert found[2].startswith("| dance | 1 | 1.5 | 1.5 |") and found[3].startswith("| twirl | 1 | 0.5 | 0.5 |")
 
 
 def test_a_folder_without_a_corpus(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -19,9 +19,7 @@ def _text(frames: int, name: str = "bandai-namco", fps: float = 30.0) -> str:
     positions, rotations = marching(frames)
     rotations = rotations.copy()
     rotations[:, 6] = np.eye(3)  # the rig has no spine2
-    return bvh_text(
-        rotations, turn(positions[:, 0], 1.0) + np.array([3, 0, 4]), RIGS[name], frame_time=1 / fps
-    )
+    return bvh_text(rotations, turn(positions[:, 0], 1.0) + np.array([3, 0, 4]), RIGS[name], frame_time=1 / fps)
 
 
 @pytest.fixture
@@ -39,9 +37,7 @@ def data(tmp_path):
     (idle / "004_acted.bvh").write_text(_text(1200, "reactidle", fps=24.0))
     last = text.splitlines()[-1]
     (folder / "dataset-1_kick_normal_001.bvh").write_text(_text(1))
-    (folder / "dataset-1_kick_normal_002.bvh").write_text(
-        text.replace(last, last.replace(last.split()[4], "nan"))
-    )
+    (folder / "dataset-1_kick_normal_002.bvh").write_text(text.replace(last, last.replace(last.split()[4], "nan")))
     (folder / "dataset-1_kick_normal_003.bvh").write_text(text[:900])
     (folder / "dataset-1_kick_normal_004.bvh").write_bytes(b"")
     return tmp_path / "data"
@@ -52,9 +48,7 @@ def test_clips_are_described_placed_and_split(data, tmp_path, caplog):
         clips = load_sources(data, cache_dir=tmp_path / "cache")
     assert "4 of 24 recordings were left out" in caplog.text
     waves = [clip for clip in clips if clip.action == "wave"]
-    assert len(waves) == 16 and {(c.side, c.style, c.dataset) for c in waves} == {
-        ("left", "normal", "bandai-namco-2")
-    }
+    assert len(waves) == 16 and {(c.side, c.style, c.dataset) for c in waves} == {("left", "normal", "bandai-namco-2")}
     assert sum(clip.split == "test" for clip in waves) == 1
     bows = [clip for clip in clips if clip.action == "bow"]
     assert {(c.side, c.style, c.split) for c in bows} == {(None, "masculine", "both")} and len(bows) == 3

@@ -45,11 +45,25 @@ def test_nothing_is_relabelled(tmp_path: Path) -> None:
     """Both people walk: the corpus calls it "meet", the data set "approaching"."""
     folder = tmp_path / "k3hi" / "Skeletons" / "approaching" / "001"
     folder.mkdir(parents=True)
-    rest = np.array([
-        [0, 1.65, 0], [0, 1.45, 0], [0.2, 1.4, 0], [-0.2, 1.4, 0], [0.25, 1.1, 0], [-0.25, 1.1, 0], [0.27, 0.85, 0],
-        [-0.27, 0.85, 0], [0, 1.2, 0], [0.1, 0.95, 0], [-0.1, 0.95, 0], [0.1, 0.5, 0], [-0.1, 0.5, 0], [0.1, 0.08, 0],
-        [-0.1, 0.08, 0],
-    ])  # fmt: skip
+    rest = np.array(
+        [
+            [0, 1.65, 0],
+            [0, 1.45, 0],
+            [0.2, 1.4, 0],
+            [-0.2, 1.4, 0],
+            [0.25, 1.1, 0],
+            [-0.25, 1.1, 0],
+            [0.27, 0.85, 0],
+            [-0.27, 0.85, 0],
+            [0, 1.2, 0],
+            [0.1, 0.95, 0],
+            [-0.1, 0.95, 0],
+            [0.1, 0.5, 0],
+            [-0.1, 0.5, 0],
+            [0.1, 0.08, 0],
+            [-0.1, 0.08, 0],
+        ]
+    )
     for letter, sign in (("A", 1), ("B", -1)):
         path = sign * np.linspace(1.5, 0.5, 40)[:, None, None] * np.array([1.0, 0, 0]) + rest + [0, 0, 3]
         x, y, z = path.transpose(2, 1, 0)

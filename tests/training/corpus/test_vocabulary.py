@@ -29,8 +29,21 @@ def row(seconds: float = 1 / 30, **angles: float) -> list[float]:
     """A DeepMimic frame of a person who stands at (1, 0.9, 2), with angles of the joints of one number."""
     quaternion = [1.0, 0.0, 0.0, 0.0]
     values = [seconds, 1.0, 0.9, 2.0]
-    for name in ("root", "chest", "neck", "right_hip", "right_knee", "right_ankle", "right_shoulder",
-                 "right_elbow", "left_hip", "left_knee", "left_ankle", "left_shoulder", "left_elbow"):  # fmt: skip
+    for name in (
+        "root",
+        "chest",
+        "neck",
+        "right_hip",
+        "right_knee",
+        "right_ankle",
+        "right_shoulder",
+        "right_elbow",
+        "left_hip",
+        "left_knee",
+        "left_ankle",
+        "left_shoulder",
+        "left_elbow",
+    ):
         values += [angles.get(name, 0.0)] if name.endswith(("knee", "elbow")) else quaternion
     return values
 
@@ -75,9 +88,7 @@ def test_clips_made_by_hand_are_read_from_glb_and_damaged_files_left_out(tmp_pat
     (tmp_path / "mesh2motion").mkdir()
     (tmp_path / "mesh2motion" / "x-animations.glb").write_bytes(b"glTF" + bytes(40))
     assert not list(vocabulary.read_vocabulary(tmp_path))
-    (tmp_path / "mesh2motion" / "y-animations.glb").write_bytes(
-        glb_bytes(Duet.from_positions(people, fps=30.0))
-    )
+    (tmp_path / "mesh2motion" / "y-animations.glb").write_bytes(glb_bytes(Duet.from_positions(people, fps=30.0)))
     ((action, *_, source, dataset), positions), *others = vocabulary.read_vocabulary(tmp_path)
     assert (action, source, dataset) == ("sit-down", "mesh2motion_duet", "mesh2motion") and not others
     assert len(positions) >= 85 and np.ptp(positions[:, 0, 2]) > 0.2
@@ -132,9 +143,7 @@ def test_sets_that_are_still_packed_are_read(tmp_path) -> None:
         load_sources(tmp_path / "data", cache_dir=tmp_path / "cache")
 
 
-def test_the_axis_of_listed_sets_is_given_and_their_cuts_are_made(
-    tmp_path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_axis_of_listed_sets_is_given_and_their_cuts_are_made(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     axes: dict[str, str | None] = {}
 
     def retargeted(rig, *, fps: float):
@@ -158,7 +167,5 @@ def test_the_axis_of_listed_sets_is_given_and_their_cuts_are_made(
 def test_every_listed_action_is_played_by_a_beat() -> None:
     used = {name for option in MENU.values() for name in option.needs}
     used |= {"run", "shadow-box", "dance-show", "ballet", "talking"}  # besides others, where they are there
-    listed = {
-        cut.action for name in ("accad", "cmu-solo", "cmu-dance-martial") for cut in vocabulary.CUTS[name]
-    }
+    listed = {cut.action for name in ("accad", "cmu-solo", "cmu-dance-martial") for cut in vocabulary.CUTS[name]}
     assert listed and listed <= used

@@ -84,9 +84,7 @@ def test_boxing_is_taken_from_recordings_of_boxers_too(library: Library) -> None
     assert drawn == {"train-shadow-box"}
 
 
-def test_clips_that_follow_each_other_are_mirrored_alike(
-    library: Library, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_clips_that_follow_each_other_are_mirrored_alike(library: Library, monkeypatch: pytest.MonkeyPatch) -> None:
     sides: list[str | None] = []
     take = library.take
 

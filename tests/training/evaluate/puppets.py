@@ -20,9 +20,7 @@ STANDING = 0.956
 POSES = {"sit": (0.50, 0.30), "squat": (0.55, 0.05), "floor": (0.2, 0.5), "crouch": (0.78, 0.0)}
 """Height of the pelvis as a share of standing, and metres by which the feet are ahead."""
 UPPER = [
-    SMPL22.index(n)
-    for n in SMPL22.joint_names
-    if not any(p in n for p in ("hip", "knee", "ankle", "foot", "pelvis"))
+    SMPL22.index(n) for n in SMPL22.joint_names if not any(p in n for p in ("hip", "knee", "ankle", "foot", "pelvis"))
 ]
 SIDES = ("left", "right")
 
@@ -169,8 +167,14 @@ def _direct(me: Puppet, other: Puppet, verb: str, words: list[str]) -> None:
     elif verb == "kick":
         me.kicks.append((text[0], me.span(t0, t0 + 0.6)))
     else:
-        me.arms.append((verb, text[0] if text else "both", me.span(t0, t1, 0.12 if verb == "strike" else 0.3),
-                        np.array([SMPL22.index(word) for word in text[1:] if verb == "on"])))  # fmt: skip
+        me.arms.append(
+            (
+                verb,
+                text[0] if text else "both",
+                me.span(t0, t1, 0.12 if verb == "strike" else 0.3),
+                np.array([SMPL22.index(word) for word in text[1:] if verb == "on"]),
+            )
+        )
 
 
 def _with_arms(people: dict[str, Puppet], bodies: dict[str, Array], shared: list[list[str]]) -> Array:
@@ -195,8 +199,7 @@ def _with_arms(people: dict[str, Puppet], bodies: dict[str, Array], shared: list
         pairs = [tuple(sides)] if cue[0] == "hands" else [("left", "right"), ("right", "left")]
         for pair in pairs:
             shoulders = [
-                still[name][:, SMPL22.index(f"{side}_shoulder")]
-                for name, side in zip("ab", pair, strict=True)
+                still[name][:, SMPL22.index(f"{side}_shoulder")] for name, side in zip("ab", pair, strict=True)
             ]
             for name, other, side in (("a", "b", pair[0]), ("b", "a", pair[1])):
                 hug = still[other][:, SMPL22.index("spine2")]

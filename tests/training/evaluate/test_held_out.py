@@ -57,13 +57,6 @@ def test_too_few_scenes_are_refused(scenes: Path, tmp_path: Path, capsys: pytest
     loaded = prepare.load(scenes)
     loaded.rows = loaded.rows[15:]
     prepare.save(loaded, tmp_path / "few.safetensors")
-    words = [
-        "--scenes",
-        str(tmp_path / "few.safetensors"),
-        "--cache",
-        str(tmp_path),
-        "--models",
-        str(tmp_path),
-    ]
+    words = ["--scenes", str(tmp_path / "few.safetensors"), "--cache", str(tmp_path), "--models", str(tmp_path)]
     assert held_out.main(words) == 2
     assert "holds 5 scenes" in capsys.readouterr().err

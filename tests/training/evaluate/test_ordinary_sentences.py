@@ -15,8 +15,26 @@ from .ordinary_scripts import SCRIPTS
 PATH = Path(training.evaluate.__file__).with_name("ordinary_sentences.json")
 SENTENCES = {sentence.id: sentence for sentence in read_sentences(PATH)}
 PUPPETS = Puppets(SENTENCES, SCRIPTS)
-KINDS = ("at_once", "refuse", "stand", "turn", "jump", "sit", "contact", "passive", "lines", "narrative",
-         "kneel", "fall", "bow", "stop", "hold_and_move", "while", "until", "without")  # fmt: skip
+KINDS = (
+    "at_once",
+    "refuse",
+    "stand",
+    "turn",
+    "jump",
+    "sit",
+    "contact",
+    "passive",
+    "lines",
+    "narrative",
+    "kneel",
+    "fall",
+    "bow",
+    "stop",
+    "hold_and_move",
+    "while",
+    "until",
+    "without",
+)
 
 
 def test_they_are_of_the_kinds_that_people_write() -> None:

@@ -9,15 +9,7 @@ import pytest
 from motion import SMPL22, Duet
 from motion.metrics import summary
 from tests.motion.bodies import marching
-from training.evaluate.deep_gru import (
-    accuracy,
-    deep_features,
-    diversity_score,
-    fit,
-    frechet_distance,
-    padded,
-    spread,
-)
+from training.evaluate.deep_gru import accuracy, deep_features, diversity_score, fit, frechet_distance, padded, spread
 from training.evaluate.reactions import (
     CLASS_TOLD,
     METHODS,
@@ -111,19 +103,22 @@ def test_the_table_holds_every_method(monkeypatch: pytest.MonkeyPatch) -> None:
     assert shown["contact_due"] == pytest.approx(
         100
         * np.mean(
-            [
-                touches(pair, one)
-                for pair, one in zip(pairs, still, strict=True)
-                if touches(pair, pair.people[1])
-            ]
+            [touches(pair, one) for pair, one in zip(pairs, still, strict=True) if touches(pair, pair.people[1])]
         ),
         abs=1e-3,
     )
     assert readouts(pairs, [pair.people[1] for pair in pairs])["contact_due"] == 100
     text = table(
-        {"sbu": {"train": 12, "test": 12, "classes": ["a", "b"], "scores": found,
-                 "readouts": dict.fromkeys(found, shown)}}
-    )  # fmt: skip
+        {
+            "sbu": {
+                "train": 12,
+                "test": 12,
+                "classes": ["a", "b"],
+                "scores": found,
+                "readouts": dict.fromkeys(found, shown),
+            }
+        }
+    )
     row = next(line for line in text.splitlines() if line.startswith("| Zero velocity |"))
     assert "| Delay s |" in text and "| – |" in row and row.count("|") == text.splitlines()[2].count("|")
     assert "SBU: 12 training" in text
@@ -203,18 +198,7 @@ def test_words_and_the_first_pose_reach_only_methods_that_take_them(duet: Duet) 
 
 
 def test_every_class_of_either_protocol_has_a_sentence() -> None:
-    families = {
-        "approach",
-        "depart",
-        "exchange",
-        "handshake",
-        "kick",
-        "meet",
-        "part",
-        "point",
-        "punch",
-        "push",
-    }
+    families = {"approach", "depart", "exchange", "handshake", "kick", "meet", "part", "point", "punch", "push"}
     assert set(SENTENCES) == families | {"walking"}
     assert len(set(SENTENCES.values())) == len(SENTENCES)
     assert len(CLASS_TOLD) == 4

@@ -105,9 +105,7 @@ def test_acts_use_known_values_and_point_at_other_acts(name: str) -> None:
 
 def test_plans_say_what_is_wrong_without_the_words(tmp_path: Path) -> None:
     path = tmp_path / "x.toml"
-    path.write_text(
-        'sealed = true\n[[reading]]\nid = "one"\nwords = "secret words"\nacts = [{verbs = "walk"}]\n'
-    )
+    path.write_text('sealed = true\n[[reading]]\nid = "one"\nwords = "secret words"\nacts = [{verbs = "walk"}]\n')
     with pytest.raises(ValueError, match=r"one of x\.toml") as caught:
         read_plans(path)
     assert "secret" not in str(caught.value) and "verb" in FIELDS

@@ -34,9 +34,30 @@ def test_a_rule_turns_most_other_scenes_away() -> None:
 def test_there_are_eighty_and_every_weakness_is_among_them() -> None:
     assert len(SENTENCES) == len(SCRIPTS) == len({s.words for s in SENTENCES.values()}) == 80
     tags = [tag for sentence in SENTENCES.values() for tag in sentence.tags]
-    for tag in ("two_beats", "three_beats", "at_once", "refuse", "stand", "turn", "jump", "hold_and_move",
-                "stop", "bow", "sit", "kneel", "fall", "lines", "side", "narrative", "passive", "while",
-                "until", "without", "locomotion", "contact"):  # fmt: skip
+    for tag in (
+        "two_beats",
+        "three_beats",
+        "at_once",
+        "refuse",
+        "stand",
+        "turn",
+        "jump",
+        "hold_and_move",
+        "stop",
+        "bow",
+        "sit",
+        "kneel",
+        "fall",
+        "lines",
+        "side",
+        "narrative",
+        "passive",
+        "while",
+        "until",
+        "without",
+        "locomotion",
+        "contact",
+    ):
         assert tags.count(tag) >= 3, tag
     assert all(2 <= sentence.seconds <= 10 for sentence in SENTENCES.values())
     assert sum(sentence.named for sentence in SENTENCES.values()) >= 25

@@ -19,9 +19,7 @@ def control(batch: int) -> Tensor:
 
 def draw(kind: str, batch: int = 40, frames: int = FRAMES - 9) -> Known:
     shares = Shares(**{**vars(NONE), kind: 1.0})
-    known = known_parts(
-        control(batch), [frames] * batch, [0] * batch, LAYOUT, shares, torch.Generator().manual_seed(1)
-    )
+    known = known_parts(control(batch), [frames] * batch, [0] * batch, LAYOUT, shares, torch.Generator().manual_seed(1))
     assert known is not None
     assert not known.mask[:, :, frames:].any() and not known.heading_mask[:, :, frames:].any()
     return known
@@ -111,9 +109,7 @@ def test_a_stage_gives_ways_stands_legs_trunks_and_hands_that_reach() -> None:
 
 def test_a_second_kind_joins_the_first() -> None:
     shares = Shares(**{**vars(NONE), "person": 1.0, "more": 1.0})
-    known = known_parts(
-        control(40), [FRAMES] * 40, [0] * 40, LAYOUT, shares, torch.Generator().manual_seed(1)
-    )
+    known = known_parts(control(40), [FRAMES] * 40, [0] * 40, LAYOUT, shares, torch.Generator().manual_seed(1))
     assert known is not None
     assert (known.mask.flatten(2).any(-1).sum(1) == 2).sum() > 20
     assert known.heading_mask.any()

@@ -62,9 +62,7 @@ def test_training_changes_the_attention_and_leaves_the_linear_part(scenes, tmp_p
     assert all(np.isfinite(value) for value in terms.values())
     after = dict(trainer.model.named_parameters())
     assert torch.equal(after["linear.weight"], before["linear.weight"])
-    assert not torch.equal(
-        after["decoder.0.other_space.out.weight"], before["decoder.0.other_space.out.weight"]
-    )
+    assert not torch.equal(after["decoder.0.other_space.out.weight"], before["decoder.0.other_space.out.weight"])
 
 
 def test_a_varied_scene_is_of_the_networks_rate_and_seen_from_the_actor(scenes) -> None:
@@ -85,18 +83,13 @@ def test_a_batch_is_padded_with_last_poses(scenes) -> None:
     assert torch.equal(batch.reactor[0, 12:], batch.reactor[0, 11:12].expand(8, -1, -1))
 
 
-def test_benchmark_clips_stay_out_and_weights_are_written(
-    scenes, tmp_path: Path, monkeypatch, capsys
-) -> None:
+def test_benchmark_clips_stay_out_and_weights_are_written(scenes, tmp_path: Path, monkeypatch, capsys) -> None:
     pairs = [
-        Scene(people, "push", (f"sbu/{i}",), "benchmark" if i == 9 else "train")
-        for i, people in enumerate(scenes)
+        Scene(people, "push", (f"sbu/{i}",), "benchmark" if i == 9 else "train") for i, people in enumerate(scenes)
     ]
     monkeypatch.setattr(interformer, "load_pairs", lambda *_: pairs)
     seen = []
-    monkeypatch.setattr(
-        interformer, "Trainer", lambda given, *rest: seen.append(given) or Trainer(given, *rest)
-    )
+    monkeypatch.setattr(interformer, "Trainer", lambda given, *rest: seen.append(given) or Trainer(given, *rest))
     sizes = [
         word
         for name in ("joint_width", "ff_size", "batch", "warmup", "rounds", "hold")

@@ -61,9 +61,7 @@ def test_checkpoint_of_other_settings_is_refused(scenes: Path, trained: Path) ->
         begin(scenes, trained, replace(SETTINGS, learning_rate=1e-3))
 
 
-@pytest.mark.parametrize(
-    "damage", [lambda data: data[: len(data) // 2], lambda data: b"", lambda data: b"x" * 99]
-)
+@pytest.mark.parametrize("damage", [lambda data: data[: len(data) // 2], lambda data: b"", lambda data: b"x" * 99])
 def test_damaged_checkpoint_is_refused(
     scenes: Path, trained: Path, tmp_path: Path, damage: Callable[[bytes], bytes]
 ) -> None:
@@ -75,9 +73,7 @@ def test_damaged_checkpoint_is_refused(
         begin(scenes, tmp_path / "new", init=tmp_path / "last.safetensors")
 
 
-def test_init_begins_with_the_averaged_weights_of_another_run(
-    scenes: Path, trained: Path, tmp_path: Path
-) -> None:
+def test_init_begins_with_the_averaged_weights_of_another_run(scenes: Path, trained: Path, tmp_path: Path) -> None:
     other = load_file(trained / "last.safetensors")
     new = begin(scenes, tmp_path, replace(SETTINGS, learning_rate=1e-3), init=trained / "last.safetensors")
     assert new.step == 0
@@ -110,10 +106,7 @@ def test_export_ships_what_the_engine_runs(scenes: Path, trained: Path, tmp_path
     assert np.isfinite(result.duets[0].positions).all()
     meta = json.loads((out / "config.json").read_text())
     assert meta["trained_steps"] == 6
-    assert json.loads((out / "captions.json").read_text()) == [
-        "One person waves the left hand.",
-        "They shake hands.",
-    ]
+    assert json.loads((out / "captions.json").read_text()) == ["One person waves the left hand.", "They shake hands."]
 
 
 def test_a_scene_comes_back_from_its_control_points(scenes: Path) -> None:
@@ -205,9 +198,7 @@ def test_a_full_disk_leaves_the_last_checkpoint(
     assert not list(tmp_path.glob(".last*"))
 
 
-def test_contact_sheets_are_written_as_it_goes(
-    scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_contact_sheets_are_written_as_it_goes(scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("training.core.samples.PROMPTS", ("Two people wave.",))
     words = ["--scenes", str(scenes), "--out", str(tmp_path), *SIZES, "--steps", "2", "--sheets", "1e-9"]
     assert intergen.main(words) == 0
@@ -230,9 +221,7 @@ def test_a_shipped_network_can_be_trained_on(
     assert all(torch.equal(value, theirs[key]) for key, value in ours.items())
 
 
-def test_grown_from_a_shipped_network_the_first_loss_is_the_same(
-    scenes: Path, trained: Path, tmp_path: Path
-) -> None:
+def test_grown_from_a_shipped_network_the_first_loss_is_the_same(scenes: Path, trained: Path, tmp_path: Path) -> None:
     """A run without words is exported; one with words begun from it takes its first step from the same loss."""
     old = replace(SETTINGS, words=False, dropout=0.0, seed=3)
     take(begin(scenes, tmp_path / "old", old), 3)
@@ -251,8 +240,7 @@ def test_grown_from_a_shipped_network_the_first_loss_is_the_same(
     for run in (old_run, new_run):
         run.model.eval()
     found = [
-        {k: v.item() for k, v in run.terms(batch, t, noise, run.hold(known)).items()}
-        for run in (old_run, new_run)
+        {k: v.item() for k, v in run.terms(batch, t, noise, run.hold(known)).items()} for run in (old_run, new_run)
     ]
     assert found[1] == pytest.approx(found[0], rel=0.02)  # in bfloat16
 

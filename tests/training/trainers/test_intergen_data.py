@@ -50,9 +50,7 @@ def test_person_sentences_change_sides_with_the_mirror(scenes: Path, tmp_path: P
     path = with_sentences_for_each(scenes, tmp_path / "each.safetensors")
     data = begin(path, tmp_path, replace(SETTINGS, cond_drop_prob=0.0)).data
     seen = set()
-    data.features = lambda captions: (seen.update(captions), CaptionFeatures.batch(data.captions, captions))[
-        1
-    ]
+    data.features = lambda captions: (seen.update(captions), CaptionFeatures.batch(data.captions, captions))[1]
     for step in range(40):
         data.batch(step)
     assert {"They turn to the left.", "They turn to the right."} <= seen
@@ -121,7 +119,5 @@ def test_rare_families_and_rare_acts_are_drawn_up_to_five_times() -> None:
     scarce = [row("whisper") for _ in range(40)]
     rows = [*common, *rare, *scarce]
     drawn = balanced(rows)
-    repeats = [
-        sum(other is each for other in drawn) for each in (rows[0], rows[60], rare[0], rare[-1], scarce[0])
-    ]
+    repeats = [sum(other is each for other in drawn) for each in (rows[0], rows[60], rare[0], rare[-1], scarce[0])]
     assert repeats == [1, 1, 2, 5, 2]

@@ -23,13 +23,38 @@ from training.trainers.prediction.trainer import PredictionTrainer
 from training.trainers.prediction.windows import CmuWindows, CorpusWindows, open_windows
 from webdemo.inference.pipelines.predict_frame import to_last_pose
 
-MLP = mlp.Settings(past=10, future=8, past_coefficients=6, future_coefficients=4, width=16, blocks=1,
-                   fit=64, batch=8, steps=6, warmup=1)  # fmt: skip
-GAN = mawgan.Settings(windows="corpus", past=10, future=8, fc=36, width=32, critic_fc=8, critic_steps=2,
-                      batch=4, steps=3)  # fmt: skip
-LEAN_GAN = replace(GAN, critic_steps=1, final_rate=0.1, position=100.0, speed=300.0, linear=True, length=True,
-                   pose=True, coefficients=4, shortcut=True, dropout=0.3, ridge=0.1, fit=64, noise=0.001,
-                   groups=2)  # fmt: skip
+MLP = mlp.Settings(
+    past=10,
+    future=8,
+    past_coefficients=6,
+    future_coefficients=4,
+    width=16,
+    blocks=1,
+    fit=64,
+    batch=8,
+    steps=6,
+    warmup=1,
+)
+GAN = mawgan.Settings(
+    windows="corpus", past=10, future=8, fc=36, width=32, critic_fc=8, critic_steps=2, batch=4, steps=3
+)
+LEAN_GAN = replace(
+    GAN,
+    critic_steps=1,
+    final_rate=0.1,
+    position=100.0,
+    speed=300.0,
+    linear=True,
+    length=True,
+    pose=True,
+    coefficients=4,
+    shortcut=True,
+    dropout=0.3,
+    ridge=0.1,
+    fit=64,
+    noise=0.001,
+    groups=2,
+)
 
 
 @pytest.fixture(scope="module")
@@ -50,9 +75,7 @@ def corpus(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def cmu_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """One clip of noise that drifts, to train on and to test on."""
     data = tmp_path_factory.mktemp("cmu")
-    shutil.copy(
-        Path(__file__).parents[2] / "data" / "reference" / "cmu_skeleton.json", data / "skeleton.json"
-    )
+    shutil.copy(Path(__file__).parents[2] / "data" / "reference" / "cmu_skeleton.json", data / "skeleton.json")
     frames = np.cumsum(np.random.default_rng(0).normal(scale=0.01, size=(170, 117)), axis=0)
     for split in ("train", "test"):
         path = data / split / "walking" / "walking_1.txt"
@@ -104,9 +127,7 @@ def test_training_makes_it_better_than_its_linear_part(corpus: Path, tmp_path: P
 def test_the_shell_writes_a_predictor(kind: str, corpus: Path, tmp_path: Path) -> None:
     settings, main = (MLP, mlp.main) if kind == "mlp" else (GAN, mawgan.main)
     asked = [
-        f"--{key.replace('_', '-')}={value}"
-        for key, value in vars(settings).items()
-        if not isinstance(value, bool)
+        f"--{key.replace('_', '-')}={value}" for key, value in vars(settings).items() if not isinstance(value, bool)
     ]
     folders = ["--data", str(corpus), "--out", str(tmp_path / "run"), "--export", str(tmp_path / "folder")]
     assert main([*asked, *folders]) == 0
@@ -117,15 +138,7 @@ def test_the_shell_writes_a_predictor(kind: str, corpus: Path, tmp_path: Path) -
 
 
 def test_lean_settings_are_those_of_the_module_and_can_be_changed(corpus: Path, tmp_path: Path) -> None:
-    asked = [
-        "--windows=corpus",
-        "--past=10",
-        "--future=8",
-        "--fc=36",
-        "--batch=4",
-        "--steps=1",
-        "--no-length",
-    ]
+    asked = ["--windows=corpus", "--past=10", "--future=8", "--fc=36", "--batch=4", "--steps=1", "--no-length"]
     folders = ["--data", str(corpus), "--out", str(tmp_path / "run"), "--export", str(tmp_path / "folder")]
     assert mawgan.main(["--lean", "--no-length", *asked, *folders]) == 0
     training = load_predictor(tmp_path / "folder").training
@@ -204,8 +217,17 @@ def test_what_follows_begins_in_the_pose_that_the_network_came_to() -> None:
 
 
 def test_a_trained_network_learns_to_go_on_from_its_own(corpus: Path, tmp_path: Path) -> None:
-    sizes = ["--past=10", "--future=20", "--past-coefficients=6", "--future-coefficients=4", "--width=16",
-             "--blocks=1", "--fit=64", "--batch=4", "--steps=2"]  # fmt: skip
+    sizes = [
+        "--past=10",
+        "--future=20",
+        "--past-coefficients=6",
+        "--future-coefficients=4",
+        "--width=16",
+        "--blocks=1",
+        "--fit=64",
+        "--batch=4",
+        "--steps=2",
+    ]
     run = ["--data", str(corpus), "--out", str(tmp_path / "first"), "--export", str(tmp_path / "folder")]
     assert mlp.main([*sizes, *run]) == 0
     asked = [*sizes, "--init", str(tmp_path / "folder"), "--own-pasts", "1", "--data", str(corpus)]
@@ -216,9 +238,7 @@ def test_a_trained_network_learns_to_go_on_from_its_own(corpus: Path, tmp_path: 
 
 
 @pytest.mark.parametrize("limbs", [False, True])
-def test_the_adversary_s_network_learns_to_go_on_from_its_own(
-    corpus: Path, tmp_path: Path, limbs: bool
-) -> None:
+def test_the_adversary_s_network_learns_to_go_on_from_its_own(corpus: Path, tmp_path: Path, limbs: bool) -> None:
     settings = replace(LEAN_GAN, past=10, future=20, own_pasts=1, steps=4)
     settings = replace(settings, speed=1.0, groups=2, limbs=limbs, acceleration=2.0)
     windows = open_windows("corpus", corpus, 10, settings.ahead)
@@ -241,9 +261,7 @@ def test_convolutions_are_left_out_of_a_run_that_asks_for_it(corpus: Path, tmp_p
     trainer = mawgan.Trainer(windows, replace(LEAN_GAN, convolutions=False), tmp_path)
     before = {name: value.clone() for name, value in trainer.model.generator.state_dict().items()}
     list(trainer.run(minutes=5))
-    changed = {
-        name for name, value in trainer.model.generator.state_dict().items() if not value.equal(before[name])
-    }
+    changed = {name for name, value in trainer.model.generator.state_dict().items() if not value.equal(before[name])}
     assert changed == {"fc.weight", "fc.bias", "linear.weight", "linear.bias"}
     with pytest.raises(InputError, match="ask for linear"):
         replace(GAN, convolutions=False)

@@ -44,9 +44,16 @@ def scenes() -> Scenes:
         both = encode(torch.stack([a, b]), torch.ones(2, frames, 4), layout)
         control.append(both.transpose(0, 1).half())
         rows.append(
-            {"start": start, "tokens": tokens, "family": "sway", "split": "train",
-             "captions": ["One person waves the left hand."], "events": {}, "sources": []}
-        )  # fmt: skip
+            {
+                "start": start,
+                "tokens": tokens,
+                "family": "sway",
+                "split": "train",
+                "captions": ["One person waves the left hand."],
+                "events": {},
+                "sources": [],
+            }
+        )
         start += tokens * layout.knots_per_token
     return Scenes(torch.cat(control), rows, layout)
 
@@ -90,9 +97,7 @@ def test_a_run_that_stops_goes_on_as_if_it_never_had(scenes: Scenes, words: Path
     assert one.keys() == other.keys()
     assert [key for key in one if not torch.equal(one[key], other[key])] == []
     start = Trainer(scenes, SETTINGS, tmp_path / "c", words=words).model.state_dict()
-    moved = {
-        name for name, value in straight.model.state_dict().items() if not torch.equal(value, start[name])
-    }
+    moved = {name for name, value in straight.model.state_dict().items() if not torch.equal(value, start[name])}
     assert "network.output_process.poseFinal.weight" in moved
     assert not any(name.startswith("conditioner.") for name in moved)
     with pytest.raises(InputError, match="run of other settings"):
@@ -112,9 +117,7 @@ def test_the_command_trains_and_ships(scenes: Scenes, words: Path, tmp_path: Pat
     assert regennet.main([*call, "--num-heads", "3"]) == 2
 
 
-def test_knots_and_what_rows_see_are_those_of_the_decoded_motion(
-    scenes: Scenes, words: Path, tmp_path: Path
-) -> None:
+def test_knots_and_what_rows_see_are_those_of_the_decoded_motion(scenes: Scenes, words: Path, tmp_path: Path) -> None:
     trainer = Trainer(scenes, SETTINGS, tmp_path, words=words)
     control = scenes.scene(scenes.rows[1])[:1]
     positions, _ = decode(control, TokenLayout(4, 1))
@@ -155,8 +158,7 @@ def test_only_near_joints_count_in_the_distance_loss() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "says"),
-    [({"batch": 0}, "batch is 0"), ({"num_heads": 3}, "multiple"), ({"window": 0}, "window")],
+    ("wrong", "says"), [({"batch": 0}, "batch is 0"), ({"num_heads": 3}, "multiple"), ({"window": 0}, "window")]
 )
 def test_wrong_settings_are_refused_in_words(wrong: dict, says: str) -> None:
     with pytest.raises(InputError, match=says):
@@ -208,16 +210,13 @@ def test_mirrored_and_cropped_batches_hold_the_scenes_words_and_poses(
                     found.append(at_the_origin(late) if batch.cropped[i] else late)
             assert min(float((two - one).abs().max()) for one in found) < 1e-3
             torch.testing.assert_close(
-                batch.reactor[i, rows:],
-                batch.reactor[i, rows - 1 : rows].expand(len(batch.reactor[i]) - rows, -1),
+                batch.reactor[i, rows:], batch.reactor[i, rows - 1 : rows].expand(len(batch.reactor[i]) - rows, -1)
             )
             seen.add((mirrored, bool(batch.cropped[i])))
     assert len(seen) == 4
 
 
-def test_the_past_becomes_the_networks_own_from_a_step_on(
-    scenes: Scenes, words: Path, tmp_path: Path
-) -> None:
+def test_the_past_becomes_the_networks_own_from_a_step_on(scenes: Scenes, words: Path, tmp_path: Path) -> None:
     settings = replace(SETTINGS, own=1.0, own_after=2, own_growth=2, offline=0.0)
     straight = Trainer(scenes, settings, tmp_path / "a", words=words)
     assert [share(straight, step) for step in range(5)] == [0, 0, 0.5, 1, 1]

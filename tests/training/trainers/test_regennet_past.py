@@ -101,9 +101,7 @@ def test_scenes_not_drawn_and_pasts_too_far_off_keep_the_recorded_one() -> None:
 def test_no_row_of_the_past_depends_on_what_the_actor_does_later() -> None:
     torch.manual_seed(0)
     model = CompactReGenNet(
-        CompactReGenNetConfig(
-            latent_dim=16, ff_size=16, num_layers=2, num_heads=2, cond_dim=16, text_layers=1
-        )
+        CompactReGenNetConfig(latent_dim=16, ff_size=16, num_layers=2, num_heads=2, cond_dim=16, text_layers=1)
     )
     actor, other = torch.randn(2, B, K, 132)
     other[:, :10] = actor[:, :10]

@@ -11,8 +11,16 @@ from tests.ui.tab_events import changes
 from webdemo.ui.components.exports import Record
 from webdemo.ui.tabs.generate import GenerateTab
 
-FIELDS = {"prompt": "two people walk", "seconds": 2.0, "seed": 3, "samples": 1, "guidance": 2.5, "steps": 5,
-          "damping": 0.7, "tries": 1}  # fmt: skip
+FIELDS = {
+    "prompt": "two people walk",
+    "seconds": 2.0,
+    "seed": 3,
+    "samples": 1,
+    "guidance": 2.5,
+    "steps": 5,
+    "damping": 0.7,
+    "tries": 1,
+}
 
 
 def run(tab: GenerateTab, **changed: Any) -> list[dict[str, Any]]:

@@ -14,8 +14,18 @@ from webdemo.ui.tabs.react import ReactTab
 
 LOADED = ("source", "given", "line", "player", "trim", "person", "start", "end", "found")
 READ = (*LOADED, "up", "unit", "fps", "order", "animation")
-FIELDS = {"person": "a", "start": 0.0, "end": 10.0, "role": "a", "prompt": "they walk", "seed": 3,
-          "samples": 1, "guidance": 2.5, "steps": 5, "damping": 0.7}  # fmt: skip
+FIELDS = {
+    "person": "a",
+    "start": 0.0,
+    "end": 10.0,
+    "role": "a",
+    "prompt": "they walk",
+    "seed": 3,
+    "samples": 1,
+    "guidance": 2.5,
+    "steps": 5,
+    "damping": 0.7,
+}
 
 
 def upload(tab: ReactTab, path: Path) -> list[dict[str, Any]]:

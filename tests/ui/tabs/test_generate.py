@@ -67,9 +67,7 @@ def test_a_class_is_asked_for_in_place_of_a_sentence(tab: GenerateTab) -> None:
         assert steps["value"] == pace["value"] == (FAST if sentence else FAITHFUL)
         assert method(way).summary in in_english(about)
         assert [update["visible"] for update in shown] == [sentence, not sentence]
-        assert (
-            guidance["value"] == GenerateRequest(prompt="x").guidance if sentence else guidance["value"] < 4
-        )
+        assert guidance["value"] == GenerateRequest(prompt="x").guidance if sentence else guidance["value"] < 4
 
 
 def test_classes_are_those_of_the_weights(tmp_path: Path) -> None:
@@ -156,14 +154,7 @@ def test_an_empty_seed_is_drawn_and_shown(tab: GenerateTab) -> None:
 
     seeds = set()
     for _ in range(2):
-        fields = {
-            **FIELDS,
-            "seed": None,
-            "model": "intergen",
-            "class_name": None,
-            "planned": True,
-            "acts": None,
-        }
+        fields = {**FIELDS, "seed": None, "model": "intergen", "class_name": None, "planned": True, "acts": None}
         steps = tab.start({part: fields[name] for name, part in tab.controls.items()}, Visit())
         last = [changes(tab.outputs, step) for step in steps][-1]
         seed = last["record"].result.manifest["request"]["seed"]
@@ -296,9 +287,13 @@ def test_the_switch_of_steps_shows_how_a_kept_run_was_made(tab: GenerateTab) -> 
 
 @pytest.mark.parametrize(
     ("changed", "planned"),
-    [({}, True), ({"planned": False}, False), ({"planned": None}, False),
-     ({"planned": None, "model": "bigraphdiff"}, True)],
-)  # fmt: skip
+    [
+        ({}, True),
+        ({"planned": False}, False),
+        ({"planned": None}, False),
+        ({"planned": None, "model": "bigraphdiff"}, True),
+    ],
+)
 def test_a_kept_run_opens_with_paths_from_words_as_it_was_made(
     tab: GenerateTab, changed: dict[str, Any], planned: bool
 ) -> None:
@@ -318,9 +313,7 @@ def test_an_edited_plan_is_made_in_place_of_its_sentence(tab: GenerateTab) -> No
     sent = {"text": "They bow.", "plan": plan}
     request = tab.request({**fields, "acts": sent})
     assert request.acts is not None and [act.act for act in request.acts.acts] == ["hug"]
-    assert tab.request({**fields, "acts": {**sent, "text": "They wave."}}).acts is None, (
-        "the plan of another sentence"
-    )
+    assert tab.request({**fields, "acts": {**sent, "text": "They wave."}}).acts is None, "the plan of another sentence"
     assert tab.request({**fields, "acts": None}).acts is None
     with pytest.raises(InputError, match="not followed"):
         tab.request({**fields, "planned": False, "acts": sent})

@@ -24,9 +24,7 @@ WHEN = time.strftime("%d %b %Y %H:%M", time.localtime(0))
 
 
 def entry(name: str) -> Entry:
-    return Entry(
-        id=name, kind="generate", title=f"They {name}.", state="done", request={"seconds": 5, "seed": 3}
-    )
+    return Entry(id=name, kind="generate", title=f"They {name}.", state="done", request={"seconds": 5, "seed": 3})
 
 
 class Book:
@@ -68,10 +66,23 @@ def press(history: HistoryTab, act: str, *ids: str, removed: tuple[str, ...] = (
 
 def test_a_card_tells_everything_of_a_run() -> None:
     run = replace(
-        entry("hug"), links=2, favourite=True, tags=("paper",), note="Hands.", frame=4,
-        request={"kind": "react", "model": "regennet", "mode": "online", "seed": 12345678, "guidance": 4.5,
-                 "actor": {"name": "walker.bvh"}, "role": "b", "cleanup": True},
-    )  # fmt: skip
+        entry("hug"),
+        links=2,
+        favourite=True,
+        tags=("paper",),
+        note="Hands.",
+        frame=4,
+        request={
+            "kind": "react",
+            "model": "regennet",
+            "mode": "online",
+            "seed": 12345678,
+            "guidance": 4.5,
+            "actor": {"name": "walker.bvh"},
+            "role": "b",
+            "cleanup": True,
+        },
+    )
     assert facts(run) == f"ReGenNet, online · seed 12345678 · {WHEN} · 2 links"
     assert ["Given", "walker.bvh"] in settings(run) and ["The given person", "reacts"] in settings(run)
     assert ["Seed", "12345678"] in settings(run) and ["Guidance", "4.5"] in settings(run)
@@ -136,26 +147,25 @@ def test_an_export_says_what_is_in_it(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "data",
     [
-        None, [], {"act": "drop", "ids": []}, {"act": "open", "ids": "hug"},
+        None,
+        [],
+        {"act": "drop", "ids": []},
+        {"act": "open", "ids": "hug"},
         {"act": "open", "ids": ["a"] * (MOST_SHOWN + 1)},
     ],
-)  # fmt: skip
+)
 def test_what_a_notebook_never_sends_is_refused(data: Any) -> None:
     with pytest.raises(InputError, match="something unknown"):
         Action(data)
 
 
-@pytest.mark.parametrize(
-    ("ids", "sentence"), [((), "Choose a run first"), (("a", "b"), "Choose one run only")]
-)
+@pytest.mark.parametrize(("ids", "sentence"), [((), "Choose a run first"), (("a", "b"), "Choose one run only")])
 def test_what_takes_one_run_says_so(ids: tuple[str, ...], sentence: str) -> None:
     assert sentence in press(tab(Book(entry("a"))), "favour", *ids).line
 
 
 def test_a_run_without_a_result_is_run_again() -> None:
-    lost = replace(
-        entry("lost"), state="interrupted", request={"prompt": "They hug.", "seconds": 2.0, "seed": 9}
-    )
+    lost = replace(entry("lost"), state="interrupted", request={"prompt": "They hug.", "seconds": 2.0, "seed": 9})
     asked: list[Any] = []
 
     def run(session: str, request: Any, *, alone: bool) -> Iterator[Any]:

@@ -56,11 +56,7 @@ def test_a_motion_is_shown_and_the_marker_leaves_two_seconds_behind_it(tab: Pred
 
 def test_on_the_first_example_the_default_method_beats_the_last_pose_held(tab: PredictTab) -> None:
     found = loaded(tab, tab.examples[0][1])
-    fields = {
-        "source": found["source"],
-        "marker": found["marker"]["value"],
-        "seconds": PredictRequest.seconds,
-    }
+    fields = {"source": found["source"], "marker": found["marker"]["value"], "seconds": PredictRequest.seconds}
     *_, result = Engine().run(tab.request({**fields, "model": PredictRequest.model}))
     assert isinstance(result, PredictResult)
     assert 2 * np.mean(result.error) < np.mean(still_error(result))

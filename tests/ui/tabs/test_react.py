@@ -74,9 +74,7 @@ def test_two_people_in_a_file_are_a_choice_and_a_long_file_is_cut(tab: ReactTab,
 
 
 @pytest.mark.parametrize("role", ["a", "b"])
-def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(
-    tab: ReactTab, walkers: Path, role: str
-) -> None:
+def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(tab: ReactTab, walkers: Path, role: str) -> None:
     source = upload(tab, walkers)[-1]["source"]
     steps = run(tab, source, person="b", start=1.0, end=3.0, role=role)
     assert any("step" in step["line"] for step in steps[1:-1])
@@ -139,11 +137,7 @@ def test_a_result_of_a_result_keeps_the_name_of_the_file(tab: ReactTab, walker: 
         ("empty.npz", b"", "empty.npz is empty"),
         ("words.npz", b"PK\x03\x04 nothing", "not a whole .npz"),
         ("robot.glb", glb_character(), "robot.glb has no animation"),
-        (
-            "movie.mov",
-            b"123",
-            "cannot be read: use .npz, .bvh, .npy, .skeleton, .txt, .glb, .trc, .c3d or .zip",
-        ),
+        ("movie.mov", b"123", "cannot be read: use .npz, .bvh, .npy, .skeleton, .txt, .glb, .trc, .c3d or .zip"),
     ],
 )
 def test_a_bad_file_is_one_sentence_and_leaves_no_actor(
@@ -209,9 +203,7 @@ def test_examples_are_the_files_of_a_folder(tab: ReactTab, tmp_path: Path) -> No
     assert last["source"].name == "Reach out"
 
 
-def test_the_second_person_can_begin_as_the_files_other_stands(
-    tab: ReactTab, walkers: Path, walker: Path
-) -> None:
+def test_the_second_person_can_begin_as_the_files_other_stands(tab: ReactTab, walkers: Path, walker: Path) -> None:
     source = upload(tab, walkers)[-1]["source"]
     run(tab, source, method="regennet", person="b", start=1.0, end=3.0, keep=True)
     asked = tab.page.engine.requests[-1]

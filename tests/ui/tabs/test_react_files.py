@@ -139,9 +139,7 @@ def test_a_partner_is_taken_on_the_skeleton_of_an_uploaded_glb(tab: ReactTab, tm
 def test_only_a_rig_that_was_read_as_it_is_is_offered(tab: ReactTab, walker: Path, walkers: Path) -> None:
     source = upload(tab, walker)[-1]["source"]
     assert rig_of(source) == walker
-    assert (
-        rig_of(None) is None and rig_of(replace(source, read_with=("z", "auto", None, "auto", None))) is None
-    )
+    assert rig_of(None) is None and rig_of(replace(source, read_with=("z", "auto", None, "auto", None))) is None
     assert rig_of(upload(tab, walkers)[-1]["source"]) is None
     *_, last = run(tab, replace(source, path=None), end=2.0)
     _, *updates = tab.export(last["record"])
@@ -149,9 +147,7 @@ def test_only_a_rig_that_was_read_as_it_is_is_offered(tab: ReactTab, walker: Pat
     assert not update["visible"] and update["value"] is None
 
 
-def test_a_rig_that_cannot_be_moved_is_a_sentence_and_the_other_files_are_there(
-    tab: ReactTab, walker: Path
-) -> None:
+def test_a_rig_that_cannot_be_moved_is_a_sentence_and_the_other_files_are_there(tab: ReactTab, walker: Path) -> None:
     *_, last = run(tab, upload(tab, walker)[-1]["source"], end=2.0)
     last["record"].rig = walker.with_name("gone.bvh")
     line, *updates = tab.export(last["record"])

@@ -74,8 +74,12 @@ def test_two_methods_stand_side_by_side(tab: ReactTab, walker: Path) -> None:
     assert any("ReGenNet, online. Generating: frame" in step.get("line", "") for step in steps)
     first, second = tab.page.engine.requests[-2:]
     assert (first.model, first.steps, second.model, second.mode, second.steps) == (
-        "intergen", 20, "regennet", "online", 5,
-    )  # fmt: skip
+        "intergen",
+        20,
+        "regennet",
+        "online",
+        5,
+    )
     assert first.seed == second.seed
     assert first.actor.positions.tobytes() == second.actor.positions.tobytes()
     last = steps[-1]

@@ -69,9 +69,7 @@ def test_new_files_are_withheld_until_they_are_written(tab: GenerateTab) -> None
     assert all(update == gr.skip() for update in (*tab.withhold(record), *tab.withhold(None)))
 
 
-def test_a_full_disk_is_reported_and_leaves_nothing(
-    tab: GenerateTab, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_full_disk_is_reported_and_leaves_nothing(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: Any, **__: Any) -> None:
         raise OSError(28, "No space left on device")
 
@@ -82,9 +80,7 @@ def test_a_full_disk_is_reported_and_leaves_nothing(
     assert list(tab.page.shelf.root.glob("run-*")) == []
 
 
-@pytest.mark.parametrize(
-    "shown", ["{}", "no json", '{"yaw": 1e999, "look": "none", "sample": 9, "view": null}']
-)
+@pytest.mark.parametrize("shown", ["{}", "no json", '{"yaw": 1e999, "look": "none", "sample": 9, "view": null}'])
 def test_a_film_shows_the_last_result(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch, shown: str) -> None:
     monkeypatch.setattr("webdemo.ui.components.film.film.SIZE", (96, 64))
     (busy, _), (line, button) = tab.make_film(result_of(tab, seconds=1.0), shown)
@@ -95,9 +91,7 @@ def test_a_film_shows_the_last_result(tab: GenerateTab, monkeypatch: pytest.Monk
 
 def test_a_film_is_what_the_player_shows(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: dict[str, Any] = {}
-    monkeypatch.setattr(
-        "webdemo.ui.components.film.film.write_film", lambda *_, **options: asked.update(options)
-    )
+    monkeypatch.setattr("webdemo.ui.components.film.film.write_film", lambda *_, **options: asked.update(options))
     shown = {
         "yaw": 1.5,
         "elevation": 9,
@@ -120,9 +114,7 @@ def test_a_film_wears_the_character_while_the_player_shows_it(
     tab: GenerateTab, monkeypatch: pytest.MonkeyPatch, shown: Any
 ) -> None:
     asked: dict[str, Any] = {}
-    monkeypatch.setattr(
-        "webdemo.ui.components.film.film.write_film", lambda *_, **options: asked.update(options)
-    )
+    monkeypatch.setattr("webdemo.ui.components.film.film.write_film", lambda *_, **options: asked.update(options))
     record = result_of(tab)
     record.worn = Worn(character_body(read_character(glb_character(), name="x.glb")), Path("x.glb"))
     make_film(record, json.dumps({"character": shown}), tab.page.shelf.folder())
@@ -162,18 +154,12 @@ def test_file_names_are_plain(prompt: str, expected: str) -> None:
 
 def test_runs_that_differ_have_files_that_differ_in_name() -> None:
     asked = {"seed": 7, "guidance": 2.5, "steps": 50}
-    manifests = [
-        {"request": asked},
-        {"request": asked | {"guidance": 3.0}},
-        {"request": asked, "model": "other"},
-    ]
+    manifests = [{"request": asked}, {"request": asked | {"guidance": 3.0}}, {"request": asked, "model": "other"}]
     names = [file_name("hug", manifest) for manifest in manifests]
     assert len(set(names)) == 3 and file_name("hug", dict(manifests[0])) == names[0]
 
 
-def test_both_wear_an_uploaded_character_in_this_result_and_the_next(
-    tab: GenerateTab, tmp_path: Path
-) -> None:
+def test_both_wear_an_uploaded_character_in_this_result_and_the_next(tab: GenerateTab, tmp_path: Path) -> None:
     file = tmp_path / "robot.glb"
     file.write_bytes(glb_character("unreal"))
     line, worn, player, *offered = tab.put_on(str(file), None)

@@ -44,9 +44,7 @@ def shown(tab: SceneTab, updates: Any) -> list[dict[str, Any]]:
     ]
 
 
-def generate(
-    tab: SceneTab, prompt: str = "They meet. Then they hug.", story: Any = None
-) -> list[dict[str, Any]]:
+def generate(tab: SceneTab, prompt: str = "They meet. Then they hug.", story: Any = None) -> list[dict[str, Any]]:
     return shown(tab, tab.run("session", {"prompt": prompt, "story": story, **SETTINGS}))
 
 
@@ -56,9 +54,7 @@ def test_a_sentence_is_laid_out_and_made_beat_by_beat(tab: SceneTab) -> None:
     assert all(story["__type__"] == "update" for story in stories), "the page changes them in place"
     laid = stories[0]["value"]
     assert [beat["words"] for beat in laid["beats"]] == ["They meet.", "They hug."]
-    lengths = [
-        u["player"]["value"]["samples"][0]["frames"] for u in updates if "value" in u.get("player", {})
-    ]
+    lengths = [u["player"]["value"]["samples"][0]["frames"] for u in updates if "value" in u.get("player", {})]
     assert lengths == sorted(lengths) and len(set(lengths)) == 2
     assert 'words = "They hug."' in next(u["text"] for u in updates if "text" in u)
     record = updates[-1]["record"]
@@ -91,11 +87,7 @@ def test_of_the_words_and_the_beats_what_was_changed_last_is_made_and_shown(tab:
 
 def test_beats_whose_words_stay_keep_what_was_set_for_them() -> None:
     still = np.zeros((22, 3))
-    beats = (
-        Beat("They meet.", seconds=3.0, seed=5),
-        Beat("They hug."),
-        Beat("", "waves, turns and bows", "waits"),
-    )
+    beats = (Beat("They meet.", seconds=3.0, seed=5), Beat("They hug."), Beat("", "waves, turns and bows", "waits"))
     total = sum(beat.length for beat in beats)
     poses = tuple(Pose("a", at, still) for at in (1.0, 4.0, total - 0.5))
     way = FloorPath("a", (FloorPoint(0.0, 0.0, 0.0), FloorPoint(1.0, 1.0, 2.0)))
@@ -141,10 +133,7 @@ def test_words_that_were_written_are_laid_out(tab: SceneTab) -> None:
         ({"beats": [{"words": "x", "seconds": 0.1}]}, "Beat 1"),
         ({"beats": [{"words": "x"}] * 500}, "beats: keep to 60"),
         ({"beats": [{"words": ["x"]}]}, "must be text"),
-        (
-            {"beats": [{"words": "x"}], "paths": [{"person": "a", "points": [[0, 99, 0]]}]},
-            "outside the floor",
-        ),
+        ({"beats": [{"words": "x"}], "paths": [{"person": "a", "points": [[0, 99, 0]]}]}, "outside the floor"),
         ({"beats": [{"words": "x"}], "paths": [{"person": "a", "points": [7]}]}, "damaged"),
         ({"beats": [{"words": "x"}], "paths": 3}, "damaged"),
     ],
@@ -174,8 +163,19 @@ def test_the_text_becomes_the_line(tab: SceneTab) -> None:
 
 
 def part(tab: SceneTab, which: str, record: Record | None, story: Any, words: str = "") -> dict[str, Any]:
-    fields = {"part": which, "story": story, "words": words, "guidance": 4.3, "steps": 2, "damping": 0.7,
-              "record": record, "earlier": [], "frame": 60, "sample": 0, "seed": 0}  # fmt: skip
+    fields = {
+        "part": which,
+        "story": story,
+        "words": words,
+        "guidance": 4.3,
+        "steps": 2,
+        "damping": 0.7,
+        "record": record,
+        "earlier": [],
+        "frame": 60,
+        "sample": 0,
+        "seed": 0,
+    }
     return shown(tab, tab.run("session", fields))[-1]
 
 
@@ -220,9 +220,16 @@ def test_parts_need_a_motion_and_a_span(tab: SceneTab) -> None:
 def test_a_kept_run_opens_with_its_story(tab: SceneTab) -> None:
     result = generate(tab)[-1]["record"].result
     entry = Entry(
-        id="x", kind="scene", title="t", created=0.0, state="done", message="", favourite=False, links=(),
+        id="x",
+        kind="scene",
+        title="t",
+        created=0.0,
+        state="done",
+        message="",
+        favourite=False,
+        links=(),
         request=result.manifest["request"],
-    )  # fmt: skip
+    )
     found = tab.opened(Opened(entry=entry, result=result))
     assert [b["words"] for b in found[tab.line_up]["value"]["beats"]] == ["They meet.", "They hug."]
     assert found[tab.prompt]["value"] == "They meet. They hug."
@@ -230,10 +237,7 @@ def test_a_kept_run_opens_with_its_story(tab: SceneTab) -> None:
     found = tab.opened(Opened(entry=entry, result=result, kept=kept))
     assert found[tab.prompt]["value"] == "They meet. Then they hug."
     kept = Kept(controls={"prompt": "They run."})  # of a time when the words were not kept with the beats
-    assert (
-        tab.opened(Opened(entry=entry, result=result, kept=kept))[tab.prompt]["value"]
-        == "They meet. They hug."
-    )
+    assert tab.opened(Opened(entry=entry, result=result, kept=kept))[tab.prompt]["value"] == "They meet. They hug."
 
 
 def test_a_kept_part_opens_with_the_whole_story(tab: SceneTab) -> None:
@@ -244,9 +248,16 @@ def test_a_kept_part_opens_with_the_whole_story(tab: SceneTab) -> None:
     for which, words in (("span", ["They meet.", "They hug."]), ("futures", ["They meet.", "…"])):
         result = part(tab, which, record, laid)["record"].result
         entry = Entry(
-            id="x", kind="scene", title="t", created=0.0, state="done", message="", favourite=False, links=(),
+            id="x",
+            kind="scene",
+            title="t",
+            created=0.0,
+            state="done",
+            message="",
+            favourite=False,
+            links=(),
             request=result.manifest["request"],
-        )  # fmt: skip
+        )
         found = tab.opened(Opened(entry=entry, result=result, kept=kept))
         story = found[tab.line_up]["value"]
         assert [beat["words"] or "…" for beat in story["beats"]] == words
@@ -262,8 +273,7 @@ def test_every_example_is_a_story_of_several_beats(tab: SceneTab) -> None:
 def test_contacts_are_marked_in_seconds() -> None:
     still = np.zeros((2, 60, 22, 3))
     marks = motion_marks(
-        Duet.from_positions(still, fps=30.0),
-        {"contacts": [{"start": 15, "stop": 30, "kind": "hands", "label": "x"}]},
+        Duet.from_positions(still, fps=30.0), {"contacts": [{"start": 15, "stop": 30, "kind": "hands", "label": "x"}]}
     )
     assert marks["contacts"] == [{"start": 0.5, "stop": 1.0, "kind": "hands", "label": "x"}]
     assert (marks["seconds"], marks["step"]) == (2.0, 0.1)
@@ -282,11 +292,11 @@ def test_a_span_keeps_the_poses_and_the_way_that_fall_into_it(tab: SceneTab) -> 
     record = generate(tab)[-1]["record"]
     duet = record.result.duets[0]
     own = [
-        Pose("a", 2.0, duet.a.positions[60]), Pose("b", 3.0, duet.b.positions[90]), Pose("b", 1.0, duet.b.positions[30])
-    ]  # fmt: skip
-    way = FloorPath(
-        "b", tuple(FloorPoint(0.0, float(duet.b.positions[30 * t, 0, 2]), float(t)) for t in range(5))
-    )
+        Pose("a", 2.0, duet.a.positions[60]),
+        Pose("b", 3.0, duet.b.positions[90]),
+        Pose("b", 1.0, duet.b.positions[30]),
+    ]
+    way = FloorPath("b", tuple(FloorPoint(0.0, float(duet.b.positions[30 * t, 0, 2]), float(t)) for t in range(5)))
     laid = story_value((Beat("They meet."), Beat("They hug.")), (way,), tuple(own)) | {"span": [1.5, 3.0]}
     asked = part(tab, "span", record, laid)["record"].result.manifest["request"]
     assert [(pose["person"], pose["seconds"]) for pose in asked["poses"]] == [("a", 2.0)]
@@ -328,9 +338,7 @@ def test_paths_from_the_words_are_switched_on_the_line(tab: SceneTab) -> None:
     assert generate(tab, "They wave.", laid)[-1]["story"]["value"]["planned"] is False
     assert "planned = false" in lay_out("They wave.", laid)[2]
     assert "planned" not in lay_out("They wave.")[2]
-    entry = Entry(
-        id="x", kind="scene", title="t", state="done", request=last["record"].result.manifest["request"]
-    )
+    entry = Entry(id="x", kind="scene", title="t", state="done", request=last["record"].result.manifest["request"])
     opened = tab.opened(Opened(entry=entry, result=last["record"].result))
     assert opened[tab.line_up]["value"]["planned"] is False and "planned = false" in opened[tab.text]
     # A story as text says it itself.
@@ -344,9 +352,7 @@ def test_a_loop_that_is_ticked_before_there_is_a_story_is_made(tab: SceneTab) ->
     assert last["record"].result.manifest["request"]["loop"] is True
 
 
-def test_every_story_of_the_page_is_read_in_limited_time(
-    tab: SceneTab, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_every_story_of_the_page_is_read_in_limited_time(tab: SceneTab, monkeypatch: pytest.MonkeyPatch) -> None:
     laid, record = lay_out("They meet.")[1], generate(tab)[-1]["record"]
     monkeypatch.setattr(scripting, "READING_SECONDS", 1e-9)
     said = "The story took longer than 1e-09 seconds to read: shorten it"

@@ -25,13 +25,7 @@ ENTRY = StudyEntry("id", "key", "Which?", ("<i>a</i>", "b"), 2)
 def run(
     name: str, *, samples: int = 1, beside: Sequence[Opened] = (), title: str = "They hug.", **asked: Any
 ) -> Opened:
-    request = {
-        "kind": "generate",
-        "prompt": "They hug.",
-        "model": "intergen",
-        "seed": 3,
-        "guidance": 2.5,
-    } | asked
+    request = {"kind": "generate", "prompt": "They hug.", "model": "intergen", "seed": 3, "guidance": 2.5} | asked
     entry = Entry(id=name, kind="generate", title=title, state="done", request=request)
     return Opened(entry=entry, result=Result(duets=(PAIR,) * samples, manifest={}), beside=tuple(beside))
 
@@ -56,10 +50,7 @@ class Studies:
 def panel() -> StudyPanel:
     runs = {
         each.entry.id: each
-        for each in (
-            run("a", samples=2),
-            run("b", guidance=4.0, beside=[run("c", prompt="They bow.")]),
-        )
+        for each in (run("a", samples=2), run("b", guidance=4.0, beside=[run("c", prompt="They bow.")]))
     }
 
     def opened(key: str, owner: str) -> Opened:
@@ -86,14 +77,10 @@ def test_a_study_is_made_of_two_chosen_runs_and_its_link_is_shown(panel: StudyPa
     assert "Nobody has voted yet" in said[panel.result] and said[panel.table]["interactive"] is False
     ((question, runs, pairs),) = panel.studies.made  # type: ignore[attr-defined]
     assert (question, runs) == (QUESTION, ("Guidance 2.5", "Guidance 4"))
-    assert [pair.caption for pair in pairs] == ["They hug.", ""], (
-        "the cells of a grid are motions of their run"
-    )
+    assert [pair.caption for pair in pairs] == ["They hug.", ""], "the cells of a grid are motions of their run"
 
 
-@pytest.mark.parametrize(
-    ("ids", "says"), [((), "not 0"), (("a",), "not 1"), (("a", "gone"), "There is no such run")]
-)
+@pytest.mark.parametrize(("ids", "says"), [((), "not 0"), (("a",), "not 1"), (("a", "gone"), "There is no such run")])
 def test_what_cannot_be_studied_is_a_sentence(panel: StudyPanel, ids: tuple[str, ...], says: str) -> None:
     for said in (panel.choose(chosen(*ids)), panel.create(list(ids), QUESTION)):
         assert list(said) == [panel.line] and says in said[panel.line] and "pd-error" in said[panel.line]

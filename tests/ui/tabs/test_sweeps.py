@@ -28,9 +28,16 @@ from webdemo.ui.tabs.scene import SceneTab
 from webdemo.ui.tabs.sweeps import DAMPING, GUIDANCE, SEED
 
 FIELDS = {
-    "model": "intergen", "prompt": "They shake hands.", "class_name": None, "seconds": 1.0, "seed": 3,
-    "samples": 2, "guidance": 4.3, "steps": 2, "damping": 0.7,
-}  # fmt: skip
+    "model": "intergen",
+    "prompt": "They shake hands.",
+    "class_name": None,
+    "seconds": 1.0,
+    "seed": 3,
+    "samples": 2,
+    "guidance": 4.3,
+    "steps": 2,
+    "damping": 0.7,
+}
 
 
 @pytest.fixture
@@ -46,10 +53,14 @@ def run(tab: Any, *swept: str, **changed: Any) -> list[dict[str, Any]]:
 @pytest.mark.parametrize(
     ("kind", "given", "values"),
     [
-        (SEED, "1, 2;3", (1, 2, 3)), (SEED, "4-6", (4, 5, 6)), (SEED, "7 to 8", (7, 8)), (SEED, "5 5", (5,)),
-        (DAMPING, "0, 0.7", (0.0, 0.7)), (GUIDANCE, "1 2.5", (1.0, 2.5)),
+        (SEED, "1, 2;3", (1, 2, 3)),
+        (SEED, "4-6", (4, 5, 6)),
+        (SEED, "7 to 8", (7, 8)),
+        (SEED, "5 5", (5,)),
+        (DAMPING, "0, 0.7", (0.0, 0.7)),
+        (GUIDANCE, "1 2.5", (1.0, 2.5)),
     ],
-)  # fmt: skip
+)
 def test_values_are_read_as_people_write_them(kind: Any, given: str, values: tuple[Any, ...]) -> None:
     assert read_axis(kind, given).values == values
 
@@ -57,11 +68,15 @@ def test_values_are_read_as_people_write_them(kind: Any, given: str, values: tup
 @pytest.mark.parametrize(
     ("kind", "given", "sentence"),
     [
-        (SEED, "1-500", "A grid has 1 to 9 cells, not 500"), (SEED, "9-1", "1 to 9 cells"), (SEED, " ", "no values"),
-        (SEED, "1.5", "is no whole number"), (DAMPING, "a lot", "is no number"),
-        (SEED, "1 " * 500, "1 to 9 cells, not 500"), (SEED, "1-" + "9" * 400, "is no whole number"),
+        (SEED, "1-500", "A grid has 1 to 9 cells, not 500"),
+        (SEED, "9-1", "1 to 9 cells"),
+        (SEED, " ", "no values"),
+        (SEED, "1.5", "is no whole number"),
+        (DAMPING, "a lot", "is no number"),
+        (SEED, "1 " * 500, "1 to 9 cells, not 500"),
+        (SEED, "1-" + "9" * 400, "is no whole number"),
     ],
-)  # fmt: skip
+)
 def test_what_makes_no_grid_is_a_sentence(kind: Any, given: str, sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):
         read_axis(kind, given)
@@ -74,8 +89,11 @@ def test_two_axes_are_columns_and_rows_and_one_axis_wraps() -> None:
     assert grid.cells[4] == {"seed": 2, "damping": 0.7} and grid.names[4] == "damping 0.7 · seed 2"
     alone = grid_of([read_axis(SEED, "1-4")])
     assert (len(alone.columns), len(alone.rows), alone.names[3]) == (2, 2, "seed 4")
-    for axes, sentence in (([], "Choose what"), ([seeds, seeds], "same setting"),
-                           ([read_axis(SEED, "1-4"), read_axis(GUIDANCE, "1 2 3")], "not 12")):  # fmt: skip
+    for axes, sentence in (
+        ([], "Choose what"),
+        ([seeds, seeds], "same setting"),
+        ([read_axis(SEED, "1-4"), read_axis(GUIDANCE, "1 2 3")], "not 12"),
+    ):
         with pytest.raises(InputError, match=sentence):
             grid_of(axes)
 
@@ -100,10 +118,7 @@ def test_a_grid_is_made_shown_measured_and_written(tab: GenerateTab, tmp_path: P
     assert Image.open(sheet).height > 4 * 200, "all four rows are on one sheet"
     film = make_film(record, '{"theme": "dark"}', tmp_path)
     assert film.stat().st_size > 1000
-    for swept, sentence in (
-        (("seed", "1-500", "", ""), "not 500"),
-        (("", "", "", ""), "Choose what the grid"),
-    ):
+    for swept, sentence in ((("seed", "1-500", "", ""), "not 500"), (("", "", "", ""), "Choose what the grid")):
         assert sentence in run(tab, *swept)[-1]["line"]
     seen = len(tab.page.engine.requests)
     assert "Damping threshold must be" in run(tab, "damping", "0, 7", "", "")[-1]["line"]
@@ -114,17 +129,9 @@ def test_predictions_by_several_methods_make_a_grid_with_their_pasts(tmp_path: P
     tab = built(PredictTab, tmp_path / "files")
     *_, loaded = tab.upload(str(write(walking(4.0), tmp_path / "walkers.npz")[0]))
     field, values = tab.presets()["Method beside method"]
-    fields = {
-        "source": loaded[0],
-        "given": "",
-        "marker": 2.0,
-        "seconds": 1.0,
-        "model": "motion-mlp",
-        "other": "mawgan",
-    }
+    fields = {"source": loaded[0], "given": "", "marker": 2.0, "seconds": 1.0, "model": "motion-mlp", "other": "mawgan"}
     last = [
-        changes(tab.outputs, each)
-        for each in tab.run("me", {**fields, "grid": [field, values, "marker", "1.5 2"]})
+        changes(tab.outputs, each) for each in tab.run("me", {**fields, "grid": [field, values, "marker", "1.5 2"]})
     ][-1]
     (sample,) = last["player"]["value"]["samples"]
     assert [cell["past_until"] for cell in sample["cells"]] == [45] * 3 + [60] * 3
@@ -141,19 +148,16 @@ def test_predictions_by_several_methods_make_a_grid_with_their_pasts(tmp_path: P
 
 def test_a_story_under_several_settings_makes_a_grid(tmp_path: Path) -> None:
     tab = built(SceneTab, tmp_path)
-    story = {
-        "prompt": "Two people bow. Then they hug.",
-        "story": None,
-        "seed": 1,
-        "samples": 3,
-        "guidance": 3.0,
-    }
+    story = {"prompt": "Two people bow. Then they hug.", "story": None, "seed": 1, "samples": 3, "guidance": 3.0}
     fields = {**story, "steps": 2, "damping": 0.7, "grid": ["damping", "0, 0.7", "seed", "1 2"]}
     last = [changes(tab.outputs, each) for each in tab.run("me", fields)][-1]
     asked = tab.page.engine.requests  # type: ignore[attr-defined]
     assert [(r.damping, r.seed, r.samples, len(r.beats)) for r in asked] == [
-        (0.0, 1, 1, 2), (0.7, 1, 1, 2), (0.0, 2, 1, 2), (0.7, 2, 1, 2),
-    ]  # fmt: skip
+        (0.0, 1, 1, 2),
+        (0.7, 1, 1, 2),
+        (0.0, 2, 1, 2),
+        (0.7, 2, 1, 2),
+    ]
     assert len(last["player"]["value"]["samples"][0]["cells"]) == 4
     assert [beat["words"] for beat in last["story"]["value"]["beats"]] == [b.words for b in asked[0].beats]
 
@@ -177,9 +181,7 @@ def test_what_cannot_be_measured_is_a_dash_among_the_others() -> None:
     assert "Response delay" not in grid_table({"plain": result(None), "damped": result(None)})
 
 
-def test_a_sentence_stands_beside_its_class_and_a_method_beside_a_method(
-    tab: GenerateTab, tmp_path: Path
-) -> None:
+def test_a_sentence_stands_beside_its_class_and_a_method_beside_a_method(tab: GenerateTab, tmp_path: Path) -> None:
     field, values = tab.presets()["Sentence beside class"]
     run(tab, field, values, "", "", prompt="Two people shake hands.")
     first, second = tab.page.engine.requests
@@ -192,10 +194,7 @@ def test_a_sentence_stands_beside_its_class_and_a_method_beside_a_method(
     assert (sentence.prompt, name.prompt) == ("Two people hug.", "hug")
     assert "There is no method" in run(tab, "model", "intergen; mine", "", "")[-1]["line"]
     react = built(ReactTab, tmp_path / "react")
-    assert set(react.presets()["Method beside method"][1].split("; ")) >= {
-        "ReGenNet, online",
-        "Virtual agent",
-    }
+    assert set(react.presets()["Method beside method"][1].split("; ")) >= {"ReGenNet, online", "Virtual agent"}
     assert react.cell_fields({**FIELDS, "method": "intergen"}, {"method": "regennet"})["steps"] == 5
 
 

@@ -22,10 +22,7 @@ def test_nothing_is_said_where_nothing_was_added() -> None:
 
 def test_acts_and_problems_are_listed_and_escaped() -> None:
     known = replace(
-        lexicon(),
-        entries={"kick-flip": ENTRY},
-        own=("kick-flip",),
-        problems=("a.toml, line 3, [<i>]: wrong.",),
+        lexicon(), entries={"kick-flip": ENTRY}, own=("kick-flip",), problems=("a.toml, line 3, [<i>]: wrong.",)
     )
     shown = own_acts(known)
     assert "<summary>This lab&#x27;s own acts: 1 (left out: 1)</summary>" in shown

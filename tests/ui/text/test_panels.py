@@ -39,13 +39,16 @@ def test_text_is_escaped_and_comes_back_the_same() -> None:
     assert html.unescape(escaped) == HOSTILE
 
 
-@pytest.mark.parametrize("made", [
-    status(HOSTILE, tone="error"),
-    model_state("failed", HOSTILE),
-    model_card({"name": HOSTILE, "summary": HOSTILE, HOSTILE: HOSTILE}),
-    notes_lines(Result(duets=result().duets, manifest={}, notes=(HOSTILE,))),
-    readout_panel(Result(duets=result().duets, manifest={"request": {"kind": "react", "model": HOSTILE}})),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "made",
+    [
+        status(HOSTILE, tone="error"),
+        model_state("failed", HOSTILE),
+        model_card({"name": HOSTILE, "summary": HOSTILE, HOSTILE: HOSTILE}),
+        notes_lines(Result(duets=result().duets, manifest={}, notes=(HOSTILE,))),
+        readout_panel(Result(duets=result().duets, manifest={"request": {"kind": "react", "model": HOSTILE}})),
+    ],
+)
 def test_no_panel_lets_markup_or_templates_through(made: str) -> None:
     assert "<img" not in made
     assert "${" not in made
@@ -62,9 +65,7 @@ def test_readouts_show_before_after_and_change() -> None:
 
 def test_readouts_are_described_in_words_too() -> None:
     made = html.unescape(readout_panel(result()))
-    assert re.search(
-        r"The two are \d\.\d m apart on average, \d\.\d m at the closest, and do not touch", made
-    )
+    assert re.search(r"The two are \d\.\d m apart on average, \d\.\d m at the closest, and do not touch", made)
     good = {"distance": 0.93, "distance_min": 0.91, "contact_seconds": 2.3}
     assert in_words(good) == "The two are 0.9 m apart on average, 0.9 m at the closest, and touch for 2.3 s."
     assert in_words({"foot_skate": 3, "penetration_max": 0.5, "jerk": 20}) == (
@@ -178,9 +179,7 @@ def test_a_line_says_what_share_of_a_motion_is_planned() -> None:
         (0.0, 0.5, 'pd-worse">+0.50<'),
     ],
 )
-def test_a_change_is_shown_only_where_the_figures_shown_differ(
-    before: float, after: float, said: str
-) -> None:
+def test_a_change_is_shown_only_where_the_figures_shown_differ(before: float, after: float, said: str) -> None:
     readout = {"before": {"penetration": before}, "after": {"penetration": after}}
     made = readout_panel(Result(duets=(walking(1.0),), manifest={}, readouts=(readout,)))
     row = next(row for row in made.split("<tr") if "Penetration" in row)

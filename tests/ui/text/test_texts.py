@@ -39,9 +39,7 @@ def _literals(path: Path) -> set[str]:
     text = path.read_text(encoding="utf-8")
     if path.suffix == ".py":
         found = {n.value for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Constant)}
-        return {value for value in found if isinstance(value, str)} | set(
-            re.findall(r"say\('([^']+)'\)", text)
-        )
+        return {value for value in found if isinstance(value, str)} | set(re.findall(r"say\('([^']+)'\)", text))
     return set(re.findall(rf"[\"'`]({KEY.pattern})[\"'`]", text))
 
 
@@ -62,8 +60,7 @@ def test_every_language_has_all_texts_with_the_same_names_in_braces(language: st
         assert _placeholders(text) == _placeholders(english(key)), key
         assert re.findall(r"</?\w+>", text) == re.findall(r"</?\w+>", english(key)), key
         spaces = [
-            re.match(r"\s*", each).group() + "|" + re.search(r"\s*$", each).group()
-            for each in (text, english(key))
+            re.match(r"\s*", each).group() + "|" + re.search(r"\s*$", each).group() for each in (text, english(key))
         ]
         assert spaces[0] == spaces[1], f"{key}: the spaces at its ends join it to other texts"
 
@@ -75,9 +72,7 @@ def test_scripts_know_the_languages() -> None:
 
 def test_every_text_is_used(literals: set[str]) -> None:
     known = literals | {literal.capitalize() for literal in literals}
-    known |= {
-        path.stem.replace("-", " ").capitalize() for path in (ROOT / "static" / "examples").glob("*.npz")
-    }
+    known |= {path.stem.replace("-", " ").capitalize() for path in (ROOT / "static" / "examples").glob("*.npz")}
     known |= {method.summary for task in ("generate", "react", "predict") for method in methods(task)}
     for key, text in languages()[ENGLISH].items():
         by_label = key.split(".")[0] in WORDED and text in known
@@ -88,11 +83,7 @@ def test_every_text_that_is_named_is_there() -> None:
     sections = {key.split(".")[0] for key in languages()[ENGLISH]}
     pages = [path for path in PYTHON if "ui" in path.parts]
     named = {text for path in (*pages, *MODULES, *MARKUP) for text in _literals(path) if KEY.fullmatch(text)}
-    named = {
-        text
-        for text in named
-        if text.split(".")[0] in sections and not any((ROOT / "static").glob(f"*/{text}"))
-    }
+    named = {text for text in named if text.split(".")[0] in sections and not any((ROOT / "static").glob(f"*/{text}"))}
     assert named - languages()[ENGLISH].keys() <= NO_KEYS
 
 
@@ -148,9 +139,7 @@ def _shown(tree: ast.Module) -> Iterator[tuple[int, ast.expr]]:
         if not isinstance(node, ast.Call):
             continue
         if any(
-            isinstance(k.value, ast.Constant) and k.value.value in ALONE
-            for k in node.keywords
-            if k.arg == "elem_id"
+            isinstance(k.value, ast.Constant) and k.value.value in ALONE for k in node.keywords if k.arg == "elem_id"
         ):
             continue
         name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")

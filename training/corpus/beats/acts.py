@@ -194,12 +194,8 @@ fold_arms = _pose(
 shrug = _pose(lambda body, side: on_body(body, f"{side}_shoulder", 0.26 * _out(side), -0.2, 0.22), 1.2, 1.8)
 stop_hand = _pose(lambda body, side: on_body(body, f"{side}_shoulder", 0.0, 0.02, 0.5), 1.2, 2.0, both=False)
 phone = _pose(lambda body, side: on_body(body, "head", 0.13 * _out(side), -0.02, 0.03), 1.8, 3.0, both=False)
-hand_on_chest = _pose(
-    lambda body, side: on_body(body, "spine3", 0.03 * _out(side), 0.0, 0.13), 1.3, 2.2, both=False
-)
-open_arms = _pose(
-    lambda body, side: on_body(body, f"{side}_shoulder", 0.38 * _out(side), -0.06, 0.24), 1.3, 2.2
-)
+hand_on_chest = _pose(lambda body, side: on_body(body, "spine3", 0.03 * _out(side), 0.0, 0.13), 1.3, 2.2, both=False)
+open_arms = _pose(lambda body, side: on_body(body, f"{side}_shoulder", 0.38 * _out(side), -0.06, 0.24), 1.3, 2.2)
 
 
 def point(play: Play, i: int) -> Done:
@@ -282,5 +278,5 @@ ACTS: dict[str, Act] = {
     "kick-air:leg": Act(strike("kick"), ("kick",), 1.2, room=1.7),
     "swing-sword": Act(strike("slash"), ("slash",), 0.6, room=1.9),
     **WHOLE,
-}  # fmt: skip
+}
 """What one person does alone, by its cue."""

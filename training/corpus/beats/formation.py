@@ -33,9 +33,7 @@ def formation(rng: Rng, library: Library) -> Scene:
     positions = canonicalize(np.stack([realise(m[start : start + frames]) for m in (a, b)]))
     sources = tuple(sorted(set(a.sources + b.sources)))
     beats = [Beat(("dance", "dance"), 0, frames, relation="while")]
-    return describe(
-        rng, Scene(positions.astype(np.float32), "formation", sources, library.split, played=beats)
-    )
+    return describe(rng, Scene(positions.astype(np.float32), "formation", sources, library.split, played=beats))
 
 
 def _liveliness(motion: Motion) -> float:

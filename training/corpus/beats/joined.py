@@ -62,10 +62,7 @@ def hand_in_hand(play: Play, i: int) -> None:
     taken = max(start - 14, begun)
     letting = play.frames - (0 if rng.random() < 0.5 else 8)
     play.effect(
-        taken,
-        letting + 22,
-        _held((hand, opposite(hand)), rng.uniform(0.78, 0.86), taken, taken + 16, letting),
-        i=i,
+        taken, letting + 22, _held((hand, opposite(hand)), rng.uniform(0.78, 0.86), taken, taken + 16, letting), i=i
     )
     play.note((name, name), taken, i=i, relation="while")
     for k in (0, 1):

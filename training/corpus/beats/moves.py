@@ -78,9 +78,14 @@ def come(play: Play, i: int, distance: float) -> int:
     if far > 0.5:
         acts = ("walk-up", "walk-up") if both else ("walk-up", STILL)
         play.note_span(
-            acts, start, play.frames, i=i, relation="while", styles=(take.style if take else "normal", "normal"),
+            acts,
+            start,
+            play.frames,
+            i=i,
+            relation="while",
+            styles=(take.style if take else "normal", "normal"),
             minor=bool(play.wish) or bool(play.rng.random() < 0.4),
-        )  # fmt: skip
+        )
     return play.sync()
 
 
@@ -113,14 +118,10 @@ def leave(play: Play, i: int, *, distance: tuple[float, float] = (1.6, 3.0)) -> 
     own = play.people[i]
     action, name = gait(play)
     way = own.angle + np.pi + rng.normal(0, 0.35) if abs(play.off(i)) < 1.2 else own.angle
-    answer = play.wanted(
-        (STILL, STILL, "wave", "wave", "beckon", "turn-away", "shake-head", "shrug", "point"), 1
-    )
+    answer = play.wanted((STILL, STILL, "wave", "wave", "beckon", "turn-away", "shake-head", "shrug", "point"), 1)
     if answer in ACTS and not play.library.has(*ACTS[answer].needs):
         answer = STILL
-    take = own.go(
-        own.spot + rng.uniform(*distance) * ahead(way), None, action=action, stop=rng.random() < 0.6
-    )
+    take = own.go(own.spot + rng.uniform(*distance) * ahead(way), None, action=action, stop=rng.random() < 0.6)
     side, style = None, "normal"
     if answer == "turn-away":
         _turn_off(play, 1 - i, start)
@@ -128,9 +129,7 @@ def leave(play: Play, i: int, *, distance: tuple[float, float] = (1.6, 3.0)) -> 
         play.people[1 - i].hold(play.seconds(0.3, 0.9))
         done = ACTS[answer].make(play, 1 - i)
         side, style = done.side, done.style
-    play.note(
-        (f"{name}-away", answer), start, i=i, relation="while", styles=(take.style, style), sides=(None, side)
-    )
+    play.note((f"{name}-away", answer), start, i=i, relation="while", styles=(take.style, style), sides=(None, side))
 
 
 def _turn_off(play: Play, i: int, start: int) -> None:
@@ -152,9 +151,7 @@ def part(play: Play, i: int) -> None:
         if k != i:
             person.hold(int(rng.integers(0, 15)))
         take = person.go(person.spot + rng.uniform(1.6, 2.6) * ahead(way), None, stop=rng.random() < 0.5)
-    play.note(
-        ("part", "part"), start, i=i, relation="while", styles=(take.style, take.style) if take else None
-    )
+    play.note(("part", "part"), start, i=i, relation="while", styles=(take.style, take.style) if take else None)
 
 
 def turn_away(play: Play, i: int) -> None:
@@ -219,9 +216,13 @@ def circle(play: Play, i: int) -> None:
         other.hold(int((len(own) - len(other)) * 0.9), turn=side * arc * 0.85)
     direction = "counterclockwise" if side > 0 else "clockwise"
     play.note(
-        ("walk-around", "turn-to" if follows else STILL), start, i=i, relation="while",
-        styles=(take.style, "normal"), more={"direction": direction},
-    )  # fmt: skip
+        ("walk-around", "turn-to" if follows else STILL),
+        start,
+        i=i,
+        relation="while",
+        styles=(take.style, "normal"),
+        more={"direction": direction},
+    )
 
 
 def curve(person: Performer, length: float, bend: float) -> tuple[Take, Motion]:
@@ -289,9 +290,7 @@ def abreast(
     turn = (pick(rng, (-1, 1)) * rng.uniform(0.2, 1.4) if rng.random() < 0.5 else 0.0) * ease(frames)
     steps = np.linalg.norm(np.diff(take.motion.root[:, [0, 2]], axis=0), axis=-1)
     # Who walks outside goes the longer way.
-    scale = np.clip(
-        1 + np.append(np.diff(turn), 0.0) * -side * gap / np.maximum(np.append(steps, 1.0), 0.01), 0.5, 1.5
-    )
+    scale = np.clip(1 + np.append(np.diff(turn), 0.0) * -side * gap / np.maximum(np.append(steps, 1.0), 0.01), 0.5, 1.5)
     own.append(steer(take.motion, turn), blend=12)
     other.append(steer(tempo(take.motion, scale), turn), blend=12)
     return start, play.frames, take, side
@@ -320,13 +319,9 @@ def walk_together(play: Play, i: int) -> None:
     if kind < 0.65 and play.library.has("guide"):  # talking while strolling
         who = i if play.wish or rng.random() < 0.6 else 1 - i
         speaker = play.people[who]
-        speaker.motion, _ = arms_over(
-            play.library, rng, speaker.motion, pick(rng, _spoken(play)), start + 12, None
-        )
+        speaker.motion, _ = arms_over(play.library, rng, speaker.motion, pick(rng, _spoken(play)), start + 12, None)
         play.look(who, start, stop, 0.6)
-        acts = (
-            ("walk-together+talk", "walk-together") if who == i else ("walk-together", "walk-together+talk")
-        )
+        acts = ("walk-together+talk", "walk-together") if who == i else ("walk-together", "walk-together+talk")
         play.note(acts, start, i=i, relation="while", styles=style)
         return
     play.note(("walk-together", "walk-together"), start, i=i, relation="while", styles=style)
@@ -364,6 +359,10 @@ def walk_and(play: Play, i: int) -> None:
     own.hold(14)
     own.motion, gesture = arms_over(play.library, rng, own.motion, over, start, side, most=length)
     play.note(
-        (f"{'walk-up' if up else 'step-back'}+{_SAID[over]}", STILL), start, i=i, relation="while",
-        sides=(gesture.side, None), styles=(take.style, "normal"),
-    )  # fmt: skip
+        (f"{'walk-up' if up else 'step-back'}+{_SAID[over]}", STILL),
+        start,
+        i=i,
+        relation="while",
+        sides=(gesture.side, None),
+        styles=(take.style, "normal"),
+    )

@@ -67,9 +67,27 @@ def _close(play: Play, i: int) -> bool:
     return play.gap < 2.4
 
 
-ANSWERS = ("nod", "clap", "wave", "shake-head", "shrug", "bow", "point", "fold-arms", "arms-out", "raise-arm",
-           "talk", "hands-on-hips", "jump", "make-fist", "cover-face",
-           "wave-off", "rage", "dance", "hand-on-chest")  # fmt: skip
+ANSWERS = (
+    "nod",
+    "clap",
+    "wave",
+    "shake-head",
+    "shrug",
+    "bow",
+    "point",
+    "fold-arms",
+    "arms-out",
+    "raise-arm",
+    "talk",
+    "hands-on-hips",
+    "jump",
+    "make-fist",
+    "cover-face",
+    "wave-off",
+    "rage",
+    "dance",
+    "hand-on-chest",
+)
 
 
 def solo(name: str) -> Callable[[Play, int], None]:
@@ -85,10 +103,13 @@ def solo(name: str) -> Callable[[Play, int], None]:
         done = ACTS[name].make(play, i)
         answer, relation, second = _play_answer(play, 1 - i, _draw_answer(play, name, draw), done)
         play.note(
-            (name, answer), start, i=i, relation=relation,
+            (name, answer),
+            start,
+            i=i,
+            relation=relation,
             sides=(done.side, second.side if second else None),
             styles=(done.style, second.style if second else "normal"),
-        )  # fmt: skip
+        )
 
     return make
 
@@ -128,11 +149,7 @@ def _play_answer(play: Play, i: int, answer: str, done: Done) -> tuple[str, str,
     rng, person = play.rng, play.people[i]
     if answer in ACTS and play.gap > ACTS[answer].room - (0.4 if play.wish else 0.0):
         relation = pick(rng, ("while", "reply", "reply", "order"))
-        wait = {
-            "while": done.start - 4,
-            "reply": done.start + play.seconds(0.5, 1.3),
-            "order": done.stop - 4,
-        }[relation]
+        wait = {"while": done.start - 4, "reply": done.start + play.seconds(0.5, 1.3), "order": done.stop - 4}[relation]
         if relation != "while" and abs(play.off(i)) > 0.9:
             person.turn(play.off(i))
         person.hold_until(wait)
@@ -170,7 +187,7 @@ MENU: dict[str, Option] = {
     "walk-and": Option(moves.walk_and, ("walk", "walk-back", "wave"), 3.5, _near),
     "walk-past": Option(passing.walk_past, ("walk",), 2.5, _far),
     "skip": Option(passing.skip_past, ("skip",), 4.0, _far),
-}  # fmt: skip
+}
 
 
 APPROACHES = ("walk-up", "run-up", "creep-up", "walk-up+wave", "walk-up+raise-arm", "walk-past", "skip")
@@ -181,9 +198,7 @@ _STAGED_BY: dict[str | Pair, str] = {
     **dict.fromkeys(("walk-away", "run-away", "sneak-away"), "leave"),
     **dict.fromkeys(("walk-together+talk", (STILL, "walk-ahead")), "walk-together"),
     **dict.fromkeys(("shake-hands?", "high-five?", "hand-over?", "hug?"), "refused"),
-    **dict.fromkeys(
-        ("walk-up+wave", "walk-up+raise-arm", "step-back+wave", "step-back+raise-arm"), "walk-and"
-    ),
+    **dict.fromkeys(("walk-up+wave", "walk-up+raise-arm", "step-back+wave", "step-back+raise-arm"), "walk-and"),
     ("pat:shoulder", "turn-to"): "tap",
     "step-forward": "step-back",
     "hold-hands": "walk-hand-in-hand",
@@ -316,9 +331,7 @@ def _rarity(chosen: tuple[tuple[Pair, ...], ...]) -> Array:
 
 
 @cache
-def _stories(
-    split: str, menu: tuple[str, ...]
-) -> tuple[tuple[tuple[Pair, ...], ...], tuple[tuple[Pair, ...], ...]]:
+def _stories(split: str, menu: tuple[str, ...]) -> tuple[tuple[tuple[Pair, ...], ...], tuple[tuple[Pair, ...], ...]]:
     """Stories of one beat and of more whose beats are all on the menu."""
     found: tuple[list[tuple[Pair, ...]], list[tuple[Pair, ...]]] = ([], [])
     for story in stories():
@@ -383,6 +396,4 @@ def as_scene(rng: Rng, play: Play, split: str) -> Scene:
     beats = [beat for beat in play.beats if beat.start < frames - 5]
     events: dict[str, Any] = {"contact": touches} if touches else {}
     family = f"beats-{min(sum(not beat.minor for beat in beats) or 1, 4)}"
-    return describe(
-        rng, Scene(positions.astype(np.float32), family, play.sources(), split, events, played=beats)
-    )
+    return describe(rng, Scene(positions.astype(np.float32), family, play.sources(), split, events, played=beats))

@@ -56,6 +56,4 @@ def dodge(rng: Rng, motion: Motion, frame: int) -> Motion:
     motion = lean(motion, shape * rng.uniform(0.45, 0.7), towards=towards)
     angle = motion.headings + towards
     aside = np.stack([np.sin(angle), np.zeros(len(motion)), np.cos(angle)], axis=-1)
-    return drift(
-        motion, aside * shape[:, None] * rng.uniform(0.08, 0.16) - np.array([0, 0.05, 0]) * shape[:, None]
-    )
+    return drift(motion, aside * shape[:, None] * rng.uniform(0.08, 0.16) - np.array([0, 0.05, 0]) * shape[:, None])

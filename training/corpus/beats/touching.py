@@ -22,8 +22,7 @@ from .play import Play
 
 AFTER = 34
 """Frames for which hands may still be on their way back when a touch is over."""
-_CUES = {"handshake": "shake-hands", "pat-shoulder": "pat:shoulder",
-         "hand-on-shoulder": "hand-on:shoulder"}  # fmt: skip
+_CUES = {"handshake": "shake-hands", "pat-shoulder": "pat:shoulder", "hand-on-shoulder": "hand-on:shoulder"}
 """The cues of touches that go by another name than their entry."""
 
 
@@ -40,10 +39,7 @@ def face_to_face(name: str) -> Callable[[Play, int], None]:
         for person in play.people:
             person.hold(length + 16)
         own_rng = np.random.default_rng(rng.integers(2**32))
-        play.effect(
-            start, start + length + AFTER + 16,
-            lambda a, b: touch.make(own_rng, a, b, 2, length, side), i=i,
-        )  # fmt: skip
+        play.effect(start, start + length + AFTER + 16, lambda a, b: touch.make(own_rng, a, b, 2, length, side), i=i)
         cue = _CUES.get(name, name)
         answer = {"hand-over": "take-from", "pat-shoulder": STILL, "hand-on-shoulder": STILL}.get(name, cue)
         sides = ("both",) * 2 if both else (side, side if answer == cue else None)
@@ -81,9 +77,7 @@ def _from_the_side(make: Callable, name: str, answer: str) -> Callable[[Play, in
         # Where i must stand so that the other is ahead and a little to the other side, half turned away.
         turn = sign * rng.uniform(1.0, 1.4)
         way = other.angle + turn
-        spot = (
-            other.spot - rng.uniform(0.42, 0.5) * ahead(way) + sign * rng.uniform(0.1, 0.2) * leftwards(way)
-        )
+        spot = other.spot - rng.uniform(0.42, 0.5) * ahead(way) + sign * rng.uniform(0.1, 0.2) * leftwards(way)
         near = float(np.linalg.norm(own.spot - spot)) < 0.6
         own.go(spot, way)
         play.sync()
@@ -175,9 +169,19 @@ def _tap_turn(play: Play, i: int) -> None:
 
 
 TOUCH_BEATS: dict[str, tuple[Callable[[Play, int], None], float, tuple[str, ...]]] = {
-    **{_CUES.get(name, name): (face_to_face(name), weight, ("walk", "idle")) for name, weight in (
-        ("handshake", 4.0), ("high-five", 4.3), ("low-five", 1.2), ("fist-bump", 1.8),
-        ("elbow-bump", 1.0), ("hand-over", 2.5), ("pat-shoulder", 1.5), ("hand-on-shoulder", 1.5))},
+    **{
+        _CUES.get(name, name): (face_to_face(name), weight, ("walk", "idle"))
+        for name, weight in (
+            ("handshake", 4.0),
+            ("high-five", 4.3),
+            ("low-five", 1.2),
+            ("fist-bump", 1.8),
+            ("elbow-bump", 1.0),
+            ("hand-over", 2.5),
+            ("pat-shoulder", 1.5),
+            ("hand-on-shoulder", 1.5),
+        )
+    },
     "hug": (_hug, 4.0, ("walk", "idle", "walk-back")),
     "pat:back": (_from_the_side(pat_back, "pat:back", STILL), 1.5, ("walk", "idle")),
     "whisper": (_from_the_side(whisper, "whisper", "listen"), 1.5, ("walk", "idle")),
@@ -191,5 +195,5 @@ TOUCH_BEATS: dict[str, tuple[Callable[[Play, int], None], float, tuple[str, ...]
     "throw-ball": (throw_catch, 1.5, ("throw",)),
     "punch": (blow_at("punch"), 1.8, ("punch", "walk-back")),
     "kick": (blow_at("kick"), 1.5, ("kick", "walk-back")),
-}  # fmt: skip
+}
 """(beat, how often it is drawn, source actions it needs) by name."""

@@ -15,9 +15,7 @@ def perform(play: Play, i: int, take: Take, *, aim: float = 0.0) -> Done:
     return Done(start, stop, take.side, take.style)
 
 
-def taken(
-    action: str, frames: tuple[int, int] = (40, 100), *, side: str | None = None, one: bool = False
-) -> Make:
+def taken(action: str, frames: tuple[int, int] = (40, 100), *, side: str | None = None, one: bool = False) -> Make:
     """An act that is one clip of the library; with ``one``, of one hand."""
 
     def make(play: Play, i: int) -> Done:
@@ -169,5 +167,5 @@ WHOLE: dict[str, Act] = {
     "cheer": Act(taken("victory", (40, 90)), ("victory",), 1.2),
     "make-fist": Act(taken("fist-pump", (40, 90)), ("fist-pump",), 1.0),
     "block": Act(taken("guard", (25, 60)), ("guard",), 0.6),
-}  # fmt: skip
+}
 """What a person does in one piece, by its cue; part of :data:`training.corpus.beats.acts.ACTS`."""

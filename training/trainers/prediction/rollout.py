@@ -23,9 +23,7 @@ def check_own_pasts(own_pasts: int, windows: str, future: int) -> None:
 
 
 @torch.no_grad()
-def with_own_past(
-    network: nn.Module, windows: Tensor, past: int, future: int, passes: int
-) -> tuple[Tensor, Tensor]:
+def with_own_past(network: nn.Module, windows: Tensor, past: int, future: int, passes: int) -> tuple[Tensor, Tensor]:
     """Lets a network go on from the past of windows and cuts them anew where it has come to.
 
     Args:
@@ -49,9 +47,7 @@ def with_own_past(
     start = passes * ADVANCE
     recorded = to_last_pose(windows[:, start : start + past + future].cpu().numpy(), past - 1)[0]
     before = to_last_pose(whole[:, start:].cpu().numpy())[0]
-    strayed = (1 - np.arange(1, future + 1) / future)[:, None, None] * (
-        before[:, -1:] - recorded[:, [past - 1]]
-    )
+    strayed = (1 - np.arange(1, future + 1) / future)[:, None, None] * (before[:, -1:] - recorded[:, [past - 1]])
     made = np.concatenate([before, recorded[:, past:] + strayed], axis=1)
     own, true = (torch.from_numpy(x).to(windows) for x in (made, recorded))
     return own, true

@@ -66,9 +66,14 @@ class CmuWindows(Windows):
     joints = 17
 
     def __init__(
-        self, folder: Path, past: int = 25, future: int = 25, *,
-        paces: tuple[float, float] = (0.8, 1.25), mixed: float = 0.0,
-    ) -> None:  # fmt: skip
+        self,
+        folder: Path,
+        past: int = 25,
+        future: int = 25,
+        *,
+        paces: tuple[float, float] = (0.8, 1.25),
+        mixed: float = 0.0,
+    ) -> None:
         super().__init__(past, future)
         self.paces, self.mixed = paces, mixed
         self.bones = cmu.CmuSkeleton.read(folder / "skeleton.json").bones
@@ -131,9 +136,7 @@ class CorpusWindows(Windows):
         kept = [row for row in rows if row["split"] == split and row["frames"] >= self.length]
         if not kept:
             raise InputError(f"{folder} has no scenes of the {split} split with {self.length} frames.")
-        self.starts = np.concatenate(
-            [row["start"] + np.arange(row["frames"] - self.length + 1) for row in kept]
-        )
+        self.starts = np.concatenate([row["start"] + np.arange(row["frames"] - self.length + 1) for row in kept])
 
     def draw(self, count: int, rng: np.random.Generator) -> Array:
         """(count, length, 22, 3) metres: windows at random places, half of them mirrored."""

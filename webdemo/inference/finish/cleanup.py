@@ -88,9 +88,7 @@ def standing_clear(result: Result, request: ReactRequest) -> Result:
         farthest = max(farthest, float(np.linalg.norm(way, axis=-1).max()))
     if not farthest:
         return result
-    said = (
-        f"Person {ROLES[1 - given].upper()} was placed {farthest:.1f} m further off, out of the other's way."
-    )
+    said = f"Person {ROLES[1 - given].upper()} was placed {farthest:.1f} m further off, out of the other's way."
     return replace(result, duets=tuple(duets), readouts=tuple(readouts), notes=(*result.notes, said))
 
 

@@ -33,9 +33,7 @@ _PARENTS = torch.tensor([parent for parent, _ in SMPL22.bones])
 assert [child for _, child in SMPL22.bones] == list(range(1, SMPL22.num_joints))  # a slice is cheaper
 _HIPS = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
 _LIMBS = [
-    (parent, child)
-    for parent, child in SMPL22.bones
-    if SMPL22.joint_names[child].endswith(("elbow", "wrist", "knee"))
+    (parent, child) for parent, child in SMPL22.bones if SMPL22.joint_names[child].endswith(("elbow", "wrist", "knee"))
 ]
 _NEAR = 1.8  # metres between two pelvises, beyond which no limb reaches the other
 
@@ -56,15 +54,7 @@ def _spheres() -> tuple[Tensor, Tensor]:
 _ENDS, _RADII = _spheres()
 
 
-LAMBDAS = {
-    "bone": 1.0,
-    "foot": 20.0,
-    "floor": 1.0,
-    "smooth": 16.0,
-    "overlap": 1.0,
-    "contact": 0.5,
-    "facing": 0.02,
-}
+LAMBDAS = {"bone": 1.0, "foot": 20.0, "floor": 1.0, "smooth": 16.0, "overlap": 1.0, "contact": 0.5, "facing": 0.02}
 """λ of each term of :func:`energy`; lengths are in metres, times in frames at 30 a second."""
 ASKED = 5.0
 """λ of a touch that the sentence asks for."""
@@ -118,9 +108,14 @@ def energy(positions: Tensor, contacts: Tensor) -> Tensor:
     contact = ((hands - TOUCH).clamp_min(0).square() * due).sum((1, 2, 3))
 
     terms = {
-        "bone": bone, "foot": foot, "floor": floor, "smooth": smooth, "overlap": overlap,
-        "contact": contact, "facing": _turned_away(a, b) + _turned_away(b, a),
-    }  # fmt: skip
+        "bone": bone,
+        "foot": foot,
+        "floor": floor,
+        "smooth": smooth,
+        "overlap": overlap,
+        "contact": contact,
+        "facing": _turned_away(a, b) + _turned_away(b, a),
+    }
     return torch.stack([LAMBDAS[name] * term for name, term in terms.items()]).sum(0)
 
 
@@ -137,8 +132,7 @@ def _overlap(positions: Tensor) -> Tensor:
 
     def centres(person: int, sphere: Tensor) -> Tensor:
         first = ((2 * batch + person) * length + frame) * joints
-        return (points.index_select(0, first + ends[sphere, 0])
-                + points.index_select(0, first + ends[sphere, 1])) / 2  # fmt: skip
+        return (points.index_select(0, first + ends[sphere, 0]) + points.index_select(0, first + ends[sphere, 1])) / 2
 
     gap = torch.linalg.vector_norm(centres(0, own) - centres(1, other), dim=-1)
     depth = (radii[own] + radii[other] - gap).clamp_min(0).square()

@@ -52,9 +52,7 @@ class FollowingCleanup:
             # Neither end of a foot goes below the floor.
             sunk = max(0.0, -(result[toe, 1] + shift[1]), 0.03 - (result[ankle, 1] + shift[1]))
             goal = result[ankle] + shift + np.array([0.0, sunk, 0.0])
-            result[knee], result[ankle] = solve_two_bones(
-                result[hip], result[knee], result[ankle], goal, forward
-            )
+            result[knee], result[ankle] = solve_two_bones(result[hip], result[knee], result[ankle], goal, forward)
             result[toe] = result[ankle] + foot
         return result
 

@@ -92,13 +92,7 @@ def closed(positions: Array, fixed: Frames) -> Array:
 
 
 def _turned(
-    positions: Array,
-    free: Frames,
-    away: Array,
-    *,
-    closes: int | None = None,
-    reach: int = REACH,
-    slack: float = _SLACK,
+    positions: Array, free: Frames, away: Array, *, closes: int | None = None, reach: int = REACH, slack: float = _SLACK
 ) -> Array:
     """Positions (T, 22, 3) with the path of the pelvis and the bones' rotations smoothed at the frames ``free``.
 
@@ -122,9 +116,15 @@ def _turned(
 
 
 def _smoothed(
-    values: Array, free: Frames, away: Array, *, closes: int | None, reach: int, rests: bool = False,
+    values: Array,
+    free: Frames,
+    away: Array,
+    *,
+    closes: int | None,
+    reach: int,
+    rests: bool = False,
     slack: float = _SLACK,
-) -> Array:  # fmt: skip
+) -> Array:
     """Values (T, N) whose frames ``free`` (M,) were moved so that third differences are small.
 
     Args:

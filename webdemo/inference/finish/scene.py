@@ -43,9 +43,9 @@ def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
     marks = np.zeros((6, scene.shape[1]), dtype=bool)  # palms meet, hands held; a and b still; a and b loose
     for beat, finish in enumerate(finishes(request)):
         whose = (who in people for people in (finish.still, finish.loose) for who in ROLES)
-        marks[:, request.edges[beat] : request.edges[beat + 1]] = np.array(
-            [finish.reaching, finish.held, *whose]
-        )[:, None]
+        marks[:, request.edges[beat] : request.edges[beat + 1]] = np.array([finish.reaching, finish.held, *whose])[
+            :, None
+        ]
     shares = np.stack([eased_marks(each, EASES) for each in marks]) * free
     raised, held, loose = shares[0], shares[1], shares[4:]
     rests = free - shares[2:4]

@@ -90,9 +90,7 @@ def _predicted(result: Result, given: Duet, request: PredictRequest) -> Result:
     return replace(result, duets=tuple(duets), truth=request.truth, **curves)
 
 
-def _as_given(
-    duet: Duet | Clip, given: Duet, kept: tuple[Array, Array], made: tuple[int, int]
-) -> Duet | Clip:
+def _as_given(duet: Duet | Clip, given: Duet, kept: tuple[Array, Array], made: tuple[int, int]) -> Duet | Clip:
     """People as they are in a ``given`` motion, who were made between the frames of it that are ``kept``."""
     sizes = _sizes(given.looks)
     if not isinstance(duet, Duet) or sizes == (1.0, 1.0):

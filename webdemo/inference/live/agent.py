@@ -123,11 +123,7 @@ class LiveAgent:
 
     def _goal(self, pose: Array) -> Goal | None:
         """The place to which the agent turns and goes by itself; none while it answers."""
-        if (
-            self._shown is not None
-            and self._room is not None
-            and (goal := self._room.goal(self._shown)) is not None
-        ):
+        if self._shown is not None and self._room is not None and (goal := self._room.goal(self._shown)) is not None:
             return goal
         if self._shown is None or self.gesture is not None:
             self._returns = False

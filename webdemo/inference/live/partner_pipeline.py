@@ -165,9 +165,13 @@ class ReactingPartner:
     def _segment(self, person: Array, begin: Array | None) -> Segment:
         self._segments += 1
         return Segment(
-            self.pipeline, self.condition, person=person, begin=begin, seed=self.seed + self._segments,
+            self.pipeline,
+            self.condition,
+            person=person,
+            begin=begin,
+            seed=self.seed + self._segments,
             guidance=ReactRequest.guidance,
-        )  # fmt: skip
+        )
 
     def _renew(self, *, pushed: bool) -> None:
         """Begins the next segment where one is needed, and goes on with its replay."""
@@ -177,9 +181,7 @@ class ReactingPartner:
         if self._next is not None:
             self._replay.append(self._person[-1])
         elif (
-            self._now.condition is not self.condition
-            or self._now.left <= REPLAY
-            or (pushed and self._settled > REPLAY)
+            self._now.condition is not self.condition or self._now.left <= REPLAY or (pushed and self._settled > REPLAY)
         ):
             self._next = self._segment(self._person[0], self._shown[0])
             self._replay = deque(self._person)

@@ -115,9 +115,7 @@ class Room:
             return agent
         if errand.used > REACHES:
             change = (1 if errand.complaint.opens else -1) / (TAKES * FPS)
-            self.open[errand.complaint.kind] = float(
-                np.clip(self.open[errand.complaint.kind] + change, 0.0, 1.0)
-            )
+            self.open[errand.complaint.kind] = float(np.clip(self.open[errand.complaint.kind] + change, 0.0, 1.0))
         share = min(errand.used, USES - errand.used) / REACHES
         return self._reaching(agent, errand.complaint.kind, float(smoothstep(share)))
 
@@ -130,15 +128,11 @@ class Room:
         agent, ahead = agent.copy(), facing(agent)
         right = np.cross(front, _UP)  # of the thing, seen by a person facing it: to their left
         for side, aside in zip(("left", "right") if len(asides) == 2 else ("right",), asides, strict=True):
-            shoulder, elbow, wrist = (
-                SMPL22.index(f"{side}_{name}") for name in ("shoulder", "elbow", "wrist")
-            )
+            shoulder, elbow, wrist = (SMPL22.index(f"{side}_{name}") for name in ("shoulder", "elbow", "wrist"))
             goal = self._places[body] + (depth + 0.06) * front + height * _UP + aside * right
             goal = agent[wrist] + share * (goal - agent[wrist])
             pole = -ahead - _UP
-            agent[elbow], agent[wrist] = solve_two_bones(
-                agent[shoulder], agent[elbow], agent[wrist], goal, pole
-            )
+            agent[elbow], agent[wrist] = solve_two_bones(agent[shoulder], agent[elbow], agent[wrist], goal, pole)
         return agent
 
     def things(self) -> tuple[Thing, ...]:
@@ -149,7 +143,4 @@ class Room:
         place, yaw = self._places[kind], self._yaws[kind]
         body = Thing.at_rest(kind, shape(kind), place, yaw, 1)
         leaves = LEAVES.get(kind, ())
-        return [
-            body,
-            *(placed_leaf(leaf, place, yaw, np.array([self.open[leaf.moved_by]])) for leaf in leaves),
-        ]
+        return [body, *(placed_leaf(leaf, place, yaw, np.array([self.open[leaf.moved_by]])) for leaf in leaves)]

@@ -67,10 +67,7 @@ class LiveTake:
         yield timer.progress("finish")
         duet = Duet(self.actor, self.reactor, ("actor", "reactor"))
         yield Result(
-            duets=(duet,),
-            manifest={},
-            readouts=(compare(None, duet),),
-            timings={"total": round(timer.elapsed, 4)},
+            duets=(duet,), manifest={}, readouts=(compare(None, duet),), timings={"total": round(timer.elapsed, 4)}
         )
 
 

@@ -22,18 +22,7 @@ from webdemo.inference.method import WEIGHTS, Method, Task, Variant
 from webdemo.inference.own import method_of, read_entries
 from webdemo.inference.own.classes import method_of_class
 
-from . import (
-    agent,
-    bigraphdiff,
-    interformer,
-    intergen,
-    intergen_together,
-    mawgan,
-    motion_mlp,
-    nearest,
-    regennet,
-    still,
-)
+from . import agent, bigraphdiff, interformer, intergen, intergen_together, mawgan, motion_mlp, nearest, regennet, still
 
 log = logging.getLogger(__name__)
 

@@ -76,9 +76,7 @@ def cost_of(outline: Outline, moving: str, *, passes: int, steps: int) -> Cost:
     busy = sum(size for name, size in sizes.items() if moving in name and len(outline[name]) == 2)
     work = 2.0 * busy * FRAMES * passes * steps
     parameters = sum(sizes.values())
-    return Cost(
-        parameters, 4 * parameters * LOADING + RESERVE, work / (EFFICIENCY * operations_per_second()), steps
-    )
+    return Cost(parameters, 4 * parameters * LOADING + RESERVE, work / (EFFICIENCY * operations_per_second()), steps)
 
 
 @cache

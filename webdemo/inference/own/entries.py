@@ -151,9 +151,7 @@ def _files(value: Any, folder: Path) -> dict[str, Path]:
             raise InputError("`files` must be a list of paths, or a table of roles and paths.")
         roles = [_role(path) for path in value]
         if len(set(roles)) < len(roles):
-            raise InputError(
-                "`files` has two files of one role: write them as { checkpoint = …, mean = …, std = … }."
-            )
+            raise InputError("`files` has two files of one role: write them as { checkpoint = …, mean = …, std = … }.")
         value = dict(zip(roles, value, strict=True))
     if not isinstance(value, dict) or not all(isinstance(path, str) for path in value.values()):
         raise InputError("`files` must be a list of paths, or a table of roles and paths.")

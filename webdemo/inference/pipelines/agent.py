@@ -166,9 +166,7 @@ class Answering(Reaction):
         off = past[-1:] - pair[1, seen - 1]
         later = pair[1, seen:] + settle(off, np.arange(1, len(pair[1]) - seen + 1))[0]
         made = self.placement.to_world(finish(np.concatenate([past, later]).astype(pair.dtype)))
-        if (
-            np.abs(made[seen - 1] - self.past[-1]).max() > _SEAM
-        ):  # what comes later has given the past other steps
+        if np.abs(made[seen - 1] - self.past[-1]).max() > _SEAM:  # what comes later has given the past other steps
             made = joined(made, np.arange(seen), self.past).astype(made.dtype)
         made[:seen] = self.past
         return Duet(self.clip, Clip(made, FPS, self.clip.skeleton, name=NAMES[1]), NAMES)
@@ -191,9 +189,7 @@ class AgentPipeline:
         parts = (self.eye.digest, predictor.digest, answers.digest)
         self.digest = hashlib.sha256(" ".join(parts).encode()).hexdigest()
 
-    def run(
-        self, request: ReactRequest, cancel: CancelToken, timer: StageTimer
-    ) -> Iterator[Progress | Result]:
+    def run(self, request: ReactRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`Result`, whose first note says what was recognised.
 
         Raises:
@@ -254,9 +250,7 @@ class AgentPipeline:
         known = Known.nothing(_padded(model.layout, clip.num_frames))
         for person, positions in enumerate((clip.positions[:seen], past)):
             known.add_person(person, torch.tensor(placement.to_network(positions), dtype=torch.float32))
-        return Answering(
-            clip.num_frames, _held(model, known), clip=clip, place=0, placement=placement, past=past
-        )
+        return Answering(clip.num_frames, _held(model, known), clip=clip, place=0, placement=placement, past=past)
 
 
 def _padded(layout: TokenLayout, frames: int) -> int:

@@ -29,9 +29,7 @@ class BiGraphDiffPipeline(TwoPersonPipeline[CompactBiGraphDiff]):
         known = {label.casefold(): label for label in labels}
         label = known.get(" ".join(request.prompt.split()).casefold())
         if label is None:
-            raise InputError(
-                f"There is no class {request.prompt.strip()!r:.60}: choose one of: {'; '.join(labels)}."
-            )
+            raise InputError(f"There is no class {request.prompt.strip()!r:.60}: choose one of: {'; '.join(labels)}.")
         with torch.no_grad():
             condition = self.model.condition([label])
         return Conditioning(condition, request.guidance, self.model.touches(label))

@@ -56,9 +56,7 @@ class InterFormerPipeline:
         self.decoder = ReactionDecoder(self.model)
         self.name, self.digest, self.meta = folder.name, source.digest, source.meta
 
-    def run(
-        self, request: ReactRequest, cancel: CancelToken, timer: StageTimer
-    ) -> Iterator[Progress | Result]:
+    def run(self, request: ReactRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`Result` without a manifest.
 
         Raises:
@@ -67,11 +65,7 @@ class InterFormerPipeline:
         now = time.perf_counter()
         placement = Placement.of(request.actor, "a")
         actor = placement.to_network(request.actor.positions)
-        first_pose = (
-            self._first_pose(actor)
-            if request.first_pose is None
-            else placement.to_network(request.first_pose)
-        )
+        first_pose = self._first_pose(actor) if request.first_pose is None else placement.to_network(request.first_pose)
         made = yield from self._sample(request, actor, first_pose, cancel, timer)
         now = timer.lap("sample", now)
         yield timer.progress("finish")
@@ -80,9 +74,7 @@ class InterFormerPipeline:
         # Joints that the network lacks, such as the toes, also start at the first pose.
         raw = raw + settle(first_pose - raw[:, :1], np.arange(frames))
         shown = np.stack([clean_person(person) for person in raw]) if request.cleanup else raw
-        duets = [
-            [duet_of(request, placement.to_world(person)) for person in people] for people in (raw, shown)
-        ]
+        duets = [[duet_of(request, placement.to_world(person)) for person in people] for people in (raw, shown)]
         readouts = tuple(compare(before, after) for before, after in zip(*duets, strict=True))
         timer.lap("finish", now)
         yield Result(

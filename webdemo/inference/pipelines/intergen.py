@@ -72,9 +72,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
             notes = [
                 f"This was made as {len(split.beats)} beats, one after another; the tab Scene lets you change them."
             ]
-            events = self.scenes.run(
-                split, cancel, timer, passes, notes=notes if len(split.beats) > 1 else ()
-            )
+            events = self.scenes.run(split, cancel, timer, passes, notes=notes if len(split.beats) > 1 else ())
         for event in events:
             if isinstance(event, Result):
                 if split is None:
@@ -85,9 +83,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
                 own, said = plan.to_dict(), plan.acts[0].notes
                 whole = {name: own[name] for name in ("acts", "beats")}
                 kept = own | event.manifest.get("plan", {}) | whole
-                event = replace(
-                    event, notes=tuple(dict.fromkeys((*said, *event.notes))), manifest={"plan": kept}
-                )
+                event = replace(event, notes=tuple(dict.fromkeys((*said, *event.notes))), manifest={"plan": kept})
             yield event
 
     def condition(self, prompt: str, alone: tuple[str, str] = ("", "")) -> tuple[Tensor, Tensor]:

@@ -94,12 +94,8 @@ def read_bank(folder: Path) -> Bank:
     for file in sorted(folder.glob("*.npz")):
         duet = read(file)
         if not isinstance(duet, Duet) or duet.skeleton.joint_names != SMPL22.joint_names:
-            raise InputError(
-                f"{file.name} in the folder of recorded reactions is not of two people on SMPL's joints."
-            )
-        positions = np.stack(
-            [resample(person, duet.fps, FPS) for person in duet.positions.astype(np.float64)]
-        )
+            raise InputError(f"{file.name} in the folder of recorded reactions is not of two people on SMPL's joints.")
+        positions = np.stack([resample(person, duet.fps, FPS) for person in duet.positions.astype(np.float64)])
         pairs.append(Placement.of(Clip(positions[0], FPS, SMPL22), "a").to_network(positions))
     if not pairs:
         raise InputError(f"The folder of recorded reactions {folder.name} holds no .npz of two people.")
@@ -124,9 +120,7 @@ class NearestPipeline:
                 b"".join(np.ascontiguousarray(p).tobytes() for p in self.bank.pairs)
             ).hexdigest()
 
-    def run(
-        self, request: ReactRequest, cancel: CancelToken, timer: StageTimer
-    ) -> Iterator[Progress | Result]:
+    def run(self, request: ReactRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`Result` without a manifest; sample k is the k-th nearest.
 
         Raises:

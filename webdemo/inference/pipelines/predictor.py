@@ -159,9 +159,7 @@ class PredictorPipeline:
         future = to_world(made.astype(np.float64), turn, shift)
         return joined(past, future)
 
-    def run(
-        self, request: PredictRequest, cancel: CancelToken, timer: StageTimer
-    ) -> Iterator[Progress | Result]:
+    def run(self, request: PredictRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`PredictResult` without a manifest."""
         now = time.perf_counter()
         past, frames = stacked_positions(request.past).astype(np.float64), round(request.seconds * FPS)

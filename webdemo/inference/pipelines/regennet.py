@@ -66,9 +66,7 @@ class ReGenNetPipeline:
         with torch.no_grad():
             return self.model.conditioner(tokens.features, tokens.mask).expand(samples, -1)
 
-    def run(
-        self, request: ReactRequest, cancel: CancelToken, timer: StageTimer
-    ) -> Iterator[Progress | Result]:
+    def run(self, request: ReactRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`Result` without a manifest.
 
         Raises:
@@ -88,9 +86,7 @@ class ReGenNetPipeline:
         if not np.isfinite(made).all():
             raise InputError("The motion diverged: lower the guidance scale or take more steps.")
         duets = [duet_of(request, person) for person in made]
-        readouts = tuple(
-            compare(duet_of(request, before), duet) for before, duet in zip(raw, duets, strict=True)
-        )
+        readouts = tuple(compare(duet_of(request, before), duet) for before, duet in zip(raw, duets, strict=True))
         timer.lap("finish", now)
         yield Result(
             duets=tuple(duets),

@@ -149,9 +149,14 @@ class SceneMaker:
                 done += request.steps
                 finished = Duet.from_positions(scene[:, : window.stop], fps=FPS, roles=NAMES)
                 yield SceneProgress(
-                    stage="sample", step=done, total=steps, elapsed=timer.elapsed, sample=sample,
-                    beat=window.beat, motion=finished,
-                )  # fmt: skip
+                    stage="sample",
+                    step=done,
+                    total=steps,
+                    elapsed=timer.elapsed,
+                    sample=sample,
+                    beat=window.beat,
+                    motion=finished,
+                )
             if request.loop:
                 _close(request, scene)
             duets.append(_duet(request, scene, sample))
@@ -192,9 +197,7 @@ class SceneMaker:
                 made = setting.made(event.duets[0].positions)
                 notes = tuple(_of_beat(note, request, window) for note in event.notes)
                 found = Made(made, setting.share(self.pipeline), notes)
-                if (
-                    passes is None
-                ):  # sharing a pass changes the rounding, and kept windows give the same bytes
+                if passes is None:  # sharing a pass changes the rounding, and kept windows give the same bytes
                     self.parts.keep(key, found)
                 return found
             if event.stage == "sample":
@@ -202,9 +205,7 @@ class SceneMaker:
         raise AssertionError("A pipeline ends with its result.")
 
 
-def _asked(
-    request: SceneRequest, sample: int, window: Window, frames: int, plan: WindowPlan
-) -> WindowRequest:
+def _asked(request: SceneRequest, sample: int, window: Window, frames: int, plan: WindowPlan) -> WindowRequest:
     plain = {f.name: getattr(request, f.name) for f in fields(SamplingRequest)} | {"samples": 1}
     plain["seed"] = window_seed(request, sample, window)
     prompt = request.beats[window.beat].sentence
@@ -249,8 +250,7 @@ def _notes(request: SceneRequest) -> Iterator[str]:
 def _distance_note(duets: list[Duet], request: SceneRequest) -> list[str]:
     first, last = request.made
     gap = max(
-        float(np.linalg.norm((d.positions[0] - d.positions[1])[first:last, 0][:, [0, 2]], axis=-1).max())
-        for d in duets
+        float(np.linalg.norm((d.positions[0] - d.positions[1])[first:last, 0][:, [0, 2]], axis=-1).max()) for d in duets
     )
     if gap <= FAR:
         return []

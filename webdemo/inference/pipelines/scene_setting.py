@@ -48,9 +48,7 @@ class Setting:
     plan: WindowPlan
 
     @classmethod
-    def of(
-        cls, request: SceneRequest, window: Window, scene: Array, kept: WindowPlan | None = None
-    ) -> Setting:
+    def of(cls, request: SceneRequest, window: Window, scene: Array, kept: WindowPlan | None = None) -> Setting:
         """The setting of a window in a scene (2, T, 22, 3) whose earlier frames are there.
 
         Args:
@@ -111,9 +109,7 @@ class Setting:
         return found.hexdigest()
 
 
-def _plan(
-    request: SceneRequest, window: Window, scene: Array, place: tuple[float, float, float]
-) -> WindowPlan:
+def _plan(request: SceneRequest, window: Window, scene: Array, place: tuple[float, float, float]) -> WindowPlan:
     """The plan, by the wishes and the words of a scene, of a window whose frame begins at a place."""
     placement, beat = _at(place), request.beats[window.beat]
     parts, notes = wishes(request, window, scene, placement)

@@ -53,9 +53,7 @@ class Fixed:
     speed: float = 0.0
 
 
-def wishes(
-    request: SceneRequest, window: Window, scene: Array, placement: Placement
-) -> tuple[list[Part], list[str]]:
+def wishes(request: SceneRequest, window: Window, scene: Array, placement: Placement) -> tuple[list[Part], list[str]]:
     """The poses and paths that fall into a window, and notes on those that begin elsewhere than their person stands.
 
     A path that goes on behind the window is also given at the window's last frame.
@@ -125,8 +123,7 @@ def _walked(
     if low > high:
         return [], np.zeros((0, 2)), np.zeros(0), []
     turned = {
-        round((p.seconds or 0.0) * FPS): math.nan if p.heading is None else math.radians(p.heading)
-        for p in path.points
+        round((p.seconds or 0.0) * FPS): math.nan if p.heading is None else math.radians(p.heading) for p in path.points
     }
     frames = {f for f in turned if low <= f <= high} | {high}
     line = np.array([_place(path, f) for f in range(low, high + 1)])
@@ -147,9 +144,7 @@ def _walked(
     return ordered, places, headings, _note(path, before, line, behind, low) if low == first else []
 
 
-def _reached(
-    line: Array, low: int, before: Fixed | None, placement: Placement, person: int
-) -> tuple[Array, int]:
+def _reached(line: Array, low: int, before: Fixed | None, placement: Placement, person: int) -> tuple[Array, int]:
     """The places (N, 2) of a person who gets to a line, one a frame, and the frame of the first of them."""
     if before is None:  # where they begin is free, and they begin at the path unless they can stroll there
         usual = placement.to_world(np.array([0.0, 0.0, person * MEDIAN_START_DISTANCE]))[[0, 2]]
@@ -195,9 +190,7 @@ def _note(path: FloorPath, before: Fixed | None, line: Array, behind: Array, low
     begins = f"{who}'s path begins {way:.1f} m from where they are at {low / FPS:.1f} s"
     there = np.flatnonzero(behind > OFF)[-1] + 1
     if there == len(line):
-        return [
-            f"{begins}, and they cannot be on it in that time: begin it where they are, or give it more time."
-        ]
+        return [f"{begins}, and they cannot be on it in that time: begin it where they are, or give it more time."]
     return [f"{begins}: they run there and are on it from {(low + there) / FPS:.1f} s on."]
 
 

@@ -46,9 +46,7 @@ class TogetherPipeline:
         self.digest = hashlib.sha256(f"{intergen.digest}{predictor.digest}".encode()).hexdigest()
         self.intergen, self.predictor = intergen, predictor
 
-    def run(
-        self, request: PredictRequest, cancel: CancelToken, timer: StageTimer
-    ) -> Iterator[Progress | Result]:
+    def run(self, request: PredictRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`PredictResult` of :data:`FUTURES` futures, without a manifest."""
         past = request.past
         assert isinstance(past, Duet)  # the request sees to it

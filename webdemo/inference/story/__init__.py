@@ -13,6 +13,15 @@ from .toml import read_story, read_words, write_story
 from .wishes import Pose
 
 __all__ = [
-    "Beat", "FloorPath", "FloorPoint", "Pose", "SceneProgress", "SceneRequest", "in_time", "read_story",
-    "read_words", "split_sentence", "write_story",
-]  # fmt: skip
+    "Beat",
+    "FloorPath",
+    "FloorPoint",
+    "Pose",
+    "SceneProgress",
+    "SceneRequest",
+    "in_time",
+    "read_story",
+    "read_words",
+    "split_sentence",
+    "write_story",
+]

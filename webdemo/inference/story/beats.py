@@ -55,11 +55,7 @@ class Beat:
     @property
     def sentence(self) -> str:
         """All its words as one sentence, or its acts where it has no words, for a model that reads one."""
-        alone = [
-            _of_person(text, who)
-            for text, who in ((self.a, "one person"), (self.b, "the other person"))
-            if text
-        ]
+        alone = [_of_person(text, who) for text, who in ((self.a, "one person"), (self.b, "the other person")) if text]
         own = ", while ".join(alone)
         parts = [part.strip().rstrip(".") for part in (self.words, own) if part.strip()]
         if self.acts and not parts:
@@ -86,9 +82,7 @@ class Beat:
             if not isinstance(getattr(self, name), str):
                 raise InputError(f"{which}: {name} must be text, not {getattr(self, name)!r:.40}.")
         if len(self.sentence) > MAX_PROMPT:
-            raise InputError(
-                f"{which} has {len(self.sentence):,} characters: shorten it to {MAX_PROMPT}, or split it."
-            )
+            raise InputError(f"{which} has {len(self.sentence):,} characters: shorten it to {MAX_PROMPT}, or split it.")
         if self.seconds is not None and (
             isinstance(self.seconds, bool)
             or not isinstance(self.seconds, (int, float))
@@ -100,9 +94,7 @@ class Beat:
         if self.seed is not None and (
             isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed <= MAX_SEED
         ):
-            raise InputError(
-                f"{which}: its seed must be a whole number from 0 to {MAX_SEED:,}, not {self.seed!r:.20}."
-            )
+            raise InputError(f"{which}: its seed must be a whole number from 0 to {MAX_SEED:,}, not {self.seed!r:.20}.")
 
 
 def story_title(beats: Sequence[Mapping[str, Any]]) -> str:

@@ -66,8 +66,7 @@ def _filling(seconds: float, beats: Sequence[Beat], plans: Sequence[Plan]) -> tu
     factor = seconds / sum(lengths)
     edges = np.round(np.cumsum([0.0, *(length * factor for length in lengths)]) * FPS) / FPS
     return tuple(
-        replace(beat, seconds=round(max(float(s), SHORTEST), 4))
-        for beat, s in zip(beats, np.diff(edges), strict=True)
+        replace(beat, seconds=round(max(float(s), SHORTEST), 4)) for beat, s in zip(beats, np.diff(edges), strict=True)
     )
 
 

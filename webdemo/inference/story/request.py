@@ -104,18 +104,14 @@ class SceneRequest(SamplingRequest):
 
     def _check_alone(self) -> None:
         if self.start is not None or self.end is not None:
-            raise InputError(
-                "A start or an end belongs to a given motion: give the motion too, or leave them out."
-            )
+            raise InputError("A start or an end belongs to a given motion: give the motion too, or leave them out.")
 
     def _check_motion(self, motion: Duet) -> None:
         set_ = object.__setattr__
         if not isinstance(motion, Duet):
             raise InputError("A scene goes on from a motion of two people: give both.")
         if self.loop:
-            raise InputError(
-                "Only a scene that is made from nothing can be a loop: leave the motion or the loop out."
-            )
+            raise InputError("Only a scene that is made from nothing can be a loop: leave the motion or the loop out.")
         checked = check_motion(motion, longest=MOST_SECONDS)
         assert isinstance(checked, Duet)
         motion = checked
@@ -130,13 +126,9 @@ class SceneRequest(SamplingRequest):
             return
         end = round(number("End", self.end, 0.0, length, " seconds") * FPS) / FPS
         if end - start < SHORTEST - 1e-6:
-            raise InputError(
-                f"The span from {start:g} to {end:g} s is too short: select {SHORTEST:g} s or more."
-            )
+            raise InputError(f"The span from {start:g} to {end:g} s is too short: select {SHORTEST:g} s or more.")
         if start == 0 and end >= length - 1e-6:
-            raise InputError(
-                "The span is the whole motion, so nothing of it is kept: generate a new one instead."
-            )
+            raise InputError("The span is the whole motion, so nothing of it is kept: generate a new one instead.")
         set_(self, "end", end)
 
     def _time_beats(self) -> None:
@@ -156,9 +148,7 @@ class SceneRequest(SamplingRequest):
                 raise InputError(
                     f"{len(beats)} beats do not fit into a span of {span:.1f} s: use fewer, or a longer span."
                 )
-            beats = [
-                replace(beat, seconds=round(float(s), 4)) for beat, s in zip(beats, lengths, strict=True)
-            ]
+            beats = [replace(beat, seconds=round(float(s), 4)) for beat, s in zip(beats, lengths, strict=True)]
         object.__setattr__(self, "beats", tuple(beats))
 
     def _check_wishes(self) -> None:
@@ -171,9 +161,7 @@ class SceneRequest(SamplingRequest):
         if self.motion is None:
             return
         first, last = self.made
-        for moment in [p.seconds or 0.0 for path in self.paths for p in path.points] + [
-            p.seconds for p in self.poses
-        ]:
+        for moment in [p.seconds or 0.0 for path in self.paths for p in path.points] + [p.seconds for p in self.poses]:
             if not first <= round(moment * FPS) < last:
                 raise InputError(
                     f"A path or pose at {moment:g} s lies in the part that is kept: give times from "
@@ -256,9 +244,7 @@ class SceneRequest(SamplingRequest):
             written["motion"] = {
                 "name": self.motion.a.name[:100],
                 "frames": self.motion.num_frames,
-                "sha256": hashlib.sha256(
-                    b"".join(np.ascontiguousarray(part).tobytes() for part in kept)
-                ).hexdigest(),
+                "sha256": hashlib.sha256(b"".join(np.ascontiguousarray(part).tobytes() for part in kept)).hexdigest(),
             }
             written |= {"start": self.start, "end": self.end}
         return written | self.sampling
@@ -297,11 +283,7 @@ def _told_before(story: list[Told]) -> None:
     """Leaves out the postures in which people of a later beat are "already", where an earlier one has put them."""
     known: set[str] = set()
     for i, told in enumerate(story):
-        again = {
-            who
-            for who, listed in told.changes.items()
-            if who in known and listed[0].already and len(listed) > 1
-        }
+        again = {who for who, listed in told.changes.items() if who in known and listed[0].already and len(listed) > 1}
         changes = {who: listed[1:] if who in again else listed for who, listed in told.changes.items()}
         story[i] = replace(told, changes=changes) if again else told
         known |= set(told.changes) | told.going
@@ -327,7 +309,5 @@ def beat_of(values: Mapping[str, Any]) -> Beat:
 def pose_of(values: Mapping[str, Any]) -> Pose:
     """A pose from its fields."""
     return Pose(
-        values.get("person", ""),
-        values.get("seconds", 0.0),
-        np.asarray(values.get("positions", ()), dtype=np.float64),
+        values.get("person", ""), values.get("seconds", 0.0), np.asarray(values.get("positions", ()), dtype=np.float64)
     )

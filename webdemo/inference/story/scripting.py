@@ -71,9 +71,7 @@ def plan_of_beat(beat: Beat) -> Plan:
     if not beat.acts:
         return understood(beat.sentence)
     here = {act.id for act in beat.acts}
-    own = (
-        act.model_copy(update={"order": tuple(r for r in act.order if r.act in here)}) for act in beat.acts
-    )
+    own = (act.model_copy(update={"order": tuple(r for r in act.order if r.act in here)}) for act in beat.acts)
     return Plan(acts=tuple(own))
 
 
@@ -183,9 +181,7 @@ def _goes_on(before: Sequence[Sequence[Act]], group: Sequence[Act]) -> bool:
     earlier = [act for acts in before for act in acts]
     busy = {who for act in group if act.happens for who in act.agents}
     if any(relation.kind == "until" for act in before[-1] for relation in act.order):
-        return all(
-            not busy & set(act.agents) for act in before[-1]
-        )  # "covers his eyes until she has run off"
+        return all(not busy & set(act.agents) for act in before[-1])  # "covers his eyes until she has run off"
     return all((act.already and not busy & set(act.agents)) or _stands_by(act) for act in earlier)
 
 
@@ -209,16 +205,11 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry, text: str) -> boo
     """True if one act answers another, or goes on with it in one movement."""
     does, then = {shape.do: shape for shape in entry.stage}, {shape.do: shape for shape in after.stage}
     other = "b" if act.agents[0] == "a" else "a"
-    if (entry.thing, after.thing) == ("throws", "catches") and (later.agents != act.agents) ^ (
-        act.direction == "up"
-    ):
+    if (entry.thing, after.thing) == ("throws", "catches") and (later.agents != act.agents) ^ (act.direction == "up"):
         return True
     hit = hits(entry) or getattr(does.get("touch"), "fells", False)
     if hit and other in later.agents and len(later.agents) == 1:
-        return bool(then.keys() & {"posture", "strike"}) or getattr(then.get("go"), "way", "") in (
-            "back",
-            "aside",
-        )
+        return bool(then.keys() & {"posture", "strike"}) or getattr(then.get("go"), "way", "") in ("back", "aside")
     way, next_way = (getattr(shapes.get("go"), "way", "") for shapes in (does, then))
     if way and next_way == "after" and later.agents != act.agents:
         return True
@@ -262,9 +253,7 @@ def _is_caught(posture: object) -> bool:
 
 def _in_one_sentence(act: Act, later: Act, text: str) -> bool:
     """True for two acts of one sentence of a text, and for acts without words."""
-    return (
-        act.words is None or later.words is None or not _ENDS.search(text, act.words.start, later.words.stop)
-    )
+    return act.words is None or later.words is None or not _ENDS.search(text, act.words.start, later.words.stop)
 
 
 def _with_entries(acts: Sequence[Act], known: Lexicon) -> list[tuple[Act, Entry]]:

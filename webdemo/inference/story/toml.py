@@ -51,10 +51,21 @@ MOST_CHARACTERS = 150_000
 _LOOKS_LIKE_TOML = re.compile(r"^[ \t]*+(?:\[\[?[ \t]*\w++[ \t]*\]|\w++[ \t]*=)", re.MULTILINE)
 _NUMBER, _TEXT = (int, float), (str,)
 _TOP: dict[str, tuple[type, ...]] = {
-    "seed": (int,), "samples": (int,), "guidance": _NUMBER, "steps": (int,), "damping": _NUMBER, "sampler": _TEXT,
-    "model": _TEXT, "cleanup": (bool,), "tries": (int,), "loop": (bool,),
-    "planned": (bool,), "beat": (list,), "path": (list,), "pose": (list,),
-}  # fmt: skip
+    "seed": (int,),
+    "samples": (int,),
+    "guidance": _NUMBER,
+    "steps": (int,),
+    "damping": _NUMBER,
+    "sampler": _TEXT,
+    "model": _TEXT,
+    "cleanup": (bool,),
+    "tries": (int,),
+    "loop": (bool,),
+    "planned": (bool,),
+    "beat": (list,),
+    "path": (list,),
+    "pose": (list,),
+}
 _BEAT: dict[str, tuple[type, ...]] = {
     "words": _TEXT,
     "a": _TEXT,
@@ -65,17 +76,16 @@ _BEAT: dict[str, tuple[type, ...]] = {
 }
 _PATH: dict[str, tuple[type, ...]] = {"person": _TEXT, "points": (list,)}
 _POSE: dict[str, tuple[type, ...]] = {
-    "person": _TEXT, "seconds": _NUMBER, "file": _TEXT, "frame": (int,), "of": _TEXT, "positions": (list,),
-}  # fmt: skip
+    "person": _TEXT,
+    "seconds": _NUMBER,
+    "file": _TEXT,
+    "frame": (int,),
+    "of": _TEXT,
+    "positions": (list,),
+}
 _TABLES = {"beat": (_BEAT, MOST_BEATS), "path": (_PATH, len(ROLES)), "pose": (_POSE, MOST_POSES)}
 """The keys of each table, and how many of it a story may have."""
-_KINDS = {
-    str: "text in quotes",
-    int: "a whole number",
-    float: "a number",
-    bool: "true or false",
-    list: "a list",
-}
+_KINDS = {str: "text in quotes", int: "a whole number", float: "a number", bool: "true or false", list: "a list"}
 
 
 def read_story(text: str, folder: Path | None = None) -> dict[str, Any]:
@@ -156,9 +166,7 @@ def write_story(request: SceneRequest) -> str:
 
 def _point(p: FloorPoint) -> list[float] | dict[str, float]:
     """A point as a row, or with its names where a row would not say what it is."""
-    row = {
-        name: value for name in ("seconds", "x", "z", "heading") if (value := getattr(p, name)) is not None
-    }
+    row = {name: value for name in ("seconds", "x", "z", "heading") if (value := getattr(p, name)) is not None}
     if p.seconds is None and p.heading is not None:
         return row
     return [round(value, 4) if p.seconds is not None else value for value in row.values()]
@@ -189,20 +197,18 @@ def _sentence(error: Exception) -> str:
 
 
 def _check_keys(
-    found: Mapping[str, Any],
-    known: Mapping[str, tuple[type, ...]],
-    lines: Lines,
-    table: str,
-    index: int,
-    what: str,
+    found: Mapping[str, Any], known: Mapping[str, tuple[type, ...]], lines: Lines, table: str, index: int, what: str
 ) -> None:
     for key, value in found.items():
         if key not in known:
             where = lines.where(table, index, key)
             near = difflib.get_close_matches(key[:40], known, n=1)
             hint = f"did you mean {near[0]!r}?" if near else f"it takes {', '.join(known)}."
-            raise InputError(f"{where}there is no key {key!r:.40} in {what}; {hint}" if where else
-                             f"There is no key {key!r:.40} in {what}; {hint}")  # fmt: skip
+            raise InputError(
+                f"{where}there is no key {key!r:.40} in {what}; {hint}"
+                if where
+                else f"There is no key {key!r:.40} in {what}; {hint}"
+            )
         kinds = known[key]
         if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
             wanted = _KINDS[kinds[-1]]
@@ -247,9 +253,7 @@ def _pose(entry: Mapping[str, Any], index: int, lines: Lines, folder: Path | Non
     if "file" not in entry:
         raise InputError(f"{where}it needs a file and a frame, or positions.")
     if folder is None:
-        raise InputError(
-            f"{where}a file is only read from the shell: give the positions of the pose in the story."
-        )
+        raise InputError(f"{where}a file is only read from the shell: give the positions of the pose in the story.")
     motion = read(folder / entry["file"])
     people = motion.people if isinstance(motion, Duet) else (motion,)
     of = entry.get("of", person if len(people) > 1 else "a")

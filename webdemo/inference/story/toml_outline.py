@@ -18,11 +18,13 @@ MOST_PARTS = 8
 LONGEST_WORD = 100
 """Characters of a number or a bare key."""
 _TOKEN = re.compile(
-    r'(?P<text>"""(?:[^"\\]|\\.|"(?!""))*+"{3,5}' r"|'''(?:[^']|'(?!''))*+'{3,5}"
-    r'|"(?:[^"\\\n]|\\[^\n])*+"' r"|'[^'\n]*+')"
+    r'(?P<text>"""(?:[^"\\]|\\.|"(?!""))*+"{3,5}'
+    r"|'''(?:[^']|'(?!''))*+'{3,5}"
+    r'|"(?:[^"\\\n]|\\[^\n])*+"'
+    r"|'[^'\n]*+')"
     r"|(?P<comment>#[^\n]*+)|(?P<space>[ \t\r]++)|(?P<word>[\w+-]++)|(?P<sign>.)",
     re.DOTALL,
-)  # fmt: skip
+)
 _HEADER = re.compile(r"^\s*\[\[?\s*\"?([\w-]+)\"?\s*\]\]?")
 _KEY = re.compile(r"^\s*(?:\"([^\"]*)\"|'([^']*)'|([\w-]+))\s*[.=]")
 
@@ -50,9 +52,7 @@ def check_outline(text: str, most_tables: int) -> None:
             tables += found == "[" and begins
             depth += 1
             if tables > most_tables:
-                raise InputError(
-                    f"The story has more than {most_tables} tables, more than any scene can: shorten it."
-                )
+                raise InputError(f"The story has more than {most_tables} tables, more than any scene can: shorten it.")
             if depth > MOST_DEEP:
                 raise InputError("The story is no valid TOML: its lists are nested too deeply.")
         elif kind == "sign" and found in "]}":

@@ -61,9 +61,7 @@ class Pose:
         parents, children = np.array(SMPL22.bones).T
         lengths = np.linalg.norm(positions[children] - positions[parents], axis=-1)
         if (np.abs(lengths / np.asarray(SMPL22.bone_lengths)[children] - 1) > 0.3).any():
-            raise InputError(
-                f"The pose of person {self.person} at {self.seconds:g} s has bones of other lengths."
-            )
+            raise InputError(f"The pose of person {self.person} at {self.seconds:g} s has bones of other lengths.")
         if (wrong := bent_wrong(positions)) is not None:
             raise InputError(
                 f"In the pose of person {self.person} at {self.seconds:g} s {wrong}: bend it as far as people can."
@@ -74,11 +72,7 @@ class Pose:
 
     def to_dict(self) -> dict[str, Any]:
         """As JSON."""
-        return {
-            "person": self.person,
-            "seconds": self.seconds,
-            "positions": np.asarray(self.positions).tolist(),
-        }
+        return {"person": self.person, "seconds": self.seconds, "positions": np.asarray(self.positions).tolist()}
 
 
 def bent_wrong(positions: Array) -> str | None:

@@ -221,9 +221,7 @@ class ThingCourse:
 
     # ---- throws ----------------------------------------------------------------------------------------
     def _release(self, thrower: int, use: Use) -> Any:
-        way = level(
-            (self.hands.joint(1 - thrower, "pelvis") - self.hands.joint(thrower, "pelvis")).mean(axis=0)
-        )
+        way = level((self.hands.joint(1 - thrower, "pelvis") - self.hands.joint(thrower, "pelvis")).mean(axis=0))
         towards = way + np.array([0.0, 0.4, 0.0])
         return release(self.hands, thrower, use.start, use.stop, towards)
 
@@ -253,9 +251,7 @@ class ThingCourse:
     def _fly(self, use: Use, frame: int, catcher: int) -> None:
         """A throw that is caught by the hand that is nearest when it comes down."""
         hands, last = self.hands, self.hands.frames - 1
-        gap = float(
-            np.linalg.norm((hands.palms[catcher, :, frame].mean(axis=0) - self.course.places[frame])[[0, 2]])
-        )
+        gap = float(np.linalg.norm((hands.palms[catcher, :, frame].mean(axis=0) - self.course.places[frame])[[0, 2]]))
         seconds = float(np.clip(gap / SPEED, SHORTEST, LONGEST)) if catcher != use.agents[0] else LONGEST
         down = frame + round(seconds * hands.fps)
         at = min(down, last)
@@ -307,9 +303,7 @@ class ThingCourse:
         who, hands = use.agents[0], self.hands
         goal = self.course.places[frame] + 3.0 * hands.ahead[who, frame]
         if use.other is not None:
-            other = hands.joint(use.other, "pelvis")[
-                min(frame + round(LONGEST * hands.fps), hands.frames - 1)
-            ]
+            other = hands.joint(use.other, "pelvis")[min(frame + round(LONGEST * hands.fps), hands.frames - 1)]
             goal = other - BEFORE_FEET * level(other - self.course.places[frame])
         rolled(self.course, frame, goal, float(self.surface.size[1]) / 2)
         self.holder = None
@@ -347,9 +341,7 @@ class ThingCourse:
 
     def _carried_shape(self) -> Mesh:
         """As long as the way between the two people leaves room for."""
-        gap = np.linalg.norm(
-            (self.hands.joint(0, "pelvis") - self.hands.joint(1, "pelvis"))[:, [0, 2]], axis=1
-        )
+        gap = np.linalg.norm((self.hands.joint(0, "pelvis") - self.hands.joint(1, "pelvis"))[:, [0, 2]], axis=1)
         width = round(float(np.clip(np.median(gap) - 0.55, 0.5, 2.2)), 1)
         return shape(self.kind, width=width)
 

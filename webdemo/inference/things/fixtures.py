@@ -59,7 +59,9 @@ LEAVES: dict[str, tuple[Leaf, ...]] = {
     "window": (
         *(
             Leaf(
-                "sash", "window", (-side * room.PANE_WIDTH, room.SILL, 0.0, hinge),
+                "sash",
+                "window",
+                (-side * room.PANE_WIDTH, room.SILL, 0.0, hinge),
                 (-side * room.PANE_WIDTH, room.SILL, 0.0, hinge + side * _SWUNG),
             )
             for side, hinge in ((1, 0.0), (-1, np.pi))
@@ -70,11 +72,9 @@ LEAVES: dict[str, tuple[Leaf, ...]] = {
         ),
     ),
     "door frame": (
-        Leaf(
-            "door", "door frame", (-room.DOOR_WIDTH / 2, 0.0, 0.0, 0.0), (-room.DOOR_WIDTH / 2, 0.0, 0.0, _SWUNG)
-        ),
+        Leaf("door", "door frame", (-room.DOOR_WIDTH / 2, 0.0, 0.0, 0.0), (-room.DOOR_WIDTH / 2, 0.0, 0.0, _SWUNG)),
     ),
-}  # fmt: skip
+}
 """The moving parts of fixtures by kind; seen from the front, which is where the people are, they open to the back."""
 
 
@@ -117,9 +117,7 @@ class Fixture:
 
 def placed_leaf(leaf: Leaf, place: Array, yaw: float, share: Array) -> Thing:
     """A moving part of a fixture at ``place`` (3,) turned by ``yaw``, open by a share (T,)."""
-    x, y, z, turn = (
-        (1 - share) * shut + share * wide for shut, wide in zip(leaf.closed, leaf.opened, strict=True)
-    )
+    x, y, z, turn = ((1 - share) * shut + share * wide for shut, wide in zip(leaf.closed, leaf.opened, strict=True))
     cos, sin = np.cos(yaw), np.sin(yaw)
     places = np.stack([cos * x + sin * z, y, -sin * x + cos * z], axis=1) + place
     angles = yaw + turn
@@ -136,9 +134,7 @@ def fixtures(hands: Hands, uses: Sequence[Use]) -> list[Fixture]:
     for use in sorted(ours, key=lambda use: use.does == "faces"):  # hands say best where it is
         kind = BODIES.get(use.kind, use.kind)
         if kind not in found:
-            found[kind] = Fixture(
-                kind, kind if kind != use.kind else use.name, *_spot(hands, use, use.agents[0])
-            )
+            found[kind] = Fixture(kind, kind if kind != use.kind else use.name, *_spot(hands, use, use.agents[0]))
     for use in ours:
         fixture = found[BODIES.get(use.kind, use.kind)]
         for who in use.agents:

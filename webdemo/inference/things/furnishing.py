@@ -29,9 +29,7 @@ Planned = tuple[Plan, int, int | None, int | None]
 """A plan, its first and last frame (None for the end), and the number of its beat."""
 
 
-def furnished(
-    result: Result, plans: Sequence[Planned], own: Mesh | None = None, *, given: bool = False
-) -> Result:
+def furnished(result: Result, plans: Sequence[Planned], own: Mesh | None = None, *, given: bool = False) -> Result:
     """A result whose people look as their plans say, with the things of the acts, and hands that take shapes.
 
     Args:
@@ -87,9 +85,7 @@ def _furnished(
         body, *leaves = fixture.things(hands.frames, hands.fps)
         shaped = own is not None and not things
         things += [_shaped(body, own)] if shaped and own is not None else [body, *leaves]
-        rows.append(
-            {"kind": things[-1].kind if shaped else body.kind, "name": body.name, "events": fixture.events}
-        )
+        rows.append({"kind": things[-1].kind if shaped else body.kind, "name": body.name, "events": fixture.events})
         rows += [] if shaped else [{"kind": leaf.kind, "name": leaf.name, "events": []} for leaf in leaves]
     if own is not None and not things:
         things.append(_beside(hands, own))

@@ -36,21 +36,28 @@ _BOTH = frozenset(("clap", "pray", "push", "hands-on-hips", "rub-hands", "surren
 _BONES = [
     (SMPL22.index(a), SMPL22.index(b))
     for a, b in (
-        ("pelvis", "spine2"), ("spine2", "neck"), ("left_shoulder", "right_shoulder"), ("left_shoulder", "left_elbow"),
+        ("pelvis", "spine2"),
+        ("spine2", "neck"),
+        ("left_shoulder", "right_shoulder"),
+        ("left_shoulder", "left_elbow"),
         ("right_shoulder", "right_elbow"),
     )
-]  # fmt: skip
+]
 """What palms are laid on, as lines between joints."""
 _HELD = {
-    "sword": ("fist", "fist"), "stick": ("fist", "fist"), "umbrella": ("fist", "fist"), "bag": ("fist", "fist"),
-    "flower": ("pinch", "pinch"), "ring": ("pinch", "pinch"), "guitar": ("grasp", "pinch"), "cup": ("grasp", "grasp"),
-}  # fmt: skip
+    "sword": ("fist", "fist"),
+    "stick": ("fist", "fist"),
+    "umbrella": ("fist", "fist"),
+    "bag": ("fist", "fist"),
+    "flower": ("pinch", "pinch"),
+    "ring": ("pinch", "pinch"),
+    "guitar": ("grasp", "pinch"),
+    "cup": ("grasp", "grasp"),
+}
 """Shapes of the left and the right hand by the kind of the thing they hold; others are clasped."""
 
 
-def grips_of_plan(
-    plan: Plan, hands: Hands, duet: Duet, start: int, stop: int, lengths: Sequence[float]
-) -> list[Grip]:
+def grips_of_plan(plan: Plan, hands: Hands, duet: Duet, start: int, stop: int, lengths: Sequence[float]) -> list[Grip]:
     """The shapes that the acts of a plan give hands."""
     part = Motion(duet.positions[:, start:stop], duet.fps)
     found: list[Grip] = []
@@ -59,9 +66,7 @@ def grips_of_plan(
     return found
 
 
-def _of_act(
-    act: Act, plan: Plan, hands: Hands, part: Motion, start: int, first: int, last: int
-) -> Iterator[Grip]:
+def _of_act(act: Act, plan: Plan, hands: Hands, part: Motion, start: int, first: int, last: int) -> Iterator[Grip]:
     entry = lexicon().entries.get(act.act)
     words = plan.text(act.words).lower() if act.words else ""
     shape = "thumbs up" if _THUMBS.search(words) else entry.hand if entry else ""
@@ -92,9 +97,7 @@ def _of_act(
                 yield Grip(person, side, shape, i, j)
 
 
-def _spans(
-    mask: NDArray[np.bool_], fps: float, first: int = 0, last: int | None = None
-) -> Iterator[tuple[int, int]]:
+def _spans(mask: NDArray[np.bool_], fps: float, first: int = 0, last: int | None = None) -> Iterator[tuple[int, int]]:
     """The stretches of a mask that overlap some frames, with a moment before each in which fingers get ready."""
     stop = len(mask) if last is None else min(last + round(0.5 * fps), len(mask))
     begin = max(first - round(0.5 * fps), 0)
@@ -109,9 +112,7 @@ def grips_of_contact(hands: Hands) -> Iterator[Grip]:
     for person in (0, 1):
         for side in (0, 1):
             palm = hands.palms[person, side]
-            near = np.stack([_to_line(palm, hands.positions[1 - person], bone) for bone in _BONES]).min(
-                axis=0
-            )
+            near = np.stack([_to_line(palm, hands.positions[1 - person], bone) for bone in _BONES]).min(axis=0)
             for i, j in _spans(near < LAID, hands.fps):
                 yield Grip(person, SIDES[side], "flat", i, j)
     gaps = np.linalg.norm(hands.palms[0][:, None] - hands.palms[1][None], axis=-1)

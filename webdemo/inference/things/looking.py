@@ -23,12 +23,7 @@ LEAST = 0.4
 
 
 def watched(
-    verdicts: Sequence[Verdict],
-    plan: Plan,
-    duet: Duet,
-    start: int,
-    stop: int | None,
-    lengths: Sequence[float],
+    verdicts: Sequence[Verdict], plan: Plan, duet: Duet, start: int, stop: int | None, lengths: Sequence[float]
 ) -> tuple[Verdict, ...]:
     """The verdicts, of which those on looks at a thing that is in the scene follow from where the face points.
 

@@ -29,12 +29,7 @@ _BEGINS = 0.05
 
 
 def opened(
-    verdicts: Sequence[Verdict],
-    plan: Plan,
-    duet: Duet,
-    start: int,
-    stop: int | None,
-    lengths: Sequence[float],
+    verdicts: Sequence[Verdict], plan: Plan, duet: Duet, start: int, stop: int | None, lengths: Sequence[float]
 ) -> tuple[Verdict, ...]:
     """The verdicts, of which those on acts that open or close what is in the scene follow from what moves there.
 
@@ -75,9 +70,7 @@ def _parts(act: Act, things: Sequence[Thing]) -> list[Thing]:
     return [thing for thing in things if thing.kind in kinds]
 
 
-def _judged(
-    verdict: Verdict, palms: Array, parts: Sequence[Thing], whole: Sequence[Thing], frames: range
-) -> Verdict:
+def _judged(verdict: Verdict, palms: Array, parts: Sequence[Thing], whole: Sequence[Thing], frames: range) -> Verdict:
     """A verdict from the palms (P, T, 3) of its agents, the parts that move, and these with what they are part of."""
     starts = [frame for part in parts if (frame := _starts(part, frames)) is not None]
     if not starts:
@@ -88,9 +81,7 @@ def _judged(
 
 def _starts(part: Thing, frames: range) -> int | None:
     """The frame of some in which a part begins to move; None where it hardly does."""
-    turns, places = (
-        track[frames.start : frames.stop].astype(np.float64) for track in (part.rotations, part.places)
-    )
+    turns, places = (track[frames.start : frames.stop].astype(np.float64) for track in (part.rotations, part.places))
     cosines = (np.einsum("tij,ij->t", turns, turns[0]) - 1) / 2
     turned = np.arccos(np.clip(cosines, -1.0, 1.0)) / _TURNED
     moved = np.maximum(turned, np.linalg.norm(places - places[0], axis=1) / _SHIFTED)

@@ -39,7 +39,7 @@ def seated(hands: Hands, person: int, start: int, stop: int) -> tuple[int, int] 
     still = np.linalg.norm(np.gradient(hips, axis=0), axis=1) * hands.fps < 0.35
     found = [
         (i, j) for i, j in stretches(low & bent & still, hands.fps, pause=0.3) if j > start and i < stop + hands.fps
-    ]  # fmt: skip
+    ]
     if not found:
         return None
     best = max(found, key=lambda each: each[1] - each[0])
@@ -126,9 +126,7 @@ def _doors(hands: Hands, use: Use) -> Iterator[tuple[Use, tuple[int, ...], Thing
     ahead = way[-1] - way[0]
     if np.linalg.norm(ahead[[0, 2]]) < 1.0:
         return
-    middle = way[
-        int(np.linalg.norm((way - way[0])[:, [0, 2]], axis=1).searchsorted(np.linalg.norm(ahead[[0, 2]]) / 2))
-    ]
+    middle = way[int(np.linalg.norm((way - way[0])[:, [0, 2]], axis=1).searchsorted(np.linalg.norm(ahead[[0, 2]]) / 2))]
     door = Thing.at_rest(
         "door frame", shape("door frame"), middle * [1, 0, 1], yaw_of(level(ahead)), hands.frames, "door"
     )

@@ -97,9 +97,7 @@ def _at_desks(found: Sequence[Use]) -> list[Use]:
     return made
 
 
-def act_frames(
-    plan: Plan, start: int, stop: int, lengths: Sequence[float] = ()
-) -> Iterator[tuple[Act, int, int]]:
+def act_frames(plan: Plan, start: int, stop: int, lengths: Sequence[float] = ()) -> Iterator[tuple[Act, int, int]]:
     """The acts of a plan that happen, each with its frames; the arguments are those of :func:`uses_of`."""
     groups = [[act for act in group if act.happens] for group in plan.beats()]
     edges = _edges(groups, start, stop, lengths)
@@ -114,9 +112,7 @@ def _edges(groups: Sequence[Sequence[Act]], start: int, stop: int, lengths: Sequ
         shares = np.array(lengths, dtype=float)
     else:
         shares = np.array([max((_seconds(act) for act in group), default=1.0) for group in groups])
-    return [
-        start + round(x) for x in np.r_[0.0, np.cumsum(shares) / max(shares.sum(), 1e-9)] * (stop - start)
-    ]
+    return [start + round(x) for x in np.r_[0.0, np.cumsum(shares) / max(shares.sum(), 1e-9)] * (stop - start)]
 
 
 def _seconds(act: Act) -> float:
@@ -164,11 +160,7 @@ def _fixture(act: Act, words: str, start: int, stop: int) -> Use | None:
     entry = lexicon().entries.get(act.act)
     does = entry.thing if entry and entry.thing in ("opens", "closes", "carries") else "faces"
     agents = tuple("ab".index(who) for who in act.agents)
-    return (
-        None
-        if does == "carries"
-        else Use(act.id, does, kind, name, agents, None, "", start, stop, words=words)
-    )
+    return None if does == "carries" else Use(act.id, does, kind, name, agents, None, "", start, stop, words=words)
 
 
 def _place(words: str) -> str:

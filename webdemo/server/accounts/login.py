@@ -116,8 +116,4 @@ def _own_path(wanted: str) -> str:
     """A path on this server: an address of another host, or a header's line break, becomes the page."""
     parts = urlsplit(wanted)
     plain = wanted.isprintable() and wanted.isascii() and not any(c in wanted for c in "\\ \"'<>")
-    return (
-        wanted
-        if plain and wanted.startswith("/") and not wanted.startswith("//") and not parts.netloc
-        else "/"
-    )
+    return wanted if plain and wanted.startswith("/") and not wanted.startswith("//") and not parts.netloc else "/"

@@ -34,9 +34,7 @@ SUSPENDED = "This account is suspended: ask the person who runs this server."
 COST = 2**14
 """scrypt's n for new passwords: 16 MB and about 50 ms a try. Each line says its own, so this may change."""
 _COSTS = {2**power for power in range(4, 18)}
-_HEADER = (
-    "# Accounts of Pas de Deux: name#id, then scrypt's n, salt and hash. `python -m webdemo user` edits it.\n"
-)
+_HEADER = "# Accounts of Pas de Deux: name#id, then scrypt's n, salt and hash. `python -m webdemo user` edits it.\n"
 
 
 class _Password(NamedTuple):
@@ -93,9 +91,7 @@ class Users:
     def check(self, name: str, password: str) -> None:
         """Raises InputError for a name or a password that no account can have."""
         if not NAME.match(name):
-            raise InputError(
-                f"{name!r:.60} is not a valid account name: use up to 40 of a-z, 0-9, '.', '_' and '-'."
-            )
+            raise InputError(f"{name!r:.60} is not a valid account name: use up to 40 of a-z, 0-9, '.', '_' and '-'.")
         if not SHORTEST <= len(password) <= LONGEST:
             raise InputError(f"The password must have {SHORTEST} to {LONGEST} characters.")
 

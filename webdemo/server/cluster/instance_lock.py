@@ -40,8 +40,7 @@ class InstanceLock:
                     return
         except OSError as error:
             raise InputError(
-                f"The folder {folder} cannot be written ({error.strerror}): "
-                "choose another with PASDEDEUX_DATA."
+                f"The folder {folder} cannot be written ({error.strerror}): choose another with PASDEDEUX_DATA."
             ) from None
         raise InputError(f"{MOST} processes called {wanted} use {folder} already: stop some of them.")
 

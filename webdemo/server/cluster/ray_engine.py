@@ -160,9 +160,7 @@ class RayEngine:
 
     # ---- one request -----------------------------------------------------------------------------
 
-    def _once(
-        self, handle: DeploymentHandle, request: Any, cancel: CancelToken
-    ) -> Iterator[Progress | Result]:
+    def _once(self, handle: DeploymentHandle, request: Any, cancel: CancelToken) -> Iterator[Progress | Result]:
         stream: Any = handle.options(stream=True).run.remote(request)
         arrived: queue.SimpleQueue[Any] = queue.SimpleQueue()
 
@@ -249,10 +247,12 @@ class RayEngine:
             if not self.address:
                 cores = self.replicas[1] * self.cores + (len(replicated()) - 1) * self.cores / 2
                 where = {
-                    "address": "local", "include_dashboard": False, "_node_ip_address": LOOPBACK,
+                    "address": "local",
+                    "include_dashboard": False,
+                    "_node_ip_address": LOOPBACK,
                     "object_store_memory": STORE_BYTES,
                     "num_cpus": max(usable_cores(), math.ceil(cores)),
-                }  # fmt: skip
+                }
             with keeping_sigterm():
                 ray.init(namespace=NAMESPACE, configure_logging=False, log_to_driver=False, **where)
             serve.start(proxy_location="Disabled")

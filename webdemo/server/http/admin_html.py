@@ -53,8 +53,7 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]], none: str) -> str
         return f"<p>{none}</p>"
     head = "".join(f'<th scope="col">{name}</th>' for name in heads)
     lines = [
-        "".join(f'<td data-head="{name}">{cell}</td>' for name, cell in zip(heads, row, strict=True))
-        for row in rows
+        "".join(f'<td data-head="{name}">{cell}</td>' for name, cell in zip(heads, row, strict=True)) for row in rows
     ]
     body = "".join(f"<tr>{line}</tr>" for line in lines)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"

@@ -28,12 +28,17 @@ if TYPE_CHECKING:
     from webdemo.server.lab import Lab
 
 _DONE = {
-    "end-run": "The run was ended.", "end-stream": "The stream was ended.", "room": "The room was set.",
-    "suspend": "The account was suspended and signed out.", "let-in": "The account can sign in again.",
-    "sign-out": "The account was signed out everywhere.", "delete": "The account was deleted with all its data.",
-    "announce": "The announcement was changed.", "make-admin": "The account is an administrator.",
+    "end-run": "The run was ended.",
+    "end-stream": "The stream was ended.",
+    "room": "The room was set.",
+    "suspend": "The account was suspended and signed out.",
+    "let-in": "The account can sign in again.",
+    "sign-out": "The account was signed out everywhere.",
+    "delete": "The account was deleted with all its data.",
+    "announce": "The announcement was changed.",
+    "make-admin": "The account is an administrator.",
     "end-admin": "The account is no administrator any more.",
-}  # fmt: skip
+}
 """The acts, and the sentence after each."""
 
 
@@ -52,9 +57,7 @@ def admin_routes(lab: Lab) -> APIRouter:
     async def act(request: Request) -> Response:
         _check_admin(lab, request)
         if not request.headers.get("origin"):  # the guard has compared it with the host
-            raise Refused(
-                403, "Open the page /admin in a browser, or use `python -m webdemo admin`.", "admin"
-            )
+            raise Refused(403, "Open the page /admin in a browser, or use `python -m webdemo admin`.", "admin")
         form = await request.form()
         given = {name: value for name, value in form.items() if isinstance(value, str)}
         done = given.get("act", "")
@@ -141,8 +144,7 @@ def _page(lab: Lab, done: str) -> str:
 def _button(action: str, act: str, label: str, fields: str = "", **hidden: str) -> str:
     given = {"act": act, **hidden}
     inputs = "".join(
-        f'<input type="hidden" name="{name}" value="{html.escape(value, quote=True)}">'
-        for name, value in given.items()
+        f'<input type="hidden" name="{name}" value="{html.escape(value, quote=True)}">' for name, value in given.items()
     )
     target = html.escape(action, quote=True)
     return f'<form method="post" action="{target}">{inputs}{fields}<button>{label}</button></form>'
@@ -164,21 +166,23 @@ def _people(lab: Lab, admin: Administration, action: str) -> str:
         share = f"{row.megabytes:,.1f} of {row.kept:,.1f} MB" + (" <strong>full</strong>" if row.full else "")
         acts = [
             _button(action, "room", "Set room", room, name=row.name),
-            _button(
-                action, *(("let-in", "Let in") if row.suspended else ("suspend", "Suspend")), name=row.name
-            ),
+            _button(action, *(("let-in", "Let in") if row.suspended else ("suspend", "Suspend")), name=row.name),
             _button(action, "sign-out", "Sign out everywhere", name=row.name),
-            _button(
-                action,
-                *(("end-admin", "No admin") if row.role else ("make-admin", "Make admin")),
-                name=row.name,
-            ),
+            _button(action, *(("end-admin", "No admin") if row.role else ("make-admin", "Make admin")), name=row.name),
             _button(action, "delete", "Delete with all data", confirm, name=row.name),
         ]
-        rows.append([
-            f"<strong>{name}</strong> {state}", f"{row.runs:,}", f"{row.computed:,}", f"{row.minutes:.1f}", share,
-            str(waiting.count(owner)), str(streams.count(owner)), f'<div class="acts">{"".join(acts)}</div>',
-        ])  # fmt: skip
+        rows.append(
+            [
+                f"<strong>{name}</strong> {state}",
+                f"{row.runs:,}",
+                f"{row.computed:,}",
+                f"{row.minutes:.1f}",
+                share,
+                str(waiting.count(owner)),
+                str(streams.count(owner)),
+                f'<div class="acts">{"".join(acts)}</div>',
+            ]
+        )
     heads = (
         "Account",
         "Runs kept",
@@ -204,11 +208,16 @@ def _elsewhere(lab: Lab) -> list[Item]:
 def _runs_and_streams(lab: Lab, action: str) -> str:
     now, several = time.time(), len(lab.activity.states()) > 1
     rows = [
-        [_name(item.person), html.escape(item.what), item.state, f"{now - item.since:.0f} s",
-         *([html.escape(item.node)] if several else []),
-         _button(action, "end-stream" if item.state == "open" else "end-run", "End", id=item.id)]
+        [
+            _name(item.person),
+            html.escape(item.what),
+            item.state,
+            f"{now - item.since:.0f} s",
+            *([html.escape(item.node)] if several else []),
+            _button(action, "end-stream" if item.state == "open" else "end-run", "End", id=item.id),
+        ]
         for item in _work(lab)
-    ]  # fmt: skip
+    ]
     heads = ("Person", "Model", "State", "For", *(["Process"] if several else []), "Act")
     return table(heads, rows, "Nothing runs or waits.")
 
@@ -249,8 +258,12 @@ def _health(lab: Lab) -> str:
 
 def _errors() -> str:
     rows = [
-        [_moment(line), html.escape(str(line["message"])), html.escape(str(line.get("error", ""))),
-         html.escape(str(line.get("request", "")))]
+        [
+            _moment(line),
+            html.escape(str(line["message"])),
+            html.escape(str(line.get("error", ""))),
+            html.escape(str(line.get("request", ""))),
+        ]
         for line in reversed(LAST_ERRORS.lines)
-    ]  # fmt: skip
+    ]
     return table(("Time (UTC)", "Message", "Error", "Request"), rows, "No errors since this process started.")

@@ -30,9 +30,7 @@ class BoundedBody:
         form: checks the parts of an upload on the way.
     """
 
-    def __init__(
-        self, receive: Receive, *, most: float, seconds: float, form: UploadForm | None = None
-    ) -> None:
+    def __init__(self, receive: Receive, *, most: float, seconds: float, form: UploadForm | None = None) -> None:
         self._receive, self.most, self._form = receive, most, form
         self._until = time.monotonic() + seconds
         self._size = 0

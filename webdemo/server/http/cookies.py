@@ -21,9 +21,14 @@ def set_cookie(response: Response, name: str, value: str, *, seconds: float, roo
     """
     space = on_a_space()  # there the page is in a frame of another site's
     response.set_cookie(
-        name, value, max_age=int(seconds), path=root or "/", httponly=True,
-        secure=secure or space, samesite="none" if space else "lax",
-    )  # fmt: skip
+        name,
+        value,
+        max_age=int(seconds),
+        path=root or "/",
+        httponly=True,
+        secure=secure or space,
+        samesite="none" if space else "lax",
+    )
 
 
 def read_cookies(headers: dict[bytes, bytes]) -> dict[str, str]:

@@ -107,11 +107,15 @@ def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "") -
     fields = "".join(
         f'<label>{label}<input name="{key}" autocomplete="{kind}" required{more}></label>'
         for label, key, kind, more in (
-            ("Name", "username", "username",
-             f' maxlength="40" autocapitalize="none" value="{html.escape(name, quote=True)}"{focus[0]}'),
+            (
+                "Name",
+                "username",
+                "username",
+                f' maxlength="40" autocapitalize="none" value="{html.escape(name, quote=True)}"{focus[0]}',
+            ),
             ("Password", "password", "current-password", f' type="password"{focus[1]}'),
         )
-    )  # fmt: skip
+    )
     return card(
         f'<p>Sign in {why}.</p>{alert}<form method="post" action="{html.escape(action, quote=True)}">'
         f'<input type="hidden" name="next" value="{html.escape(wanted, quote=True)}">'

@@ -155,9 +155,7 @@ class Guard:
             exchange.cookie = self._visitor_cookie(scope)
         if scope["method"] == "POST" and route in _CALLS:
             exchange.heard = self._binds(visitor.person)
-        scope["state"] = {
-            **scope.get("state", {}), "visitor": visitor, "reference": exchange.reference,
-        }  # fmt: skip
+        scope["state"] = {**scope.get("state", {}), "visitor": visitor, "reference": exchange.reference}
         PERSON.set(visitor.person)
         SENDER.set((visitor.account or visitor.person, SENDER.get()[1]))
         self.answers.count += route in _ANSWERS
@@ -196,9 +194,14 @@ class Guard:
         log.log(
             logging.DEBUG if route == MESSAGE else logging.INFO,  # a live stream sends some fifteen a second
             "request",
-            extra={"method": method, "route": route, "status": status,
-                   "first_byte_seconds": round(exchange.first_byte, 4), "seconds": round(exchange.seconds, 4)},
-        )  # fmt: skip
+            extra={
+                "method": method,
+                "route": route,
+                "status": status,
+                "first_byte_seconds": round(exchange.first_byte, 4),
+                "seconds": round(exchange.seconds, 4),
+            },
+        )
 
     # ---- the head --------------------------------------------------------------------------------
 
@@ -215,9 +218,7 @@ class Guard:
         if not _HOST.fullmatch(host):
             raise Refused(400, "The request's Host is not a name.", "bad head")
         if self.hosts and name not in self.hosts:
-            raise Refused(
-                421, "This server is not called so: set PASDEDEUX_HOSTS to the names it has.", "host"
-            )
+            raise Refused(421, "This server is not called so: set PASDEDEUX_HOSTS to the names it has.", "host")
         if scope["method"] not in _CHANGING:
             return
         elsewhere = bool(origin) and asks != host
@@ -235,9 +236,14 @@ class Guard:
             return nobody
         try:
             visitor = await run_in_threadpool(
-                self.visitors.of, read_cookies(headers), address, reference=exchange.reference, base=base,
-                by_proxy=person_by_proxy(self.settings, scope), admin=admin_by_proxy(self.settings, scope),
-            )  # fmt: skip
+                self.visitors.of,
+                read_cookies(headers),
+                address,
+                reference=exchange.reference,
+                base=base,
+                by_proxy=person_by_proxy(self.settings, scope),
+                admin=admin_by_proxy(self.settings, scope),
+            )
         except (Refused, SQLAlchemyError) as error:
             if not (isinstance(error, Refused) and error.reason == "proxy" and needs_no_sign_in(path)):
                 raise
@@ -245,9 +251,7 @@ class Guard:
         if visitor is None and needs_no_sign_in(path):
             visitor = nobody
         if scope["method"] in _CHANGING or is_public_page(path):  # a motion is read for each of these
-            self._take(
-                visitor or nobody, self._weight(scope, headers), self.rate_limit, self.address_rate_limit
-            )
+            self._take(visitor or nobody, self._weight(scope, headers), self.rate_limit, self.address_rate_limit)
         else:
             dear = _DEAR_WEIGHT if path in _DEAR else 1.0
             self._take(visitor or nobody, dear, self.gets, self.address_gets)
@@ -262,9 +266,13 @@ class Guard:
     def _visitor_cookie(self, scope: Scope) -> str:
         response = Response()
         set_cookie(
-            response, VISITOR_COOKIE, new_token(), seconds=365 * 86400, root=self.settings.root_path,
+            response,
+            VISITOR_COOKIE,
+            new_token(),
+            seconds=365 * 86400,
+            root=self.settings.root_path,
             secure=scope["scheme"] == "https",
-        )  # fmt: skip
+        )
         return response.headers["set-cookie"]
 
     # ---- the body --------------------------------------------------------------------------------
@@ -285,9 +293,7 @@ class Guard:
             return 1.0
         return 1.0 + (declared if b"content-length" in headers else most) / 2**20
 
-    async def _body(
-        self, scope: Scope, headers: dict[bytes, bytes], receive: Receive, visitor: Visitor
-    ) -> BoundedBody:
+    async def _body(self, scope: Scope, headers: dict[bytes, bytes], receive: Receive, visitor: Visitor) -> BoundedBody:
         """The body of a request that may have one, checked where it is a call of the page's."""
         path, declared = scope["path"], declared_length(headers)
         most = self._most(path)

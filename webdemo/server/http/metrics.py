@@ -24,24 +24,28 @@ class Figures:
         self.answer_seconds = Histogram(
             "pasdedeux_http_seconds", "Time to the first byte", ["route"], buckets=_SECONDS, registry=registry
         )
-        self.runs = Counter(
-            "pasdedeux_runs", "Runs by how they ended", ["model", "outcome"], registry=registry
-        )
+        self.runs = Counter("pasdedeux_runs", "Runs by how they ended", ["model", "outcome"], registry=registry)
         self.stage_seconds = Histogram(
-            "pasdedeux_stage_seconds", "Time in each stage of a run", ["model", "stage"], buckets=_SECONDS,
+            "pasdedeux_stage_seconds",
+            "Time in each stage of a run",
+            ["model", "stage"],
+            buckets=_SECONDS,
             registry=registry,
-        )  # fmt: skip
-        self.batch_size = Histogram(
-            "pasdedeux_batch_runs", "Runs in one pass through a network", ["model"],
-            buckets=(1, 2, 3, 4, 6, 8, 16), registry=registry,
-        )  # fmt: skip
-        self.estimate_ratio = Histogram(
-            "pasdedeux_estimate_ratio", "Waiting time of a run divided by its first estimate",
-            buckets=(0.25, 0.5, 0.8, 1, 1.25, 2, 4), registry=registry,
-        )  # fmt: skip
-        self.errors = Counter(
-            "pasdedeux_errors", "Errors that are not the user's", ["kind"], registry=registry
         )
+        self.batch_size = Histogram(
+            "pasdedeux_batch_runs",
+            "Runs in one pass through a network",
+            ["model"],
+            buckets=(1, 2, 3, 4, 6, 8, 16),
+            registry=registry,
+        )
+        self.estimate_ratio = Histogram(
+            "pasdedeux_estimate_ratio",
+            "Waiting time of a run divided by its first estimate",
+            buckets=(0.25, 0.5, 0.8, 1, 1.25, 2, 4),
+            registry=registry,
+        )
+        self.errors = Counter("pasdedeux_errors", "Errors that are not the user's", ["kind"], registry=registry)
         self.refused = Counter("pasdedeux_refused", "Requests refused", ["reason"], registry=registry)
         self._waiting = Gauge("pasdedeux_queue_waiting", "Runs that wait", registry=registry)
         self._running = Gauge("pasdedeux_queue_running", "Runs that run", registry=registry)

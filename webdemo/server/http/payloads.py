@@ -31,9 +31,7 @@ class Payloads:
 
     def __init__(self, page: Blocks) -> None:
         self._inputs = {number: list(fn.inputs) for number, fn in page.fns.items()}
-        self._numbers = {
-            str(fn.api_name): number for number, fn in page.fns.items() if fn.api_visibility == "public"
-        }
+        self._numbers = {str(fn.api_name): number for number, fn in page.fns.items() if fn.api_visibility == "public"}
         self._events = {
             number: [page.blocks[target] for target, _ in fn.targets if target is not None]
             for number, fn in page.fns.items()
@@ -63,9 +61,7 @@ class Payloads:
         elif type(function) is not int or function not in self._inputs:
             raise Refused(404, "The page has no such function: reload it.", "forged")
         if fields.get("batched"):
-            raise Refused(
-                400, "Batched calls are not supported: send one call at a time, without batched.", "forged"
-            )
+            raise Refused(400, "Batched calls are not supported: send one call at a time, without batched.", "forged")
         self._check_data(fields.get("data"), function, person)
         for component in self._events.get(function, ()) if function is not None else ():
             _validated(fields.get("event_data"), accepts_event(component), component)
@@ -80,9 +76,7 @@ class Payloads:
             inputs = [block for block in inputs if not block.skip_api]
         if len(inputs) != len(data):
             raise Refused(
-                400,
-                f"The call has {len(data)} values and takes {len(inputs)}: see /gradio_api/info.",
-                "bad body",
+                400, f"The call has {len(data)} values and takes {len(inputs)}: see /gradio_api/info.", "bad body"
             )
         for value, component in zip(data, inputs, strict=True):
             check_value(value, component, person)

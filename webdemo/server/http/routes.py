@@ -46,9 +46,23 @@ _ROUTES = frozenset(
     )
 )
 _API_ROUTES = frozenset(
-    ("queue", "upload", "upload_progress", "file", "call", "run", "api", "info", "heartbeat", "cancel",
-     "reset", "component_server", "startup-events", "app_id")
-)  # fmt: skip
+    (
+        "queue",
+        "upload",
+        "upload_progress",
+        "file",
+        "call",
+        "run",
+        "api",
+        "info",
+        "heartbeat",
+        "cancel",
+        "reset",
+        "component_server",
+        "startup-events",
+        "app_id",
+    )
+)
 _NOTHING = "There is nothing here."
 
 

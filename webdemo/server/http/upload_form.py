@@ -36,11 +36,13 @@ class UploadForm:
         self._parser = MultipartParser(
             boundary,
             {
-                "on_header_field": self._on_name, "on_header_value": self._on_value,
-                "on_header_end": self._on_header, "on_headers_finished": self._on_part,
+                "on_header_field": self._on_name,
+                "on_header_value": self._on_value,
+                "on_header_end": self._on_header,
+                "on_headers_finished": self._on_part,
                 "on_end": self._on_end,
             },
-        )  # fmt: skip
+        )
 
     def feed(self, chunk: bytes, *, last: bool) -> None:
         """Takes what came of the body; raises Refused if its form is wrong."""

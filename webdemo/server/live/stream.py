@@ -165,9 +165,10 @@ class LiveStream:
             return {"things": [thing_payload(thing) for thing in now]} if now else {}
         pairs = enumerate(zip(before, now, strict=True))
         moved = [
-            i for i, (old, new) in pairs
+            i
+            for i, (old, new) in pairs
             if not (np.array_equal(old.places, new.places) and np.array_equal(old.rotations, new.rotations))
-        ]  # fmt: skip
+        ]
         return {"moved": [[i, *_pose(now[i])] for i in moved]} if moved else {}
 
     def _frames(self, message: Message) -> Iterator[Array]:

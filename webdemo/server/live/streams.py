@@ -74,9 +74,14 @@ class Streams:
     """
 
     def __init__(
-        self, engine: Partners, *, most: int, address: int, clock: Callable[[], float] = time.monotonic,
+        self,
+        engine: Partners,
+        *,
+        most: int,
+        address: int,
+        clock: Callable[[], float] = time.monotonic,
         processor: Callable[[], float] = time.thread_time,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.engine, self.most, self.address, self.clock = engine, most, address, clock
         self.processor = processor
         self.turns, self._doors = StepTurns("live"), StepTurns("live-open")
@@ -98,13 +103,7 @@ class Streams:
         return len(self._open)
 
     def open(
-        self,
-        visitor: Visitor,
-        partner: str,
-        *,
-        seed: int = 0,
-        lens: float | None = None,
-        tilt: float | None = None,
+        self, visitor: Visitor, partner: str, *, seed: int = 0, lens: float | None = None, tilt: float | None = None
     ) -> LiveStream:
         """A new stream; the networks may have to be loaded first.
 
@@ -121,9 +120,8 @@ class Streams:
         try:
             made = self.engine.partner(partner, seed=seed)
             stream = LiveStream(
-                secrets.token_urlsafe(16), visitor.person, visitor.address, made, lens, tilt, self.clock,
-                self.processor,
-            )  # fmt: skip
+                secrets.token_urlsafe(16), visitor.person, visitor.address, made, lens, tilt, self.clock, self.processor
+            )
             with self._lock:
                 self._open[stream.id] = stream
         finally:
@@ -254,6 +252,9 @@ class Streams:
 
 def _figures(counts: Any) -> dict[str, Any]:
     return {
-        "frames": counts.frames, "pictures": counts.pictures, "dropped": counts.dropped,
-        "milliseconds_per_frame": round(counts.milliseconds, 2), "longest_milliseconds": round(1000 * counts.longest),
-    }  # fmt: skip
+        "frames": counts.frames,
+        "pictures": counts.pictures,
+        "dropped": counts.dropped,
+        "milliseconds_per_frame": round(counts.milliseconds, 2),
+        "longest_milliseconds": round(1000 * counts.longest),
+    }

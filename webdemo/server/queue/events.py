@@ -68,9 +68,7 @@ class FairEvents(Queue):
         near = sum(other.address == who.address for other in known) if who.address else 0
         if mine >= self.limits.person:
             self.figures.refused.labels("person's share of events").inc()
-            raise HTTPException(
-                429, f"{mine} things that you asked for are not done yet: wait for one of them."
-            )
+            raise HTTPException(429, f"{mine} things that you asked for are not done yet: wait for one of them.")
         if near >= self.limits.address:
             self.figures.refused.labels("address's share of events").inc()
             raise HTTPException(
@@ -83,9 +81,7 @@ class FairEvents(Queue):
         """The next event: of those that may begin, the first one of the person served least."""
         now = time.monotonic()
         running = list(self._running())
-        busy = Counter(
-            visitor_of(event.request).person for event in running if not self._waits_elsewhere(event)
-        )
+        busy = Counter(visitor_of(event.request).person for event in running if not self._waits_elsewhere(event))
         spent: defaultdict[str, float] = defaultdict(float)
         for event, began in self._begun.items():
             spent[visitor_of(event.request).person] += now - began

@@ -165,9 +165,7 @@ class FairQueue:
             left = list(self._running)
             for job in left:
                 job.token.cancel()
-                job.events.put(
-                    InputError("The server stopped before this was finished: send it again in a minute.")
-                )
+                job.events.put(InputError("The server stopped before this was finished: send it again in a minute."))
         return len(left)
 
     # ---- the queue -------------------------------------------------------------------------------
@@ -175,9 +173,14 @@ class FairQueue:
     def _enter(self, session: str, request: Any, who: Visitor, *, alone: bool = False) -> Job:
         key, person = self.batcher.key(request) if self.batcher and not alone else None, who.person
         job = Job(
-            person, request, group="", cost=units(request), key=key, address=who.address,
+            person,
+            request,
+            group="",
+            cost=units(request),
+            key=key,
+            address=who.address,
             token=CancelToken(self.limits.seconds),
-        )  # fmt: skip
+        )
         with self._change:
             if self._stopping:
                 raise InputError("The server is stopping: send this again in a minute.")
@@ -187,20 +190,14 @@ class FairQueue:
             mine = sum(other.person == person for other in self._waiting)
             if mine >= self.limits.waiting:
                 self.figures.refused.labels("person's share of the queue").inc()
-                raise InputError(
-                    f"You already have {mine} runs waiting: wait for one or cancel it, then try again."
-                )
+                raise InputError(f"You already have {mine} runs waiting: wait for one or cancel it, then try again.")
             near = sum(other.address == who.address for other in self._waiting) if who.address else 0
             if near >= self.limits.address:
                 self.figures.refused.labels("address's share of the queue").inc()
-                raise InputError(
-                    f"{near} runs from your network are already waiting: try again in a few minutes."
-                )
+                raise InputError(f"{near} runs from your network are already waiting: try again in a few minutes.")
             if len(self._waiting) >= self.limits.queue:
                 self.figures.refused.labels("queue full").inc()
-                raise InputError(
-                    f"The queue is full ({len(self._waiting)} runs wait): try again in a few minutes."
-                )
+                raise InputError(f"The queue is full ({len(self._waiting)} runs wait): try again in a few minutes.")
             job.group = self._group(request)
             running = [(job.person, job.cost) for job in self._running]
             self._turns.meet(person, {job.person for job in (*self._waiting, *self._running)}, running)

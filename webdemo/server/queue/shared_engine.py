@@ -53,7 +53,5 @@ class SharedEngine(LazyEngine):
 def _seconds(request: GenerateRequest | ReactRequest | SceneRequest) -> float:
     """The longest motion that it passes through the network at once."""
     if isinstance(request, SceneRequest):
-        return (
-            max(window.past + window.stop - window.start + window.after for window in windows(request)) / FPS
-        )
+        return max(window.past + window.stop - window.start + window.after for window in windows(request)) / FPS
     return request.seconds if isinstance(request, GenerateRequest) else request.actor.seconds

@@ -153,16 +153,10 @@ class Turns(Accounts):
         rest = list(waiting)
         extra: dict[str, float] = {}
         while rest:
-            able = [
-                job
-                for job in rest
-                if count.get(job.person, 0) < self.limits.running and self._joins(batch, job)
-            ]
+            able = [job for job in rest if count.get(job.person, 0) < self.limits.running and self._joins(batch, job)]
             if not able:
                 break
-            job = min(
-                able, key=lambda j: (served.get(j.person, 0.0) + extra.get(j.person, 0.0), waiting.index(j))
-            )
+            job = min(able, key=lambda j: (served.get(j.person, 0.0) + extra.get(j.person, 0.0), waiting.index(j)))
             batch.append(job)
             rest.remove(job)
             count[job.person] = count.get(job.person, 0) + 1

@@ -19,11 +19,7 @@ def units(request: Any) -> float:
         actor = getattr(request, "actor", None)
         seconds = actor.seconds if actor is not None else 5.0
     tries = (1 + float(getattr(request, "tries", 1))) / 2
-    return (
-        tries
-        * float(getattr(request, "samples", 1))
-        * (float(seconds) * float(getattr(request, "steps", 1)) + 10.0)
-    )
+    return tries * float(getattr(request, "samples", 1)) * (float(seconds) * float(getattr(request, "steps", 1)) + 10.0)
 
 
 @dataclass

@@ -114,12 +114,8 @@ def restore(backup: Path, lab: Lab) -> dict[str, Any]:
     manifest = _checked(backup)
     if inspect(lab.engine).get_table_names():
         raise InputError("The database is not empty: restore into an empty one, and switch over then.")
-    if taken := [
-        name for name in _FOLDERS if (lab.data / name).exists() and any((lab.data / name).iterdir())
-    ]:
-        raise InputError(
-            f"The data folder {lab.data} holds {' and '.join(taken)} already: restore into an empty one."
-        )
+    if taken := [name for name in _FOLDERS if (lab.data / name).exists() and any((lab.data / name).iterdir())]:
+        raise InputError(f"The data folder {lab.data} holds {' and '.join(taken)} already: restore into an empty one.")
     if (backup / ACCOUNTS).is_file() and lab.users is not None and lab.users.exists():
         raise InputError(f"There is a file of accounts {lab.users} already: move it away first.")
     upgrade(lab.engine, manifest["revision"])

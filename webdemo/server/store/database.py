@@ -243,9 +243,7 @@ def opening() -> Iterator[None]:
             "The database's URL is not understood: write it as sqlite:///FILE or postgresql+psycopg://…"
         ) from None
     except ModuleNotFoundError as error:
-        raise InputError(
-            f"The database needs the Python package {error.name}: install it, or use SQLite."
-        ) from None
+        raise InputError(f"The database needs the Python package {error.name}: install it, or use SQLite.") from None
     except (SQLAlchemyError, OSError) as error:
         reason = str(getattr(error, "orig", None) or error).partition("\n")[0]
         raise InputError(

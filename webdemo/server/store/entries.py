@@ -29,8 +29,17 @@ def entry_of(run: Run) -> Entry:
     """A row as the page takes it."""
     now, note = time.time(), run.note or Note(title="", tags="", text="", frame=None, thumbnail="")
     return Entry(
-        id=run.id, kind=run.kind, title=note.title or run.title, state=run.state, message=run.message,
-        created=run.created, request=fields_of(run.request), favourite=run.favourite,
-        links=sum(link.until > now for link in run.links), tags=tuple(note.tags.split()), note=note.text,
-        frame=note.frame, thumbnail=note.thumbnail,
-    )  # fmt: skip
+        id=run.id,
+        kind=run.kind,
+        title=note.title or run.title,
+        state=run.state,
+        message=run.message,
+        created=run.created,
+        request=fields_of(run.request),
+        favourite=run.favourite,
+        links=sum(link.until > now for link in run.links),
+        tags=tuple(note.tags.split()),
+        note=note.text,
+        frame=note.frame,
+        thumbnail=note.thumbnail,
+    )

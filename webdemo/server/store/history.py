@@ -104,10 +104,16 @@ class History:
         asked = request.to_dict()
         text = json.dumps(asked)
         run = Run(
-            id=secrets.token_urlsafe(18), owner=owner, kind=asked.get("kind", "generate"), title=title, request=text,
-            node=self.node, stored=self.clock.now(), address=digest(address) if address else "",
+            id=secrets.token_urlsafe(18),
+            owner=owner,
+            kind=asked.get("kind", "generate"),
+            title=title,
+            request=text,
+            node=self.node,
+            stored=self.clock.now(),
+            address=digest(address) if address else "",
             size=ROW_BYTES + len(text),
-        )  # fmt: skip
+        )
         with self.database.session.begin() as session:
             self.storage.check(session, owner, run.address, RUN_BYTES)
             session.add(run)
@@ -132,8 +138,7 @@ class History:
         except (OSError, InputError) as error:
             full = getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT) or "full" in str(error)
             sentence = (
-                "The result could not be kept in the history, the server's disk is full: "
-                "download its files now."
+                "The result could not be kept in the history, the server's disk is full: download its files now."
                 if full
                 else "The result could not be kept in the history: download its files now."
             )
@@ -265,9 +270,7 @@ class History:
         with self.database.session.begin() as session:
             found = self._own(session, run, owner)
             if favourite and not found.favourite:
-                count = session.scalar(
-                    select(func.count()).select_from(Run).where(Run.owner == owner, Run.favourite)
-                )
+                count = session.scalar(select(func.count()).select_from(Run).where(Run.owner == owner, Run.favourite))
                 if (count or 0) >= self.keep_favourites:
                     raise InputError(f"You already keep {count} favourites: stop keeping one first.")
             found.favourite = favourite
@@ -339,9 +342,7 @@ class History:
                 formats.write(duet, half / f"{i + 1}.npz")
             if isinstance(result, PredictResult) and result.truth is not None:
                 formats.write(result.truth, half / _TRUTH)
-            (half / "readouts.json").write_text(
-                json.dumps(list(result.readouts), default=float), encoding="utf-8"
-            )
+            (half / "readouts.json").write_text(json.dumps(list(result.readouts), default=float), encoding="utf-8")
             os.replace(half, self.folder / run)
         except BaseException:
             shutil.rmtree(half, ignore_errors=True)
@@ -361,12 +362,13 @@ class History:
         if not duets:
             raise InputError("The files of this run are gone or damaged: run it again.")
         whole: dict[str, Any] = {
-            "duets": duets, "manifest": outcome["manifest"], "readouts": readouts,
-            "timings": outcome["timings"], "notes": tuple(outcome["notes"]),
-        }  # fmt: skip
+            "duets": duets,
+            "manifest": outcome["manifest"],
+            "readouts": readouts,
+            "timings": outcome["timings"],
+            "notes": tuple(outcome["notes"]),
+        }
         if kept := outcome.get("prediction"):
-            curves: dict[str, Any] = {
-                name: tuple(value) for name, value in kept.items() if name != "past_frames"
-            }
+            curves: dict[str, Any] = {name: tuple(value) for name, value in kept.items() if name != "past_frames"}
             return PredictResult(**whole, truth=truth, past_frames=kept["past_frames"], **curves)
         return Result(**whole)

@@ -105,7 +105,7 @@ class LabClock:
 
     def __init__(
         self, database: Database, *, wall: Callable[[], float] = time.time, uptime: Callable[[], float] = _uptime
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.database, self.wall, self.uptime = database, wall, uptime
         self._last: tuple[float, float] | None = None
         self.look()
@@ -136,8 +136,9 @@ class LabClock:
                 log.warning(
                     "The clock has jumped by %+.1f days: nothing is removed because of its age until the clock was "
                     "steady for %.0f hours, or `python -m webdemo clock` says that it is right.",
-                    ahead / DAY, STEADY_SECONDS / 3600,
-                )  # fmt: skip
+                    ahead / DAY,
+                    STEADY_SECONDS / 3600,
+                )
                 row.doubted, row.ahead = lab, ahead
             elif lab - row.doubted >= STEADY_SECONDS:
                 log.warning("The clock was steady for a day: old runs are removed again.")
@@ -154,9 +155,11 @@ class LabClock:
             row = session.get_one(Ledger, 1)
             doubted = row.doubted is not None
             return ClockState(
-                clock=row.wall, lab=row.elapsed, jump=row.ahead if doubted else 0.0,
+                clock=row.wall,
+                lab=row.elapsed,
+                jump=row.ahead if doubted else 0.0,
                 steady=row.elapsed - row.doubted if row.doubted is not None else 0.0,
-            )  # fmt: skip
+            )
 
     def confirm(self, *, passed: bool) -> None:
         """Trusts the clock as it is, at all processes.

@@ -60,10 +60,14 @@ class Notebook(History):
             return Found((), 0)
         fit = [Run.owner == owner, Note.removed.is_(None), _ALONE, *_conditions(wanted)]
         query = (
-            select(Run).outerjoin(Note).where(*fit).order_by(Run.created.desc(), Run.id)
+            select(Run)
+            .outerjoin(Note)
+            .where(*fit)
+            .order_by(Run.created.desc(), Run.id)
             .options(selectinload(Run.links), selectinload(Run.note))
-            .offset(max(wanted.offset, 0)).limit(min(max(wanted.limit, 1), 500))
-        )  # fmt: skip
+            .offset(max(wanted.offset, 0))
+            .limit(min(max(wanted.limit, 1), 500))
+        )
         mine = (Run.owner == owner, Note.removed.is_(None))
         with self.database.session() as session:
             total = session.scalar(select(func.count()).select_from(Run).outerjoin(Note).where(*fit)) or 0
@@ -71,9 +75,7 @@ class Notebook(History):
             tags = session.scalars(select(Note.tags).join(Run).where(*mine, Note.tags != "").distinct())
             asked = session.scalars(select(Run.request).outerjoin(Note).where(*mine).distinct())
             models = {str(fields_of(request).get("model", "")) for request in asked} - {""}
-            return Found(
-                entries, total, sorted({tag for line in tags for tag in line.split()}), sorted(models)
-            )
+            return Found(entries, total, sorted({tag for line in tags for tag in line.split()}), sorted(models))
 
     @sentences()
     def entry(self, run: str, owner: str) -> Entry:
@@ -98,9 +100,11 @@ class Notebook(History):
             with suppress(InputError):  # it was removed meanwhile
                 beside.append(super().open(str(other), whose))
         found = Kept(
-            controls=kept.get("controls", {}), people=tuple(people), compared=tuple(kept.get("compared", ())),
+            controls=kept.get("controls", {}),
+            people=tuple(people),
+            compared=tuple(kept.get("compared", ())),
             original=kept_original(kept.get("file"), self.folder / opened.entry.id) if mine else None,
-        )  # fmt: skip
+        )
         return replace(opened, kept=found, beside=tuple(beside))
 
     # ---- writing ---------------------------------------------------------------------------------
@@ -145,9 +149,7 @@ class Notebook(History):
             locked(session)
             mine = self._own(session, run, owner)
             weight = weight_of(mine, self.folder / run)
-            gone = self.storage.make_room(
-                session, owner, mine.address, weight - mine.size, spare=[run, *beside]
-            )
+            gone = self.storage.make_room(session, owner, mine.address, weight - mine.size, spare=[run, *beside])
             mine.size = weight
             _note(session, run).kept = json.dumps(record)
             for other in beside:
@@ -166,17 +168,23 @@ class Notebook(History):
 
     @sentences()
     def describe(
-        self, run: str, owner: str, *, title: str | None = None, tags: str | None = None,
-        note: str | None = None, frame: int | None = None,
-    ) -> None:  # fmt: skip
+        self,
+        run: str,
+        owner: str,
+        *,
+        title: str | None = None,
+        tags: str | None = None,
+        note: str | None = None,
+        frame: int | None = None,
+    ) -> None:
         """Names a run, tags it, or writes a note about one of its frames; what is None stays."""
         for name, value, most in (
-            ("name", title, LONGEST_TITLE), ("note", note, LONGEST_NOTE), ("tags", tags, LONGEST_TAGS)
-        ):  # fmt: skip
+            ("name", title, LONGEST_TITLE),
+            ("note", note, LONGEST_NOTE),
+            ("tags", tags, LONGEST_TAGS),
+        ):
             if value is not None and len(value) > most:
-                raise InputError(
-                    f"The {name} has {len(value):,} characters: shorten it to {most:,} or fewer."
-                )
+                raise InputError(f"The {name} has {len(value):,} characters: shorten it to {most:,} or fewer.")
         with self.database.session.begin() as session:
             self._own(session, run, owner)
             row = _note(session, run)
@@ -209,16 +217,12 @@ class Notebook(History):
         super().favour(run, owner, favourite=favourite)
         with self.database.session.begin() as session:
             parts = select(Note.run_id).where(Note.part_of == run)
-            session.execute(
-                update(Run).where(Run.id.in_(parts), Run.owner == owner).values(favourite=favourite)
-            )
+            session.execute(update(Run).where(Run.id.in_(parts), Run.owner == owner).values(favourite=favourite))
 
     @sentences()
     def restore(self, runs: Sequence[str], owner: str) -> int:
         """Brings removed runs back that are not deleted yet; returns how many."""
-        wanted = (
-            select(Note).join(Run).where(Run.owner == owner, Note.run_id.in_(list(runs)), Run.owner != "")
-        )
+        wanted = select(Note).join(Run).where(Run.owner == owner, Note.run_id.in_(list(runs)), Run.owner != "")
         with self.database.session.begin() as session:
             found = [note for note in session.scalars(wanted) if note.removed is not None]
             for note in found:
@@ -246,10 +250,12 @@ class Notebook(History):
     def export(self, owner: str, runs: Sequence[str], file: Path) -> int:
         """Writes the motions of finished runs, or of all for none given, into one .zip; returns how many runs."""
         query = (
-            select(Run).outerjoin(Note).options(selectinload(Run.note), selectinload(Run.links))
+            select(Run)
+            .outerjoin(Note)
+            .options(selectinload(Run.note), selectinload(Run.links))
             .where(Run.owner == owner, Run.owner != "", Run.state == "done", Note.removed.is_(None))
             .order_by(Run.created)
-        )  # fmt: skip
+        )
         if runs:
             query = query.where(or_(Run.id.in_(list(runs)), Note.part_of.in_(list(runs))))
         with self.database.session() as session:
@@ -288,9 +294,7 @@ class Notebook(History):
                     raise InputError("your room is used up: remove runs of yours first")
                 self._take_in(owner, file, address)
             except InputError as error:
-                raise InputError(
-                    f"{number} of {len(files)} imported, then {file.name[:60]}: {error}"
-                ) from None
+                raise InputError(f"{number} of {len(files)} imported, then {file.name[:60]}: {error}") from None
         audit("import", count=len(files))
         return len(files)
 
@@ -309,10 +313,7 @@ class Notebook(History):
         title = str(asked.get("prompt") or file.stem)[:500]
         run = self.begin(owner, _Asked({**asked, "kind": kind}), title, address=address)
         self.finish(
-            run,
-            Result(
-                duets=(duet,), manifest=manifest or {}, readouts=(compare(None, duet),), timings={}, notes=()
-            ),
+            run, Result(duets=(duet,), manifest=manifest or {}, readouts=(compare(None, duet),), timings={}, notes=())
         )
 
 

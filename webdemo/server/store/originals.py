@@ -34,11 +34,7 @@ def keep_original(original: Original, folder: Path, room: float) -> str:
     name = clean_name(original.name)
     half = folder / f".{ORIGINAL}"
     try:
-        if (
-            not name
-            or original.path.is_symlink()
-            or original.path.stat().st_size > min(room, LARGEST_ORIGINAL)
-        ):
+        if not name or original.path.is_symlink() or original.path.stat().st_size > min(room, LARGEST_ORIGINAL):
             return ""
         shutil.copyfile(original.path, half)
         os.replace(half, folder / ORIGINAL)

@@ -74,9 +74,7 @@ class Publishing:
             found = self.history._own(session, run, owner)
             if found.state != "done":
                 raise InputError(f"A run without a result cannot be published: this one is {found.state}.")
-            page = Published(
-                key=secrets.token_hex(16), owner=owner, run_id=run, created=now, until=now + lasts * DAY
-            )
+            page = Published(key=secrets.token_hex(16), owner=owner, run_id=run, created=now, until=now + lasts * DAY)
             session.add(page)
             title = entry_of(found).title
         audit("page-published", page=fingerprint(page.key), run=run, days=lasts)
@@ -109,10 +107,13 @@ class Publishing:
 
     def _all(self, *conditions: Any) -> list[tuple[str, PublicPage]]:
         query = (
-            select(Published).join(Run).outerjoin(Note).options(_WHOLE)
+            select(Published)
+            .join(Run)
+            .outerjoin(Note)
+            .options(_WHOLE)
             .where(Published.until > time.time(), Note.removed.is_(None), *conditions)
             .order_by(Published.created.desc(), Published.key)
-        )  # fmt: skip
+        )
         with self.database.session() as session:
             return [(row.owner, _page(row, entry_of(row.run).title)) for row in session.scalars(query)]
 
@@ -143,9 +144,7 @@ class Publishing:
         """A page's result; raises InputError as :meth:`shown`."""
         with sentences():
             page = self._found(key)
-        return History.open(
-            self.history, page.run_id, page.owner
-        )  # the result alone, not what it was made from
+        return History.open(self.history, page.run_id, page.owner)  # the result alone, not what it was made from
 
     def _found(self, key: str) -> Published:
         """A page that has not ended, with its run."""

@@ -84,9 +84,7 @@ class Scratch:
                 "smaller file, remove runs of the history, or wait until the older ones are gone."
             )
 
-    def clean(
-        self, keep: Collection[str] = (), allowed: Callable[[str], float] = lambda person: math.inf
-    ) -> int:
+    def clean(self, keep: Collection[str] = (), allowed: Callable[[str], float] = lambda person: math.inf) -> int:
         """Removes files that are too old, then the oldest of each person who has too many; returns their number.
 
         Args:
@@ -102,9 +100,7 @@ class Scratch:
         for folder in list(self.uploads.iterdir()):
             if (missing := self.used(folder.name) - allowed(folder.name)) > 0:
                 gone += self._remove_oldest(folder, missing, keep)[0]
-        self._addresses = {
-            name: home for name, home in self._addresses.items() if (self.uploads / name).exists()
-        }
+        self._addresses = {name: home for name, home in self._addresses.items() if (self.uploads / name).exists()}
         self._drop_empty_folders(now)
         return gone
 

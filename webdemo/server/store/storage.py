@@ -48,10 +48,16 @@ class Storage:
     """
 
     def __init__(
-        self, database: Database, motions: Path, *, person_bytes: float = math.inf, total_bytes: float = 2e9,
-        address_bytes: float = math.inf, scratch: Scratch | None = None,
+        self,
+        database: Database,
+        motions: Path,
+        *,
+        person_bytes: float = math.inf,
+        total_bytes: float = 2e9,
+        address_bytes: float = math.inf,
+        scratch: Scratch | None = None,
         bytes_of: Callable[[str], float | None] = lambda owner: None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.bytes_of = bytes_of
         self.database, self.motions, self.scratch = database, motions, scratch
         self.person_bytes, self.total_bytes, self.address_bytes = person_bytes, total_bytes, address_bytes
@@ -72,18 +78,18 @@ class Storage:
         """The room that a person uses."""
         with self.database.session() as session:
             runs = session.execute(
-                select(Run.favourite, func.sum(Run.size))
-                .where(Run.owner == who.owner)
-                .group_by(Run.favourite)
+                select(Run.favourite, func.sum(Run.size)).where(Run.owner == who.owner).group_by(Run.favourite)
             )
             sizes = {favourite: size or 0 for favourite, size in runs} if who.owner else {}
             studies = _sum(session, Study, Study.owner == who.owner) if who.owner else 0
         return Usage(
-            runs=sizes.get(False, 0), favourites=sizes.get(True, 0), studies=studies,
+            runs=sizes.get(False, 0),
+            favourites=sizes.get(True, 0),
+            studies=studies,
             temporary=self.scratch.used(digest(who.person)) if self.scratch else 0,
             allowed=room if math.isfinite(room := self.room(who.owner)) else self.total_bytes,
             kept=min(self.kept_bytes(who.owner), self.total_bytes),
-        )  # fmt: skip
+        )
 
     def spare(self, owner: str, share: float) -> float:
         """Bytes that are left of a share of a person's room for runs and studies."""
@@ -101,25 +107,29 @@ class Storage:
         """The room left under each limit that holds for a person, and the sentence where it is too little."""
         own = _sum(session, Run, Run.owner == owner) + _sum(session, Study, Study.owner == owner)
         kept = self.kept_bytes(owner)
-        left = [(
-            kept - own,
-            f"Your room of {kept / MB:,.0f} MB for runs and studies is used up by favourites and studies, "
-            "which are not removed on their own: stop keeping one, or delete a study.",
-        )]  # fmt: skip
-        total = _sum(session, Run) + _sum(session, Study)
-        left.append((
-            self.total_bytes - total,
-            "The room for everybody's runs on this server is used up, and nothing of others is removed for yours: "
-            "remove runs of your own, or tell the person who runs the server.",
-        ))  # fmt: skip
-        if address:
-            theirs = _sum(session, Run, Run.address == address) + _sum(
-                session, Study, Study.address == address
+        left = [
+            (
+                kept - own,
+                f"Your room of {kept / MB:,.0f} MB for runs and studies is used up by favourites and studies, "
+                "which are not removed on their own: stop keeping one, or delete a study.",
             )
-            left.append((
-                self.address_bytes - theirs,
-                "The room for runs of people from your network is used up: remove runs of your own.",
-            ))  # fmt: skip
+        ]
+        total = _sum(session, Run) + _sum(session, Study)
+        left.append(
+            (
+                self.total_bytes - total,
+                "The room for everybody's runs on this server is used up, and nothing of others is removed for yours: "
+                "remove runs of your own, or tell the person who runs the server.",
+            )
+        )
+        if address:
+            theirs = _sum(session, Run, Run.address == address) + _sum(session, Study, Study.address == address)
+            left.append(
+                (
+                    self.address_bytes - theirs,
+                    "The room for runs of people from your network is used up: remove runs of your own.",
+                )
+            )
         return left
 
     # ---- making room -----------------------------------------------------------------------------
@@ -130,9 +140,15 @@ class Storage:
         self._needed(session, owner, address, size, sum(weight for _, weight, _ in rows))
 
     def make_room(
-        self, session: Session, owner: str, address: str, size: float, *, spare: Collection[str] = (),
+        self,
+        session: Session,
+        owner: str,
+        address: str,
+        size: float,
+        *,
+        spare: Collection[str] = (),
         only_removed: bool = False,
-    ) -> list[str]:  # fmt: skip
+    ) -> list[str]:
         """Deletes a person's own runs until so much more can be stored: removed ones first, then the oldest.
 
         Favourites, studies and runs that go on stay. Where more was stored before than a limit allows, such as after
@@ -191,10 +207,7 @@ class Storage:
         with sentences(), self.database.session() as session:
             kept = _sum(session, Run, Run.owner == who.owner) + _sum(session, Study, Study.owner == who.owner)
         self.scratch.admit(
-            digest(who.person),
-            who.address,
-            size,
-            self._aside(kept if who.owner else 0.0, self.room(who.owner)),
+            digest(who.person), who.address, size, self._aside(kept if who.owner else 0.0, self.room(who.owner))
         )
 
     def tidy(self, keep: Collection[str] = ()) -> None:
@@ -228,9 +241,11 @@ def _sum(session: Session, table: type[Run] | type[Study], *conditions: Any) -> 
 def _evictable(session: Session, owner: str, spare: Collection[str]) -> list[tuple[str, int, bool]]:
     """A person's runs that may make way, with their bytes and whether their owner has removed them; first those."""
     rows = session.execute(
-        select(Run.id, Run.size, Run.favourite, Note.removed).outerjoin(Note)
-        .where(Run.owner == owner, Run.owner != "", Run.state != "running").order_by(Run.stored, Run.id)
-    )  # fmt: skip
+        select(Run.id, Run.size, Run.favourite, Note.removed)
+        .outerjoin(Note)
+        .where(Run.owner == owner, Run.owner != "", Run.state != "running")
+        .order_by(Run.stored, Run.id)
+    )
     found = [
         (run, size, removed is not None)
         for run, size, favourite, removed in rows

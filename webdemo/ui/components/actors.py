@@ -166,11 +166,7 @@ def given_again(source: Source, original: Original | None, folder: Path) -> tupl
         with suppress(OSError):
             path = Path(shutil.copyfile(original.path, folder / original.name))
             return replace(source, path=path, animations=labels_of_file(path)), str(path), ""
-    return (
-        source,
-        kept_file(source, folder),
-        NOT_KEPT.format(source.name[:80]) if clean_name(source.name) else "",
-    )
+    return (source, kept_file(source, folder), NOT_KEPT.format(source.name[:80]) if clean_name(source.name) else "")
 
 
 def offered_animations(source: Source | None) -> Any:
@@ -183,12 +179,7 @@ def rig_of(source: Source | None) -> Path | None:
 
     Where somebody said which axis is up or what the unit is, the file's own world is another, and so are examples.
     """
-    if (
-        source is None
-        or source.path is None
-        or source.path.suffix.lower() not in RIGS
-        or len(source.people) != 1
-    ):
+    if source is None or source.path is None or source.path.suffix.lower() not in RIGS or len(source.people) != 1:
         return None
     return source.path if source.read_with[:4] == Source.read_with[:4] else None
 

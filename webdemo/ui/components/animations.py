@@ -22,13 +22,7 @@ MOST_OFFERED = 200
 def animation_field(elem_id: str) -> gr.Dropdown:
     """The list, hidden until there is something to choose."""
     return gr.Dropdown(
-        [],
-        value=None,
-        label=say("actor.animation"),
-        elem_id=elem_id,
-        visible=False,
-        filterable=False,
-        min_width=0,
+        [], value=None, label=say("actor.animation"), elem_id=elem_id, visible=False, filterable=False, min_width=0
     )
 
 
@@ -37,8 +31,7 @@ def animation_labels(animations: Animations | None) -> tuple[str, ...]:
     if animations is None or not animations.note:
         return ()
     return tuple(
-        f"{number} · {name}" if name else str(number)
-        for number, name in enumerate(animations.names[:MOST_OFFERED], 1)
+        f"{number} · {name}" if name else str(number) for number, name in enumerate(animations.names[:MOST_OFFERED], 1)
     )
 
 

@@ -159,9 +159,13 @@ class Shelf:
     """
 
     def __init__(
-        self, root: Path | None = None, *, owner: Callable[[], str] | None = None,
-        admit: Callable[[float], None] | None = None, max_age: float = MAX_AGE,
-    ) -> None:  # fmt: skip
+        self,
+        root: Path | None = None,
+        *,
+        owner: Callable[[], str] | None = None,
+        admit: Callable[[float], None] | None = None,
+        max_age: float = MAX_AGE,
+    ) -> None:
         self.root = root or Path(tempfile.gettempdir()) / f"pas-de-deux-{os.getuid()}"
         self.owner, self.admit, self.max_age = owner, admit, max_age
 
@@ -294,9 +298,7 @@ def without_place(error: Exception, folder: Path) -> Exception:
     return error
 
 
-def _write_kind(
-    kind: Kind, result: Result, folder: Path, name: str, prompt: str, worn: Worn | None
-) -> list[Path]:
+def _write_kind(kind: Kind, result: Result, folder: Path, name: str, prompt: str, worn: Worn | None) -> list[Path]:
     if kind.key == "json":
         path = folder / f"{name}.json"
         path.write_text(json.dumps(result.manifest, indent=2, ensure_ascii=False), encoding="utf-8")
@@ -378,7 +380,5 @@ def file_name(prompt: str, manifest: Mapping[str, object]) -> str:
     request = manifest.get("request")
     seed = request.get("seed") if isinstance(request, Mapping) else None
     described = {key: manifest.get(key) for key in ("model", "weights", "request")}
-    digest = hashlib.blake2b(
-        json.dumps(described, sort_keys=True, default=str).encode(), digest_size=2
-    ).hexdigest()
+    digest = hashlib.blake2b(json.dumps(described, sort_keys=True, default=str).encode(), digest_size=2).hexdigest()
     return (name or "motion") + (f"-seed{seed}" if isinstance(seed, int) else "") + f"-{digest}"

@@ -59,14 +59,9 @@ def make_film(record: Record | None, shown: str, folder: Path) -> Path:
         raise InputError("There is no motion to film yet: make one first.")
     state = read_player(shown)
     results = record.compared or {"": record.result}
-    panes = [
-        _pane(result, state.get("sample"), name if record.compared else "")
-        for name, result in results.items()
-    ]
+    panes = [_pane(result, state.get("sample"), name if record.compared else "") for name, result in results.items()]
     if max(pane.motion.seconds for pane in panes) > LONGEST:
-        raise InputError(
-            f"Films on the page last {LONGEST:g} s at most: use `python -m webdemo render` for more."
-        )
+        raise InputError(f"Films on the page last {LONGEST:g} s at most: use `python -m webdemo render` for more.")
     path = folder / f"{file_name(record.prompt, record.result.manifest)}{suffix()}"
     style = Style(
         look=_one_of(state, "look", LOOKS, "bodies"),
@@ -114,9 +109,7 @@ def make_figure(record: Record | None, shown: str, folder: Path) -> tuple[Path, 
     frame = int(number_of(state, "frame", 0, motion.num_frames - 1) or 0)
     worn = record.worn.body if record.worn and state.get("character") is True else None
     try:
-        page = plotly_figure.write_figure(
-            motion, path.with_name(f"{path.name}.html"), title=record.prompt, theme=theme
-        )
+        page = plotly_figure.write_figure(motion, path.with_name(f"{path.name}.html"), title=record.prompt, theme=theme)
         surface = path.with_name(f"{path.name}-frame{frame}.ply")
         return page, mesh.write_mesh(motion, surface, frame=frame, style=Style(theme=theme, body=worn))
     except InputError as error:

@@ -41,14 +41,10 @@ class Gallery(Part):
     style = scoped(GALLERY_FOLDER / "gallery.css")
     sends = ("object", "the scene that was pressed; or null")
 
-    def fill(
-        self, prompt: gr.Textbox, seconds: gr.Slider, seed: gr.Number, run: gr.Button, **quiet: Any
-    ) -> None:
+    def fill(self, prompt: gr.Textbox, seconds: gr.Slider, seed: gr.Number, run: gr.Button, **quiet: Any) -> None:
         """Puts the scene that is pressed into the controls and presses the button that makes it.
 
         ``quiet`` are the options of the page's own events.
         """
         press = f"() => document.getElementById({run.elem_id!r}).click()"
-        self.input(None, inputs=self, outputs=[prompt, seconds, seed], js=_TAKEN, **quiet).then(
-            None, js=press, **quiet
-        )
+        self.input(None, inputs=self, outputs=[prompt, seconds, seed], js=_TAKEN, **quiet).then(None, js=press, **quiet)

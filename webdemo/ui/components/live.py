@@ -58,9 +58,7 @@ class LiveView:
     @property
     def delay(self) -> str:
         """The delay from the actor's frame to the reactor's, in words."""
-        return (
-            f"delay {1000 * float(np.median(self.delays)):.0f} ms, longest {1000 * max(self.delays):.0f} ms"
-        )
+        return f"delay {1000 * float(np.median(self.delays)):.0f} ms, longest {1000 * max(self.delays):.0f} ms"
 
     def payload(self) -> Payload:
         """The motion that the player shows at first."""

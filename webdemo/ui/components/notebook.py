@@ -21,21 +21,36 @@ STEP = 60
 """Runs that are shown at first, and how many more at a time."""
 MOST_SHOWN = 500
 ACTS = (
-    "search", "open", "favour", "link", "revoke", "again", "stop", "compare", "study", "publish", "export", "remove",
-    "restore", "describe",
-)  # fmt: skip
+    "search",
+    "open",
+    "favour",
+    "link",
+    "revoke",
+    "again",
+    "stop",
+    "compare",
+    "study",
+    "publish",
+    "export",
+    "remove",
+    "restore",
+    "describe",
+)
 _SETTINGS = (
-    ("seconds", "Seconds"), ("seed", "Seed"), ("samples", "Samples"), ("guidance", "Guidance"), ("steps", "Steps"),
-    ("damping", "Damping"), ("sampler", "Sampler"), ("marker", "Past ends at"), ("cleanup", "Clean-up"),
-    ("tries", "Tries"), ("planned", "Plan from the words"),
-)  # fmt: skip
+    ("seconds", "Seconds"),
+    ("seed", "Seed"),
+    ("samples", "Samples"),
+    ("guidance", "Guidance"),
+    ("steps", "Steps"),
+    ("damping", "Damping"),
+    ("sampler", "Sampler"),
+    ("marker", "Past ends at"),
+    ("cleanup", "Clean-up"),
+    ("tries", "Tries"),
+    ("planned", "Plan from the words"),
+)
 _ROLES = {"a": "acts first", "b": "reacts"}
-_MARKS = {
-    "running": "⏳ running",
-    "failed": "✕ failed",
-    "cancelled": "✕ cancelled",
-    "interrupted": "✕ interrupted",
-}
+_MARKS = {"running": "⏳ running", "failed": "✕ failed", "cancelled": "✕ cancelled", "interrupted": "✕ interrupted"}
 
 
 class SentSearch(Sent):
@@ -102,12 +117,20 @@ def shown(found: Found, *, empty: str, removed: int = 0, search: Search | None =
 
 def _card(entry: Entry) -> dict[str, Any]:
     return {
-        "id": entry.id, "kind": entry.kind, "title": entry.title, "state": entry.state,
+        "id": entry.id,
+        "kind": entry.kind,
+        "title": entry.title,
+        "state": entry.state,
         "message": entry.message or "",
-        "favourite": entry.favourite, "links": entry.links, "tags": list(entry.tags), "note": entry.note,
-        "frame": entry.frame, "thumbnail": entry.thumbnail, "facts": facts(entry),
+        "favourite": entry.favourite,
+        "links": entry.links,
+        "tags": list(entry.tags),
+        "note": entry.note,
+        "frame": entry.frame,
+        "thumbnail": entry.thumbnail,
+        "facts": facts(entry),
         "settings": [list(pair) for pair in settings(entry)],
-    }  # fmt: skip
+    }
 
 
 def facts(entry: Entry) -> str:
@@ -187,9 +210,7 @@ class Action:
 
 
 def _search(fields: Mapping[str, Any], limit: Any) -> Search:
-    words: dict[str, Any] = {
-        name: str(fields.get(name) or "")[:200] for name in ("words", "kind", "model", "tag")
-    }
+    words: dict[str, Any] = {name: str(fields.get(name) or "")[:200] for name in ("words", "kind", "model", "tag")}
     for name in ("since", "until"):
         value = fields.get(name)
         if isinstance(value, (int, float)) and not isinstance(value, bool):

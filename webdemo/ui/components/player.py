@@ -29,9 +29,7 @@ EMPTY_TEXT = "player.empty"
 # Only these become reachable over the network: the player's files, its bodies, plotly.js and the texts.
 gr.set_static_paths([BODIES_FOLDER, PLOTLY_JS, TEXTS_JS, TEXTS_FOLDER])
 
-_MOUNT = (
-    "import(file(%s)).then((player) => player.mount(element, props, watch, { plotly: file(%s), empty: %s }));"
-)
+_MOUNT = "import(file(%s)).then((player) => player.mount(element, props, watch, { plotly: file(%s), empty: %s }));"
 
 
 class MotionPlayer(Part):
@@ -52,12 +50,7 @@ class MotionPlayer(Part):
     sends = ("object", "motion for the player, or null")
 
     def __init__(
-        self,
-        value: Payload | None = None,
-        *,
-        empty_text: str = EMPTY_TEXT,
-        elem_id: str | None = None,
-        **kwargs: Any,
+        self, value: Payload | None = None, *, empty_text: str = EMPTY_TEXT, elem_id: str | None = None, **kwargs: Any
     ) -> None:
         # all in the script: a tab that is opened late knows its component's own properties late
         script = on_load(_MOUNT, PLAYER_FOLDER / "main.js", PLOTLY_JS, empty_text)

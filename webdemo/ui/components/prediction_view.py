@@ -35,10 +35,7 @@ def prediction_payload(*results: PredictResult, title: str = "") -> Payload:
     motion = without_name(results[0].duets[0])
     if len(results) == 1 and len(results[0].duets) > 1:
         made = [_sample(results[0], place) for place in range(len(results[0].duets))]
-        return {
-            **build_payload(made, skeleton=motion.skeleton, title=title),
-            "futures": results[0].past_frames,
-        }
+        return {**build_payload(made, skeleton=motion.skeleton, title=title), "futures": results[0].past_frames}
     samples = [_sample(result) for result in results]
     first = samples[0]
     if len(samples) > 1:
@@ -59,9 +56,12 @@ def _sample(result: PredictResult, place: int = 0) -> dict[str, Any]:
         Curve("speed", "Speed", "m/s", _speed(motion)),
     ]
     return sample_payload(
-        motion, label=str(place + 1), curves=curves if result.error else curves[1:], ghost=ghost_of(motion, result),
+        motion,
+        label=str(place + 1),
+        curves=curves if result.error else curves[1:],
+        ghost=ghost_of(motion, result),
         past_until=result.past_frames,
-    )  # fmt: skip
+    )
 
 
 def method_name(result: PredictResult) -> str:
@@ -118,16 +118,20 @@ def curves_figure(*results: PredictResult) -> go.Figure:
     # One above the other: side by side they are too narrow on a phone.
     figure = make_subplots(rows=len(titles), cols=1, subplot_titles=titles, vertical_spacing=0.22)
 
-    def line(
-        row: int, values: Array, name: str, colour: str, dash: str | None = None, *, listed: bool = True
-    ) -> None:
+    def line(row: int, values: Array, name: str, colour: str, dash: str | None = None, *, listed: bool = True) -> None:
         figure.add_trace(
             go.Scatter(
-                x=times[: len(values)], y=values, name=name, mode="lines", legendgroup=name,
-                showlegend=listed, line={"color": colour, "width": 2, "dash": dash},
+                x=times[: len(values)],
+                y=values,
+                name=name,
+                mode="lines",
+                legendgroup=name,
+                showlegend=listed,
+                line={"color": colour, "width": 2, "dash": dash},
             ),
-            row=row, col=1,
-        )  # fmt: skip
+            row=row,
+            col=1,
+        )
 
     metres = fps / 1000
     for result, colour in zip(results, _METHOD_COLOURS, strict=False):
@@ -143,10 +147,13 @@ def curves_figure(*results: PredictResult) -> go.Figure:
     figure.update_xaxes(title_text="s after the marker", rangemode="tozero")
     figure.update_yaxes(rangemode="tozero")
     figure.update_layout(
-        height=70 + 190 * len(titles), margin={"l": 48, "r": 12, "t": 36, "b": 44}, template="plotly_white",
-        legend={"orientation": "h", "y": -0.16, "yanchor": "top"}, paper_bgcolor="rgba(0,0,0,0)",
+        height=70 + 190 * len(titles),
+        margin={"l": 48, "r": 12, "t": 36, "b": 44},
+        template="plotly_white",
+        legend={"orientation": "h", "y": -0.16, "yanchor": "top"},
+        paper_bgcolor="rgba(0,0,0,0)",
         plot_bgcolor="rgba(0,0,0,0)",
-    )  # fmt: skip
+    )
     return figure
 
 

@@ -94,9 +94,14 @@ class Reading(Part):
         """Reads what is typed into a prompt; ``quiet`` are the options of the page's own events."""
         prompt.change(None, inputs=prompt, outputs=self, js=_TYPED, **quiet)
         self.input(
-            reread, inputs=self, outputs=self, trigger_mode="always_last",
-            concurrency_limit=READERS, concurrency_id=READING_EVENTS, **quiet,
-        )  # fmt: skip
+            reread,
+            inputs=self,
+            outputs=self,
+            trigger_mode="always_last",
+            concurrency_limit=READERS,
+            concurrency_id=READING_EVENTS,
+            **quiet,
+        )
 
 
 def reread(sent: Any) -> dict[str, Any]:
@@ -206,9 +211,7 @@ def checked(text: str, plan: Plan, manifest: Mapping[str, Any]) -> dict[str, Any
         {
             "id": act.id,
             "act": act.act,
-            "done": None
-            if row.get("done") and (row.get("unchecked") or row.get("wrote"))
-            else row.get("done"),
+            "done": None if row.get("done") and (row.get("unchecked") or row.get("wrote")) else row.get("done"),
             "measure": "; ".join(row.get("unchecked") or ()) or row.get("measure") or "",
         }
         for act, row in zip(plan.acts, manifest.get("checked") or (), strict=False)

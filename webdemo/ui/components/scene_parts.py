@@ -30,14 +30,29 @@ def place_of(shown: str) -> dict[str, int]:
 
 
 def part_fields(
-    part: str, story: Any, words: str, guidance: float, steps: float, damping: float, record: Record | None,
-    earlier: list[Record], place: str,
-) -> dict[str, Any]:  # fmt: skip
+    part: str,
+    story: Any,
+    words: str,
+    guidance: float,
+    steps: float,
+    damping: float,
+    record: Record | None,
+    earlier: list[Record],
+    place: str,
+) -> dict[str, Any]:
     """The fields of a tab for a part, "span" or "futures", of the motion that the player shows."""
     return {
-        "part": part, "story": story, "words": words, "guidance": guidance, "steps": steps, "damping": damping,
-        "record": record, "earlier": earlier, "seed": 0, **place_of(place),
-    }  # fmt: skip
+        "part": part,
+        "story": story,
+        "words": words,
+        "guidance": guidance,
+        "steps": steps,
+        "damping": damping,
+        "record": record,
+        "earlier": earlier,
+        "seed": 0,
+        **place_of(place),
+    }
 
 
 def part_request(fields: Mapping[str, Any]) -> SceneRequest:
@@ -55,9 +70,7 @@ def part_request(fields: Mapping[str, Any]) -> SceneRequest:
         beats = split_sentence(words, in_time()) or (Beat(seconds=FUTURE_SECONDS),)
         length = start + sum(beat.length for beat in beats)
         paths, poses = wishes_in(story, start, length, length)
-        return SceneRequest(
-            beats=beats, paths=paths, poses=poses, motion=duet, start=start, samples=FUTURES, **plain
-        )
+        return SceneRequest(beats=beats, paths=paths, poses=poses, motion=duet, start=start, samples=FUTURES, **plain)
     span = span_of(fields["story"])
     if span is None:
         raise InputError("No span is selected: drag on the ruler over the beats, or type its seconds.")
@@ -82,9 +95,11 @@ def only_sample(result: Result, sample: int) -> Result:
     """A result with one of its samples alone."""
     sample = min(max(sample, 0), len(result.duets) - 1)
     return replace(
-        result, duets=(result.duets[sample],), readouts=result.readouts[sample : sample + 1],
+        result,
+        duets=(result.duets[sample],),
+        readouts=result.readouts[sample : sample + 1],
         manifest={**result.manifest, "sample": sample},
-    )  # fmt: skip
+    )
 
 
 def went_on(story: Any, wanted: SceneRequest) -> dict[str, Any]:

@@ -27,12 +27,35 @@ _ONE_OF_TWO = re.compile(
     r"\b(one|first|second|the other|another|someone|somebody|person|man|woman|boy|girl|he|she|him|her)\b"
 )
 _MUTUAL_CLASSES = frozenset(
-    ("arm around the shoulders", "bow to each other", "bump elbows", "bump fists", "cheer together",
-     "circle each other", "dance mirrored", "dance together", "fight with swords", "high five", "high ten",
-     "hold hands", "hug", "low five", "part from each other", "raise a hand together", "run together",
-     "shake hands", "spar", "talk", "walk hand in hand", "walk past each other", "walk side by side",
-     "walk up to each other", "wave goodbye", "wave to each other")
-)  # fmt: skip
+    (
+        "arm around the shoulders",
+        "bow to each other",
+        "bump elbows",
+        "bump fists",
+        "cheer together",
+        "circle each other",
+        "dance mirrored",
+        "dance together",
+        "fight with swords",
+        "high five",
+        "high ten",
+        "hold hands",
+        "hug",
+        "low five",
+        "part from each other",
+        "raise a hand together",
+        "run together",
+        "shake hands",
+        "spar",
+        "talk",
+        "walk hand in hand",
+        "walk past each other",
+        "walk side by side",
+        "walk up to each other",
+        "wave goodbye",
+        "wave to each other",
+    )
+)
 _CURVES = (("pelvis_distance", "Apart", "m"), ("hand_distance", "Hands", "m"))
 
 
@@ -63,9 +86,7 @@ def result_payload(result: Result, *, title: str = "") -> Payload:
     """
     samples = [
         sample_payload(
-            with_shown_roles(duet, result.manifest),
-            label=str(i + 1),
-            **_strip(duet, result.readouts[i : i + 1]),
+            with_shown_roles(duet, result.manifest), label=str(i + 1), **_strip(duet, result.readouts[i : i + 1])
         )
         for i, duet in enumerate(result.duets)
     ]

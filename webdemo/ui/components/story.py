@@ -107,9 +107,7 @@ def path_value(path: FloorPath) -> dict[str, Any]:
 
 def value_of(request: SceneRequest) -> dict[str, Any]:
     """The story of a request."""
-    return story_value(
-        request.beats, request.paths, request.poses, loop=request.loop, planned=request.planned
-    )
+    return story_value(request.beats, request.paths, request.poses, loop=request.loop, planned=request.planned)
 
 
 def story_fields(value: Any) -> dict[str, Any]:
@@ -121,9 +119,7 @@ def story_fields(value: Any) -> dict[str, Any]:
     if not isinstance(value, Mapping):
         return {"beats": (), "paths": (), "poses": (), **ticked(value)}
     try:
-        beats = [
-            entry for entry in list(value.get("beats") or ())[: MOST_BEATS + 1] if isinstance(entry, Mapping)
-        ]
+        beats = [entry for entry in list(value.get("beats") or ())[: MOST_BEATS + 1] if isinstance(entry, Mapping)]
         found = tuple(beat_of(entry) for entry in beats)
         for number, beat in enumerate(found, 1):
             beat.check(number)

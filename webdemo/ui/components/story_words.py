@@ -40,9 +40,7 @@ def settled(story: Any, text: str) -> tuple[Any, str]:
     go_on = in_time()
     found = read_words(text, go_on)
     if "paths" in found:
-        laid = story_value(
-            found["beats"], found["paths"], found["poses"], loop=found["loop"], planned=found["planned"]
-        )
+        laid = story_value(found["beats"], found["paths"], found["poses"], loop=found["loop"], planned=found["planned"])
         return laid, story_text(found["beats"])
     return reworded(story, found["beats"], go_on), text
 
@@ -77,9 +75,7 @@ def _kept(words: Sequence[Sequence[str]], new: Sequence[str]) -> int:
     return len(words)
 
 
-def _along(
-    poses: tuple[Pose, ...], old: Sequence[Beat], new: Sequence[Beat], head: int, tail: int
-) -> tuple[Pose, ...]:
+def _along(poses: tuple[Pose, ...], old: Sequence[Beat], new: Sequence[Beat], head: int, tail: int) -> tuple[Pose, ...]:
     """Poses in the first ``head`` beats, and those in or behind the last ``tail``, which move with them."""
     starts = np.cumsum([0.0, *(beat.length for beat in old)])
     by = sum(beat.length for beat in new) - starts[-1]
@@ -125,12 +121,7 @@ def edited(story: Any, seed: float | None) -> Updates:
         text = write_story(SceneRequest(**fields, seed=int(seed or 0)))
     except Exception as error:
         line = error_line(error) if isinstance(story, Mapping) and story.get("beats") else ""
-        return (
-            gr.update(lengths=lengths),
-            gr.skip(),
-            status(line, tone="warning") if line else status(),
-            words,
-        )
+        return (gr.update(lengths=lengths), gr.skip(), status(line, tone="warning") if line else status(), words)
     return gr.update(lengths=lengths), text, status(), words
 
 
@@ -161,8 +152,6 @@ def use_text(text: str | None) -> Updates:
         kept = (gr.skip(),) * len(SETTINGS)
         return gr.skip(), gr.skip(), status(error_line(error), tone="error"), *kept
     line = status(f"{len(request.beats)} beats, {request.seconds:g} s: press Generate.")
-    shown = story_value(
-        fields["beats"], request.paths, request.poses, loop=request.loop, planned=request.planned
-    )
+    shown = story_value(fields["beats"], request.paths, request.poses, loop=request.loop, planned=request.planned)
     named = (getattr(request, name) if name in fields else gr.skip() for name in SETTINGS)
     return shown, story_text(fields["beats"]), line, *named

@@ -157,9 +157,7 @@ class Named(Grid):
 
 def grid_payload(grid: Grid, results: Sequence[Result], *, title: str = "") -> Payload:
     """The player's value for the first sample of every cell's result, in the grid's order."""
-    cells = [
-        {**_first_sample(result), "caption": name} for result, name in zip(results, grid.names, strict=True)
-    ]
+    cells = [{**_first_sample(result), "caption": name} for result, name in zip(results, grid.names, strict=True)]
     whole_grid = grid_sample(cells, grid.columns, grid.rows)
     return build_payload([whole_grid], skeleton=results[0].duets[0].skeleton, title=title)
 
@@ -187,9 +185,7 @@ def grid_table(results: Mapping[str, Result]) -> str:
     )
     rows = ""
     for name, cell in values.items():
-        marked = "".join(
-            _cell(m.key, m.digits, cell, list(values.values()), bool(m.better)) for m in measures
-        )
+        marked = "".join(_cell(m.key, m.digits, cell, list(values.values()), bool(m.better)) for m in measures)
         rows += f'<tr><th scope="row">{text(name)}</th>{marked}</tr>'
     return (
         '<div class="pd-readouts"><div class="pd-table pd-grid-table"><table>'

@@ -13,13 +13,7 @@ from motion.formats.choices import AXES, ORDERS, UNITS
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.methods import methods
 from webdemo.ui.again import actor_source
-from webdemo.ui.components.actors import (
-    AUTO,
-    ReadWith,
-    Source,
-    given_again,
-    offered_animations,
-)
+from webdemo.ui.components.actors import AUTO, ReadWith, Source, given_again, offered_animations
 from webdemo.ui.components.animations import kept_animation
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
@@ -52,21 +46,21 @@ class ActorTab(SourceTab):
         with gr.Accordion(say("actor.read"), open=False, elem_id="react-import") as self.reading:
             with gr.Row(elem_classes="pd-pair"):
                 self.up = gr.Dropdown(
-                    [(_DETECTED, AUTO), *AXES], value=AUTO, label=say("actor.up"), elem_id="react-up",
-                    min_width=0,
-                )  # fmt: skip
+                    [(_DETECTED, AUTO), *AXES], value=AUTO, label=say("actor.up"), elem_id="react-up", min_width=0
+                )
                 self.unit = gr.Dropdown(
-                    [(_DETECTED, AUTO), *UNITS], value=AUTO, label=say("actor.unit"), elem_id="react-unit",
-                    min_width=0,
-                )  # fmt: skip
+                    [(_DETECTED, AUTO), *UNITS], value=AUTO, label=say("actor.unit"), elem_id="react-unit", min_width=0
+                )
                 self.fps = gr.Number(
-                    value=None, label=say("actor.fps"), placeholder=_DETECTED, elem_id="react-fps",
-                    min_width=0,
-                )  # fmt: skip
+                    value=None, label=say("actor.fps"), placeholder=_DETECTED, elem_id="react-fps", min_width=0
+                )
                 self.order = gr.Dropdown(
                     [(_DETECTED, AUTO), *((label, name) for name, label in ORDERS.items())],
-                    value=AUTO, label=say("actor.order"), elem_id="react-order", min_width=0,
-                )  # fmt: skip
+                    value=AUTO,
+                    label=say("actor.order"),
+                    elem_id="react-order",
+                    min_width=0,
+                )
             self.found = gr.HTML(elem_id="react-found")
 
     def _opened_actor(self, run: Opened, line: str) -> dict[Any, Any]:
@@ -95,9 +89,7 @@ class ActorTab(SourceTab):
             self.source: source,
             self.given: source.key,
             self.trim: gr.update(visible=True),
-            self.person: gr.update(
-                choices=source.choices, visible=len(source.people) > 1, value=source.chosen
-            ),
+            self.person: gr.update(choices=source.choices, visible=len(source.people) > 1, value=source.chosen),
             self.begin: gr.update(maximum=last, value=begin),
             self.end: gr.update(maximum=last, value=min(end, last)),
         }
@@ -106,40 +98,61 @@ class ActorTab(SourceTab):
 
     def _wire_actor(self) -> None:
         changed = [
-            self.source, self.given, self.line, self.player, self.trim, self.person, self.begin, self.end,
+            self.source,
+            self.given,
+            self.line,
+            self.player,
+            self.trim,
+            self.person,
+            self.begin,
+            self.end,
             self.found,
-        ]  # fmt: skip
+        ]
         takes = {button: partial(self.take_result, person) for person, button in self.take.items()}
         load = self._wire_source(changed, takes)
         known = [self.up, self.unit, self.fps, self.order]
         self.file.upload(lambda: (AUTO, AUTO, None, AUTO), outputs=known, queue=False, **QUIET)
         choices = [*known, self.animation]
         gr.on(
-            [
-                self.up.input, self.unit.input, self.order.input, self.fps.submit, self.fps.blur,
-                self.animation.input,
-            ],
-            self.read_again, inputs=[self.source, *choices], trigger_mode="always_last",
+            [self.up.input, self.unit.input, self.order.input, self.fps.submit, self.fps.blur, self.animation.input],
+            self.read_again,
+            inputs=[self.source, *choices],
+            trigger_mode="always_last",
             **{**load, "outputs": [*changed, *choices]},
-        ).then(None, **self.compare)  # fmt: skip
+        ).then(None, **self.compare)
         self.source.change(
             lambda source: gr.update(visible=source is not None and len(source.people) == 2, value=False),
-            inputs=self.source, outputs=self.keep, queue=False, **QUIET,
-        )  # fmt: skip
+            inputs=self.source,
+            outputs=self.keep,
+            queue=False,
+            **QUIET,
+        )
         self.source.change(
             lambda source: gr.update(open=True) if source is not None and source.asks else gr.skip(),
-            inputs=self.source, outputs=self.reading, queue=False, **QUIET,
-        )  # fmt: skip
+            inputs=self.source,
+            outputs=self.reading,
+            queue=False,
+            **QUIET,
+        )
         trim = [self.source, self.person, self.begin, self.end]
         gr.on(
             [self.person.input, self.begin.release, self.end.release],
-            self.preview, inputs=trim, outputs=[self.line, self.player], trigger_mode="always_last", **QUIET,
-        )  # fmt: skip
+            self.preview,
+            inputs=trim,
+            outputs=[self.line, self.player],
+            trigger_mode="always_last",
+            **QUIET,
+        )
 
     def read_again(
-        self, source: Source | None, up: str, unit: str, fps: float | None, order: str = AUTO,
+        self,
+        source: Source | None,
+        up: str,
+        unit: str,
+        fps: float | None,
+        order: str = AUTO,
         animation: int | None = None,
-    ) -> Iterator[Updates]:  # fmt: skip
+    ) -> Iterator[Updates]:
         """Reads the source's file anew with what the visitor knows of it, or takes that back where it cannot."""
         if source is None or source.path is None:
             return

@@ -80,9 +80,7 @@ def _marks(text: str, result: Result) -> dict[str, Any] | None:
 
 
 _PLANNED_INFO = say("generate.planned_info")
-_EDITED_UNPLANNED = (
-    "The plan was edited, but it is not followed: choose Plan from the words, or press Read again."
-)
+_EDITED_UNPLANNED = "The plan was edited, but it is not followed: choose Plan from the words, or press Read again."
 ARRIVAL = "shake-hands.npz"
 """The example that plays before anything is asked for."""
 
@@ -160,28 +158,35 @@ class GenerateTab(SweepTab):
             self._results(first=arrival_payload(CLIPS / ARRIVAL))
         assert self.tries is not None  # as in every tab of sentences
         self.controls = {
-            "model": self.model, "prompt": self.prompt, "class_name": self.class_name,
-            "seconds": self.seconds, "seed": self.seed, "samples": self.samples, "guidance": self.guidance,
-            "steps": self.steps, "damping": self.damping, "tries": self.tries, "planned": self.planned,
+            "model": self.model,
+            "prompt": self.prompt,
+            "class_name": self.class_name,
+            "seconds": self.seconds,
+            "seed": self.seed,
+            "samples": self.samples,
+            "guidance": self.guidance,
+            "steps": self.steps,
+            "damping": self.damping,
+            "tries": self.tries,
+            "planned": self.planned,
             "acts": self.reading,
-        }  # fmt: skip
+        }
         self.first = self.reading.read_first(self.prompt, self.seconds, self.controls.values())
         self._wire_run([self.go.click, self.prompt.submit], record)
         self._wire_sweeps()
         self.reading.follow(self.prompt, **QUIET)
         for chip, (_, sentence) in zip(self.chips, EXAMPLES, strict=True):
             focus = "document.querySelector('#prompt textarea').focus();"
-            chip.click(
-                None, outputs=self.prompt, js=f"() => {{ {focus} return {json.dumps(sentence)}; }}", **QUIET
-            )
+            chip.click(None, outputs=self.prompt, js=f"() => {{ {focus} return {json.dumps(sentence)}; }}", **QUIET)
         self.gallery.fill(self.prompt, self.seconds, self.seed, self.go, **QUIET)
-        fitted = [
-            self.by_sentence, self.class_name, self.guidance, self.about, self.planned, self.steps, self.pace,
-        ]  # fmt: skip
+        fitted = [self.by_sentence, self.class_name, self.guidance, self.about, self.planned, self.steps, self.pace]
         self.model.input(
-            None, inputs=self.model, outputs=fitted,
-            js=looked_up({name: self.asked_by(name) for _, name in generate_choices()}), **QUIET,
-        ).then(None, **self.tell_advanced)  # fmt: skip
+            None,
+            inputs=self.model,
+            outputs=fitted,
+            js=looked_up({name: self.asked_by(name) for _, name in generate_choices()}),
+            **QUIET,
+        ).then(None, **self.tell_advanced)
         demo.load(self.describe_model, outputs=self.card, queue=False, **QUIET)
 
     def _ask(self) -> None:
@@ -230,17 +235,25 @@ class GenerateTab(SweepTab):
         found, by_class = method(way), takes_class(way)
         guidance = found.default("guidance", GenerateRequest.guidance)
         return (
-            gr.update(visible=not by_class), gr.update(visible=by_class), gr.update(value=guidance),
-            method_line(found.summary), gr.update(visible=not by_class), gr.update(value=found.steps),
+            gr.update(visible=not by_class),
+            gr.update(visible=by_class),
+            gr.update(value=guidance),
+            method_line(found.summary),
+            gr.update(visible=not by_class),
+            gr.update(value=found.steps),
             gr.update(value=pace_of(found.steps)),
-        )  # fmt: skip
+        )
 
     def _settings(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
             self.seconds = gr.Slider(
-                *SECONDS, value=GenerateRequest.seconds, step=0.5, label=say("generate.seconds"),
-                info=say("generate.seconds_info"), elem_id="seconds",
-            )  # fmt: skip
+                *SECONDS,
+                value=GenerateRequest.seconds,
+                step=0.5,
+                label=say("generate.seconds"),
+                info=say("generate.seconds_info"),
+                elem_id="seconds",
+            )
             self._sampling(self._plan, said=True)
             self._sweeps()
 
@@ -259,9 +272,7 @@ class GenerateTab(SweepTab):
     def kinds(self) -> Sequence[Kind]:
         """Also sentences, and methods."""
         known = {method(name).label.lower(): name for _, name in generate_choices()}
-        models = Kind(
-            "model", "Methods", read=partial(named_method, known), split=BETWEEN_SENTENCES, named=label_of
-        )
+        models = Kind("model", "Methods", read=partial(named_method, known), split=BETWEEN_SENTENCES, named=label_of)
         return (*super().kinds(), Kind("prompt", "Sentences", split=BETWEEN_SENTENCES), models)
 
     def presets(self) -> Mapping[str, tuple[str, str]]:
@@ -290,8 +301,6 @@ class GenerateTab(SweepTab):
     def describe_model(self) -> str:
         """The cards of both models for the page."""
         try:
-            return model_card(self.page.engine.info()) + (
-                model_card(self.class_card) if self.class_card else ""
-            )
+            return model_card(self.page.engine.info()) + (model_card(self.class_card) if self.class_card else "")
         except Exception as error:
             return status(error_line(error), tone="error")

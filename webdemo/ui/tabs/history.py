@@ -68,11 +68,10 @@ class HistoryTab:
         with gr.Column(elem_classes="pd-panel pd-history", min_width=0):
             self.who = gr.HTML(elem_id="history-who")
             self.line = gr.HTML(status(), elem_id="history-status", elem_classes="pd-line")
-            self.address = gr.Textbox(label=say("result.link"), interactive=False, visible=False, buttons=["copy"],
-                                      elem_id="history-address")  # fmt: skip
-            self.saved = gr.DownloadButton(
-                say("history.save"), visible=False, elem_id="history-saved", size="sm"
+            self.address = gr.Textbox(
+                label=say("result.link"), interactive=False, visible=False, buttons=["copy"], elem_id="history-address"
             )
+            self.saved = gr.DownloadButton(say("history.save"), visible=False, elem_id="history-saved", size="sm")
             self.study = StudyPanel(self.page, self.line) if self.page.studies is not None else None
             if self.study is not None:
                 self.study.build()
@@ -91,9 +90,7 @@ class HistoryTab:
         tab.select(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
         self.view.select(self.act, inputs=self.removed, outputs=shown, **quick)
         self.files.wire(shown[:2], self.line, self.saved, self.removed)
-        again = self.view.retry(
-            self.again, outputs=[self.line], concurrency_limit=None, trigger_mode="once", **QUIET
-        )
+        again = self.view.retry(self.again, outputs=[self.line], concurrency_limit=None, trigger_mode="once", **QUIET)
         again.then(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
         self.view.stop(self.cancel, queue=False, **QUIET)
         if self.study is not None:
@@ -110,19 +107,12 @@ class HistoryTab:
             for kind, job in self.jobs.items():
                 knobs = job.knobs
                 chain = chain.then(
-                    None,
-                    inputs=[job.asked, *knobs.values()],
-                    outputs=job.asked,
-                    js=taken(list(knobs)),
-                    **QUIET,
+                    None, inputs=[job.asked, *knobs.values()], outputs=job.asked, js=taken(list(knobs)), **QUIET
                 )
                 if job.folded is not None:
                     chain = chain.then(None, **job.tell_advanced)
                 chain = chain.then(
-                    self._exporter(kind, job),
-                    inputs=[record, job.worn],
-                    outputs=[job.line, *job.downloads],
-                    **quick,
+                    self._exporter(kind, job), inputs=[record, job.worn], outputs=[job.line, *job.downloads], **quick
                 )
 
     def _exporter(self, kind: str, job: JobTab) -> Any:
@@ -217,9 +207,7 @@ class HistoryTab:
                 wanted = request_of(opened)
             for made in self.page.runs.run(_session(request), wanted, alone=True):
                 if isinstance(made, Result):
-                    sentence = (
-                        verdict(opened.result, made) if opened else "Run again: its result is in the list."
-                    )
+                    sentence = verdict(opened.result, made) if opened else "Run again: its result is in the list."
                     line = status(sentence, tone="done")
                     break
                 last = made

@@ -31,9 +31,7 @@ class FilesPanel:
         refresh: reads the list of runs anew.
     """
 
-    def __init__(
-        self, page: PageContext, history: HistoryLike, refresh: Callable[[list[str]], Updates]
-    ) -> None:
+    def __init__(self, page: PageContext, history: HistoryLike, refresh: Callable[[list[str]], Updates]) -> None:
         self.page, self.history, self.refresh = page, history, refresh
 
     def build(self) -> None:
@@ -41,9 +39,13 @@ class FilesPanel:
         with gr.Accordion(say("history.all"), open=False, elem_id="history-files"):
             self.everything = gr.Button(say("history.export"), size="sm", elem_id="history-export-all")
             self.files = gr.File(
-                label=say("history.import"), file_types=[".npz"], file_count="multiple", height=112,
-                elem_id="history-import", elem_classes="pd-file",
-            )  # fmt: skip
+                label=say("history.import"),
+                file_types=[".npz"],
+                file_count="multiple",
+                height=112,
+                elem_id="history-import",
+                elem_classes="pd-file",
+            )
 
     def wire(self, view: Sequence[Any], line: gr.HTML, saved: gr.DownloadButton, removed: gr.State) -> None:
         """Wires the panel's events.
@@ -56,9 +58,7 @@ class FilesPanel:
         """
         slow: dict[str, Any] = {"concurrency_limit": AT_ONCE, "concurrency_id": "history files", **QUIET}
         self.everything.click(self.export_all, outputs=[line, saved], **slow)
-        self.files.upload(
-            self.take_in, inputs=[self.files, removed], outputs=[*view, line, self.files], **slow
-        )
+        self.files.upload(self.take_in, inputs=[self.files, removed], outputs=[*view, line, self.files], **slow)
 
     def export(self, runs: Sequence[str]) -> tuple[str, Any]:
         """Writes runs, or all of them for none given, into one file; returns a line and the button's change."""
@@ -80,9 +80,7 @@ class FilesPanel:
         who = visitor()
         try:
             with READING.place():
-                count = self.history.take_in(
-                    who.owner, [Path(file) for file in files or ()], address=who.address
-                )
+                count = self.history.take_in(who.owner, [Path(file) for file in files or ()], address=who.address)
             line = status(f"Imported {runs_line(count)}.", tone="done")
         except Exception as error:
             line = status(error_line(error), tone="error")
@@ -99,11 +97,13 @@ def room_html(usage: Usage) -> str:
     parts = [
         f"{name} {_megabytes(size)}"
         for name, size in (
-            ("runs", usage.runs), ("favourites", usage.favourites), ("studies", usage.studies),
+            ("runs", usage.runs),
+            ("favourites", usage.favourites),
+            ("studies", usage.studies),
             ("uploads and downloads", usage.temporary),
         )
         if size
-    ]  # fmt: skip
+    ]
     what = f": {', '.join(parts)}" if parts else ""
     full = (
         f" When runs and studies reach {_megabytes(usage.kept)} MB, your oldest runs make way; favourites and studies "

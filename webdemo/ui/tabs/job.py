@@ -86,11 +86,7 @@ class JobTab(SamplingTab, ABC):
             )
             beside()
             self.stop = gr.Button(
-                say("job.cancel"),
-                elem_id=self._id("cancel"),
-                elem_classes="pd-stop",
-                interactive=False,
-                min_width=0,
+                say("job.cancel"), elem_id=self._id("cancel"), elem_classes="pd-stop", interactive=False, min_width=0
             )
         self.line = gr.HTML(status(), elem_id=self._id("status"), elem_classes="pd-line")
         self.changed = gr.HTML("", elem_id=self._id("changed"), elem_classes="pd-line")
@@ -103,9 +99,7 @@ class JobTab(SamplingTab, ABC):
 
         ``record`` keeps the result, in a state of its own by default.
         """
-        self.knobs = {
-            name: part for name, part in self.controls.items() if not isinstance(part, gr.State | gr.HTML)
-        }
+        self.knobs = {name: part for name, part in self.controls.items() if not isinstance(part, gr.State | gr.HTML)}
         self.record = record or gr.State(None, time_to_live=3600)
         self.outputs = {
             "player": self.player,
@@ -121,9 +115,11 @@ class JobTab(SamplingTab, ABC):
             **self.more_outputs(),
         }
         self.compare: dict[str, Any] = {
-            "inputs": [self.asked, *self.knobs.values()], "outputs": self.changed,
-            "js": differs(list(self.knobs)), **QUIET,
-        }  # fmt: skip
+            "inputs": [self.asked, *self.knobs.values()],
+            "outputs": self.changed,
+            "js": differs(list(self.knobs)),
+            **QUIET,
+        }
         changes: list[Any] = [getattr(part, "change") for part in self.knobs.values()]  # noqa: B009
         gr.on(changes, None, **self.compare)
         self._wire_sampling()
@@ -257,9 +253,7 @@ class JobTab(SamplingTab, ABC):
         result = yield from self.made(session, wanted)
         yield self._updates(**self._shown(result, self.title(wanted)))
 
-    def answer_beside(
-        self, session: str, wanted: Mapping[str, Any], labels: Mapping[str, str]
-    ) -> Iterator[Updates]:
+    def answer_beside(self, session: str, wanted: Mapping[str, Any], labels: Mapping[str, str]) -> Iterator[Updates]:
         """Runs requests of one input one after another, and shows all on one clock.
 
         Args:

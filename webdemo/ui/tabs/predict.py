@@ -68,9 +68,7 @@ def given_source(result: PredictResult, name: str) -> Source:
 
 def _liveliest(source: Source) -> float:
     """The second at which most is moving, with two seconds behind it: what comes next is seen best there."""
-    speeds = sum(
-        np.linalg.norm(np.diff(clip.positions, axis=0), axis=-1).mean(axis=1) for clip in source.people
-    )
+    speeds = sum(np.linalg.norm(np.diff(clip.positions, axis=0), axis=-1).mean(axis=1) for clip in source.people)
     half = round(FPS / 2)
     moved = np.convolve(np.asarray(speeds), np.ones(half), mode="valid")  # moved[k]: up to frame k + half
     first = round(PAST_SECONDS * FPS) - half
@@ -101,9 +99,12 @@ class PredictTab(SourceTab):
         if source is None:
             raise InputError("There is no motion yet: drop a file, or pick an example or the last result.")
         return PredictRequest(
-            motion=motion_of(source), marker=fields["marker"], seconds=fields["seconds"],
-            seed=fields.get("seed", PredictRequest.seed), model=fields["model"],  # older grids have no seed
-        )  # fmt: skip
+            motion=motion_of(source),
+            marker=fields["marker"],
+            seconds=fields["seconds"],
+            seed=fields.get("seed", PredictRequest.seed),
+            model=fields["model"],  # older grids have no seed
+        )
 
     def title(self, request: PredictRequest) -> str:
         """The time at which the prediction begins, and the name of the motion."""
@@ -113,9 +114,7 @@ class PredictTab(SourceTab):
     def kinds(self) -> Sequence[Kind]:
         """Methods, where the past ends, and the length."""
         known = {label.lower(): name for label, name in predict_choices()}
-        models = Kind(
-            "model", "Methods", read=partial(named_method, known), split=BETWEEN_SENTENCES, named=label_of
-        )
+        models = Kind("model", "Methods", read=partial(named_method, known), split=BETWEEN_SENTENCES, named=label_of)
         marker = Kind("marker", "Past ends at (s)", "from", real, named=lambda value: f"{value:g} s")
         length = Kind("seconds", "Seconds to predict", read=real, named=lambda value: f"{value:g} s")
         return (models, marker, length)
@@ -146,33 +145,52 @@ class PredictTab(SourceTab):
                 self._handed_out(self._curves)
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     self.marker = gr.Slider(
-                        0, 10, value=PAST_SECONDS, step=0.1, label=say("predict.marker"),
+                        0,
+                        10,
+                        value=PAST_SECONDS,
+                        step=0.1,
+                        label=say("predict.marker"),
                         info=say("predict.marker_info"),
                         elem_id="predict-marker",
-                    )  # fmt: skip
+                    )
                     self.seconds = gr.Slider(
-                        *method(PredictRequest.model).seconds, value=PredictRequest.seconds, step=0.5,
+                        *method(PredictRequest.model).seconds,
+                        value=PredictRequest.seconds,
+                        step=0.5,
                         label=say("predict.seconds"),
                         elem_id="predict-seconds",
-                    )  # fmt: skip
+                    )
                     with gr.Row(elem_classes="pd-rows"):
                         self.model = gr.Dropdown(
-                            predict_choices(), value=PredictRequest.model, label=say("react.method"),
-                            elem_id="predict-method", min_width=0, filterable=False,
-                        )  # fmt: skip
+                            predict_choices(),
+                            value=PredictRequest.model,
+                            label=say("react.method"),
+                            elem_id="predict-method",
+                            min_width=0,
+                            filterable=False,
+                        )
                     self.about = gr.HTML(self.method_about(PredictRequest.model), elem_id="predict-about")
                     self.seed = gr.Number(
-                        value=PredictRequest.seed, label=say("sampling.seed"), info=say("predict.seed_info"),
-                        elem_id="predict-seed", min_width=0, visible="hidden",
-                    )  # fmt: skip
+                        value=PredictRequest.seed,
+                        label=say("sampling.seed"),
+                        info=say("predict.seed_info"),
+                        elem_id="predict-seed",
+                        min_width=0,
+                        visible="hidden",
+                    )
                     self._sweeps(self._beside)
             self._results(EMPTY_TEXT)
         self.source = gr.State(None, time_to_live=3600)
         self.given = gr.Textbox("", visible=False)
         self.controls = {
-            "source": self.source, "given": self.given, "marker": self.marker, "seconds": self.seconds,
-            "model": self.model, "other": self.other, "seed": self.seed,
-        }  # fmt: skip
+            "source": self.source,
+            "given": self.given,
+            "marker": self.marker,
+            "seconds": self.seconds,
+            "model": self.model,
+            "other": self.other,
+            "seed": self.seed,
+        }
         self._wire_run([self.go.click], record)
         self._wire_sweeps()
         self._wire_motion()
@@ -191,9 +209,13 @@ class PredictTab(SourceTab):
         """A second method, whose prediction is shown beside the first one's."""
         with gr.Row(elem_classes="pd-rows"):
             self.other = gr.Dropdown(
-                [(say("sweeps.nothing"), ""), *predict_choices()], value="", label=say("sweeps.compare_with"),
-                elem_id="predict-other", min_width=0, filterable=False,
-            )  # fmt: skip
+                [(say("sweeps.nothing"), ""), *predict_choices()],
+                value="",
+                label=say("sweeps.compare_with"),
+                elem_id="predict-other",
+                min_width=0,
+                filterable=False,
+            )
 
     def _curves(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-curves", min_width=0, visible=False) as self.curves:
@@ -209,13 +231,18 @@ class PredictTab(SourceTab):
         self.loaded = [self.source, self.given, self.line, self.player, self.marker]
         load = self._wire_source(self.loaded, {self.take: self.take_result})
         self.model.input(
-            None, inputs=self.model, outputs=[self.about, self.seed],
-            js=looked_up({name: self._of_method(name) for _, name in predict_choices()}), **QUIET,
-        )  # fmt: skip
+            None,
+            inputs=self.model,
+            outputs=[self.about, self.seed],
+            js=looked_up({name: self._of_method(name) for _, name in predict_choices()}),
+            **QUIET,
+        )
         self.animation.input(
-            self.read_again, inputs=[self.source, self.animation], trigger_mode="always_last",
+            self.read_again,
+            inputs=[self.source, self.animation],
+            trigger_mode="always_last",
             **{**load, "outputs": [*self.loaded, self.animation]},
-        ).then(None, **self.compare)  # fmt: skip
+        ).then(None, **self.compare)
 
     def read_again(self, source: Source | None, animation: int | None) -> Iterator[Updates]:
         """Reads another animation of the source's file, or takes that back where it cannot."""
@@ -253,9 +280,13 @@ class PredictTab(SourceTab):
         """
         shown = button.click(lambda: gr.update(selected=tab), outputs=tabs, queue=False, **QUIET)
         shown.then(
-            self.take_result, inputs=self.record, outputs=self.loaded, concurrency_limit=2,
-            concurrency_id="predict-read", **QUIET,
-        ).then(None, **self.compare)  # fmt: skip
+            self.take_result,
+            inputs=self.record,
+            outputs=self.loaded,
+            concurrency_limit=2,
+            concurrency_id="predict-read",
+            **QUIET,
+        ).then(None, **self.compare)
         shown.then(None, outputs=self.file, js="() => null", **QUIET)
 
     @staticmethod

@@ -104,11 +104,7 @@ class ReactTab(ActorTab):
         known = {label.lower(): key for label, key in react_choices()}
         labels = {key: label for label, key in react_choices()}
         methods = Kind(
-            "method",
-            "Methods",
-            read=partial(named_method, known),
-            split=BETWEEN_SENTENCES,
-            named=labels.__getitem__,
+            "method", "Methods", read=partial(named_method, known), split=BETWEEN_SENTENCES, named=labels.__getitem__
         )
         return (*super().kinds(), Kind("prompt", "Sentences", split=BETWEEN_SENTENCES), methods)
 
@@ -152,11 +148,22 @@ class ReactTab(ActorTab):
         self.source = gr.State(None, time_to_live=3600)
         self.given = gr.Textbox("", visible=False)
         self.controls = {
-            "source": self.source, "given": self.given, "person": self.person, "start": self.begin, "end": self.end,
-            "role": self.role, "prompt": self.prompt, "seed": self.seed, "samples": self.samples,
-            "guidance": self.guidance, "steps": self.steps, "damping": self.damping, "method": self.method,
-            "other": self.other, "keep": self.keep,
-        }  # fmt: skip
+            "source": self.source,
+            "given": self.given,
+            "person": self.person,
+            "start": self.begin,
+            "end": self.end,
+            "role": self.role,
+            "prompt": self.prompt,
+            "seed": self.seed,
+            "samples": self.samples,
+            "guidance": self.guidance,
+            "steps": self.steps,
+            "damping": self.damping,
+            "method": self.method,
+            "other": self.other,
+            "keep": self.keep,
+        }
         self._wire_run([self.go.click, self.prompt.submit], record)
         self._wire_start(self.start_stream, [self.stream.click])
         self._wire_start(self.keep_live, [self.live.submit], more=[self.live])
@@ -190,28 +197,44 @@ class ReactTab(ActorTab):
             with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
                 self.animation = animation_field("react-animation")
                 self.person = gr.Radio(
-                    [(say("react.person_a"), "a"), (say("react.person_b"), "b")], value="a", label=say("react.which"),
-                    elem_id="react-person", visible=False,
-                )  # fmt: skip
+                    [(say("react.person_a"), "a"), (say("react.person_b"), "b")],
+                    value="a",
+                    label=say("react.which"),
+                    elem_id="react-person",
+                    visible=False,
+                )
                 with gr.Row(elem_classes="pd-trim"):
-                    self.begin = gr.Slider(0, SECONDS[1], value=0, step=0.1, label=say("react.start"),
-                                           elem_id="react-start", elem_classes="pd-trim-start")  # fmt: skip
-                    self.end = gr.Slider(0, SECONDS[1], value=SECONDS[1], step=0.1, label=say("react.end"),
-                                         elem_id="react-end")  # fmt: skip
+                    self.begin = gr.Slider(
+                        0,
+                        SECONDS[1],
+                        value=0,
+                        step=0.1,
+                        label=say("react.start"),
+                        elem_id="react-start",
+                        elem_classes="pd-trim-start",
+                    )
+                    self.end = gr.Slider(
+                        0, SECONDS[1], value=SECONDS[1], step=0.1, label=say("react.end"), elem_id="react-end"
+                    )
                 self._import_choices()
                 self.keep = gr.Checkbox(
-                    False, label=say("react.keep"),
-                    elem_id="react-keep", visible=False, min_width=0,
-                )  # fmt: skip
+                    False, label=say("react.keep"), elem_id="react-keep", visible=False, min_width=0
+                )
                 self.role = gr.Radio(
-                    [(say("react.acts_first"), "a"), (say("react.reacts"), "b")], value=ReactRequest.role,
-                    label=say("react.role"), elem_id="react-role",
-                )  # fmt: skip
+                    [(say("react.acts_first"), "a"), (say("react.reacts"), "b")],
+                    value=ReactRequest.role,
+                    label=say("react.role"),
+                    elem_id="react-role",
+                )
             with gr.Row(elem_classes="pd-rows"):
                 self.method = gr.Dropdown(
-                    _methods(), value=AUTOMATIC, label=say("react.method"),
-                    elem_id="react-method", min_width=0, filterable=False,
-                )  # fmt: skip
+                    _methods(),
+                    value=AUTOMATIC,
+                    label=say("react.method"),
+                    elem_id="react-method",
+                    min_width=0,
+                    filterable=False,
+                )
             self.about = gr.HTML(self.fit_method(AUTOMATIC)[-1], elem_id="react-about")
             if live := live_variant():
                 line = say("react.stream_uses", method=text(live.label))
@@ -229,15 +252,18 @@ class ReactTab(ActorTab):
         """A second method, whose partner is shown beside the first one's."""
         with gr.Row(elem_classes="pd-rows"):
             self.other = gr.Dropdown(
-                [(say("sweeps.nothing"), ""), *_methods()], value="", label=say("sweeps.compare_with"),
-                elem_id="react-other", min_width=0, filterable=False,
-            )  # fmt: skip
+                [(say("sweeps.nothing"), ""), *_methods()],
+                value="",
+                label=say("sweeps.compare_with"),
+                elem_id="react-other",
+                min_width=0,
+                filterable=False,
+            )
 
     def _stream_button(self) -> None:
         self.stream = gr.Button(
-            say("react.stream"), elem_id="react-stream", min_width=0,
-            visible=live_variant() is not None,
-        )  # fmt: skip
+            say("react.stream"), elem_id="react-stream", min_width=0, visible=live_variant() is not None
+        )
 
     def starts(self) -> dict[str, gr.Button]:
         """The buttons *React* and *Stream*."""
@@ -264,15 +290,11 @@ class ReactTab(ActorTab):
             gr.update(value=chosen.method.steps, interactive="steps" not in fixed),
             gr.update(interactive="guidance" not in fixed),
             gr.update(interactive="damping" not in fixed and chosen.mode == "offline"),
-            gr.update(
-                interactive=heard, label=_WORDS if heard else say("react.words_unused", method=chosen.label)
-            ),
+            gr.update(interactive=heard, label=_WORDS if heard else say("react.words_unused", method=chosen.label)),
             method_line(about),
         )
 
-    def start_stream(
-        self, values: dict[gr.components.Component, Any], request: gr.Request
-    ) -> Iterator[Updates]:
+    def start_stream(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
         """Streams an online reaction while the actor plays; yields updates of the page."""
         yield from self.run(str(request.session_hash), {**self._fields(values), "stream": True})
 

@@ -82,10 +82,7 @@ class ResultsTab:
         return self.prefix + name
 
     def _results(
-        self,
-        empty_text: str = EMPTY_TEXT,
-        below: Callable[[], None] = lambda: None,
-        first: Payload | None = None,
+        self, empty_text: str = EMPTY_TEXT, below: Callable[[], None] = lambda: None, first: Payload | None = None
     ) -> None:
         """The player, and under it what ``below`` lays out. ``first`` is played before anything is asked for."""
         with gr.Column(elem_classes="pd-results", min_width=0):
@@ -102,13 +99,11 @@ class ResultsTab:
                 self._export()
             with gr.Row(elem_classes="pd-chips"):
                 self.another = gr.Button(
-                    say("result.another"), size="sm", min_width=0, elem_id=self._id("another"),
-                    elem_classes="pd-onward",
-                )  # fmt: skip
+                    say("result.another"), size="sm", min_width=0, elem_id=self._id("another"), elem_classes="pd-onward"
+                )
                 self.onward = gr.Button(
-                    say("result.next"), size="sm", min_width=0, elem_id=self._id("continue"),
-                    elem_classes="pd-onward",
-                )  # fmt: skip
+                    say("result.next"), size="sm", min_width=0, elem_id=self._id("continue"), elem_classes="pd-onward"
+                )
         below()
 
     def _share(self) -> None:
@@ -116,31 +111,35 @@ class ResultsTab:
         with gr.Accordion(say("result.share"), open=False, elem_id=self._id("share"), elem_classes="pd-menu"):
             with gr.Row(elem_classes="pd-downloads"):
                 self.link = gr.Button(
-                    say("result.link_to_view"), size="sm", min_width=0, elem_id=self._id("link"),
-                    elem_classes="pd-onward", visible=self.page.history is not None,
-                )  # fmt: skip
-                self.film = gr.Button(
-                    say("result.make_film"), size="sm", min_width=0, elem_id=self._id("film")
+                    say("result.link_to_view"),
+                    size="sm",
+                    min_width=0,
+                    elem_id=self._id("link"),
+                    elem_classes="pd-onward",
+                    visible=self.page.history is not None,
                 )
+                self.film = gr.Button(say("result.make_film"), size="sm", min_width=0, elem_id=self._id("film"))
                 self.filmed = gr.DownloadButton(
-                    f"{say('files.film')} {film_suffix()}", size="sm", interactive=False, min_width=0,
+                    f"{say('files.film')} {film_suffix()}",
+                    size="sm",
+                    interactive=False,
+                    min_width=0,
                     elem_id=self._id("download-film"),
-                )  # fmt: skip
-                self.picture = gr.Button(
-                    say("result.picture"), size="sm", min_width=0, elem_id=self._id("picture")
                 )
+                self.picture = gr.Button(say("result.picture"), size="sm", min_width=0, elem_id=self._id("picture"))
                 self._download("png")
                 self.player_state = gr.Textbox(visible=False)
             self.address = gr.Textbox(
-                label=say("result.link"), interactive=False, visible=False, buttons=["copy"],
+                label=say("result.link"),
+                interactive=False,
+                visible=False,
+                buttons=["copy"],
                 elem_id=self._id("address"),
-            )  # fmt: skip
+            )
 
     def _export(self) -> None:
         """Files of a result, by what they are for."""
-        with gr.Accordion(
-            say("result.export"), open=False, elem_id=self._id("downloads"), elem_classes="pd-menu"
-        ):
+        with gr.Accordion(say("result.export"), open=False, elem_id=self._id("downloads"), elem_classes="pd-menu"):
             for purpose, keys in PURPOSES.items():
                 gr.HTML(f'<p class="pd-purpose">{worded("purpose", purpose)}</p>', padding=False)
                 with gr.Row(elem_classes="pd-downloads"):
@@ -150,13 +149,21 @@ class ResultsTab:
                         self._figure()
                     if RIG in keys:
                         self.character = gr.UploadButton(
-                            say("result.character"), file_types=[".glb", ".vrm"], size="sm", min_width=0,
-                            elem_id=self._id("character"), elem_classes="pd-character",
-                        )  # fmt: skip
+                            say("result.character"),
+                            file_types=[".glb", ".vrm"],
+                            size="sm",
+                            min_width=0,
+                            elem_id=self._id("character"),
+                            elem_classes="pd-character",
+                        )
                         self.thing = gr.UploadButton(
-                            say("result.thing"), file_types=FILE_TYPES, size="sm", min_width=0,
-                            elem_id=self._id("thing"), elem_classes="pd-character",
-                        )  # fmt: skip
+                            say("result.thing"),
+                            file_types=FILE_TYPES,
+                            size="sm",
+                            min_width=0,
+                            elem_id=self._id("thing"),
+                            elem_classes="pd-character",
+                        )
             self.worn = gr.State(None, time_to_live=3600)
 
     def _figure(self) -> None:
@@ -171,9 +178,13 @@ class ResultsTab:
         """The button of one kind of file."""
         kind = next(kind for kind in KINDS if kind.key == key)
         self._buttons[key] = gr.DownloadButton(
-            worded("files", kind.label), size="sm", interactive=False, min_width=0,
-            visible=kind.offered(), elem_id=self._id(f"download-{key.replace('.', '-')}"),
-        )  # fmt: skip
+            worded("files", kind.label),
+            size="sm",
+            interactive=False,
+            min_width=0,
+            visible=kind.offered(),
+            elem_id=self._id(f"download-{key.replace('.', '-')}"),
+        )
 
     @property
     def downloads(self) -> list[gr.DownloadButton]:
@@ -182,30 +193,53 @@ class ResultsTab:
 
     def _wire_results(self) -> None:
         self.film.click(
-            self.make_film, inputs=[self.record, self.player_state], outputs=[self.line, self.filmed],
-            js=READ_PLAYER, concurrency_limit=1, concurrency_id="film", trigger_mode="once", **QUIET,
-        ).then(None, js=_SAVE % json.dumps(self._id("download-film")), **QUIET)  # fmt: skip
+            self.make_film,
+            inputs=[self.record, self.player_state],
+            outputs=[self.line, self.filmed],
+            js=READ_PLAYER,
+            concurrency_limit=1,
+            concurrency_id="film",
+            trigger_mode="once",
+            **QUIET,
+        ).then(None, js=_SAVE % json.dumps(self._id("download-film")), **QUIET)
         self.figure.click(
-            self.make_figure, inputs=[self.record, self.player_state], outputs=[self.line, *self.figured],
-            js=READ_PLAYER, concurrency_limit=1, concurrency_id="film", trigger_mode="once", **QUIET,
-        )  # fmt: skip
+            self.make_figure,
+            inputs=[self.record, self.player_state],
+            outputs=[self.line, *self.figured],
+            js=READ_PLAYER,
+            concurrency_limit=1,
+            concurrency_id="film",
+            trigger_mode="once",
+            **QUIET,
+        )
         self.picture.click(None, js=_TAKE_PICTURE, **QUIET)
         self.link.click(
-            self.make_link, inputs=[self.record, self.player_state], outputs=[self.line, self.address],
-            js=READ_PLAYER, **QUIET,
-        )  # fmt: skip
+            self.make_link,
+            inputs=[self.record, self.player_state],
+            outputs=[self.line, self.address],
+            js=READ_PLAYER,
+            **QUIET,
+        )
 
         self.character.upload(
-            self.put_on, inputs=[self.character, self.record],
+            self.put_on,
+            inputs=[self.character, self.record],
             outputs=[self.line, self.worn, self.player, *(self._buttons[key] for key in _CHANGED)],
-            concurrency_limit=1, concurrency_id="character", trigger_mode="once", **QUIET,
-        )  # fmt: skip
+            concurrency_limit=1,
+            concurrency_id="character",
+            trigger_mode="once",
+            **QUIET,
+        )
 
         self.thing.upload(
-            self.bring, inputs=[self.thing, self.record, self.worn],
+            self.bring,
+            inputs=[self.thing, self.record, self.worn],
             outputs=[self.line, self.player, *self.downloads],
-            concurrency_limit=1, concurrency_id="character", trigger_mode="once", **QUIET,
-        )  # fmt: skip
+            concurrency_limit=1,
+            concurrency_id="character",
+            trigger_mode="once",
+            **QUIET,
+        )
 
     def bring(self, path: str | None, record: Record | None, worn: Worn | None) -> Updates:
         """Puts an uploaded thing into this result, as the first thing of its words, here and in its files."""
@@ -262,9 +296,7 @@ class ResultsTab:
         except Exception as error:
             yield status(error_line(error), tone="error"), gr.skip(), gr.skip()
             return
-        line = (
-            "Ready: Figure .html plays offline in any browser; Mesh .ply is the moment that the player shows."
-        )
+        line = "Ready: Figure .html plays offline in any browser; Mesh .ply is the moment that the player shows."
         yield status(line, tone="done"), *(gr.update(value=path, interactive=True) for path in paths)
 
     def make_link(self, record: Record | None, shown: str) -> Updates:
@@ -302,8 +334,10 @@ class ResultsTab:
             found = for_download(record.files, name)
         except Exception as error:
             off = gr.update(value=None, interactive=False)
-            return (status(f"The motion is ready, but its files are not. {error_line(error)}", tone="error"),
-                    *(off for _ in KINDS))  # fmt: skip
+            return (
+                status(f"The motion is ready, but its files are not. {error_line(error)}", tone="error"),
+                *(off for _ in KINDS),
+            )
         return (line, *(_offered(kind.key, found.get(kind.key)) for kind in KINDS))
 
     def _on_rig(self, record: Record) -> tuple[Any, list[Path]]:

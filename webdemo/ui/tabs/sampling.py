@@ -56,17 +56,29 @@ class SamplingTab(ResultsTab):
             folded_at_first(*values), open=True, elem_id=self._id("advanced"), elem_classes="pd-advanced"
         ) as self.folded:
             self.guidance = gr.Slider(
-                *GUIDANCE, value=values[0], step=0.1, label=say("sampling.guidance"), info=_GUIDANCE_INFO,
+                *GUIDANCE,
+                value=values[0],
+                step=0.1,
+                label=say("sampling.guidance"),
+                info=_GUIDANCE_INFO,
                 elem_id=self._id("guidance"),
-            )  # fmt: skip
+            )
             self.steps = gr.Slider(
-                *STEPS_SHOWN, value=values[1], step=1, label=say("sampling.steps"), info=_STEPS_INFO,
+                *STEPS_SHOWN,
+                value=values[1],
+                step=1,
+                label=say("sampling.steps"),
+                info=_STEPS_INFO,
                 elem_id=self._id("steps"),
-            )  # fmt: skip
+            )
             self.damping = gr.Slider(
-                *DAMPING, value=values[2], step=0.05, label=say("sampling.damping"),
-                info=_DAMPING_INFO, elem_id=self._id("damping"),
-            )  # fmt: skip
+                *DAMPING,
+                value=values[2],
+                step=0.05,
+                label=say("sampling.damping"),
+                info=_DAMPING_INFO,
+                elem_id=self._id("damping"),
+            )
             added = beside()
             if said:
                 self.laid = gr.HTML(elem_id=self._id("laid"))
@@ -85,26 +97,34 @@ class SamplingTab(ResultsTab):
     def _more(self, *, said: bool) -> None:
         """The settings that are rarely needed."""
         self.samples = gr.Slider(
-            *SAMPLES, value=SamplingRequest.samples, step=1, label=say("sampling.samples"), info=_SAMPLES_INFO,
+            *SAMPLES,
+            value=SamplingRequest.samples,
+            step=1,
+            label=say("sampling.samples"),
+            info=_SAMPLES_INFO,
             elem_id=self._id("samples"),
-        )  # fmt: skip
+        )
         with gr.Row(elem_classes="pd-seed"):
             self.seed = gr.Number(
-                value=SamplingRequest.seed, label=say("sampling.seed"), info=_SEED_INFO,
-                elem_id=self._id("seed"), elem_classes="pd-seed-field", min_width=0,
-            )  # fmt: skip
-            self.dice = gr.Button(
-                say("sampling.random"),
-                size="sm",
-                elem_id=self._id("dice"),
-                elem_classes="pd-dice",
+                value=SamplingRequest.seed,
+                label=say("sampling.seed"),
+                info=_SEED_INFO,
+                elem_id=self._id("seed"),
+                elem_classes="pd-seed-field",
                 min_width=0,
+            )
+            self.dice = gr.Button(
+                say("sampling.random"), size="sm", elem_id=self._id("dice"), elem_classes="pd-dice", min_width=0
             )
         if said:
             self.tries = gr.Slider(
-                *TRIES, value=SamplingRequest.tries, step=1, label=say("sampling.tries"), info=_TRIES_INFO,
+                *TRIES,
+                value=SamplingRequest.tries,
+                step=1,
+                label=say("sampling.tries"),
+                info=_TRIES_INFO,
                 elem_id=self._id("tries"),
-            )  # fmt: skip
+            )
 
     def _wire_sampling(self) -> None:
         """The switch of the pace and the button that draws a seed, where the tab has them."""

@@ -25,16 +25,7 @@ from webdemo.ui.components.scene_parts import (
     went_on,
 )
 from webdemo.ui.components.story import StoryLine, motion_marks, story_fields, value_of
-from webdemo.ui.components.story_words import (
-    SETTINGS,
-    edited,
-    lay_out,
-    said_of,
-    settled,
-    story_text,
-    use_text,
-    written,
-)
+from webdemo.ui.components.story_words import SETTINGS, edited, lay_out, said_of, settled, story_text, use_text, written
 from webdemo.ui.components.upload import chip
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
@@ -54,8 +45,7 @@ EXAMPLES = (
     ),
     (
         "A quarrel and a making up",
-        "One person pushes the other. Then the other turns away. After that they bow to each other. "
-        "Finally they hug.",
+        "One person pushes the other. Then the other turns away. After that they bow to each other. Finally they hug.",
     ),
     (
         "A dance of 40 s",
@@ -94,9 +84,7 @@ class SceneTab(SweepTab):
     def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
         """The story of the first cell, without its motion: the cells differ in it."""
         request = SceneRequest.from_dict(next(iter(made.values())).manifest["request"])
-        return {
-            "story": gr.update(value=value_of(request)), "text": write_story(request), "prompt": _changed(fields)
-        }  # fmt: skip
+        return {"story": gr.update(value=value_of(request)), "text": write_story(request), "prompt": _changed(fields)}
 
     def title(self, request: SceneRequest) -> str:
         """The words of its beats."""
@@ -119,16 +107,20 @@ class SceneTab(SweepTab):
                     self._sampling(said=True)
                     self._sweeps()
                 with gr.Accordion(say("scene.text"), open=False, elem_classes="pd-panel pd-about"):
-                    self.text = gr.Textbox(
-                        label=say("scene.toml"), lines=8, max_lines=24, elem_id=self._id("text"),
-                    )  # fmt: skip
+                    self.text = gr.Textbox(label=say("scene.toml"), lines=8, max_lines=24, elem_id=self._id("text"))
                     self.use = gr.Button(say("scene.use"), size="sm", elem_id=self._id("use-text"))
             self._results(EMPTY_TEXT, self._story)
         assert self.tries is not None  # as in every tab of sentences
         self.controls = {
-            "prompt": self.prompt, "story": self.line_up, "seed": self.seed, "samples": self.samples,
-            "guidance": self.guidance, "steps": self.steps, "damping": self.damping, "tries": self.tries,
-        }  # fmt: skip
+            "prompt": self.prompt,
+            "story": self.line_up,
+            "seed": self.seed,
+            "samples": self.samples,
+            "guidance": self.guidance,
+            "steps": self.steps,
+            "damping": self.damping,
+            "tries": self.tries,
+        }
         self._wire_run([self.go.click, self.prompt.submit], record)
         self._wire_sweeps()
         self._wire_parts()
@@ -138,11 +130,7 @@ class SceneTab(SweepTab):
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
             self.prompt = gr.Textbox(
-                label=say("scene.prompt"),
-                placeholder=EXAMPLES[0][1],
-                lines=1,
-                max_lines=8,
-                elem_id=self._id("prompt"),
+                label=say("scene.prompt"), placeholder=EXAMPLES[0][1], lines=1, max_lines=8, elem_id=self._id("prompt")
             )
             with gr.Row(elem_classes="pd-chips"):
                 self.chips = [
@@ -160,16 +148,13 @@ class SceneTab(SweepTab):
                 label=say("scene.part"), placeholder=say("scene.part_hint"), elem_id=self._id("part-words")
             )
             with gr.Row(elem_classes="pd-chips"):
-                self.remake = gr.Button(
-                    say("scene.remake"), size="sm", min_width=0, elem_id=self._id("remake")
-                )
+                self.remake = gr.Button(say("scene.remake"), size="sm", min_width=0, elem_id=self._id("remake"))
                 self.futures = gr.Button(
                     say("scene.futures", count=FUTURES), size="sm", min_width=0, elem_id=self._id("futures")
                 )
                 self.take = gr.Button(
-                    say("scene.take"), size="sm", min_width=0, elem_id=self._id("take"),
-                    elem_classes="pd-take",
-                )  # fmt: skip
+                    say("scene.take"), size="sm", min_width=0, elem_id=self._id("take"), elem_classes="pd-take"
+                )
                 self.back = gr.Button(say("scene.back"), size="sm", min_width=0, elem_id=self._id("back"))
         self.shown_at = gr.Textbox(visible=False)
         self.earlier = gr.State([], time_to_live=3600)
@@ -198,31 +183,48 @@ class SceneTab(SweepTab):
         self.prompt.input(None, inputs=self.line_up, outputs=self.line_up, js=_TYPED, **QUIET)
         self.prompt.blur(written, inputs=[self.prompt, self.line_up, self.seed], **last)
         knobs = [self.controls[name] for name in SETTINGS]
-        self.use.click(
-            use_text, inputs=self.text, outputs=[self.line_up, self.prompt, self.line, *knobs], **QUIET
-        )
+        self.use.click(use_text, inputs=self.text, outputs=[self.line_up, self.prompt, self.line, *knobs], **QUIET)
         self.take.click(
-            self.take_shown, inputs=[self.record, self.earlier, self.shown_at], js=_READ_PLACE,
-            outputs=[self.player, self.line, self.record, self.line_up, self.earlier], **QUIET,
-        )  # fmt: skip
+            self.take_shown,
+            inputs=[self.record, self.earlier, self.shown_at],
+            js=_READ_PLACE,
+            outputs=[self.player, self.line, self.record, self.line_up, self.earlier],
+            **QUIET,
+        )
         self.last.click(
-            self.take_last, inputs=self.record,
-            outputs=[self.player, self.line, self.under, self.readouts, self.line_up], **QUIET,
-        )  # fmt: skip
+            self.take_last,
+            inputs=self.record,
+            outputs=[self.player, self.line, self.under, self.readouts, self.line_up],
+            **QUIET,
+        )
         self.back.click(
-            self.go_back, inputs=self.earlier,
-            outputs=[self.player, self.line, self.record, self.line_up, self.earlier], **QUIET,
-        )  # fmt: skip
+            self.go_back,
+            inputs=self.earlier,
+            outputs=[self.player, self.line, self.record, self.line_up, self.earlier],
+            **QUIET,
+        )
 
     def _wire_parts(self) -> None:
         inputs = [
-            self.line_up, self.words, self.guidance, self.steps, self.damping, self.record, self.earlier, self.shown_at,
-        ]  # fmt: skip
+            self.line_up,
+            self.words,
+            self.guidance,
+            self.steps,
+            self.damping,
+            self.record,
+            self.earlier,
+            self.shown_at,
+        ]
         for button, job in ((self.remake, self.start_span), (self.futures, self.start_futures)):
             run = button.click(
-                job, inputs=inputs, outputs=list(self.outputs.values()), js=_READ_PLACE, concurrency_limit=None,
-                trigger_mode="once", **QUIET,
-            )  # fmt: skip
+                job,
+                inputs=inputs,
+                outputs=list(self.outputs.values()),
+                js=_READ_PLACE,
+                concurrency_limit=None,
+                trigger_mode="once",
+                **QUIET,
+            )
             run.then(self.rest, outputs=[*self.starts().values(), self.stop], queue=False, **QUIET)
             run.then(
                 self.export,
@@ -276,17 +278,33 @@ class SceneTab(SweepTab):
         yield self._updates(**shown | {"story": line_up})
 
     def start_span(
-        self, story: Any, words: str, guidance: float, steps: float, damping: float, record: Record | None,
-        earlier: list[Record], place: str, request: gr.Request,
-    ) -> Iterator[Updates]:  # fmt: skip
+        self,
+        story: Any,
+        words: str,
+        guidance: float,
+        steps: float,
+        damping: float,
+        record: Record | None,
+        earlier: list[Record],
+        place: str,
+        request: gr.Request,
+    ) -> Iterator[Updates]:
         """Makes the selected span again."""
         fields = part_fields("span", story, words, guidance, steps, damping, record, earlier, place)
         yield from self.run(str(request.session_hash), fields)
 
     def start_futures(
-        self, story: Any, words: str, guidance: float, steps: float, damping: float, record: Record | None,
-        earlier: list[Record], place: str, request: gr.Request,
-    ) -> Iterator[Updates]:  # fmt: skip
+        self,
+        story: Any,
+        words: str,
+        guidance: float,
+        steps: float,
+        damping: float,
+        record: Record | None,
+        earlier: list[Record],
+        place: str,
+        request: gr.Request,
+    ) -> Iterator[Updates]:
         """Makes several continuations from the player's frame on."""
         fields = part_fields("futures", story, words, guidance, steps, damping, record, earlier, place)
         yield from self.run(str(request.session_hash), fields)

@@ -45,9 +45,8 @@ class SharingPanel:
                     label=say("sharing.address"), interactive=False, buttons=["copy"], elem_id="sharing-link"
                 )
                 self.frame = gr.Textbox(
-                    label=say("sharing.frame"), interactive=False, buttons=["copy"],
-                    elem_id="sharing-frame",
-                )  # fmt: skip
+                    label=say("sharing.frame"), interactive=False, buttons=["copy"], elem_id="sharing-frame"
+                )
                 self.end = gr.Button(say("sharing.end"), size="sm", min_width=0, elem_id="sharing-end")
 
     def wire(self, tab: gr.Tab, publish: Any) -> None:
@@ -99,9 +98,7 @@ class SharingPanel:
             self.sharing.revoke(key or "", visitor().owner)
         except Exception as error:
             return status(error_line(error), tone="error"), *((gr.skip(),) * 4)
-        return status("The page has ended: its address shows nothing any more.", tone="done"), *self.show(
-            None
-        )
+        return status("The page has ended: its address shows nothing any more.", tone="done"), *self.show(None)
 
 
 def _about(page: PublicPage) -> str:

@@ -55,9 +55,7 @@ class SourceTab(SweepTab):
     def described(self, source: Source, *, at_end: bool) -> tuple[str, list[Any]]:
         """The line on a source, and the updates behind the player's."""
 
-    def _wire_source(
-        self, shown: Sequence[Any], takes: Mapping[gr.Button, Callable[..., Any]]
-    ) -> dict[str, Any]:
+    def _wire_source(self, shown: Sequence[Any], takes: Mapping[gr.Button, Callable[..., Any]]) -> dict[str, Any]:
         """Wires what a motion can be taken from.
 
         Args:
@@ -68,8 +66,11 @@ class SourceTab(SweepTab):
             arguments of further events that read a motion.
         """
         load: dict[str, Any] = {
-            "outputs": shown, "concurrency_limit": 2, "concurrency_id": f"{self.prefix}read", **QUIET,
-        }  # fmt: skip
+            "outputs": shown,
+            "concurrency_limit": 2,
+            "concurrency_id": f"{self.prefix}read",
+            **QUIET,
+        }
         self.file.upload(self.upload, inputs=self.file, **load).then(None, **self.compare)
         self.camera.submit(self.read_film, inputs=self.camera, **load).then(None, **self.compare)
         for button, (name, path) in zip(self.chips, self.examples, strict=True):
@@ -79,9 +80,7 @@ class SourceTab(SweepTab):
             button.click(take, inputs=self.record, **load).then(None, **self.compare)
         others = [self.camera.submit, *(button.click for button in (*self.chips, *takes))]
         gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
-        self.source.change(
-            offered_animations, inputs=self.source, outputs=self.animation, queue=False, **QUIET
-        )
+        self.source.change(offered_animations, inputs=self.source, outputs=self.animation, queue=False, **QUIET)
         self.file.clear(self.forget, outputs=shown, queue=False, **QUIET)
         return load
 
@@ -104,9 +103,7 @@ class SourceTab(SweepTab):
 
         yield from self.load(read, at_end=at_end)
 
-    def load(
-        self, read: Callable[[], Source], *, at_end: bool = False, fresh: bool = False
-    ) -> Iterator[Updates]:
+    def load(self, read: Callable[[], Source], *, at_end: bool = False, fresh: bool = False) -> Iterator[Updates]:
         """Updates, as of :meth:`forget`, while a motion is read.
 
         Where it is ``fresh`` and cannot be read, an earlier motion is forgotten.

@@ -116,10 +116,7 @@ class StudyPanel:
         pairs = paired(*map(_motions, runs))
         study = self.studies.create(who.owner, question or "", names(runs), pairs, address=who.address)
         line = f"The study has {count(study.pairs, 'pair')}. Send the link to the people who are to vote."
-        return self._shown(study.id) | {
-            self.line: status(line, tone="done"),
-            self.making: gr.update(visible=False),
-        }
+        return self._shown(study.id) | {self.line: status(line, tone="done"), self.making: gr.update(visible=False)}
 
     @_said
     def show(self, study: str | None) -> Parts:
@@ -157,9 +154,7 @@ class StudyPanel:
 def _motions(run: Opened) -> list[tuple[str, Any]]:
     """Sentences and motions of a run and of the cells of its grid."""
     cells = (run, *run.beside)
-    return [
-        (str(each.entry.request.get("prompt") or ""), duet) for each in cells for duet in each.result.duets
-    ]
+    return [(str(each.entry.request.get("prompt") or ""), duet) for each in cells for duet in each.result.duets]
 
 
 def names(runs: Sequence[Opened]) -> tuple[str, str]:
@@ -168,9 +163,7 @@ def names(runs: Sequence[Opened]) -> tuple[str, str]:
     if first == second:
         ours, theirs = (dict(settings(run.entry)) for run in runs)
         differ = [name for name in ours | theirs if ours.get(name) != theirs.get(name)]
-        first, second = (
-            ", ".join(f"{name} {told.get(name, 'none')}" for name in differ) for told in (ours, theirs)
-        )
+        first, second = (", ".join(f"{name} {told.get(name, 'none')}" for name in differ) for told in (ours, theirs))
     return first or "First run", second or "Second run"
 
 
@@ -185,9 +178,7 @@ def result_html(study: StudyEntry) -> str:
     line = f"“{study.question}” {count(study.pairs, 'pair')}. "
     if not votes:
         return status(f"{line}Nobody has voted yet.")
-    rows = [
-        (name, wins, share(wins, sum(study.wins))) for name, wins in zip(study.runs, study.wins, strict=True)
-    ]
+    rows = [(name, wins, share(wins, sum(study.wins))) for name, wins in zip(study.runs, study.wins, strict=True)]
     heads = '<td></td><th scope="col">Votes</th><th scope="col">Share (95 % interval)</th>'
     body = "".join(
         f'<tr><th scope="row">{text(name)}</th><td><b>{number}</b></td><td>{said}</td></tr>'

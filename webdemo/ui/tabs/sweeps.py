@@ -63,13 +63,8 @@ class SweepTab(JobTab):
 
     def _sweeps(self, beside: Callable[[], None] = lambda: None) -> None:
         """The menu *Compare*, folded away: grids that are one press away, ``beside``, and the settings of a grid."""
-        choices = [
-            (say("sweeps.nothing"), ""),
-            *((worded("swept", kind.label), kind.field) for kind in self.kinds()),
-        ]
-        with gr.Accordion(
-            say("sweeps.compare"), open=False, elem_id=self._id("grid"), elem_classes="pd-advanced"
-        ):
+        choices = [(say("sweeps.nothing"), ""), *((worded("swept", kind.label), kind.field) for kind in self.kinds())]
+        with gr.Accordion(say("sweeps.compare"), open=False, elem_id=self._id("grid"), elem_classes="pd-advanced"):
             with gr.Row(elem_classes="pd-chips"):
                 self.preset_chips = [chip(worded("preset", label)) for label in self.presets()]
             beside()
@@ -78,14 +73,15 @@ class SweepTab(JobTab):
             for side in _SIDES:
                 with gr.Row(elem_classes="pd-pair"):
                     field = gr.Dropdown(
-                        choices, value="", label=worded("side", side.capitalize()), elem_id=self._id(f"grid-{side}"),
-                        min_width=0, filterable=False,
-                    )  # fmt: skip
-                    values = gr.Textbox(
-                        label=say("sweeps.values"),
-                        lines=1,
-                        elem_id=self._id(f"grid-{side}-values"),
+                        choices,
+                        value="",
+                        label=worded("side", side.capitalize()),
+                        elem_id=self._id(f"grid-{side}"),
                         min_width=0,
+                        filterable=False,
+                    )
+                    values = gr.Textbox(
+                        label=say("sweeps.values"), lines=1, elem_id=self._id(f"grid-{side}-values"), min_width=0
                     )
                     self.sides[side] = (field, values)
             self.make_grid = gr.Button(say("sweeps.make"), size="sm", elem_id=self._id("grid-make"))
@@ -104,9 +100,7 @@ class SweepTab(JobTab):
 
     # ---- events ----------------------------------------------------------------------------------
 
-    def start_grid(
-        self, values: dict[gr.components.Component, Any], request: gr.Request
-    ) -> Iterator[Updates]:
+    def start_grid(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
         """Makes the grid that the controls ask for; yields updates of the page."""
         swept = [values[part] for part in self.grid_parts]
         yield from self.run(str(request.session_hash), {**self._fields(values), "grid": swept})
@@ -157,9 +151,7 @@ class SweepTab(JobTab):
             else Named([""] * len(results), [""], [], tuple(names))
         )
         made = dict(zip(names, results, strict=True))
-        shown = (
-            grid_shown(grid, made, str(about["title"])) | self.laid_out(results) | self.beside_grid(made, {})
-        )
+        shown = grid_shown(grid, made, str(about["title"])) | self.laid_out(results) | self.beside_grid(made, {})
         return found | {self.outputs[name]: update for name, update in shown.items()}
 
 

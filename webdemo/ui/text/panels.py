@@ -63,9 +63,7 @@ def plan_line(results: Iterable[Result]) -> str:
         said = "The plan lays out nothing of this motion: the network makes it."
     else:
         share = most if least == most else f"{least} to {most}"
-        said = (
-            f"The plan lays out {share} % of this motion, whatever is set here; the network makes the rest."
-        )
+        said = f"The plan lays out {share} % of this motion, whatever is set here; the network makes the rest."
     return f'<p class="pd-method pd-laid" role="status">{text(said)}</p>'
 
 
@@ -169,9 +167,7 @@ def _asked(result: Result, name: str | None = None) -> str:
         ("Plan from the words", "off" if request.get("planned") is False else None),
     ]
     items = "".join(
-        f"<div><dt>{text(label)}</dt><dd>{text(value)}</dd></div>"
-        for label, value in shown
-        if value is not None
+        f"<div><dt>{text(label)}</dt><dd>{text(value)}</dd></div>" for label, value in shown if value is not None
     )
     return f'<dl class="pd-asked">{items}</dl>'
 
@@ -185,9 +181,7 @@ def _plain(value: Any) -> str | None:
     return None if value is None else f"{value:g}"
 
 
-def _quality_table(
-    samples: Sequence[tuple[Summary | None, Summary]], heads: Sequence[str] | None = None
-) -> str:
+def _quality_table(samples: Sequence[tuple[Summary | None, Summary]], heads: Sequence[str] | None = None) -> str:
     head: Sequence[str]
     if len(samples) == 1 and samples[0][0] is not None:
         head = ("Before", "After", "Change")
@@ -295,13 +289,9 @@ def model_card(info: Mapping[str, Any]) -> str:
     facts = "".join(
         f"<div><dt>{text(str(key).replace('_', ' ').capitalize())}</dt><dd>{text(value)}</dd></div>"
         for key, value in info.items()
-        if key not in ("name", "summary")
-        and isinstance(value, (str, int, float))
-        and not isinstance(value, bool)
+        if key not in ("name", "summary") and isinstance(value, (str, int, float)) and not isinstance(value, bool)
     )
-    paragraphs = "".join(
-        f"<p>{text(part)}</p>" for part in str(info.get("summary", "")).split("\n\n") if part.strip()
-    )
+    paragraphs = "".join(f"<p>{text(part)}</p>" for part in str(info.get("summary", "")).split("\n\n") if part.strip())
     return (
         f'<div class="pd-card"><h4>{text(info.get("name", "Model"))}</h4>{paragraphs}'
         f'<dl class="pd-facts">{facts}</dl></div>'

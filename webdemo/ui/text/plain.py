@@ -8,11 +8,7 @@ from motion.metrics import MEASURES
 
 from .words import number, text
 
-_FEET = (
-    (10.0, "standing feet stay in place"),
-    (20.0, "standing feet slide a little"),
-    (None, "standing feet slide"),
-)
+_FEET = ((10.0, "standing feet stay in place"), (20.0, "standing feet slide a little"), (None, "standing feet slide"))
 _OVERLAP = (
     (1.0, "the bodies do not overlap"),
     (5.0, "the bodies overlap a little"),

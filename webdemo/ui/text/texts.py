@@ -24,10 +24,7 @@ _FILLED: dict[str, tuple[str, dict[str, object]]] = {}
 @cache
 def languages() -> dict[str, dict[str, str]]:
     """Key → text of every language, by the names of its file."""
-    return {
-        path.stem: json.loads(path.read_text(encoding="utf-8"))
-        for path in sorted(TEXTS_FOLDER.glob("*.json"))
-    }
+    return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(TEXTS_FOLDER.glob("*.json"))}
 
 
 def say(key: str, **values: object) -> str:

@@ -38,10 +38,7 @@ def test_what_has_no_mean_is_one_sentence(
     folders: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     zero, one, wide = map(str, folders)
-    for asked, sentence in (
-        ([zero, wide], "not of one network"),
-        ([zero, one, "--share", "2"], "from 0 to 1"),
-    ):
+    for asked, sentence in (([zero, wide], "not of one network"), ([zero, one, "--share", "2"], "from 0 to 1")):
         assert mean.main([*asked, "--out", str(tmp_path / "out")]) == 2
         assert sentence in capsys.readouterr().err
         assert not (tmp_path / "out").exists()

@@ -48,13 +48,9 @@ class ReleasedBiGraphDiffPipeline:
         if len(paths) > 1:
             self.mean, self.std = read_normaliser(entry.file("mean"), entry.file("std"), 6 * JOINTS)
         self.name, self.digest = entry.name, digest(paths)
-        self.betas = (
-            cosine_betas() if entry.schedule == "cosine" else np.linspace(*LINEAR_BETAS, TRAIN_TIMESTEPS)
-        )
+        self.betas = cosine_betas() if entry.schedule == "cosine" else np.linspace(*LINEAR_BETAS, TRAIN_TIMESTEPS)
 
-    def run(
-        self, request: GenerateRequest, cancel: CancelToken, timer: StageTimer
-    ) -> Iterator[Progress | Result]:
+    def run(self, request: GenerateRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`Result` without a manifest; raises Cancelled within one step."""
         now = time.perf_counter()
         frames, longest = round(request.seconds * FPS), self.model.network.config.max_frames
@@ -80,10 +76,7 @@ class ReleasedBiGraphDiffPipeline:
         people = (x * self.std + self.mean).double().numpy().reshape(len(x), frames, 2, JOINTS, 3)
         if not np.isfinite(people).all():
             raise InputError("The motion diverged: take more steps.")
-        kinect = [
-            Duet.from_positions(np.moveaxis(pair, 1, 0), fps=FPS, skeleton=NTU25, roles=ROLES)
-            for pair in people
-        ]
+        kinect = [Duet.from_positions(np.moveaxis(pair, 1, 0), fps=FPS, skeleton=NTU25, roles=ROLES) for pair in people]
         fitted = [to_smpl(duet) for duet in kinect]
         finish = clean_person if request.cleanup else np.asarray
         shown = [duet.with_positions([finish(p.positions) for p in duet.people]) for duet in fitted]

@@ -48,9 +48,7 @@ class ReleasedInterFormerPipeline(InterFormerPipeline):
         self.network = load_released(checkpoint)
         self.name, self.digest, self.meta = entry.name, digest([checkpoint]), {}
 
-    def run(
-        self, request: ReactRequest, cancel: CancelToken, timer: StageTimer
-    ) -> Iterator[Progress | Result]:
+    def run(self, request: ReactRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """As :meth:`InterFormerPipeline.run`; the result's notes say what the conversion lost."""
         for event in super().run(request, cancel, timer):
             if isinstance(event, Result):

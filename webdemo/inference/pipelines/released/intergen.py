@@ -85,8 +85,12 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
         numbers = self.model.encode(placement.to_network(request.actor.positions))
         given = GivenPerson(numbers, place)
         return Reaction(
-            request.actor.num_frames, given, clip=request.actor, place=place, placement=placement  # type: ignore[arg-type]
-        )  # fmt: skip
+            request.actor.num_frames,
+            given,
+            clip=request.actor,
+            place=place,
+            placement=placement,  # type: ignore[arg-type]
+        )
 
 
 class GivenPerson:

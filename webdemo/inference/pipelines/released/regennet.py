@@ -74,9 +74,7 @@ class ReleasedReGenNetPipeline(ReGenNetPipeline):
             raise InputError(f"{self.name} has no action {prompt.strip()!r:.60}: choose one of: {named}.")
         return torch.full((samples,), number)
 
-    def run(
-        self, request: ReactRequest, cancel: CancelToken, timer: StageTimer
-    ) -> Iterator[Progress | Result]:
+    def run(self, request: ReactRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """As :meth:`ReGenNetPipeline.run`; the result's notes say what the conversion lost."""
         for event in super().run(request, cancel, timer):
             if isinstance(event, Result):
@@ -113,9 +111,7 @@ class ReleasedReGenNetPipeline(ReGenNetPipeline):
     def _live(self, request: ReactRequest, condition: Any) -> Iterator[LiveFrame]:
         frames = request.actor.num_frames
         noise = sample_noise(request.seed, request.samples, (frames, ROWS, ROW_WIDTH))
-        stream = self.network.stream(
-            steps=request.steps, batch=request.samples, action=condition, max_frames=frames
-        )
+        stream = self.network.stream(steps=request.steps, batch=request.samples, action=condition, max_frames=frames)
         finish = [FollowingCleanup() for _ in range(request.samples)]
         placement: Placement | None = None
         for index, frame in enumerate(request.actor.positions):
