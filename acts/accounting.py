@@ -55,7 +55,7 @@ _TARGETS = frozenset(("on", "onto", "against", "over", "at", "into"))
 _BESIDE = frozenset(("beside", "next", "side", "alongside"))
 _VERB = re.compile(r"\[([a-z-]+)\]")
 _PHRASAL = re.compile(r"\[([a-z-]+)\] (?:\{b\} )?([a-z]+)")
-_WORD, _SLOTS = re.compile(r"[a-z]+"), re.compile(r"\{(?![\w.]+:)[^}]*\}")
+_WORD, _SLOTS = re.compile(r"[a-z]+"), re.compile(r"\{(?![\w.]+:)[^{}]*\}")
 _TURNS = frozenset(("left", "right", "clockwise", "counterclockwise"))
 """Directions that never belong to what an act's own words mean."""
 _SIDED = frozenset(("hand", "arm", "foot", "leg"))

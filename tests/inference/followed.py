@@ -33,6 +33,7 @@ class Follower:
 
     def __init__(self, patch: pytest.MonkeyPatch) -> None:
         patch.setattr(Setting, "scene", lambda setting, pipeline: setting)
+        patch.setattr(Setting, "share", lambda setting, pipeline: 0.0)
         self.settings: list[Setting] = []
 
     def run(self, asked: Any, cancel: Any, timer: Any, passes: Any = None, given: Any = None) -> Iterator[Result]:

@@ -185,7 +185,7 @@ def test_a_sentence_of_several_beats_is_split_by_plain_generation_too(engine: En
     prompt = "First they wave, then they bow."
     made = run(engine, GenerateRequest(prompt=prompt, seconds=4.0, **QUICK))
     beats = (Beat("They wave.", seconds=1.9), Beat("They bow.", seconds=2.1))
-    assert "2 beats" in made.notes[0] and positions(made).shape[1] == 120
+    assert any("2 beats" in note for note in made.notes) and positions(made).shape[1] == 120
     split = as_scene(GenerateRequest(prompt=prompt, seconds=4.0, **QUICK))
     assert split is not None and [b.words for b in split.beats] == [b.words for b in beats]
     np.testing.assert_array_equal(positions(made), positions(run(engine, split)))

@@ -71,13 +71,15 @@ def _reaction(dice: random.Random, steps: int) -> Job:
         False,
         "",
         0,
+        "",
+        "",
     )
     return Job("react", data, {"kind": "react", "seed": seed, "steps": steps}, seconds * steps + 10)
 
 
 def _prediction(dice: random.Random, steps: int) -> Job:
     seconds = dice.choice((0.5, 1.0, 1.5))
-    data = (None, 1.5, seconds, "motion-mlp", "", 0, 0)
+    data = (None, 1.5, seconds, "motion-mlp", "", 0, 0, "", "")
     return Job("predict", data, {"kind": "predict", "seconds": seconds}, seconds + 10)
 
 
@@ -98,6 +100,8 @@ def _sheet(dice: random.Random, steps: int) -> Job:
         0,
         0,
         False,
+        "",
+        "",
     )
     return Job(SHEET, data, {}, 1.0)
 

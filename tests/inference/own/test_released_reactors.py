@@ -107,7 +107,7 @@ def test_regennets_actions_are_words(engine: Engine, actor: Clip) -> None:
 def test_interformer_answers_pose_after_pose(engine: Engine, actor: Clip) -> None:
     result = result_of(engine, ReactRequest(actor=actor, model="former", samples=2))
     assert len(result.duets) == 2 and result.duets[0].num_frames == 45
-    assert any("network saw 15" in note for note in result.notes) and "all samples" in result.notes[-1]
+    assert any("network saw 15" in note for note in result.notes) and any("all samples" in note for note in result.notes)
     long = Clip(np.concatenate([actor.positions] * 3), actor.fps)  # longer than the table of positions
     assert result_of(engine, ReactRequest(actor=long, model="former")).duets[0].num_frames == 135
 
@@ -117,7 +117,7 @@ def test_bigraphdiff_makes_two_people_from_words(engine: Engine) -> None:
     result = result_of(engine, request)
     duet = result.duets[0]
     assert isinstance(duet, Duet) and duet.positions.shape == (2, 45, 22, 3)
-    assert "25 joints" in result.notes[0] and "cm from the network" in result.notes[0]
+    assert any("25 joints" in note and "cm from the network" in note for note in result.notes)
     other = result_of(engine, GenerateRequest(prompt="peo", model="graph", seconds=1.5, steps=4)).duets[0]
     assert isinstance(other, Duet) and not np.array_equal(duet.positions, other.positions)
     with pytest.raises(InputError, match="at most 3 seconds"):

@@ -43,6 +43,8 @@ THINGS = {
     "name": ("{upload}", "{canary}", "share/page.html"),
     "environment": ("client",),
     "type": ("component",),
+    "number": ("0",),
+    "pressed": ("1",),
     "file_name": ("index.js",),
 }
 """What stands for each parameter of a path."""

@@ -287,7 +287,7 @@ def test_every_kind_of_request_has_a_cost() -> None:
     actor = stub_module().walking(3.0).a
     one = units(GenerateRequest(prompt="x", seconds=2.0, steps=10))
     assert units(GenerateRequest(prompt="x", seconds=2.0, steps=10, samples=3)) == pytest.approx(3 * one)
-    assert 0 < units(PredictRequest(motion=actor, seconds=2.0)) < one < units(ReactRequest(actor=actor))
+    assert 0 < units(PredictRequest(motion=actor, seconds=2.0)) < one < units(ReactRequest(actor=actor, model="intergen"))
 
 
 def test_a_prediction_of_one_person_is_kept(history: History) -> None:
