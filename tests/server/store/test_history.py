@@ -287,7 +287,8 @@ def test_every_kind_of_request_has_a_cost() -> None:
     actor = stub_module().walking(3.0).a
     one = units(GenerateRequest(prompt="x", seconds=2.0, steps=10))
     assert units(GenerateRequest(prompt="x", seconds=2.0, steps=10, samples=3)) == pytest.approx(3 * one)
-    assert 0 < units(PredictRequest(motion=actor, seconds=2.0)) < one < units(ReactRequest(actor=actor, model="intergen"))
+    reaction = units(ReactRequest(actor=actor, model="intergen"))
+    assert 0 < units(PredictRequest(motion=actor, seconds=2.0)) < one < reaction
 
 
 def test_a_prediction_of_one_person_is_kept(history: History) -> None:
