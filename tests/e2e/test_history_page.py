@@ -81,7 +81,7 @@ def test_a_reload_keeps_the_last_result(lab: str, open_page: Callable) -> None:
     page.set_default_timeout(SLOW)
     page.fill("#prompt textarea", "Two people bow before the reload.")
     page.click("#generate")
-    page.wait_for_selector("#status .pd-done:has-text('Done')")
+    page.wait_for_selector("#status .pd-done:has-text('Made')")
     page.reload()
     page.wait_for_selector("#status .pd-done:has-text('Made on')")
     title = "document.querySelector('#player .pdd-title').textContent"
@@ -117,7 +117,7 @@ def test_a_prediction_opens_with_its_marker_and_its_ghost(lab: str, open_page: C
         assert page.input_value(f"#predict-{control} input[type=number]") == value
     page.wait_for_selector("#predict-curves .legendtext:has-text('What really followed')")
     page.click("button#predict-generate")  # from what the history kept
-    page.wait_for_selector("#predict-status .pd-done:has-text('Done')")
+    page.wait_for_selector("#predict-status .pd-done:has-text('Made')")
 
 
 def test_a_class_and_a_reaction_open_with_their_method(lab: str, open_page: Callable) -> None:
@@ -136,7 +136,7 @@ def test_a_class_and_a_reaction_open_with_their_method(lab: str, open_page: Call
     page.locator("#react-steps input[type=number]").fill("7")
     page.locator("#react-steps input[type=number]").press("Tab")
     page.click("button#react-generate")
-    page.wait_for_selector("#react-status .pd-done:has-text('Done')")
+    page.wait_for_selector("#react-status .pd-done:has-text('Made')")
 
     other = open_page(lab)
     other.set_default_timeout(SLOW)
@@ -162,7 +162,7 @@ def test_a_run_opens_with_the_very_file_that_was_uploaded(lab: str, open_page: C
     page.set_input_files("#react-file input[type=file]", str(file))
     page.wait_for_selector("#react-status :text('0.0 to')")
     page.click("button#react-generate")
-    page.wait_for_selector("#react-status .pd-done:has-text('Done')")
+    page.wait_for_selector("#react-status .pd-done:has-text('Made')")
     other = open_page(lab)
     other.set_default_timeout(SLOW)
     other.click("button[role=tab]:has-text('History')")

@@ -51,7 +51,7 @@ def damaged(kind: str) -> np.ndarray:
     """(90, 22, 3) of a walker with NaN, with a wrist that jumps, or of half a second."""
     positions = np.array(walking(0.5 if kind == "short" else 3.0).a.positions)
     if kind != "short":
-        positions[40, 20] += np.nan if kind == "nan" else 3.0
+        positions[20, 20] += np.nan if kind == "nan" else 3.0
     return positions
 
 
