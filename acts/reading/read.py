@@ -343,8 +343,8 @@ class _Planner:
             id=number_of,
             act=name,
             agents=tuple(match.agents),  # type: ignore[arg-type]
-            patient=patient or None,
-            thing=match.thing or self._named(event, name),  # type: ignore[arg-type]
+            patient=patient or None,  # type: ignore[arg-type]
+            thing=match.thing or self._named(event, name),
             part=part.lemma if part is not None else None,
             part_of=owner,  # type: ignore[arg-type]
             polarity="not" if event.denied else "done",

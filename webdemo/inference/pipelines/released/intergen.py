@@ -86,10 +86,10 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
         given = GivenPerson(numbers, place)
         return Reaction(
             request.actor.num_frames,
-            given,
+            given,  # type: ignore[arg-type]
             clip=request.actor,
             place=place,
-            placement=placement,  # type: ignore[arg-type]
+            placement=placement,
         )
 
 
