@@ -222,8 +222,10 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return way in (act.direction, act.side)
     if lemma in (act.act.split("-")[0], act.act.replace("-", "")):
         return True
+    if text == "own":
+        return act.patient is None or act.part_of in act.agents
     if _is_target(token) and "{b}" in shown_caption(act, entry):
-        return True
+        return not any(c.lower_.endswith(("self", "selves")) for c in token.children)
     if any(forms & each for each in (said_words(entry.caption), set(act.manner))):
         return True
     if (text in _BESIDE and said_words(entry.caption) & _BESIDE) or (text == "behind" and FROM_BEHIND in act.manner):

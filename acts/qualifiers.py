@@ -14,9 +14,7 @@ from .plan import FROM_BEHIND, Act
 from .reading.vocabulary import is_act, vocabulary
 from .shapes import Go
 
-_BOTH = re.compile(
-    r"\bboth (?:\w+ )?(?:hands|arms|palms|fists|feet|legs|knees|elbows|shoulders|cheeks)\b", re.IGNORECASE
-)
+_BOTH = re.compile(r"\bboth (?:\w+ )?(hands|arms|palms|fists|feet|legs|knees|elbows|shoulders|cheeks)\b", re.IGNORECASE)
 
 OTHER_THING = "which thing"
 """The kind of qualifier without which an act is not judged: pointing at a door is not pointing at the other person."""
@@ -40,8 +38,9 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
         yield "how often", ""
     if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
         yield "which side", ""
-    if act.side == "both" and not names & {"side", "hands"} and _BOTH.search(said) and not _is_two_handed(entry):
-        yield "with both hands", ""
+    both = _BOTH.search(said) if act.side == "both" else None
+    if both and not names & {"side", "hands"} and not _is_two_handed(entry):
+        yield "on both sides" if both[1] in ("feet", "legs", "knees") else "with both hands", ""
     if act.direction is not None and act.direction not in words and "way" not in names:
         yield "which way", _goes_way(act, who) if goes else ""
     if abs(act.speed - 1.0) > 0.15:
@@ -78,6 +77,7 @@ def plain(act: Act, kinds: frozenset[str]) -> Act:
         "how often": {"times": None},
         "which side": {"side": None},
         "with both hands": {"side": None},
+        "on both sides": {"side": None},
         "which way": {"direction": None},
         "how fast": {"manner": ()},
         "in which manner": {"manner": ()},

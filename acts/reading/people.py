@@ -310,6 +310,8 @@ class Cast:
         """The owner of a part of the body, by its possessive; "" where the words leave it open."""
         if self.alone and len(subject) < 2:
             return subject or "a"
+        if subject and any(child.lower_ == "own" for child in token.children):
+            return subject
         for child in token.children:
             if child.dep_ == "poss" or child.tag_ == "PRP$":
                 text = child.lower_
@@ -329,8 +331,6 @@ class Cast:
                 who = self.person(child, subject) or ""
                 self.note_states(child, who)
                 return who
-            if child.lower_ == "own":
-                return subject
         of = next((child for child in token.children if child.lower_ == "of"), None)
         for child in of.children if of is not None else ():
             return self.person(child, subject) or ""

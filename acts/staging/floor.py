@@ -166,7 +166,7 @@ def _moved(
                 track.walk(line, _time(far, move.speed, 0.7 * seconds), evenly=True)
             track.stay(facing=True)
         case Way.TURN:
-            track.turn(2 * math.pi * move.turns)
+            track.turn(2 * math.pi * move.turns * move.sense)
             track.stay(facing=True, seconds=None if last else 0.2)
         case Way.FACE if last and Way.ROUND in theirs and tracks[1 - who].frame > track.frame:
             track.watch(tracks[1 - who])
@@ -182,7 +182,7 @@ def _moved(
             _away(move, track, gap, to, seconds, both=both, followed=Way.AFTER in theirs)
         case Way.BACK | Way.ASIDE:
             far = min(move.metres, move.speed * seconds) if move.metres else min(BACKWARDS, 0.6 * seconds)
-            step = -far * to if move.way is Way.BACK else SIDESTEP * np.array([to[1], -to[0]])
+            step = -far * to if move.way is Way.BACK else move.sense * SIDESTEP * np.array([to[1], -to[0]])
             taken = min(seconds, max(1.3, float(np.linalg.norm(step)) / move.speed + EASE))
             track.walk(np.stack([here, here + step]), taken, heading=bearing(to))
             track.stay(facing=True, seconds=None if last else 0.2)
@@ -291,7 +291,7 @@ def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, 
     end_radius = max(radius, WIDE / 2 if both else WIDE)
     speed = max(move.speed, 1.3)
     wanted = min(wanted, speed * max(seconds - 0.4, 0.5) / max((radius + end_radius) / 2, 0.4))
-    angles = start + np.linspace(0, wanted, 60)
+    angles = start + move.sense * np.linspace(0, wanted, 60)
     radii = radius + (end_radius - radius) * np.clip(np.linspace(0, 5, 60), 0, 1)
     line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
     track.walk(line, seconds)

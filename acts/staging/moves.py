@@ -31,6 +31,7 @@ class Move:
         backwards: they go away with their face to the other.
         gait: of :data:`.gaits.GAITS`, of a person who goes low over the floor, or of :data:`.steps.STEPS`; "" for a
             walk or a run.
+        rightwards: to their right; of turns and of ways around, clockwise as seen from above.
     """
 
     person: str
@@ -44,6 +45,12 @@ class Move:
     near: float = 0.0
     backwards: bool = False
     gait: str = ""
+    rightwards: bool = False
+
+    @property
+    def sense(self) -> float:
+        """1 to the left and counter-clockwise, -1 to the right and clockwise."""
+        return -1.0 if self.rightwards else 1.0
 
 
 _GOING = {Way.AWAY, Way.PAST, Way.ROUND, Way.ALONG, Way.TO, Way.BEHIND}

@@ -56,6 +56,8 @@ _WAYS = {
     "ahead": Way.AHEAD,
     "to and fro": Way.PACE,
 }
+_RIGHTWARDS = ("right", "clockwise")
+"""Directions to the right, and those of a turn to the right."""
 _TURNS = {"around": Way.TURN, "to": Way.FACE, "away": Way.TURN}
 PULLED = 0.8
 """Metres from where somebody stands up at which the one stands who pulls them up."""
@@ -196,7 +198,8 @@ class _Stage:
                 turns = times * (shape.turns if times == 1 else max(shape.turns, 1.0))  # "turns around twice"
                 faces = shape.way == "around" and shape.turns < 1 and act.patient and not act.part
                 way = Way.FACE if faces else _TURNS[shape.way]
-                self.moves += [Move(who, way, turns=turns, late=late) for who in people]
+                right = act.direction in _RIGHTWARDS
+                self.moves += [Move(who, way, turns=turns, late=late, rightwards=right) for who in people]
             case shapes.Stay() if shape.facing == "away":
                 self.moves += [Move(who, Way.AVERTED) for who in people]
             case shapes.Place():
@@ -301,6 +304,7 @@ class _Stage:
             shape.near,
             shape.backwards,
             shape.gait,
+            act.direction in _RIGHTWARDS,
         )
 
     def _chase(self, act: Act, shape: shapes.Go) -> None:

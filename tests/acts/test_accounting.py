@@ -38,6 +38,8 @@ def test_words_that_are_in_no_act_are_reported(sentence: str, unread: tuple[str,
         ("A hugs B for ten seconds.", ("how long",)),
         ("A stamps the foot angrily.", ("in which manner",)),
         ("A points at the door.", ("which thing",)),
+        ("A kneels on both knees.", ("on both sides", "where on the body")),
+        ("A points at B and then at himself.", ("“at himself”",)),
     ],
 )
 def test_qualifiers_that_nothing_measures_are_named(sentence: str, kinds: tuple[str, ...]) -> None:

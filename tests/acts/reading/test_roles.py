@@ -66,6 +66,10 @@ def test_the_hand_that_is_held_out_is_the_others() -> None:
     assert (turned.act, turned.agents) == ("turn-away", ("b",))
 
 
+def test_a_part_that_is_ones_own_is_not_the_other_persons() -> None:
+    assert last("A touches B's shoulder and then touches his own shoulder.").part_of == "a"
+
+
 def test_her_back_is_a_part_of_the_body_where_something_is_done_to_it() -> None:
     touched = read("He touches her back and then she runs.").acts[0]
     assert (touched.part, touched.part_of, touched.direction) == ("back", "b", None)

@@ -182,6 +182,24 @@ def test_moves_of_one_beat_come_one_after_another() -> None:
     assert gaps(found)[-1] > 3.0
 
 
+@pytest.mark.parametrize(
+    ("words", "sense"), [("spins to the left", 1), ("spins to the right", -1), ("spins clockwise twice", -1)]
+)
+def test_a_turn_goes_the_way_that_the_words_say(words: str, sense: int) -> None:
+    found = ways(f"Person A {words}.", seconds=5.0, standing=FACING)[1][0]
+    assert found.headings is not None
+    turned = np.unwrap(found.headings)[-1] - found.headings[0]
+    assert sense * turned > 1.5 * math.pi  # the first of the given frames is on the way
+
+
+@pytest.mark.parametrize(("words", "sense"), [("counterclockwise", 1), ("clockwise", -1)])
+def test_a_walk_around_goes_the_way_that_the_words_say(words: str, sense: int) -> None:
+    found = ways(f"Person A walks {words} around person B.", seconds=6.0, standing=FACING)[1][0]
+    out = found.places - FACING.places[1]
+    turned = np.unwrap(np.arctan2(out[:, 0], out[:, 1]))
+    assert sense * (turned[-1] - turned[0]) > math.pi
+
+
 def test_nobody_turns_round_to_who_comes_up_behind_them() -> None:
     begin, found = ways("Person A sneaks up on person B.")
     assert math.cos(begin.headings[1]) > 0.99
