@@ -21,8 +21,8 @@ from acts.plan import Act, Plan
 from motion import Clip, Duet, stacked_positions
 from motion.formats import read
 from webdemo.inference import Engine, GenerateRequest, PredictRequest, ReactRequest, SceneRequest
-from webdemo.inference.paths import path_of
-from webdemo.inference.plans import kept_plan
+from webdemo.inference.requests.paths import path_of
+from webdemo.inference.requests.plans import kept_plan
 from webdemo.inference.story.beats import Beat
 from webdemo.inference.story.wishes import Pose
 

@@ -12,7 +12,8 @@ import pytest
 from motion import Duet
 from tests.e2e.harness import walking_duet
 from webdemo.cli import gallery, main
-from webdemo.inference.requests import GenerateRequest, Result
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.run import Result
 from webdemo.ui.components.gallery import SCENES
 
 WANTED = {"prompt": "Two friends hug.", "seconds": 4.0, "seed": 3}

@@ -15,7 +15,8 @@ from tests.motion.formats.characters import glb_takes
 from tests.motion.formats.rigs import RIGS, bvh_text
 from webdemo import cli
 from webdemo.cli import generation
-from webdemo.inference.requests import ReactRequest, Result
+from webdemo.inference.requests import ReactRequest
+from webdemo.inference.run import Result
 
 
 def standing(frames: int, x: float = 0.0) -> Clip:
@@ -173,7 +174,7 @@ def test_any_of_six_people_can_be_chosen(
 def test_of_a_long_kinect_recording_only_the_part_is_fitted(
     tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from webdemo.inference import actor
+    from webdemo.inference.requests import actor
 
     bodies = standing(3000).positions[:, [15, 12, 6, 16, 18, 20, 17, 19, 21, 1, 4, 7, 2, 5, 8]]
     np.save(tmp_path / "kinect.npy", bodies)
@@ -195,7 +196,7 @@ def test_a_stream_prints_every_frame_before_the_answer(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     from webdemo.inference.engine import Engine
-    from webdemo.inference.live.stream import LiveFrame
+    from webdemo.inference.requests.live import LiveFrame
 
     def live(self: Engine, request: ReactRequest) -> Any:
         for index, frame in enumerate(request.actor.positions):

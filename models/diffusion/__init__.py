@@ -1,7 +1,7 @@
 """The diffusion that every network here trains and samples with: schedule, guidance and sampling loop."""
 
 from .guidance import Guided, Term, classifier_free, guide, terms, weighted
-from .sampling import SamplingStep, denoise, sample_steps
+from .sampling import SamplingStep, denoise, sample_noise, sample_steps
 from .schedule import (
     TRAIN_TIMESTEPS,
     NoiseSchedule,
@@ -25,6 +25,7 @@ __all__ = [
     "denoise",
     "guide",
     "make_scheduler",
+    "sample_noise",
     "sample_steps",
     "terms",
     "top_timesteps",

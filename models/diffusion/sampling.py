@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import torch
 from torch import Tensor
 
@@ -63,3 +64,12 @@ def denoise(predict: Callable[[Tensor, Tensor], Tensor], noise: Tensor, schedule
     for step in sample_steps(predict, noise, scheduler, **options):
         sample = step.sample
     return sample
+
+
+def sample_noise(seed: int, samples: int, shape: tuple[int, ...]) -> Tensor:
+    """(samples, *shape) noise; a sample's noise depends only on the seed and its index."""
+    rows = []
+    for sample in range(samples):
+        state = int(np.random.SeedSequence([seed, sample]).generate_state(1, np.uint64)[0])
+        rows.append(torch.randn(shape, generator=torch.Generator().manual_seed(state)))
+    return torch.stack(rows)

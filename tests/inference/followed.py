@@ -14,12 +14,10 @@ from acts.staging.bodies.poses import upright
 from acts.staging.parts import KnownFrames, KnownPath
 from motion import FPS, Duet
 from motion.transforms import heading
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.pipelines.scene import SceneMaker
 from webdemo.inference.pipelines.scene_setting import Setting
-from webdemo.inference.requests import Result
+from webdemo.inference.run import CancelToken, Result, StageTimer
 from webdemo.inference.story import SceneRequest
-from webdemo.inference.timer import StageTimer
 
 BETWEEN = 40
 """Frames between two given poses up to which people go straight from one to the other."""

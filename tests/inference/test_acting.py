@@ -9,8 +9,8 @@ import pytest
 
 from acts import own
 from acts.own import look_again
-from webdemo.inference.acting import acted
 from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.requests.acting import acted
 from webdemo.inference.story.prompted import as_scene
 
 OLLIE = '[ollie]\nframes = ["{a} ollie"]\ncaption = ["{a} [jump]"]\nreads = ["She ollies."]\n'
@@ -58,6 +58,6 @@ def test_other_requests_follow_no_acts(fields: dict[str, object]) -> None:
 
 
 def test_without_acts_of_ones_own_nothing_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("webdemo.inference.acting.directed", None)
+    monkeypatch.setattr("webdemo.inference.requests.acting.directed", None)
     request = GenerateRequest(prompt="She ollies.")
     assert acted(request) is request

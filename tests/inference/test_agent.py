@@ -20,7 +20,8 @@ from motion.placement import MEDIAN_START_DISTANCE
 from motion.retarget import to_smpl
 from motion.transforms import facing
 from webdemo.inference import Cancelled, CancelToken, ReactRequest, Result
-from webdemo.inference.engine import WEIGHTS, Engine
+from webdemo.inference.engine import Engine
+from webdemo.inference.method import WEIGHTS
 from webdemo.inference.pipelines.agent import AgentPipeline, Eye, Look
 from webdemo.inference.pipelines.predictor import PredictorPipeline
 from webdemo.ui.text.examples import CLIPS

@@ -6,10 +6,10 @@ import torch
 
 from motion import SMPL22, Clip
 from webdemo.inference import Engine, GenerateRequest, Result
-from webdemo.inference.batch import Meeting, _Question, answer_together, run_batch
-from webdemo.inference.cancel import CancelToken
+from webdemo.inference.engine.batch import Meeting, _Question, answer_together, run_batch
 from webdemo.inference.finish import damping
-from webdemo.inference.requests import Cancelled, Progress, ReactRequest
+from webdemo.inference.requests import ReactRequest
+from webdemo.inference.run import Cancelled, CancelToken, Progress
 
 
 def request(prompt: str = "Two people shake hands.", **fields) -> GenerateRequest:

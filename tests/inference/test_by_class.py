@@ -15,8 +15,9 @@ from motion import SMPL22, InputError
 from motion.formats import read
 from webdemo import cli
 from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Result
-from webdemo.inference.batch import run_batch
-from webdemo.inference.engine import WEIGHTS, Engine
+from webdemo.inference.engine import Engine
+from webdemo.inference.engine.batch import run_batch
+from webdemo.inference.method import WEIGHTS
 
 LABELS = ("shake hands", "wave to each other")
 QUICK = {"model": "bigraphdiff", "seconds": 1.5, "steps": 3, "guidance": 2.0}

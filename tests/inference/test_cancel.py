@@ -5,9 +5,8 @@ import threading
 import pytest
 
 from motion import InputError
-from webdemo.inference import cancel
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.requests import Cancelled
+from webdemo.inference import run
+from webdemo.inference.run import Cancelled, CancelToken
 
 
 def test_nothing_happens_until_a_token_is_set() -> None:
@@ -30,7 +29,7 @@ def test_another_thread_cancels() -> None:
 @pytest.mark.parametrize(("seconds", "said"), [(600, "10 minutes"), (90, "90 seconds"), (60, "60 seconds")])
 def test_a_run_ends_when_its_time_is_over(monkeypatch: pytest.MonkeyPatch, seconds: float, said: str) -> None:
     now = 1000.0
-    monkeypatch.setattr(cancel, "monotonic", lambda: now)
+    monkeypatch.setattr(run, "monotonic", lambda: now)
     token = CancelToken(seconds)
     now += 10_000  # in line
     token.raise_if_cancelled()
@@ -49,7 +48,7 @@ def test_a_run_ends_when_its_time_is_over(monkeypatch: pytest.MonkeyPatch, secon
 
 def test_without_a_limit_a_run_may_take_any_time(monkeypatch: pytest.MonkeyPatch) -> None:
     now = 0.0
-    monkeypatch.setattr(cancel, "monotonic", lambda: now)
+    monkeypatch.setattr(run, "monotonic", lambda: now)
     token = CancelToken().start()
     now += 1e9
     token.raise_if_cancelled()

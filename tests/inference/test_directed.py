@@ -9,9 +9,8 @@ from acts.staging.parts import KnownFrames, KnownPath, Part
 from motion import SMPL22, Duet, InputError
 from motion.transforms import heading_matrix
 from webdemo.inference import Engine, GenerateRequest
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.directed import FADE, Directed, directed, with_given, with_joints
-from webdemo.inference.timer import StageTimer
+from webdemo.inference.pipelines.directed import FADE, Directed, directed, with_given, with_joints
+from webdemo.inference.run import CancelToken, StageTimer
 
 FRAMES = 60
 
@@ -92,7 +91,9 @@ def test_a_single_pose_moves_only_what_is_near_it() -> None:
 def test_poses_in_a_row_are_led_through_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
     """A bystander's poses, one every half second, leave nothing to smooth; a pose by itself does."""
     smoothed: list[list[int]] = []
-    monkeypatch.setattr("webdemo.inference.directed.passing", lambda made, at, *_: smoothed.append(at.tolist()) or made)
+    monkeypatch.setattr(
+        "webdemo.inference.pipelines.directed.passing", lambda made, at, *_: smoothed.append(at.tolist()) or made
+    )
     made = np.stack([walker(), walker(speed=0.8)]).astype(np.float32)
     row = [KnownFrames(0, [20, 35, 50], made[0, [20, 35, 50]]), KnownFrames(1, [30], made[1, 30:31])]
     Directed(FRAMES, None, parts=row).duet(made, lambda person: person)

@@ -66,8 +66,7 @@ def test_cleanup_ends_on_constant_bones_above_the_floor(engine: Engine) -> None:
 def test_damping_zero_is_the_plain_sampler_bit_for_bit(engine: Engine) -> None:
     import torch
 
-    from models.diffusion import make_scheduler
-    from webdemo.inference.noise import sample_noise
+    from models.diffusion import make_scheduler, sample_noise
 
     request = replace(REQUEST, damping=0.0, cleanup=False)
     ours = result_of(engine, request).duets[0].positions

@@ -2,7 +2,7 @@
 
 import torch
 
-from webdemo.inference.noise import sample_noise
+from models.diffusion import sample_noise
 
 
 def test_a_sample_depends_on_seed_and_index_alone() -> None:

@@ -17,7 +17,7 @@ from motion import FPS, SMPL22
 from motion.metrics.naturalness import jerk_percentile
 from motion.transforms import heading
 from webdemo.inference import Engine
-from webdemo.inference.engine import WEIGHTS
+from webdemo.inference.method import WEIGHTS
 
 from .test_planned_scenes import made
 

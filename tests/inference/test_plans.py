@@ -15,11 +15,11 @@ from acts.staging.told import Told
 from motion import InputError
 from motion.looks import UNSAID
 from webdemo.inference import Engine, GenerateRequest, ReactRequest, SceneRequest
+from webdemo.inference.engine.tries import replayed
 from webdemo.inference.pipelines import intergen, scene_setting
 from webdemo.inference.pipelines.scene import Parts
-from webdemo.inference.plans import KeptPlan, WindowPlan, kept_plan
+from webdemo.inference.requests.plans import KeptPlan, WindowPlan, kept_plan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, prompted, request, understood
-from webdemo.inference.tries import replayed
 
 from .people import waver
 from .test_scenes import positions, run

@@ -19,7 +19,8 @@ from motion.skeleton import SBU15
 from motion.transforms import heading, heading_matrix
 from webdemo import cli
 from webdemo.inference import PredictRequest, PredictResult
-from webdemo.inference.engine import WEIGHTS, Engine
+from webdemo.inference.engine import Engine
+from webdemo.inference.method import WEIGHTS
 from webdemo.inference.pipelines.predict_feet import with_planted_feet
 from webdemo.inference.pipelines.predict_frame import to_last_pose, to_world
 from webdemo.inference.pipelines.predictor import (
@@ -30,7 +31,7 @@ from webdemo.inference.pipelines.predictor import (
     with_bones_of,
     without_jump,
 )
-from webdemo.inference.predict_request import mean_steps
+from webdemo.inference.requests.predict import mean_steps
 from webdemo.ui.text.examples import CLIPS
 
 

@@ -11,8 +11,8 @@ from motion.handedness import leading_wrist
 from motion.placement import MEDIAN_START_DISTANCE, Placement
 from motion.transforms import heading, heading_matrix, mirrored
 from webdemo.inference import Cancelled, CancelToken, Progress, ReactRequest, Result
-from webdemo.inference.actor import choose_actor
 from webdemo.inference.engine import Engine
+from webdemo.inference.requests.actor import choose_actor
 
 from .people import waver
 
@@ -94,9 +94,8 @@ def test_placement_puts_a_person_where_the_network_expects_one(role: str) -> Non
 
 def test_the_network_sees_the_given_person_clean_at_every_step(engine: Engine) -> None:
     """Sampling by hand: the given half is set before each network call, and its prediction overwritten."""
-    from models.diffusion import make_scheduler
-    from webdemo.inference.noise import sample_noise
-    from webdemo.inference.scenes import scene_of
+    from models.diffusion import make_scheduler, sample_noise
+    from webdemo.inference.pipelines.given import scene_of
 
     request = replace(REQUEST, damping=0.0, cleanup=False)
     generator = engine.pipeline("intergen")
@@ -152,7 +151,7 @@ def test_damping_and_cleanup_touch_the_reaction_alone(engine: Engine) -> None:
 
 def test_damping_moves_no_given_number(engine: Engine) -> None:
     from webdemo.inference.finish.damping import Damping
-    from webdemo.inference.scenes import scene_of
+    from webdemo.inference.pipelines.given import scene_of
 
     model = engine.pipeline("intergen").model
     given = scene_of(REQUEST, model).given

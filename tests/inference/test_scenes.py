@@ -11,9 +11,9 @@ from acts import read
 from motion import SMPL22, Duet
 from motion.skeleton import ARMS
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
-from webdemo.inference.batch import run_batch
+from webdemo.inference.engine.batch import run_batch
 from webdemo.inference.pipelines.scene import WindowRequest
-from webdemo.inference.plans import KeptPlan
+from webdemo.inference.requests.plans import KeptPlan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
 from webdemo.inference.story.prompted import as_scene
 from webdemo.inference.story.understood import of_each

@@ -6,7 +6,7 @@ import numpy as np
 
 from acts.lexicon import lexicon
 from webdemo.inference.engine import Engine
-from webdemo.inference.requests import Result
+from webdemo.inference.run import Result
 from webdemo.inference.story import Beat, SceneRequest
 
 KINDS = ("way", "carry", "hold", "posture", "bout")

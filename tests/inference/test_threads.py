@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from webdemo.inference import threads
+from models import threads
 from webdemo.inference.engine import Engine
 from webdemo.inference.requests import GenerateRequest
 
@@ -24,7 +24,7 @@ def load(folder):
 methods.method = lambda name: types.SimpleNamespace(needs=(), weights=None, load=load)
 Engine().pipeline("any")
 from models.compiled import THREADS
-from webdemo.inference.threads import CORES
+from models.threads import CORES
 print(seen[0], THREADS, CORES)
 """
 

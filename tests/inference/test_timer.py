@@ -2,13 +2,13 @@
 
 import pytest
 
-from webdemo.inference import timer
-from webdemo.inference.timer import StageTimer
+from webdemo.inference import run
+from webdemo.inference.run import StageTimer
 
 
 def test_laps_of_a_stage_add_up(monkeypatch: pytest.MonkeyPatch) -> None:
     times = iter([10.0, 11.0, 11.5, 13.5, 14.0])
-    monkeypatch.setattr(timer, "time", type("Clock", (), {"perf_counter": staticmethod(lambda: next(times))}))
+    monkeypatch.setattr(run, "time", type("Clock", (), {"perf_counter": staticmethod(lambda: next(times))}))
     clock = StageTimer.start()
     now = clock.lap("text", clock.began)
     now = clock.lap("sample", now)

@@ -14,11 +14,11 @@ from motion import Duet, InputError
 from motion.skeleton import SBU15
 from tests.motion.metrics.test_sentence_shapes import duet, put, shift, spin
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Progress, Result, SceneRequest
+from webdemo.inference.engine.tries import replayed, run_tries
+from webdemo.inference.engine.verdicts import judged, note
 from webdemo.inference.requests import MAX_SEED
+from webdemo.inference.run import StageTimer
 from webdemo.inference.story import Beat
-from webdemo.inference.timer import StageTimer
-from webdemo.inference.tries import replayed, run_tries
-from webdemo.inference.verdicts import judged, note
 
 SENTENCE = "A raises the left arm and turns around."
 UP = put("left_wrist", (0.2, 0.9, 0.0))

@@ -16,7 +16,7 @@ import pytest
 from gradio_client import Client
 from gradio_client.exceptions import AppError, AuthenticationError
 
-from webdemo.inference.requests import Result
+from webdemo.inference.run import Result
 from webdemo.server.accounts.users import Users
 from webdemo.server.serve import make_server
 from webdemo.server.settings import Settings

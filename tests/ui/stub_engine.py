@@ -14,14 +14,13 @@ from motion.kinematics import forward_kinematics
 from motion.metrics import compare
 from motion.transforms import heading_matrix
 from webdemo.inference.live.partner import Belief
-from webdemo.inference.live.stream import LiveFrame, LiveProgress, LiveRequest, paced
-from webdemo.inference.live.take import LiveTake
 from webdemo.inference.methods import method
-from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
-from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.requests.live import LiveFrame, LiveProgress, LiveRequest, LiveTake, paced
+from webdemo.inference.requests.predict import PredictRequest, PredictResult, with_people
+from webdemo.inference.run import Cancelled, Progress, Result, StageTimer
 from webdemo.inference.story import SceneProgress, SceneRequest
 from webdemo.inference.story.prompted import as_scene
-from webdemo.inference.timer import StageTimer
 
 FPS = 30
 _WALK = 0.8  # metres a second

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, Clip, Duet
-from webdemo.inference.plans import KeptPlan, WindowPlan
-from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.requests.plans import KeptPlan, WindowPlan
+from webdemo.inference.run import Result
 from webdemo.inference.story import Beat, SceneRequest
 from webdemo.ui.again import request_of, verdict
 

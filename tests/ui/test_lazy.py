@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from webdemo.inference import engine as engines
-from webdemo.inference.requests import Progress
+from webdemo.inference.run import Progress
 from webdemo.ui.lazy import LazyEngine
 
 

@@ -13,7 +13,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from acts import lexicon, read
-from webdemo.inference.requests import GenerateRequest, Result
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.run import Result
 
 SECONDS = (4.0, 8.0)
 """The shortest and the longest motion that is made of an act."""

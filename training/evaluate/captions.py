@@ -20,7 +20,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from models.diffusion import denoise, make_scheduler
+from models.diffusion import denoise, make_scheduler, sample_noise
 from models.intergen.words import join_conditions
 from models.motion_tokens import decode
 from models.text import MiniLM
@@ -36,10 +36,9 @@ from motion.metrics.generation import (
 from training.core.shell import add_options, exit_code, write_scores
 from training.evaluate.extractor import Extractor, load_extractor
 from training.prepare import Scenes, load
-from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.damping import Damping
-from webdemo.inference.noise import sample_noise
+from webdemo.inference.method import WEIGHTS
 from webdemo.inference.pipelines.intergen import InterGenPipeline
 
 Array = NDArray[np.floating]

@@ -19,7 +19,7 @@ from training.evaluate.prediction import put_into
 from training.evaluate.prediction_scores import Array
 from training.trainers.prediction.windows import CorpusWindows
 from webdemo.inference.pipelines.predictor import PredictorPipeline
-from webdemo.inference.predict_request import mean_steps
+from webdemo.inference.requests.predict import mean_steps
 
 FPS = 30
 PAST, FUTURE = FPS, 4 * FPS

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from webdemo.inference.predict_request import mean_steps
+from webdemo.inference.requests.predict import mean_steps
 
 Array = NDArray[np.floating]
 Predict = Callable[[Array], Array]

@@ -34,7 +34,7 @@ from training.corpus.pairs import load_pairs
 from training.corpus.strict_pairs import strict_pairs
 from training.evaluate.deep_gru import accuracy, deep_features, fit, frechet_distance, measured
 from webdemo.inference import Engine, ReactRequest, Result
-from webdemo.inference.engine import WEIGHTS
+from webdemo.inference.method import WEIGHTS
 from webdemo.inference.pipelines.nearest import Bank
 
 Array = NDArray[np.floating]

@@ -14,7 +14,7 @@ from typing import Any, cast
 import httpx
 import numpy as np
 
-from webdemo.inference.actor import read_actor
+from webdemo.inference.requests.actor import read_actor
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
 
 from .served import ROOT

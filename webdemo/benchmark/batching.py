@@ -21,10 +21,9 @@ def measure_batching(*, requests: int = 8, steps: int = 50, seconds: float = 4.0
     processor time, which other work on the machine does not change."""
     import numpy as np
 
-    from webdemo.inference.batch import run_batch
-    from webdemo.inference.cancel import CancelToken
     from webdemo.inference.engine import Engine
-    from webdemo.inference.requests import Result
+    from webdemo.inference.engine.batch import run_batch
+    from webdemo.inference.run import CancelToken, Result
 
     engine = Engine()
     engine.warm_up()

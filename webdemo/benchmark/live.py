@@ -19,7 +19,7 @@ import httpx
 import numpy as np
 
 from motion import FPS, InputError
-from webdemo.inference.actor import read_actor
+from webdemo.inference.requests.actor import read_actor
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
 
 from .served import ROOT, errors_logged, ready, serving

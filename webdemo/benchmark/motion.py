@@ -94,7 +94,8 @@ def run_motion(
 
 def _maker(steps: int) -> Callable[[Asked, int, bool], Duet]:
     from webdemo.inference.engine import Engine
-    from webdemo.inference.requests import GenerateRequest, Result
+    from webdemo.inference.requests import GenerateRequest
+    from webdemo.inference.run import Result
 
     engine = Engine()
 

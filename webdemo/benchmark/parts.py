@@ -26,7 +26,7 @@ def gemm_gflops(repeats: int = 20) -> float:
     """10⁹ operations a second of a product of float32 matrices by PyTorch with all threads; the best of ``repeats``."""
     import torch
 
-    from webdemo.inference.threads import CORES
+    from models.threads import CORES
 
     before = torch.get_num_threads()
     torch.set_num_threads(CORES)

@@ -7,12 +7,11 @@ from typing import Any, cast
 import torch
 from torch import Tensor
 
-from models.diffusion import denoise, guide, make_scheduler
+from models.diffusion import denoise, guide, make_scheduler, sample_noise
 from models.diffusion.schedule import Spacing
 from models.intergen.network import Block, InterGenDenoiser
 from models.intergen.words import WordBlock, WordDenoiser
 from models.layers import sinusoids
-from webdemo.inference.noise import sample_noise
 
 
 class PlainSampler:

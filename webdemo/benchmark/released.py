@@ -11,12 +11,12 @@ import torch
 
 from models.intergen.released import load_released
 from models.text.clip import find_vocabulary
+from models.threads import CORES
 from motion import InputError
 from webdemo.inference.engine import Engine
 from webdemo.inference.own import read_entries
 from webdemo.inference.pipelines.released.intergen import ReleasedInterGenPipeline
 from webdemo.inference.requests import GenerateRequest
-from webdemo.inference.threads import CORES
 
 from .plain import PlainSampler
 

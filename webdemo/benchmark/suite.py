@@ -38,12 +38,12 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
         the figures by name, which are also printed.
     """
     from models.intergen.compact import load_folder
+    from models.threads import CORES
     from webdemo.benchmark.batching import BATCHED_GOAL, measure_batching
     from webdemo.benchmark.parts import measure_busy, measure_parts
     from webdemo.benchmark.reactions import measure_reactions
     from webdemo.inference.engine import Engine
     from webdemo.inference.requests import GenerateRequest
-    from webdemo.inference.threads import CORES
 
     engine = Engine()
     (load,) = timed(engine.warm_up, 1)
@@ -88,7 +88,7 @@ def measure_requests(engine: Any, request: Any, by_torch: Any, repeats: int) -> 
     """
     from webdemo.benchmark.parts import REQUEST_GOAL, UNDAMPED_GOAL
     from webdemo.benchmark.plain import PlainSampler
-    from webdemo.inference.requests import Result
+    from webdemo.inference.run import Result
 
     plain = PlainSampler(by_torch, engine.pipeline(request.model), request)
     whole, stages, plainly = [], [], []

@@ -9,8 +9,8 @@ from typing import Any
 
 from motion import Duet, InputError
 from motion.formats.files import write_text
-from webdemo.inference.acting import acted
 from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.requests.acting import acted
 
 from .running import run
 

@@ -13,11 +13,12 @@ import numpy as np
 from acts.plan import Plan, plan_of
 from motion import FPS, Duet, InputError
 from motion.formats.on_rig import check_rig, on_rig
-from webdemo.inference.acting import acted
-from webdemo.inference.actor import read_actor
 from webdemo.inference.methods import AUTOMATIC, automatic, methods
-from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
-from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.requests.acting import acted
+from webdemo.inference.requests.actor import read_actor
+from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
+from webdemo.inference.run import Result
 
 from .parser import add_reading, add_sampling, add_tries, names_of, reading_choices, sampling_fields, with_notes
 from .running import check_out, run, write_result

@@ -21,7 +21,8 @@ from motion.metrics.sentences.kept import Motions
 from motion.metrics.sentences.scores import ALL, score, table
 from webdemo.inference.method import Method
 from webdemo.inference.methods import method
-from webdemo.inference.requests import GenerateRequest, ReactRequest, Result, SamplingRequest
+from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
+from webdemo.inference.run import Result
 
 SEEDS = (1, 16)
 _VERSION = 2

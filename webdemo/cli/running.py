@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from motion import InputError
-from webdemo.inference.predict_request import PredictRequest
-from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.requests.predict import PredictRequest
+from webdemo.inference.run import Progress, Result
 from webdemo.inference.story.request import SceneRequest
 
 

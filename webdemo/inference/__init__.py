@@ -5,9 +5,9 @@ Importing this package imports no torch; :class:`Engine` does when it is first a
 
 from typing import TYPE_CHECKING, Any
 
-from .cancel import CancelToken
-from .predict_request import PredictRequest, PredictResult
-from .requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
+from .requests import GenerateRequest, ReactRequest
+from .requests.predict import PredictRequest, PredictResult
+from .run import Cancelled, CancelToken, Progress, Result
 from .story.request import SceneRequest
 
 if TYPE_CHECKING:

@@ -12,16 +12,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
-from .actor import SECONDS
-from .cancel import CancelToken
-from .results import Progress, Result
-from .timer import StageTimer
+from .run import CancelToken, Progress, Result, StageTimer
 
 Task = Literal["generate", "react", "predict", "scene"]
 DEFAULT_STEPS = 8
 """Denoising steps where neither the request nor the method names any: on the page, in the shell, the API, stories and
 Python. With the shipped InterGen the rules obeyed at 8 and at 25 steps differ by no more than chance (docs/scores.md).
 """
+SECONDS = (1.0, 10.0)
+"""The shortest and the longest motion that the networks take."""
 WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
 """The folder of all shipped weights."""
 Input = Literal["words", "class", "actor", "first pose", "either role", "past", "two people"]

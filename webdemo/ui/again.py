@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from motion import Duet, InputError
-from webdemo.inference.actor import ROLES
-from webdemo.inference.plans import kept_plan
-from webdemo.inference.predict_request import PredictRequest, PredictResult
-from webdemo.inference.requests import GenerateRequest, ReactRequest, Result, SamplingRequest, with_current_names
+from webdemo.inference.engine.tries import replayed
+from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest, with_current_names
+from webdemo.inference.requests.actor import ROLES
+from webdemo.inference.requests.plans import kept_plan
+from webdemo.inference.requests.predict import PredictRequest, PredictResult
+from webdemo.inference.run import Result
 from webdemo.inference.story import SceneRequest
-from webdemo.inference.tries import replayed
 from webdemo.ui.components.actors import Source
 
 from .history import Entry, Opened

@@ -13,11 +13,12 @@ import gradio as gr
 from motion import Clip, Duet, InputError
 from motion.formats import ImportChoices, animation_note, read
 from motion.formats.on_rig import check_rig
-from webdemo.inference.acting import acted
-from webdemo.inference.actor import read_actor
 from webdemo.inference.methods import AUTOMATIC, methods
-from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
-from webdemo.inference.requests import OWN_STEPS, Cancelled, GenerateRequest, ReactRequest, Result, SamplingRequest
+from webdemo.inference.requests import OWN_STEPS, GenerateRequest, ReactRequest, SamplingRequest
+from webdemo.inference.requests.acting import acted
+from webdemo.inference.requests.actor import read_actor
+from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
+from webdemo.inference.run import Cancelled, Result
 from webdemo.ui.components.exports import RIG, Record, write_files, write_on_rig
 from webdemo.ui.text.classes import class_method
 from webdemo.ui.text.words import error_line, progress_line

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from motion import Clip
 from motion.formats import can_read
-from webdemo.inference.requests import Result
+from webdemo.inference.run import Result
 
 from .visitor import Visitor
 

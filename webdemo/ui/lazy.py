@@ -7,9 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.live.partner import LivePartner
-from webdemo.inference.requests import Progress, Result
+from webdemo.inference.run import CancelToken, Progress, Result
 
 
 class LazyEngine:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from webdemo.inference.methods import label_of
-from webdemo.inference.predict_request import PredictResult
+from webdemo.inference.requests.predict import PredictResult
 from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS
 from webdemo.ui.components.prediction_view import prediction_payload
 from webdemo.ui.components.show import result_payload

@@ -11,8 +11,7 @@ from typing import Any, Protocol
 
 from acts import read
 from motion import InputError
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.requests import Cancelled, Progress, Result
+from webdemo.inference.run import Cancelled, CancelToken, Progress, Result
 
 log = logging.getLogger(__name__)
 

@@ -259,8 +259,8 @@ def test_plain_http_to_another_machine_can_be_allowed(fake: Fake, monkeypatch: p
 
 
 def test_a_request_follows_the_plan_of_the_director(fake: Fake) -> None:
-    from webdemo.inference.acting import acted
     from webdemo.inference.requests import GenerateRequest
+    from webdemo.inference.requests.acting import acted
     from webdemo.inference.story.prompted import as_scene
 
     fake.answers = [chat({"acts": [HUG | {"part": "nostril", "direction": "sunwise"}, WAVE]})]

@@ -12,7 +12,7 @@ from acts.staging.bodies.limbs import MOVES, RAISES, Limb, limbed
 from acts.staging.bodies.poses import upright
 from acts.staging.stage import staged
 from motion import FPS, SMPL22, Duet
-from webdemo.inference.scenes import NAMES
+from webdemo.inference.pipelines.given import NAMES
 
 SECONDS = np.arange(150) / FPS
 

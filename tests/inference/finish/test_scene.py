@@ -10,7 +10,7 @@ from motion.transforms import heading_matrix
 from webdemo.inference import SceneRequest
 from webdemo.inference.finish import scene as scene_finish
 from webdemo.inference.finish.scene import finished, finishes
-from webdemo.inference.plans import BeatFinish
+from webdemo.inference.requests.plans import BeatFinish
 from webdemo.inference.story.beats import Beat
 
 FRAMES = 180

@@ -14,8 +14,8 @@ from motion.sizes import floor_scale
 from tests.inference.test_scenes import run
 from webdemo.inference import Engine, GenerateRequest, Result, SceneRequest
 from webdemo.inference.finish.sizes import enlarged
-from webdemo.inference.paths import FloorPath, FloorPoint
-from webdemo.inference.predict_request import PredictRequest, PredictResult
+from webdemo.inference.requests.paths import FloorPath, FloorPoint
+from webdemo.inference.requests.predict import PredictRequest, PredictResult
 from webdemo.inference.story import Beat
 from webdemo.inference.story.wishes import Pose
 from webdemo.inference.things import furnished

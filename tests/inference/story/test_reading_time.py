@@ -13,13 +13,11 @@ import pytest
 from acts.staging.given import beat as scene_floor
 from acts.staging.given.beat import plan_note
 from motion import InputError
-from webdemo.inference import cancel
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.pipelines.scene import SceneMaker
-from webdemo.inference.requests import Cancelled, GenerateRequest
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.run import Cancelled, CancelToken, StageTimer
 from webdemo.inference.story import Beat, SceneRequest, split_sentence
 from webdemo.inference.story.prompted import as_scene
-from webdemo.inference.timer import StageTimer
 
 LONGEST = 500
 """The longest prompt that the page takes, in characters."""
@@ -122,7 +120,7 @@ def test_a_run_that_ends_reads_no_further(
 ) -> None:
     """It is cancelled, or its time is over, while the third sentence is read."""
     now, sentences, original = 0.0, 0, getattr(reader, name)
-    monkeypatch.setattr(cancel, "monotonic", lambda: now)
+    monkeypatch.setattr("webdemo.inference.run.monotonic", lambda: now)
     token = CancelToken(600).start()
 
     def counted(*given: Any) -> Any:

@@ -10,7 +10,7 @@ import pytest
 
 from acts.staging.window import AFTER, MOST_FRAMES, PAST
 from motion import SMPL22, Duet, InputError
-from webdemo.inference.paths import meeting
+from webdemo.inference.requests.paths import meeting
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneRequest
 from webdemo.inference.story.windows import window_seed, windows
 from webdemo.inference.story.wishes import bent_wrong

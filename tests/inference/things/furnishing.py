@@ -7,7 +7,7 @@ import numpy as np
 from acts import Act, Plan
 from motion import SMPL22, Duet
 from motion.things import Thing
-from webdemo.inference.requests import Result
+from webdemo.inference.run import Result
 from webdemo.inference.things.furnishing import furnished
 from webdemo.inference.things.holding import Hands
 

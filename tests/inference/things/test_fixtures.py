@@ -12,7 +12,7 @@ from acts.checking import checked
 from motion import SMPL22, Duet, formats
 from motion.metrics.sentences.joints import Motion
 from motion.things import Thing
-from webdemo.inference.requests import Result
+from webdemo.inference.run import Result
 from webdemo.inference.things.furnishing import furnished
 from webdemo.inference.things.looking import watched
 from webdemo.inference.things.opening import opened

@@ -8,7 +8,7 @@ import pytest
 from acts import Plan, read
 from motion import SMPL22, Duet
 from motion.looks import UNSAID
-from webdemo.inference.requests import Result
+from webdemo.inference.run import Result
 from webdemo.inference.things.furnishing import furnished
 
 from .furnishing import FPS, FRAMES, act, made, palms, put_hand, reaching, said, sitting, standing

@@ -9,7 +9,7 @@ from acts import Act, Plan
 from acts.lexicon import lexicon
 from motion import Duet
 from motion.hands import SHAPES, Grip, angles
-from webdemo.inference.requests import Result
+from webdemo.inference.run import Result
 from webdemo.inference.things.furnishing import furnished
 
 from .furnishing import FPS, FRAMES, GAP, act, put_hand, reaching, said, standing

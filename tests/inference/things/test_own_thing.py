@@ -7,7 +7,8 @@ import pytest
 import trimesh
 
 from motion import Duet, InputError
-from webdemo.inference.requests import GenerateRequest, Result
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.run import Result
 from webdemo.inference.things import with_own_thing
 
 from .furnishing import FPS, palms, sitting, standing

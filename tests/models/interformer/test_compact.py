@@ -13,7 +13,7 @@ from models.interformer import JOINTS
 from models.interformer.compact import CompactInterFormer, CompactInterFormerConfig, load_folder
 from models.interformer.decoding import ReactionDecoder
 from models.weights_io import save_network
-from webdemo.inference.engine import WEIGHTS
+from webdemo.inference.method import WEIGHTS
 
 
 @pytest.fixture(scope="module")

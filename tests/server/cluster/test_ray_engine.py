@@ -22,8 +22,8 @@ if find_spec("ray") is None:
 
 from motion import InputError
 from webdemo.inference import Engine
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.run import Cancelled, CancelToken, Progress, Result
 from webdemo.server.cluster.ray_engine import RayEngine
 from webdemo.server.queue.queue import FairQueue
 from webdemo.server.queue.shared_engine import SharedEngine

@@ -12,8 +12,9 @@ from typing import Any
 import pytest
 
 from motion import InputError
-from webdemo.inference import cancel
-from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
+from webdemo.inference import run
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.server.app import engine_of
 from webdemo.server.cluster import ray_engine
 from webdemo.server.queue import queue as line
@@ -308,7 +309,7 @@ def test_the_engine_that_settings_name(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_time_of_a_run_begins_when_it_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     now = 0.0
-    monkeypatch.setattr(cancel, "monotonic", lambda: now)
+    monkeypatch.setattr(run, "monotonic", lambda: now)
     gate, people = make(monkeypatch, seconds=600)
     people.ask("ada", request("first"))
     people.ask("eve", request("second"))
@@ -331,7 +332,7 @@ def test_the_time_of_a_run_begins_when_it_runs(monkeypatch: pytest.MonkeyPatch) 
 
 def test_a_result_that_is_there_is_not_too_late(monkeypatch: pytest.MonkeyPatch) -> None:
     now = 0.0
-    monkeypatch.setattr(cancel, "monotonic", lambda: now)
+    monkeypatch.setattr(run, "monotonic", lambda: now)
     gate = Gate()
     gate.open.release()
     queue = FairQueue(gate, QueueLimits(seconds=600))  # type: ignore[arg-type]

@@ -17,9 +17,9 @@ from motion import InputError, formats, stacked_positions
 from tests.server.clients import DATABASES, database_url, drop_tables, no_room
 from tests.server.lab import stub_module
 from webdemo.inference import Engine
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.predict_request import PredictRequest, PredictResult
-from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.requests.predict import PredictRequest, PredictResult
+from webdemo.inference.run import CancelToken, Result
 from webdemo.server.queue.shared_engine import SharedEngine
 from webdemo.server.queue.wait_estimate import units
 from webdemo.server.store.database import Database, Link, Run

@@ -14,8 +14,8 @@ import pytest
 
 from motion import InputError, formats
 from tests.server.lab import stub_module
-from webdemo.inference.plans import KeptPlan, WindowPlan
 from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.requests.plans import KeptPlan, WindowPlan
 from webdemo.server.store import history as history_module
 from webdemo.server.store.notebook import Notebook
 from webdemo.ui.history import Kept, Search

@@ -13,7 +13,7 @@ from motion import InputError
 from training.corpus import cmu
 from training.evaluate.prediction import evaluate, main, markdown, of_predictor, put_into
 from training.evaluate.prediction_scores import score, zero_velocity
-from webdemo.inference.engine import WEIGHTS
+from webdemo.inference.method import WEIGHTS
 
 REFERENCE = Path(__file__).parents[2] / "data" / "reference"
 SKELETON = REFERENCE / "cmu_skeleton.json"

@@ -13,7 +13,7 @@ from training.evaluate.captions import Sampling, draw, real_duet
 from training.evaluate.extractor import Settings, contrast, fit, load_extractor
 from training.prepare import Scenes, save
 from webdemo.inference import GenerateRequest
-from webdemo.inference.engine import WEIGHTS
+from webdemo.inference.method import WEIGHTS
 from webdemo.inference.pipelines.intergen import InterGenPipeline
 
 SETTINGS = Settings(

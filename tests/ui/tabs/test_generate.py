@@ -17,9 +17,9 @@ from motion import InputError
 from tests.ui.stub_engine import StubEngine
 from tests.ui.tab_events import built, changes, in_english
 from tests.ui.tabs.generating import FIELDS, result_of, run
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.methods import method
-from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.run import Cancelled, CancelToken, Progress, Result
 from webdemo.ui.components.pace import FAITHFUL, FAST
 from webdemo.ui.history import Entry, Kept, Opened
 from webdemo.ui.page import build_page, watch_loading

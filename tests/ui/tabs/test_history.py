@@ -14,7 +14,7 @@ import pytest
 
 from motion import SKELETONS, Clip, InputError
 from tests.ui.stub_engine import walking
-from webdemo.inference.requests import Progress, Result
+from webdemo.inference.run import Progress, Result
 from webdemo.ui.components.notebook import MOST_SHOWN, STEP, Action, facts, settings, shown
 from webdemo.ui.history import Entry, Found, Opened, Search, Usage
 from webdemo.ui.tabs.history import EMPTY, NOTHING_FOUND, HistoryTab, _signed_in, compared

@@ -19,7 +19,7 @@ from tests.ui.stub_engine import drift, walking
 from tests.ui.tab_events import built, changes
 from webdemo.inference import Engine
 from webdemo.inference.methods import methods
-from webdemo.inference.predict_request import PredictRequest, PredictResult
+from webdemo.inference.requests.predict import PredictRequest, PredictResult
 from webdemo.ui.api import PredictEndpoint
 from webdemo.ui.components.exports import Record, write_files
 from webdemo.ui.components.prediction_view import curves_figure, error_lines, prediction_payload, still_error

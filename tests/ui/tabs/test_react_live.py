@@ -13,7 +13,7 @@ import pytest
 from motion import InputError
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built
-from webdemo.inference.live.take import LONGEST, LiveTake
+from webdemo.inference.requests.live import LONGEST, LiveTake
 from webdemo.server.store.recorder import title_of
 from webdemo.ui.again import actor_source, request_of
 from webdemo.ui.components.live_panel import FARTHEST, take_of

@@ -18,9 +18,9 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 from motion import InputError
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, changes
-from webdemo.inference.live.stream import LiveRequest
 from webdemo.inference.methods import variants
 from webdemo.inference.requests import ReactRequest
+from webdemo.inference.requests.live import LiveRequest
 from webdemo.ui.components.exports import KINDS
 from webdemo.ui.components.live import BATCH, REPEATED
 from webdemo.ui.tabs.react import ReactTab

@@ -13,7 +13,7 @@ import pytest
 
 from motion import InputError
 from tests.ui.stub_engine import walking
-from webdemo.inference.requests import Result
+from webdemo.inference.run import Result
 from webdemo.study import Pair, StudyEntry
 from webdemo.ui.history import Entry, Opened
 from webdemo.ui.tabs.study import QUESTION, StudyPanel, names, result_html

@@ -16,7 +16,8 @@ from motion import InputError
 from motion.formats import write
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, changes
-from webdemo.inference.requests import GenerateRequest, Result
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.run import Result
 from webdemo.ui.components.exports import Record, write_record
 from webdemo.ui.components.film import make_film
 from webdemo.ui.components.sweep import grid_of, grid_table, read_axis

@@ -11,7 +11,8 @@ import pytest
 from motion import InputError
 from motion.metrics import MEASURES
 from tests.ui.stub_engine import StubEngine, walking
-from webdemo.inference.requests import GenerateRequest, Progress, Result
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.run import Progress, Result
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.text.panels import (
     comparison_panel,

@@ -19,9 +19,9 @@ from motion.smoothing import least_jerk
 from motion.swings import lift_swinging_feet
 from motion.touch.clearance import out_of_the_way
 from motion.transforms import facing
-from webdemo.inference.actor import ROLES
 from webdemo.inference.requests import ReactRequest
-from webdemo.inference.results import Result
+from webdemo.inference.requests.actor import ROLES
+from webdemo.inference.run import Result
 
 Array = NDArray[np.floating]
 

@@ -18,8 +18,8 @@ from motion.touch.clasped import hands_clasped
 from motion.touch.embraces import embraced
 from motion.touch.palms import palms_met
 from motion.touch.upright import backs_straight
-from webdemo.inference.actor import ROLES
-from webdemo.inference.plans import BeatFinish
+from webdemo.inference.requests.actor import ROLES
+from webdemo.inference.requests.plans import BeatFinish
 from webdemo.inference.story.request import SceneRequest
 
 Array = NDArray[np.floating]

@@ -18,10 +18,10 @@ from motion import SMPL22, Clip, Duet, stacked_positions
 from motion.easing import smoothstep
 from motion.looks import UNSAID, grown_up, size_of
 from motion.sizes import at_sizes, bones_of, floor_scale, of_adults
-from webdemo.inference.acting import plans_of
-from webdemo.inference.paths import FloorPath
-from webdemo.inference.predict_request import PredictRequest, PredictResult, compared
-from webdemo.inference.results import Result
+from webdemo.inference.requests.acting import plans_of
+from webdemo.inference.requests.paths import FloorPath
+from webdemo.inference.requests.predict import PredictRequest, PredictResult, compared
+from webdemo.inference.run import Result
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.wishes import Pose
 from webdemo.inference.things.furnishing import looks_in

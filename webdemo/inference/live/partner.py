@@ -5,7 +5,6 @@ This module does not import torch: the server and the page use it before any net
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -16,9 +15,6 @@ from motion.things import Thing
 from motion.video.gaze import Gaze
 
 Array = NDArray[np.floating]
-
-PARTNERS: Mapping[str, str] = {"regennet": "ReGenNet, online", "agent": "Virtual agent"}
-"""Live partners by name, with their labels."""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,9 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from models.diffusion import sample_noise
 from models.motion_tokens import FEATURES
+from models.threads import take_threads
 from motion import FPS, SMPL22, Clip
 from motion.placement import Placement
 from motion.steering import Goal, Steering
@@ -24,10 +26,8 @@ from motion.transforms import turn
 from motion.vectors import FLAT
 from motion.video.gaze import Gaze
 from webdemo.inference.finish.following import FollowingCleanup
-from webdemo.inference.noise import sample_noise
 from webdemo.inference.pipelines.regennet import ReGenNetPipeline, settle
 from webdemo.inference.requests import ReactRequest
-from webdemo.inference.threads import take_threads
 
 from .partner import Belief, LivePartner
 

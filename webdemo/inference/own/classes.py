@@ -17,11 +17,8 @@ import numpy as np
 
 from motion import Clip, Duet, InputError
 from motion.skeleton import SMPL22
-from webdemo.inference.actor import SECONDS
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.method import Method, Pipeline
-from webdemo.inference.results import Cancelled, Progress, Result
-from webdemo.inference.timer import StageTimer
+from webdemo.inference.method import SECONDS, Method, Pipeline
+from webdemo.inference.run import Cancelled, CancelToken, Progress, Result, StageTimer
 
 from .entries import Entry
 

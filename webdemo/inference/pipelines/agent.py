@@ -26,15 +26,13 @@ from models.known import Hold, Known
 from models.motion_tokens import TokenLayout
 from motion import FPS, SMPL22, Clip, Duet
 from motion.placement import MEDIAN_START_DISTANCE, Placement
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.finish.joining import joined
-from webdemo.inference.plans import KeptPlan
 from webdemo.inference.requests import ReactRequest
-from webdemo.inference.results import Progress, Result
-from webdemo.inference.scenes import NAMES, Finish, Reaction
+from webdemo.inference.requests.plans import KeptPlan
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story.understood import understood
-from webdemo.inference.timer import StageTimer
 
+from .given import NAMES, Finish, Reaction
 from .intergen import InterGenPipeline
 from .predict_frame import to_last_pose
 from .predictor import PredictorPipeline

@@ -16,6 +16,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from models.diffusion import sample_noise
 from models.interformer.compact import FPS as NETWORK_FPS
 from models.interformer.compact import JOINTS_15, load_folder
 from models.interformer.decoding import ReactionDecoder
@@ -24,12 +25,9 @@ from motion.ik import fit_skeleton
 from motion.metrics import compare
 from motion.placement import Placement
 from motion.transforms import heading_matrix, resample
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.finish.cleanup import clean_person
-from webdemo.inference.noise import sample_noise
 from webdemo.inference.requests import ReactRequest
-from webdemo.inference.results import Progress, Result
-from webdemo.inference.timer import StageTimer
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .regennet import duet_of, settle
 

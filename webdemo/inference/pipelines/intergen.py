@@ -14,18 +14,16 @@ from acts.staging.stage import staged
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
 from models.text import MiniLM
 from motion import Clip, Duet
-from webdemo.inference.acting import with_plan
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.finish.scene import finish_of, in_touch
-from webdemo.inference.plans import BeatFinish, KeptPlan
 from webdemo.inference.requests import GenerateRequest, ReactRequest
-from webdemo.inference.results import Progress, Result
-from webdemo.inference.scenes import Scene
+from webdemo.inference.requests.acting import with_plan
+from webdemo.inference.requests.plans import BeatFinish, KeptPlan
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story import understood
 from webdemo.inference.story.prompted import as_scene
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.timer import StageTimer
 
+from .given import Scene
 from .scene import SceneMaker
 from .two_person import Conditioning, Passes, TwoPersonPipeline
 

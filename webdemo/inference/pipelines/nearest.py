@@ -24,12 +24,10 @@ from motion.formats import read
 from motion.metrics import compare
 from motion.placement import Placement
 from motion.transforms import resample
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.methods.nearest import FOLDER_VARIABLE
 from webdemo.inference.requests import ReactRequest
-from webdemo.inference.results import Progress, Result
-from webdemo.inference.timer import StageTimer
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .regennet import duet_of, settle
 

@@ -12,10 +12,8 @@ import torch
 from models.predictors import Predictor, load_predictor
 from motion import FPS, SMPL22, stacked_positions
 from motion.vectors import unit
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.predict_request import PredictRequest, mean_steps, predicted
-from webdemo.inference.results import Progress, Result
-from webdemo.inference.timer import StageTimer
+from webdemo.inference.requests.predict import PredictRequest, mean_steps, predicted
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .predict_feet import with_planted_feet
 from .predict_frame import Array, to_last_pose, to_world

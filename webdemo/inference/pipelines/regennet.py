@@ -18,7 +18,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from models.diffusion import make_scheduler, sample_steps
+from models.diffusion import make_scheduler, sample_noise, sample_steps
 from models.motion_tokens import FEATURES
 from models.regennet.compact import CompactReGenNet, load_folder
 from models.text import MiniLM
@@ -26,15 +26,12 @@ from motion import FPS, SMPL22, Clip, Duet, InputError
 from motion.easing import smoothstep
 from motion.metrics import compare
 from motion.placement import Placement
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.damping import Beside, Damping
 from webdemo.inference.finish.following import FollowingCleanup
-from webdemo.inference.live.stream import LiveFrame, LiveProgress, LiveRequest, paced
-from webdemo.inference.noise import sample_noise
 from webdemo.inference.requests import ReactRequest
-from webdemo.inference.results import Progress, Result
-from webdemo.inference.timer import StageTimer
+from webdemo.inference.requests.live import LiveFrame, LiveProgress, LiveRequest, paced
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 Array = NDArray[np.floating]
 SETTLE = 0.5

@@ -1,7 +1,7 @@
 """Scenes of several beats: window after window, each of which is given the end of the one before.
 
 Person a stands at the origin of the network's frame where a window begins, as in training, so each window is
-turned and moved there and back. What is given of a window is held at every step (:mod:`webdemo.inference.directed`).
+turned and moved there and back. What is given of a window is held at every step (:mod:`.directed`).
 Windows that were made are kept by their content: their words, settings, seed and everything that is given of them.
 """
 
@@ -21,20 +21,18 @@ from models.intergen.compact import CompactInterGen
 from motion import FPS, Duet, InputError
 from motion.metrics import compare
 from webdemo.inference import methods
-from webdemo.inference.actor import ROLES
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.finish.joining import closed
 from webdemo.inference.finish.scene import finished, finishes
-from webdemo.inference.paths import meeting
-from webdemo.inference.plans import KeptPlan, WindowPlan
 from webdemo.inference.requests import GenerateRequest, SamplingRequest
-from webdemo.inference.results import Progress, Result
-from webdemo.inference.scenes import NAMES
+from webdemo.inference.requests.actor import ROLES
+from webdemo.inference.requests.paths import meeting
+from webdemo.inference.requests.plans import KeptPlan, WindowPlan
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story.progress import SceneProgress
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.windows import window_seed, windows
-from webdemo.inference.timer import StageTimer
 
+from .given import NAMES
 from .scene_setting import Setting
 from .two_person import Passes, TwoPersonPipeline
 

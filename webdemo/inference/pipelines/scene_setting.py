@@ -17,12 +17,13 @@ from models.intergen.compact import CompactInterGen
 from motion import FPS
 from motion.placement import MEDIAN_START_DISTANCE, Placement
 from motion.transforms import heading, heading_matrix
-from webdemo.inference.actor import ROLES, SECONDS
-from webdemo.inference.directed import Directed, directed
-from webdemo.inference.plans import WindowPlan
+from webdemo.inference.method import SECONDS
 from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.requests.actor import ROLES
+from webdemo.inference.requests.plans import WindowPlan
 from webdemo.inference.story.request import SceneRequest
 
+from .directed import Directed, directed
 from .scene_wishes import wishes
 from .two_person import TwoPersonPipeline
 

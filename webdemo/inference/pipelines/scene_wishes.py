@@ -18,8 +18,8 @@ from acts.staging.parts import KnownFrames, Part
 from acts.staging.window import Window
 from motion import FPS, InputError
 from motion.placement import MEDIAN_START_DISTANCE, Placement
-from webdemo.inference.actor import ROLES
-from webdemo.inference.paths import MOST_SPEED, FloorPath
+from webdemo.inference.requests.actor import ROLES
+from webdemo.inference.requests.paths import MOST_SPEED, FloorPath
 from webdemo.inference.story.request import SceneRequest
 
 Array = NDArray[np.floating]

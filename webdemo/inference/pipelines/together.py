@@ -13,13 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from motion import FPS, Duet, stacked_positions
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.predict_request import PredictRequest, predicted
-from webdemo.inference.results import Progress, Result
+from webdemo.inference.requests.predict import PredictRequest, predicted
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story import Beat, SceneRequest
 from webdemo.inference.story.beats import SHORTEST
 from webdemo.inference.story.progress import SceneProgress
-from webdemo.inference.timer import StageTimer
 
 from .intergen import InterGenPipeline
 from .predictor import PredictorPipeline

@@ -14,21 +14,19 @@ from torch import Tensor
 
 from models.bigraphdiff.compact import CompactBiGraphDiff
 from models.compiled import compile_network
-from models.diffusion import SamplerName, make_scheduler, sample_steps
+from models.diffusion import SamplerName, make_scheduler, sample_noise, sample_steps
 from models.diffusion.schedule import Spacing
 from models.intergen.compact import CompactInterGen, DuetSpace, Touch
 from models.intergen.released import ReleasedInterGen
 from models.weights_io import WeightsFolder
 from motion import Duet, InputError
 from motion.metrics import compare
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.damping import Damping
-from webdemo.inference.noise import sample_noise
 from webdemo.inference.requests import GenerateRequest, ReactRequest
-from webdemo.inference.results import Progress, Result
-from webdemo.inference.scenes import Finish, Scene, scene_of
-from webdemo.inference.timer import StageTimer
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
+
+from .given import Finish, Scene, scene_of
 
 Network = TypeVar("Network", CompactInterGen, CompactBiGraphDiff, ReleasedInterGen)
 

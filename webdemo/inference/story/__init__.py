@@ -3,7 +3,7 @@
 Importing this package imports no torch.
 """
 
-from webdemo.inference.paths import FloorPath, FloorPoint
+from webdemo.inference.requests.paths import FloorPath, FloorPoint
 
 from .beats import Beat
 from .progress import SceneProgress

@@ -13,7 +13,7 @@ from acts.lexicon import lexicon
 from acts.plan import MOST_ACTS, Act, beats, problem
 from acts.reading.wording import begins_with_subject
 from motion import InputError
-from webdemo.inference.limits import MAX_PROMPT, MAX_SEED
+from webdemo.inference.requests.limits import MAX_PROMPT, MAX_SEED
 
 from .understood import understood
 

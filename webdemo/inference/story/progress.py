@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from motion import Duet
-from webdemo.inference.results import Progress
+from webdemo.inference.run import Progress
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,9 +12,9 @@ from acts.staging.stage import staged
 from acts.staging.told import Told
 from motion import FPS, InputError
 from webdemo.inference import methods
-from webdemo.inference.acting import with_plan
-from webdemo.inference.paths import FloorPath
 from webdemo.inference.requests import GenerateRequest, SamplingRequest
+from webdemo.inference.requests.acting import with_plan
+from webdemo.inference.requests.paths import FloorPath
 
 from .beats import SHORTEST, Beat, seconds_of_acts
 from .request import SceneRequest, beat_of

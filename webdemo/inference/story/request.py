@@ -19,11 +19,11 @@ from acts.staging.told import Told, at_start
 from acts.staging.ways import Way
 from motion import FPS, Duet, InputError
 from webdemo.inference import methods
-from webdemo.inference.limits import number
-from webdemo.inference.paths import FloorPath, path_of, timed_paths
-from webdemo.inference.plans import KeptPlan
-from webdemo.inference.predict_request import check_motion
 from webdemo.inference.requests import SamplingRequest
+from webdemo.inference.requests.limits import number
+from webdemo.inference.requests.paths import FloorPath, path_of, timed_paths
+from webdemo.inference.requests.plans import KeptPlan
+from webdemo.inference.requests.predict import check_motion
 
 from .beats import MOST_BEATS, SHORTEST, Beat, acts_of, seconds_of_acts
 from .scripting import plan_of_beat

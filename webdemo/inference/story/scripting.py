@@ -13,8 +13,8 @@ from acts.staging.act_kinds import hits, reaches_low
 from acts.staging.postures import LOWERED
 from acts.things import is_fixture
 from motion import InputError
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.limits import MAX_PROMPT
+from webdemo.inference.requests.limits import MAX_PROMPT
+from webdemo.inference.run import CancelToken
 
 from .beats import MOST_BEATS, Beat
 from .understood import understood

@@ -35,10 +35,10 @@ import tomlkit
 
 from motion import Duet, InputError
 from motion.formats import read
-from webdemo.inference.actor import ROLES
 from webdemo.inference.methods import method
-from webdemo.inference.paths import MOST_POINTS, FloorPath, FloorPoint, path_of
 from webdemo.inference.requests import SamplingRequest
+from webdemo.inference.requests.actor import ROLES
+from webdemo.inference.requests.paths import MOST_POINTS, FloorPath, FloorPoint, path_of
 
 from .beats import MOST_BEATS, Beat
 from .request import SceneRequest, beat_of

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from motion import FPS, SMPL22, Clip, InputError
 from motion.kinematics import swing
 from motion.vectors import unit
-from webdemo.inference.actor import ROLES, check_actor
-from webdemo.inference.paths import FLOOR, MOST_SPEED, FloorPath
+from webdemo.inference.requests.actor import ROLES, check_actor
+from webdemo.inference.requests.paths import FLOOR, MOST_SPEED, FloorPath
 
 Array = NDArray[np.floating]
 

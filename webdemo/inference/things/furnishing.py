@@ -14,8 +14,8 @@ from motion.looks import SIZES, UNSAID, grown_up, looks_of, size_of
 from motion.metrics import compare
 from motion.sizes import at_sizes
 from motion.things import FURNITURE, MOST_THINGS, Mesh, Thing
+from webdemo.inference.run import Result
 
-from ..results import Result
 from .courses import ThingCourse
 from .fixtures import fixtures
 from .grips import fitting, grips_of_contact, grips_of_plan, grips_of_things

@@ -9,9 +9,9 @@ from typing import Any
 
 from motion import InputError
 from motion.formats.thing_files import read_thing
+from webdemo.inference.requests.acting import plans_of
+from webdemo.inference.run import Result
 
-from ..acting import plans_of
-from ..results import Result
 from .furnishing import furnished
 
 

@@ -23,9 +23,9 @@ from typing import TYPE_CHECKING, Any
 
 from motion import InputError
 from motion.cores import usable_cores
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.methods import methods
-from webdemo.inference.requests import Progress, Result, SamplingRequest
+from webdemo.inference.requests import SamplingRequest
+from webdemo.inference.run import CancelToken, Progress, Result
 
 from .ray_messages import Began
 

@@ -14,8 +14,8 @@ from typing import Any
 from ray import serve
 
 from motion import InputError
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.requests import Cancelled, Progress, Result, SamplingRequest
+from webdemo.inference.requests import SamplingRequest
+from webdemo.inference.run import Cancelled, CancelToken, Progress, Result
 from webdemo.server.logs import set_up_logs
 from webdemo.server.queue.shared_engine import SharedEngine
 

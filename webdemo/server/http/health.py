@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from motion import InputError
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.requests import GenerateRequest, Result
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.run import CancelToken, Result
 from webdemo.ui.runs import EngineLike
 
 log = logging.getLogger(__name__)

@@ -12,7 +12,8 @@ from functools import partial
 from typing import Any, Protocol
 
 from motion import FPS, InputError
-from webdemo.inference.live.partner import PARTNERS, LivePartner
+from webdemo.inference.live.partner import LivePartner
+from webdemo.inference.requests.live import PARTNERS
 from webdemo.ui.visitor import Visitor
 
 from .messages import read_message

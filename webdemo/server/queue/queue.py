@@ -12,8 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from motion import InputError
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.requests import Cancelled, Progress, Result
+from webdemo.inference.run import Cancelled, CancelToken, Progress, Result
 from webdemo.server.http.metrics import Figures
 from webdemo.ui.runs import EngineLike, Waiting
 from webdemo.ui.visitor import Visitor, visitor

@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 from motion import FPS
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.methods import method
-from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.run import CancelToken, Progress, Result
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.windows import windows
 from webdemo.ui.lazy import LazyEngine
@@ -42,7 +42,7 @@ class SharedEngine(LazyEngine):
 
         A result's manifest records how many requests shared its pass, since that affects rounding.
         """
-        from webdemo.inference.batch import run_batch
+        from webdemo.inference.engine.batch import run_batch
 
         for i, event in run_batch(self._made(), items):
             if isinstance(event, Result) and len(items) > 1:

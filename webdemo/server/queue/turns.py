@@ -13,8 +13,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from webdemo.inference.cancel import CancelToken
-from webdemo.inference.requests import Progress, Result
+from webdemo.inference.run import CancelToken, Progress, Result
 
 MAX_ACCOUNTS = 1000
 """Above this number, accounts of people without runs are dropped."""

@@ -20,8 +20,8 @@ from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session, selectinload
 
 from motion import Duet, InputError, formats
-from webdemo.inference.predict_request import PredictResult
-from webdemo.inference.requests import Result
+from webdemo.inference.requests.predict import PredictResult
+from webdemo.inference.run import Result
 from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit, fingerprint
 from webdemo.ui.history import Entry, Opened

@@ -18,7 +18,7 @@ from sqlalchemy.orm import Session, selectinload
 
 from motion import Clip, Duet, InputError, formats
 from motion.metrics import compare
-from webdemo.inference.requests import Result
+from webdemo.inference.run import Result
 from webdemo.inference.story import SceneRequest
 from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit

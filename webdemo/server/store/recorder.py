@@ -11,9 +11,9 @@ from typing import Any
 from sqlalchemy.exc import SQLAlchemyError
 
 from motion import InputError
-from webdemo.inference.live.take import live_title
 from webdemo.inference.methods import methods
-from webdemo.inference.requests import Cancelled, Progress, Result
+from webdemo.inference.requests.live import live_title
+from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.inference.story.beats import story_title
 from webdemo.server.queue.places import Places
 from webdemo.server.queue.queue import FairQueue

@@ -19,10 +19,10 @@ from motion.formats import RIGS, write
 from motion.formats.choices import ImportChoices
 from motion.formats.importing import import_motion
 from motion.retarget import to_smpl
-from webdemo.inference.actor import LETTERS, SECONDS, at_30_fps, choose_actor, other_pose
-from webdemo.inference.method import Variant
+from webdemo.inference.method import SECONDS, Variant
 from webdemo.inference.methods import AUTOMATIC, automatic, installed, variants
-from webdemo.inference.requests import Result
+from webdemo.inference.requests.actor import LETTERS, at_30_fps, choose_actor, other_pose
+from webdemo.inference.run import Result
 from webdemo.ui.history import Original, clean_name
 from webdemo.ui.places import READING
 from webdemo.view.payload import Payload, player_payload

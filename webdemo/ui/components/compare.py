@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from webdemo.inference.requests import Result
+from webdemo.inference.run import Result
 from webdemo.view.payload import Payload, build_payload
 
 from .show import result_payload

@@ -32,8 +32,8 @@ from motion.formats.glb_rig import glb_wearing
 from motion.formats.on_rig import on_rig
 from motion.formats.one_person import SUFFIXES
 from motion.formats.spreadsheet import safe_cell
-from webdemo.inference.actor import ROLES
-from webdemo.inference.requests import Result
+from webdemo.inference.requests.actor import ROLES
+from webdemo.inference.run import Result
 from webdemo.ui.places import READING
 from webdemo.view.sheet import write_grid_sheet, write_sheet
 from webdemo.view.stage import Style

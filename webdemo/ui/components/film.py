@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from motion import Clip, Duet, InputError
-from webdemo.inference.predict_request import PredictResult
-from webdemo.inference.requests import Result
+from webdemo.inference.requests.predict import PredictResult
+from webdemo.inference.run import Result
 from webdemo.view import film, mesh, plotly_figure
 from webdemo.view.camera import VIEWS
 from webdemo.view.stage import LOOKS, Pane, Style

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import Clip
-from webdemo.inference.live.stream import LiveProgress
-from webdemo.inference.requests import Progress
+from webdemo.inference.requests.live import LiveProgress
+from webdemo.inference.run import Progress
 from webdemo.ui.text.panels import status
 from webdemo.view.payload import Payload, pack_positions, player_payload
 

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from motion import FPS, SMPL22, Clip, InputError
-from webdemo.inference.live.take import LONGEST, LiveTake
+from webdemo.inference.requests.live import LONGEST, LiveTake
 
 from .accepts import Text
 from .camera import CAMERA_FOLDER

@@ -9,11 +9,12 @@ from typing import Any
 
 from motion import InputError
 from motion.formats.thing_files import SUFFIXES
-from webdemo.inference.plans import kept_plan
-from webdemo.inference.requests import GenerateRequest, Result, with_current_names
+from webdemo.inference.engine.tries import replayed
+from webdemo.inference.requests import GenerateRequest, with_current_names
+from webdemo.inference.requests.plans import kept_plan
+from webdemo.inference.run import Result
 from webdemo.inference.story import SceneRequest
 from webdemo.inference.things import with_own_thing
-from webdemo.inference.tries import replayed
 from webdemo.ui.places import READING
 
 from .exports import Record

@@ -18,7 +18,7 @@ from acts.captions import short, worded
 from acts.plan import plan_of
 from acts.reading.director import directed
 from motion import InputError
-from webdemo.inference.paths import FloorPath, path_of
+from webdemo.inference.requests.paths import FloorPath, path_of
 from webdemo.inference.story.scripting import beats_of
 from webdemo.ui.text.words import error_line
 

@@ -9,7 +9,8 @@ from dataclasses import replace
 from typing import Any
 
 from motion import FPS, Duet, InputError
-from webdemo.inference.requests import MAX_SEED, Result
+from webdemo.inference.requests import MAX_SEED
+from webdemo.inference.run import Result
 from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest, in_time, split_sentence
 
 from .exports import Record

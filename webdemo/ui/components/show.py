@@ -14,7 +14,8 @@ import numpy as np
 from motion import Clip, Duet
 from motion.formats import read
 from motion.metrics import Contact
-from webdemo.inference.requests import GenerateRequest, Result
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.run import Result
 from webdemo.ui.text.classes import takes_class
 from webdemo.view.curves import Curve
 from webdemo.view.payload import Payload, build_payload, player_payload, sample_payload

@@ -14,7 +14,7 @@ from pydantic import Field, TypeAdapter
 from acts import Act
 from motion import Duet, InputError
 from motion.metrics import compare
-from webdemo.inference.paths import FloorPath, path_of
+from webdemo.inference.requests.paths import FloorPath, path_of
 from webdemo.inference.story import Beat, Pose, SceneRequest
 from webdemo.inference.story.beats import MOST_BEATS
 from webdemo.inference.story.request import beat_of, pose_of

@@ -10,8 +10,8 @@ from typing import Any
 
 from motion import InputError
 from motion.metrics import MEASURES
-from webdemo.inference.predict_request import PredictResult
-from webdemo.inference.requests import Result
+from webdemo.inference.requests.predict import PredictResult
+from webdemo.inference.run import Result
 from webdemo.ui.text.panels import sides
 from webdemo.ui.text.words import number, text
 from webdemo.view.payload import Payload, build_payload, grid_sample

@@ -10,7 +10,7 @@ from typing import Any
 import gradio as gr
 
 from motion.formats.choices import AXES, ORDERS, UNITS
-from webdemo.inference.actor import SECONDS
+from webdemo.inference.method import SECONDS
 from webdemo.inference.methods import methods
 from webdemo.ui.again import actor_source
 from webdemo.ui.components.actors import AUTO, ReadWith, Source, given_again, offered_animations

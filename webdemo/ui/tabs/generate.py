@@ -10,11 +10,12 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from webdemo.inference.acting import acted, plans_of_result
-from webdemo.inference.actor import SECONDS
+from webdemo.inference.method import SECONDS
 from webdemo.inference.methods import installed, label_of, method
-from webdemo.inference.paths import path_of
-from webdemo.inference.requests import GenerateRequest, Result
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.requests.acting import acted, plans_of_result
+from webdemo.inference.requests.paths import path_of
+from webdemo.inference.run import Result
 from webdemo.ui.components.gallery import Gallery
 from webdemo.ui.components.pace import pace_of
 from webdemo.ui.components.reading import Reading, checked, drawn_paths, edited_plan, shown

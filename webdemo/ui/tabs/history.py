@@ -9,7 +9,7 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from webdemo.inference.requests import Cancelled, Progress, Result
+from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.ui.again import request_of, request_of_unfinished, verdict
 from webdemo.ui.components.exports import KINDS, Record, Worn
 from webdemo.ui.components.notebook import Action, NotebookView, shown

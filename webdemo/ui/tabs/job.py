@@ -13,7 +13,8 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from webdemo.inference.requests import MAX_SEED, Cancelled, Progress, Result, SamplingRequest
+from webdemo.inference.requests import MAX_SEED, SamplingRequest
+from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.ui.components.actors import READ_WITH
 from webdemo.ui.components.compare import comparison_payload
 from webdemo.ui.components.exports import Record

@@ -13,8 +13,8 @@ import numpy as np
 
 from motion import FPS, Clip, Duet, InputError
 from webdemo.inference.methods import installed, label_of, method
-from webdemo.inference.predict_request import LONGEST, PAST_SECONDS, PredictRequest, PredictResult
-from webdemo.inference.requests import Result
+from webdemo.inference.requests.predict import LONGEST, PAST_SECONDS, PredictRequest, PredictResult
+from webdemo.inference.run import Result
 from webdemo.ui.components.actors import Source, given_again, offered_animations
 from webdemo.ui.components.animations import animation_field, kept_animation
 from webdemo.ui.components.camera import CameraPanel

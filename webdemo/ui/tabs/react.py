@@ -9,11 +9,10 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from webdemo.inference.actor import SECONDS
-from webdemo.inference.live.stream import LiveRequest
-from webdemo.inference.live.take import LiveTake
+from webdemo.inference.method import SECONDS
 from webdemo.inference.methods import AUTOMATIC, variants
 from webdemo.inference.requests import ReactRequest
+from webdemo.inference.requests.live import LiveRequest, LiveTake
 from webdemo.ui.components.actors import (
     READ_WITH,
     Source,

@@ -9,7 +9,7 @@ from typing import Any
 import gradio as gr
 
 from motion import Duet
-from webdemo.inference.requests import Progress, Result
+from webdemo.inference.run import Progress, Result
 from webdemo.inference.story import SceneProgress, SceneRequest, write_story
 from webdemo.inference.story.beats import story_title
 from webdemo.ui.components.exports import Record

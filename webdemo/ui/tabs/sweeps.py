@@ -7,7 +7,7 @@ from typing import Any
 
 import gradio as gr
 
-from webdemo.inference.requests import Result
+from webdemo.inference.run import Result
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import show
 from webdemo.ui.components.settings import looked_up

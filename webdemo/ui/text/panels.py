@@ -7,7 +7,7 @@ from typing import Any
 
 from motion.metrics import MEASURES, Measure
 from webdemo.inference.methods import label_of
-from webdemo.inference.requests import Result
+from webdemo.inference.run import Result
 
 from .plain import legend, lines_in_words
 from .texts import say, worded

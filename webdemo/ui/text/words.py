@@ -8,7 +8,7 @@ import logging
 import time
 
 from motion import InputError
-from webdemo.inference.requests import Progress
+from webdemo.inference.run import Progress
 from webdemo.ui.runs import Waiting
 from webdemo.ui.visitor import visitor
 

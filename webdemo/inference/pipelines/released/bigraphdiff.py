@@ -10,7 +10,7 @@ import torch
 from torch import Tensor
 
 from models.bigraphdiff.released import JOINTS, load_released
-from models.diffusion import TRAIN_TIMESTEPS, cosine_betas, make_scheduler, sample_steps
+from models.diffusion import TRAIN_TIMESTEPS, cosine_betas, make_scheduler, sample_noise, sample_steps
 from models.diffusion.schedule import SamplerName, Scheduler
 from models.intergen.released import read_normaliser
 from models.text.clip import find_vocabulary
@@ -19,13 +19,10 @@ from motion.layouts import LAYOUTS
 from motion.metrics import compare
 from motion.retarget import to_smpl
 from motion.skeleton import NTU25
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.finish.cleanup import clean_person
-from webdemo.inference.noise import sample_noise
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import GenerateRequest
-from webdemo.inference.results import Progress, Result
-from webdemo.inference.timer import StageTimer
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .common import digest
 

@@ -15,7 +15,7 @@ from models.compiled import Precision, compile_network, has_bfloat16
 from motion import Duet
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.own.entries import Entry
-from webdemo.inference.scenes import Finish, Scene
+from webdemo.inference.pipelines.given import Finish, Scene
 
 Array = NDArray[np.floating]
 SMOOTHING = 1.0

@@ -18,12 +18,10 @@ from models.released import read_tensors, without_wrapper
 from motion import FPS, SMPL22, Clip
 from motion.placement import Placement
 from motion.transforms import heading_matrix, resample
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.pipelines.interformer import RECORDED_START_DISTANCE, InterFormerPipeline
 from webdemo.inference.requests import ReactRequest
-from webdemo.inference.results import Progress, Result
-from webdemo.inference.timer import StageTimer
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .common import digest
 

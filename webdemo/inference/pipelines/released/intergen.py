@@ -13,14 +13,12 @@ from models.text.clip import find_vocabulary
 from motion import FPS
 from motion.placement import Placement
 from motion.representation import NUM_FEATURES
-from webdemo.inference.actor import ROLES
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.own.entries import Entry
+from webdemo.inference.pipelines.given import Reaction, Scene
 from webdemo.inference.pipelines.two_person import Conditioning, Passes, TwoPersonPipeline
 from webdemo.inference.requests import GenerateRequest, ReactRequest
-from webdemo.inference.results import Progress, Result
-from webdemo.inference.scenes import Reaction, Scene
-from webdemo.inference.timer import StageTimer
+from webdemo.inference.requests.actor import ROLES
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .common import Measured, compiled_near, digest, precision_of
 

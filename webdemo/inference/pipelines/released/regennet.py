@@ -12,22 +12,19 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from models.diffusion import make_scheduler, sample_steps
+from models.diffusion import make_scheduler, sample_noise, sample_steps
 from models.regennet.network import ROW_WIDTH, ReGenNet
 from models.regennet.released import ROWS, decode, encode, load_released
 from motion import FPS, Clip, InputError
 from motion.placement import Placement
 from motion.skeleton import SMPL22
-from webdemo.inference.cancel import CancelToken
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.following import FollowingCleanup
-from webdemo.inference.live.stream import LiveFrame
-from webdemo.inference.noise import sample_noise
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.pipelines.regennet import ReGenNetPipeline
 from webdemo.inference.requests import ReactRequest
-from webdemo.inference.results import Progress, Result
-from webdemo.inference.timer import StageTimer
+from webdemo.inference.requests.live import LiveFrame
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .common import digest
 

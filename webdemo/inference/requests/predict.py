@@ -11,12 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import FPS, SMPL22, Clip, Duet, InputError, stacked_positions
+from webdemo.inference import methods
+from webdemo.inference.run import Result, StageTimer
 
-from . import methods
 from .actor import at_30_fps
 from .limits import MAX_SEED, number, whole
-from .results import Result
-from .timer import StageTimer
 
 Array = NDArray[np.floating]
 

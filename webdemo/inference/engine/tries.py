@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from .cancel import CancelToken
-from .limits import MAX_SEED
-from .results import Progress, Result
-from .timer import StageTimer
+from webdemo.inference.requests.limits import MAX_SEED
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
+
 from .verdicts import Judged, judged, note
 
 

@@ -19,24 +19,21 @@ from pathlib import Path
 from typing import Any, cast
 
 from motion import Duet, InputError
+from webdemo.inference import methods
 from webdemo.inference.finish.cleanup import standing_clear
 from webdemo.inference.finish.sizes import as_given, enlarged
-from webdemo.inference.live.partner import PARTNERS, LivePartner
-from webdemo.inference.live.stream import LiveFrame
-from webdemo.inference.live.take import LiveTake
+from webdemo.inference.live.partner import LivePartner
+from webdemo.inference.method import Pipeline
+from webdemo.inference.methods import WEIGHTS
+from webdemo.inference.own.classes import fenced
+from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
+from webdemo.inference.requests.acting import plans_of, with_plan
+from webdemo.inference.requests.live import PARTNERS, LiveFrame, LiveTake
+from webdemo.inference.requests.predict import PredictRequest
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
+from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.things import furnished
 
-from . import methods
-from .acting import plans_of, with_plan
-from .cancel import CancelToken
-from .method import Pipeline
-from .methods import WEIGHTS
-from .own.classes import fenced
-from .predict_request import PredictRequest
-from .requests import GenerateRequest, ReactRequest, SamplingRequest
-from .results import Progress, Result
-from .story.request import SceneRequest
-from .things import furnished
-from .timer import StageTimer
 from .tries import run_tries
 from .verdicts import kept_rows
 
@@ -190,7 +187,7 @@ def _with_things(events: Iterator[Progress | Result], request: Any) -> Iterator[
 
 def _take_threads(pipeline: Pipeline | None = None) -> None:
     """Sets PyTorch's threads for a run that begins in this thread, or for loading."""
-    from .threads import take_threads  # needs PyTorch, which the engine itself does not
+    from models.threads import take_threads  # needs PyTorch, which the engine itself does not
 
     take_threads(plain_denoiser=not getattr(pipeline, "compiled", True))
 

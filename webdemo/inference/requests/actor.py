@@ -19,12 +19,11 @@ from motion.formats import ImportChoices, read_everyone
 from motion.formats.crowd import clips_of
 from motion.retarget import to_smpl
 from motion.transforms import resample
+from webdemo.inference.method import SECONDS
 
 Array = NDArray[np.floating]
 
 ROLES = ("a", "b")
-SECONDS = (1.0, 10.0)
-"""The shortest and the longest motion that the networks take."""
 LETTERS = "abcdef"
 """Names of the people in a file."""
 _COUNTS = ("no", "one", "two", "three", "four", "five", "six")

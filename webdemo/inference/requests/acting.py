@@ -12,13 +12,13 @@ from acts.own import own_files
 from acts.plan import plan_of
 from acts.reading.director import directed
 from motion import InputError
+from webdemo.inference import methods
+from webdemo.inference.story.request import SceneRequest, beat_of
+from webdemo.inference.story.scripting import plan_of_beat
+from webdemo.inference.story.understood import understood
 
-from . import methods
 from .plans import KeptPlan, kept_acts
-from .requests import GenerateRequest, ReactRequest
-from .story.request import SceneRequest, beat_of
-from .story.scripting import plan_of_beat
-from .story.understood import understood
+from .sampling import GenerateRequest, ReactRequest
 
 Request = TypeVar("Request")
 

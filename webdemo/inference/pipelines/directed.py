@@ -21,7 +21,7 @@ from motion.easing import minimum_jerk
 from motion.kinematics import project_to_skeleton
 from webdemo.inference.finish.joining import PASSING, joined, passing
 
-from .scenes import Finish, Scene
+from .given import Finish, Scene
 
 Array = NDArray[np.floating]
 MOST_DISTANCE = 20.0

@@ -1,7 +1,4 @@
-"""Requests to the :class:`~webdemo.inference.engine.Engine`, and its results.
-
-These dataclasses import no torch, so the page, the shell and the API build them before any network loads.
-"""
+"""Requests for motion that a network samples: two people from a sentence, or one person's partner."""
 
 from __future__ import annotations
 
@@ -16,46 +13,13 @@ from numpy.typing import NDArray
 from acts.captions import in_words
 from acts.plan import Plan, plan_of
 from motion import Clip, InputError
+from webdemo.inference import methods
+from webdemo.inference.method import Method
 
-from . import methods
 from .actor import ROLES, check_actor
-from .limits import (
-    DAMPING,
-    GUIDANCE,
-    MAX_PROMPT,
-    MAX_SEED,
-    SAMPLERS,
-    SAMPLES,
-    STEPS,
-    TRIES,
-    choice,
-    number,
-    prompt_of,
-    whole,
-)
-from .method import Method
+from .limits import DAMPING, GUIDANCE, MAX_SEED, SAMPLERS, SAMPLES, STEPS, TRIES, choice, number, prompt_of, whole
 from .paths import FloorPath, path_of, timed_paths
 from .plans import KeptPlan
-from .results import Cancelled, Progress, Result
-
-__all__ = [
-    "DAMPING",
-    "GUIDANCE",
-    "MAX_PROMPT",
-    "MAX_SEED",
-    "OWN_STEPS",
-    "SAMPLES",
-    "STEPS",
-    "TRIES",
-    "Cancelled",
-    "GenerateRequest",
-    "Progress",
-    "ReactRequest",
-    "Result",
-    "SamplingRequest",
-    "clip_facts",
-    "with_current_names",
-]
 
 
 def _others(needed: str) -> str:

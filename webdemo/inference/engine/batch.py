@@ -22,12 +22,11 @@ from models.diffusion import Term, terms, weighted
 from models.intergen import InterGenDenoiser
 from models.intergen.words import join_conditions
 from webdemo.inference.finish.damping import Damping, correct_together
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.run import CancelToken, Progress, Result
+from webdemo.inference.story.request import SceneRequest
 
-from .cancel import CancelToken
-from .engine import Engine
-from .requests import GenerateRequest, ReactRequest
-from .results import Progress, Result
-from .story.request import SceneRequest
+from . import Engine
 
 Event = Progress | Result | Exception
 

@@ -13,9 +13,8 @@ from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
 from motion import FPS, Clip, Duet
 from motion.placement import Placement
-
-from .actor import ROLES
-from .requests import GenerateRequest, ReactRequest
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.requests.actor import ROLES
 
 Array = NDArray[np.floating]
 Finish = Callable[[Array], Array]

@@ -12,12 +12,11 @@ from acts.checking import NO_RULE, checked
 from acts.telling import told
 from motion import SMPL22, Clip, Duet
 from motion.metrics.sentences.joints import Motion
-
-from .acting import plans_of
-from .results import Result
-from .things.looking import watched
-from .things.opening import opened
-from .things.uses import lengths_of
+from webdemo.inference.requests.acting import plans_of
+from webdemo.inference.run import Result
+from webdemo.inference.things.looking import watched
+from webdemo.inference.things.opening import opened
+from webdemo.inference.things.uses import lengths_of
 
 MOST_NAMED = 6
 """Acts that a note names of each kind, at most."""

@@ -1,0 +1,26 @@
+"""What may be asked of the :class:`~webdemo.inference.engine.Engine`, with its limits.
+
+These dataclasses import no torch, so the page, the shell and the API build them before any network loads.
+"""
+
+from .limits import DAMPING, GUIDANCE, MAX_PROMPT, MAX_SEED, SAMPLES, STEPS, TRIES
+from .predict import PredictRequest, PredictResult
+from .sampling import OWN_STEPS, GenerateRequest, ReactRequest, SamplingRequest, clip_facts, with_current_names
+
+__all__ = [
+    "DAMPING",
+    "GUIDANCE",
+    "MAX_PROMPT",
+    "MAX_SEED",
+    "OWN_STEPS",
+    "SAMPLES",
+    "STEPS",
+    "TRIES",
+    "GenerateRequest",
+    "PredictRequest",
+    "PredictResult",
+    "ReactRequest",
+    "SamplingRequest",
+    "clip_facts",
+    "with_current_names",
+]

@@ -1,0 +1,148 @@
+"""Live requests: an online reaction to an actor who plays in real time, and a live stream that somebody keeps.
+
+This module does not import torch: the page uses it before any network is loaded.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import FPS, Clip, Duet, InputError
+from motion.metrics import compare
+from webdemo.inference.run import Progress, Result, StageTimer
+
+from .sampling import ReactRequest, clip_facts
+
+Array = NDArray[np.floating]
+
+PARTNERS: Mapping[str, str] = {"regennet": "ReGenNet, online", "agent": "Virtual agent"}
+"""Live partners by name, with their labels."""
+LONGEST = 60.0
+"""Seconds of a stream that can be kept."""
+SHORTEST = 1.0
+"""Seconds: with less there is nothing to measure."""
+
+
+@dataclass(frozen=True)
+class LiveFrame:
+    """One frame of a live reaction.
+
+    Attributes:
+        index: its number from 0.
+        raw: (samples, 22, 3) metres, the network's output in the actor's world.
+        positions: (samples, 22, 3) metres, as shown.
+        seconds: delay after the actor's frame.
+    """
+
+    index: int
+    raw: Array
+    positions: Array
+    seconds: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class LiveRequest(ReactRequest):
+    """An online reaction to an actor who plays in real time; its motion is that of the same ReactRequest.
+
+    The run reports every frame as a :class:`LiveProgress` and lasts as long as the actor's motion.
+
+    Raises:
+        InputError: as a ReactRequest, and for a mode that is not online.
+    """
+
+    mode: str = "online"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.mode != "online":
+            raise InputError("Only an online reaction can be live: choose the model regennet, mode online.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class LiveProgress(Progress):
+    """A frame of a live reaction, sent as soon as it is generated.
+
+    Attributes:
+        frame: the reaction's frame; its ``seconds`` count from the time when the actor's frame was due, so
+            they grow if the machine cannot keep up.
+    """
+
+    frame: LiveFrame
+
+
+def paced(frames: Iterator[LiveFrame], *, fps: float = FPS) -> Iterator[LiveFrame]:
+    """Requests each frame when the actor's frame is due; the first one immediately.
+
+    Args:
+        frames: generates a frame on request.
+        fps: the actor's frames a second.
+    """
+    began = time.perf_counter()
+    index = 0
+    while True:
+        due = began + index / fps
+        time.sleep(max(0.0, due - time.perf_counter()))
+        frame = next(frames, None)
+        if frame is None:
+            return
+        yield replace(frame, seconds=time.perf_counter() - due)
+        index += 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class LiveTake:
+    """A live stream that somebody keeps: both people's motion as it was shown. Nothing is generated again.
+
+    Attributes:
+        model: who answered, one of :data:`PARTNERS`.
+        actor: the person, at 30 fps on SMPL22's joints.
+        reactor: the partner, of the same length.
+
+    Raises:
+        InputError: for an unknown partner, or a stream that is too short or too long.
+    """
+
+    model: str
+    actor: Clip
+    reactor: Clip
+    mode: ClassVar[str] = "online"
+    prompt: ClassVar[str] = ""
+
+    def __post_init__(self) -> None:
+        if self.model not in PARTNERS:
+            raise InputError(f"There is no live partner {self.model!r:.40}: choose {' or '.join(PARTNERS)}.")
+        if self.actor.positions.shape != self.reactor.positions.shape:
+            raise InputError("The two people of a live stream must have as many frames and joints.")
+        if self.actor.num_frames < SHORTEST * self.actor.fps:
+            raise InputError("This live stream is shorter than a second: let it go on for longer.")
+        if self.actor.seconds > LONGEST + 1:
+            raise InputError(f"Only the last {LONGEST:g} s of a live stream can be kept: send no more.")
+
+    @property
+    def title(self) -> str:
+        """The name of the run in the history."""
+        return live_title(self.model)
+
+    def to_dict(self) -> dict[str, Any]:
+        """All fields except the motion, which its SHA-256 represents."""
+        actor = clip_facts(self.actor)
+        return {"kind": "react", "live": True, "model": self.model, "mode": self.mode, "actor": actor}
+
+    def results(self, timer: StageTimer) -> Iterator[Progress | Result]:
+        """The two people with their read-outs."""
+        yield timer.progress("finish")
+        duet = Duet(self.actor, self.reactor, ("actor", "reactor"))
+        yield Result(
+            duets=(duet,), manifest={}, readouts=(compare(None, duet),), timings={"total": round(timer.elapsed, 4)}
+        )
+
+
+def live_title(model: str) -> str:
+    """The name of a kept live stream, by its partner."""
+    return f"Live with {PARTNERS.get(model, model)}"
