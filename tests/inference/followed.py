@@ -15,7 +15,7 @@ from acts.staging.parts import KnownFrames, KnownPath
 from motion import FPS, Duet
 from motion.transforms import heading
 from webdemo.inference.pipelines.scene import SceneMaker
-from webdemo.inference.pipelines.scene_setting import Setting
+from webdemo.inference.pipelines.window import Setting
 from webdemo.inference.run import CancelToken, Result, StageTimer
 from webdemo.inference.story import SceneRequest
 

@@ -9,7 +9,7 @@ from acts.staging.parts import KnownFrames, KnownPath, Part
 from motion import SMPL22, Duet, InputError
 from motion.transforms import heading_matrix
 from webdemo.inference import Engine, GenerateRequest
-from webdemo.inference.pipelines.directed import FADE, Directed, directed, with_given, with_joints
+from webdemo.inference.pipelines.given import FADE, Directed, directed, with_given, with_joints
 from webdemo.inference.run import CancelToken, StageTimer
 
 FRAMES = 60
@@ -92,7 +92,7 @@ def test_poses_in_a_row_are_led_through_as_they_are(monkeypatch: pytest.MonkeyPa
     """A bystander's poses, one every half second, leave nothing to smooth; a pose by itself does."""
     smoothed: list[list[int]] = []
     monkeypatch.setattr(
-        "webdemo.inference.pipelines.directed.passing", lambda made, at, *_: smoothed.append(at.tolist()) or made
+        "webdemo.inference.pipelines.given.passing", lambda made, at, *_: smoothed.append(at.tolist()) or made
     )
     made = np.stack([walker(), walker(speed=0.8)]).astype(np.float32)
     row = [KnownFrames(0, [20, 35, 50], made[0, [20, 35, 50]]), KnownFrames(1, [30], made[1, 30:31])]

@@ -16,7 +16,7 @@ from motion import InputError
 from motion.looks import UNSAID
 from webdemo.inference import Engine, GenerateRequest, ReactRequest, SceneRequest
 from webdemo.inference.engine.tries import replayed
-from webdemo.inference.pipelines import intergen, scene_setting
+from webdemo.inference.pipelines import intergen, window
 from webdemo.inference.pipelines.scene import Parts
 from webdemo.inference.requests.plans import KeptPlan, WindowPlan, kept_plan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, prompted, request, understood
@@ -69,13 +69,13 @@ def forgotten_reader(monkeypatch: pytest.MonkeyPatch) -> None:
 def changed_stage(monkeypatch: pytest.MonkeyPatch) -> None:
     """From now on every plan of acts is staged in another way."""
 
-    def elsewhere(asked: Any, window: Any, scene: Any, placement: Any, taken: Any) -> list[Any]:
+    def elsewhere(asked: Any, of: Any, scene: Any, placement: Any, taken: Any) -> list[Any]:
         place = np.array([[1.5, 1.0]])
-        return [KnownPath(person, [window.past + 20], place) for person in (0, 1) if person not in taken]
+        return [KnownPath(person, [of.past + 20], place) for person in (0, 1) if person not in taken]
 
-    monkeypatch.setattr(scene_setting, "planned", elsewhere)
-    monkeypatch.setattr(scene_setting, "wishes", lambda *_: ([], ["Not so."]))
-    monkeypatch.setattr(scene_setting, "_anchor", lambda _: (3.0, 3.0, 1.0))
+    monkeypatch.setattr(window, "planned", elsewhere)
+    monkeypatch.setattr(window, "wishes", lambda *_: ([], ["Not so."]))
+    monkeypatch.setattr(window, "_anchor", lambda _: (3.0, 3.0, 1.0))
     alone = ("One person falls.", "One person jumps.")
     monkeypatch.setattr(understood, "of_each", lambda _: alone)
     for module in (request, prompted, intergen):

@@ -21,14 +21,15 @@ from webdemo import cli
 from webdemo.inference import PredictRequest, PredictResult
 from webdemo.inference.engine import Engine
 from webdemo.inference.method import WEIGHTS
-from webdemo.inference.pipelines.predict_feet import with_planted_feet
-from webdemo.inference.pipelines.predict_frame import to_last_pose, to_world
 from webdemo.inference.pipelines.predictor import (
     PredictorPipeline,
     above_floor,
     faded,
     joined,
+    to_last_pose,
+    to_world,
     with_bones_of,
+    with_planted_feet,
     without_jump,
 )
 from webdemo.inference.requests.predict import mean_steps

@@ -29,7 +29,7 @@ def measure_reactions(repeats: int) -> dict[str, Any]:
     from models.motion_tokens import FEATURES
     from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, load_folder
     from motion import SMPL22
-    from webdemo.inference.finish.following import FollowingCleanup
+    from webdemo.inference.finish.cleanup import FollowingCleanup
     from webdemo.inference.method import WEIGHTS
 
     folder = WEIGHTS / "regennet"

@@ -15,7 +15,7 @@ from models.threads import CORES
 from motion import InputError
 from webdemo.inference.engine import Engine
 from webdemo.inference.own import read_entries
-from webdemo.inference.pipelines.released.intergen import ReleasedInterGenPipeline
+from webdemo.inference.pipelines.intergen import ReleasedInterGenPipeline
 from webdemo.inference.requests import GenerateRequest
 
 from .plain import PlainSampler

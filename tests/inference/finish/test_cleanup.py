@@ -8,8 +8,7 @@ from motion import SMPL22
 from motion.metrics.naturalness import standing_foot
 from tests.motion.test_pivots import apart, turned
 from webdemo.inference.finish import cleanup
-from webdemo.inference.finish.cleanup import _elbow_pole, clean_person, on_constant_bones
-from webdemo.inference.finish.following import FollowingCleanup
+from webdemo.inference.finish.cleanup import FollowingCleanup, _elbow_pole, clean_person, on_constant_bones
 
 WRISTS = [SMPL22.index(name) for name in ("left_wrist", "right_wrist")]
 TOES = [SMPL22.index(name) for name in ("left_foot", "right_foot")]

@@ -7,7 +7,7 @@ from motion.kinematics import fit_rotations, forward_kinematics
 from motion.skeleton import FEET
 from motion.transforms import heading_matrix
 from webdemo.inference.finish.joining import PASSING, REACH, closed, joined, passing
-from webdemo.inference.pipelines.directed import with_given
+from webdemo.inference.pipelines.given import with_given
 
 PARENTS, CHILDREN = np.array(SMPL22.bones).T
 FRAMES = 90

@@ -10,8 +10,19 @@ from motion import SMPL22
 from motion.transforms import heading_matrix
 from motion.video.gaze import HIDDEN
 from webdemo.inference.live.agent import BESIDE, LiveAgent
-from webdemo.inference.live.complaints import BRIGHT, COLD, FRAMES, HOT, LOUD, SMELLS, Complaint, complaint
-from webdemo.inference.live.room import PLACES, STANDS, USES
+from webdemo.inference.live.room import (
+    BRIGHT,
+    COLD,
+    FRAMES,
+    HOT,
+    LOUD,
+    PLACES,
+    SMELLS,
+    STANDS,
+    USES,
+    Complaint,
+    complaint,
+)
 from webdemo.inference.pipelines.agent import FIRST
 
 from .test_partner import NOTHING, STANDING, Recorded, Scripted

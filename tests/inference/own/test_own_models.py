@@ -18,7 +18,7 @@ from webdemo import cli
 from webdemo.inference import Engine, GenerateRequest, ReactRequest, Result
 from webdemo.inference.methods import failed, method, register_settings
 from webdemo.inference.own import cost, entries
-from webdemo.inference.pipelines.released import common
+from webdemo.inference.pipelines import intergen
 
 TABLE = """
 [models.my-run]
@@ -222,6 +222,6 @@ def test_numbers_that_are_too_coarse_give_way_to_float32(monkeypatch: pytest.Mon
         asked.append((key, precision))
         return precision == "f32"
 
-    monkeypatch.setattr(common, "compile_network", compile_network)
-    assert common.compiled_near(torch.nn.Identity(), "weights", "bf16")
+    monkeypatch.setattr(intergen, "compile_network", compile_network)
+    assert intergen.compiled_near(torch.nn.Identity(), "weights", "bf16")
     assert asked == [("weights bf16", "bf16"), ("weights f32", "f32")]

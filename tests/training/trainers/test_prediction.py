@@ -21,7 +21,7 @@ from training.trainers import motion_mlp as mlp
 from training.trainers.prediction.rollout import ADVANCE, with_own_past
 from training.trainers.prediction.trainer import PredictionTrainer
 from training.trainers.prediction.windows import CmuWindows, CorpusWindows, open_windows
-from webdemo.inference.pipelines.predict_frame import to_last_pose
+from webdemo.inference.pipelines.predictor import to_last_pose
 
 MLP = mlp.Settings(
     past=10,

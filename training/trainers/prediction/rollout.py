@@ -7,7 +7,7 @@ import torch
 from torch import Tensor, nn
 
 from motion import InputError
-from webdemo.inference.pipelines.predict_frame import to_last_pose
+from webdemo.inference.pipelines.predictor import to_last_pose
 
 ADVANCE = 20
 """Frames by which a pass of the recursion goes on: the page's passes share the rest of a second."""

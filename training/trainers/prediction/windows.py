@@ -16,7 +16,7 @@ from torch import Tensor
 from motion import SMPL22, InputError
 from motion.transforms import mirrored
 from training.corpus import cmu
-from webdemo.inference.pipelines.predict_frame import to_last_pose
+from webdemo.inference.pipelines.predictor import to_last_pose
 
 Array = NDArray[np.floating]
 

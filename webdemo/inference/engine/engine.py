@@ -34,8 +34,7 @@ from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.things import furnished
 
-from .tries import run_tries
-from .verdicts import kept_rows
+from .tries import kept_rows, run_tries
 
 Request = GenerateRequest | ReactRequest | PredictRequest | SceneRequest | LiveTake
 

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
+from acts import Plan
+from acts.accounting import unread_words
+from acts.checking import NO_RULE, checked
+from acts.telling import told
+from motion import SMPL22, Clip, Duet
+from motion.metrics.sentences.joints import Motion
+from webdemo.inference.requests.acting import plans_of
 from webdemo.inference.requests.limits import MAX_SEED
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
-
-from .verdicts import Judged, judged, note
+from webdemo.inference.things.looking import watched
+from webdemo.inference.things.opening import opened
+from webdemo.inference.things.uses import lengths_of
 
 
 def run_tries(
@@ -66,3 +74,149 @@ def replayed(request: Mapping[str, Any], manifest: Mapping[str, Any]) -> dict[st
     if not isinstance(tries, Mapping) or "seed" not in tries:
         return dict(request)
     return {**request, "seed": tries["seed"], "tries": 1}
+
+
+MOST_NAMED = 6
+"""Acts that a note names of each kind, at most."""
+MOST_CHARACTERS = 350
+"""Characters of a note, at most, where fewer acts of each kind make it so short."""
+_ORDINALS = ("1st", "2nd", "3rd", "4th")
+
+Rows = list[dict[str, Any]]
+"""Verdicts as a manifest holds them: ``act``, ``words``, ``done``, ``measure``, and ``beat`` where it has several."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A result with what its samples show of the words.
+
+    Attributes:
+        result: with ``checked`` and ``told`` in the manifests, of the first sample in that of all.
+        rows: of each sample; () where the request has no words that can be read.
+        unread: stretches of the words that are in no act.
+    """
+
+    result: Result
+    rows: tuple[Rows, ...] = ()
+    unread: tuple[str, ...] = ()
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Acts that are done and that can be judged, over all samples."""
+        found = [row["done"] for rows in self.rows for row in rows if row["done"] is not None]
+        return sum(found), len(found)
+
+    @property
+    def share(self) -> float:
+        """Acts that are done among those that can be judged; 1 where there are none."""
+        done, told = self.counts
+        return done / told if told else 1.0
+
+
+def judged(request: Any, result: Result) -> Judged:
+    """A result with the verdicts on the acts of its request's words; unchanged where there are none to judge."""
+    plans = list(plans_of(request))
+    lengths = lengths_of(result.manifest)
+    unread = tuple(dict.fromkeys(words for plan, *_ in plans for words in unread_words(plan)))
+    found = [_judged_sample(plans, duet, lengths) for duet in result.duets] if plans else []
+    rows = tuple(own["checked"] for own in found)
+    if not any(rows):
+        return Judged(result, (), unread)
+    found = [own | ({"unread": list(unread)} if unread else {}) for own in found]
+    duets = tuple(_with(duet, own) for duet, own in zip(result.duets, found, strict=True))
+    return Judged(replace(result, manifest=result.manifest | found[0], duets=duets), rows, unread)
+
+
+def _with(duet: Duet | Clip, own: Mapping[str, Any]) -> Duet | Clip:
+    return replace(duet, manifest={**(duet.manifest or {}), **own}) if isinstance(duet, Duet) else duet
+
+
+def kept_rows(duet: Duet) -> dict[str, Any]:
+    """The part of a sample's manifest that is its own: its verdicts, what happens in words, and its things."""
+    manifest = duet.manifest or {}
+    return {key: manifest[key] for key in ("checked", "told", "unread", "things") if key in manifest}
+
+
+def _judged_sample(
+    plans: Sequence[tuple[Plan, int, int | None, int | None]], duet: Duet | Clip, lengths: Sequence[float]
+) -> dict[str, Any]:
+    """The verdicts on a sample, ``checked``, and what happens in it in words, ``told``."""
+    if not isinstance(duet, Duet) or duet.skeleton.joint_names != SMPL22.joint_names:
+        return {"checked": []}
+    rows: Rows = []
+    words: list[str] = []
+    for plan, start, stop, beat in plans:
+        verdicts = checked(plan, Motion(duet.positions[:, start:stop], duet.fps))
+        split = () if beat is not None else lengths
+        verdicts = watched(verdicts, plan, duet, start, stop, split)
+        verdicts = opened(verdicts, plan, duet, start, stop, split)
+        rows += [each.to_dict() | ({} if beat is None else {"beat": beat}) for each in verdicts]
+        words.append(told(plan, verdicts))
+    return {"checked": rows, "told": " ".join(filter(None, words))}
+
+
+# ---- the note --------------------------------------------------------------------------------------------
+def note(rows: Sequence[Rows], tries: Mapping[str, Any] | None = None, unread: Sequence[str] = ()) -> str:
+    """The verdict under a result; "" for nothing.
+
+    What of its words is not understood, what nothing measures, what is not seen, and then what is done. "Done" stands
+    alone where all of the words are acts, with all that is said of them, and all are measured and seen.
+
+    Args:
+        rows: of each sample; with several, an act counts how often it is done.
+        tries: as the manifest holds them.
+        unread: stretches of the words that are in no act.
+    """
+    acts = [list(column) for column in zip(*rows, strict=True)]
+    judged = [column for column in acts if any(row["done"] is not None for row in column)]
+    made = [column for column in judged if all(row["done"] for row in column)]
+    done = [column[0]["words"] for column in made if not column[0].get("wrote")]
+    missed = [_missed(column) for column in judged if column not in made]
+    open_ = [_unchecked(column) for column in acts if column in made or column not in judged]
+    open_ = [each for each in open_ if each]
+    quoted = [f"“{words}”" for words in unread]
+    heads = {"Not understood": quoted, "Not checked": open_, "Not seen": missed, "Done": done}
+    for most in range(MOST_NAMED, 0, -1):
+        parts = [f"{head}: {_listed(words, most)}." for head, words in heads.items() if words]
+        if len(" ".join(parts)) <= MOST_CHARACTERS:
+            break
+    if tries is None or not judged:
+        return " ".join(parts)
+    if missed:
+        met = sum(bool(row["done"]) for column in judged for row in column)
+        return f"Best of {tries['made']} tries, {met} of {sum(map(len, judged))} acts. {' '.join(parts)}"
+    won = _ORDINALS[tries["won"] - 1]
+    if len(parts) > 1:
+        return f"This is the {won} of {tries['asked']} tries. {' '.join(parts)}"
+    return f"Done at the {won} of {tries['asked']} tries: {_listed(done)}."
+
+
+def _unchecked(column: Sequence[Mapping[str, Any]]) -> str:
+    """Parts left out of an act that is done, or that nothing measures; "" for nothing."""
+    row = column[0]
+    words = str(row["words"])
+    if row.get("wrote"):
+        return f"“{row['wrote']}”, read as: {words}"
+    if row["done"] is None:
+        return words if row["measure"] == NO_RULE else _with_why(words, row["measure"])
+    return _with_why(" and ".join(row.get("unchecked", ())), " ".join(words.split()[:2])) * bool(row.get("unchecked"))
+
+
+def _with_why(words: str, why: str) -> str:
+    return f"{words} ({why})" if why else words
+
+
+def _missed(column: Sequence[Mapping[str, Any]]) -> str:
+    """An act that is not done, with what was measured; of several samples with the number of those that show it."""
+    words = str(column[0]["words"])
+    words = f"“{column[0]['wrote']}”, read as: {words}" if column[0].get("wrote") else words
+    if len(column) > 1:
+        met = sum(bool(row["done"]) for row in column)
+        return f"{words} (in {met} of {len(column)} samples)"
+    return _with_why(words, column[0]["measure"])
+
+
+def _listed(words: Sequence[str], most: int = MOST_NAMED) -> str:
+    words = list(dict.fromkeys(words))
+    more = f"; and {len(words) - most} more" if len(words) > most else ""
+    return "; ".join(words[:most]) + more

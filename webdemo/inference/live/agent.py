@@ -24,10 +24,9 @@ from motion.transforms import facing
 from motion.video.gaze import Gaze
 from webdemo.inference.pipelines.agent import BETWEEN, FIRST, Decision, Eye, Look
 
-from .complaints import complaint
 from .partner import Belief
 from .partner_pipeline import ReactingPartner
-from .room import Errand, Room
+from .room import Errand, Room, complaint
 
 Array = NDArray[np.floating]
 

@@ -25,7 +25,7 @@ from motion.things import Thing
 from motion.transforms import turn
 from motion.vectors import FLAT
 from motion.video.gaze import Gaze
-from webdemo.inference.finish.following import FollowingCleanup
+from webdemo.inference.finish.cleanup import FollowingCleanup
 from webdemo.inference.pipelines.regennet import ReGenNetPipeline, settle
 from webdemo.inference.requests import ReactRequest
 

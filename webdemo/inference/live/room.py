@@ -1,7 +1,11 @@
 """The room of the live agent: a window with curtains behind it and a hi-fi at its side, which it goes to and uses.
 
-The person's complaints (:mod:`.complaints`) send the agent on an errand: it walks to the thing, its
-hands come to it, the thing changes, and the agent comes back. Nothing depends on a later frame of the person.
+The person's complaints send the agent on an errand: it walks to the thing, its hands come to it, the thing changes, and
+the agent comes back. Nothing depends on a later frame of the person.
+
+The complaints are those of Chopin's thesis (Table 5.1), as far as 22 joints tell them. The recogniser has not been
+trained on them, and each is a posture that is held, so rules over the last second tell them: hands at the ears, before
+the eyes, rubbing the arms, or fanning the neck. Nothing here needs torch.
 """
 
 from __future__ import annotations
@@ -18,10 +22,8 @@ from motion.easing import smoothstep
 from motion.steering import Goal
 from motion.things import Thing, shape
 from motion.transforms import facing
-from motion.vectors import FLAT
+from motion.vectors import FLAT, unit
 from webdemo.inference.things.fixtures import BODIES, LEAVES, TAKES, placed_leaf
-
-from .complaints import Complaint
 
 Array = NDArray[np.floating]
 
@@ -36,6 +38,26 @@ USES, REACHES = 60, 15
 HANDS = {"window": (1.3, (0.16, -0.16)), "curtain": (1.4, (0.22, -0.22)), "hi-fi": (1.02, (-0.14,))}
 """Height over the floor, and metres aside of its middle, at which the hands use a thing: both hands, or the right."""
 _UP = np.array([0.0, 1.0, 0.0])
+FRAMES = 30
+"""Frames, a second, over which a complaint must last."""
+MOST = 0.85
+"""Share of these frames in which it must be seen."""
+PALM = 0.08
+"""Metres from a wrist to the palm, along the forearm."""
+AT_HEAD, APART = 0.26, 0.21
+"""Metres from a palm to the joint of the head at most, and between wrists at the ears; at the eyes they are closer."""
+AT_ARM, RUBS = 0.17, 0.1
+"""Metres from a palm to the other upper arm at most, and metres a second at which it rubs."""
+AT_NECK, FANS, TURNS = 0.4, 0.5, 3
+"""Metres from a fanning palm to the neck at most, its metres a second, and its turns back in one: a guard has none."""
+NOSE = (0.02, 0.1)
+"""Metres from the joint of the head up and ahead to the nose."""
+AT_NOSE, ASIDE, UNDER = 0.18, 0.1, 0.03
+"""Metres from the wrist of a hand that holds the nose to it at most; aside at most, as it is further at the ear; and
+under it at least, as a fist before the face is higher."""
+STILL, LOW = 0.12, 0.1
+"""Metres a second of that wrist at most, as a hand that rubs is faster, and metres of the other one under the neck."""
+_SIDES = ("left", "right")
 
 
 @dataclass
@@ -144,3 +166,105 @@ class Room:
         body = Thing.at_rest(kind, shape(kind), place, yaw, 1)
         leaves = LEAVES.get(kind, ())
         return [body, *(placed_leaf(leaf, place, yaw, np.array([self.open[leaf.moved_by]])) for leaf in leaves)]
+
+
+@dataclass(frozen=True)
+class Complaint:
+    """Something that bothers a person, and the act that helps.
+
+    Attributes:
+        said: what the gesture stands for.
+        kind: of the thing in the room, as the words call it.
+        opens: whether the thing is to be opened, or turned up; else closed, or turned down.
+        act: what the agent does about it.
+    """
+
+    said: str
+    kind: str
+    opens: bool
+    act: str
+
+
+COLD = Complaint("I am cold", "window", False, "closes the window")
+HOT = Complaint("I am hot", "window", True, "opens the window")
+LOUD = Complaint("This is too loud", "hi-fi", False, "turns the hi-fi down")
+SMELLS = Complaint("This smells bad", "window", True, "opens the window")
+BRIGHT = Complaint("It is too bright", "curtain", False, "closes the curtains")
+
+
+def complaint(seen: Array, fps: float) -> Complaint | None:
+    """The complaint that a person makes in their last second; None for none.
+
+    Args:
+        seen: (T, 22, 3) metres; with fewer than :data:`FRAMES` frames nothing is told.
+        fps: frames a second.
+    """
+    if len(seen) < FRAMES:
+        return None
+    last = np.asarray(seen[-FRAMES:], dtype=np.float64)
+    palms = np.stack([_palm(last, side) for side in _SIDES])
+    speeds = np.linalg.norm(np.gradient(palms - last[:, _j("spine3")], axis=1), axis=-1) * fps
+    head, high = last[:, _j("head")], palms[..., 1] > last[:, _j("neck"), 1]
+    at_head = ((np.linalg.norm(palms - head, axis=-1) < AT_HEAD) & high).all(axis=0)
+    wrists = [last[:, _j(f"{side}_wrist")] for side in _SIDES]
+    apart = np.linalg.norm(wrists[0] - wrists[1], axis=-1) > APART
+    if _mostly(at_head & apart):
+        return LOUD
+    ahead = np.einsum("stj,tj->st", palms - head, np.stack([facing(pose) for pose in last])) > 0.04
+    if _mostly(at_head & ~apart & ahead.all(axis=0)):
+        return BRIGHT
+    arms = np.stack([_to_arm(palms[i], last, _SIDES[1 - i]) for i in (0, 1)])
+    if _mostly(arms.max(axis=0) < AT_ARM) and speeds.mean() > RUBS:
+        return COLD
+    if _holds_nose(last, fps):
+        return SMELLS
+    neck = np.linalg.norm(palms - last[:, _j("neck")], axis=-1) < AT_NECK
+    fans = (neck & (palms[..., 1] < head[:, 1] + 0.1)).mean(axis=1) >= MOST
+    to_and_fro = np.array([_turns(course - last[:, _j("spine3")]) >= TURNS for course in palms])
+    return HOT if (fans & to_and_fro & (speeds.mean(axis=1) > FANS)).any() else None
+
+
+def _holds_nose(last: Array, fps: float) -> bool:
+    """True if one hand stays at the nose and the other is low."""
+    wrists = np.stack([last[:, _j(f"{side}_wrist")] for side in _SIDES])
+    ahead = np.stack([facing(pose) for pose in last])
+    off = wrists - last[:, _j("head")] - NOSE[1] * ahead - NOSE[0] * _UP
+    aside = np.abs(np.einsum("stj,tj->st", off, np.cross(_UP, ahead)))
+    speeds = np.linalg.norm(np.gradient(wrists - last[:, _j("head")], axis=1), axis=-1).mean(axis=1) * fps
+    low = wrists[..., 1] < last[:, _j("neck"), 1] - LOW
+    held = (np.linalg.norm(off, axis=-1) < AT_NOSE) & (aside < ASIDE) & (off[..., 1] < -UNDER) & low[::-1]
+    return bool(((held.mean(axis=1) >= MOST) & (speeds < STILL)).any())
+
+
+def _turns(course: Array) -> int:
+    """The times that a course (T, 3) turns back by a centimetre, along the line on which it is longest."""
+    off = course - course.mean(axis=0)
+    along = off @ np.linalg.svd(off, full_matrices=False)[2][0]
+    count, far, way = 0, along[0], 0.0
+    for value in along:
+        if (value - far) * way >= 0:
+            far, way = value, way or (value - far)
+        elif abs(value - far) > 0.01:
+            count, far, way = count + 1, value, value - far
+    return count
+
+
+def _mostly(mask: NDArray[np.bool_]) -> bool:
+    return bool(mask.mean() >= MOST)
+
+
+def _j(name: str) -> int:
+    return SMPL22.index(name)
+
+
+def _palm(poses: Array, side: str) -> Array:
+    wrist = poses[:, _j(f"{side}_wrist")]
+    return wrist + PALM * unit(wrist - poses[:, _j(f"{side}_elbow")])
+
+
+def _to_arm(palms: Array, poses: Array, side: str) -> Array:
+    """(T,) metres from a palm (T, 3) to an upper arm."""
+    shoulder, elbow = poses[:, _j(f"{side}_shoulder")], poses[:, _j(f"{side}_elbow")]
+    along = elbow - shoulder
+    share = np.einsum("tj,tj->t", palms - shoulder, along) / np.maximum((along**2).sum(-1), 1e-9)
+    return np.linalg.norm(palms - shoulder - np.clip(share, 0, 1)[:, None] * along, axis=-1)

@@ -5,9 +5,12 @@ Torch is not imported. The machine's speed is that of a matrix product in NumPy,
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
 import os
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -15,8 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from motion import InputError
-
-from .outline import Outline
+from motion.formats.files import write_text
 
 FRAMES = 150
 """Frames of the motion whose seconds are estimated: five seconds."""
@@ -117,3 +119,42 @@ def _seconds(value: float) -> str:
     if value < 1:
         return "a second or less"
     return f"{value:.0f} s" if value < 120 else f"{value / 60:.0f} minutes"
+
+
+Outline = dict[str, tuple[int, ...]]
+"""Tensor name → shape."""
+
+
+def outline_of(path: Path, network: str) -> Outline:
+    """The outline of a checkpoint; the first look at a file imports torch, later ones read a small cache.
+
+    Raises:
+        WeightsError: if the file cannot be read as plain tensors, see :func:`models.released.read_tensors`.
+    """
+    known = _remembered(path)
+    if known is not None:
+        return known
+    from models.released import read_tensors
+
+    outline = {name: tuple(tensor.shape) for name, tensor in read_tensors(path, network=network).items()}
+    with suppress(OSError):  # a folder that cannot be written costs the next start a second
+        file = _cache(path)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_text(file, json.dumps(outline))
+    return outline
+
+
+def _remembered(path: Path) -> Outline | None:
+    try:
+        found = json.loads(_cache(path).read_text())
+        return {str(name): tuple(int(size) for size in shape) for name, shape in found.items()}
+    except (OSError, ValueError, TypeError, AttributeError):
+        return None
+
+
+def _cache(path: Path) -> Path:
+    """The cache's file for this state of a checkpoint."""
+    stat = path.stat()
+    text = f"{path.resolve()} {stat.st_size} {stat.st_mtime_ns}"
+    base = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))
+    return base / "pas-de-deux" / "outlines" / f"{hashlib.sha256(text.encode()).hexdigest()[:24]}.json"

@@ -7,6 +7,7 @@ page, the shell, Ray's replicas and a program that imports :class:`~webdemo.infe
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -67,6 +68,21 @@ class Entry:
         if not path.exists():
             raise InputError(f"There is no file {path.name}: correct `files` of [models.{self.name}].")
         return path
+
+    def digest(self, *roles: str) -> str:
+        """One SHA-256 for the files that are named, by which a manifest names the weights.
+
+        A folder counts by its files' names.
+        """
+        total = hashlib.sha256()
+        for path in (self.files[role] for role in roles if role in self.files):
+            if path.is_dir():
+                total.update("\n".join(sorted(file.name for file in path.iterdir())).encode())
+                continue
+            with path.open("rb") as file:
+                while block := file.read(1 << 22):
+                    total.update(block)
+        return total.hexdigest()
 
 
 def read_entries() -> tuple[dict[str, Entry], dict[str, str]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -10,11 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from motion import InputError
-from webdemo.inference.method import Input, Method, Pipeline, Task
+from webdemo.inference.method import Input, Method, Pipeline, Task, load_pipeline
 
-from .cost import Cost, cost_of, total_memory
+from .cost import Cost, Outline, cost_of, outline_of, total_memory
 from .entries import Entry
-from .outline import Outline, outline_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +22,7 @@ class Release:
     Attributes:
         network: its name.
         mark: part of its tensors' names, as in :data:`models.released.MARKS`.
-        pipeline: ``module:Class`` in :mod:`webdemo.inference.pipelines.released`.
+        pipeline: module and class in :mod:`webdemo.inference.pipelines`.
         summary: one sentence on what it does.
         loss: one sentence on what its representation loses here.
         tasks, takes, seconds, samplers, defaults, fixed, shares_passes: as in :class:`Method`.
@@ -62,7 +60,7 @@ RELEASES: dict[str, Release] = {
     "intergen": Release(
         network="InterGen",
         mark="decoder.net.blocks.",
-        pipeline="intergen:ReleasedInterGenPipeline",
+        pipeline="intergen.ReleasedInterGenPipeline",
         summary="The authors' InterGen: two people from a sentence, or a partner for a given person.",
         loss="Of its 262 numbers a person and frame the positions are kept.",
         tasks=("generate", "react"),
@@ -78,7 +76,7 @@ RELEASES: dict[str, Release] = {
     "regennet": Release(
         network="ReGenNet",
         mark="cmo_process.poseEmbedding.",
-        pipeline="regennet:ReleasedReGenNetPipeline",
+        pipeline="regennet.ReleasedReGenNetPipeline",
         summary="The authors' ReGenNet: the person who reacts to a given one.",
         loss="Of SMPL-X's 55 joints the 22 of the body are kept.",
         tasks=("react",),
@@ -93,7 +91,7 @@ RELEASES: dict[str, Release] = {
     "interformer": Release(
         network="InterFormer",
         mark="decoder.layers.0.attn_space_1.",
-        pipeline="interformer:ReleasedInterFormerPipeline",
+        pipeline="interformer.ReleasedInterFormerPipeline",
         summary="The authors' InterFormer: the person who reacts, pose after pose.",
         loss="It sees 15 of the 22 joints, at 15 frames a second.",
         tasks=("react",),
@@ -107,7 +105,7 @@ RELEASES: dict[str, Release] = {
     "bigraphdiff": Release(
         network="BiGraphDiff",
         mark="temporal_decoder_blocks.0.ca_block_1.",
-        pipeline="bigraphdiff:ReleasedBiGraphDiffPipeline",
+        pipeline="bigraphdiff.ReleasedBiGraphDiffPipeline",
         summary="The authors' BiGraphDiff: two people from a sentence; 1000 steps sample as in the paper.",
         loss="A Kinect's 25 joints become 22 on constant bones.",
         tasks=("generate",),
@@ -173,7 +171,4 @@ def _cost(release: Release, outline: Outline) -> Cost:
 def _load(entry: Entry, release: Release, cost: Cost, folder: Path) -> Pipeline:
     """The pipeline; ``folder`` is that of shipped weights, which it does not need."""
     cost.check(entry.name)
-    module, name = release.pipeline.split(":")
-    found: Any = importlib.import_module(f"webdemo.inference.pipelines.released.{module}")
-    pipeline: Pipeline = getattr(found, name)(entry)
-    return pipeline
+    return load_pipeline(release.pipeline, entry)

@@ -34,8 +34,7 @@ from webdemo.inference.story.understood import understood
 
 from .given import NAMES, Finish, Reaction
 from .intergen import InterGenPipeline
-from .predict_frame import to_last_pose
-from .predictor import PredictorPipeline
+from .predictor import PredictorPipeline, to_last_pose
 from .regennet import settle
 
 Array = NDArray[np.floating]

@@ -2,23 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from acts.staging.parts import KnownFrames, KnownPath, Part
 from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
-from motion import FPS, Clip, Duet
+from motion import FPS, SMPL22, Clip, Duet, InputError
+from motion.easing import minimum_jerk
+from motion.kinematics import project_to_skeleton
 from motion.placement import Placement
+from webdemo.inference.finish.joining import PASSING, joined, passing
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.actor import ROLES
 
 Array = NDArray[np.floating]
 Finish = Callable[[Array], Array]
 NAMES = ("actor", "reactor")
+MOST_DISTANCE = 20.0
+"""Metres from the origin that a given place may have."""
+MOST_SPEED = 5.0
+"""Metres a second between two places of a path."""
+FADE = 12
+"""Frames over which what clean-up changed at a given frame is taken back beside it."""
+_BONE_ERROR = 0.3
+_HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
 
 
 @dataclass(frozen=True)
@@ -79,3 +91,180 @@ def _given_person(model: DuetSpace, positions: Array, place: int) -> Hold:
     known = Known.nothing(frames)
     known.add_person(place, torch.from_numpy(whole).float())
     return Hold(known, layout, model.mean, model.std)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Directed(Scene):
+    """Both people are made around what is given."""
+
+    parts: Sequence[Part]
+
+    def duet(self, pair: Array, finish: Finish) -> Duet:
+        """As :meth:`Scene.duet`; what is given is met exactly, and what was made leads there smoothly."""
+        people = [finish(person) for person in pair]
+        for person in range(2):
+            given = [p for p in self.parts if isinstance(p, KnownFrames) and p.person == person and not p.joints]
+            if given:
+                at = np.concatenate([np.asarray(p.frames) for p in given])
+                wanted = np.concatenate([p.positions for p in given])
+                runs = np.isin(at + 1, at) | np.isin(at - 1, at)  # a single pose says nothing about speed
+                if runs.any():
+                    people[person] = joined(people[person], at[runs], wanted[runs])
+                apart = np.abs(at[:, None] - at[~runs])
+                alone = ~runs & (np.sum(apart <= 2 * PASSING, axis=1) == 1)  # a series says how people move
+                if alone.any():
+                    held = np.isin(np.arange(len(people[person])), at)
+                    people[person] = passing(people[person], at[alone], wanted[alone], held)
+                people[person] = with_given(people[person], at, wanted)
+            for part in self.parts:
+                if isinstance(part, KnownFrames) and part.person == person and part.kept:
+                    people[person] = with_joints(people[person], part)
+        return super().duet(np.stack(people), lambda person: person)
+
+
+def with_given(positions: Array, frames: Array, given: Array) -> Array:
+    """Positions (T, 22, 3) that are ``given`` (N, 22, 3) at ``frames`` (N,).
+
+    Beside them the difference in place, and where two frames in a row are given also in speed, dies out over
+    :data:`FADE` frames, or half of the way to the next given one, along a polynomial of degree 5 (Bollo 2018,
+    "Inertialization").
+    """
+    order = np.argsort(frames)
+    frames, given = frames[order], np.asarray(given)[order]
+    apart = given - positions[frames]
+    time = np.arange(len(positions))
+    after = np.searchsorted(frames, time).clip(max=len(frames) - 1)
+    before = (after - 1).clip(min=0)
+    nearest = np.where(np.abs(frames[after] - time) < np.abs(time - frames[before]), after, before)
+    away = time - frames[nearest]
+    inner = (nearest - np.sign(away)).clip(0, len(frames) - 1)
+    speed = np.where(
+        (frames[inner] == frames[nearest] - np.sign(away))[:, None, None], apart[nearest] - apart[inner], 0.0
+    )
+    gap = np.where((frames[0] < time) & (time < frames[-1]), frames[after] - frames[before], 2 * (FADE + 1))
+    fade = (0.5 * gap).clip(0.5, FADE + 1)
+    s = (np.abs(away) / fade).clip(max=1.0)
+    place = 1 - minimum_jerk(s)
+    lead = fade * s * (1 - s) ** 3 * (1 + 3 * s)
+    moved = positions + place[:, None, None] * apart[nearest] + lead[:, None, None] * speed
+    moved[frames] = given
+    return moved
+
+
+def with_joints(positions: Array, part: KnownFrames) -> Array:
+    """Positions (T, 22, 3) with the joints of a part as they are given, see :func:`with_given`.
+
+    Those that are free, such as an arm, are moved with the given joint that they hang on. Bones keep their lengths.
+    """
+    whole = with_given(positions, *_every_frame(np.asarray(part.frames), np.asarray(part.positions)))
+    moved = positions.copy()
+    for joint, parent in enumerate(SMPL22.parents):
+        held = joint in part.joints
+        moved[:, joint] = whole[:, joint] if held else positions[:, joint] + moved[:, parent] - positions[:, parent]
+    return np.asarray(project_to_skeleton(moved)[0])
+
+
+def _every_frame(frames: Array, poses: Array) -> tuple[Array, Array]:
+    """Frames (N,) in order and their poses (N, 22, 3), with those between them along cubic Hermite splines."""
+    if len(frames) < 2:
+        return frames, poses
+    slopes = np.gradient(poses, frames, axis=0)
+    time = np.arange(frames[0], frames[-1] + 1)
+    i = (np.searchsorted(frames, time, side="right") - 1).clip(max=len(frames) - 2)
+    gap = (frames[i + 1] - frames[i])[:, None, None]
+    s = (time - frames[i])[:, None, None] / gap
+    ahead = s * s * (3 - 2 * s)
+    bends = s * (1 - s) * gap * ((1 - s) * slopes[i] - s * slopes[i + 1])
+    return time, (1 - ahead) * poses[i] + ahead * poses[i + 1] + bends
+
+
+def directed(model: DuetSpace, frames: int, parts: Sequence[Part], *, check: bool = True) -> Directed:
+    """A scene of so many frames with what is given of it.
+
+    Args:
+        model: the network's space.
+        frames: length at 30 fps.
+        parts: what is given.
+        check: whether poses and places may be outside the limits; off for what a network made itself.
+
+    Raises:
+        InputError: if a part lies outside the scene or the limits, is no pose that a body takes, or
+            contradicts another.
+    """
+    length = model.layout.num_frames(model.layout.num_tokens(frames))
+    known = Known.nothing(length)
+    for part in parts:
+        at = _frames(part, frames)
+        beside = isinstance(part, KnownFrames) and part.joints and 0 not in part.joints
+        if not beside and known.mask[0, part.person, at][:, 0].any():
+            raise InputError(f"Two given parts say where person {'ab'[part.person]} is at one time: give one.")
+        if isinstance(part, KnownFrames):
+            if check:
+                _check_poses(part, at)
+            poses = torch.from_numpy(np.asarray(part.positions)).float()
+            if part.joints:
+                known.add_joints(part.person, poses, at, part.joints)
+            else:
+                known.add_person(part.person, poses, at)
+        else:
+            if check:
+                _check_path(part, at)
+            headings = None if part.headings is None else torch.from_numpy(np.asarray(part.headings)).float()
+            known.add_path(part.person, at, torch.from_numpy(np.asarray(part.places)).float(), headings)
+            if part.turned and headings is not None:
+                _hold_hips(known, part.person, at, headings)
+    hold = Hold(known, model.layout, model.mean, model.std) if parts else None
+    return Directed(frames, hold, parts=parts)
+
+
+def _hold_hips(known: Known, person: int, at: list[int], headings: torch.Tensor) -> None:
+    """Marks the places of the hips beside the pelvis as known, so that the person faces the headings."""
+    for hip in _HIPS:
+        across, along = (float(SMPL22.offsets[hip, axis]) for axis in (0, 2))
+        turned = (across * headings.cos() + along * headings.sin(), along * headings.cos() - across * headings.sin())
+        for axis, values in zip((0, 2), turned, strict=True):
+            known.rows[:, person, at, 3 * hip + axis] = values
+            known.mask[:, person, at, 3 * hip + axis] = True
+
+
+def _frames(part: Part, total: int) -> list[int]:
+    at = [int(frame) for frame in part.frames]
+    if not at or at != sorted(set(at)) or at[0] < 0 or at[-1] >= total:
+        raise InputError(
+            f"What is given of person {'ab'[part.person]} does not fit into the scene: give frames in order, each "
+            f"once, from 0 to {total - 1}."
+        )
+    return at
+
+
+def _check_poses(part: KnownFrames, at: list[int]) -> None:
+    positions = np.asarray(part.positions)
+    if positions.shape != (len(at), SMPL22.num_joints, 3) or not np.isfinite(positions).all():
+        raise InputError(f"{len(at)} given poses need {len(at)} × 22 × 3 finite numbers.")
+    parents, children = np.array(SMPL22.bones).T
+    lengths = np.linalg.norm(positions[:, children] - positions[:, parents], axis=-1)
+    expected = np.asarray(SMPL22.bone_lengths)[children]
+    if (np.abs(lengths / expected - 1) > _BONE_ERROR).any():
+        raise InputError("A given pose is none that this body takes: its bones have other lengths.")
+    _check_places(positions[:, 0][:, [0, 2]])
+
+
+def _check_path(part: KnownPath, at: list[int]) -> None:
+    places = np.asarray(part.places, dtype=np.float64)
+    headings = np.zeros(len(at)) if part.headings is None else np.asarray(part.headings)
+    if places.shape != (len(at), 2) or headings.shape != (len(at),):
+        raise InputError(f"A path of {len(at)} frames needs as many places, and as many headings or none.")
+    if not (np.isfinite(places).all() and np.isfinite(headings).all()):
+        raise InputError("A path needs finite numbers.")
+    _check_places(places)
+    speed = np.linalg.norm(np.diff(places, axis=0), axis=-1) / np.diff(at) * FPS
+    if (speed > MOST_SPEED).any():
+        raise InputError(
+            f"The path asks person {'ab'[part.person]} for {speed.max():.1f} m/s: give more time or a shorter way "
+            f"(at most {MOST_SPEED:g} m/s)."
+        )
+
+
+def _check_places(places: Array) -> None:
+    if (np.linalg.norm(places, axis=-1) > MOST_DISTANCE).any():
+        raise InputError(f"A given place is more than {MOST_DISTANCE:g} m away: bring it nearer.")

@@ -1,4 +1,4 @@
-"""The shipped InterGen: generates two people from a sentence, or one for a given other (section 5.4)."""
+"""InterGen, shipped and as released: generates two people from a sentence, or one for a given other (section 5.4)."""
 
 from __future__ import annotations
 
@@ -7,25 +7,47 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import scipy.ndimage
 import torch
-from torch import Tensor
+from numpy.typing import NDArray
+from torch import Tensor, nn
 
 from acts.staging.stage import staged
+from models.compiled import Precision, compile_network, has_bfloat16
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
+from models.intergen.released import ReleasedInterGen, load_released
 from models.text import MiniLM
-from motion import Clip, Duet
+from models.text.clip import find_vocabulary
+from motion import FPS, Clip, Duet
+from motion.placement import Placement
+from motion.representation import NUM_FEATURES
+from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.scene import finish_of, in_touch
+from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.acting import with_plan
+from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.plans import BeatFinish, KeptPlan
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story import understood
 from webdemo.inference.story.prompted import as_scene
 from webdemo.inference.story.request import SceneRequest
 
-from .given import Scene
+from .given import Finish, Reaction, Scene
 from .scene import SceneMaker
 from .two_person import Conditioning, Passes, TwoPersonPipeline
+
+Array = NDArray[np.floating]
+SMOOTHING = 1.0
+"""Frames: σ of the Gaussian by which InterGen's release smooths its positions."""
+CONVERTED = (
+    "InterGen's 262 numbers a person and frame became 22 joints: its positions were taken, its own rotations and "
+    "foot contacts were dropped."
+)
+NOT_TUNED = (
+    "The paper trains the network further for one given person (section 5.4); a released file that was not may "
+    "answer poorly."
+)
 
 
 class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
@@ -132,3 +154,142 @@ def _in_touch(duet: Duet | Clip, finish: BeatFinish) -> Duet | Clip:
         return duet
     every = np.ones(duet.num_frames)
     return duet.with_positions(in_touch(duet.positions, every, every * finish.reaching, every * finish.held))
+
+
+class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
+    """The released InterGen of an entry of the settings.
+
+    Raises WeightsError or VocabularyError (both InputError) where a file is missing, damaged or another's.
+    """
+
+    spacing = "leading"
+
+    def __init__(self, entry: Entry) -> None:
+        vocabulary = entry.file("vocabulary") if "vocabulary" in entry.files else find_vocabulary()
+        checkpoint, mean, std = (entry.file(role) for role in ("checkpoint", "mean", "std"))
+        self.model = load_released(checkpoint, mean, std, vocabulary)
+        self.name, self.digest, self.meta = entry.name, entry.digest("checkpoint", "mean", "std"), {}
+        self.compiled = compiled_near(self.model.denoiser, self.digest, precision_of(entry))
+
+    def condition(self, prompt: str) -> tuple[Tensor, None]:
+        """The condition (1, 768) of a prompt."""
+        return self.model.condition([prompt]), None
+
+    def conditioning(self, request: GenerateRequest | ReactRequest) -> Conditioning:
+        """The text vector; nothing without text."""
+        if not request.prompt.strip():
+            return Conditioning(self.model.no_condition(), 1.0)
+        return Conditioning(self.condition(request.prompt)[0], request.guidance)
+
+    def run(
+        self,
+        request: GenerateRequest | ReactRequest,
+        cancel: CancelToken,
+        timer: StageTimer,
+        passes: Passes | None = None,
+        scene: Scene | None = None,
+    ) -> Iterator[Progress | Result]:
+        """As :meth:`TwoPersonPipeline.run`; the result's notes say what the conversion lost."""
+        measured = Measured(scene or self.scene(request))
+        for event in super().run(request, cancel, timer, passes, measured):  # type: ignore[arg-type]
+            if isinstance(event, Result):
+                notes = [CONVERTED, measured.note(request.cleanup)]
+                notes += [NOT_TUNED] if isinstance(request, ReactRequest) else []
+                event = replace(event, notes=(*event.notes, *notes))
+            yield event
+
+    def scene(self, request: GenerateRequest | ReactRequest) -> Scene:
+        """As :meth:`TwoPersonPipeline.scene`, in the paper's representation."""
+        if isinstance(request, GenerateRequest):
+            return Scene(round(request.seconds * FPS))
+        placement = Placement.of(request.actor, request.role, request.prompt)
+        place = ROLES.index(request.role)
+        numbers = self.model.encode(placement.to_network(request.actor.positions))
+        given = GivenPerson(numbers, place)
+        return Reaction(
+            request.actor.num_frames,
+            given,  # type: ignore[arg-type]
+            clip=request.actor,
+            place=place,
+            placement=placement,
+        )
+
+
+class GivenPerson:
+    """Writes a given person's numbers into samples, in place of :class:`models.known.Hold`.
+
+    Args:
+        numbers: (T − 1, 262) normalised.
+        place: 0 if they are person a, 1 if b.
+    """
+
+    features = None
+
+    def __init__(self, numbers: Tensor, place: int) -> None:
+        self.numbers = numbers
+        self.part = slice(place * NUM_FEATURES, (place + 1) * NUM_FEATURES)
+
+    @property
+    def frozen(self) -> Tensor:
+        """(1, T − 1, 524) true where a number is given."""
+        fixed = torch.zeros(1, len(self.numbers), 2 * NUM_FEATURES, dtype=torch.bool)
+        fixed[..., self.part] = True
+        return fixed
+
+    def __call__(self, x: Tensor) -> Tensor:
+        """A sample or prediction (B, T − 1, 524) with the given person in their place."""
+        held = x.clone()
+        held[..., self.part] = self.numbers
+        return held
+
+    bend = __call__  # the whole person is given, so there is nothing to lead up to
+
+
+def precision_of(entry: Entry) -> Precision:
+    """The numbers of the matrix products: bfloat16 where it is asked for, or the processor has it."""
+    if entry.precision == "auto":
+        return "bf16" if has_bfloat16() else "f32"
+    named: dict[str, Precision] = {"float32": "f32", "bfloat16": "bf16", "int8": "int8"}
+    return named[entry.precision]
+
+
+def compiled_near(network: nn.Module, key: str, precision: Precision) -> bool:
+    """Lets OpenVINO run a network with coarser numbers if its outputs stay near, in float32 otherwise.
+
+    Returns:
+        whether it is compiled, as :func:`models.compiled.compile_network`.
+    """
+    if precision != "f32" and compile_network(network, f"{key} {precision}", precision=precision):
+        return True
+    return compile_network(network, f"{key} f32")
+
+
+class Measured:
+    """A scene that measures by how much the joints move on their way onto constant bones.
+
+    Args:
+        scene: whose duets are made.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.frames, self.given, self._scene = scene.frames, scene.given, scene
+        self.moved: list[float] = []
+        """Mean distance in metres, one of each generated person."""
+
+    def duet(self, pair: Array, finish: Finish) -> Duet:
+        """As the scene's own; a clean-up is measured, and comes after the release's smoothing."""
+        return self._scene.duet(pair, self._cleaned if finish is clean_person else finish)
+
+    def _cleaned(self, person: Array) -> Array:
+        cleaned = clean_person(scipy.ndimage.gaussian_filter1d(person, SMOOTHING, axis=0, mode="nearest"))
+        self.moved.append(float(np.linalg.norm(cleaned - person, axis=-1).mean()))
+        return cleaned
+
+    def note(self, cleanup: bool) -> str:
+        """Says in a sentence what the clean-up changed."""
+        if not cleanup:
+            return "The positions are as the network gave them."
+        return (
+            f"Smoothing (σ = {SMOOTHING:g} frame), constant bones and planted feet moved the joints by "
+            f"{100 * float(np.mean(self.moved)):.1f} cm on average."
+        )

@@ -8,23 +8,29 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 
 from models.predictors import Predictor, load_predictor
 from motion import FPS, SMPL22, stacked_positions
+from motion.cleaning import foot_contacts, plant_feet
+from motion.transforms import heading, heading_matrix
 from motion.vectors import unit
 from webdemo.inference.requests.predict import PredictRequest, mean_steps, predicted
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
-from .predict_feet import with_planted_feet
-from .predict_frame import Array, to_last_pose, to_world
+Array = NDArray[np.floating]
 
 _STILL = 1e-3
-"""Metres: if no joint of a past moves farther than this, the person stands still."""
+"""Metres: if no joint of a past, or of a future, moves farther than this, the person stands still."""
 _OVERLAP = 10
 """Frames that a pass of the recursion shares with the previous one; over them the two are cross-faded."""
 _SEAM_TRIES = 8
 _SEAM_FADE = 0.7
 """Factor by which a correction at the seam decays each frame."""
+_BLEND = 5
+"""Frames over which a correction fades in and out."""
+_FLOOR = 0.1
+"""Metres from 0 within which the lowest that a person was must lie to be the floor that they stand on."""
 
 
 def without_jump(past: Array, future: Array, largest: Array) -> Array:
@@ -170,3 +176,73 @@ class PredictorPipeline:
         future = self._cut(whole, past.shape[1], frames)
         now = timer.lap("sample", now)
         yield predicted(request, [future], timer, now)
+
+
+def to_last_pose(positions: Array, frame: int = -1) -> tuple[Array, Array, Array]:
+    """Moves people so that one pose of each stands over the origin and faces +Z; heights stay.
+
+    Args:
+        positions: (…, T, 22, 3) metres.
+        frame: whose pose; the last by default.
+
+    Returns:
+        positions (…, T, 22, 3) float64 there, and the matrices (…, 3, 3) and shifts (…, 3) of
+        :func:`to_world`.
+    """
+    pose = positions[..., frame, :, :].astype(np.float64)
+    shift = pose[..., 0, :] * np.array([1.0, 0.0, 1.0])
+    turn = heading_matrix(-heading(pose))
+    return (positions - shift[..., None, None, :]) @ np.swapaxes(turn, -1, -2)[..., None, :, :], turn, shift
+
+
+def to_world(positions: Array, turn: Array, shift: Array) -> Array:
+    """Inverse of :func:`to_last_pose`: (…, T, 22, 3) back in the clip's world."""
+    return positions @ turn[..., None, :, :] + shift[..., None, None, :]
+
+
+def with_planted_feet(past: Array, future: Array, fps: float) -> Array:
+    """A future whose standing feet do not glide.
+
+    Who stood with a foot at the end of the past goes on standing in the same place; that a foot comes down
+    is believed only some frames later, so that its correction can fade in after the seam. People who are not
+    on the floor are left alone, and so is one whose first step would grow.
+
+    Args:
+        past: (P, T, 22, 3) metres.
+        future: (P, F, 22, 3) metres, with the bone lengths of the past's last pose.
+        fps: frames a second.
+
+    Returns:
+        (P, F, 22, 3) with the same bone lengths.
+    """
+    made = np.array(future, dtype=np.float64)
+    for person, before in enumerate(past.astype(np.float64)):
+        floor = np.array([0.0, before[..., 1].min(), 0.0])
+        moves = np.abs(made[person] - before[-1]).max() > _STILL
+        if abs(floor[1]) > _FLOOR or not moves:
+            continue
+        before, after = before - floor, made[person] - floor
+        contacts = foot_contacts(np.concatenate([before, after]), fps)[len(before) - 1 :]
+        stood, contacts = contacts[0], contacts[1:]
+        contacts[:_BLEND] = contacts[:_BLEND] & stood
+        # The last pose, held for as long as the future, outvotes it where a contact's place is sought.
+        held = np.repeat(before[-1:], len(after), axis=0)
+        whole = plant_feet(
+            np.concatenate([held, after]),
+            np.concatenate([np.repeat(stood[None], len(after), axis=0), contacts]),
+            blend=_BLEND,
+            held=np.arange(2 * len(after)) < len(after),
+        )
+        planted = whole[len(after) :]
+        if _step(before[-1], planted[0]) <= max(_step(before[-1], after[0]), _largest_step(before)):
+            made[person] = planted + floor
+    return made
+
+
+def _step(before: Array, after: Array) -> float:
+    """Mean distance of the joints (22, 3) of two poses."""
+    return float(np.linalg.norm(after - before, axis=-1).mean())
+
+
+def _largest_step(positions: Array) -> float:
+    return float(np.linalg.norm(np.diff(positions, axis=0), axis=-1).mean(-1).max())

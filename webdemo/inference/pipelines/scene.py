@@ -33,8 +33,8 @@ from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.windows import window_seed, windows
 
 from .given import NAMES
-from .scene_setting import Setting
 from .two_person import Passes, TwoPersonPipeline
+from .window import Setting
 
 Array = NDArray[np.floating]
 
