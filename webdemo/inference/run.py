@@ -45,13 +45,13 @@ class Result:
         readouts: one dictionary of interaction measures a sample (see :mod:`motion.metrics`), each
             measure with its value ``before`` and ``after`` the damping and clean-up where both exist; of a
             sentence also the share of the motion that was laid out for the network, ``planned`` (0 to 1).
-        timings: seconds by stage.
+        timings: seconds by stage; by default those that the engine measures.
         notes: sentences the user should read, such as a prompt far from all training captions.
         run: its id in the history; "" where none keeps it.
     """
 
     duets: tuple[Duet | Clip, ...]
-    manifest: dict[str, Any]
+    manifest: dict[str, Any] = field(default_factory=dict)
     readouts: tuple[dict[str, Any], ...] = ()
     timings: dict[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
@@ -130,6 +130,9 @@ class StageTimer:
     began: float
     stages: dict[str, float]
 
+    def __post_init__(self) -> None:
+        self._lapped = self.began
+
     @classmethod
     def start(cls) -> StageTimer:
         """A timer that begins now."""
@@ -144,8 +147,13 @@ class StageTimer:
         """A progress event with the time so far."""
         return Progress(stage=stage, step=step, total=total, elapsed=self.elapsed, unit=unit)
 
-    def lap(self, stage: str, since: float) -> float:
-        """Adds the time since ``since`` to a stage; returns now."""
+    @property
+    def timings(self) -> dict[str, float]:
+        """The stages, and the seconds of the whole run so far as "total"."""
+        return {**self.stages, "total": round(self.elapsed, 4)}
+
+    def lap(self, stage: str) -> None:
+        """Adds the time since the last lap, at first since the start, to a stage."""
         now = time.perf_counter()
-        self.stages[stage] = round(self.stages.get(stage, 0.0) + now - since, 4)
-        return now
+        self.stages[stage] = round(self.stages.get(stage, 0.0) + now - self._lapped, 4)
+        self._lapped = now

@@ -97,7 +97,7 @@ class Engine:
         pipeline = self.pipeline(request.model)
         _take_threads(pipeline)
         request = with_plan(request)
-        timer.lap("load", timer.began)
+        timer.lap("load")
         cancel.raise_if_cancelled()
         if isinstance(request, LiveTake):  # its motion is there
             events = _with_things(request.results(timer), request)
@@ -110,6 +110,7 @@ class Engine:
             )
         for event in events:
             if isinstance(event, Result):
+                timer.lap("finish")
                 manifest = _manifest(request, pipeline) | event.manifest
                 duets = tuple(
                     replace(duet, manifest=manifest | kept_rows(duet) | {"sample": i})
@@ -117,7 +118,7 @@ class Engine:
                     else duet
                     for i, duet in enumerate(event.duets)
                 )
-                event = replace(event, duets=duets, manifest=manifest)
+                event = replace(event, duets=duets, manifest=manifest, timings=event.timings or timer.timings)
             yield event
 
     def live(self, request: ReactRequest) -> Iterator[LiveFrame]:

@@ -62,8 +62,7 @@ def _finished(best: Judged, request: Any, timer: StageTimer, tries: dict[str, An
     result = best.result
     if tries is not None:
         tries["seed"] = _seed(request.seed, tries["won"] - 1)
-        timings = {**result.timings, **timer.stages, "total": round(timer.elapsed, 4)}
-        result = replace(result, manifest={**result.manifest, "tries": tries}, timings=timings)
+        result = replace(result, manifest={**result.manifest, "tries": tries})
     said = note(best.rows, tries, best.unread)
     return replace(result, notes=(said, *result.notes)) if said else result
 

@@ -26,7 +26,8 @@ from motion.transforms import turn
 from motion.vectors import FLAT
 from motion.video.gaze import Gaze
 from webdemo.inference.finish.cleanup import FollowingCleanup
-from webdemo.inference.pipelines.regennet import ReGenNetPipeline, settle
+from webdemo.inference.pipelines.given import settle
+from webdemo.inference.pipelines.regennet import ReGenNetPipeline
 from webdemo.inference.requests import ReactRequest
 
 from .partner import Belief, LivePartner

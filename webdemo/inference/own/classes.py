@@ -8,7 +8,6 @@ import logging
 import re
 import sys
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -165,7 +164,7 @@ class Fenced:
         try:
             for event in self.inner.run(request, cancel, timer):
                 if isinstance(event, Result):
-                    yield self._checked(event, timer)
+                    yield self._checked(event)
                     return
                 if not isinstance(event, Progress):
                     raise InputError(f"The model {self.name} gave {event!r:.60}, not Progress or a Result.")
@@ -177,7 +176,7 @@ class Fenced:
             raise InputError(f"The model {self.name} failed: it raised {_named(error)}.") from error
         raise InputError(f"The model {self.name} ended without a Result: yield one at the end of `run`.")
 
-    def _checked(self, result: Result, timer: StageTimer) -> Result:
+    def _checked(self, result: Result) -> Result:
         wrong = ""
         if not result.duets or not all(isinstance(duet, Duet | Clip) for duet in result.duets):
             wrong = "no motion of two people"
@@ -187,8 +186,7 @@ class Fenced:
             wrong = "positions that are not finite"
         if wrong:
             raise InputError(f"The model {self.name} gave {wrong}: see docs/own-model.md.")
-        timings = result.timings or {**timer.stages, "total": round(timer.elapsed, 4)}
-        return replace(result, timings=timings)
+        return result
 
 
 def _people(motion: Duet | Clip) -> tuple[Clip, ...]:

@@ -32,10 +32,9 @@ from webdemo.inference.requests.plans import KeptPlan
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story.understood import understood
 
-from .given import NAMES, Finish, Reaction
+from .given import NAMES, Finish, Reaction, settle
 from .intergen import InterGenPipeline
 from .predictor import PredictorPipeline, to_last_pose
-from .regennet import settle
 
 Array = NDArray[np.floating]
 

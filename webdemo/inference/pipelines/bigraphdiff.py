@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -73,7 +72,6 @@ class ReleasedBiGraphDiffPipeline:
 
     def run(self, request: GenerateRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`Result` without a manifest; raises Cancelled within one step."""
-        now = time.perf_counter()
         frames, longest = round(request.seconds * FPS), self.model.network.config.max_frames
         if frames > longest:
             raise InputError(f"{self.name} makes at most {longest / FPS:g} seconds: ask for fewer.")
@@ -81,7 +79,7 @@ class ReleasedBiGraphDiffPipeline:
         text, vector = (
             part.expand(request.samples, *part.shape[1:]) for part in self.model.condition([request.prompt])
         )
-        now = timer.lap("text", now)
+        timer.lap("text")
 
         def predict(x: Tensor, t: Tensor) -> Tensor:
             return self.model.network(x, t, text, vector)
@@ -92,7 +90,7 @@ class ReleasedBiGraphDiffPipeline:
             x = step.sample
             yield timer.progress("sample", step.step, step.total)
             cancel.raise_if_cancelled()
-        now = timer.lap("sample", now)
+        timer.lap("sample")
         yield timer.progress("finish")
         people = (x * self.std + self.mean).double().numpy().reshape(len(x), frames, 2, JOINTS, 3)
         if not np.isfinite(people).all():
@@ -101,12 +99,9 @@ class ReleasedBiGraphDiffPipeline:
         fitted = [to_smpl(duet) for duet in kinect]
         finish = clean_person if request.cleanup else np.asarray
         shown = [duet.with_positions([finish(p.positions) for p in duet.people]) for duet in fitted]
-        timer.lap("finish", now)
         yield Result(
             duets=tuple(shown),
-            manifest={},
             readouts=tuple(compare(raw, duet) for raw, duet in zip(fitted, shown, strict=True)),
-            timings={**timer.stages, "total": round(timer.elapsed, 4)},
             notes=(_loss(kinect, shown),),
         )
 

@@ -13,16 +13,20 @@ from acts.staging.parts import KnownFrames, KnownPath, Part
 from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
 from motion import FPS, SMPL22, Clip, Duet, InputError
-from motion.easing import minimum_jerk
+from motion.easing import minimum_jerk, smoothstep
 from motion.kinematics import project_to_skeleton
+from motion.metrics import compare
 from motion.placement import Placement
 from webdemo.inference.finish.joining import PASSING, joined, passing
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.actor import ROLES
+from webdemo.inference.run import Result
 
 Array = NDArray[np.floating]
 Finish = Callable[[Array], Array]
 NAMES = ("actor", "reactor")
+SETTLE = 0.5
+"""Seconds over which the difference between a given first pose and the network's fades out."""
 MOST_DISTANCE = 20.0
 """Metres from the origin that a given place may have."""
 MOST_SPEED = 5.0
@@ -268,3 +272,35 @@ def _check_path(part: KnownPath, at: list[int]) -> None:
 def _check_places(places: Array) -> None:
     if (np.linalg.norm(places, axis=-1) > MOST_DISTANCE).any():
         raise InputError(f"A given place is more than {MOST_DISTANCE:g} m away: bring it nearer.")
+
+
+def settle(off: Array, frames: NDArray[np.integer]) -> Array:
+    """Fades out the difference between a wanted and a generated first pose.
+
+    Args:
+        off: (samples, 1, 22, 3) or (samples, 22, 3) metres.
+        frames: (T,) frame indices.
+
+    Returns:
+        (samples, T, 22, 3), ``off`` at frame 0 and 0 from :data:`SETTLE` seconds on.
+    """
+    return off.reshape(-1, 1, *off.shape[-2:]) * smoothstep(1 - frames / (SETTLE * FPS))[:, None, None]
+
+
+def duet_of(request: ReactRequest, person: Array) -> Duet:
+    """The given person, unchanged, and the generated one."""
+    return Duet(request.actor, Clip(person, FPS, SMPL22, name=NAMES[1]), NAMES)
+
+
+def reacted(request: ReactRequest, raw: Sequence[Array], shown: Sequence[Array], notes: Sequence[str] = ()) -> Result:
+    """The result of a reaction.
+
+    Args:
+        request: what was asked for.
+        raw: of each sample (T, 22, 3) metres in the actor's world, before damping and clean-up.
+        shown: the same after them.
+        notes: sentences the user should read.
+    """
+    duets = tuple(duet_of(request, person) for person in shown)
+    readouts = tuple(compare(duet_of(request, one), duet) for one, duet in zip(raw, duets, strict=True))
+    return Result(duets=duets, readouts=readouts, notes=tuple(notes))

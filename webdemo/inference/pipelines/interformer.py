@@ -8,7 +8,6 @@ section 3.5), in the frame of the actor's place at that moment, as in training.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Generator, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -26,7 +25,6 @@ from models.interformer.network import NETWORK, WIDTH, InterFormer, from_release
 from models.released import read_tensors, without_wrapper
 from motion import FPS, SMPL22, Clip
 from motion.ik import fit_skeleton
-from motion.metrics import compare
 from motion.placement import Placement
 from motion.transforms import heading_matrix, resample
 from webdemo.inference.finish.cleanup import clean_person
@@ -34,7 +32,7 @@ from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
-from .regennet import duet_of, settle
+from .given import reacted, settle
 
 Array = NDArray[np.floating]
 
@@ -71,28 +69,19 @@ class InterFormerPipeline:
         Raises:
             Cancelled: within one frame.
         """
-        now = time.perf_counter()
         placement = Placement.of(request.actor, "a")
         actor = placement.to_network(request.actor.positions)
         first_pose = self._first_pose(actor) if request.first_pose is None else placement.to_network(request.first_pose)
         made = yield from self._sample(request, actor, first_pose, cancel, timer)
-        now = timer.lap("sample", now)
+        timer.lap("sample")
         yield timer.progress("finish")
         frames = request.actor.num_frames
         raw = np.stack([on_smpl22(person, frames) for person in made])
         # Joints that the network lacks, such as the toes, also start at the first pose.
         raw = raw + settle(first_pose - raw[:, :1], np.arange(frames))
         shown = np.stack([clean_person(person) for person in raw]) if request.cleanup else raw
-        duets = [[duet_of(request, placement.to_world(person)) for person in people] for people in (raw, shown)]
-        readouts = tuple(compare(before, after) for before, after in zip(*duets, strict=True))
-        timer.lap("finish", now)
-        yield Result(
-            duets=tuple(duets[1]),
-            manifest={},
-            readouts=readouts,
-            notes=(_NO_WORDS,) if request.prompt.strip() else (),
-            timings={**timer.stages, "total": round(timer.elapsed, 4)},
-        )
+        raw, shown = placement.to_world(raw), placement.to_world(shown)
+        yield reacted(request, raw, shown, (_NO_WORDS,) if request.prompt.strip() else ())
 
     def _first_pose(self, actor: Array) -> Array:
         """(22, 3) a person who stands in front of the actor, clear of their path, and faces their first place."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 import itertools
 import os
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,7 +20,6 @@ from numpy.typing import NDArray
 from models.weights_io import WeightsFolder
 from motion import FPS, SMPL22, Clip, Duet, InputError
 from motion.formats import read
-from motion.metrics import compare
 from motion.placement import Placement
 from motion.transforms import resample
 from webdemo.inference.finish.cleanup import clean_person
@@ -29,7 +27,7 @@ from webdemo.inference.methods.nearest import FOLDER_VARIABLE
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
-from .regennet import duet_of, settle
+from .given import reacted, settle
 
 Array = NDArray[np.floating]
 
@@ -124,28 +122,18 @@ class NearestPipeline:
         Raises:
             Cancelled: within one part.
         """
-        now = time.perf_counter()
         frames = request.actor.num_frames
         raw = []
         for sample in range(request.samples):
             yield timer.progress("sample", sample + 1, request.samples, "pass")
             cancel.raise_if_cancelled()
             raw.append(self._reaction(request, sample))
-        now = timer.lap("sample", now)
+        timer.lap("sample")
         yield timer.progress("finish")
         shown = [clean_person(person) if request.cleanup else person for person in raw]
         if request.first_pose is not None:
             shown = [one + settle(request.first_pose - one[:1], np.arange(frames))[0] for one in shown]
-        duets = tuple(duet_of(request, person) for person in shown)
-        readouts = tuple(compare(duet_of(request, one), duet) for one, duet in zip(raw, duets, strict=True))
-        timer.lap("finish", now)
-        yield Result(
-            duets=duets,
-            manifest={},
-            readouts=readouts,
-            notes=(_NO_WORDS,) if request.prompt.strip() else (),
-            timings={**timer.stages, "total": round(timer.elapsed, 4)},
-        )
+        yield reacted(request, raw, shown, (_NO_WORDS,) if request.prompt.strip() else ())
 
     def _reaction(self, request: ReactRequest, sample: int) -> Array:
         """The reactor (T, 22, 3) in the actor's world; only the first part depends on the sample."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -165,7 +164,6 @@ class PredictorPipeline:
 
     def run(self, request: PredictRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`PredictResult` without a manifest."""
-        now = time.perf_counter()
         past, frames = stacked_positions(request.past).astype(np.float64), round(request.seconds * FPS)
         whole: Array = past
         total = 1 + max(0, -(-(frames - round(FPS)) // (round(FPS) - _OVERLAP)))
@@ -174,8 +172,8 @@ class PredictorPipeline:
             yield timer.progress("sample", step, total, "pass")
             cancel.raise_if_cancelled()
         future = self._cut(whole, past.shape[1], frames)
-        now = timer.lap("sample", now)
-        yield predicted(request, [future], timer, now)
+        timer.lap("sample")
+        yield predicted(request, [future])
 
 
 def to_last_pose(positions: Array, frame: int = -1) -> tuple[Array, Array, Array]:

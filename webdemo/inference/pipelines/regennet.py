@@ -25,9 +25,7 @@ from models.regennet.compact import CompactReGenNet, load_folder
 from models.regennet.network import ROW_WIDTH, ReGenNet
 from models.regennet.released import ROWS, decode, encode, load_released
 from models.text import MiniLM
-from motion import FPS, SMPL22, Clip, Duet, InputError
-from motion.easing import smoothstep
-from motion.metrics import compare
+from motion import FPS, SMPL22, Clip, InputError
 from motion.placement import Placement
 from webdemo.inference.finish.cleanup import FollowingCleanup, clean_person
 from webdemo.inference.finish.damping import Beside, Damping
@@ -36,10 +34,9 @@ from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.live import LiveFrame, LiveProgress, LiveRequest, paced
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
+from .given import reacted, settle
+
 Array = NDArray[np.floating]
-SETTLE = 0.5
-"""Seconds over which the difference between a given first pose and the network's fades out."""
-NAMES = ("actor", "reactor")
 CONVERTED = (
     "The given person's 22 joints became rotations of SMPL-X's 55: jaw, eyes and fingers are at rest, and twists about "
     "the bones are the least that the positions allow. Of the answer, the 22 joints of the body were kept."
@@ -77,28 +74,19 @@ class ReGenNetPipeline:
         Raises:
             Cancelled: within one denoising step, or within one frame online.
         """
-        now = time.perf_counter()
         yield timer.progress("text")
         condition = self.condition(request.prompt, request.samples)
-        now = timer.lap("text", now)
+        timer.lap("text")
         cancel.raise_if_cancelled()
         if request.mode == "online":
             raw, made = yield from self._online(request, condition, cancel, timer)
         else:
             raw, made = yield from self._offline(request, condition, cancel, timer)
-        now = timer.lap("sample", now)
+        timer.lap("sample")
         yield timer.progress("finish")
         if not np.isfinite(made).all():
             raise InputError("The motion diverged: lower the guidance scale or take more steps.")
-        duets = [duet_of(request, person) for person in made]
-        readouts = tuple(compare(duet_of(request, before), duet) for before, duet in zip(raw, duets, strict=True))
-        timer.lap("finish", now)
-        yield Result(
-            duets=tuple(duets),
-            manifest={},
-            readouts=readouts,
-            timings={**timer.stages, "total": round(timer.elapsed, 4)},
-        )
+        yield reacted(request, raw, made)
 
     def _begin(self, request: ReactRequest, placement: Placement) -> Tensor | None:
         """(samples, 67) the network's input for the reactor's first pose, if one is given."""
@@ -214,24 +202,6 @@ class ReGenNetPipeline:
         timer.stages["delay of a frame, longest"] = round(max(delays), 4)
         raw, shown = (np.stack([getattr(f, name) for f in live], axis=1) for name in ("raw", "positions"))
         return raw, shown
-
-
-def settle(off: Array, frames: NDArray[np.integer]) -> Array:
-    """Fades out the difference between a wanted and a generated first pose.
-
-    Args:
-        off: (samples, 1, 22, 3) or (samples, 22, 3) metres.
-        frames: (T,) frame indices.
-
-    Returns:
-        (samples, T, 22, 3), ``off`` at frame 0 and 0 from :data:`SETTLE` seconds on.
-    """
-    return off.reshape(-1, 1, *off.shape[-2:]) * smoothstep(1 - frames / (SETTLE * FPS))[:, None, None]
-
-
-def duet_of(request: ReactRequest, person: Array) -> Duet:
-    """The given person, unchanged, and the generated one."""
-    return Duet(request.actor, Clip(person, FPS, SMPL22, name=NAMES[1]), NAMES)
 
 
 class ReleasedReGenNetPipeline(ReGenNetPipeline):

@@ -168,7 +168,6 @@ class SceneMaker:
             readouts=tuple(
                 {**compare(None, duet), "planned": share} for duet, share in zip(duets, shares, strict=True)
             ),
-            timings={**timer.stages, "total": round(timer.elapsed, 4)},
             notes=tuple(dict.fromkeys(said)),
         )
 

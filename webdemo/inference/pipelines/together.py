@@ -6,7 +6,6 @@ The first moments are the predictor's, which is surer of them (docs/scenes.md, *
 from __future__ import annotations
 
 import hashlib
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -60,7 +59,6 @@ class TogetherPipeline:
                 made = tuple(duet for duet in event.duets if isinstance(duet, Duet))
             elif not isinstance(event, SceneProgress):
                 yield event
-        now = time.perf_counter()
         ahead = slice(seen.num_frames - lead, seen.num_frames - lead + frames)
         futures = [stacked_positions(duet)[:, ahead].astype(np.float64) for duet in made]
-        yield predicted(request, futures, timer, now)
+        yield predicted(request, futures)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -180,12 +179,11 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             scene: what is known of the motion, and how samples become duets; by default what the request says.
         """
         passes = passes or OwnPasses(self.model.denoiser)
-        now = time.perf_counter()
         yield timer.progress("text")
         conditioning = self.conditioning(request)
         condition = conditioning.condition.expand(request.samples, *conditioning.condition.shape[1:])
         scene = scene or self.scene(request)
-        now = timer.lap("text", now)
+        timer.lap("text")
 
         layout, given = self.model.layout, scene.given
         noise = sample_noise(
@@ -208,18 +206,12 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             sample = step.sample
             yield timer.progress("sample", step.step, step.total)
             cancel.raise_if_cancelled()
-        now = timer.lap("sample", now)
+        timer.lap("sample")
 
         yield timer.progress("finish")
         duets, readouts = self._finished(request, scene, steps.uncorrected, sample)
-        timer.lap("finish", now)
-        yield Result(
-            duets=duets,
-            manifest={},
-            readouts=readouts,
-            timings={**timer.stages, "total": round(timer.elapsed, 4)},
-            notes=conditioning.notes,
-        )
+        timer.lap("finish")
+        yield Result(duets=duets, readouts=readouts, notes=conditioning.notes)
 
     def _seen(self, scene: Scene) -> dict[str, Any]:
         """Arguments of the network's ``guided``: what is known, for one that reads it."""

@@ -138,9 +138,7 @@ class LiveTake:
         """The two people with their read-outs."""
         yield timer.progress("finish")
         duet = Duet(self.actor, self.reactor, ("actor", "reactor"))
-        yield Result(
-            duets=(duet,), manifest={}, readouts=(compare(None, duet),), timings={"total": round(timer.elapsed, 4)}
-        )
+        yield Result(duets=(duet,), readouts=(compare(None, duet),))
 
 
 def live_title(model: str) -> str:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from motion import FPS, SMPL22, Clip, Duet, InputError, stacked_positions
 from webdemo.inference import methods
-from webdemo.inference.run import Result, StageTimer
+from webdemo.inference.run import Result
 
 from .actor import at_30_fps
 from .limits import MAX_SEED, number, whole
@@ -180,22 +180,12 @@ def mean_steps(positions: Array) -> Array:
     return np.linalg.norm(np.diff(positions, axis=-3), axis=-1).mean(-1)
 
 
-def predicted(request: PredictRequest, futures: Sequence[Array], timer: StageTimer, now: float) -> PredictResult:
-    """The result, without a manifest, of a request and its futures.
-
-    Args:
-        request: what was asked for.
-        futures: each (people, F, 22, 3) metres in the world of the past.
-        timer: of the run.
-        now: when the last lap ended.
-    """
+def predicted(request: PredictRequest, futures: Sequence[Array]) -> PredictResult:
+    """The result of a request and its futures, each (people, F, 22, 3) metres in the world of the past."""
     past = stacked_positions(request.past).astype(np.float64)
     whole = np.stack([np.concatenate([past, future], axis=1) for future in futures])  # (N, people, T, 22, 3)
-    timer.lap("finish", now)
     return PredictResult(
         duets=tuple(with_people(request.motion, each) for each in whole),
-        manifest={},
-        timings={**timer.stages, "total": round(timer.elapsed, 4)},
         past_frames=past.shape[1],
         truth=request.truth,
         **compared(request, futures),
