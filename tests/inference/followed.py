@@ -34,17 +34,17 @@ class Follower:
         patch.setattr(Setting, "share", lambda setting, pipeline: 0.0)
         self.settings: list[Setting] = []
 
-    def run(self, asked: Any, cancel: Any, timer: Any, passes: Any = None, given: Any = None) -> Iterator[Result]:
+    def sample(self, settings: Any, words: Any, given: Any, *_: Any, **__: Any) -> Iterator[Result]:
         """One result: upright people at the given places, in the given poses where whole legs are given."""
         self.settings.append(given)
         people = np.stack([followed(given, person) for person in (0, 1)])
-        yield Result(duets=(Duet.from_positions(people, fps=FPS),), manifest={}, readouts=({},))
+        yield Result(duets=(Duet.from_positions(people, fps=FPS),))
 
     def scene(self, request: SceneRequest) -> Result:
         """A scene's result; ``settings`` are those of its windows."""
         self.settings = []
-        pipeline: Any = SimpleNamespace(run=self.run, digest=self.digest)
-        *_, result = SceneMaker(pipeline).run(request, CancelToken(), StageTimer.start())
+        pipeline: Any = SimpleNamespace(sample=self.sample, digest=self.digest)
+        *_, result = SceneMaker(pipeline, lambda *_: None).run(request, CancelToken(), StageTimer.start())
         assert isinstance(result, Result)
         return result
 

@@ -15,9 +15,9 @@ from acts.staging.told import Told
 from motion import InputError
 from motion.looks import UNSAID
 from webdemo.inference import Engine, GenerateRequest, ReactRequest, SceneRequest
-from webdemo.inference.engine.tries import replayed
 from webdemo.inference.pipelines import intergen, window
 from webdemo.inference.pipelines.scene import Parts
+from webdemo.inference.requests import replayed
 from webdemo.inference.requests.plans import KeptPlan, WindowPlan, kept_plan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, prompted, request, understood
 

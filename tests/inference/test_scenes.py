@@ -7,13 +7,11 @@ import numpy as np
 import pytest
 import torch
 
-from acts import read
+from acts import Plan, read
 from motion import SMPL22, Duet
 from motion.skeleton import ARMS
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
 from webdemo.inference.engine.batch import run_batch
-from webdemo.inference.pipelines.scene import WindowRequest
-from webdemo.inference.requests.plans import KeptPlan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
 from webdemo.inference.story.prompted import as_scene
 from webdemo.inference.story.understood import of_each
@@ -60,14 +58,13 @@ def test_windows_join_without_a_jump(story: Result) -> None:
 
 def test_a_window_that_another_follows_is_made_longer_and_cut(engine: Engine, monkeypatch: pytest.MonkeyPatch) -> None:
     lengths, pipeline = [], engine.pipeline("intergen")
-    inner = pipeline.run
+    inner = pipeline.sample
 
-    def run_and_note(asked: Any, *rest: Any) -> Any:
-        if isinstance(asked, WindowRequest):
-            lengths.append(round(30 * asked.seconds))
-        return inner(asked, *rest)
+    def sample_and_note(settings: Any, words: Any, scene: Any, *rest: Any, **more: Any) -> Any:
+        lengths.append(scene.frames)
+        return inner(settings, words, scene, *rest, **more)
 
-    monkeypatch.setattr(pipeline, "run", run_and_note)
+    monkeypatch.setattr(pipeline, "sample", sample_and_note)
     found = run(engine, SceneRequest(beats=(*BEATS[:2], Beat("They bow.", seconds=9.0)), seed=99, **QUICK))
     tail = 8
     assert lengths == [60 + tail, 48 + 75 + tail, 48 + 135 + tail, 48 + 135]
@@ -221,8 +218,7 @@ def test_a_scene_shares_its_passes_with_other_requests(engine: Engine) -> None:
 def test_a_network_that_reads_them_is_given_each_persons_own_words(reading_engine: Engine) -> None:
     pipeline = reading_engine.pipeline("intergen")
     beats = [Beat(a="waves with both hands"), Beat(b="waves with both hands"), Beat("They wave.")]
-    asked = [WindowRequest(prompt="They wave.", seconds=2.0, plan=KeptPlan(alone=beat.alone)) for beat in beats]
-    first, second, neither = (pipeline.conditioning(each).condition for each in asked)
+    first, second, neither = (pipeline.words("They wave.", Plan(), beat.alone, 4.3).condition for beat in beats)
     assert first[:, 1].any() and not first[:, 2].any()
     assert torch.equal(first[:, 1], second[:, 2]) and not second[:, 1].any()
     assert not neither[:, 1:].any() and torch.allclose(neither[:, 0], first[:, 0, : neither.shape[2]], atol=1e-5)

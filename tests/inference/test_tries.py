@@ -14,8 +14,8 @@ from motion import Duet, InputError
 from motion.skeleton import SBU15
 from tests.motion.metrics.test_sentence_shapes import duet, put, shift, spin
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Progress, Result, SceneRequest
-from webdemo.inference.engine.tries import judged, note, replayed, run_tries
-from webdemo.inference.requests import MAX_SEED
+from webdemo.inference.engine.tries import judged, note, run_tries
+from webdemo.inference.requests import MAX_SEED, replayed
 from webdemo.inference.run import StageTimer
 from webdemo.inference.story import Beat
 

@@ -26,12 +26,9 @@ def request_() -> ReactRequest:
     return ReactRequest(actor=duet().a, model="regennet", first_pose=STANDING + np.array([0, 0, 1.0]), seed=3)
 
 
-@pytest.mark.parametrize("key", ["first_pose", "start"])
-def test_the_first_pose_of_a_stored_reaction_is_read(request_: ReactRequest, key: str) -> None:
-    stored = request_.to_dict()
-    stored[key] = stored.pop("first_pose")
+def test_the_first_pose_of_a_stored_reaction_is_read(request_: ReactRequest) -> None:
     opened: Any = SimpleNamespace(
-        entry=SimpleNamespace(kind="react", request=stored, title="A reaction"),
+        entry=SimpleNamespace(kind="react", request=request_.to_dict(), title="A reaction"),
         result=SimpleNamespace(duets=(duet(),), manifest={}),
     )
     found = request_of(opened)
@@ -40,11 +37,10 @@ def test_the_first_pose_of_a_stored_reaction_is_read(request_: ReactRequest, key
     assert found.to_dict() == request_.to_dict()
 
 
-def test_an_older_name_is_no_other_request(request_: ReactRequest) -> None:
+def test_a_verdict_says_when_the_request_differs(request_: ReactRequest) -> None:
     new = request_.to_dict()
-    old = {("start" if name == "first_pose" else name): value for name, value in new.items()}
     moved = Duet(duet().a, Clip(duet().b.positions + np.float32(0.01), 30.0))
-    results = [Result(duets=(d,), manifest={"request": r}) for d, r in ((duet(), old), (moved, new))]
+    results = [Result(duets=(d,), manifest={"request": r}) for d, r in ((duet(), new), (moved, new))]
     assert "the request" not in verdict(*results)
     changed = Result(duets=(moved,), manifest={"request": new | {"seed": 4}})
     assert "the request" in verdict(results[0], changed)

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from motion import Duet, InputError
-from webdemo.inference.engine.tries import replayed
-from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest, with_current_names
+from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest, replayed
 from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.plans import kept_plan
 from webdemo.inference.requests.predict import PredictRequest, PredictResult
@@ -36,7 +35,7 @@ def request_of(opened: Opened) -> Request:
     Raises:
         InputError: for a kind that keeps too little of what it was made from, or fields that no longer fit.
     """
-    asked = replayed(with_current_names(opened.entry.request), opened.result.manifest)
+    asked = replayed(opened.entry.request, opened.result.manifest)
     if asked.get("live"):
         raise InputError(
             "A live stream cannot be run again: its partner answered as it happened. React to its actor in the tab "
@@ -124,7 +123,7 @@ def _changed(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
         for name in sorted({*before, *after})
         if before.get(name) != after.get(name)
     ]
-    asked = (replayed(with_current_names(m.get("request") or {}), m) for m in (old, new))
+    asked = (replayed(m.get("request") or {}, m) for m in (old, new))
     if len({json.dumps(request, sort_keys=True) for request in asked}) > 1:
         found.append("the request")
     return found

@@ -105,7 +105,7 @@ def making_a_scene(token: CancelToken) -> Iterator[Any]:
     """The run of a scene of forty beats, which is not read to its end."""
     request = SceneRequest(beats=(Beat("They hug.", seconds=2.0),) * 40)
     nothing: Any = None
-    return SceneMaker(nothing).run(request, token, StageTimer.start())
+    return SceneMaker(nothing, nothing).run(request, token, StageTimer.start())
 
 
 @pytest.mark.parametrize(("run", "reader", "name"), [(making_a_scene, scene_floor, "_said_together")])

@@ -67,14 +67,6 @@ def _finished(best: Judged, request: Any, timer: StageTimer, tries: dict[str, An
     return replace(result, notes=(said, *result.notes)) if said else result
 
 
-def replayed(request: Mapping[str, Any], manifest: Mapping[str, Any]) -> dict[str, Any]:
-    """The fields of a kept request that make its result at once: the seed of the try that was kept, and one try."""
-    tries = manifest.get("tries")
-    if not isinstance(tries, Mapping) or "seed" not in tries:
-        return dict(request)
-    return {**request, "seed": tries["seed"], "tries": 1}
-
-
 MOST_NAMED = 6
 """Acts that a note names of each kind, at most."""
 MOST_CHARACTERS = 350

@@ -9,7 +9,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from acts.staging.parts import KnownFrames, KnownPath, Part
+from acts.staging.parts import KnownFrames, Part
 from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
 from motion import FPS, SMPL22, Clip, Duet, InputError
@@ -27,13 +27,8 @@ Finish = Callable[[Array], Array]
 NAMES = ("actor", "reactor")
 SETTLE = 0.5
 """Seconds over which the difference between a given first pose and the network's fades out."""
-MOST_DISTANCE = 20.0
-"""Metres from the origin that a given place may have."""
-MOST_SPEED = 5.0
-"""Metres a second between two places of a path."""
 FADE = 12
 """Frames over which what clean-up changed at a given frame is taken back beside it."""
-_BONE_ERROR = 0.3
 _HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
 
 
@@ -182,18 +177,16 @@ def _every_frame(frames: Array, poses: Array) -> tuple[Array, Array]:
     return time, (1 - ahead) * poses[i] + ahead * poses[i + 1] + bends
 
 
-def directed(model: DuetSpace, frames: int, parts: Sequence[Part], *, check: bool = True) -> Directed:
+def directed(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Directed:
     """A scene of so many frames with what is given of it.
 
     Args:
         model: the network's space.
         frames: length at 30 fps.
         parts: what is given.
-        check: whether poses and places may be outside the limits; off for what a network made itself.
 
     Raises:
-        InputError: if a part lies outside the scene or the limits, is no pose that a body takes, or
-            contradicts another.
+        InputError: if a part lies outside the scene or contradicts another, as in a kept plan that is damaged.
     """
     length = model.layout.num_frames(model.layout.num_tokens(frames))
     known = Known.nothing(length)
@@ -203,16 +196,12 @@ def directed(model: DuetSpace, frames: int, parts: Sequence[Part], *, check: boo
         if not beside and known.mask[0, part.person, at][:, 0].any():
             raise InputError(f"Two given parts say where person {'ab'[part.person]} is at one time: give one.")
         if isinstance(part, KnownFrames):
-            if check:
-                _check_poses(part, at)
             poses = torch.from_numpy(np.asarray(part.positions)).float()
             if part.joints:
                 known.add_joints(part.person, poses, at, part.joints)
             else:
                 known.add_person(part.person, poses, at)
         else:
-            if check:
-                _check_path(part, at)
             headings = None if part.headings is None else torch.from_numpy(np.asarray(part.headings)).float()
             known.add_path(part.person, at, torch.from_numpy(np.asarray(part.places)).float(), headings)
             if part.turned and headings is not None:
@@ -239,39 +228,6 @@ def _frames(part: Part, total: int) -> list[int]:
             f"once, from 0 to {total - 1}."
         )
     return at
-
-
-def _check_poses(part: KnownFrames, at: list[int]) -> None:
-    positions = np.asarray(part.positions)
-    if positions.shape != (len(at), SMPL22.num_joints, 3) or not np.isfinite(positions).all():
-        raise InputError(f"{len(at)} given poses need {len(at)} × 22 × 3 finite numbers.")
-    parents, children = np.array(SMPL22.bones).T
-    lengths = np.linalg.norm(positions[:, children] - positions[:, parents], axis=-1)
-    expected = np.asarray(SMPL22.bone_lengths)[children]
-    if (np.abs(lengths / expected - 1) > _BONE_ERROR).any():
-        raise InputError("A given pose is none that this body takes: its bones have other lengths.")
-    _check_places(positions[:, 0][:, [0, 2]])
-
-
-def _check_path(part: KnownPath, at: list[int]) -> None:
-    places = np.asarray(part.places, dtype=np.float64)
-    headings = np.zeros(len(at)) if part.headings is None else np.asarray(part.headings)
-    if places.shape != (len(at), 2) or headings.shape != (len(at),):
-        raise InputError(f"A path of {len(at)} frames needs as many places, and as many headings or none.")
-    if not (np.isfinite(places).all() and np.isfinite(headings).all()):
-        raise InputError("A path needs finite numbers.")
-    _check_places(places)
-    speed = np.linalg.norm(np.diff(places, axis=0), axis=-1) / np.diff(at) * FPS
-    if (speed > MOST_SPEED).any():
-        raise InputError(
-            f"The path asks person {'ab'[part.person]} for {speed.max():.1f} m/s: give more time or a shorter way "
-            f"(at most {MOST_SPEED:g} m/s)."
-        )
-
-
-def _check_places(places: Array) -> None:
-    if (np.linalg.norm(places, axis=-1) > MOST_DISTANCE).any():
-        raise InputError(f"A given place is more than {MOST_DISTANCE:g} m away: bring it nearer.")
 
 
 def settle(off: Array, frames: NDArray[np.integer]) -> Array:

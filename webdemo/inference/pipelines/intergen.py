@@ -12,6 +12,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
+from acts import Plan
 from acts.staging.stage import staged
 from models.compiled import Precision, compile_network, has_bfloat16
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
@@ -40,6 +41,10 @@ from .two_person import Conditioning, Passes, TwoPersonPipeline
 Array = NDArray[np.floating]
 SMOOTHING = 1.0
 """Frames: σ of the Gaussian by which InterGen's release smooths its positions."""
+_FAR = (
+    "This sentence is far from anything the model was trained on, so the motion may not match it. "
+    "The nearest thing it knows: “{}”."
+)
 CONVERTED = (
     "InterGen's 262 numbers a person and frame became 22 joints: its positions were taken, its own rotations and "
     "foot contacts were dropped."
@@ -61,7 +66,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         super().__init__(source, model)
         self.bank: CaptionBank = load_captions(source)
         self.encoder = MiniLM()
-        self.scenes = SceneMaker(self)
+        self.scenes = SceneMaker(self, self.words)
 
     def run(
         self,
@@ -120,26 +125,32 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         with torch.no_grad():
             return self.model.condition(*parts), tokens.pooled()[0]
 
-    def notes(self, plan: KeptPlan, vector: Tensor) -> tuple[str, ...]:
-        """Warns the user of a prompt in which no act is known, far from all that was trained on."""
-        near = self.bank.nearest(vector)
-        if near[0][0] >= self.bank.far or plan.acts[0].acts:
-            return ()
-        return (
-            "This sentence is far from anything the model was trained on, so the motion may not match it. "
-            f"The nearest thing it knows: “{near[0][1]}”.",
-        )
-
     def conditioning(self, request: GenerateRequest | ReactRequest) -> Conditioning:
         """The text vector and the touches that the text asks for; nothing without text."""
-        if not request.prompt.strip():  # without an intent both halves of the guidance are the same
+        if not request.prompt.strip():
+            return self.words("", Plan(), ("", ""), request.guidance)
+        kept = with_plan(request).plan
+        assert kept is not None
+        plan = kept.acts[0]
+        alone = kept.alone if isinstance(request, GenerateRequest) else understood.of_each(plan)
+        return self.words(request.prompt, plan, alone, request.guidance)
+
+    def words(self, prompt: str, plan: Plan, alone: tuple[str, str], guidance: float) -> Conditioning:
+        """What a sentence gives the network.
+
+        Args:
+            prompt: what both do; without it nothing is given.
+            plan: of the sentence; one without acts is warned of where it is far from all that was trained on.
+            alone: as of :meth:`condition`.
+            guidance: scale of the guidance.
+        """
+        if not prompt.strip():  # without an intent both halves of the guidance are the same
             return Conditioning(self.model.no_condition(), 1.0)
-        plan = with_plan(request).plan
-        assert plan is not None
-        alone = plan.alone if isinstance(request, GenerateRequest) else understood.of_each(plan.acts[0])
-        condition, vector = self.condition(request.prompt, alone)
+        condition, vector = self.condition(prompt, alone)
         (touch,) = self.model.touches(condition)
-        return Conditioning(condition, request.guidance, touch, self.notes(plan, vector))
+        cosine, nearest = self.bank.nearest(vector)[0]
+        far = cosine < self.bank.far and not plan.acts
+        return Conditioning(condition, guidance, touch, (_FAR.format(nearest),) if far else ())
 
 
 def _unsplit(plan: KeptPlan, planned: bool) -> KeptPlan:

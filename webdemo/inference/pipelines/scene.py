@@ -9,21 +9,20 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Generator, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Generator, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from acts import Plan
 from acts.staging.given.beat import plan_note
 from acts.staging.window import Window
 from models.intergen.compact import CompactInterGen
 from motion import FPS, Duet, InputError
 from motion.metrics import compare
-from webdemo.inference import methods
 from webdemo.inference.finish.joining import closed
 from webdemo.inference.finish.scene import finished, finishes
-from webdemo.inference.requests import GenerateRequest, SamplingRequest
 from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.paths import meeting
 from webdemo.inference.requests.plans import KeptPlan, WindowPlan
@@ -33,7 +32,7 @@ from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.windows import window_seed, windows
 
 from .given import NAMES
-from .two_person import Passes, TwoPersonPipeline
+from .two_person import Conditioning, Passes, TwoPersonPipeline
 from .window import Setting
 
 Array = NDArray[np.floating]
@@ -42,16 +41,6 @@ KEPT = 400
 """Windows that are kept; one of five seconds takes 160 kB."""
 FAR = 6.0
 """Metres between two people beyond which the training scenes hold next to nothing."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class WindowRequest(GenerateRequest):
-    """The request of one window of a scene; its words may be missing. Its plan says what each person does alone."""
-
-    split: bool = False
-
-    def __post_init__(self) -> None:
-        self._check(methods.method(self.model, "scene"))
 
 
 @dataclass(frozen=True)
@@ -94,11 +83,16 @@ class SceneMaker:
     """Makes scenes with a pipeline.
 
     Args:
-        pipeline: makes the windows.
+        pipeline: samples the windows.
+        words: what a window's sentence gives the network, as :meth:`.intergen.InterGenPipeline.words`.
     """
 
-    def __init__(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> None:
-        self.pipeline = pipeline
+    def __init__(
+        self,
+        pipeline: TwoPersonPipeline[CompactInterGen],
+        words: Callable[[str, Plan, tuple[str, str], float], Conditioning],
+    ) -> None:
+        self.pipeline, self.words = pipeline, words
         self.parts = Parts()
 
     def run(
@@ -184,30 +178,26 @@ class SceneMaker:
     ) -> Generator[Progress, None, Made]:
         """One window, made now or kept from an earlier run."""
         window = setting.window
-        asked = _asked(request, sample, window, setting.frames, setting.plan)
-        key = setting.key(asked, self.pipeline.digest)
+        seed, words = window_seed(request, sample, window), request.beats[window.beat].sentence
+        key = setting.key(request, words, seed, self.pipeline.digest)
         if (kept := self.parts.get(key)) is not None:
             return kept
-        given = setting.scene(self.pipeline)
-        for event in self.pipeline.run(asked, cancel, timer, passes, given):
+        conditioning = self.words(words, request.plans[window.beat], setting.plan.alone, request.guidance)
+        timer.lap("text")
+        scene = setting.scene(self.pipeline)
+        for event in self.pipeline.sample(
+            request, conditioning, scene, (seed, 1), cancel, timer, passes, measured=False
+        ):
             if isinstance(event, Result):
-                made = setting.made(event.duets[0].positions)
+                positions = setting.made(event.duets[0].positions)
                 notes = tuple(_of_beat(note, request, window) for note in event.notes)
-                found = Made(made, setting.share(self.pipeline), notes)
+                made = Made(positions, setting.share(self.pipeline), notes)
                 if passes is None:  # sharing a pass changes the rounding, and kept windows give the same bytes
-                    self.parts.keep(key, found)
-                return found
+                    self.parts.keep(key, made)
+                return made
             if event.stage == "sample":
                 yield replace(event, step=done + event.step, total=steps)
         raise AssertionError("A pipeline ends with its result.")
-
-
-def _asked(request: SceneRequest, sample: int, window: Window, frames: int, plan: WindowPlan) -> WindowRequest:
-    plain = {f.name: getattr(request, f.name) for f in fields(SamplingRequest)} | {"samples": 1}
-    plain["seed"] = window_seed(request, sample, window)
-    prompt = request.beats[window.beat].sentence
-    own = KeptPlan((request.plans[window.beat],), alone=plan.alone)
-    return WindowRequest(prompt=prompt, seconds=frames / FPS, plan=own, **plain)
 
 
 def _blank(request: SceneRequest) -> Array:

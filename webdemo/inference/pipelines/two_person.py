@@ -22,7 +22,7 @@ from motion import Duet, InputError
 from motion.metrics import compare
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.damping import Damping
-from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .given import Finish, Scene, scene_of
@@ -178,54 +178,63 @@ class TwoPersonPipeline(ABC, Generic[Network]):
                 the network itself does.
             scene: what is known of the motion, and how samples become duets; by default what the request says.
         """
-        passes = passes or OwnPasses(self.model.denoiser)
         yield timer.progress("text")
         conditioning = self.conditioning(request)
-        condition = conditioning.condition.expand(request.samples, *conditioning.condition.shape[1:])
-        scene = scene or self.scene(request)
         timer.lap("text")
+        scene, noise = scene or self.scene(request), (request.seed, request.samples)
+        yield from self.sample(request, conditioning, scene, noise, cancel, timer, passes)
 
+    def sample(
+        self,
+        settings: SamplingRequest,
+        conditioning: Conditioning,
+        scene: Scene,
+        noise: tuple[int, int],
+        cancel: CancelToken,
+        timer: StageTimer,
+        passes: Passes | None = None,
+        *,
+        measured: bool = True,
+    ) -> Iterator[Progress | Result]:
+        """Samples of a scene, denoised: progress events, then one result.
+
+        Args:
+            settings: steps, sampler, damping and clean-up are taken from there.
+            conditioning: of the network.
+            scene: what is known of the motion, and how samples become duets.
+            noise: the seed, and the number of samples.
+            cancel, timer, passes: as in :meth:`run`.
+            measured: the result has the read-outs of its duets.
+        """
+        passes = passes or OwnPasses(self.model.denoiser)
         layout, given = self.model.layout, scene.given
-        noise = sample_noise(
-            request.seed, request.samples, (layout.num_tokens(scene.frames), 2 * layout.token_features)
-        )
-        scheduler = make_scheduler(cast(SamplerName, request.sampler), request.steps, spacing=self.spacing)
+        x = sample_noise(*noise, (layout.num_tokens(scene.frames), 2 * layout.token_features))
+        scheduler = make_scheduler(cast(SamplerName, settings.sampler), settings.steps, spacing=self.spacing)
         damping = Damping(
             self.model,
-            request.damping,
+            settings.damping,
             frames=scene.frames,
             timesteps=scheduler.timesteps.tolist(),
             frozen=None if given is None else given.frozen[0],
-            touches=(conditioning.touch,) * request.samples,
+            touches=(conditioning.touch,) * len(x),
         )
-        seen = self._seen(scene)
+        condition = conditioning.condition.expand(len(x), *conditioning.condition.shape[1:])
+        # what is known is shown to a network that reads it
+        seen = {"known": given.features} if given is not None and self.model.reads_known else {}
         steps = _Steps(passes, damping, condition, conditioning.guidance, given, seen)
         cancel.raise_if_cancelled()
-        sample = steps.uncorrected = noise
-        for step in sample_steps(steps.predict, noise, scheduler, correct=steps.correct):
-            sample = step.sample
+        steps.uncorrected = x
+        for step in sample_steps(steps.predict, x, scheduler, correct=steps.correct):
+            x = step.sample
             yield timer.progress("sample", step.step, step.total)
             cancel.raise_if_cancelled()
         timer.lap("sample")
-
         yield timer.progress("finish")
-        duets, readouts = self._finished(request, scene, steps.uncorrected, sample)
+        duets = self._duets(x, scene, clean_person if settings.cleanup else _as_is)
+        before = self._duets(steps.uncorrected, scene, _as_is) if measured else ()
+        readouts = tuple(compare(raw, duet) for raw, duet in zip(before, duets, strict=measured))
         timer.lap("finish")
         yield Result(duets=duets, readouts=readouts, notes=conditioning.notes)
-
-    def _seen(self, scene: Scene) -> dict[str, Any]:
-        """Arguments of the network's ``guided``: what is known, for one that reads it."""
-        if scene.given is None or not self.model.reads_known:
-            return {}
-        return {"known": scene.given.features}
-
-    def _finished(
-        self, request: GenerateRequest | ReactRequest, scene: Scene, uncorrected: Tensor, sample: Tensor
-    ) -> tuple[tuple[Duet, ...], tuple[dict[str, Any], ...]]:
-        """The duets of a sample, and how each differs from the last prediction before its correction."""
-        before = self._duets(uncorrected, scene, _as_is)
-        duets = self._duets(sample, scene, clean_person if request.cleanup else _as_is)
-        return duets, tuple(compare(raw, duet) for raw, duet in zip(before, duets, strict=True))
 
     def _duets(self, x: Tensor, scene: Scene, finish: Finish) -> tuple[Duet, ...]:
         with torch.no_grad():

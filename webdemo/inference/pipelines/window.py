@@ -20,7 +20,6 @@ from motion import FPS, InputError
 from motion.placement import MEDIAN_START_DISTANCE, Placement
 from motion.transforms import heading, heading_matrix
 from webdemo.inference.method import SECONDS
-from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.paths import MOST_SPEED, FloorPath
 from webdemo.inference.requests.plans import WindowPlan
@@ -92,11 +91,11 @@ class Setting:
 
     def scene(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> Directed:
         """As the pipeline takes it."""
-        return directed(pipeline.model, self.frames, self.parts, check=False)
+        return directed(pipeline.model, self.frames, self.parts)
 
     def share(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> float:
         """The share of the new frames that the plan lays out, see :attr:`models.known.Hold.shares`."""
-        planned = directed(pipeline.model, self.frames, self.plan.parts, check=False).given
+        planned = directed(pipeline.model, self.frames, self.plan.parts).given
         return 0.0 if planned is None else float(planned.shares[self._own].mean())
 
     def made(self, positions: Array) -> Array:
@@ -108,9 +107,10 @@ class Setting:
         """The frames that are the window's own, among those that it sees."""
         return slice(self.window.past, self.window.past + self.window.stop - self.window.start)
 
-    def key(self, asked: GenerateRequest, digest: str) -> str:
-        """A hash of all that the window is made from."""
-        told = [digest, asked.to_dict(), self.plan.alone, self.frames, self.window.past]
+    def key(self, request: SceneRequest, words: str, seed: int, digest: str) -> str:
+        """A hash of all that the window is made from: the request's settings, the words, the network, what is given."""
+        settings = {**request.sampling, "samples": 1, "tries": 1, "seed": seed}
+        told = [digest, words, settings, self.plan.alone, self.frames, self.window.past]
         found = hashlib.sha256(json.dumps(told).encode())
         for part in self.parts:
             values = part.positions if isinstance(part, KnownFrames) else part.places

@@ -216,7 +216,9 @@ class ReactRequest(SamplingRequest):
         return {"kind": "react", "actor": clip_facts(self.actor), **plain}
 
 
-def with_current_names(request: Mapping[str, Any]) -> dict[str, Any]:
-    """The fields of a stored request by their present names; ``first_pose`` of a reaction was once ``start``."""
-    older = {"start": "first_pose"} if request.get("kind") == "react" else {}
-    return {older.get(name, name): value for name, value in request.items()}
+def replayed(request: Mapping[str, Any], manifest: Mapping[str, Any]) -> dict[str, Any]:
+    """The fields of a kept request that make its result at once: the seed of the try that was kept, and one try."""
+    tries = manifest.get("tries")
+    if not isinstance(tries, Mapping) or "seed" not in tries:
+        return dict(request)
+    return {**request, "seed": tries["seed"], "tries": 1}

@@ -9,8 +9,7 @@ from typing import Any
 
 from motion import InputError
 from motion.formats.thing_files import SUFFIXES
-from webdemo.inference.engine.tries import replayed
-from webdemo.inference.requests import GenerateRequest, with_current_names
+from webdemo.inference.requests import GenerateRequest, replayed
 from webdemo.inference.requests.plans import kept_plan
 from webdemo.inference.run import Result
 from webdemo.inference.story import SceneRequest
@@ -38,7 +37,7 @@ def bring(record: Record | None, path: str | None) -> Result:
 
 def _request(manifest: Mapping[str, Any]) -> Any:
     """The request of a result whose words name things; None for one that has no words, or keeps too little of them."""
-    asked = replayed(with_current_names(manifest.get("request") or {}), manifest)
+    asked = replayed(manifest.get("request") or {}, manifest)
     try:
         if asked.get("kind") == "generate":
             given = {f.name: asked[f.name] for f in fields(GenerateRequest) if f.name in asked}
