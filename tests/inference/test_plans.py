@@ -193,15 +193,20 @@ def test_manifests_of_before_have_no_plan() -> None:
     assert "plan" not in STORY.to_dict() and "plan" not in SPLIT.to_dict()
 
 
+def kept(window: WindowPlan) -> tuple[dict[str, Any], WindowPlan]:
+    """A window's plan as JSON, and read from there."""
+    plan = KeptPlan(windows=(window,)).to_dict()
+    return plan["windows"][0], KeptPlan.from_dict(json.loads(json.dumps(plan))).windows[0]
+
+
 def test_a_held_pose_is_written_once_and_numbers_are_kept_to_a_hundredth_of_a_millimetre() -> None:
     pose = np.random.default_rng(0).normal(size=(22, 3))
     held = KnownFrames(1, [0, 3, 6, 9], np.stack([pose, pose, 2 * pose, pose]), [0, 4, 5], kept=True)
     path = KnownPath(0, [2, 5], np.array([[0.123456, 1.0], [2.0, -3.0]]), np.array([7.0, 6.5]), turned=True)
     plan = WindowPlan((0.1, 0.2, 0.3), (held, path), ("One person waves.", ""))
-    written = plan.to_dict()
+    written, again = kept(plan)
     assert len(written["parts"][0]["poses"]) == 2
-    again = WindowPlan.from_dict(json.loads(json.dumps(written)))
-    assert again.to_dict() == written and again.place == plan.place
+    assert kept(again)[0] == written and again.place == plan.place
     first, second = again.parts
     assert isinstance(first, KnownFrames) and isinstance(second, KnownPath) and first.kept
     np.testing.assert_allclose(first.positions[3][[0, 4, 5]], pose[[0, 4, 5]], atol=0.51e-5)
@@ -213,7 +218,7 @@ def test_joints_beside_the_pelvis_are_kept_beside_it() -> None:
     given = np.full((2, 22, 3), (3.0, 0.9, -2.0))
     given[:, 20] += [0.1, 0.5, 0.2]
     window = WindowPlan((0.0, 0.0, 0.0), (KnownFrames(0, [4, 8], given, [20]),))
-    (read,) = WindowPlan.from_dict(json.loads(json.dumps(window.to_dict()))).parts
+    (read,) = kept(window)[1].parts
     assert isinstance(read, KnownFrames)
     np.testing.assert_allclose(read.positions[:, 20] - read.positions[:, 0], [[0.1, 0.5, 0.2]] * 2, atol=1e-5)
 
@@ -235,6 +240,7 @@ def damaged(change: str) -> dict[str, Any]:
         "plan['beats'] = 'x'",
         "plan['alone'] = ['']",
         "plan['notes'] = [3]",
+        "plan['finishes'] = [{'loose': 'c'}]",
         "part['frames'] = [1, 1]",
         "part['frames'] = [-1, 2]",
         "part['frames'] = [True, 2]",

@@ -17,7 +17,7 @@ from webdemo.inference.story.request import SceneRequest, beat_of
 from webdemo.inference.story.scripting import plan_of_beat
 from webdemo.inference.story.understood import understood
 
-from .plans import KeptPlan, kept_acts
+from .plans import KeptPlan, kept_plan
 from .sampling import GenerateRequest, ReactRequest
 
 Request = TypeVar("Request")
@@ -85,8 +85,8 @@ def plans_of_result(manifest: Mapping[str, Any]) -> tuple[Plan, ...]:
     Raises:
         InputError: if they are damaged.
     """
-    if kept := kept_acts(manifest):
-        return kept
+    if (kept := kept_plan(manifest)) is not None and kept.acts:
+        return kept.acts
     asked = manifest.get("request") or {}
     if asked.get("acts"):
         return (plan_of(asked["acts"]),)

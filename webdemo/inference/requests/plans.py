@@ -10,14 +10,17 @@ gives the network the same numbers.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, PlainSerializer, PlainValidator, TypeAdapter, ValidationError
+from pydantic.dataclasses import dataclass
 
-from acts.plan import Plan, plan_of
+from acts.plan import Plan, plan_of, problem
 from acts.staging.parts import KnownFrames, KnownPath, Part
 from motion import SMPL22, InputError
 
@@ -25,175 +28,67 @@ Array = NDArray[np.floating]
 
 MOST_WINDOWS = 1024
 """Windows of all samples of a result: eight samples of sixty beats make fewer."""
-_MOST_FRAMES = 400
-"""Frames of a window, with what it sees before and after."""
-_MOST_PARTS = 64
-"""Parts that are given of one window."""
 _UNIT = 1e5
 """Units to a metre, and to a radian."""
-_FARTHEST = 1000 * _UNIT
-_WRONG = "The plan that was kept with this result is damaged ({}): make the result anew from its words."
+_FARTHEST = 100_000_000
+"""Units of a number at most, a kilometre."""
+_BEAT = ("words", "a", "b", "seconds", "seed", "acts")
+_STRICT = ConfigDict(strict=True, arbitrary_types_allowed=True)
+
+Whole = Annotated[int, Field(ge=-_FARTHEST, le=_FARTHEST)]
+Number = Annotated[float, Field(ge=-_FARTHEST, le=_FARTHEST)]
+Text = Annotated[str, Field(max_length=20_000)]
+Notes = Annotated[tuple[Text, ...], Field(max_length=20)]
+Who = Literal["", "a", "b", "ab"]
+Frames = Annotated[list[Annotated[int, Field(ge=0, lt=400)]], Field(min_length=1, max_length=400)]
+"""Frames of a window, with what it sees before and after."""
+Joints = Annotated[list[Annotated[int, Field(ge=0, lt=SMPL22.num_joints)]], Field(max_length=SMPL22.num_joints)]
 
 
-@dataclass(frozen=True, eq=False)
-class WindowPlan:
-    """The plan of one window of a scene.
+class _Poses(BaseModel):
+    """Given frames as JSON: a pose that is held for several of them is written once, and ``which`` names it."""
 
-    Attributes:
-        place: x and z in metres of the scene's world, which become the origin of the network's frame, and the
-            heading in radians that becomes +Z.
-        parts: poses and places in the network's frame, without the frames of windows around it.
-        alone: what each person does, as sentences of their own, for a network that reads them.
-        notes: sentences on what could not be planned as it was asked for.
-    """
+    model_config = _STRICT
+    person: Literal[0, 1]
+    frames: Frames
+    joints: Joints
+    poses: list[list[Whole]]
+    which: list[Annotated[int, Field(ge=0)]]
+    kept: bool = False
 
-    place: tuple[float, float, float]
-    parts: tuple[Part, ...] = ()
-    alone: tuple[str, str] = ("", "")
-    notes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "parts", tuple(_decoded(_encoded(part)) for part in self.parts))
-
-    def to_dict(self) -> dict[str, Any]:
-        """As JSON."""
-        return {
-            "place": list(self.place),
-            "alone": list(self.alone),
-            "notes": list(self.notes),
-            "parts": [_encoded(part) for part in self.parts],
-        }
-
-    @classmethod
-    def from_dict(cls, values: Mapping[str, Any]) -> WindowPlan:
-        """The plan that :meth:`to_dict` gave; raises InputError for anything else."""
-        values = _mapping(values)
-        place = [_number(value) for value in _list(values.get("place"), 3)]
-        parts = _list(values.get("parts"), _MOST_PARTS)
-        if len(place) != 3:
-            raise InputError(_WRONG.format("a window has no place"))
-        return cls(
-            (place[0], place[1], place[2]),
-            tuple(_decoded(_mapping(part)) for part in parts),
-            _pair(values.get("alone")),
-            tuple(_text(note) for note in _list(values.get("notes"), 20)),
-        )
+    def part(self) -> KnownFrames:
+        """The frames; raises ValueError where the lists do not fit together."""
+        known = self.joints or list(range(SMPL22.num_joints))
+        poses = np.zeros((len(self.poses), SMPL22.num_joints, 3))
+        poses[:, known] = np.array(self.poses, dtype=np.float64).reshape(len(poses), len(known), 3) / _UNIT
+        fits = len(self.which) == len(self.frames) and max(self.which) < len(poses)
+        if not fits or len(set(known)) < len(known) or len(set(self.frames)) < len(self.frames):
+            raise ValueError("its poses are not those of its frames")
+        return KnownFrames(self.person, self.frames, poses[self.which], self.joints, self.kept)
 
 
-@dataclass(frozen=True)
-class BeatFinish:
-    """The finish of a beat of a scene.
+class _Path(BaseModel):
+    """A given path as JSON."""
 
-    Attributes:
-        reaching: whether palms meet what they reach for.
-        still: who ("", "a", "b" or "ab") does not look about or shift their weight.
-        held: whether the two hold each other by the hand.
-        loose: whose ("", "a", "b" or "ab") arms have nothing to do.
-    """
+    model_config = _STRICT
+    person: Literal[0, 1]
+    frames: Frames
+    places: list[Whole]
+    headings: list[Whole] | None = None
+    turned: bool = False
 
-    reaching: bool = False
-    still: str = ""
-    held: bool = False
-    loose: str = ""
-
-    def to_dict(self) -> dict[str, Any]:
-        """As JSON."""
-        return {"reaching": self.reaching, "still": self.still, "held": self.held, "loose": self.loose}
-
-    @classmethod
-    def from_dict(cls, values: Mapping[str, Any]) -> BeatFinish:
-        """A finish from :meth:`to_dict`; raises InputError for anything else."""
-        reaching, held = values.get("reaching"), values.get("held", False)
-        still, loose = values.get("still"), values.get("loose", "")
-        known = all(who in ("", "a", "b", "ab") for who in (still, loose))
-        if not isinstance(reaching, bool) or not isinstance(held, bool) or not known:
-            raise InputError(_WRONG.format("the finish of a beat is none"))
-        return cls(reaching, str(still), held, str(loose))
+    def part(self) -> KnownPath:
+        """The path; raises ValueError where the lists do not fit together."""
+        count = len(self.frames)
+        places = np.array(self.places, dtype=np.float64).reshape(count, 2) / _UNIT
+        headings = None if self.headings is None else np.array(self.headings).reshape(count) / _UNIT
+        if len(set(self.frames)) < count:
+            raise ValueError("a frame is given twice")
+        return KnownPath(self.person, self.frames, places, headings, self.turned)
 
 
-@dataclass(frozen=True, eq=False)
-class KeptPlan:
-    """The plan of a request.
-
-    Attributes:
-        acts: what its words are read as, with the looks of the two people and the things: of a sentence one plan, of a
-            story one a beat; () where nothing is read yet, or a version kept none.
-        of_result: a result was made from it, so its beats, windows and finishes are taken as they are.
-        beats: the fields of the beats that a sentence was split into; () where it is given to the network as it is,
-            and in the plan of a story, which has its beats itself.
-        alone: where there are no windows, as in :class:`WindowPlan`.
-        windows: of all samples, one sample after another.
-        notes: what was said of the plan.
-        finishes: of a scene's beats, or of a sentence that is given as it is; () where a version kept none, and in what
-            is made without a plan.
-    """
-
-    acts: tuple[Plan, ...] = ()
-    of_result: bool = False
-    beats: tuple[Mapping[str, Any], ...] = ()
-    alone: tuple[str, str] = ("", "")
-    windows: tuple[WindowPlan, ...] = ()
-    notes: tuple[str, ...] = ()
-    finishes: tuple[BeatFinish, ...] = ()
-
-    def to_dict(self) -> dict[str, Any]:
-        """As JSON."""
-        return {
-            "acts": [plan.model_dump(mode="json", exclude_defaults=True) for plan in self.acts],
-            "beats": [dict(beat) for beat in self.beats],
-            "alone": list(self.alone),
-            "windows": [window.to_dict() for window in self.windows],
-            "notes": list(self.notes),
-            "finishes": [each.to_dict() for each in self.finishes],
-        }
-
-    @classmethod
-    def from_dict(cls, values: Mapping[str, Any]) -> KeptPlan:
-        """The plan that :meth:`to_dict` gave.
-
-        Raises:
-            InputError: for anything else.
-        """
-        values = _mapping(values)
-        beats = (_mapping(beat) for beat in _list(values.get("beats"), MOST_WINDOWS))
-        return cls(
-            _acts(values),
-            True,
-            tuple({name: beat.get(name) for name in ("words", "a", "b", "seconds", "seed", "acts")} for beat in beats),
-            _pair(values.get("alone")),
-            tuple(WindowPlan.from_dict(window) for window in _list(values.get("windows"), MOST_WINDOWS)),
-            tuple(_text(note) for note in _list(values.get("notes"), 20)),
-            tuple(BeatFinish.from_dict(_mapping(each)) for each in _list(values.get("finishes") or [], MOST_WINDOWS)),
-        )
-
-
-def kept_plan(manifest: Mapping[str, Any]) -> KeptPlan | None:
-    """The plan in a result's manifest; None in those of versions that kept none.
-
-    Raises:
-        InputError: if it is damaged.
-    """
-    return None if manifest.get("plan") is None else KeptPlan.from_dict(manifest["plan"])
-
-
-def kept_acts(manifest: Mapping[str, Any]) -> tuple[Plan, ...]:
-    """The plans of acts of a result, from its manifest; () in those of versions that kept none.
-
-    Raises:
-        InputError: if it is damaged.
-    """
-    return () if manifest.get("plan") is None else _acts(_mapping(manifest["plan"]))
-
-
-def _acts(values: Mapping[str, Any]) -> tuple[Plan, ...]:
-    try:
-        return tuple(plan_of(plan) for plan in _list(values.get("acts") or [], MOST_WINDOWS))
-    except InputError as error:
-        raise InputError(_WRONG.format("its acts are none")) from error
-
-
-def _encoded(part: Part) -> dict[str, Any]:
-    """A part as JSON; a pose that is held for several frames is written once."""
+def _written(part: Part) -> dict[str, Any]:
+    """A part as JSON."""
     plain: dict[str, Any] = {"person": part.person, "frames": [int(frame) for frame in part.frames]}
     if isinstance(part, KnownPath):
         headings = None if part.headings is None else _units(part.headings)
@@ -207,26 +102,17 @@ def _encoded(part: Part) -> dict[str, Any]:
     return plain | {"joints": joints, "poses": rows, "which": which} | kept
 
 
-def _decoded(part: Mapping[str, Any]) -> Part:
-    """A part from JSON."""
-    frames = _wholes(part.get("frames"), _MOST_FRAMES, _MOST_FRAMES)
-    person = part.get("person")
-    if person not in (0, 1) or isinstance(person, bool) or not frames or len(set(frames)) != len(frames):
-        raise InputError(_WRONG.format("a frame is missing or given twice"))
-    if "places" in part:
-        headings = part.get("headings")
-        angles = None if headings is None else _metres(headings, (len(frames),))
-        places = _metres(part["places"], (len(frames), 2))
-        return KnownPath(person, frames, places, angles, part.get("turned") is True)
-    joints = _wholes(part.get("joints"), SMPL22.num_joints, SMPL22.num_joints)
-    rows, which = _list(part.get("poses"), len(frames)), _wholes(part.get("which"), len(frames), len(frames))
-    if len(set(joints)) != len(joints) or len(which) != len(frames) or any(i >= len(rows) for i in which):
-        raise InputError(_WRONG.format("its poses are not those of its frames"))
-    known = joints or list(range(SMPL22.num_joints))
-    poses = np.zeros((len(rows), SMPL22.num_joints, 3))
-    for pose, row in zip(poses, rows, strict=True):
-        pose[known] = _metres(row, (len(known), 3))
-    return KnownFrames(person, frames, poses[which], joints, part.get("kept") is True)
+def _rounded(part: Any) -> Part:
+    """A part from JSON, or one that is rounded as in JSON."""
+    values = _written(part) if isinstance(part, (KnownFrames, KnownPath)) else _mapping(part)
+    kind: type[_Path | _Poses] = _Path if "places" in values else _Poses
+    return kind.model_validate(values).part()
+
+
+def _mapping(value: Any) -> Mapping[str, Any]:
+    if not isinstance(value, Mapping):
+        raise ValueError("a part of it is no table")
+    return value
 
 
 def _unique(rows: Iterable[list[int]]) -> tuple[list[list[int]], list[int]]:
@@ -241,48 +127,100 @@ def _units(values: Array) -> list[int]:
     return np.rint(np.asarray(values, dtype=np.float64) * _UNIT).astype(np.int64).ravel().tolist()
 
 
-def _metres(values: Any, shape: tuple[int, ...]) -> Array:
-    """Whole units as metres or radians of a shape."""
-    count = int(np.prod(shape))
-    found = _list(values, count)
-    if len(found) != count or not all(type(value) is int and abs(value) <= _FARTHEST for value in found):
-        raise InputError(_WRONG.format("a place is missing or too far away"))
-    return np.array(found, dtype=np.float64).reshape(shape) / _UNIT
+KeptPart = Annotated[Part, PlainValidator(_rounded), PlainSerializer(_written)]
+KeptActs = Annotated[
+    Plan, PlainValidator(plan_of), PlainSerializer(lambda plan: plan.model_dump(mode="json", exclude_defaults=True))
+]
+KeptBeat = Annotated[Mapping[str, Any], PlainValidator(lambda beat: {name: _mapping(beat).get(name) for name in _BEAT})]
 
 
-def _wholes(values: Any, count: int, below: int) -> list[int]:
-    found = _list(values, count)
-    if not all(type(value) is int and 0 <= value < below for value in found):
-        raise InputError(_WRONG.format("a number in it is out of range"))
-    return list(found)
+@dataclass(frozen=True, eq=False, config=_STRICT)
+class WindowPlan:
+    """The plan of one window of a scene.
+
+    Attributes:
+        place: x and z in metres of the scene's world, which become the origin of the network's frame, and the
+            heading in radians that becomes +Z.
+        parts: poses and places in the network's frame, without the frames of windows around it.
+        alone: what each person does, as sentences of their own, for a network that reads them.
+        notes: sentences on what could not be planned as it was asked for.
+    """
+
+    place: tuple[Number, Number, Number]
+    parts: Annotated[tuple[KeptPart, ...], Field(max_length=64)] = ()
+    alone: tuple[Text, Text] = ("", "")
+    notes: Notes = ()
 
 
-def _number(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= _FARTHEST:
-        raise InputError(_WRONG.format("a number in it is out of range"))
-    return float(value)
+@dataclass(frozen=True, config=_STRICT)
+class BeatFinish:
+    """The finish of a beat of a scene.
+
+    Attributes:
+        reaching: whether palms meet what they reach for.
+        still: who does not look about or shift their weight.
+        held: whether the two hold each other by the hand.
+        loose: whose arms have nothing to do.
+    """
+
+    reaching: bool = False
+    still: Who = ""
+    held: bool = False
+    loose: Who = ""
 
 
-def _text(value: Any) -> str:
-    if not isinstance(value, str) or len(value) > 20_000:
-        raise InputError(_WRONG.format("a sentence in it is none"))
-    return value
+@dataclass(frozen=True, eq=False, config=_STRICT)
+class KeptPlan:
+    """The plan of a request.
+
+    Attributes:
+        acts: what its words are read as, with the looks of the two people and the things: of a sentence one plan, of a
+            story one a beat; () where nothing is read yet.
+        of_result: a result was made from it, so its beats, windows and finishes are taken as they are.
+        beats: the fields of the beats that a sentence was split into; () where it is given to the network as it is,
+            and in the plan of a story, which has its beats itself.
+        alone: where there are no windows, as in :class:`WindowPlan`.
+        windows: of all samples, one sample after another.
+        notes: what was said of the plan.
+        finishes: of a scene's beats, or of a sentence that is given as it is; () in what is made without a plan.
+    """
+
+    acts: Annotated[tuple[KeptActs, ...], Field(max_length=MOST_WINDOWS)] = ()
+    of_result: bool = Field(default=False, exclude=True)
+    beats: Annotated[tuple[KeptBeat, ...], Field(max_length=MOST_WINDOWS)] = ()
+    alone: tuple[Text, Text] = ("", "")
+    windows: Annotated[tuple[WindowPlan, ...], Field(max_length=MOST_WINDOWS)] = ()
+    notes: Notes = ()
+    finishes: Annotated[tuple[BeatFinish, ...], Field(max_length=MOST_WINDOWS)] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """As JSON."""
+        found: dict[str, Any] = _JSON.dump_python(self, mode="json")
+        return found
+
+    @classmethod
+    def from_dict(cls, values: Any) -> KeptPlan:
+        """The plan of a result, as :meth:`to_dict` gave it.
+
+        Raises:
+            InputError: for anything else.
+        """
+        try:
+            return replace(_JSON.validate_json(json.dumps(values)), of_result=True)
+        except ValidationError as error:
+            raise InputError(
+                f"The plan that was kept with this result is damaged ({problem(error).rstrip('.')}): make the result "
+                "anew from its words."
+            ) from None
 
 
-def _pair(values: Any) -> tuple[str, str]:
-    found = [_text(value) for value in _list(values, 2)]
-    if len(found) != 2:
-        raise InputError(_WRONG.format("it lacks the sentences of the two people"))
-    return found[0], found[1]
+_JSON = TypeAdapter(KeptPlan)
 
 
-def _list(values: Any, most: int) -> Sequence[Any]:
-    if not isinstance(values, list) or len(values) > most:
-        raise InputError(_WRONG.format("a list in it is missing or too long"))
-    return values
+def kept_plan(manifest: Mapping[str, Any]) -> KeptPlan | None:
+    """The plan in a result's manifest; None in that of a method that takes no words.
 
-
-def _mapping(values: Any) -> Mapping[str, Any]:
-    if not isinstance(values, Mapping):
-        raise InputError(_WRONG.format("a part of it is no table"))
-    return values
+    Raises:
+        InputError: if it is damaged.
+    """
+    return None if manifest.get("plan") is None else KeptPlan.from_dict(manifest["plan"])
