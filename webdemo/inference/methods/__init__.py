@@ -116,14 +116,20 @@ def failed() -> dict[str, str]:
     return dict(_failed)
 
 
-def register(found: Method) -> None:
-    """Adds a method of a lab's own.
+def register(found: Method | type) -> None:
+    """Adds a method of a lab's own, or a class with the ``Pipeline`` protocol.
 
     Raises:
-        InputError: if its name is taken.
+        InputError: if it is neither, or its name is taken.
     """
     _register_all()
-    _add(found)
+    if isinstance(found, type):
+        found = method_of_class(found)
+    if not isinstance(found, Method):
+        raise InputError("METHOD is not a webdemo.inference.method.Method.")
+    if found.name in _registered:
+        raise InputError(f"There is a method named {found.name} already: choose another name.")
+    _registered[found.name] = found
 
 
 def unregister(name: str) -> None:
@@ -139,54 +145,6 @@ def register_path(path: Path) -> None:
     that fails is reported by :func:`failed` and leaves the others as they are.
     """
     _register_all()
-    _register_path(path)
-
-
-def _register_all() -> None:
-    global _complete
-    with _lock:  # re-entrant: a method's module may look at the registry while it is imported
-        if _complete:
-            return
-        _complete = True
-        for found in BUILT_IN:
-            _add(found)
-        for entry in entry_points(group=ENTRY_POINTS):
-            try:
-                _add(entry.load())
-            except Exception as error:
-                _fail(entry.value, error)
-        for path in filter(None, os.environ.get(PATHS_VARIABLE, "").split(os.pathsep)):
-            _register_path(Path(path))
-        _register_settings()
-
-
-def register_settings() -> None:
-    """Adds the models of the settings as they are now, in place of those of before."""
-    _register_all()
-    with _lock:
-        for name in _from_settings:
-            _registered.pop(name, None)
-            _failed.pop(name, None)
-        _from_settings.clear()
-        _register_settings()
-
-
-def _register_settings() -> None:
-    entries, failures = read_entries()
-    for name, entry in entries.items():
-        try:
-            _add(method_of(entry))
-        except Exception as error:
-            log.debug("%s cannot be used.", name, exc_info=True)
-            reason = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}."
-            failures[name] = f"The model {name} cannot be used: {reason}"
-    for sentence in failures.values():
-        log.warning("%s", sentence)
-    _failed.update(failures)
-    _from_settings.update(entries, failures)
-
-
-def _register_path(path: Path) -> None:
     if not path.exists():
         _failed[str(path)] = f"There is no file or folder {path}: correct {PATHS_VARIABLE}."
         return
@@ -198,9 +156,49 @@ def _register_path(path: Path) -> None:
         if path.is_dir() and "METHOD" not in file.read_text(errors="replace"):
             continue
         try:
-            _add(_import(file).METHOD)
+            register(_import(file).METHOD)
         except Exception as error:
             _fail(str(file), error)
+
+
+def register_settings() -> None:
+    """Adds the models of the settings as they are now, in place of those of before."""
+    _register_all()
+    with _lock:
+        for name in _from_settings:
+            _registered.pop(name, None)
+            _failed.pop(name, None)
+        _from_settings.clear()
+        entries, failures = read_entries()
+        for name, entry in entries.items():
+            try:
+                register(method_of(entry))
+            except Exception as error:
+                log.debug("%s cannot be used.", name, exc_info=True)
+                reason = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}."
+                failures[name] = f"The model {name} cannot be used: {reason}"
+        for sentence in failures.values():
+            log.warning("%s", sentence)
+        _failed.update(failures)
+        _from_settings.update(entries, failures)
+
+
+def _register_all() -> None:
+    global _complete
+    with _lock:  # re-entrant: a method's module may look at the registry while it is imported
+        if _complete:
+            return
+        _complete = True
+        for found in BUILT_IN:
+            register(found)
+        for entry in entry_points(group=ENTRY_POINTS):
+            try:
+                register(entry.load())
+            except Exception as error:
+                _fail(entry.value, error)
+        for path in filter(None, os.environ.get(PATHS_VARIABLE, "").split(os.pathsep)):
+            register_path(Path(path))
+        register_settings()
 
 
 def _import(file: Path) -> ModuleType:
@@ -210,16 +208,6 @@ def _import(file: Path) -> ModuleType:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
-
-
-def _add(found: Method | type) -> None:
-    if isinstance(found, type):
-        found = method_of_class(found)
-    if not isinstance(found, Method):
-        raise InputError("METHOD is not a webdemo.inference.method.Method.")
-    if found.name in _registered:
-        raise InputError(f"There is a method named {found.name} already: choose another name.")
-    _registered[found.name] = found
 
 
 def _fail(where: str, error: Exception) -> None:
