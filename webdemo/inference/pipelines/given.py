@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -248,7 +248,7 @@ def duet_of(request: ReactRequest, person: Array) -> Duet:
     return Duet(request.actor, Clip(person, FPS, SMPL22, name=NAMES[1]), NAMES)
 
 
-def reacted(request: ReactRequest, raw: Sequence[Array], shown: Sequence[Array], notes: Sequence[str] = ()) -> Result:
+def reacted(request: ReactRequest, raw: Iterable[Array], shown: Iterable[Array], notes: Sequence[str] = ()) -> Result:
     """The result of a reaction.
 
     Args:

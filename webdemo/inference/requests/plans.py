@@ -39,7 +39,7 @@ Whole = Annotated[int, Field(ge=-_FARTHEST, le=_FARTHEST)]
 Number = Annotated[float, Field(ge=-_FARTHEST, le=_FARTHEST)]
 Text = Annotated[str, Field(max_length=20_000)]
 Notes = Annotated[tuple[Text, ...], Field(max_length=20)]
-Who = Literal["", "a", "b", "ab"]
+Who = Annotated[str, Field(pattern="^a?b?$")]
 Frames = Annotated[list[Annotated[int, Field(ge=0, lt=400)]], Field(min_length=1, max_length=400)]
 """Frames of a window, with what it sees before and after."""
 Joints = Annotated[list[Annotated[int, Field(ge=0, lt=SMPL22.num_joints)]], Field(max_length=SMPL22.num_joints)]
@@ -158,9 +158,9 @@ class BeatFinish:
 
     Attributes:
         reaching: whether palms meet what they reach for.
-        still: who does not look about or shift their weight.
+        still: who ("", "a", "b" or "ab") does not look about or shift their weight.
         held: whether the two hold each other by the hand.
-        loose: whose arms have nothing to do.
+        loose: whose ("", "a", "b" or "ab") arms have nothing to do.
     """
 
     reaching: bool = False
