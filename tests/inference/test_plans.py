@@ -80,7 +80,6 @@ def changed_stage(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(understood, "of_each", lambda _: alone)
     for module in (request, prompted, intergen):
         monkeypatch.setattr(module, "staged", lambda _: Told(alone=alone))
-    monkeypatch.setattr(intergen.InterGenPipeline, "notes", lambda *_: ("Read again.",))
     monkeypatch.setattr(prompted, "_beats", lambda *_: (Beat("They hug."), Beat("They bow.")))
 
 
