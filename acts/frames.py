@@ -20,8 +20,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from acts.events import Event, Ref
 from acts.plan import other_of
-from acts.said import Event, Ref
 from motion import InputError
 
 _PREPOSITIONS = (

@@ -1,4 +1,4 @@
-"""The lexicon: one entry an act, in TOML files grouped by kind; a lab's own (:mod:`acts.own`) are merged into it.
+"""The lexicon: one entry an act, in TOML files grouped by kind; a lab's own (:mod:`acts.config`) are merged into it.
 
 An entry gives everything about its act: how it is said, the words on which the network was trained, how long it takes,
 how it is staged, the rule that checks it, and examples that are its tests. ``python -m acts check FOLDER`` says what is
@@ -21,8 +21,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from motion import InputError
 
+from .config import OwnFiles, own_files
 from .frames import Frame
-from .own import OwnFiles, own_files
 from .shapes import Shape
 from .things import Does, Prop
 

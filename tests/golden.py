@@ -24,7 +24,7 @@ from webdemo.inference import Engine, GenerateRequest, PredictRequest, ReactRequ
 from webdemo.inference.requests.paths import path_of
 from webdemo.inference.requests.plans import kept_plan
 from webdemo.inference.story.beats import Beat
-from webdemo.inference.story.wishes import Pose
+from webdemo.inference.story.poses import Pose
 
 ROOT = Path(__file__).resolve().parents[1]
 DATA = Path(__file__).parent / "data" / "golden.npz"

@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from webdemo.inference.requests import MAX_PROMPT
-from webdemo.inference.story.scripting import LONGEST_READ, MOST_WORDS
+from webdemo.inference.story.sentences import LONGEST_READ, MOST_WORDS
 from webdemo.inference.story.toml import MOST_CHARACTERS
 
 from .compiled_patterns import ANYTHING, ROOT, SENTENCE, STORY

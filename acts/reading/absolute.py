@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from acts.events import Event, Ref
 from acts.frames import PREPOSITIONS
-from acts.said import Event, Ref
 
 from .vocabulary import vocabulary
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 
+from acts.events import Event, Ref
 from acts.lexicon import Entry, Lexicon
-from acts.said import Event, Ref
 
 from .ellipsis import PERFORM
 from .matching import Found

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import TYPE_CHECKING
 
-from acts.said import Event
+from acts.events import Event
 
 from .syntax import is_adverb, is_kept
 from .vocabulary import vocabulary

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 
+from acts.events import Event, Ref
 from acts.frames import Frame, Match, best
 from acts.lexicon import Lexicon
 from acts.plan import other_of
-from acts.said import Event, Ref
 
 from . import wordnet
 from .ellipsis import PERFORM

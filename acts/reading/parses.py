@@ -6,11 +6,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from . import wordnet
+from .people import A_NAME, B_NAME
 from .repair import others
-from .run_on import breaks
 from .spelling import Speller
 from .syntax import parse
 from .text import Text
+from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
@@ -92,3 +94,117 @@ def _with_verbs(text: Text, speller: Speller) -> Parse:
     found = Parse(text, parse(text.parsed))
     changes = speller.verbs_found(found.doc)
     return found.changed(changes) if changes else found
+
+
+# ---- missing stops -------------------------------------------------------------------------------------
+_FINITE = frozenset(("VBZ", "VBD", "VBP"))
+_WITHIN = frozenset(("det", "amod", "nummod", "poss", "compound", "nmod", "case", "predet"))
+"""Relations of the words of a noun phrase to its head."""
+_BELOW = frozenset(("ccomp", "acl", "csubj", "pcomp"))
+"""Relations of clauses that follow a noun or a verb without a word between."""
+_LINKS = frozenset(("SCONJ", "CCONJ", "PUNCT", "PART", "AUX"))
+_SENSES = 3
+"""Senses of a verb that are looked at: one that bodies show takes no clause."""
+_PEOPLE = frozenset(("other", "one", "first", "second"))
+"""Words that stand for a person behind an article."""
+
+
+def breaks(doc: Doc, lemmas: Mapping[int, str], within: bool = False) -> Iterator[Token]:
+    """The words before which a stop is missing, each the first of the next clause's subject.
+
+    Args:
+        doc: a parsed text.
+        lemmas: true lemmas, by token, of verbs that others stand for.
+        within: whether a noun before a person is the object of the clause before, as in "brings a tray guest says", and
+            no part of the subject, as in "waves a tennis player says".
+    """
+    before: Token | None = None
+    below = False
+    for token in doc:
+        if before is not None and token.lower_ == "and" and _joins_person(token):
+            yield token
+        if token.is_sent_start or token.pos_ in ("PUNCT", "CCONJ"):
+            before, below = None, False
+        elif token.pos_ == "SCONJ" or token.tag_ in ("WRB", "WP", "WDT") or token.dep_ == "mark":
+            below = True
+        elif (token.tag_ in _FINITE and token.pos_ == "VERB") or any(c.dep_ == "nsubj" for c in token.children):
+            if (
+                token.tag_ in _FINITE
+                and before is not None
+                and not below
+                and (noun := _subject_behind(token, before, lemmas)) is not None
+            ):
+                yield _person_in(noun) if within else _first(noun)
+            before = token
+
+
+def _joins_person(conjunction: Token) -> bool:
+    """True where a thing is joined to a person who acts: "A holds the ladder and B climbs it"."""
+    thing, doc = conjunction.head, conjunction.doc
+    if thing.pos_ != "NOUN" or thing.i > conjunction.i or _is_person(thing):
+        return False
+    person = next((c for c in thing.children if c.dep_ == "conj" and c.i > conjunction.i), None)
+    if person is None or not _is_person(person):
+        return False
+    behind = doc[person.right_edge.i + 1] if person.right_edge.i + 1 < len(doc) else person
+    return (behind.tag_ in _FINITE and behind.pos_ == "VERB") or any(
+        t.tag_ in _FINITE and t.dep_ != "relcl" for t in doc[person.i + 1 : person.right_edge.i + 1]
+    )
+
+
+def _is_person(noun: Token) -> bool:
+    named = noun.text in (A_NAME, B_NAME) or noun.lower_ in _PEOPLE
+    return named or vocabulary().is_person(noun.lemma_.lower())
+
+
+def _subject_behind(verb: Token, before: Token, lemmas: Mapping[int, str]) -> Token | None:
+    """A verb's subject, where it directly follows the clause of the verb ``before``."""
+    subject = next((c for c in verb.children if c.dep_ == "nsubj" and c.i < verb.i), None)
+    if subject is None:
+        return _taken_along(verb, before)
+    first = _first(subject)
+    if first.i <= before.i:
+        return None
+    last = first.nbor(-1)
+    begun = last.head == verb and last.lower_ not in vocabulary().directions  # "… then she waves"
+    if begun or last.pos_ in _LINKS or subject.tag_ in ("WP", "WDT"):
+        return None
+    return None if _is_below(verb, before, lemmas) else subject
+
+
+def _is_below(verb: Token, before: Token, lemmas: Mapping[int, str]) -> bool:
+    """True for a clause that a verb or a noun takes without a word between: "sees she waves", "the ball he throws"."""
+    if verb.dep_ == "ccomp" and verb.head == before:
+        senses = wordnet.senses(lemmas.get(before.i, before.lemma_.lower()))[:_SENSES]
+        return all(wordnet.kind(sense) not in wordnet.BODILY for sense in senses)
+    if verb.dep_ == "relcl":  # of a noun, whose place in the clause is empty
+        clauses = (verb, *(c for c in verb.children if c.dep_ == "conj"))
+        return all(c.dep_ != "dobj" or c.pos_ != "PRON" for clause in clauses for c in clause.children)
+    return verb.dep_ in _BELOW
+
+
+def _taken_along(verb: Token, before: Token) -> Token | None:
+    """The person right before a verb whom the parser took for an object of the verb ``before``."""
+    at = verb.i - 1
+    while at > before.i and verb.doc[at].pos_ == "ADV":
+        at -= 1
+    noun = verb.doc[at]
+    if at <= before.i or verb.tag_ not in ("VBZ", before.tag_):
+        return None
+    if noun.dep_ not in ("dobj", "pobj", "conj", "appos", "attr", "dep", "npadvmod", "dative"):
+        return None
+    return noun if _is_person(noun) else None
+
+
+def _first(noun: Token) -> Token:
+    """The first word of a noun phrase."""
+    at = noun.i
+    while at > 0 and noun.doc[at - 1].dep_ in _WITHIN and noun.doc[at - 1].head in (noun, noun.doc[at]):
+        at -= 1
+    return noun.doc[at]
+
+
+def _person_in(noun: Token) -> Token:
+    """The person behind a thing in a compound, or the first word of any other noun phrase."""
+    things = [c for c in noun.children if c.dep_ == "compound"]
+    return noun if things and not vocabulary().is_person(things[-1].lemma_.lower()) else _first(noun)

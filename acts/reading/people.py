@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from acts.events import Ref
 from acts.plan import Person, other_of
-from acts.said import Ref
 from acts.things import kind_of
 
 from . import wordnet

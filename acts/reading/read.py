@@ -6,24 +6,22 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from acts.events import Event
 from acts.frames import Frame, Match
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread, other_of
-from acts.said import Event
 from acts.shapes import Go
 from acts.things import SEATS, is_fixture, kind_of
 from motion import InputError
 
 from . import beside
 from .clauses import spans
-from .completion import completed, of_the_last
-from .events import Reader
-from .language import other_language, unknown
+from .completion import completed, exchanged, of_the_last, repeated
 from .matching import Found, matcher
 from .parses import parses
+from .reader import Reader
 from .relations import related
-from .repeats import exchanged, repeated
-from .spelling import Speller
+from .spelling import Speller, other_language, unknown
 from .text import Text
 from .vocabulary import vocabulary
 from .wording import prepared

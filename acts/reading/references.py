@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from acts.said import Ref
+from acts.events import Ref
 from acts.things import is_fixture
 
 from .people import A_NAME, ANYONE, B_NAME, PRONOUN_SEX, Cast, begins_clause
@@ -45,7 +45,7 @@ def names_one(doc: Doc) -> bool:
 
 
 def reference(token: Token, cast: Cast, subject: str) -> Ref:
-    """The reference of a noun or pronoun; see :class:`acts.said.Ref`."""
+    """The reference of a noun or pronoun; see :class:`acts.events.Ref`."""
     first, last = token.idx, token.idx + len(token.text)
     lemma = token.lemma_.lower()
     children = {child.lower_ for child in token.children}

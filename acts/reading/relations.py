@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 
+from acts.events import Event
 from acts.lexicon import Lexicon
 from acts.plan import Act, Relation
-from acts.said import Event
 from acts.shapes import Gesture, Go, Hold, Shape, Strike
 from acts.things import is_fixture
 

@@ -13,9 +13,8 @@ from acts.frames import PREPOSITIONS
 
 from .absolute import stands_absolutely
 from .ellipsis import Ellipsis
-from .letters import names
 from .people import A_NAME, B_NAME
-from .text import Text, tokens, without_request, without_speech
+from .text import Text, names, tokens, without_request, without_speech
 from .vocabulary import FORMATION, vocabulary
 
 if TYPE_CHECKING:

@@ -9,10 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from acts import lexicon, own, read
-from acts.config import acts_folders
+from acts import config, lexicon, read
+from acts.config import acts_folders, look_again, own_files
 from acts.lexicon import look_at_own_acts
-from acts.own import look_again, own_files
 from motion import InputError
 
 OLLIE = '[ollie]\nframes = ["{a} ollie"]\ncaption = ["{a} [jump]"]\nreads = ["She ollies."]\n'
@@ -22,7 +21,7 @@ OLLIE = '[ollie]\nframes = ["{a} ollie"]\ncaption = ["{a} [jump]"]\nreads = ["Sh
 def no_folders(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.delenv("PASDEDEUX_ACTS", raising=False)
     monkeypatch.delenv("PASDEDEUX_SETTINGS", raising=False)
-    monkeypatch.setattr(own, "LOOK_EVERY", 0.0)
+    monkeypatch.setattr(config, "LOOK_EVERY", 0.0)
     yield
     monkeypatch.undo()
     look_again()
@@ -92,7 +91,7 @@ def test_a_file_that_is_saved_is_read_with_the_next_sentence(tmp_path: Path, mon
 def test_between_two_looks_the_folders_are_left_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PASDEDEUX_ACTS", str(folder_of(tmp_path / "own", own=OLLIE)))
     look_again()
-    monkeypatch.setattr(own, "LOOK_EVERY", 1000.0)
+    monkeypatch.setattr(config, "LOOK_EVERY", 1000.0)
     (tmp_path / "own" / "more.toml").write_text(_bow("Two"))
     assert len(own_files().files) == 1
     assert len(look_again().files) == 2

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from acts import own
+from acts import config
 from acts.__main__ import main as acts_main
-from acts.own import look_again
+from acts.config import look_again
 from motion.formats import read as read_motion
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -40,7 +40,7 @@ def test_the_first_act_goes_from_an_empty_folder_to_a_motion(
     from webdemo.cli import main
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(own, "LOOK_EVERY", 0.0)
+    monkeypatch.setattr(config, "LOOK_EVERY", 0.0)
     entry, commands = first_act()
     done = []
     for command in commands:

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from acts import own
-from acts.own import look_again
+from acts import config
+from acts.config import look_again
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.requests.acting import acted
-from webdemo.inference.story.prompted import as_scene
+from webdemo.inference.story.prompts import as_scene
 
 OLLIE = '[ollie]\nframes = ["{a} ollie"]\ncaption = ["{a} [jump]"]\nreads = ["She ollies."]\n'
 
@@ -19,7 +19,7 @@ OLLIE = '[ollie]\nframes = ["{a} ollie"]\ncaption = ["{a} [jump]"]\nreads = ["Sh
 @pytest.fixture
 def with_ollie(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     (tmp_path / "own.toml").write_text(OLLIE)
-    monkeypatch.setattr(own, "LOOK_EVERY", 0.0)
+    monkeypatch.setattr(config, "LOOK_EVERY", 0.0)
     monkeypatch.setenv("PASDEDEUX_ACTS", str(tmp_path))
     yield
     monkeypatch.undo()

@@ -10,7 +10,7 @@ from motion import FPS, SMPL22
 from motion.metrics.naturalness import standing_foot
 from webdemo.inference import Engine, SceneRequest
 from webdemo.inference.story import Beat, FloorPath, FloorPoint
-from webdemo.inference.story.scripting import split_sentence
+from webdemo.inference.story.sentences import split_sentence
 
 from .followed import Follower, speeds
 from .test_planned_scenes import QUICK, made

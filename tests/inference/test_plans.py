@@ -19,7 +19,7 @@ from webdemo.inference.pipelines import intergen, window
 from webdemo.inference.pipelines.scene import Parts
 from webdemo.inference.requests import replayed
 from webdemo.inference.requests.plans import KeptPlan, WindowPlan, kept_plan
-from webdemo.inference.story import Beat, FloorPath, FloorPoint, prompted, request, understood
+from webdemo.inference.story import Beat, FloorPath, FloorPoint, prompts, request
 
 from .people import waver
 from .test_scenes import positions, run
@@ -77,10 +77,10 @@ def changed_stage(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(window, "wishes", lambda *_: ([], ["Not so."]))
     monkeypatch.setattr(window, "_anchor", lambda _: (3.0, 3.0, 1.0))
     alone = ("One person falls.", "One person jumps.")
-    monkeypatch.setattr(understood, "of_each", lambda _: alone)
-    for module in (request, prompted, intergen):
+    monkeypatch.setattr(intergen, "of_each", lambda *_: alone)
+    for module in (request, prompts, intergen):
         monkeypatch.setattr(module, "staged", lambda _: Told(alone=alone))
-    monkeypatch.setattr(prompted, "_beats", lambda *_: (Beat("They hug."), Beat("They bow.")))
+    monkeypatch.setattr(prompts, "_beats", lambda *_: (Beat("They hug."), Beat("They bow.")))
 
 
 @pytest.mark.parametrize("asked", [STORY, DRAWN, SPLIT, AS_IT_IS], ids=["story", "drawn", "split", "as it is"])

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 import torch
 
-from acts import Plan, read
+from acts import Plan, lexicon, read
+from acts.captions import of_each
 from motion import SMPL22, Duet
 from motion.skeleton import ARMS
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
 from webdemo.inference.engine.batch import run_batch
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
-from webdemo.inference.story.prompted import as_scene
-from webdemo.inference.story.understood import of_each
+from webdemo.inference.story.prompts import as_scene
 
 QUICK: dict[str, Any] = {"steps": 3}
 BEATS = (Beat("They wave.", seconds=2.0), Beat("They walk away.", seconds=2.5), Beat("They bow.", seconds=1.5))
@@ -233,7 +233,7 @@ def test_names_in_a_plain_sentence_say_who_does_what(reading_engine: Engine) -> 
     pipeline = reading_engine.pipeline("intergen")
 
     def read_of(prompt: str) -> torch.Tensor:
-        return pipeline.condition(prompt, of_each(read(prompt)))[0]
+        return pipeline.condition(prompt, of_each(read(prompt).acts, lexicon()))[0]
 
     named = read_of("Person A waves while person B claps.")
     a, b = (pipeline.condition("x", (s, s))[0] for s in ("One person waves.", "One person claps."))

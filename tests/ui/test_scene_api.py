@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from motion.formats import read, write
-from webdemo.inference.story import scripting
+from webdemo.inference.story import sentences
 from webdemo.ui.components.exports import Shelf
 from webdemo.ui.context import PageContext
 from webdemo.ui.runs import Loader, Runs
@@ -53,6 +53,6 @@ def test_errors_are_sentences(endpoint: SceneEndpoint, tmp_path: Path) -> None:
 
 
 def test_a_story_is_read_in_limited_time(endpoint: SceneEndpoint, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scripting, "READING_SECONDS", 1e-9)
+    monkeypatch.setattr(sentences, "READING_SECONDS", 1e-9)
     with pytest.raises(gr.Error, match="took longer than 1e-09 seconds to read: shorten"):
         endpoint.scene("They meet. Then they hug.")

@@ -14,7 +14,7 @@ import gradio as gr
 from gradio.queueing import Queue
 
 from acts import lexicon
-from acts.own import own_files
+from acts.config import own_files
 from motion.formats.files import MAX_BYTES
 from webdemo.study import StudiesLike
 from webdemo.ui.components.exports import Shelf

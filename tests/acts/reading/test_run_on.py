@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from acts import read
-from acts.reading.run_on import breaks
+from acts.reading.parses import breaks
 from acts.reading.syntax import parse
 from tests.acts.reading.reading import told
 

@@ -19,9 +19,9 @@ from acts.staging.ways import Way
 from motion import InputError
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.story.beats import Beat, acts_of
-from webdemo.inference.story.prompted import as_scene
+from webdemo.inference.story.prompts import as_scene
 from webdemo.inference.story.request import SceneRequest, beat_of
-from webdemo.inference.story.scripting import beats_of
+from webdemo.inference.story.sentences import beats_of
 from webdemo.inference.story.toml import read_story, write_story
 
 

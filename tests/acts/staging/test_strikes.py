@@ -10,7 +10,7 @@ from acts.staging.bodies.strikes import Bout, Strike, blows, catching, poses, re
 from acts.staging.stage import staged
 from acts.staging.ways import Way
 from motion import SMPL22
-from webdemo.inference.story.scripting import beats_of
+from webdemo.inference.story.sentences import beats_of
 
 from .staged_words import beginning, moves, strike
 

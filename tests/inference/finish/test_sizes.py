@@ -17,7 +17,7 @@ from webdemo.inference.finish.sizes import enlarged
 from webdemo.inference.requests.paths import FloorPath, FloorPoint
 from webdemo.inference.requests.predict import PredictRequest, PredictResult
 from webdemo.inference.story import Beat
-from webdemo.inference.story.wishes import Pose
+from webdemo.inference.story.poses import Pose
 from webdemo.inference.things import furnished
 
 QUICK: dict[str, Any] = {"steps": 3, "seed": 1}

@@ -14,19 +14,14 @@ from tests.acts.staging.staged_words import gesturing, idle, is_planned, told
     ("sentence", "found"),
     [
         ("Person A sits down.", "b"),
-        ("Person A aims.", "b"),
         ("Person B bows.", "a"),
-        ("A boy jumps as his sister looks on.", "b"),
         ("She waves, but he does not wave back.", "b"),
         ("One wants a high five and is left hanging.", "b"),
         ("The first person stands still until the second person has come up to them.", "a"),
         # who is touched, spoken of together, or busy
         ("Person A pats person B on the back.", "b"),
         ("They bow.", ""),
-        ("They wave at each other.", ""),
         ("Person A waves and person B waves back.", ""),
-        ("Person A dances while person B sits and watches.", ""),
-        ("Person A offers person B a hand.", "b"),
         ("Two people hug.", ""),
         ("", ""),
     ],
@@ -39,9 +34,7 @@ def test_only_bystanders_stand_by(sentence: str, found: str) -> None:
     ("sentence", "found"),
     [
         ("They clap.", "ab"),
-        ("Person B salutes.", "b"),
         ("Person A holds both arms out.", "a"),
-        ("Person A waves.", "a"),
         # what the network knows, and who does something else as well
         ("They talk.", ""),
         ("Person A claps and person A bows.", ""),
@@ -83,16 +76,12 @@ def test_a_bystander_stands_on_the_floor_and_sways() -> None:
     ("sentence", "found"),
     [
         ("Person A walks up to person B.", "a"),
-        ("Two people walk side by side.", "ab"),
         ("Person A lies down.", "ab"),
         ("Person A waves while person B stands still.", "b"),
-        ("Person A walks to person B and waves.", "b"),
         ("They walk hand in hand.", ""),
         ("Person A walks to the door.", "a"),
-        ("Person A sneaks away.", ""),
         ("Person A hugs person B.", ""),
         ("Person A carries a box to person B.", ""),
-        ("Person A picks person B up.", ""),
     ],
 )
 def test_the_arms_of_those_who_only_walk_or_rest_have_nothing_to_do(sentence: str, found: str) -> None:

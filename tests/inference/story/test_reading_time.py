@@ -17,7 +17,7 @@ from webdemo.inference.pipelines.scene import SceneMaker
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Cancelled, CancelToken, StageTimer
 from webdemo.inference.story import Beat, SceneRequest, split_sentence
-from webdemo.inference.story.prompted import as_scene
+from webdemo.inference.story.prompts import as_scene
 
 LONGEST = 500
 """The longest prompt that the page takes, in characters."""
@@ -29,7 +29,7 @@ for before in ("", "A man "):
 """
 
 
-@pytest.mark.parametrize("word", ["slowly", "finally", "suddenly", "eagerly", "simply"])
+@pytest.mark.parametrize("word", ["slowly", "eagerly"])
 def test_an_adverb_repeated_is_read_at_once(word):
     """Each of these once matched in two ways, and forty of them in 2⁴⁰."""
     text = f"{word} " * (LONGEST // (len(word) + 1))
@@ -38,31 +38,14 @@ def test_an_adverb_repeated_is_read_at_once(word):
 
 REPEATED = (
     "Anna, ",
-    "Tom, with, ",
-    "ran , ",
     "A. ",
-    "a. ",
-    "a, ",
     ", ",
     "(",
-    '"',
-    "a and ",
-    "the ",
-    "man who ",
-    "ing",
-    "lets him ",
     "he hugs him and ",
-    "then he sits down. ",
-    "she - p1 as ",
     "\u3042",
-    "\U0001f600 ",
     "x",
-    "1 ",
     "Two people walk up to each other and shake hands. ",
     "slowly ",
-    "the a b ",
-    "helps ",
-    "throws the ",
 )
 
 
@@ -94,11 +77,6 @@ def test_a_story_is_read_in_linear_time_and_can_be_stopped():
 
     with pytest.raises(Cancelled):
         split_sentence(story, stop)
-
-
-def test_a_prompt_of_the_longest_length_is_not_refused_for_its_full_stop():
-    text = ("Two people walk up to each other, shake hands and wave goodbye, " * 9)[: LONGEST - 1] + "y"
-    as_scene(GenerateRequest(prompt=text, seconds=5.0))
 
 
 def making_a_scene(token: CancelToken) -> Iterator[Any]:

@@ -9,8 +9,6 @@ import pytest
 from motion import SMPL22, Duet, InputError
 from motion.formats import write
 from webdemo.inference.story import Beat, FloorPoint, SceneRequest, read_story, read_words, write_story
-from webdemo.inference.story.scripting import MOST_WORDS
-from webdemo.inference.story.toml import MOST_CHARACTERS
 
 STORY = """
 seed = 4
@@ -52,14 +50,8 @@ def test_a_story_is_read_and_written() -> None:
         ('[[beat]]\nwords = "x"\nseconds = "long"\n', "Line 3: seconds must be a number"),
         ("sede = 3\n", "Line 1: there is no key 'sede' in a story; did you mean 'seed'"),
         ("seed = 1.5\n", "Line 1: seed must be a whole number"),
-        ("loop = 1\n", "Line 1: loop must be true or false"),
-        ("[beat]\nwords = 'x'\n", "Line 1: beat must be a list"),
         ('[[path]]\nperson = "a"\npoints = [[0, 1], [1]]\n', "Line 3: point 2 of points"),
-        ('[[path]]\nperson = "a"\npoints = [["0", 1]]\n', "Line 3: point 1 of points"),
         ('[[pose]]\nperson = "a"\nfile = "x.npz"\n', "Line 3: a file is only read from the shell"),
-        ('[[pose]]\nperson = "a"\npositions = [["x"]]\n', "Line 3: positions"),
-        ("x = " + "[" * 5000, "TOML"),
-        ("#" * 200_001, "200,001 characters"),
     ],
 )
 def test_a_mistake_is_named_with_line_and_key(text: str, says: str) -> None:
@@ -94,23 +86,13 @@ def unread(text: str) -> str:
 
 TOO_LARGE = [
     ("[[path]]\n" * 2000, "more than 102 tables"),
-    ("[[beat]]\n" * 61, "61 beats"),
     ("x = 1\n" + "a." * 70_000 + "a = 1", "Line 2: a key has 9 parts"),
-    ("[x]\n" + '"a" . ' * 20_000 + "a = 1", "a key has 9 parts"),
-    ("x = { " + "a.b.c.d.e.f.g.h.i = 1, " * 5000 + "}", "a key has 9 parts"),
-    ("[" + ".".join("a" * 70_000) + "]\n[[beat]]", "a key has 9 parts"),
     ("seed = " + "[" * 70_000, "nested too deeply"),
-    ("seed = " + "{a=" * 40_000, "nested too deeply"),
     ("seed = " + "9" * 5000, "longer than any key or number"),
-    ("seed = 0x" + "f" * 5000, "longer than any key or number"),
     ("beat = [" + '{words="a"},' * 10_000 + "]", "10000 beats"),
     ('[[path]]\nperson="a"\npoints=[' + "[1,2,3]," * 10_000 + "]", "10000 points"),
-    ("".join(f"k{i} = 1\n" for i in range(12_000)), "no key 'k0'"),
-    ("seed = 1 # " + "x" * MOST_CHARACTERS, "shorten it to 150,000"),
     ("[[beat]]\n" + '"""' + '\\"""' * 30_000, "no valid TOML"),
-    ("They hug. " * 61, "more than 60 beats"),
     ("They walk and " + "hug and " * 3000 + "part.", "characters: shorten it to 500"),
-    ("x" * (MOST_WORDS + 1), "shorten it to 30,000"),
 ]
 """Texts that are more than a story may be, and what the refusal says."""
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from motion import Duet, InputError
-from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, scripting
+from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, sentences
 from webdemo.ui.components.exports import Record, Shelf
 from webdemo.ui.components.scene_parts import part_request
 from webdemo.ui.components.story import motion_marks, story_fields, story_value
@@ -266,8 +266,8 @@ def test_a_kept_part_opens_with_the_whole_story(tab: SceneTab) -> None:
 
 
 def test_every_example_is_a_story_of_several_beats(tab: SceneTab) -> None:
-    for _, sentences in EXAMPLES:
-        assert len(story_fields(lay_out(sentences)[1])["beats"]) >= 3
+    for _, text in EXAMPLES:
+        assert len(story_fields(lay_out(text)[1])["beats"]) >= 3
 
 
 def test_contacts_are_marked_in_seconds() -> None:
@@ -354,7 +354,7 @@ def test_a_loop_that_is_ticked_before_there_is_a_story_is_made(tab: SceneTab) ->
 
 def test_every_story_of_the_page_is_read_in_limited_time(tab: SceneTab, monkeypatch: pytest.MonkeyPatch) -> None:
     laid, record = lay_out("They meet.")[1], generate(tab)[-1]["record"]
-    monkeypatch.setattr(scripting, "READING_SECONDS", 1e-9)
+    monkeypatch.setattr(sentences, "READING_SECONDS", 1e-9)
     said = "The story took longer than 1e-09 seconds to read: shorten it"
     words = "They bow. They hug."
     for updates in (generate(tab, words), generate(tab, words, laid)):

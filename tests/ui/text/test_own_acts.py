@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from acts import lexicon, own
+from acts import config, lexicon
+from acts.config import look_again
 from acts.lexicon import Entry
-from acts.own import look_again
 from webdemo.ui.page import _own_acts
 from webdemo.ui.text.own_acts import own_acts
 
@@ -31,7 +31,7 @@ def test_acts_and_problems_are_listed_and_escaped() -> None:
 
 
 def test_a_visit_shows_what_the_folders_hold_now(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(own, "LOOK_EVERY", 0.0)
+    monkeypatch.setattr(config, "LOOK_EVERY", 0.0)
     monkeypatch.delenv("PASDEDEUX_ACTS", raising=False)
     assert _own_acts() == ""
     monkeypatch.setenv("PASDEDEUX_ACTS", str(tmp_path))

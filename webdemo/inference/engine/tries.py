@@ -10,14 +10,13 @@ from acts import Plan
 from acts.accounting import unread_words
 from acts.checking import NO_RULE, checked
 from acts.telling import told
+from acts.things.judging import judge_things
 from motion import SMPL22, Clip, Duet
 from motion.metrics.sentences.joints import Motion
 from webdemo.inference.requests.acting import plans_of
 from webdemo.inference.requests.limits import MAX_SEED
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
-from webdemo.inference.things.looking import watched
-from webdemo.inference.things.opening import opened
-from webdemo.inference.things.uses import lengths_of
+from webdemo.inference.things import lengths_of
 
 
 def run_tries(
@@ -139,8 +138,8 @@ def _judged_sample(
     for plan, start, stop, beat in plans:
         verdicts = checked(plan, Motion(duet.positions[:, start:stop], duet.fps))
         split = () if beat is not None else lengths
-        verdicts = watched(verdicts, plan, duet, start, stop, split)
-        verdicts = opened(verdicts, plan, duet, start, stop, split)
+        end = duet.num_frames if stop is None else stop
+        verdicts = judge_things(verdicts, plan, duet, start, end, split)
         rows += [each.to_dict() | ({} if beat is None else {"beat": beat}) for each in verdicts]
         words.append(told(plan, verdicts))
     return {"checked": rows, "told": " ".join(filter(None, words))}

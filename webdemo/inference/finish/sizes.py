@@ -2,8 +2,8 @@
 
 Before the run, what the request gives of the motion is brought to an adult's size (:func:`enlarged`): paths and poses
 to where adults would be, and the kept frames of a given motion. After it, people are brought to their own sizes: by
-their words in :mod:`.things.furnishing`, or by the looks of the given motion here, whose kept frames come back bit for
-bit (:func:`as_given`).
+their words in :mod:`webdemo.inference.things`, or by the looks of the given motion here, whose kept frames come back
+bit for bit (:func:`as_given`).
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from webdemo.inference.requests.acting import plans_of
 from webdemo.inference.requests.paths import FloorPath
 from webdemo.inference.requests.predict import PredictRequest, PredictResult, compared
 from webdemo.inference.run import Result
+from webdemo.inference.story.poses import Pose
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.wishes import Pose
-from webdemo.inference.things.furnishing import looks_in
+from webdemo.inference.things import looks_in
 
 Array = NDArray[np.floating]
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from acts.things.furniture import BODIES, LEAVES, TAKES, placed_leaf
 from motion import FPS, SMPL22
 from motion.cleaning import solve_two_bones
 from motion.easing import smoothstep
@@ -23,7 +24,6 @@ from motion.steering import Goal
 from motion.things import Thing, shape
 from motion.transforms import facing
 from motion.vectors import FLAT, unit
-from webdemo.inference.things.fixtures import BODIES, LEAVES, TAKES, placed_leaf
 
 Array = NDArray[np.floating]
 

@@ -30,7 +30,7 @@ from webdemo.inference.finish.joining import joined
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.plans import KeptPlan
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
-from webdemo.inference.story.understood import understood
+from webdemo.inference.story.beats import plan_of_words
 
 from .given import NAMES, Finish, Reaction, settle
 from .intergen import InterGenPipeline
@@ -197,7 +197,7 @@ class AgentPipeline:
         sentences, frame = self.eye.recogniser.config.sentences, decision.look.frame
         answers = decision.sure and frame < request.actor.num_frames
         said = [sentences[0], *([sentences[decision.place or 0]] if answers else ())]
-        plans = (request.plan and request.plan.acts) or tuple(map(understood, said))
+        plans = (request.plan and request.plan.acts) or tuple(map(plan_of_words, said))
         asked = replace(request, model=self.answers.name, prompt=said[0], plan=KeptPlan(plans[:1]))
         if answers:  # all samples continue the same past
             first = replace(asked, samples=1)

@@ -12,7 +12,8 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from acts import Plan
+from acts import Plan, lexicon
+from acts.captions import of_each
 from acts.staging.stage import staged
 from models.compiled import Precision, compile_network, has_bfloat16
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
@@ -30,8 +31,7 @@ from webdemo.inference.requests.acting import with_plan
 from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.plans import BeatFinish, KeptPlan
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
-from webdemo.inference.story import understood
-from webdemo.inference.story.prompted import as_scene
+from webdemo.inference.story.prompts import as_scene
 from webdemo.inference.story.request import SceneRequest
 
 from .given import Finish, Reaction, Scene
@@ -132,7 +132,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         kept = with_plan(request).plan
         assert kept is not None
         plan = kept.acts[0]
-        alone = kept.alone if isinstance(request, GenerateRequest) else understood.of_each(plan)
+        alone = kept.alone if isinstance(request, GenerateRequest) else of_each(plan.acts, lexicon())
         return self.words(request.prompt, plan, alone, request.guidance)
 
     def words(self, prompt: str, plan: Plan, alone: tuple[str, str], guidance: float) -> Conditioning:
@@ -156,7 +156,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
 def _unsplit(plan: KeptPlan, planned: bool) -> KeptPlan:
     """The plan of a sentence that is given to the network as it is."""
     finishes = (finish_of(staged(plan.acts[0].acts)),) if planned else ()
-    return replace(plan, alone=understood.of_each(plan.acts[0]), finishes=finishes)
+    return replace(plan, alone=of_each(plan.acts[0].acts, lexicon()), finishes=finishes)
 
 
 def _in_touch(duet: Duet | Clip, finish: BeatFinish) -> Duet | Clip:

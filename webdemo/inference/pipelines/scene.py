@@ -27,9 +27,7 @@ from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.paths import meeting
 from webdemo.inference.requests.plans import KeptPlan, WindowPlan
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
-from webdemo.inference.story.progress import SceneProgress
-from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.windows import window_seed, windows
+from webdemo.inference.story.request import SceneProgress, SceneRequest, window_seed, windows
 
 from .given import NAMES
 from .two_person import Conditioning, Passes, TwoPersonPipeline

@@ -16,7 +16,7 @@ from webdemo.inference.requests.predict import PredictRequest, predicted
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story import Beat, SceneRequest
 from webdemo.inference.story.beats import SHORTEST
-from webdemo.inference.story.progress import SceneProgress
+from webdemo.inference.story.request import SceneProgress
 
 from .intergen import InterGenPipeline
 from .predictor import PredictorPipeline

@@ -7,15 +7,13 @@ from dataclasses import replace
 from typing import Any, TypeVar
 
 from acts import Plan, lexicon
-from acts.config import director_settings
-from acts.own import own_files
+from acts.config import director_settings, own_files
 from acts.plan import plan_of
 from acts.reading.director import directed
 from motion import InputError
 from webdemo.inference import methods
-from webdemo.inference.story.request import SceneRequest, beat_of
-from webdemo.inference.story.scripting import plan_of_beat
-from webdemo.inference.story.understood import understood
+from webdemo.inference.story.beats import beat_of, plan_of_beat, plan_of_words
+from webdemo.inference.story.request import SceneRequest
 
 from .plans import KeptPlan, kept_plan
 from .sampling import GenerateRequest, ReactRequest
@@ -35,7 +33,7 @@ def with_plan(request: Request) -> Request:
     elif isinstance(request, GenerateRequest) and request.acts is not None:
         acts = (request.acts,)
     else:
-        acts = (understood(request.prompt),)
+        acts = (plan_of_words(request.prompt),)
     return replace(request, plan=replace(plan, acts=acts))
 
 
@@ -92,4 +90,4 @@ def plans_of_result(manifest: Mapping[str, Any]) -> tuple[Plan, ...]:
         return (plan_of(asked["acts"]),)
     if asked.get("beats"):
         return tuple(plan_of_beat(beat_of(beat)) for beat in asked["beats"])
-    return (understood(str(asked.get("prompt") or "")),)
+    return (plan_of_words(str(asked.get("prompt") or "")),)

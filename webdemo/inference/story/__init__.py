@@ -6,11 +6,10 @@ Importing this package imports no torch.
 from webdemo.inference.requests.paths import FloorPath, FloorPoint
 
 from .beats import Beat
-from .progress import SceneProgress
-from .request import SceneRequest
-from .scripting import in_time, split_sentence
+from .poses import Pose
+from .request import SceneProgress, SceneRequest
+from .sentences import in_time, split_sentence
 from .toml import read_story, read_words, write_story
-from .wishes import Pose
 
 __all__ = [
     "Beat",

@@ -1,4 +1,4 @@
-"""Beats: what two people do one thing after another, how long it takes, and how a sentence is split into them."""
+"""Beats: what two people do one thing after another, as plans of acts, and how long it takes."""
 
 from __future__ import annotations
 
@@ -8,14 +8,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from acts import Plan, read
 from acts.captions import sentence
 from acts.lexicon import lexicon
 from acts.plan import MOST_ACTS, Act, beats, problem
 from acts.reading.wording import begins_with_subject
 from motion import InputError
 from webdemo.inference.requests.limits import MAX_PROMPT, MAX_SEED
-
-from .understood import understood
 
 SHORTEST, LONGEST = 0.5, 30.0
 """Seconds of one beat."""
@@ -56,8 +55,7 @@ class Beat:
     def sentence(self) -> str:
         """All its words as one sentence, or its acts where it has no words, for a model that reads one."""
         alone = [_of_person(text, who) for text, who in ((self.a, "one person"), (self.b, "the other person")) if text]
-        own = ", while ".join(alone)
-        parts = [part.strip().rstrip(".") for part in (self.words, own) if part.strip()]
+        parts = [part.strip().rstrip(".") for part in (self.words, ", while ".join(alone)) if part.strip()]
         if self.acts and not parts:
             return sentence(beats(self.acts), lexicon())
         return " ".join(_sentence(part) for part in parts)
@@ -73,7 +71,7 @@ class Beat:
         """Seconds, as set or as they follow from the acts or the words."""
         if self.seconds is not None:
             return self.seconds
-        return seconds_of_acts(self.acts or understood(self.sentence).acts)
+        return seconds_of_acts(plan_of_beat(self).acts)
 
     def check(self, number: int) -> None:
         """Raises InputError if something is wrong with it; ``number`` from 1 is for the message."""
@@ -99,9 +97,8 @@ class Beat:
 
 def story_title(beats: Sequence[Mapping[str, Any]]) -> str:
     """A title for beats as a manifest has them: their words, as many as fit on a line."""
-    found = [Beat(beat.get("words") or "", beat.get("a") or "", beat.get("b") or "") for beat in beats]
-    words = [beat.sentence or "…" for beat in found]
-    title = " ".join(words)
+    each = (Beat(beat.get("words") or "", beat.get("a") or "", beat.get("b") or "") for beat in beats)
+    title = " ".join(beat.sentence or "…" for beat in each)
     return title if len(title) <= TITLE else f"{title[:TITLE].rsplit(' ', 1)[0]} …"
 
 
@@ -116,6 +113,29 @@ def _of_person(text: str, who: str) -> str:
     if begins_with_subject(text):
         return text[:1].lower() + text[1:]
     return f"{who} {text[:1].lower()}{text[1:]}"
+
+
+def plan_of_words(text: str) -> Plan:
+    """The plan of a text; an empty one where it says nothing, is too long, or no parser is installed."""
+    try:
+        return read(text) if text.strip() else Plan()
+    except InputError:
+        return Plan()
+
+
+def plan_of_beat(beat: Beat) -> Plan:
+    """The plan of a beat: of its acts alone, without their relations to acts of other beats, or of its words."""
+    if not beat.acts:
+        return plan_of_words(beat.sentence)
+    here = {act.id for act in beat.acts}
+    acts = (act.model_copy(update={"order": tuple(r for r in act.order if r.act in here)}) for act in beat.acts)
+    return Plan(acts=tuple(acts))
+
+
+def beat_of(values: Mapping[str, Any]) -> Beat:
+    """A beat from its fields; raises InputError for acts that are none."""
+    plain = {f.name: values[f.name] for f in fields(Beat) if values.get(f.name) is not None}
+    return Beat(**{**plain, "acts": acts_of(plain.get("acts", ()))})
 
 
 def acts_of(values: Sequence[Any]) -> tuple[Act, ...]:
@@ -149,4 +169,4 @@ def seconds_of_acts(acts: Sequence[Act]) -> float:
 
 def seconds_of(words: str) -> float:
     """The length of what a sentence says, in half seconds: as it states, or as long as its acts usually take."""
-    return seconds_of_acts(understood(words).acts)
+    return seconds_of_acts(plan_of_words(words).acts)

@@ -1,4 +1,4 @@
-"""The request for a scene: beats one after another, alone or as a part of a given motion."""
+"""The request for a scene: beats one after another, alone or as a part of a given motion, and its windows."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from acts.staging.postures import Posture
 from acts.staging.stage import staged
 from acts.staging.told import Told, at_start
 from acts.staging.ways import Way
+from acts.staging.window import AFTER, MOST_FRAMES, PAST, Window
 from motion import FPS, Duet, InputError
 from webdemo.inference import methods
 from webdemo.inference.requests import SamplingRequest
@@ -24,10 +25,10 @@ from webdemo.inference.requests.limits import number
 from webdemo.inference.requests.paths import FloorPath, path_of, timed_paths
 from webdemo.inference.requests.plans import KeptPlan
 from webdemo.inference.requests.predict import check_motion
+from webdemo.inference.run import Progress
 
-from .beats import MOST_BEATS, SHORTEST, Beat, acts_of, seconds_of_acts
-from .scripting import plan_of_beat
-from .wishes import MOST_POSES, Pose, check_together
+from .beats import MOST_BEATS, SHORTEST, Beat, beat_of, plan_of_beat, seconds_of_acts
+from .poses import MOST_POSES, Pose, check_together, pose_of
 
 MOST_SECONDS = 180.0
 """Of a scene."""
@@ -300,14 +301,46 @@ def _touched_from_behind(story: list[Told]) -> None:
             story[i] = replace(told, contact=replace(touch, behind=True))
 
 
-def beat_of(values: Mapping[str, Any]) -> Beat:
-    """A beat from its fields."""
-    plain = {f.name: values[f.name] for f in fields(Beat) if values.get(f.name) is not None}
-    return Beat(**{**plain, "acts": acts_of(plain.get("acts", ()))})
+# ---- windows ---------------------------------------------------------------------------------------------
+def windows(request: SceneRequest) -> list[Window]:
+    """The windows of a scene in the order in which they are made."""
+    edges = request.edges
+    listed: list[Window] = []
+    behind = min(AFTER, request.num_frames - edges[-1]) if request.end is not None else 0
+    if request.loop:  # the scene's own beginning lies behind its end
+        behind = min(AFTER, edges[-1] // 2)
+    for beat, (start, stop) in enumerate(pairwise(edges)):
+        after = behind if beat == len(edges) - 2 else 0
+        most = MOST_FRAMES - PAST - after
+        parts = -(-(stop - start) // most)
+        if request.loop and len(request.beats) == 1:
+            parts = max(parts, 2)  # the last window needs a beginning to return to
+        cuts = np.linspace(start, stop, parts + 1).round().astype(int).tolist()
+        for part, (first, last) in enumerate(pairwise(cuts)):
+            known = min(after, first) if request.loop else after
+            listed.append(Window(beat, part, first, last, known if part == parts - 1 else 0))
+    return listed
 
 
-def pose_of(values: Mapping[str, Any]) -> Pose:
-    """A pose from its fields."""
-    return Pose(
-        values.get("person", ""), values.get("seconds", 0.0), np.asarray(values.get("positions", ()), dtype=np.float64)
-    )
+def window_seed(request: SceneRequest, sample: int, window: Window) -> int:
+    """The seed of a window's noise; the first window of a story has the story's own, as plain generation would."""
+    seed = request.beats[window.beat].seed
+    if seed is None and sample == window.beat == window.part == 0 and request.motion is None:
+        return request.seed
+    first = request.seed if seed is None else seed
+    return int(np.random.SeedSequence([first, sample, window.beat, window.part]).generate_state(1)[0])
+
+
+@dataclass(frozen=True, kw_only=True)
+class SceneProgress(Progress):
+    """A window is finished; what is there so far can be shown, and stays if the run is cancelled.
+
+    Attributes:
+        sample: its number from 0.
+        beat: index of the beat that the window belongs to.
+        motion: the scene from its beginning to the window's end.
+    """
+
+    sample: int
+    beat: int
+    motion: Duet

@@ -10,8 +10,7 @@ from motion import FPS
 from webdemo.inference.methods import method
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.run import CancelToken, Progress, Result
-from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.windows import windows
+from webdemo.inference.story.request import SceneRequest, windows
 from webdemo.ui.lazy import LazyEngine
 
 NEARBY = 1.25

@@ -19,7 +19,7 @@ from acts.plan import plan_of
 from acts.reading.director import directed
 from motion import InputError
 from webdemo.inference.requests.paths import FloorPath, path_of
-from webdemo.inference.story.scripting import beats_of
+from webdemo.inference.story.sentences import beats_of
 from webdemo.ui.text.words import error_line
 
 from .accepts import Finite, Flag, Sent, SentPaths, Text

@@ -1,4 +1,4 @@
-"""Wishes of a story for single people at single moments: paths on the floor, and poses.
+"""Poses of single people at single moments of a story.
 
 The floor's middle is the origin; x and z are metres, a heading is in degrees from +z towards +x.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -97,10 +97,10 @@ def bent_wrong(positions: Array) -> str | None:
 
 
 def check_together(paths: Sequence[FloorPath], poses: Sequence[Pose]) -> None:
-    """Raises InputError if wishes contradict each other."""
+    """Raises InputError if paths and poses contradict each other."""
     for person in ROLES:
-        own = sorted((p for p in poses if p.person == person), key=lambda pose: pose.seconds)
-        for before, after in itertools.pairwise(own):
+        theirs = sorted((p for p in poses if p.person == person), key=lambda pose: pose.seconds)
+        for before, after in itertools.pairwise(theirs):
             gap = after.seconds - before.seconds
             way = float(np.linalg.norm(after.positions[0] - before.positions[0]))
             if round(gap * FPS) < 1:
@@ -110,7 +110,7 @@ def check_together(paths: Sequence[FloorPath], poses: Sequence[Pose]) -> None:
                     f"Between the poses of person {person} at {before.seconds:g} and {after.seconds:g} s "
                     f"lie {way:.1f} m: move one in time or place."
                 )
-        for pose in own:
+        for pose in theirs:
             for path in paths:
                 place = path.place(pose.seconds) if path.person == person else None
                 if place is not None and math.dist(place, pose.positions[0, [0, 2]]) > _SAME_PLACE:
@@ -118,3 +118,10 @@ def check_together(paths: Sequence[FloorPath], poses: Sequence[Pose]) -> None:
                         f"At {pose.seconds:g} s the pose of person {person} is off their path: move the pose "
                         "or the path."
                     )
+
+
+def pose_of(values: Mapping[str, Any]) -> Pose:
+    """A pose from its fields."""
+    return Pose(
+        values.get("person", ""), values.get("seconds", 0.0), np.asarray(values.get("positions", ()), dtype=np.float64)
+    )

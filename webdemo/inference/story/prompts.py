@@ -16,9 +16,9 @@ from webdemo.inference.requests import GenerateRequest, SamplingRequest
 from webdemo.inference.requests.acting import with_plan
 from webdemo.inference.requests.paths import FloorPath
 
-from .beats import SHORTEST, Beat, seconds_of_acts
-from .request import SceneRequest, beat_of
-from .scripting import beats_of, plan_of_beat
+from .beats import SHORTEST, Beat, beat_of, plan_of_beat, seconds_of_acts
+from .request import SceneRequest
+from .sentences import beats_of
 
 LEAST_SHARE = 1.25
 """Seconds for each beat of a sentence below which it is made in one."""
@@ -73,7 +73,7 @@ def _filling(seconds: float, beats: Sequence[Beat], plans: Sequence[Plan]) -> tu
 def _staying(paths: Sequence[FloorPath], beats: Sequence[Beat]) -> tuple[FloorPath, ...]:
     """The timed paths of people, who stay where their path ends unless the words lead them on from there."""
     ends = np.cumsum([beat.length for beat in beats])
-    found = []
+    staying = []
     for path in paths:
         last = path.points[-1]
         led = any(
@@ -82,8 +82,8 @@ def _staying(paths: Sequence[FloorPath], beats: Sequence[Beat]) -> tuple[FloorPa
         )
         rest = float(ends[-1]) - 1 / FPS
         stays = not led and rest > (last.seconds or 0.0) + 1
-        found.append(replace(path, points=(*path.points, replace(last, seconds=rest))) if stays else path)
-    return tuple(found)
+        staying.append(replace(path, points=(*path.points, replace(last, seconds=rest))) if stays else path)
+    return tuple(staying)
 
 
 def _leads(told: Told, person: str) -> bool:

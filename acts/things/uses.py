@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
 from acts import Act, Plan, lexicon
 from acts.staging.bodies.strikes import PERIODS, Bout
-from acts.things import SEATS, Does, is_fixture, kind_of, nouns_in, on_floor, thing_of
 from motion.things import HELD
+
+from .nouns import SEATS, Does, is_fixture, kind_of, nouns_in, on_floor, thing_of
 
 TABLES = ("computer", "table")
 """Furniture at which people sit."""
@@ -61,13 +61,12 @@ def uses_of(plan: Plan, start: int, stop: int, lengths: Sequence[float] = ()) ->
         start, stop: frames.
         lengths: seconds of the beats into which the sentence was split, where it was.
     """
-    found = []
+    uses = []
     for act, first, last in act_frames(plan, start, stop, lengths):
         words = plan.text(act.words) if act.words else ""
-        for make in (_use, _fixture, _door):
-            if use := make(act, words, first, last):
-                found.append(use)
-    return [each for use in _at_desks(found) for each in _in_turn(use)]
+        each = (read(act, words, first, last) for read in (_use, _fixture, _door))
+        uses += [use for use in each if use]
+    return [each for use in _at_desks(uses) for each in _in_turn(use)]
 
 
 def _in_turn(use: Use) -> Iterator[Use]:
@@ -82,19 +81,19 @@ def _in_turn(use: Use) -> Iterator[Use]:
         yield replace(use, agents=(who,), other=1 - who, start=start, stop=stop)
 
 
-def _at_desks(found: Sequence[Use]) -> list[Use]:
+def _at_desks(uses: Sequence[Use]) -> list[Use]:
     """The uses; people who type sit at a computer, and what is put down by a person at a desk is put on it."""
-    typists = {who for use in found if "computer" in (use.kind, use.on) for who in use.agents}
+    typists = {who for use in uses if "computer" in (use.kind, use.on) for who in use.agents}
     desks: dict[int, str] = {}
-    made = []
-    for use in found:
+    seated = []
+    for use in uses:
         if use.does == "sits" and (use.on or typists & {*use.agents}):
             use = replace(use, on="computer" if typists & {*use.agents} else use.on)
             desks |= dict.fromkeys(use.agents, use.on)
         elif use.does == "puts" and not use.on:
             use = replace(use, on=desks.get(use.agents[0], ""))
-        made.append(use)
-    return made
+        seated.append(use)
+    return seated
 
 
 def act_frames(plan: Plan, start: int, stop: int, lengths: Sequence[float] = ()) -> Iterator[tuple[Act, int, int]]:
@@ -171,15 +170,7 @@ def _place(words: str) -> str:
 
 def _door(act: Act, words: str, start: int, stop: int) -> Use | None:
     """The door frame of one who goes through a door."""
-    if not (found := _THROUGH.search(words.lower())):
+    if not (door := _THROUGH.search(words.lower())):
         return None
     agents = tuple("ab".index(who) for who in act.agents)
-    return Use(act.id, "passes", "door frame", found[1], agents, None, "", start, stop, words=words)
-
-
-def lengths_of(manifest: Mapping[str, Any]) -> list[float]:
-    """Seconds of the beats into which a sentence was split, from a result's manifest; [] where it was not."""
-    plan = manifest.get("plan")
-    beats: Iterable[Any] = plan.get("beats", ()) if isinstance(plan, Mapping) else ()
-    found = [beat.get("seconds") for beat in beats if isinstance(beat, Mapping)]
-    return [float(seconds) for seconds in found if isinstance(seconds, int | float)]
+    return Use(act.id, "passes", "door frame", door[1], agents, None, "", start, stop, words=words)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,13 +12,14 @@ from numpy.typing import NDArray
 from acts import Act, Plan, lexicon
 from acts.checking import rules_of
 from motion import SMPL22, Duet
-from motion.hands import MOST_GRIPS, SIDES, Grip
+from motion.hands import SIDES, Grip
+from motion.metrics.bodies import point_segment_distance
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import mask_of, masks
 from motion.metrics.sentences.stretches import stretches
+from motion.things.hands import Hands
 
 from .courses import ThingCourse
-from .holding import Hands
 from .uses import act_frames
 
 Array = NDArray[np.floating]
@@ -60,10 +62,11 @@ _HELD = {
 def grips_of_plan(plan: Plan, hands: Hands, duet: Duet, start: int, stop: int, lengths: Sequence[float]) -> list[Grip]:
     """The shapes that the acts of a plan give hands."""
     part = Motion(duet.positions[:, start:stop], duet.fps)
-    found: list[Grip] = []
-    for act, first, last in act_frames(plan, start, stop, lengths):
-        found += _of_act(act, plan, hands, part, start, first, last)
-    return found
+    return [
+        grip
+        for act, first, last in act_frames(plan, start, stop, lengths)
+        for grip in _of_act(act, plan, hands, part, start, first, last)
+    ]
 
 
 def _of_act(act: Act, plan: Plan, hands: Hands, part: Motion, start: int, first: int, last: int) -> Iterator[Grip]:
@@ -73,11 +76,7 @@ def _of_act(act: Act, plan: Plan, hands: Hands, part: Motion, start: int, first:
     if not shape or entry is None:
         return
     if shape == "clasp":
-        gaps = np.linalg.norm(hands.palms[0][:, None] - hands.palms[1][None], axis=-1)
-        for one, other in np.ndindex(2, 2):
-            for i, j in _spans(gaps[one, other] < MET, hands.fps, first, last):
-                yield Grip(0, SIDES[one], shape, i, j)
-                yield Grip(1, SIDES[other], shape, i, j)
+        yield from _clasps(hands, MET, first, last)
         return
     for who in act.agents:
         person = "ab".index(who)
@@ -88,12 +87,8 @@ def _of_act(act: Act, plan: Plan, hands: Hands, part: Motion, start: int, first:
         if shape in ("fist", "thumbs up") or not seen[first:last].any():
             seen[:] = shape in ("fist", "thumbs up")
         for i, j in _spans(seen, hands.fps, first, last):
-            sides = (
-                SIDES
-                if act.act in _BOTH or shape == "fist"
-                else (SIDES[hands.better_side(person, i, j, act.side or "")],)
-            )
-            for side in sides:
+            one = SIDES[hands.better_side(person, i, j, act.side or "")]
+            for side in SIDES if act.act in _BOTH or shape == "fist" else (one,):
                 yield Grip(person, side, shape, i, j)
 
 
@@ -110,40 +105,29 @@ def _spans(mask: NDArray[np.bool_], fps: float, first: int = 0, last: int | None
 def grips_of_contact(hands: Hands) -> Iterator[Grip]:
     """Palms that meet clasp each other, and one that lies on the other's trunk or arm is flat."""
     for person in (0, 1):
+        body = hands.positions[1 - person]
         for side in (0, 1):
             palm = hands.palms[person, side]
-            near = np.stack([_to_line(palm, hands.positions[1 - person], bone) for bone in _BONES]).min(axis=0)
+            near = np.stack([point_segment_distance(palm, body[:, i], body[:, j]) for i, j in _BONES]).min(axis=0)
             for i, j in _spans(near < LAID, hands.fps):
                 yield Grip(person, SIDES[side], "flat", i, j)
+    yield from _clasps(hands, TOUCH)
+
+
+def _clasps(hands: Hands, metres: float, first: int = 0, last: int | None = None) -> Iterator[Grip]:
+    """The palms of the two that are within some metres of each other, in frames from ``first`` to ``last``."""
     gaps = np.linalg.norm(hands.palms[0][:, None] - hands.palms[1][None], axis=-1)
     for one, other in np.ndindex(2, 2):
-        for i, j in _spans(gaps[one, other] < TOUCH, hands.fps):
+        for i, j in _spans(gaps[one, other] < metres, hands.fps, first, last):
             yield Grip(0, SIDES[one], "clasp", i, j)
             yield Grip(1, SIDES[other], "clasp", i, j)
-
-
-def _to_line(points: Array, body: Array, bone: tuple[int, int]) -> Array:
-    """(T,) metres from points (T, 3) to a bone of a body (T, 22, 3)."""
-    start, along = body[:, bone[0]], body[:, bone[1]] - body[:, bone[0]]
-    away = points - start
-    share = np.einsum("ti,ti->t", away, along) / np.maximum(np.einsum("ti,ti->t", along, along), 1e-9)
-    return np.linalg.norm(away - np.clip(share, 0, 1)[:, None] * along, axis=1)
 
 
 def grips_of_things(courses: Iterable[ThingCourse], frames: int) -> Iterator[Grip]:
     """The hands of those who hold things."""
     for course in courses:
-        shapes = _HELD.get(course.kind, ("clasp", "clasp")) if course.mesh is None else ("clasp", "clasp")
+        shapes = _HELD.get(course.shown, ("clasp", "clasp"))
         ends = [frame for frame, _, _ in course.holders[1:]] + [frames]
         for (start, who, sides), stop in zip(course.holders, ends, strict=True):
-            if stop <= start:
-                continue
-            for person in who:
-                for side in sides:
-                    yield Grip(person, SIDES[side], shapes[side], start, stop)
-
-
-def fitting(grips: Iterable[Grip], frames: int) -> tuple[Grip, ...]:
-    """Grips within a motion, not too many."""
-    kept = [grip for grip in grips if grip.start < frames]
-    return tuple(kept[-MOST_GRIPS:])
+            for person, side in product(who, sides) if stop > start else ():
+                yield Grip(person, SIDES[side], shapes[side], start, stop)

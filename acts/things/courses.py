@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from motion.things import Mesh, Thing, shape
+from motion import InputError
+from motion.hands import SIDES
+from motion.things import FURNITURE, Mesh, Thing, shape
+from motion.things.hands import WITHIN, Hands, Moment, kick, level, lowest, meeting, release, smoothed, yaw_of
+from motion.things.tracks import BLEND, Course, Track, at_rest, held, takes_both_hands, upright_frame
+from motion.vectors import FLAT, square_frame
 
-from .holding import SIDES, Hands, Track, frame_of, held, level, smoothed, takes_both_hands, unit, yaw_of
-from .timing import WITHIN, Moment, kick, lowest, meeting, release
-from .tracks import BLEND, Course, at_rest, bounced, put, rolled, thrown
 from .uses import Use
 
 SPEED = 5.5
@@ -52,6 +54,7 @@ class ThingCourse:
     def __post_init__(self) -> None:
         first = self.uses[0]
         self.kind, self.name = first.kind, first.name
+        self.shown = "own" if self.mesh else self.kind
         self.surface = self.mesh or shape(self.kind)
         if first.does == "carries" and self.mesh is None:
             self.surface = self._carried_shape()
@@ -62,12 +65,12 @@ class ThingCourse:
         if first.does == "carries" and len(first.agents) == 2:
             self.holders = [(0, (0, 1), (0, 1))]
 
-    def made(self) -> Thing:
+    def thing(self) -> Thing:
         """The thing with its track."""
         for use in self.uses:
             getattr(self, f"_{use.does}")(use)
-        places, rotations = self.course.track
-        return Thing("own" if self.mesh else self.kind, self.surface, places, rotations, self.name)
+        places, rotations = self.course.places, self.course.rotations
+        return Thing(self.shown, self.surface, places, rotations, self.name)
 
     # ---- where it begins -------------------------------------------------------------------------------
     def _first(self, use: Use) -> Track:
@@ -99,7 +102,7 @@ class ThingCourse:
 
     def _in_hand(self, who: int, side: int) -> Track:
         self.holder, self.side = who, side
-        return held(self.hands, who, side, self.kind if not self.mesh else "own", self.surface)
+        return held(self.hands, who, side, self.shown, self.surface)
 
     def _on_floor(self, who: int, frame: int) -> Track:
         self.holder = None
@@ -107,7 +110,7 @@ class ThingCourse:
         spot = hands.palms[who, :, frame].mean(axis=0)
         pelvis, ahead = hands.joint(who, "pelvis")[frame], hands.ahead[who, frame]
         short = 0.3 + self.surface.size[2] / 2 - float((spot - pelvis) @ ahead)
-        spot = (spot + max(short, 0.0) * ahead) * [1, 0, 1]
+        spot = (spot + max(short, 0.0) * ahead) * FLAT
         return at_rest(self.kind, self.surface, spot, ahead, hands.frames)
 
     def _to_floor(self, who: int) -> Track:
@@ -115,89 +118,85 @@ class ThingCourse:
         self.holder, self.side = who, 1
         hands, ahead = self.hands, self.hands.ahead[who]
         palm = smoothed(hands.palms[who, 1], 3)
-        goal = (hands.joint(who, "pelvis") + WORKS_AHEAD * ahead) * [1, 0, 1]
+        goal = (hands.joint(who, "pelvis") + WORKS_AHEAD * ahead) * FLAT
         reach = np.linalg.norm(goal - palm, axis=1, keepdims=True)
         along = (goal - palm) / reach
-        return palm + (reach - self.surface.vertices[:, 1].max()) * along, frame_of(along, ahead)
+        return palm + (reach - self.surface.vertices[:, 1].max()) * along, square_frame(along, ahead)
 
-    def _before_foot(self, who: int, found: Moment) -> Track:
+    def _before_foot(self, who: int, moment: Moment) -> Track:
         """On the floor, where the foot of a kick strikes it."""
-        ahead = self.hands.ahead[who, found.frame]
-        toes = self.hands.joint(who, f"{SIDES[found.sides[0]]}_foot")[found.frame]
-        spot = (toes + (TOE + self.surface.size[2] / 2) * ahead) * [1, 0, 1]
+        ahead = self.hands.ahead[who, moment.frame]
+        toes = self.hands.joint(who, f"{SIDES[moment.sides[0]]}_foot")[moment.frame]
+        spot = (toes + (TOE + self.surface.size[2] / 2) * ahead) * FLAT
         return at_rest(self.kind, self.surface, spot, ahead, self.hands.frames)
 
     def _hold_from(self, frame: int) -> None:
         """Notes who holds it from a frame on."""
-        both = takes_both_hands(self.kind, self.surface, own=self.mesh is not None)
+        both = takes_both_hands(self.shown, self.surface)
         sides = (0, 1) if both else (self.side,)
         self.holders.append((frame, () if self.holder is None else (self.holder,), sides))
+
+    def _take(self, frame: int, who: int, side: int, seconds: float = BLEND) -> None:
+        """Puts it into a person's hand at a frame."""
+        self.course.then(frame, self._in_hand(who, side), seconds)
+        self._hold_from(frame)
+
+    def _let_hands_go(self, frame: int) -> None:
+        self.holder = None
+        self._hold_from(frame)
 
     # ---- what happens to it ----------------------------------------------------------------------------
     def _say(self, use: Use, frame: int | None, **more: Any) -> None:
         at = None if frame is None else round(frame / self.hands.fps, 2)
         self.events.append({"act": use.id, "does": use.does, "by": "ab"[use.agents[0]], "at": at} | more)
 
-    def _taken_up(self, use: Use, who: int) -> None:
-        """Sees to it that a person holds it when their act begins."""
-        if self.holder == who:
-            return
+    def _takes_up(self, use: Use, who: int) -> bool:
+        """True if a person holds it when their act begins, or takes it up or over for that."""
         if self.holder is None:
             self._lifts(use)
-        else:
+        elif self.holder != who:
             self._pass(use, self.holder, who)
+        return self.holder == who
 
     def _pass(self, use: Use, giver: int, receiver: int) -> None:
         """From hand to hand where these meet; it stays with the giver where they do not."""
-        found = meeting(self.hands, giver, use.start, use.stop)
-        if found.metres > WITHIN + self.surface.size.max() / 4:
-            self._say(use, None, why=f"hands stay {found.metres:.1f} m apart")
+        moment = meeting(self.hands, giver, use.start, use.stop)
+        if moment.metres > WITHIN + self.surface.size.max() / 4:
+            self._say(use, None, why=f"hands stay {moment.metres:.1f} m apart")
             return
-        if self.side != found.sides[0]:
-            before = max(found.frame - round(0.5 * self.hands.fps), 0)
-            self.course.then(before, self._in_hand(giver, found.sides[0]))
-            self._hold_from(before)
-        self.course.then(found.frame, self._in_hand(receiver, found.sides[1]), max(BLEND, found.metres / 3))
-        self._hold_from(found.frame)
-        self._say(use, found.frame, to="ab"[receiver])
+        if self.side != moment.sides[0]:
+            before = max(moment.frame - round(0.5 * self.hands.fps), 0)
+            self._take(before, giver, moment.sides[0])
+        self._take(moment.frame, receiver, moment.sides[1], max(BLEND, moment.metres / 3))
+        self._say(use, moment.frame, to="ab"[receiver])
 
     def _gives(self, use: Use) -> None:
-        self._taken_up(use, use.agents[0])
-        if self.holder == use.agents[0] and use.other is not None:
+        if self._takes_up(use, use.agents[0]) and use.other is not None:
             self._pass(use, use.agents[0], use.other)
 
-    def _takes(self, use: Use) -> None:
-        if self.holder is None:
-            self._lifts(use)
-        elif self.holder != use.agents[0]:
-            self._pass(use, self.holder, use.agents[0])
-
     def _holds(self, use: Use) -> None:
-        self._taken_up(use, use.agents[0])
+        self._takes_up(use, use.agents[0])
 
-    _plays = _fights = _uses = _holds
+    _takes = _plays = _fights = _uses = _holds
 
     def _lifts(self, use: Use) -> None:
         if self.holder is not None:
             return
         who = use.agents[0]
-        found = lowest(self.hands, who, use.start, use.stop)
-        self.course.then(found.frame, self._in_hand(who, found.sides[0]), 0.25)
-        self._hold_from(found.frame)
-        self._say(use, found.frame)
+        moment = lowest(self.hands, who, use.start, use.stop)
+        self._take(moment.frame, who, moment.sides[0], 0.25)
+        self._say(use, moment.frame)
 
     def _puts(self, use: Use) -> None:
         who = use.agents[0]
-        self._taken_up(use, who)
-        if self.holder != who:
+        if not self._takes_up(use, who):
             return
-        found = lowest(self.hands, who, use.start, use.stop, self.side)
-        self._let_go(use, who, found.frame)
+        moment = lowest(self.hands, who, use.start, use.stop, self.side)
+        self._let_go(use, who, moment.frame)
 
     def _drops(self, use: Use) -> None:
         who = use.agents[0]
-        self._taken_up(use, who)
-        if self.holder == who:
+        if self._takes_up(use, who):
             self._let_go(use, who, (use.start + use.stop) // 2)
 
     def _let_go(self, use: Use, who: int, frame: int) -> None:
@@ -211,12 +210,11 @@ class ThingCourse:
             support = round(float(np.clip(spot[1] - below, *TABLES)), 2)
             support = TABLE if use.on == "computer" else support
             mesh = shape(use.on, height=support)
-            place = (spot + (mesh.size[2] / 2 - 0.15) * ahead) * [1, 0, 1]
+            place = (spot + (mesh.size[2] / 2 - 0.15) * ahead) * FLAT
             self.tables.append(Thing.at_rest(use.on, mesh, place, yaw_of(-ahead), hands.frames))
-        rest = at_rest(self.kind, self.surface, spot * [1, 0, 1] + [0, support, 0], ahead, hands.frames)
-        put(self.course, frame, rest)
-        self.holder = None
-        self._hold_from(frame)
+        rest = at_rest(self.kind, self.surface, spot * FLAT + [0, support, 0], ahead, hands.frames)
+        self.course.put(frame, rest)
+        self._let_hands_go(frame)
         self._say(use, frame, on=use.on or "floor")
 
     # ---- throws ----------------------------------------------------------------------------------------
@@ -227,21 +225,19 @@ class ThingCourse:
 
     def _throws(self, use: Use) -> None:
         who = use.agents[0]
-        self._taken_up(use, who)
-        if self.holder != who:
+        if not self._takes_up(use, who):
             return
-        found = self._release(who, use)
-        if found.sides[0] != self.side:
-            before = max(found.frame - round(0.6 * self.hands.fps), 0)
-            self.course.then(before, self._in_hand(who, found.sides[0]))
-            self._hold_from(before)
+        moment = self._release(who, use)
+        if moment.sides[0] != self.side:
+            before = max(moment.frame - round(0.6 * self.hands.fps), 0)
+            self._take(before, who, moment.sides[0])
         caught = next((u for u in self._after(use) if u.does == "catches"), None)
         if use.other is None and caught is None:
-            self._throw_away(use, who, found.frame)
+            self._throw_away(use, who, moment.frame)
         else:
             catcher = caught.agents[0] if caught else use.other
             assert catcher is not None
-            self._fly(use, found.frame, catcher)
+            self._fly(use, moment.frame, catcher)
 
     def _after(self, use: Use) -> Sequence[Use]:
         """The next use of the thing, in a list of one, or none."""
@@ -259,11 +255,10 @@ class ThingCourse:
         if abs(float(np.diff(hands.palms[catcher, :, at, 1])[0])) < 0.1:
             reach = np.linalg.norm(hands.palms[catcher, :, at] - self.course.places[frame], axis=-1)
             side = int(reach.argmin())
-        self.holder = None
-        self._hold_from(frame)
+        self._let_hands_go(frame)
         goal = self._in_hand(catcher, side)
         self._hold_from(max(down - round(0.1 * hands.fps), frame))
-        thrown(self.course, frame, down, goal[0][at])
+        self.course.throw(frame, down, goal[0][at])
         if down < last:
             self.course.places[down:] = goal[0][down:]
             self.course.then(down + round(0.15 * hands.fps), (self.course.places, goal[1]), 0.15)
@@ -272,32 +267,30 @@ class ThingCourse:
     def _throw_away(self, use: Use, who: int, frame: int) -> None:
         """A throw that nobody catches: it comes down three metres ahead."""
         hands = self.hands
-        spot = (self.course.places[frame] + 3.0 * hands.ahead[who, frame]) * [1, 0, 1]
+        spot = (self.course.places[frame] + 3.0 * hands.ahead[who, frame]) * FLAT
         rest = at_rest(self.kind, self.surface, spot, hands.ahead[who, frame], hands.frames)
         down = frame + round(0.8 * hands.fps)
-        thrown(self.course, frame, down, rest[0][0])
+        self.course.throw(frame, down, rest[0][0])
         if down < hands.frames - 1:
             self.course.then(down + round(0.1 * hands.fps), rest, 0.1)
-        self.holder = None
-        self._hold_from(frame)
+        self._let_hands_go(frame)
         self._say(use, frame)
 
     def _rolls(self, use: Use) -> None:
         """Let go where the hand is lowest, it rolls over the floor to the other's feet, or three metres ahead."""
         who, hands = use.agents[0], self.hands
-        self._taken_up(use, who)
-        if self.holder != who:
+        if not self._takes_up(use, who):
             return
         self._roll(use, lowest(hands, who, use.start, use.stop, self.side).frame)
 
     def _kicks(self, use: Use) -> None:
         """Struck by the foot that swings fastest, it rolls over the floor as :meth:`_rolls` lets it."""
         who = use.agents[0]
-        found = kick(self.hands, who, use.start, use.stop)
+        moment = kick(self.hands, who, use.start, use.stop)
         if self.holder is not None:
-            laid = max(found.frame - self.hands.fps // 2, use.start)
-            put(self.course, round(laid), self._before_foot(who, found))
-        self._roll(use, found.frame)
+            laid = max(moment.frame - self.hands.fps // 2, use.start)
+            self.course.put(round(laid), self._before_foot(who, moment))
+        self._roll(use, moment.frame)
 
     def _roll(self, use: Use, frame: int) -> None:
         who, hands = use.agents[0], self.hands
@@ -305,20 +298,18 @@ class ThingCourse:
         if use.other is not None:
             other = hands.joint(use.other, "pelvis")[min(frame + round(LONGEST * hands.fps), hands.frames - 1)]
             goal = other - BEFORE_FEET * level(other - self.course.places[frame])
-        rolled(self.course, frame, goal, float(self.surface.size[1]) / 2)
-        self.holder = None
-        self._hold_from(frame)
+        self.course.roll(frame, goal, float(self.surface.size[1]) / 2)
+        self._let_hands_go(frame)
         self._say(use, frame, **({} if use.other is None else {"to": "ab"[use.other]}))
 
     def _bounces(self, use: Use) -> None:
         """From the hand to the floor and back, as often as the hand goes down."""
         who, hands = use.agents[0], self.hands
-        self._taken_up(use, who)
-        if self.holder != who:
+        if not self._takes_up(use, who):
             return
         radius = float(self.surface.size[1]) / 2
         under = hands.palms[who, self.side] - [0.0, radius + 0.02, 0.0]
-        bounced(self.course, under, use.start, use.stop, radius)
+        self.course.bounce(under, use.start, use.stop, radius)
         self._say(use, use.start)
 
     def _catches(self, use: Use) -> None:
@@ -328,8 +319,8 @@ class ThingCourse:
         if self.holder is None:
             self._lifts(use)
             return
-        found = self._release(self.holder, use)
-        self._fly(use, found.frame, who)
+        moment = self._release(self.holder, use)
+        self._fly(use, moment.frame, who)
 
     # ---- carried by two --------------------------------------------------------------------------------
     def _carries(self, use: Use) -> None:
@@ -351,10 +342,32 @@ class ThingCourse:
         ends = hands.palms.mean(axis=1)  # (2, T, 3)
         middle = smoothed(ends.mean(axis=0), 5)
         along = smoothed(level(hands.joint(1, "pelvis") - hands.joint(0, "pelvis")), 9)
-        up = np.broadcast_to(np.array([0.0, 1.0, 0.0]), middle.shape)
-        rotations = frame_of(up, unit(along))
         top = float(self.surface.vertices[:, 1].max())
         standing = float(self.surface.vertices[:, 1].min()) >= 0.0
         place = middle.copy()
         place[:, 1] = np.maximum(middle[:, 1] - (top - 0.05 if standing else 0.0), 0.03 if standing else 0.0)
-        return place, rotations
+        return place, upright_frame(along)
+
+
+def courses(hands: Hands, uses: Iterable[Use], mesh: Mesh | None) -> list[ThingCourse]:
+    """One course a thing: uses of one name follow each other, and two who each hold one have two.
+
+    ``mesh`` is the surface of the first thing, in place of that of its kind.
+    """
+    several: dict[tuple[str, str], list[Use]] = {}
+    for use in uses:
+        if use.does in ("sits", "passes", "faces", "opens", "closes", ""):
+            continue
+        if use.kind in FURNITURE and use.does != "carries":
+            continue
+        single = use.does in ("holds", "fights", "plays", "uses") and len(use.agents) == 2
+        for who in use.agents if single else (None,):
+            mine = use if who is None else replace(use, agents=(who,), other=None)
+            several.setdefault((use.name, "" if who is None else "ab"[who]), []).append(mine)
+    listed: list[ThingCourse] = []
+    for each in several.values():
+        try:
+            listed.append(ThingCourse(hands, each, None if listed else mesh))
+        except InputError:  # a size that its kind cannot have
+            continue
+    return listed

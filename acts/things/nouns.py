@@ -8,9 +8,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Literal
 
+from acts.plan import Act
 from motion.things import FIXTURES
-
-from .plan import Act
 
 Does = Literal[
     "",
@@ -46,7 +45,7 @@ _WORD = re.compile(r"[a-z]+(?:'s)?")
 
 @lru_cache(maxsize=1)
 def _tables() -> tuple[dict[str, str], frozenset[str]]:
-    found = tomllib.loads(Path(__file__).with_name("things.toml").read_text(encoding="utf-8"))
+    found = tomllib.loads(Path(__file__).with_name("nouns.toml").read_text(encoding="utf-8"))
     kinds = {noun: kind for kind, nouns in found["nouns"].items() for noun in nouns}
     return kinds, frozenset(found["places"]["floor"])
 

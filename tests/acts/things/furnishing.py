@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from acts import Act, Plan
+from acts.things.furnishing import furnish
 from motion import SMPL22, Duet
 from motion.things import Thing
-from webdemo.inference.run import Result
-from webdemo.inference.things.furnishing import furnished
-from webdemo.inference.things.holding import Hands
+from motion.things.hands import Hands
 
 FPS, FRAMES = 30, 120
 REST = SMPL22.rest_positions()
@@ -47,27 +46,20 @@ def sitting() -> np.ndarray:
     return people
 
 
-def made(people: np.ndarray, *acts: Act, sentence: str = "") -> tuple[Thing, ...]:
+def things_of(people: np.ndarray, *acts: Act, sentence: str = "") -> tuple[Thing, ...]:
     duet = Duet.from_positions(people.astype(np.float32), fps=FPS)
-    plan = Plan(sentence=sentence, acts=acts)
-    result = furnished(Result(duets=(duet,), manifest={}), [(plan, 0, None, None)])
-    (found,) = result.duets
-    assert isinstance(found, Duet)
-    np.testing.assert_array_equal(found.positions, duet.positions, "the people are moved")
-    if found.things:
-        rows = result.manifest["things"]
-        assert [row["kind"] for row in rows] == [thing.kind for thing in found.things]
-        assert found.manifest is not None and found.manifest["things"] == rows
-    else:
-        assert "things" not in result.manifest
-    return found.things
+    result = furnish(duet, [(Plan(sentence=sentence, acts=acts), 0, None, None)])
+    np.testing.assert_array_equal(result.positions, duet.positions, "the people are moved")
+    rows = (result.manifest or {}).get("things", [])
+    assert [row["kind"] for row in rows] == [thing.kind for thing in result.things]
+    return result.things
 
 
 def act(name: str, agents: str = "a", **fields) -> Act:
     return Act(id=fields.pop("id", "1"), act=name, agents=tuple(agents), **fields)
 
 
-def said(sentence: str, name: str, agents: str = "a", **fields) -> tuple[Act, str]:
+def worded(sentence: str, name: str, agents: str = "a", **fields) -> tuple[Act, str]:
     return act(name, agents, words={"start": 0, "stop": len(sentence)}, **fields), sentence
 
 

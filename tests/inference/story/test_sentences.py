@@ -1,4 +1,4 @@
-"""The beats of plans: what goes on at once shares one, what follows something else has one of its own."""
+"""Sentences and stories as beats: what goes on at once shares one, what follows has one of its own."""
 
 from __future__ import annotations
 
@@ -7,46 +7,80 @@ import pytest
 from acts import read
 from acts.staging.stage import staged
 from acts.staging.ways import Way
+from motion import InputError
 from webdemo.inference.requests import GenerateRequest
-from webdemo.inference.story.prompted import as_scene
-from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.scripting import beats_of
+from webdemo.inference.story import SceneRequest, split_sentence
+from webdemo.inference.story.beats import plan_of_beat
+from webdemo.inference.story.prompts import as_scene
+from webdemo.inference.story.sentences import MOST_WORDS, beats_of
 
-BEATS = [
-    ("walks away and waves back over the shoulder", ["walk-away wave"]),
-    ("A points at B and laughs.", ["point laugh"]),
-    ("One person is dancing and the other is clapping along.", ["dance clap"]),
+ONE = [
+    "Two people hug.",
+    "Person A waves as she walks away and person B follows.",
+    "walks away and waves back over the shoulder",
+    "A points at B and laughs.",
+    "One person is dancing and the other is clapping along.",
+]
+SEVERAL = [
+    ("Person A bows and then walks to person B. Finally both wave.", ["bow", "walk-up", "wave"]),
     ("They hug before they walk away", ["hug", "walk-away"]),
     ("After a quick high five they run off.", ["high-five", "run-away"]),
-    ("The two hug goodbye, and he leaves while she stays.", ["hug", "walk-away stand-still"]),
     ("A stands up and leaves, B stays.", ["stand-up", "walk-away stand-still"]),
     ("Person one raises both hands and person two copies it.", ["raise-arm", "raise-arm"]),
     ("Tom is sitting. Anna walks up to him and sits down.", ["sit-down walk-up", "sit-down"]),
-    ("They walk up to each other, shake hands and part again.", ["walk-up shake-hands", "part"]),
     ("He picks her up and spins her around. They bow.", ["lift-up twirl", "bow"]),
+    ("A looks at the window. Then they hug.", ["look-at-thing", "hug"]),
     ("A sits on the chair until B taps A, then A gets up.", ["sit-down pat", "stand-up"]),
-    ("He covers his eyes until she has run off.", ["cover-face run-away"]),
     ("He drops to one knee and proposes, and she nods.", ["kneel propose", "nod"]),
     ("A pushes B over, B falls down, then A helps B up.", ["push-over fall-down", "help-up"]),
-    ("A sits on a chair while B stands behind and cuts A's hair.", ["sit-down stand-behind groom"]),
-    ("A bends down and ties B's shoe.", ["bend-down tie-other-shoes"]),
     ("A bends down and pats B's head.", ["bend-down", "pat"]),
+]
+TOGETHER = [
+    ("He covers his eyes until she has run off.", ["cover-face run-away"]),
+    ("A sits on a chair while B stands behind and cuts A's hair.", ["sit-down stand-behind groom"]),
 ]
 
 
-@pytest.mark.parametrize(("sentence", "beats"), BEATS)
+@pytest.mark.parametrize("sentence", ONE)
+def test_what_goes_on_at_once_is_one_beat_in_its_own_words(sentence: str) -> None:
+    (beat,) = split_sentence(sentence)
+    assert beat.words == sentence and not beat.acts
+
+
+@pytest.mark.parametrize(("sentence", "beats"), SEVERAL)
+def test_what_follows_something_else_is_a_beat_of_its_own(sentence: str, beats: list[str]) -> None:
+    split = split_sentence(sentence)
+    assert [" ".join(act.act for act in beat.acts) for beat in split] == beats
+    assert all(beat.words for beat in split), "the network has words to read"
+
+
+@pytest.mark.parametrize(("sentence", "beats"), TOGETHER)
 def test_acts_share_a_beat_as_they_are_told(sentence: str, beats: list[str]) -> None:
     assert [" ".join(act.act for act in beat.acts) for beat in beats_of(read(sentence))] == beats
 
 
+def test_a_sentence_that_is_not_understood_keeps_its_words_and_its_place() -> None:
+    first, second, third = split_sentence("They bow. They flurble gravely. They hug.")
+    assert (first.acts[0].act, second.words, third.acts[0].act) == ("bow", "They flurble gravely.", "hug")
+    assert not plan_of_beat(second).acts
+    assert split_sentence("They hug. Then, he waves.")[1].words == "He waves."
+
+
 def test_speech_and_remarks_are_no_acts() -> None:
-    plan = read('"Follow me!" She bows (he likes that).')
-    assert [act.act for act in plan.acts] == ["bow"]
+    (beat,) = split_sentence('"Follow me!" She bows (he likes that).')
+    told = staged(plan_of_beat(beat).acts)
+    assert told.bows == {"a": (1, False)} and not told.moves
 
 
-def test_who_gives_what_somebody_gets_does_it() -> None:
-    (act,) = read("He gets a shoulder massage from her.").acts
-    assert (act.act, act.agents, act.patient) == ("massage", ("b",), "a")
+def test_nothing_is_no_beat() -> None:
+    assert split_sentence("  \n ") == ()
+
+
+def test_stories_longer_than_any_scene_are_refused_before_they_are_read() -> None:
+    with pytest.raises(InputError, match=r"The story has [\d,]+ characters: shorten it to 30,000"):
+        split_sentence("A waves. " * (MOST_WORDS // 9 + 2))
+    with pytest.raises(InputError, match="more than 60 beats"):
+        split_sentence("A bows. Then A jumps. " * 31)
 
 
 def test_people_sit_side_by_side_where_they_are_said_to() -> None:
@@ -59,29 +93,9 @@ def test_who_sits_in_a_chair_sits_from_the_start() -> None:
     assert told.changes["a"][0].already
 
 
-def test_a_lifted_person_is_turned_round_with_the_carrier() -> None:
-    lifted = staged(read("He picks her up and spins her around.").acts).lift
-    assert lifted is not None and lifted.spins
-
-
-def test_who_kneels_to_tie_a_shoe_kneels() -> None:
-    told = staged(read("A kneels down to tie his shoe while B waits.").acts)
-    assert set(told.changes) == {"a"} and not told.limbs
-
-
 def test_who_keeps_their_back_turned_stands_so() -> None:
     told = staged(read("She keeps her back turned to him while he is talking to her.").acts)
     assert [(move.person, move.way) for move in told.moves] == [("a", Way.AVERTED), ("b", Way.STAY)]
-
-
-def test_a_simile_is_nothing_that_is_used() -> None:
-    acts = read("Dancer 1 spins like a top while dancer 2 crouches low.").acts
-    assert [(act.act, act.agents) for act in acts] == [("spin", ("a",)), ("crouch", ("b",))]
-
-
-def test_who_lies_down_beside_the_other_begins_there() -> None:
-    told = staged(read("He stretches out on the grass beside her.").acts)
-    assert told.keeps_place and set(told.changes) == {"a"}
 
 
 def test_who_turns_round_at_a_tap_was_tapped_from_behind() -> None:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
-from webdemo.inference.things.tracks import GRAVITY
+from motion.things.tracks import GRAVITY
 
-from .furnishing import FPS, FRAMES, GAP, act, made, palms, put_hand, said, standing
+from .furnishing import FPS, FRAMES, GAP, act, palms, put_hand, standing, things_of, worded
 
 
 def test_a_ball_that_is_rolled_leaves_the_lowest_hand_and_rolls_over_the_floor_to_the_other():
@@ -16,8 +16,8 @@ def test_a_ball_that_is_rolled_leaves_the_lowest_hand_and_rolls_over_the_floor_t
     low = np.tile([0.1, 0.9, 0.3], (FRAMES, 1))
     low[30:50, 1] = 0.2
     put_hand(people[0], "right", low)
-    rolls, sentence = said("A rolls a ball to B.", "bowl", patient="b")
-    (ball,) = made(people, rolls, sentence=sentence)
+    rolls, sentence = worded("A rolls a ball to B.", "bowl", patient="b")
+    (ball,) = things_of(people, rolls, sentence=sentence)
     radius = ball.mesh.size[1] / 2
     assert np.ptp(ball.places[:20, 1]) < 0.05 and ball.places[20, 1] > 0.8, "it is in the hand"
     assert ball.places[55:, 1] == pytest.approx(radius, abs=0.005)
@@ -34,7 +34,7 @@ def test_a_ball_that_is_kicked_lies_before_the_foot_and_rolls_from_it_to_the_oth
     swing = 0.5 * np.exp(-(((np.arange(FRAMES) - 40) / 5.0) ** 2))
     for joint in ("right_ankle", "right_foot"):
         people[0, :, SMPL22.index(joint), 2] += swing
-    (ball,) = made(people, act("kick-ball", patient="b", thing="ball"))
+    (ball,) = things_of(people, act("kick-ball", patient="b", thing="ball"))
     lies = ball.places[0]
     assert lies[1] == pytest.approx(ball.mesh.size[1] / 2, abs=0.005) and lies[2] > 0.3
     moved = np.flatnonzero(np.abs(ball.places[:, 2] - lies[2]) > 0.02)[0]
@@ -52,8 +52,8 @@ def test_two_who_throw_a_ball_have_it_in_turn():
         start = np.array([-0.2 * ahead, 1.3, person * (GAP + 2.0) - 0.1 * ahead])
         put_hand(people[person], "right", start + swing * np.array([0.0, 0.2, 0.6 * ahead]))
     sentence = "They play catch."
-    throws, _ = said(sentence, "throw-ball", "ab")
-    (ball,) = made(people, throws, sentence=sentence)
+    throws, _ = worded(sentence, "throw-ball", "ab")
+    (ball,) = things_of(people, throws, sentence=sentence)
     assert ball.kind == "ball"
     hands = palms(people)
     for frame, person in ((10, 0), (65, 1), (110, 0)):
@@ -66,8 +66,8 @@ def test_a_ball_bounces_between_a_hand_that_goes_up_and_down_and_the_floor():
     hand = np.tile([-0.25, 0.95, 0.3], (FRAMES, 1))
     hand[30:, 1] += 0.1 * np.cos(2 * np.pi * 1.5 * np.arange(FRAMES - 30) / FPS)
     put_hand(people[0], "right", hand)
-    bounces, sentence = said("A bounces a ball.", "dribble", side="right")
-    (ball,) = made(people, bounces, sentence=sentence)
+    bounces, sentence = worded("A bounces a ball.", "dribble", side="right")
+    (ball,) = things_of(people, bounces, sentence=sentence)
     radius = ball.mesh.size[1] / 2
     assert ball.places[:, 1].min() > radius - 0.005, "not into the floor"
     low = ball.places[:, 1] < radius + 0.15
@@ -76,19 +76,13 @@ def test_a_ball_bounces_between_a_hand_that_goes_up_and_down_and_the_floor():
     assert np.linalg.norm(np.diff(ball.places, axis=0), axis=1).max() * FPS < 9.0
 
 
-def test_who_dribbles_has_a_ball_that_no_word_names():
-    people = standing()
-    dribbles, sentence = said("The player dribbles.", "dribble")
-    assert [thing.kind for thing in made(people, dribbles, sentence=sentence)] == ["ball"]
-
-
 def test_a_throw_is_a_parabola_from_hand_to_hand():
     people = standing()
     people[1, :, :, 2] += 2.0
     swing = np.clip((np.arange(FRAMES) - 40) / 6.0, 0, 1)[:, None]
     put_hand(people[0], "right", np.array([-0.2, 1.3, -0.1]) + swing * np.array([0.0, 0.2, 0.6]))
     put_hand(people[1], "right", np.array([0.2, 1.2, GAP + 2.0 - 0.35]))
-    (ball,) = made(people, act("throw-ball", patient="b", thing="ball"))
+    (ball,) = things_of(people, act("throw-ball", patient="b", thing="ball"))
     hands = palms(people)
     steps = np.diff(ball.places[:, 1], n=2)
     flight = np.flatnonzero(np.abs(steps * FPS**2 + GRAVITY) < 0.2)
@@ -100,7 +94,7 @@ def test_a_throw_is_a_parabola_from_hand_to_hand():
 
 def test_what_nobody_catches_comes_down_on_the_floor():
     away, up = (act("throw-ball", patient="b", thing="ball", direction=way) for way in ("away", "up"))
-    (ball,) = made(standing(), away)
+    (ball,) = things_of(standing(), away)
     assert ball.places[-1, 1] == pytest.approx(ball.mesh.size[1] / 2, abs=0.02)
-    (ball,) = made(standing(), up)
+    (ball,) = things_of(standing(), up)
     assert np.linalg.norm(ball.places[-1] - palms(standing())[0, :, -1], axis=-1).min() < 0.25

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from acts.events import Event, Ref
 from acts.frames import best
 from acts.lexicon import Lexicon
-from acts.said import Event, Ref
 
 from . import wordnet
 from .absolute import Absolute, absolutes, own_part
@@ -16,10 +16,9 @@ from .arguments import Arguments
 from .clauses import MARKS, NOUNMARKS, ClauseTree, tells_on
 from .people import A_NAME, B_NAME, Cast
 from .references import names_one, reference
-from .subjects import Subjects, ends_before
+from .subjects import Subjects, ends_before, give_roles, goes_on, is_passive, is_suffered, other_person, state_of
 from .syntax import conjunction, is_ongoing, seems
 from .vocabulary import vocabulary
-from .voice import give_roles, goes_on, is_passive, is_suffered, other_person, state_of
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token

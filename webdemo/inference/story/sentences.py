@@ -1,4 +1,4 @@
-"""Words and plans as beats: what happens one after another becomes a beat each, with its acts and its own words."""
+"""Sentences and plans as beats: what happens one after another becomes a beat each, with its acts and its own words."""
 
 from __future__ import annotations
 
@@ -16,8 +16,7 @@ from motion import InputError
 from webdemo.inference.requests.limits import MAX_PROMPT
 from webdemo.inference.run import CancelToken
 
-from .beats import MOST_BEATS, Beat
-from .understood import understood
+from .beats import MOST_BEATS, Beat, plan_of_words
 
 MOST_WORDS = MOST_BEATS * MAX_PROMPT
 """Characters of a story in sentences: as many as its beats may have."""
@@ -66,15 +65,6 @@ def split_sentence(text: str, go_on: Callable[[], None] = lambda: None) -> tuple
     return (Beat(text),) if text else ()
 
 
-def plan_of_beat(beat: Beat) -> Plan:
-    """The plan of a beat: of its acts alone, without their relations to acts of other beats, or of its words."""
-    if not beat.acts:
-        return understood(beat.sentence)
-    here = {act.id for act in beat.acts}
-    own = (act.model_copy(update={"order": tuple(r for r in act.order if r.act in here)}) for act in beat.acts)
-    return Plan(acts=tuple(own))
-
-
 def _stretches(text: str) -> Iterator[str]:
     """The text in stretches of whole sentences that are read at once."""
     stretch, count = "", 0
@@ -93,7 +83,7 @@ def _stretches(text: str) -> Iterator[str]:
 
 def _beats_in(text: str) -> list[Beat]:
     """The beats of a stretch of text; a sentence of which nothing is known is one in its own words."""
-    plan = understood(text)
+    plan = plan_of_words(text)
     if not (plan.acts or plan.unread):  # no parser is installed
         return [Beat(text)]
     beats, unread = list(beats_of(plan)), list(_unread_sentences(plan))

@@ -30,7 +30,7 @@ def test_nouns_name_kinds(noun, kind):
 
 
 def test_every_kind_in_the_table_has_a_shape_and_every_shape_a_noun():
-    from acts.things import _tables
+    from acts.things.nouns import _tables
 
     assert set(_tables()[0].values()) == set(KINDS)
 
