@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 Metres = Annotated[float, Field(ge=0, le=20)]
+Part = Literal["", "head", "shoulder", "back", "chest", "waist", "arm", "hand", "leg", "foot"]
 
 
 class _Shape(BaseModel):
@@ -92,14 +93,15 @@ class Jump(_Shape):
 
 
 class Bow(_Shape):
-    """A bow from the hips, and a ``deep`` one."""
+    """Bows from the hips, so many where the words give no number, and ``deep`` ones."""
 
     do: Literal["bow"] = "bow"
     deep: bool = False
+    times: Annotated[int, Field(ge=1, le=5)] = 1
 
 
 class Gesture(_Shape):
-    """A gesture of the hands, by its name in the gesture library."""
+    """A gesture of the hands, by its name in :data:`acts.staging.gestures.GESTURES`."""
 
     do: Literal["gesture"] = "gesture"
     gesture: Literal[
@@ -133,6 +135,7 @@ class Gesture(_Shape):
         "around",
         "works",
         "rubs",
+        "linked",
         "lowers",
         "drums",
         "types",
@@ -167,7 +170,7 @@ class Touch(_Shape):
     """
 
     do: Literal["touch"] = "touch"
-    part: Literal["", "head", "shoulder", "back", "chest", "waist", "arm", "hand", "leg", "foot"] = ""
+    part: Part = ""
     hands: Literal["left", "right", "both", "none"] = "right"
     times: Annotated[int, Field(ge=0, le=20)] = 0
     behind: bool = False
@@ -218,8 +221,9 @@ class Limb(_Shape):
 
     Attributes:
         does: which movement.
-        side: of the leg, where the words name none.
+        side: of the leg, or to which trunk and head go, where the words name none.
         direction: likewise.
+        times: how often, of what is repeated; 0 for as long as the beat lasts.
     """
 
     do: Literal["limb"] = "limb"
@@ -253,10 +257,11 @@ class Limb(_Shape):
     ]
     side: Literal["left", "right", "both"] = "right"
     direction: Literal["", "up", "down", "forward", "back", "out", "left", "right"] = ""
+    times: Annotated[int, Field(ge=0, le=20)] = 0
 
 
 class Figure(_Shape):
-    """A figure of the whole body on the spot, by its name in ``acts/staging/bodies/figures.toml``.
+    """A figure of the whole body on the spot, by its name in ``acts/staging/figures.toml``.
 
     Attributes:
         figure: which one.

@@ -1,15 +1,17 @@
-"""Kinds of acts that the stage tells apart, by what they say and by the shapes of their entries."""
+"""Kinds of acts that the stage tells apart, and the roles of people in a beat: who strikes, stands by or gestures."""
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping, Sequence
+
 from acts import shapes
-from acts.lexicon import Entry
-from acts.plan import Act
+from acts.lexicon import Entry, Lexicon
+from acts.plan import Act, other_of
 from acts.reading.vocabulary import vocabulary
 from acts.things import is_fixture
 
-from .bodies.figures import Figure
-from .contacts import LOW, Region
+from .gestures import GESTURES
+from .score import LOW, SIDES, Move, Strike
 
 _NEAR = frozenset(("touch", "fight", "dance", "care"))
 """Groups of the lexicon whose acts two people do within each other's reach."""
@@ -27,19 +29,23 @@ _HANDS_FREE = frozenset(("go", "turn", "stay", "place", "posture", "jump", "bow"
 """Shapes that need no hands."""
 _JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
 """Shapes that take the other along."""
-_REGIONS = {
-    "head": Region.HEAD,
-    "shoulder": Region.SHOULDER,
-    "back": Region.BACK,
-    "chest": Region.CHEST,
-    "waist": Region.CHEST,
-    "arm": Region.ARM,
-    "hand": Region.HAND,
-    "leg": Region.LEG,
-    "knee": Region.LEG,
-    "foot": Region.FOOT,
+_PARTS: Mapping[str, shapes.Part] = {
+    "head": "head",
+    "shoulder": "shoulder",
+    "back": "back",
+    "chest": "chest",
+    "waist": "chest",
+    "arm": "arm",
+    "hand": "hand",
+    "leg": "leg",
+    "knee": "leg",
+    "foot": "foot",
 }
-"""Families of parts of the body and the region of each."""
+"""Families of parts of the body, and the part of each that hands are led to from the front."""
+Done = Sequence[tuple[Act, Entry]]
+"""Acts that happen, each with its entry of the lexicon."""
+Blows = Sequence[tuple[tuple[str, ...], shapes.Strike, Act]]
+"""Who strikes, how, and the act that says so."""
 
 
 def hits(entry: Entry) -> bool:
@@ -105,16 +111,16 @@ def is_care(entry: Entry) -> bool:
     return entry.group in _GENTLE and not entry.mutual and 0 < len(touches) == len(entry.stage)
 
 
-def region_of(act: Act, shape: shapes.Touch) -> Region | None:
-    """The part of the other's body that an act touches; None for a part that no hand is led to."""
+def part_of(act: Act, shape: shapes.Touch) -> shapes.Part:
+    """The part of the other's body that an act touches; "" for a part that no hand is led to."""
     named = vocabulary().part(act.part or "") or (act.part or "")
-    family = named if act.part_of == act.patient and named in _REGIONS else shape.part or named
-    return Region.WAIST if family == "waist" and shape.behind else _REGIONS.get(family or "shoulder")
+    family = named if act.part_of == act.patient and named in _PARTS else shape.part or named
+    return "waist" if family == "waist" and shape.behind else _PARTS.get(family or "shoulder", "")
 
 
 def reaches_low(act: Act, entry: Entry) -> bool:
     """True for an act that touches the other's legs or feet."""
-    return any(isinstance(shape, shapes.Touch) and region_of(act, shape) in LOW for shape in entry.stage)
+    return any(isinstance(shape, shapes.Touch) and part_of(act, shape) in LOW for shape in entry.stage)
 
 
 def is_manner(entry: Entry) -> bool:
@@ -122,8 +128,83 @@ def is_manner(entry: Entry) -> bool:
     return any(getattr(shape, "figure", "") == "phrase" for shape in entry.stage)
 
 
-def figure_of(act: Act, shape: shapes.Figure) -> Figure:
+def figure_of(act: Act, shape: shapes.Figure) -> shapes.Figure:
     """The figure of an act: as often as its words say, and with the other leg where they name the left one."""
     mirrored = shape.mirrored ^ (act.side == "left")
-    times = act.times or shape.times
-    return Figure(shape.figure, times, mirrored, shape.meets, shape.late, shape.early, shape.in_time)
+    return shape.model_copy(update={"times": act.times or shape.times, "mirrored": mirrored})
+
+
+def strike_of(blows: Blows, done: Done, *, late: bool) -> Strike | None:
+    """The blows of a beat, in the order of the words; None where there are none.
+
+    Args:
+        blows: of the beat.
+        done: all that is done in it.
+        late: the first blow comes after what somebody does until then.
+    """
+    if not blows:
+        return None
+    people, shape, act = blows[0]
+    bout = shape.bout
+    if len(people) == 2:
+        return Strike(bout, "ab")
+    turns = "".join(dict.fromkeys("".join(each) for each, *_ in blows))
+    turns = turns if len(blows) > 1 else turns * min(act.times or 1, 5)
+    hit = other_of(people[0])
+    answered = any(hit in other.agents and shape.do in ("posture", "go") for other, e in done for shape in e.stage)
+    fight = len(blows) > 1 and not answered and bout != "throws"
+    hands = tuple(each.side or "" for _, _, each in blows for _ in range(min(each.times or 1, 5)))
+    if len(set(turns)) == 1 and any(hand in SIDES for hand in hands):  # "two jabs with the left and a cross"
+        return Strike(bout, turns[0] * len(hands), False, answered, late, hands)
+    return Strike(bout, turns, shape.goes_on or fight, answered, late, up=act.direction == "up")
+
+
+def standing_by(acts: Sequence[Act], done: Done, busy: Collection[str], known: Lexicon) -> frozenset[str]:
+    """The people who stand by: nothing is told that they do, while the other does something alone.
+
+    Args:
+        acts: of the beat.
+        done: those that happen.
+        busy: who gestures, goes somewhere or stands before something.
+        known: the lexicon.
+    """
+    found = set()
+    for who in {*"ab"} - {*busy}:
+        own = [(act, e) for act, e in done if who in act.agents]
+        theirs = [(act, e) for act, e in done if other_of(who) in act.agents and who not in act.agents]
+        denied = any(who in act.agents and not act.happens and not _stays(act, known) for act in acts)
+        waits = bool(own) and all(only_stays(e) for _, e in own)
+        touched = any(reaches(act, e) and not is_care(e) and act.direction != "up" for act, e in theirs)
+        if touched or (own and not waits):
+            continue
+        if waits or denied or any(not walks(e) for _, e in theirs):
+            found.add(who)
+    return frozenset(found)
+
+
+def _stays(act: Act, known: Lexicon) -> bool:
+    entry = known.entries.get(act.act)
+    return entry is not None and only_stays(entry)
+
+
+def loose(done: Done, idle: Collection[str]) -> frozenset[str]:
+    """The people whose hands have nothing to do, and whom the other does not touch."""
+    found = set()
+    for who in "ab":
+        own = [(act, e) for act, e in done if who in act.agents]
+        touched = any(reaches(act, e) for act, e in done if who not in act.agents)
+        free = who in idle or (bool(own) and all(leaves_hands(act, e) for act, e in own))
+        if free and not touched:
+            found.add(who)
+    return frozenset(found)
+
+
+def gesturing(gestures: Mapping[str, shapes.Gesture], moves: Sequence[Move], done: Done) -> frozenset[str]:
+    """The people who gesture on the spot and do nothing else."""
+    gone = {move.person for move in moves if move.way not in ("stay", "back to back")}
+    own = {who: sum(who in act.agents and not only_stays(e) for act, e in done) for who in "ab"}
+    return frozenset(
+        who
+        for who, each in gestures.items()
+        if not GESTURES[each.gesture].at_other and own[who] < 2 and who not in gone
+    )

@@ -1,23 +1,24 @@
-"""Places in which the words of a first beat have two people begin."""
+"""The places at which a story begins: those of its first beat, or such that its first moves can begin."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from acts.plan import other_of
 
-from .bodies.poses import grounded, seated, upright
-from .bodies.strikes import Strike
-from .floor import ABREAST, BEHIND, CLOSE, LINKED, Standing
+from .floor import ABREAST, BEHIND, CLOSE, LINKED
 from .holds import TWIRL
-from .lifts import Carry, Lift
-from .moves import Move
-from .postures import Posture
-from .ways import Way
+from .lifts import takes_hold
+from .places import Standing
+from .poses import grounded, seated, upright
+from .score import Lift, Move, Score, goes
+from .strikes import BOUTS
+
+Array = NDArray[np.floating]
 
 BACKS = 0.34
 """Metres between the pelvises of two people who stand or sit back to back: the backs touch."""
@@ -29,33 +30,32 @@ LEAD = 1.6
 """Metres by which somebody is ahead who is overtaken."""
 REACH = 0.75
 """Metres between two people one of whom touches the other."""
-_START = {Way.AWAY: 1.1, Way.THING: 1.1, Way.PAST: 2.2, Way.ROUND: 1.2, Way.BACK: 0.9}
+_START = {"away": 1.1, "thing": 1.1, "past": 2.2, "around": 1.2, "back": 0.9}
 """Metres between two people at the beginning of a first beat with such a move."""
-_SEATS = {Posture.SITS: seated, Posture.GROUND: grounded}
+_SEATS = {"sits": seated, "sits on the ground": grounded}
 
 
-@dataclass(frozen=True)
-class Setting:
-    """The part of a first beat that says where its people are.
+def beginning(scores: Sequence[Score], lengths: Sequence[float]) -> Standing:
+    """The places before the first of some beats, of so many seconds, so that the first moves of the story can begin."""
+    first, touch = scores[0], scores[0].touch
+    free = not (first.lift or first.twirls or first.strike) and going(first.moves)
+    if not free and (places := placed(first)) is not None:
+        return places
+    if any(gesture.gesture == "offers" for gesture in first.gestures.values()) and not goes(first.moves):
+        return starting((), lengths[0])
+    opening = [listed[0] for listed in first.changes.values()]
+    near = bool(first.reaching) or any(c.already and c.posture == "lies" and not c.passing for c in opening)
+    if touch is not None and touch.behind and not goes(first.moves):
+        return starting((Move(other_of(touch.person), "averted"),), lengths[0], near=True)
+    for score, seconds in zip(scores, lengths, strict=True):
+        if goes(score.moves):
+            return starting(score.moves, seconds, near=near)
+    return starting((), lengths[0], near=near)
 
-    Attributes:
-        backs: they are back to back.
-        beside: they are side by side.
-        postures: that they take up or are in.
-        lift, strike: of the beat.
-        twirls: one turns under the other's arm.
-        apart: metres between them where they face each other, are side by side or one stands behind; 0 leaves it free.
-        behind: the person who stands behind the other; "" for nobody.
-    """
 
-    backs: bool = False
-    beside: bool = False
-    postures: Sequence[Posture] = ()
-    lift: Lift | None = None
-    strike: Strike | None = None
-    twirls: bool = False
-    apart: float = 0.0
-    behind: str = ""
+def going(moves: Sequence[Move]) -> set[str]:
+    """The people who leave their place."""
+    return {move.person for move in moves if move.way not in ("stay", "back to back", "averted")}
 
 
 def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> Standing:
@@ -67,74 +67,73 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
         near: they are within reach of each other, unless one comes to the other.
     """
     ways = {move.way: move for move in reversed(moves)}
-    if Way.ALONG in ways:
-        gap = LINKED if ways[Way.ALONG].linked else ABREAST
+    if "along" in ways:
+        gap = LINKED if ways["along"].linked else ABREAST
         return Standing(np.array([[0.0, 0.0], [-gap, 0.0]]), np.zeros(2))
-    if Way.AFTER in ways and any(move.backwards for move in moves):
-        gap = ways[Way.AFTER].near or BEHIND
+    if "after" in ways and any(move.backwards for move in moves):
+        gap = ways["after"].near or BEHIND
         return Standing(np.array([[0.0, 0.0], [0.0, gap]]), np.array([0.0, math.pi]))
-    if Way.AFTER in ways:
-        lead = 1 if ways[Way.AFTER].person == "a" else -1
+    if "after" in ways:
+        lead = 1 if ways["after"].person == "a" else -1
         return Standing(np.array([[0.0, 0.0], [0.0, lead * BEHIND]]), np.zeros(2))
-    if Way.PAST in ways and Way.AHEAD in ways and ways[Way.PAST].person != ways[Way.AHEAD].person:
-        lead = 1 if ways[Way.PAST].person == "a" else -1
+    if "past" in ways and "ahead" in ways and ways["past"].person != ways["ahead"].person:
+        lead = 1 if ways["past"].person == "a" else -1
         return Standing(np.array([[0.0, 0.0], [0.0, lead * LEAD]]), np.zeros(2))
-    if Way.PAST in ways and ways[Way.PAST].backwards:
-        facing = math.pi if ways[Way.PAST].person == "a" else 0.0  # both look the same way
-        return Standing(np.array([[0.0, 0.0], [0.0, _START[Way.PAST]]]), np.full(2, facing))
-    if Way.BACKS in ways:
-        apart = BACKS - 2 * float(upright(np.zeros(2), 0.0)[0, 2])
-        return Standing(np.array([[0.0, 0.0], [0.0, -apart]]), np.array([0.0, math.pi]))
+    if "past" in ways and ways["past"].backwards:
+        facing = math.pi if ways["past"].person == "a" else 0.0  # both look the same way
+        return Standing(np.array([[0.0, 0.0], [0.0, _START["past"]]]), np.full(2, facing))
+    if "back to back" in ways:
+        return _back_to_back(upright)
     gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
-    gap = next((ways[way].near for way in (Way.HOLD, Way.SPAR) if way in ways), gap)
-    for way in (Way.TO, Way.BEHIND):
+    gap = next((ways[way].near for way in ("hold", "spar") if way in ways), gap)
+    for way in ("to", "behind"):
         if way in ways:
             gap = float(np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0))
-    averted = (Way.AVERTED,) if Way.ROUND in ways else (Way.AVERTED, Way.FACE)
+    averted = ("averted",) if "around" in ways else ("averted", "face")
     turned = next((m.person for m in moves if m.way in averted), "")
-    turned = turned or next((other_of(m.person) for m in moves if m.way is Way.BEHIND), "")
+    turned = turned or next((other_of(m.person) for m in moves if m.way == "behind"), "")
     ahead = -1.0 if turned == "a" else 1.0
     facing_b = 0.0 if turned else math.pi
     return Standing(np.array([[0.0, 0.0], [0.0, ahead * gap]]), np.array([0.0, facing_b]))
 
 
-def standing(setting: Setting) -> Standing | None:
-    """The places of two people in a setting; None where it leaves them free."""
-    if setting.backs:
-        pose = next((_SEATS[posture] for posture in setting.postures if posture in _SEATS), upright)
-        behind = float(pose(np.zeros(2), 0.0)[0, 2])  # the feet are where they stand
-        apart = BACKS - 2 * behind
-        return Standing(np.array([[0.0, 0.0], [0.0, -apart]]), np.array([0.0, math.pi]))
-    if setting.beside:
-        return Standing(np.array([[0.0, 0.0], [-(setting.apart or ABREAST), 0.0]]), np.zeros(2))
-    lifted = setting.lift
-    if lifted is not None and lifted.carry is Carry.BACK and lifted.comes not in ("", lifted.carrier):
-        return _from_behind(lifted)
-    if lifted is not None and not lifted.comes:
-        return _carried(lifted)
-    if setting.behind:
-        places = np.zeros((2, 2))
-        places["ab".index(setting.behind), 1] = -(setting.apart or BEHIND_BACK)
-        return Standing(places, np.zeros(2))
-    struck = setting.strike
-    if setting.twirls or (struck and struck.answered) or setting.apart:
-        apart = TWIRL if setting.twirls else struck.bout.value if struck else setting.apart
+def placed(score: Score) -> Standing | None:
+    """The places of two people in a first beat; None where it leaves them free."""
+    if score.side == "back to back":
+        postures = [change.posture for listed in score.changes.values() for change in listed]
+        return _back_to_back(next((_SEATS[posture] for posture in postures if posture in _SEATS), upright))
+    if score.side == "beside":
+        return Standing(np.array([[0.0, 0.0], [-(score.apart or ABREAST), 0.0]]), np.zeros(2))
+    lift, strike = score.lift, score.strike
+    if lift is not None and lift.carry == "back" and lift.comes not in ("", lift.carrier):
+        return _behind("ab".index(lift.carrier) - 1, RUN_UP)
+    if lift is not None and not lift.comes:
+        return _carried(lift)
+    if score.behind:
+        return _behind("ab".index(score.behind), score.apart or BEHIND_BACK)
+    if score.twirls or (strike and strike.answered) or score.apart:
+        apart = TWIRL if score.twirls else BOUTS[strike.bout].apart if strike else score.apart
         return Standing(np.array([[0.0, 0.0], [0.0, apart]]), np.array([0.0, math.pi]))
     return None
 
 
-def _from_behind(lifted: Lift) -> Standing:
-    """A place behind the other, for a person about to run up and jump on their back."""
+def _back_to_back(pose: Callable[[Array, float], Array]) -> Standing:
+    """The places of two whose backs touch in a pose; the feet are where they stand."""
+    apart = BACKS - 2 * float(pose(np.zeros(2), 0.0)[0, 2])
+    return Standing(np.array([[0.0, 0.0], [0.0, -apart]]), np.array([0.0, math.pi]))
+
+
+def _behind(person: int, metres: float) -> Standing:
+    """The place of one person behind the other."""
     places = np.zeros((2, 2))
-    places["ab".index(lifted.carrier) - 1, 1] = -RUN_UP
+    places[person, 1] = -metres
     return Standing(places, np.zeros(2))
 
 
-def _carried(lifted: Lift) -> Standing:
+def _carried(lift: Lift) -> Standing:
     """A place in front of the other for one who is lifted or dragged, and behind the walker for one who is carried."""
-    places, headings = np.zeros((2, 2)), np.zeros(2)
-    if lifted.carry in (Carry.UP, Carry.DRAGS):
-        places[1, 1], headings[1] = lifted.carry.near, math.pi
-    else:
-        places["ab".index(lifted.carrier) - 1, 1] = -0.3
-    return Standing(places, headings)
+    if lift.carry in ("up", "drags"):
+        places = np.zeros((2, 2))
+        places[1, 1] = takes_hold(lift.carry)
+        return Standing(places, np.array([0.0, math.pi]))
+    return _behind("ab".index(lift.carrier) - 1, 0.3)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +15,10 @@ from numpy.typing import NDArray
 from motion import FPS
 from motion.vectors import wrapped
 
-from .bodies.curves import bearing, direction, eased, smoothed
-from .holds import Hold, danced
-from .moves import Move
-from .sampled import Way2D, sampled
-from .track import EASE, MOST, Track
-from .ways import Way
+from .holds import HOLDS, danced
+from .places import Standing, Way2D, bearing, direction, eased, smoothed
+from .score import Move, Way
+from .track import EASE, MOST, Track, sampled
 
 Array = NDArray[np.floating]
 
@@ -61,33 +58,8 @@ _REACTS = 0.4
 """Seconds after which somebody follows who walks away."""
 _ROUND_BEHIND = 0.55
 """Share of a beat that a walk round the other to their back takes at most: what is done there follows."""
-_WEIGHT = {Way.STAY: 0.4, Way.AVERTED: 0.6, Way.TURN: 0.5, Way.FACE: 0.4, Way.BACK: 0.7, Way.ASIDE: 0.7}
+_WEIGHT = {"stay": 0.4, "averted": 0.6, "turn": 0.5, "face": 0.4, "back": 0.7, "aside": 0.7}
 """Shares of a beat's time that moves take beside a walk."""
-
-
-@dataclass(frozen=True)
-class Standing:
-    """The places of two people who stand.
-
-    Attributes:
-        places: (2, 2) x and z in metres.
-        headings: (2,) radians.
-        speeds: (2, 2) metres a second.
-    """
-
-    places: Array
-    headings: Array
-    speeds: Array = field(default_factory=lambda: np.zeros((2, 2)))
-
-    def gap(self) -> float:
-        """Metres between them."""
-        return float(np.linalg.norm(self.places[0] - self.places[1]))
-
-    def towards(self, who: int) -> Array:
-        """The direction (2,) from one to the other; ahead, where they stand on one spot."""
-        line = self.places[1 - who] - self.places[who]
-        length = float(np.linalg.norm(line))
-        return line / length if length > 0.05 else direction(float(self.headings[who]))
 
 
 def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool = False) -> list[Way2D]:
@@ -105,7 +77,7 @@ def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool 
         for i in range(2)
     ]
     own = [[move for move in moves if move.person == person] for person in "ab"]
-    for who in (0, 1) if not any(m.way in (Way.AFTER, Way.FACE) for m in own[0]) else (1, 0):
+    for who in (0, 1) if not any(m.way in ("after", "face") for m in own[0]) else (1, 0):
         _walked(who, own, tracks, standing)
     if first:
         for who, track in enumerate(tracks):
@@ -123,18 +95,18 @@ def _walked(who: int, own: Sequence[Sequence[Move]], tracks: Sequence[Track], st
         if move.late and i == 0:
             track.frame = round(0.35 * track.left() * FPS)
         later = [after.way for after in listed[i + 1 :]]
-        if move.way is Way.TURN and (Way.AWAY in later or Way.PAST in later):
+        if move.way == "turn" and ("away" in later or "past" in later):
             continue  # a person walking away has turned
-        if move.way is Way.TURN and Way.FACE in later and Way.ROUND in theirs:
+        if move.way == "turn" and "face" in later and "around" in theirs:
             continue  # they turn as the other goes round them
-        if move.way is Way.TO and Way.PAST in later:
+        if move.way == "to" and "past" in later:
             continue  # who walks past comes up on the way
         seconds = track.left() * _WEIGHT.get(move.way, 1.0)
         seconds /= _WEIGHT.get(move.way, 1.0) + sum(_WEIGHT.get(way, 1.0) for way in later)
         if move.until:
             seconds *= 0.55
         _moved(move, who, tracks, standing, theirs, seconds, last=not later)
-    if track.frame and listed and listed[-1].way in (Way.AWAY, Way.BACK, Way.PAST, Way.ROUND):
+    if track.frame and listed and listed[-1].way in ("away", "back", "past", "around"):
         track.stay()
 
 
@@ -155,51 +127,51 @@ def _moved(
     to = (other - here) / gap if track.frame and gap > 0.3 else standing.towards(who)
     both = move.way in theirs
     match move.way:
-        case Way.STAY | Way.BACKS | Way.AVERTED:
+        case "stay" | "back to back" | "averted":
             track.halt(standing.speeds[who])
-            watched = any(way in theirs for way in (Way.TURN, Way.FACE, Way.BEHIND, Way.BESIDE, Way.AWAY))
-            track.stay(None if seconds >= track.left() else seconds, facing=watched or move.way is not Way.STAY)
-        case Way.THING:
+            watched = any(way in theirs for way in ("turn", "face", "behind", "beside", "away"))
+            track.stay(None if seconds >= track.left() else seconds, facing=watched or move.way != "stay")
+        case "thing":
             if direction(track.heading) @ to > ABEAM:  # it is not where the other stands
                 far = min(ACROSS, 0.6 * seconds * move.speed)
                 line = np.stack([here, here - far * to])
                 track.walk(line, _time(far, move.speed, 0.7 * seconds), evenly=True)
             track.stay(facing=True)
-        case Way.TURN:
+        case "turn":
             track.turn(2 * math.pi * move.turns * move.sense)
             track.stay(facing=True, seconds=None if last else 0.2)
-        case Way.FACE if last and Way.ROUND in theirs and tracks[1 - who].frame > track.frame:
+        case "face" if last and "around" in theirs and tracks[1 - who].frame > track.frame:
             track.watch(tracks[1 - who])
-        case Way.FACE:
+        case "face":
             track.turn(wrapped(bearing(other - here) - track.heading))
             track.stay(facing=True, seconds=None if last else 0.2)
-        case Way.BEHIND | Way.BESIDE:
+        case "behind" | "beside":
             faces = tracks[1 - who].faces(track.frame, standing.headings[1 - who])
             _behind(move, track, other, faces, seconds)
-        case Way.TO:
+        case "to":
             _to(move, track, gap, to, seconds, both=both, last=last)
-        case Way.AWAY:
-            _away(move, track, gap, to, seconds, both=both, followed=Way.AFTER in theirs)
-        case Way.BACK | Way.ASIDE:
+        case "away":
+            _away(move, track, gap, to, seconds, both=both, followed="after" in theirs)
+        case "back" | "aside":
             far = min(move.metres, move.speed * seconds) if move.metres else min(BACKWARDS, 0.6 * seconds)
-            step = -far * to if move.way is Way.BACK else move.sense * SIDESTEP * np.array([to[1], -to[0]])
+            step = -far * to if move.way == "back" else move.sense * SIDESTEP * np.array([to[1], -to[0]])
             taken = min(seconds, max(1.3, float(np.linalg.norm(step)) / move.speed + EASE))
             track.walk(np.stack([here, here + step]), taken, heading=bearing(to))
             track.stay(facing=True, seconds=None if last else 0.2)
-        case Way.PAST:
+        case "past":
             _past(move, track, other, to, seconds)
-        case Way.AHEAD:
-            room = gap + BACKWARDS if Way.BACK in theirs else gap
+        case "ahead":
+            room = gap + BACKWARDS if "back" in theirs else gap
             _ahead(move, track, room, to, seconds, last=last)
-        case Way.PACE:
+        case "to and fro":
             _to_and_fro(track, to, seconds)
-        case Way.ROUND:
+        case "around":
             _around(move, track, other, seconds, both, standing)
-        case Way.HOLD | Way.SPAR:
+        case "hold" | "spar":
             _in_hold(move, track, standing, seconds)
-        case Way.ALONG:
+        case "along":
             _along(who, move, track, standing, seconds)
-        case Way.AFTER:
+        case "after":
             _after(move, track, tracks[1 - who], standing.places[1 - who], seconds)
 
 
@@ -218,12 +190,12 @@ def _behind(move: Move, track: Track, other: Array, faces: float, seconds: float
     """A walk up to the other's back, or side, round them where they stand in the way, that ends facing as they do."""
     near, out = move.near or NEAR_BY, track.place - other
     start, ends = bearing(out), faces + math.pi
-    if move.way is Way.BESIDE:  # the nearer one
+    if move.way == "beside":  # the nearer one
         ends = min((faces + math.pi / 2, faces - math.pi / 2), key=lambda side: abs(wrapped(side - start)))
     goal = other + near * direction(ends)
     sweep = wrapped(ends - start)
     line = [track.place, goal]
-    if abs(sweep) > (math.pi / 3 if move.way is Way.BEHIND else 0.6 * math.pi):
+    if abs(sweep) > (math.pi / 3 if move.way == "behind" else 0.6 * math.pi):
         wide = min(float(np.linalg.norm(out)), WIDE)
         line[1:1] = [other + wide * direction(start + share * sweep) for share in (0.4, 0.75)]
     way = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
@@ -308,11 +280,11 @@ def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> No
     angles, radii = start + turned, radius + (move.near / 2 - radius) * nearer
     line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
     stop = min(track.frame + len(line), len(track.places))
-    if move.way is Way.HOLD and move.near == Hold.CLOSED.value:
+    if move.way == "hold" and move.near == HOLDS["closed"].apart:
         line = line + danced(time * seconds, angles, np.sign(out @ (standing.places[0] - middle)) or 1.0)
         track.dense.update(range(track.frame, stop, _DENSE))
     track.places[track.frame : stop] = line[: stop - track.frame]
-    if move.way is Way.HOLD:
+    if move.way == "hold":
         track.headings[track.frame : stop] = angles[: stop - track.frame] + math.pi
     track.place, track.heading, track.frame = line[-1], float(angles[-1] + math.pi), stop
 

@@ -1,36 +1,41 @@
-"""Holds: couples who dance in each other's arms, and pairs who spin round with both hands joined.
+"""Holds: couples who dance in each other's arms, pairs who spin with both hands joined, and one who pulls the other up.
 
 The network lets go of hands while people turn. There, the way of both and their hands are given.
 """
 
 from __future__ import annotations
 
-from enum import Enum
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from motion import SMPL22
+
+from .poses import TRUNK, UPRIGHT, Pose, bending, upright
+from .window import KnownFrames, Stretch
+
 Array = NDArray[np.floating]
 
 
-class Hold(Enum):
-    """A hold, and the metres between the pelvises of those who are in it."""
+@dataclass(frozen=True)
+class Hold:
+    """A hold.
 
-    CLOSED = 0.6
-    RING = 0.85
-    PALMS = 0.95
+    Attributes:
+        apart: metres between the pelvises of the two.
+        turns: a second, of the two around the middle between them.
+        lean: radians by which they lean towards each other.
+    """
 
-    @property
-    def turns(self) -> float:
-        """Turns a second of the two around the middle between them."""
-        return {Hold.CLOSED: 0.14, Hold.RING: 0.17, Hold.PALMS: 0.0}[self]
-
-    @property
-    def lean(self) -> float:
-        """Radians by which the two lean towards each other."""
-        return 0.25 if self is Hold.PALMS else 0.0
+    apart: float
+    turns: float
+    lean: float = 0.0
 
 
+HOLDS: Mapping[str, Hold] = {"closed": Hold(0.6, 0.14), "ring": Hold(0.85, 0.17), "palms": Hold(0.95, 0.0, lean=0.25)}
+"""The holds by their names in the lexicon."""
 TWIRL = 0.42
 """Metres between the pelvises of two people while one turns under the other's arm."""
 _OVER = 1.88
@@ -39,6 +44,26 @@ _BASIC, _BAR = 0.16, 2.0
 """Metres and seconds of a couple's basic step to and fro."""
 _TOGETHER, _GROWS = 0.8, 0.6
 """Seconds in which the two come together before it, and in which it grows to its length."""
+_NEARLY = 0.2
+"""Metres more than in a hold at which two who begin in it stand."""
+_REACHES = 12
+"""Frames in which a hand is brought to the hold."""
+_HIPS = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
+_WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
+_OFTEN = 4
+"""Frames between two given places of hands that pull."""
+_HELD = 45
+"""Frames before somebody is up in which their hand is held."""
+_ARM = 0.48
+"""Metres from the shoulder to the wrist of an arm that pulls."""
+_NEAR = 1.15
+"""Times the length of both arms between two shoulders at which the hands begin to reach for each other."""
+_LEANS = np.linspace(0.1, 1.2, 12)
+"""Radians by which somebody leans forward who pulls the other up: as little as gets the hands together."""
+_GAP = 0.03
+"""Metres from where two hands meet to each wrist."""
+_SHOULDERS = {side: SMPL22.index(f"{side}_shoulder") for side in ("left", "right")}
+_WRIST = {side: SMPL22.index(f"{side}_wrist") for side in ("left", "right")}
 
 
 def raised(places: Array) -> Array:
@@ -46,11 +71,11 @@ def raised(places: Array) -> Array:
     return np.insert(np.mean(places, axis=0), 1, _OVER, axis=-1)
 
 
-def joined(kind: Hold, places: Array) -> Array:
+def joined(hold: str, places: Array) -> Array:
     """The places of the wrists of two people in a hold.
 
     Args:
-        kind: the hold.
+        hold: of :data:`HOLDS`.
         places: (2, N, 2) x and z in metres of a, who leads, and b.
 
     Returns:
@@ -60,8 +85,8 @@ def joined(kind: Hold, places: Array) -> Array:
     ahead = (b - a) / np.linalg.norm(b - a, axis=-1, keepdims=True).clip(min=1e-6)
     left = np.cross([0.0, 1.0, 0.0], ahead)  # of a
     middle, up = (a + b) / 2, np.array([0.0, 1.0, 0.0])
-    if kind is not Hold.CLOSED:
-        wide, high, apart = (0.24, 1.05, 0.03) if kind is Hold.RING else (0.17, 1.3, 0.06)
+    if hold != "closed":
+        wide, high, apart = (0.24, 1.05, 0.03) if hold == "ring" else (0.17, 1.3, 0.06)
         one, other = (middle + side * wide * left + high * up for side in (1, -1))
         gap = apart * ahead
         return np.stack([[one - gap, other - gap], [other + gap, one + gap]])
@@ -85,3 +110,97 @@ def danced(seconds: Array, angles: Array, sign: float) -> Array:
     ahead = sign * np.stack([np.sin(angles), np.cos(angles)], axis=1)
     since = np.clip(seconds - _TOGETHER, 0, None)[:, None]
     return np.clip(since / _GROWS, 0, 1) * _BASIC * np.sin(2 * np.pi * since / _BAR) * ahead
+
+
+def hold_parts(hold: str, stretch: Stretch) -> list[KnownFrames]:
+    """The trunks and hands of two people in a hold."""
+    courses = [stretch.course(person) for person in (0, 1)]
+    apart = float(np.linalg.norm(np.subtract(*stretch.stand.places)))
+    begun = stretch.start == 0 and apart < HOLDS[hold].apart + _NEARLY  # a story that begins in the hold
+    at = stretch.shown(np.arange(0 if begun else _REACHES, stretch.frames, 3))
+    if not len(at):
+        return []
+    wrists = joined(hold, np.stack([course.places[at] for course in courses]))
+    parts = []
+    for person, course in enumerate(courses):
+        poses = np.stack([bending(course.places[t], float(course.headings[t]), HOLDS[hold].lean) for t in at])
+        poses[:, _WRISTS] = np.moveaxis(wrists[person], 0, 1)
+        poses -= poses[:, :1].copy()
+        parts.append(stretch.known(person, at, poses, [*TRUNK, *_WRISTS]))
+    return parts
+
+
+def twirl_parts(stretch: Stretch) -> list[KnownFrames]:
+    """The bodies and joined right hands of two people, one of whom turns under them."""
+    courses = [stretch.course(person) for person in (0, 1)]
+    at = stretch.shown(np.arange(_REACHES, stretch.frames - _REACHES, 3))
+    if not len(at):
+        return []
+    hands = raised(np.stack([course.places[at] for course in courses]))
+    wrist = SMPL22.index("right_wrist")
+    parts = []
+    for person, course in enumerate(courses):
+        poses = np.stack([upright(course.places[t], float(course.headings[t])) for t in at])
+        poses[:, wrist] = hands
+        poses -= poses[:, :1].copy()
+        parts.append(stretch.known(person, at, poses, [*_HIPS, *TRUNK, wrist]))
+    return parts
+
+
+def pull_parts(puller: str, poses: Sequence[Pose], stretch: Stretch, *, both: bool) -> list[KnownFrames]:
+    """The hands of both, and the trunk of the one who pulls.
+
+    Args:
+        puller: "a" or "b".
+        poses: of the other, as :func:`.postures.postures` gives them.
+        stretch: the beat.
+        both: both hands are held; otherwise the right ones.
+    """
+    person = "ab".index(puller)
+    hands = [("right", "left"), ("left", "right")] if both else [("right", "right")]
+    down = [frame for frame, pose in poses if pose[0, 1] <= UPRIGHT]
+    up = [frame for frame, pose in poses if pose[0, 1] > UPRIGHT and down and frame > down[-1]]
+    if not up:
+        return []
+    course = stretch.course(person)
+    frames, own, theirs = [], [], []
+    known, bodies = np.array([frame for frame, _ in poses]), np.stack([pose for _, pose in poses])
+    for frame in range(max(down[-1] - _HELD, known[0]), up[0] + 1, _OFTEN):
+        if not stretch.shows(frame - stretch.start):
+            continue
+        last = int(np.searchsorted(known, frame).clip(1, len(known) - 1))
+        share = (frame - known[last - 1]) / (known[last] - known[last - 1])
+        pose = bodies[last - 1] + share * (bodies[last] - bodies[last - 1])
+        t = frame - stretch.start
+        place, angle = course.places[t], float(course.headings[t])
+        one, other = _leaning_to(pose, place, angle), pose.copy()
+        if _gap(one, other) > _NEAR * 2 * _ARM:
+            continue  # they are still on their way
+        for mine, their in hands:
+            line = one[_SHOULDERS[mine]] - other[_SHOULDERS[their]]
+            meet, gap = other[_SHOULDERS[their]] + line / 2, _GAP * line / np.linalg.norm(line)
+            one[_WRIST[mine]], other[_WRIST[their]] = meet + gap, meet - gap
+        frames.append(t)
+        own.append(one - one[0])
+        theirs.append(other - other[0])
+    if not frames:
+        return []
+    return [
+        stretch.known(person, frames, np.stack(own), [*TRUNK, *(_WRIST[mine] for mine, _ in hands)]),
+        stretch.known(1 - person, frames, np.stack(theirs), [_WRIST[their] for _, their in hands]),
+    ]
+
+
+def _leaning_to(pose: Array, place: Array, angle: float) -> Array:
+    """The pose (22, 3) of a person at a place (2,) who leans forward as far as to reach the hand of another pose."""
+    found = bending(place, angle, float(_LEANS[0]))
+    for lean in _LEANS[1:]:
+        if _gap(found, pose) <= 2 * _ARM:
+            break
+        found = bending(place, angle, float(lean))
+    return found
+
+
+def _gap(one: Array, other: Array) -> float:
+    """Metres between the right shoulders of two poses (22, 3)."""
+    return float(np.linalg.norm(one[_SHOULDERS["right"]] - other[_SHOULDERS["right"]]))

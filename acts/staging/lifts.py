@@ -6,79 +6,68 @@ given, and the carrier's hands.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from enum import Enum
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22
+from acts.shapes import Gesture
+from motion import FPS, SMPL22
 from motion.kinematics import forward_kinematics
+from motion.steering import STRIDE, Steps
 from motion.touch.bending import bent_towards
 from motion.transforms import heading_matrix
 
-from .bodies.poses import about, bending
+from .gestures import hands_of, wrist
+from .places import Course, Way2D, eased
+from .poses import LOWER, TRUNK, about, bending, upright
+from .score import Lift
+from .window import KnownFrames, Stretch
 
 Array = NDArray[np.floating]
 
-
-class Carry(Enum):
-    """Ways in which somebody is held, and the place of their pelvis beside the carrier's, who faces +Z, in metres."""
-
-    UP = (0.0, 0.38, 0.3)
-    ARMS = (0.0, 0.2, 0.29)
-    BACK = (0.0, 0.22, -0.2)
-    DRAGS = (0.0, -0.83, 1.0)
-
-    @property
-    def words(self) -> str:
-        """The act of the carrier: "picks the other up"."""
-        return _WORDS[self]
-
-    @property
-    def near(self) -> float:
-        """Metres between the pelvises at which one takes hold of the other."""
-        return 1.0 if self is Carry.DRAGS else 0.45
-
-
-@dataclass(frozen=True)
-class Lift:
-    """A lift of one person by the other.
-
-    Attributes:
-        carrier: "a" or "b".
-        carry: how the other is held.
-        spins: the two turn round meanwhile.
-        comes: the person who walks up to the other first, if either does.
-    """
-
-    carrier: str
-    carry: Carry
-    spins: bool = False
-    comes: str = ""
-
-
-_WORDS = {
-    Carry.UP: "picks the other up",
-    Carry.ARMS: "carries the other in their arms",
-    Carry.BACK: "carries the other on their back",
-    Carry.DRAGS: "drags the other",
-}
-_LEANS = {Carry.UP: -0.08, Carry.ARMS: -0.03, Carry.BACK: 0.3, Carry.DRAGS: 1.0}
+_BESIDE = {"up": (0.0, 0.38, 0.3), "arms": (0.0, 0.2, 0.29), "back": (0.0, 0.22, -0.2), "drags": (0.0, -0.83, 1.0)}
+"""Metres from the pelvis of the carrier, who faces +Z, to that of the person carried."""
+_LEANS = {"up": -0.08, "arms": -0.03, "back": 0.3, "drags": 1.0}
 """Radians by which the carrier leans forward."""
-_LEGS = {
-    Carry.UP: (-0.15, 0.0, 0.35),
-    Carry.ARMS: (-0.9, 0.0, 1.2),
-    Carry.BACK: (-1.25, 0.6, 1.3),
-    Carry.DRAGS: (-0.9, 0.0, 0.1),
-}
+_LEGS = {"up": (-0.15, 0.0, 0.35), "arms": (-0.9, 0.0, 1.2), "back": (-1.25, 0.6, 1.3), "drags": (-0.9, 0.0, 0.1)}
 """Radians of the thighs forward (negative) and out, about the upright, and of the knees, of the person carried."""
 _UNEVEN = 0.05
 """Metres by which the left of two hands before the carrier's chest is higher, and the right one lower."""
 _SIDES = (("left", 1.0), ("right", -1.0))
+OFTEN = 3
+"""Frames between two given poses."""
+RISES = 16
+"""Frames that picking a person up takes, and setting them down."""
+LONG = 75
+"""Frames: after a longer lift the person is set down again before the beat ends."""
+WAITS = 12
+"""Frames for which a person stands before they are picked up, where that is what comes first."""
+LADEN = 11
+"""Frames of a step by a person who carries the other in their arms or on their back."""
+SPIN, SETTLED, EASED = 90, 3, 0.3
+"""Frames of a whole turn with somebody in the air, frames in the air before and after it, and the share of the turn in
+which it gets up its speed."""
+_FAR = 0.45
+"""Metres beyond a lift's own distance: from farther away nobody is picked up."""
+_STAYS = 0.3
+"""Metres within which a person keeps their place before they are picked up."""
+_STANDS = 0.003
+"""Metres or radians a frame below which a body stands."""
+_ELBOWS = [SMPL22.index("left_elbow"), SMPL22.index("right_elbow")]
+_WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
+_CARRIER = [*LOWER, *(joint for joint in TRUNK if joint not in LOWER), *_WRISTS]
+_BODY = [joint for joint in range(SMPL22.num_joints) if joint not in _ELBOWS]
 
 
-def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
+def takes_hold(carry: str) -> float:
+    """Metres between the pelvises at which one takes hold of the other."""
+    return 1.0 if carry == "drags" else 0.45
+
+
+def carried(carry: str, place: Array, angle: float) -> tuple[Array, Array]:
     """The pose of the person carried, and the carrier's.
 
     Args:
@@ -92,7 +81,7 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
     """
     turn = heading_matrix(angle)
     carrier = bending(place, angle, _LEANS[carry])
-    pose = _pose(carry) @ turn.T + carrier[0] + turn @ np.array(carry.value)
+    pose = _pose(carry) @ turn.T + carrier[0] + turn @ np.array(_BESIDE[carry])
 
     def own(name: str) -> Array:
         return carrier[SMPL22.index(name)]
@@ -101,10 +90,10 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
         return pose[SMPL22.index(name)]
 
     left, up, ahead = turn[:, 0], np.array([0.0, 1.0, 0.0]), turn[:, 2]
-    if carry is Carry.UP:
+    if carry == "up":
         hands = {s: theirs("spine2") + sign * 0.12 * left + 0.08 * ahead for s, sign in _SIDES}
         holds = {s: own(f"{o}_shoulder") + 0.1 * up for s, o in (("left", "right"), ("right", "left"))}
-    elif carry is Carry.ARMS:
+    elif carry == "arms":
         hands = {
             "left": theirs("spine3") - 0.1 * up,
             "right": 0.7 * theirs("right_knee") + 0.3 * theirs("right_hip") - 0.11 * up,
@@ -113,7 +102,7 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
             "left": theirs("pelvis") + 0.13 * up + 0.05 * ahead,  # in the lap
             "right": own("neck") + 0.05 * left - 0.1 * ahead,  # around the neck
         }
-    elif carry is Carry.DRAGS:
+    elif carry == "drags":
         hands = {s: theirs(f"{o}_ankle") for s, o in (("left", "right"), ("right", "left"))}
         holds = {s: theirs(f"{s}_shoulder") + 0.45 * ahead - 0.04 * up for s, _ in _SIDES}
     else:
@@ -123,7 +112,7 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
         }
     for side, _ in _SIDES:
         _bend(carrier, side, hands[side])
-        if carry is Carry.DRAGS:  # the arms trail on the floor
+        if carry == "drags":  # the arms trail on the floor
             pose[SMPL22.index(f"{side}_wrist")] = holds[side]
         else:
             _bend(pose, side, holds[side])
@@ -138,15 +127,15 @@ def _bend(pose: Array, side: str, hand: Array) -> None:
     pose[arm[1:]] = elbow[0], hand
 
 
-def _pose(carry: Carry) -> Array:
+def _pose(carry: str) -> Array:
     """(22, 3) metres from the pelvis of a person whose carrier faces +Z."""
     hip, out, knee = _LEGS[carry]
     turns = np.tile(np.eye(3), (1, SMPL22.num_joints, 1, 1))
-    if carry is Carry.UP:
+    if carry == "up":
         turns[:, 0] = heading_matrix(np.pi)
-    elif carry is Carry.BACK:
+    elif carry == "back":
         turns[:, 0] = about(0, 0.25)
-    elif carry is Carry.DRAGS:  # on the back, the feet towards the carrier
+    elif carry == "drags":  # on the back, the feet towards the carrier
         turns[:, 0] = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
     else:  # the head on the carrier's left, the face up
         turns[:, 0] = np.array([[0.0, 0.85, -0.53], [0.0, 0.53, 0.85], [1.0, 0.0, 0.0]])
@@ -156,3 +145,140 @@ def _pose(carry: Carry) -> Array:
         turns[:, SMPL22.index(f"{side}_knee")] = about(0, knee)
         turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * 1.2)
     return forward_kinematics(turns, np.zeros((1, 3)))[0]
+
+
+@dataclass(frozen=True)
+class Carrying:
+    """A lift in its beat.
+
+    Attributes:
+        lift: as the words name it.
+        stretch: the beat, with the ways of both people.
+        gesture: of the person carried, whose hands then do not hold on.
+    """
+
+    lift: Lift
+    stretch: Stretch
+    gesture: Gesture | None = None
+
+    @property
+    def carrier(self) -> int:
+        """0 or 1."""
+        return "ab".index(self.lift.carrier)
+
+    @property
+    def off(self) -> tuple[int, int]:
+        """The first frame of the beat at which the feet are off the floor, and the one after the last."""
+        frames = self.stretch.frames
+        if not self.stretch.start and not self.lift.comes and self.lift.carry != "up":
+            return 0, frames
+        own, other = (self.stretch.course(person) for person in (0, 1))
+        apart = np.linalg.norm(own.places - other.places, axis=1)
+        near = self._meets(apart)
+        waits = 0 if self.stretch.start else max(WAITS - near, 0)
+        first = min(near + waits + RISES if apart[near] < takes_hold(self.lift.carry) + _FAR else frames, frames)
+        down = self.lift.carry == "up" and frames - first > LONG
+        return first, frames - 2 * RISES if down else frames
+
+    def _meets(self, apart: Array) -> int:
+        """The frame from which two who are so far apart (T,) are near enough."""
+        return int(np.flatnonzero(apart < max(takes_hold(self.lift.carry), float(apart.min())) + 0.05)[0])
+
+    @cached_property
+    def course(self) -> Course:
+        """The carrier's course; where the two turn round, it is once one is in the air, as fast as people turn so."""
+        course = self.stretch.course(self.carrier)
+        if not self.lift.spins:
+            return course
+        other = self.stretch.course(1 - self.carrier)
+        met = self._meets(np.linalg.norm(course.places - other.places, axis=1))
+        first, last = (edge + shift for edge, shift in zip(self.off, (SETTLED, -SETTLED), strict=True))
+        turn = course.headings[-1] - course.headings[met]
+        takes = min(max(last - first, 1), round(abs(turn) / (2 * np.pi) * SPIN))
+        done = eased(np.arange(1, takes + 1) / takes, EASED)
+        share = np.interp(np.arange(len(course.headings)), np.arange(takes) + first, done, left=0.0)
+        headings = np.where(np.arange(len(share)) < met, course.headings, course.headings[met] + share * turn)
+        return replace(course, headings=headings)
+
+    @property
+    def _waits(self) -> bool:
+        """True where a story begins with somebody on their feet who is picked up where they stand."""
+        places = self.stretch.course(1 - self.carrier).places[: max(self.off[0] - RISES, 1)]
+        return not self.stretch.start and float(np.ptp(places, axis=0).max()) < _STAYS
+
+    def before(self) -> dict[int, Way2D]:
+        """The ways until shortly before the feet leave the floor; from then on, poses say where people are."""
+        found, until = {}, self.off[0] - RISES // 2
+        for person, way in self.stretch.ways.items():
+            kept = np.asarray(way.frames) < (until if person != self.carrier else self.off[0])
+            if person != self.carrier and self._waits:
+                kept &= np.asarray(way.frames) > 0  # where they begin on their feet
+            if kept.any():
+                headings = None if way.headings is None else way.headings[kept]
+                frames = np.asarray(way.frames)[kept].tolist()
+                if person == self.carrier and headings is not None:
+                    headings = np.where(np.isfinite(headings), self.course.headings[frames], headings)
+                found[person] = replace(way, frames=frames, places=way.places[kept], headings=headings)
+        return found
+
+    def parts(self) -> list[KnownFrames]:
+        """The body of the person carried, and the carrier's pelvis, trunk and hands."""
+        course, parts = self.course, []
+        first, last = self.off
+        held = [*range(first, last, OFTEN), *range(max(first, last - 1), last)]  # none in a beat that is too short
+        at = self.stretch.shown(np.unique(np.array(held, dtype=int)))
+        if len(at):
+            walking = self._walking()[at - first]
+            made = [carried(self.lift.carry, course.places[t], float(course.headings[t])) for t in at]
+            theirs, own = (np.stack(poses) for poses in zip(*made, strict=True))
+            sinks = walking[:, :1] - own[:, :1]
+            own += sinks
+            theirs += 0.0 if self.lift.carry == "drags" else sinks
+            own[:, LOWER] = walking[:, LOWER]
+            self._gesture(theirs, at, course)
+            elbows = _ELBOWS if self.lift.carry == "arms" else []
+            parts.append(self.stretch.known(1 - self.carrier, at, theirs, [*_BODY, *elbows]))
+            parts.append(self.stretch.known(self.carrier, at, own, [*_CARRIER, *elbows]))
+        feet = [(frame, pose) for frame, pose in self._on_feet() if self.stretch.shows(frame)]
+        if feet:
+            frames, poses = zip(*feet, strict=True)
+            parts.append(self.stretch.known(1 - self.carrier, frames, np.stack(poses), LOWER))
+        return parts
+
+    def _gesture(self, theirs: Array, at: NDArray[np.integer], course: Course) -> None:
+        """Has the hands of the person carried, whose poses (N, 22, 3) are theirs, make their gesture."""
+        if self.gesture is None or self.lift.carry != "up":
+            return
+        turns = np.stack([heading_matrix(angle + np.pi) for angle in course.headings[at]])
+        ahead = np.tile([0.0, 0.0, 1.0], (len(at), 1))
+        for side in hands_of(self.gesture):
+            places = wrist(self.gesture.gesture, side, at / FPS, ahead)
+            theirs[:, SMPL22.index(f"{side}_wrist")] = theirs[:, 0] + np.einsum("nij,nj->ni", turns, places)
+
+    def _walking(self) -> Array:
+        """(N, 22, 3) the carrier's poses while the other is off the floor, one foot after the other."""
+        course, stride = self.course, STRIDE if self.lift.spins else LADEN
+        steps = Steps(stride)
+        speed = np.insert(np.gradient(course.places, axis=0), 1, 0.0, axis=1)
+        turned = np.gradient(course.headings)
+        found = []
+        for t in range(*self.off):
+            pose = upright(course.places[t], float(course.headings[t]))
+            pose -= (pose[0] - [*course.places[t][:1], 0.0, *course.places[t][1:]]) * [1.0, 0.0, 1.0]
+            moving = bool(np.linalg.norm(speed[t]) > _STANDS or abs(turned[t]) > _STANDS)
+            found.append(steps(pose, moving=moving, ahead=stride / 2 * speed[t]))
+        return np.stack(found)
+
+    def _on_feet(self) -> Iterator[tuple[int, Array]]:
+        """Frames before and after the lift, and poses (22, 3) of the person carried then."""
+        first, last = self.off
+        other, frames, stand = 1 - self.carrier, self.stretch.frames, self.stretch.stand
+        if first and self._waits:
+            for frame in range(0, max(first - RISES, 1), OFTEN if first < LONG else LONG):
+                yield frame, upright(stand.places[other], float(stand.headings[other]))
+        if last < frames:
+            own = self.course
+            angle = float(own.headings[-1])
+            place = own.places[-1] + takes_hold(self.lift.carry) * np.array([np.sin(angle), np.cos(angle)])
+            for frame in range(frames - RISES, frames, OFTEN):
+                yield frame, upright(place, angle + np.pi)

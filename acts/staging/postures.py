@@ -1,47 +1,266 @@
-"""Postures: people who sit, kneel, crouch or lie down in a story and stay so, and people who jump.
+"""Postures, jumps and bows: people who sit, kneel, crouch or lie down in a story and stay so until they get up.
 
-A network that was trained on people who sit down and get up again does not leave them seated. The acts say how the
-people hold themselves at the end of each beat; until they get up, their pelvis and legs are given, and the trunk and
-head of those who lie or bend down.
+A network that was trained on people who sit down and get up again does not leave them seated. Their pelvis and legs are
+given, and the trunk and head of those who lie or bend down.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from enum import Enum
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from acts.shapes import Bow, Jump
+from motion import FPS, SMPL22
+from motion.easing import minimum_jerk
+from motion.transforms import heading
+
+from .gaits import on_all_fours
+from .places import Standing
+from .poses import (
+    ALL,
+    FLAT,
+    HANDS,
+    LOWER,
+    LYING,
+    STANCE,
+    TOES,
+    UPRIGHT,
+    Pose,
+    at_rest,
+    bowed,
+    bowing,
+    crouching,
+    grounded,
+    kneeling,
+    leaping,
+    lying,
+    rising,
+    seated,
+    standing,
+    stooping,
+    upright,
+)
+from .score import Change, Score, at_start
+from .window import HALT, OFTEN, SETTLES, Part, Stretch, late_by
+
+Array = NDArray[np.floating]
+
+HELD = 4
+"""Frames between two poses of a person who keeps a posture: as many as between the network's knots."""
+SETTLING = 40
+"""Frames in which somebody sits down, falls or gets up."""
+RISING = 54
+"""Frames in which somebody gets up from the ground."""
+LYING_DOWN = 84
+"""Frames in which somebody lies down who does not fall, where there is time (recorded: 2.5 to 3.5 s)."""
+DUCKING = 16
+"""Frames in which somebody ducks, and as many in which they are up again."""
+LOW = 0.5
+"""Metres of the head over the pelvis below which somebody lies or is bent."""
+_FLAT = 0.3
+"""Height in metres of the head below which somebody lies flat."""
+_DROPS = 0.6
+"""Exponent of the time of a fall, which begins slowly."""
+FOLDS = 18
+"""Frames after lying down in which a hand comes to lie on the belly."""
+_KNEELS = 0.3
+"""Height in metres of the pelvis above which a bent person's arms reach down to the floor."""
+_HEAD = SMPL22.index("head")
+LEAP = 36
+"""Frames from the highest moment of a jump to that of the next."""
+BOWED, DEEP = 0.9, 1.25
+"""Radians of a bow, and of a deep one."""
+BOW = 50
+"""Frames from the lowest moment of a bow to that of the next."""
+_LOW = ("lies", "sits on the ground")
+"""Postures from which people sit up and get their feet under them before they stand."""
+_MAKES: Mapping[str, Callable[[Array, float], Array]] = {
+    "stands": upright,
+    "sits": seated,
+    "sits on the ground": grounded,
+    "kneels": kneeling,
+    "crouches": crouching,
+    "bends down": stooping,
+    "lies": lying,
+    "on all fours": on_all_fours,
+}
 
 
-class Posture(Enum):
-    """A way to hold oneself."""
+def postures(
+    scores: Sequence[Score], beat: int, person: int, start: int, stop: int, stand: Standing, last: Array | None
+) -> list[Pose]:
+    """The poses by which a person's posture is held in a beat; none where the words leave them on their feet.
 
-    STANDS = "stands"
-    SITS = "sits"
-    KNEELS = "kneels"
-    GROUND = "sits on the ground"
-    CROUCHES = "crouches"
-    BENDS = "bends down"
-    LIES = "lies"
-    ALL_FOURS = "on all fours"
-
-
-LOWERED = frozenset((Posture.KNEELS, Posture.CROUCHES, Posture.BENDS))
-"""Those by which somebody gets down to what is low."""
-
-
-@dataclass(frozen=True)
-class Change:
-    """A posture that one person takes up in a beat, or in which it finds them.
-
-    Attributes:
-        posture: how they hold themselves from then on.
-        already: they do so when the beat begins, if nothing before it says otherwise ("while she sits").
-        after: how much of the beat comes before, from 0 to 1.
-        passing: they are up again at once, as after ducking.
-        gently: they let themselves down and do not fall.
+    Args:
+        scores: of all beats.
+        beat: which one.
+        person: 0 for a, 1 for b.
+        start, stop: the beat's first frame and the one after its last.
+        stand: where the people are when it begins.
+        last: the person's pose (22, 3) before it; None in a first beat.
     """
+    who, score = "ab"[person], scores[beat]
+    now = at_start(scores, beat)[who]
+    own = [change for change in score.changes.get(who, ()) if not change.already]
+    if last is not None and now != "stands" and last[0, 1] > UPRIGHT:  # as in a given motion
+        now, own = "stands", [Change.model_validate({"posture": now}), *own]
+    jumps, bows = score.jumps.get(who), score.bows.get(who)
+    if now == "stands" and not own and not jumps and not bows:
+        others = [*score.changes, *score.jumps, *score.bows]
+        return [(start, upright(*_place(person, stand, None)))] if last is None and others else []
+    place, angle = _place(person, stand, last)
+    if last is None and now == "lies":  # across the other's way, and not with the feet towards them
+        angle += math.pi / 2
+        place = place + LYING * np.array([math.sin(angle), math.cos(angle)])
+    found: dict[int, Array] = {}
+    begins = start + 1 if last is not None else start
+    pose = _MAKES[now](place, angle) if last is None or now == "stands" else last
+    for change in own:
+        at = start + round(change.after * (stop - start))
+        if last is None and now != "stands":
+            at = max(at, start + round(FPS))  # they are seen as they were
+        if now != "stands" or (last is None and begins == start):
+            found |= _stays(pose, begins, at + 1)
+        if change.passing:
+            middle = min(at + DUCKING + (stop - at) // 4, stop - DUCKING)
+            found |= {middle: _MAKES[change.posture](place, angle), middle + DUCKING: upright(place, angle)}
+            begins = middle + DUCKING
+            continue
+        ends, on_the_way = _on_the_way(now, change, at, stop, place, angle)
+        found |= on_the_way
+        now, pose, begins = change.posture, _MAKES[change.posture](place, angle), ends
+    if own and now == "stands":
+        found |= _stays(pose, begins, min(begins + 2 * HELD + 1, stop))
+    elif now != "stands":
+        found |= _stays(pose, begins, stop)
+    if now == "stands":
+        found |= dict(_jumping(jumps, start, stop, place, angle)) if jumps else {}
+        found |= dict(_bowing(bows, start, stop, place, angle)) if bows else {}
+    return [(frame, found[frame]) for frame in sorted(found) if start <= frame < stop]
 
-    posture: Posture
-    already: bool = False
-    after: float = 0.0
-    passing: bool = False
-    gently: bool = False
+
+def _on_the_way(
+    now: str, change: Change, at: int, stop: int, place: Array, angle: float
+) -> tuple[int, dict[int, Array]]:
+    """The frame at which a change of posture is over that begins ``at`` one, and the poses on the way."""
+    lies = "lies" in (now, change.posture)
+    if now in _LOW and change.posture == "stands":
+        ends = min(at + RISING, stop - 1)
+        return ends, {at + round(share * (ends - at)): pose for share, pose in rising(place, angle, lies=lies)}
+    ends = min(at + SETTLING, stop - 1)
+    if {now, change.posture} == {"bends down", "stands"}:
+        shares = minimum_jerk(np.arange(HELD, ends - at, HELD) / (ends - at))
+        down = shares if change.posture == "bends down" else 1 - shares
+        return ends, {at + HELD * (i + 1): stooping(place, angle, float(share)) for i, share in enumerate(down)}
+    falls = lies and not change.gently
+    if now != "stands" or change.posture not in _LOW or not (change.gently or falls):
+        return ends, {}
+    ends = min(at + (SETTLING if falls else LYING_DOWN if lies else RISING), stop - 1)
+    pace = _DROPS if falls else 1.0
+    on_the_way = reversed(rising(place, angle, lies=lies))
+    return ends, {at + round((1 - share) ** pace * (ends - at)): pose for share, pose in on_the_way}
+
+
+def still_down(poses: list[Pose], stop: int, more: int) -> list[Pose]:
+    """Poses of a beat that ends before frame ``stop``, and of ``more`` frames behind it if it ends on the floor.
+
+    A network that is free there may put a trunk far into the floor. The body is raised out of it, smoothly, and so are
+    the frames before.
+    """
+    if not more or not poses or poses[-1][0] < stop - 1 or poses[-1][1][0, 1] > UPRIGHT:
+        return poses
+    return [*poses, *sorted(_stays(poses[-1][1], stop, stop + more).items(), key=lambda pose: pose[0])]
+
+
+def posture_parts(poses: list[Pose], person: int, score: Score, stretch: Stretch, tail: int) -> list[Part]:
+    """The parts of a person's posture, as far as they fall into a window and the ``tail`` frames behind it.
+
+    Args:
+        poses: as :func:`postures` gives them.
+        person: 0 for a, 1 for b.
+        score: of the beat.
+        stretch: the beat.
+        tail: frames that are made behind the window and thrown away.
+    """
+    who, window = "ab"[person], stretch.window
+    busy = who in score.gestures or (score.touch is not None and score.touch.person == who)
+    poses = still_down(poses, stretch.stop, tail)
+    return [
+        stretch.known(person, np.asarray(frames) - stretch.start, known, joints)
+        for joints, frames, known in posture_joints(
+            poses, window.start, window.stop + tail, arms=not busy, loose=who in score.loose
+        )
+    ]
+
+
+def posture_joints(
+    poses: list[Pose], first: int, last: int, *, arms: bool = False, loose: bool = False
+) -> Iterator[tuple[Sequence[int], list[int], Array]]:
+    """The joints, frames and poses (N, 22, 3) from ``first`` to before ``last`` that are given.
+
+    Pelvis and legs, and the trunk and head of those who lie or bend down, which the network would raise; with
+    ``arms`` also the arms of those who bend down, and with ``loose`` of those who lie.
+    """
+    down = [bool(pose[_HEAD, 1] - pose[0, 1] < LOW) for _, pose in poses]
+    gets_down = (frame for (frame, _), was, now in zip(poses[1:], down, down[1:], strict=False) if now > was)
+    folds = next(gets_down, first - FOLDS) + FOLDS
+    for joints, lies in ((LOWER, False), (FLAT, True)):
+        inside = [each for each, low in zip(poses, down, strict=True) if first <= each[0] < last and low is lies]
+        stoops = bool(inside) and inside[-1][1][0, 1] > _KNEELS
+        laid = [
+            lies and (arms if stoops else loose and frame >= folds and bool(pose[_HEAD, 1] < _FLAT))
+            for frame, pose in inside
+        ]
+        for own, given in ((False, joints), (True, (*joints, *HANDS))):
+            shown = [each for each, with_hands in zip(inside, laid, strict=True) if with_hands == own]
+            if shown:
+                known = np.stack([pose for _, pose in shown])
+                yield given, [frame for frame, _ in shown], known if stoops or not own else at_rest(known)
+
+
+def bow_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part]:
+    """The body of a person who bows on the spot, as far as it falls into a window."""
+    bows = score.bows["ab"[person]]
+    frames = beat.every(OFTEN, SETTLES // 2 if beat.start else 0)
+    if not len(frames):  # of a beat of which only the way to the next one is in the window
+        return []
+    angle, seconds = float(beat.stand.headings[person]), (frames + beat.start) / FPS
+    stands = standing(beat.halt(person), angle, seconds, seed=seed + person)
+    late, lean = late_by(seed, person), DEEP if bows.deep else BOWED
+    poses = bowed(stands, angle, frames / FPS - late, beat.frames / FPS - late, bows.times, lean)
+    return [beat.known(person, frames, poses, ALL)]
+
+
+def _stays(pose: Array, start: int, stop: int) -> dict[int, Array]:
+    return dict.fromkeys({*range(start, stop, HELD), max(start, stop - 1)}, pose)
+
+
+def _jumping(jumps: Jump, start: int, stop: int, place: Array, angle: float) -> Iterator[Pose]:
+    """The poses of so many jumps, the first of them a second after the beat begins."""
+    top = start + min(FPS, (stop - start) // 2)
+    for i in range(jumps.times):
+        for seconds, pose in leaping(place, angle):
+            yield round(top + i * LEAP + seconds * FPS), pose
+
+
+def _bowing(bows: Bow, start: int, stop: int, place: Array, angle: float) -> Iterator[Pose]:
+    """The poses of so many bows, the lowest of the first a second after the beat begins."""
+    low = start + min(FPS, (stop - start) // 2)
+    for i in range(bows.times):
+        for seconds, pose in bowing(place, angle, DEEP if bows.deep else BOWED):
+            yield round(low + i * BOW + seconds * FPS), pose
+
+
+def _place(person: int, stand: Standing, last: Array | None) -> tuple[Array, float]:
+    """The place (x, z) and heading of a standing person, or of a person who is down once they get up."""
+    if last is None:
+        return np.asarray(stand.places[person], dtype=float), float(stand.headings[person])
+    pose = np.asarray(last, dtype=float)
+    angle = float(heading(pose[None])[0])
+    if pose[0, 1] > UPRIGHT:
+        return np.asarray(stand.places[person] + HALT * stand.speeds[person], dtype=float), angle
+    toes = pose[list(TOES)].mean(axis=0)[[0, 2]]
+    return toes - STANCE * np.array([np.sin(angle), np.cos(angle)]), angle

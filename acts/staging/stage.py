@@ -1,7 +1,8 @@
-"""The acts of a beat in the terms of the stage: each entry's shapes become moves, touches, postures and the like.
+"""The acts of a beat as a score: each entry's shapes, cast with the beat's people.
 
-What several acts of one beat ask for is settled here, in one place: a person who is held, carried or struck takes part
-in that and in nothing else, a person whom no act names stands by, and a denied act leaves its people where they are.
+What several acts of one beat ask for is settled here, in one place: two who are in a hold, a lift, a twirl or a fight
+take part in that and in nothing else, in this order; a person whom no act names stands by, and a denied act leaves its
+people where they are.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
+from itertools import pairwise
 
 from acts import shapes
 from acts.captions import of_each
@@ -18,6 +20,7 @@ from acts.things import is_fixture, kind_of
 
 from .act_kinds import (
     figure_of,
+    gesturing,
     hits,
     is_after,
     is_attempt,
@@ -25,65 +28,68 @@ from .act_kinds import (
     is_gentle,
     is_manner,
     is_near,
+    loose,
     only_stays,
-    region_of,
+    part_of,
+    standing_by,
+    strike_of,
     walks,
 )
-from .beginnings import Setting, standing
-from .bodies.figures import Figure
-from .bodies.gestures import OF_BOTH, SIDES, Gesture, Hand
-from .bodies.limbs import Limb
-from .bodies.strikes import Bout, Strike
-from .contacts import LOW, Contact, Region
-from .holds import TWIRL, Hold
-from .lifts import Carry, Lift
-from .moves import Move, away, fastest, finished, goes, lifted_moves, struck_moves
-from .postures import LOWERED, Change, Posture
-from .roles import gesturing, loose, standing_by, strike_of
-from .told import Told
-from .ways import Way
+from .gestures import GESTURES
+from .moves import away, fastest, followed, held_moves, led_backwards, lifted_moves, struck_moves, twirled_moves
+from .score import LOW, LOWERED, Change, Lift, Move, Score, Strike, Touch, Way, at_start, goes
 
-_WAYS = {
-    "to": Way.TO,
-    "away": Way.AWAY,
-    "past": Way.PAST,
-    "around": Way.ROUND,
-    "behind": Way.BEHIND,
-    "along": Way.ALONG,
-    "after": Way.AFTER,
-    "back": Way.BACK,
-    "aside": Way.ASIDE,
-    "ahead": Way.AHEAD,
-    "to and fro": Way.PACE,
-}
-_RIGHTWARDS = ("right", "clockwise")
-"""Directions to the right, and those of a turn to the right."""
-_TURNS = {"around": Way.TURN, "to": Way.FACE, "away": Way.TURN}
 PULLED = 0.8
 """Metres from where somebody stands up at which the one stands who pulls them up."""
 ON_BENCH = 0.65
 """Metres between two who sit on one bench."""
 _JUMPS = 3
 """Jumps of a person who is already jumping when the beat begins."""
-_DODGES = (Way.BACK, Way.ASIDE)
+_MOST = 5
+"""Times that something is done in one beat, at most."""
+_RIGHTWARDS = ("right", "clockwise")
+"""Directions to the right, and those of a turn to the right."""
+_DODGES = ("back", "aside")
 """Ways in which somebody gets out of a blow's reach."""
 _LEGS = frozenset(("dance", "fight", "ways", "play"))
 """Groups whose acts are done on one's feet."""
 
 
-def staged(acts: Sequence[Act], known: Lexicon | None = None) -> Told:
-    """Tells the stage what the acts of one beat ask for.
+def scores_of(story: Sequence[Sequence[Act]]) -> tuple[Score, ...]:
+    """The scores of a story, beat by beat, which fit each other."""
+    scores = [score_of(acts) for acts in story]
+    known: set[str] = set()
+    for i, score in enumerate(scores):  # an earlier beat has put them there already
+        again = {who for who, listed in score.changes.items() if who in known and listed[0].already and len(listed) > 1}
+        changes = {who: listed[1:] if who in again else listed for who, listed in score.changes.items()}
+        scores[i] = replace(score, changes=changes) if again else score
+        known |= set(score.changes) | score.going
+    for i, (score, then) in enumerate(pairwise(scores)):  # a person who turns round to the other is touched from behind
+        touch, turned = score.touch, {move.person for move in then.moves if move.way == "face"}
+        if touch is None or touch.part not in ("shoulder", "back") or touch.person in turned:
+            continue
+        if turned and not score.changes and not goes(score.moves):
+            scores[i] = replace(score, touch=touch.model_copy(update={"behind": True}))
+    for i, score in enumerate(scores):  # a person who is down does not stand by
+        down = {who for who, posture in at_start(scores, i).items() if posture != "stands"}
+        if score.idle & down:
+            scores[i] = replace(scores[i], idle=score.idle - down)
+    return tuple(scores)
+
+
+def score_of(acts: Sequence[Act], known: Lexicon | None = None) -> Score:
+    """The score of the acts of one beat.
 
     Args:
         acts: of the beat; those that the lexicon does not have are passed over.
         known: the lexicon; ours by default.
     """
-    return _staged(tuple(acts), lexicon() if known is None else known)
+    return _score_of(tuple(acts), lexicon() if known is None else known)
 
 
 @lru_cache(maxsize=512)
-def _staged(acts: tuple[Act, ...], known: Lexicon) -> Told:
-    return _Stage(acts, known).told()
+def _score_of(acts: tuple[Act, ...], known: Lexicon) -> Score:
+    return _Stage(acts, known).score()
 
 
 class _Stage:
@@ -100,27 +106,26 @@ class _Stage:
         self.level = {act.id: level for level, group in enumerate(groups) for act in group}
         self.levels = len(groups)
         self.moves: list[Move] = []
-        self.gestures: dict[str, Gesture] = {}
+        self.gestures: dict[str, shapes.Gesture] = {}
         self.changes: dict[str, tuple[Change, ...]] = {}
-        self.leaps: dict[str, int] = {}
-        self.limbs: dict[str, tuple[Limb, ...]] = {}
-        self.figures: dict[str, Figure] = {}
-        self.bows: dict[str, tuple[int, bool]] = {}
-        self.contact: Contact | None = None
-        self.hold: Hold | None = None
-        self.twirls, self.pulls = "", ""
+        self.jumps: dict[str, shapes.Jump] = {}
+        self.limbs: dict[str, tuple[shapes.Limb, ...]] = {}
+        self.figures: dict[str, shapes.Figure] = {}
+        self.bows: dict[str, shapes.Bow] = {}
+        self.touch: Touch | None = None
         self.lift: Lift | None = None
         self.blows: list[tuple[tuple[str, ...], shapes.Strike, Act]] = []
-        self.setting = Setting()
+        self.hold = self.twirls = self.pulls = self.side = self.stands_behind = ""
+        self.apart = 0.0
         self.linked = self.both_hands = False
         self.frozen: set[str] = set()
         self.behind: set[str] = set()
-        """Those who stand behind the other."""
+        """Those who are behind the other, whether they are there from the start or not."""
         self.faces: set[str] = set()
         """Those who stand before a window or the like and do something with it."""
 
-    def told(self) -> Told:
-        """All that they tell."""
+    def score(self) -> Score:
+        """All that they ask for."""
         for act, entry in sorted(self.done, key=lambda pair: self.level[pair[0].id]):
             for shape in () if is_manner(entry) and len(self.done) > 1 else entry.stage:
                 self._take(act, shape)
@@ -134,23 +139,25 @@ class _Stage:
                     self._take(act, shape.model_copy(update={"who": "agent"}))
         self._agree()
         struck = strike_of(self.blows, self.done, late=bool(self.blows) and self._follows(self.blows[0][2]))
-        if struck is not None and struck.bout is Bout.THROWS:  # catching is part of it
+        if struck is not None and struck.bout == "throws":  # catching is part of it
             caught = {who for act, e in self.done if e.thing == "catches" for who in act.agents}
             self.gestures = {who: gesture for who, gesture in self.gestures.items() if who not in caught}
         moves = self._moves(struck)
         busy = {*self.gestures, *self.faces, *(move.person for move in self.moves)}
         idle = standing_by(self.acts, self.done, busy, self.known)
         waving = gesturing(self.gestures, moves, self.done)
-        free = frozenset[str]() if self._is_joined() else loose(self.done, idle)
-        return Told(
+        linked = self.linked or any(move.linked for move in self.moves)
+        free = frozenset[str]() if self.lift or self.hold or self.twirls or linked else loose(self.done, idle)
+        leads = any(m.backwards and m.way == "away" and m.person not in self.gestures for m in moves)
+        return Score(
             moves=moves,
             idle=idle,
             frozen=frozenset(self.frozen),
             gesturing=waving - self.changes.keys(),
             gestures=self.gestures,
-            contact=self.contact,
+            touch=self.touch,
             hold=self.hold,
-            by_both_hands=self.both_hands or any(self._leads_by_both_hands(move) for move in moves),
+            by_both_hands=self.both_hands or leads,
             twirls=self.twirls,
             pulls=self.pulls,
             lift=self.lift,
@@ -158,21 +165,14 @@ class _Stage:
             changes=self.changes,
             limbs=self.limbs,
             figures=self.figures,
-            leaps=self.leaps,
+            jumps=self.jumps,
             bows=self.bows,
             linked=self.linked or any(move.linked for move in moves),
             on_feet=frozenset(who for act, e in self.done if e.group in _LEGS for who in act.agents),
             loose=free - self.gestures.keys() - self.limbs.keys(),
-            placed=standing(
-                replace(
-                    self.setting,
-                    lift=self.lift,
-                    strike=struck,
-                    twirls=bool(self.twirls),
-                    postures=[change.posture for listed in self.changes.values() for change in listed],
-                )
-            ),
-            keeps_place=self.setting.backs or self.setting.beside,
+            side=self.side,
+            behind=self.stands_behind,
+            apart=self.apart,
             reaching=self._reaching(),
             alone=away(of_each(self.acts, self.known), moves),
         )
@@ -181,9 +181,6 @@ class _Stage:
 
     def _take(self, act: Act, shape: shapes.Shape) -> None:
         people = self._people(act, shape)
-        if isinstance(shape, shapes.Stay):
-            self.frozen |= set(people) if shape.frozen else set()
-            self.setting = replace(self.setting, apart=self.setting.apart or shape.apart)
         if isinstance(shape, shapes.Stay | shapes.Gesture) and is_fixture(act.thing):
             self.faces |= set(people)
         match shape:
@@ -197,83 +194,52 @@ class _Stage:
                 late, times = self._late(act), act.times or 1
                 turns = times * (shape.turns if times == 1 else max(shape.turns, 1.0))  # "turns around twice"
                 faces = shape.way == "around" and shape.turns < 1 and act.patient and not act.part
-                way = Way.FACE if faces else _TURNS[shape.way]
+                way: Way = "face" if faces or shape.way == "to" else "turn"
                 right = act.direction in _RIGHTWARDS
                 self.moves += [Move(who, way, turns=turns, late=late, rightwards=right) for who in people]
-            case shapes.Stay() if shape.facing == "away":
-                self.moves += [Move(who, Way.AVERTED) for who in people]
+            case shapes.Stay():
+                self.frozen |= set(people) if shape.frozen else set()
+                self.apart = self.apart or shape.apart
+                self.moves += [Move(who, "averted") for who in people if shape.facing == "away"]
             case shapes.Place():
                 self._place(act, shape)
             case shapes.Posture():
-                self._posture(act, shape, people)
+                if len(people) == 2 and kind_of(act.thing or "") == "bench":
+                    self.side, self.apart = self.side or "beside", ON_BENCH
+                for who in people:
+                    self.changes[who] = (*self.changes.get(who, ()), *self._changed(act, shape))
             case shapes.Limb():
-                side, direction = act.side or shape.side, act.direction or shape.direction
-                limb = Limb(shape.does, side, direction, act.times or 0)
+                named = {"side": act.side, "direction": act.direction, "times": act.times}
+                limb = shape.model_copy(update={name: value for name, value in named.items() if value})
                 self.limbs |= {who: (*self.limbs.get(who, ()), limb) for who in people}
             case shapes.Figure():
                 self.figures |= dict.fromkeys(people, figure_of(act, shape))
             case shapes.Jump():
                 times = act.times or (max(shape.times, _JUMPS) if act.already else shape.times)
-                self.leaps |= dict.fromkeys(people, min(times, 5))
+                self.jumps |= dict.fromkeys(people, shape.model_copy(update={"times": min(times, _MOST)}))
             case shapes.Bow():
-                self.bows |= dict.fromkeys(people, (min(act.times or 1, 5), shape.deep or is_deep(act)))
+                times, deep = min(act.times or shape.times, _MOST), shape.deep or is_deep(act)
+                self.bows |= dict.fromkeys(people, shape.model_copy(update={"times": times, "deep": deep}))
             case shapes.Gesture():
-                hand, side = Hand[shape.gesture.upper()], act.side or shape.sides
-                sides = SIDES if hand in OF_BOTH or side == "both" else (side,)
-                self.gestures |= dict.fromkeys(people, Gesture(hand, sides))
+                sides = "both" if GESTURES[shape.gesture].both else act.side or shape.sides
+                self.gestures |= dict.fromkeys(people, shape.model_copy(update={"sides": sides}))
             case shapes.Touch():
                 self._touch(act, shape)
             case shapes.Hold(hold="twirl"):
                 self.twirls = people[0]
             case shapes.Hold():
-                self.hold = Hold[shape.hold.upper()]
+                self.hold = shape.hold
             case shapes.Pull():
                 self.pulls, self.both_hands = people[0], act.side == "both"
-                self.moves.append(Move(people[0], Way.TO, near=PULLED))
+                self.moves.append(Move(people[0], "to", near=PULLED))
             case shapes.Link():
                 self.linked = True
-            case shapes.Lift() if self.lift is None or self.lift.carry is Carry.UP:
-                comes = people[0] if self.lift is not None else ""  # to pick up whom they carry then
-                self.lift = Lift(people[0], Carry[shape.carry.upper()], shape.spins, comes)
+            case shapes.Lift() if self.lift is None or self.lift.carry == "up":
+                comes = people[0] if self.lift is not None else ""  # to pick up the person whom they then carry
+                self.lift = Lift(carrier=people[0], carry=shape.carry, spins=shape.spins, comes=comes)
             case shapes.Strike():
                 both = self.known.entries[act.act].mutual
                 self.blows.append((("a", "b") if both else people, shape, act))
-
-    def _is_going(self, act: Act) -> bool:
-        """True if both are on their way while an act is done."""
-        level = self.level[act.id]
-        beside = (other for other, entry in self.done if self.level[other.id] == level and walks(entry))
-        return any(len(other.agents) == 2 for other in beside)
-
-    def _place(self, act: Act, shape: shapes.Place) -> None:
-        if shape.way == "behind":
-            self.behind.update(self._people(act, shape))
-            alone = len(act.agents) == 1 or shape.who == "first"
-            if alone:
-                self.setting = replace(self.setting, behind=act.agents[0], apart=shape.apart)
-            return
-        here, backs = self.setting, shape.way == "back to back"
-        beside = here.beside or shape.way == "beside"
-        self.setting = replace(here, backs=here.backs or backs, beside=beside, apart=here.apart or shape.apart)
-        self.moves += [Move(who, Way.BACKS) for who in "ab" if backs]
-
-    def _posture(self, act: Act, shape: shapes.Posture, people: tuple[str, ...]) -> None:
-        if len(people) == 2 and kind_of(act.thing or "") == "bench":
-            self.setting = replace(self.setting, beside=True, apart=ON_BENCH)
-        for who in people:
-            self.changes[who] = (*self.changes.get(who, ()), *self._changed(act, shape))
-
-    def _changed(self, act: Act, shape: shapes.Posture) -> list[Change]:
-        """The changes of posture of an act, one after another where it is done several times."""
-        posture, already = Posture(shape.posture), shape.already or act.already
-        waits = {Posture.LIES: 0.4, Posture.STANDS: 0.35} if shape.who == "patient" else {}
-        if any(other.agents != act.agents and hits(entry) for other, entry in self.done):
-            waits = {Posture.LIES: 0.35}  # they are struck first
-        after = max(self.level[act.id] / self.levels, waits.get(posture, 0.0))
-        times = min(act.times or shape.times, 5) if shape.passing else 1
-        shares = [0.0 if already else after + (1 - after) * i / times for i in range(times)]
-        gently = is_gentle(act) and not already
-        return [Change(posture, already, share, shape.passing, gently) for share in shares]
 
     def _people(self, act: Act, shape: shapes.Shape) -> tuple[str, ...]:
         """Whom a shape is for."""
@@ -285,32 +251,67 @@ class _Stage:
             return act.agents[:1]
         return act.agents
 
+    def _is_going(self, act: Act) -> bool:
+        """True if both are on their way while an act is done."""
+        level = self.level[act.id]
+        beside = (other for other, entry in self.done if self.level[other.id] == level and walks(entry))
+        return any(len(other.agents) == 2 for other in beside)
+
+    def _place(self, act: Act, shape: shapes.Place) -> None:
+        if shape.way == "behind":
+            self.behind.update(self._people(act, shape))
+            if len(act.agents) == 1 or shape.who == "first":
+                self.stands_behind, self.apart = act.agents[0], shape.apart
+            return
+        self.apart = self.apart or shape.apart
+        if shape.way == "back to back":
+            self.side = shape.way
+            self.moves += [Move(who, "back to back") for who in "ab"]
+        elif shape.way == "beside":
+            self.side = self.side or shape.way
+
+    def _changed(self, act: Act, shape: shapes.Posture) -> list[Change]:
+        """The changes of posture of an act, one after another where it is done several times."""
+        already = shape.already or act.already
+        waits = {"lies": 0.4, "stands": 0.35} if shape.who == "patient" else {}
+        if any(other.agents != act.agents and hits(entry) for other, entry in self.done):
+            waits = {"lies": 0.35}  # they are struck first
+        after = max(self.level[act.id] / self.levels, waits.get(shape.posture, 0.0))
+        times = min(act.times or shape.times, _MOST) if shape.passing else 1
+        return [
+            Change(
+                posture=shape.posture,
+                already=already,
+                after=0.0 if already else after + (1 - after) * i / times,
+                passing=shape.passing,
+                gently=is_gentle(act) and not already,
+            )
+            for i in range(times)
+        ]
+
     def _go(self, act: Act, shape: shapes.Go, who: str) -> Move:
-        way = _WAYS[shape.way]
-        if act.direction == "back" and way in (Way.AHEAD, Way.PAST):
-            way = Way.BACK  # "glides backwards"
-        given = act.distance is not None and way in (Way.AHEAD, Way.BACK)
-        metres = act.distance if act.distance is not None and given else shape.metres
-        turns = float(act.times) if act.times and way is Way.ROUND else shape.turns
+        way: Way = shape.way
+        if act.direction == "back" and way in ("ahead", "past"):
+            way = "back"  # "glides backwards"
         return Move(
             who,
             way,
-            min(shape.speed * (1.0 if shape.who == "patient" else act.speed), 3.0),
-            turns,
-            shape.stops or any(r.kind == "until" for r in act.order),
-            shape.linked,
-            way is not Way.AFTER and self._late(act),
-            metres,
-            shape.near,
-            shape.backwards,
-            shape.gait,
-            act.direction in _RIGHTWARDS,
+            speed=min(shape.speed * (1.0 if shape.who == "patient" else act.speed), 3.0),
+            turns=float(act.times) if act.times and way == "around" else shape.turns,
+            until=shape.stops or any(r.kind == "until" for r in act.order),
+            linked=shape.linked,
+            late=way != "after" and self._late(act),
+            metres=act.distance if act.distance is not None and way in ("ahead", "back") else shape.metres,
+            near=shape.near,
+            backwards=shape.backwards,
+            gait=shape.gait,
+            rightwards=act.direction in _RIGHTWARDS,
         )
 
     def _chase(self, act: Act, shape: shapes.Go) -> None:
         """Both run after each other: a goes ahead, unless later words say who chases whom."""
-        told = [each for each, entry in self.done if any(is_after(s) for s in entry.stage)]
-        if all(len(each.agents) == 2 for each in told):
+        chases = [each for each, entry in self.done if any(is_after(s) for s in entry.stage)]
+        if all(len(each.agents) == 2 for each in chases):
             self.moves.append(self._go(act, shape, "b"))
 
     def _late(self, act: Act) -> bool:
@@ -318,9 +319,7 @@ class _Stage:
         refused = (other for other in self.acts if not other.happens and other.act in self.known.entries)
         if any(shape.do != "stay" for other in refused for shape in self.known.entries[other.act].refused):
             return True
-        before = [other for other, _ in self.done if self.level[other.id] < self.level[act.id]]
-        going = {other.id for other, entry in self.done if walks(entry)}
-        return any(other.id not in going for other in before)
+        return any(self.level[other.id] < self.level[act.id] and not walks(entry) for other, entry in self.done)
 
     def _follows(self, act: Act) -> bool:
         """True for an act that comes after what somebody does until then."""
@@ -330,89 +329,82 @@ class _Stage:
         )
 
     def _touch(self, act: Act, shape: shapes.Touch) -> None:
-        if self.contact is not None:
+        giver, lies = act.agents[0], shape.beside and shape.part == "shoulder"  # also of a head on the chest
+        part: shapes.Part = "shoulder" if lies else part_of(act, shape)
+        if self.touch is not None or not part:
             return
-        giver = act.agents[0]
-        lies = shape.beside and shape.part == "shoulder"  # also of a head on the chest
-        region = Region.SHOULDER if lies else region_of(act, shape)
-        if region is None:
-            return
-        hands = act.side if act.side and shape.hands in ("left", "right") else shape.hands
-        sides = {"both": SIDES, "none": ()}.get(hands, (hands,))
-        times = min(act.times or shape.times, 5) if shape.times else 0
-        late = self._follows(act)
         behind = shape.behind or giver in self.behind or FROM_BEHIND in act.manner
-        behind = behind or (region is Region.BACK and not any(e.mutual for _, e in self.done))
-        self.contact = Contact(
-            giver, region, sides, times, late, behind and not shape.beside, shape.fells, shape.beside
+        behind = behind or (part == "back" and not any(e.mutual for _, e in self.done))
+        self.touch = Touch(
+            person=giver,
+            part=part,
+            hands=act.side if act.side and shape.hands in ("left", "right") else shape.hands,
+            times=min(act.times or shape.times, _MOST) if shape.times else 0,
+            late=self._follows(act),
+            behind=behind and not shape.beside,
+            fells=shape.fells,
+            beside=shape.beside,
         )
         if shape.fells:
-            fallen = Change(Posture.LIES, after=0.4)
-            self.changes[other_of(giver)] = (*self.changes.get(other_of(giver), ()), fallen)
+            other = other_of(giver)
+            self.changes[other] = (*self.changes.get(other, ()), Change(posture="lies", after=0.4))
 
-    # ---- what follows from all of them ---------------------------------------------------------------
+    # ---- what yields to what -------------------------------------------------------------------------
 
     def _agree(self) -> None:
         """Settles what two shapes ask of one body: a low person keeps their trunk, a lifted one is turned round."""
-        if (touch := self.contact) is not None and touch.region in LOW:
+        if (touch := self.touch) is not None and touch.part in LOW:
             lowered = {change.posture for change in self.changes.get(touch.person, ())}
             if lowered and lowered <= LOWERED:
                 del self.changes[touch.person]  # they kneel down to what they touch
-                self.contact = replace(touch, late=False)
-        low = {who for who, listed in self.changes.items() if listed[-1].posture is not Posture.STANDS}
+                self.touch = touch.model_copy(update={"late": False})
+        low = {who for who, listed in self.changes.items() if listed[-1].posture != "stands"}
         self.limbs = {who: limbs for who, limbs in self.limbs.items() if who not in low}
-        comes = next((move.person for move in self.moves if move.way is Way.TO), "")
-        if self.lift is not None and comes:
-            self.lift = replace(self.lift, comes=comes)
-        turns = any(move.way in (Way.TURN, Way.FACE) for move in self.moves)
-        if self.lift is not None and (self.twirls or turns):
-            self.lift, self.twirls = replace(self.lift, spins=self.lift.carry is not Carry.BACK), ""
-        for who, listed in self.changes.items():  # gets up from where they are, from a seat if nothing says
-            self.changes[who] = (listed[0], *(c for c in listed[1:] if not c.already))
-        self.changes = {
-            who: tuple(c for i, c in enumerate(listed) if not i or c.passing or c.posture is not listed[i - 1].posture)
-            for who, listed in self.changes.items()
-        }
+        if self.lift is not None:
+            comes = next((move.person for move in self.moves if move.way == "to"), self.lift.comes)
+            turns = bool(self.twirls) or any(move.way in ("turn", "face") for move in self.moves)
+            spins = self.lift.carry != "back" if turns else self.lift.spins
+            self.lift, self.twirls = self.lift.model_copy(update={"comes": comes, "spins": spins}), ""
+        for who, listed in self.changes.items():  # they get up from where they are, from a seat if nothing says
+            first, *later = listed
+            later = [change for change in later if not change.already]
+            new = [c for last, c in pairwise([first, *later]) if c.passing or c.posture != last.posture]
+            self.changes[who] = (first, *new)
 
     def _moves(self, struck: Strike | None) -> tuple[Move, ...]:
-        if self.hold is not None:
-            return tuple(Move(who, Way.HOLD, near=self.hold.value, turns=self.hold.turns) for who in "ab")
+        """The moves of the shape that comes first, of which the others yield."""
+        if self.hold:
+            return held_moves(self.hold)
         if self.lift is not None:
-            return lifted_moves(self.lift, max((m.speed for m in self.moves if m.way is Way.TO), default=1.1))
+            return lifted_moves(self.lift, max((m.speed for m in self.moves if m.way == "to"), default=1.1))
         if self.twirls:
-            other = other_of(self.twirls)
-            turned = Move(other, Way.FACE, late=True), Move(other, Way.TURN, turns=1.0)
-            return Move(self.twirls, Way.TO, near=TWIRL), *turned
-        low = {*self.changes, *self.leaps, *self.figures}
+            return twirled_moves(self.twirls)
         if struck is not None:
             other = other_of(struck.turns[0])
-            own = next((m for m in self.moves if m.person == other and m.way in _DODGES), None)
-            return struck_moves(struck, own, down=other in self.changes)
-        told = [replace(move, linked=move.linked or self.linked) for move in fastest(self.moves)]
-        if {move.person for move in told if move.way is Way.TO} == {"a", "b"}:  # they meet for what they do then
-            told = [replace(m, near=m.near or self._reaching().get(m.person, 0.0)) for m in told]
-        going = {move.person for move in told} | low
-        told += [Move(who, Way.THING) for who in sorted(self.faces - going)]
-        made = finished(told, until=any(move.until for move in self.moves))
-        if not goes(made):
+            dodge = next((m for m in self.moves if m.person == other and m.way in _DODGES), None)
+            return struck_moves(struck, dodge, down=other in self.changes)
+        return self._own_moves()
+
+    def _own_moves(self) -> tuple[Move, ...]:
+        """The moves of people who are free to go; others stay, unless a posture, jump or figure has their legs."""
+        low = {*self.changes, *self.jumps, *self.figures}
+        moves = [replace(move, linked=move.linked or self.linked) for move in fastest(self.moves)]
+        if {move.person for move in moves if move.way == "to"} == {"a", "b"}:  # they meet for what they do then
+            moves = [replace(m, near=m.near or self._reaching().get(m.person, 0.0)) for m in moves]
+        going = {move.person for move in moves} | low
+        moves += [Move(who, "thing") for who in sorted(self.faces - going)]
+        moves = led_backwards(followed(moves, until=any(move.until for move in self.moves)))
+        if not goes(moves):
             stay = self.done and all(only_stays(entry) for _, entry in self.done)
-            return tuple(Move(who, Way.STAY) for who in "ab") if stay and not made else tuple(made)
-        backs = any(move.way in _DODGES for move in made)
+            return tuple(Move(who, "stay") for who in "ab") if stay and not moves else tuple(moves)
+        backs = any(move.way in _DODGES for move in moves)
         acting = {who for act, _ in self.done for who in act.agents}
         for who in "ab":
-            stands = all(move.person != who for move in made) and who not in low
+            stands = all(move.person != who for move in moves) and who not in low
             if stands and not (backs and who in acting):  # a push or a blow takes its own step
-                made.append(Move(who, Way.STAY))
-        return tuple(move for move in made if move.way is not Way.STAY or move.person not in low)
+                moves.append(Move(who, "stay"))
+        return tuple(move for move in moves if move.way != "stay" or move.person not in low)
 
     def _reaching(self) -> dict[str, float]:
         """The metres between the two for what each does within the other's reach."""
         return {who: e.near for act, e in self.done if is_near(act, e) for who in act.agents}
-
-    def _leads_by_both_hands(self, move: Move) -> bool:
-        return move.backwards and move.way is Way.AWAY and move.person not in self.gestures
-
-    def _is_joined(self) -> bool:
-        """True for two who hold each other or are led."""
-        linked = self.linked or any(move.linked for move in self.moves)
-        return bool(self.lift or self.hold or self.twirls or linked)

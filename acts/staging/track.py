@@ -1,8 +1,10 @@
-"""The way of one person over the floor of a beat, laid out move by move."""
+"""The way of one person over the floor of a beat, laid out move by move, and the places of it that are given."""
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,7 +13,8 @@ from numpy.typing import NDArray
 from motion import FPS
 from motion.vectors import wrapped
 
-from .bodies.curves import eased, filled
+from .places import Way2D, eased, filled
+from .window import HALT
 
 Array = NDArray[np.floating]
 
@@ -23,8 +26,10 @@ EVENLY = 8
 """Frames between two given places of a walk whose pace is given: at every other knot of the network."""
 EASE = 0.5
 """Seconds in which a walk gets up its speed, and slows down again."""
-HALT = 0.3
-"""Seconds of its speed that a walk takes to stop."""
+EVERY = 30
+"""Frames between two given places."""
+STEP = math.pi / 3
+"""Radians of a turn between two given headings."""
 
 
 @dataclass
@@ -139,3 +144,32 @@ class Track:
     def left(self) -> float:
         """Seconds until the beat ends."""
         return (len(self.places) - self.frame) / FPS
+
+
+def sampled(who: int, track: Track, *, first: bool) -> Way2D | None:
+    """The way at every :data:`EVERY` frames and at the last one that is planned; also where it begins, if ``first``."""
+    known = np.flatnonzero(np.isfinite(track.places[:, 0]))
+    if not len(known):
+        return None
+    wanted = {
+        *known[known % EVERY == EVERY - 1].tolist(),
+        *(track.dense & set(known.tolist())),
+        int(known[-1]),
+        *([0] if first else []),
+    }
+    frames = [f for f in _with_turns(sorted(wanted), track.headings) if np.isfinite(track.places[f, 0])]
+    headings = track.headings[frames]
+    facing = np.isfinite(headings)
+    return Way2D(who, frames, track.places[frames], np.where(facing, headings, np.nan) if facing.any() else None)
+
+
+def _with_turns(frames: Sequence[int], headings: Array) -> list[int]:
+    """The frames, with more of them where somebody turns: a network that is free there turns them within a few."""
+    found = list(frames)
+    for first, last in itertools.pairwise([0, *frames]):
+        turned = abs(headings[last] - headings[first])
+        if turned > STEP:  # false where either heading is free
+            gone = np.abs(headings[first : last + 1] - headings[first])
+            each = turned / math.ceil(turned / STEP)
+            found += [first + int(np.argmax(gone >= share)) for share in np.arange(each, turned - 0.01, each)]
+    return sorted(set(found))

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from acts import Act, Plan, lexicon
-from acts.staging.bodies.strikes import PERIODS, Bout
+from acts.staging.strikes import BOUTS
 from motion.things import HELD
 
 from .nouns import SEATS, Does, is_fixture, kind_of, nouns_in, on_floor, thing_of
@@ -74,7 +74,7 @@ def _in_turn(use: Use) -> Iterator[Use]:
     if use.does != "throws" or len(use.agents) == 1:
         yield use
         return
-    times = max(round((use.stop - use.start) / PERIODS[Bout.THROWS]), 2)
+    times = max(round((use.stop - use.start) / BOUTS["throws"].period), 2)
     edges = np.linspace(use.start, use.stop, times + 1).astype(int).tolist()
     for i, (start, stop) in enumerate(pairwise(edges)):
         who = use.agents[i % 2]

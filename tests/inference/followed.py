@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from acts.staging.bodies.poses import upright
-from acts.staging.parts import KnownFrames, KnownPath
+from acts.staging.poses import upright
+from acts.staging.window import KnownFrames, KnownPath
 from motion import FPS, Duet
 from motion.transforms import heading
 from webdemo.inference.pipelines.scene import SceneMaker

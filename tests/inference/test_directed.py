@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from acts.staging.parts import KnownFrames, KnownPath, Part
+from acts.staging.window import KnownFrames, KnownPath, Part
 from motion import SMPL22, Duet, InputError
 from motion.transforms import heading_matrix
 from webdemo.inference import Engine, GenerateRequest

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from acts.staging.bodies.poses import upright
+from acts.staging.poses import upright
 from motion import FPS, Duet, InputError
 from motion.metrics.sentences import load_sentences
 from motion.transforms import heading

@@ -7,12 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from acts.staging.contacts import Contact, Region
-from acts.staging.floor import Standing
-from acts.staging.given.contacts import coming, meeting
-from acts.staging.moves import Move
-from acts.staging.told import Told
-from acts.staging.ways import Way
+from acts.staging.places import Standing
+from acts.staging.score import Move, Score, Touch
+from acts.staging.touches import coming, meeting
 from motion import FPS, SMPL22
 from motion.metrics.naturalness import jerk_percentile
 from motion.transforms import heading
@@ -150,9 +147,9 @@ def test_a_touch_of_the_back_or_from_behind_comes_from_there(engine: Engine, pro
 
 def test_a_person_who_comes_up_goes_to_the_side_that_is_touched() -> None:
     stand = Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi]))
-    for behind, way in ((True, Way.BEHIND), (False, Way.TO)):
-        touch = Contact("a", Region.BACK, ("right",), behind=behind)
-        for moves in ((), (Move("a", Way.TO, 1.0),)):
+    for behind, way in ((True, "behind"), (False, "to")):
+        touch = Touch(person="a", part="back", hands="right", behind=behind)
+        for moves in ((), (Move("a", "to", 1.0),)):
             _, found = meeting(touch, moves, {}, stand)
             assert [move.way for move in found if move.person == "a"] == [way]
 
@@ -324,15 +321,15 @@ def test_who_is_far_away_comes_up_first_and_both_face_each_other(engine: Engine,
 
 
 def test_nobody_comes_up_who_is_there_or_has_a_way_of_their_own() -> None:
-    reaching = Told(reaching={"b": 0.4})
+    reaching = Score(reaching={"b": 0.4})
     far = Standing(np.array([[0.0, 0.0], [0.0, 2.5]]), np.array([np.pi, np.pi]))
     near = Standing(np.array([[0.0, 0.0], [0.0, 1.0]]), np.array([np.pi, np.pi]))
-    assert [(m.person, m.way) for m in coming(reaching, far, ())] == [("b", Way.TO), ("a", Way.FACE)]
-    assert [(m.person, m.way) for m in coming(reaching, far, (0,))] == [("b", Way.TO)], "who lies does not turn"
+    assert [(m.person, m.way) for m in coming(reaching, far, ())] == [("b", "to"), ("a", "face")]
+    assert [(m.person, m.way) for m in coming(reaching, far, (0,))] == [("b", "to")], "who lies does not turn"
     assert coming(reaching, near, ()) == ()
-    own = (Move("a", Way.AWAY),)
+    own = (Move("a", "away"),)
     assert coming(replace(reaching, moves=own), far, ()) == own
-    assert coming(Told(), far, ()) == ()
+    assert coming(Score(), far, ()) == ()
 
 
 def test_a_couple_in_hold_steps_and_begins_in_it(engine: Engine) -> None:

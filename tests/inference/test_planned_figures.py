@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from acts.staging.bodies.figures import Figure, figured
-from acts.staging.given.hands import late_by
-from acts.staging.given.room import BODY, distance
+from acts.shapes import Figure
+from acts.staging.figures import figured
+from acts.staging.room import BODY, distance
+from acts.staging.window import late_by
 from motion import SMPL22
 from webdemo.inference import Engine, SceneRequest
 from webdemo.inference.story import Beat
@@ -31,7 +32,7 @@ def test_two_do_push_ups_on_hands_that_stay_and_with_room_for_both(engine: Engin
 def test_a_person_does_a_handstand_and_the_other_stands_by(engine: Engine) -> None:
     found = made(engine, "Person A does a handstand.", seconds=5.0)
     assert (found[0][:, FEET, 1].min(axis=1) > 1.5).sum() > 20
-    figure = Figure("handstand", late=late_by(QUICK["seed"], 0))
+    figure = Figure(figure="handstand", late=late_by(QUICK["seed"], 0))
     wanted = figured(figure, np.zeros(2), 0.0, 150, seed=QUICK["seed"])
     wanted += (found[0, 0, FEET] - wanted[0, FEET]).mean(axis=0)
     assert np.abs(found[0] - wanted).max() < 0.03, "no clean-up plants what is given"

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from acts.staging.bodies.poses import lying, seated, stooping, upright
-from acts.staging.given.postures import led, still_down
+from acts.staging.poses import lying, seated, stooping, upright
+from acts.staging.postures import posture_joints, still_down
 from motion import SMPL22
 from motion.metrics.naturalness import mirror_gap
 from webdemo.inference import Engine, GenerateRequest, SceneRequest
@@ -116,16 +116,6 @@ def test_the_other_hands_of_those_who_walk_hand_in_hand_hang(engine: Engine) -> 
         assert (wrist[:, 1] < found[person, :, SMPL22.index("spine3"), 1] - 0.1).mean() > 0.95
 
 
-def test_notes_say_what_was_read(engine: Engine) -> None:
-    notes = run(engine, GenerateRequest(prompt="Person A sits down.", seconds=3.0, **QUICK)).notes
-    assert any("person A sits" in note for note in notes)
-    beats = (Beat("They sit down."), Beat("Person A gets up and walks away."))
-    (read,) = (n for n in run(engine, SceneRequest(beats=beats, **QUICK)).notes if "From the words" in n)
-    assert "in beat 1 person A sits and person B sits; in beat 2 person A gets up and person A walks away" in read
-    free = run(engine, GenerateRequest(prompt="Person A sits down.", seconds=3.0, planned=False, **QUICK)).notes
-    assert not any("From the words" in note for note in free)
-
-
 def test_who_lies_rests_head_and_shoulders(engine: Engine) -> None:
     found = made(engine, "Person A is lying on the floor.")[0]
     upper = [SMPL22.index(name) for name in ("head", "left_shoulder", "right_shoulder")]
@@ -150,22 +140,22 @@ def test_who_is_down_at_the_end_of_a_beat_is_so_behind_it() -> None:
 def test_who_lies_is_given_the_trunk_and_who_sits_the_legs_alone() -> None:
     given = {}
     for make in (lying, stooping, seated):
-        ((joints, frames, poses),) = led([(3, make(np.zeros(2), 0.0))], 0, 10)
+        ((joints, frames, poses),) = posture_joints([(3, make(np.zeros(2), 0.0))], 0, 10)
         assert list(frames) == [3] and poses.shape == (1, SMPL22.num_joints, 3)
         given[make] = {SMPL22.joint_names[joint] for joint in joints}
     assert given[lying] == given[stooping] > given[seated]
     assert {"pelvis", "left_ankle", "right_foot"} < given[seated]
-    ((joints, *_),) = led([(3, stooping(np.zeros(2), 0.0))], 0, 10, arms=True)
+    ((joints, *_),) = posture_joints([(3, stooping(np.zeros(2), 0.0))], 0, 10, arms=True)
     assert {SMPL22.joint_names[joint] for joint in joints} - given[stooping] == {
         "left_elbow",
         "right_elbow",
         "left_wrist",
         "right_wrist",
     }
-    ((joints, *_),) = led([(3, lying(np.zeros(2), 0.0))], 0, 10, loose=True)
+    ((joints, *_),) = posture_joints([(3, lying(np.zeros(2), 0.0))], 0, 10, loose=True)
     assert {SMPL22.index("left_wrist"), SMPL22.index("right_elbow")} < set(joints)
     down = [(f, lying(np.zeros(2), 0.0)) for f in range(20, 60, 4)]
-    groups = list(led([(3, upright(np.zeros(2), 0.0)), *down], 0, 60, loose=True))
+    groups = list(posture_joints([(3, upright(np.zeros(2), 0.0)), *down], 0, 60, loose=True))
     hands = {frame for joints, frames, _ in groups for frame in frames if SMPL22.index("left_wrist") in joints}
     assert min(hands) == 40 and max(hands) == 56, "a hand comes to lie on the belly a little later"
     assert given[lying] - given[seated] == {

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from acts.staging.parts import KnownFrames, KnownPath
-from acts.staging.told import Told
+from acts.staging.score import Score
+from acts.staging.window import KnownFrames, KnownPath
 from motion import InputError
 from motion.looks import UNSAID
 from webdemo.inference import Engine, GenerateRequest, ReactRequest, SceneRequest
@@ -73,13 +73,14 @@ def changed_stage(monkeypatch: pytest.MonkeyPatch) -> None:
         place = np.array([[1.5, 1.0]])
         return [KnownPath(person, [of.past + 20], place) for person in (0, 1) if person not in taken]
 
-    monkeypatch.setattr(window, "planned", elsewhere)
+    monkeypatch.setattr(window, "plan_parts", elsewhere)
     monkeypatch.setattr(window, "wishes", lambda *_: ([], ["Not so."]))
     monkeypatch.setattr(window, "_anchor", lambda _: (3.0, 3.0, 1.0))
     alone = ("One person falls.", "One person jumps.")
     monkeypatch.setattr(intergen, "of_each", lambda *_: alone)
-    for module in (request, prompts, intergen):
-        monkeypatch.setattr(module, "staged", lambda _: Told(alone=alone))
+    monkeypatch.setattr(request, "scores_of", lambda story: tuple(Score(alone=alone) for _ in story))
+    for module in (prompts, intergen):
+        monkeypatch.setattr(module, "score_of", lambda _: Score(alone=alone))
     monkeypatch.setattr(prompts, "_beats", lambda *_: (Beat("They hug."), Beat("They bow.")))
 
 

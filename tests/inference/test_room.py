@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 from acts import read
-from acts.staging.bodies.poses import at_rest, bowing, lying, stooping, upright
-from acts.staging.floor import Standing
-from acts.staging.given.beat import plan_note
-from acts.staging.given.postures import postures
-from acts.staging.given.room import BODY, distance, roomy
-from acts.staging.stage import staged
-from acts.staging.told import Told
+from acts.staging.places import Standing
+from acts.staging.poses import at_rest, bowing, lying, stooping, upright
+from acts.staging.postures import postures
+from acts.staging.room import BODY, distance, roomy
+from acts.staging.score import Score
+from acts.staging.stage import score_of
 from motion import FPS, SMPL22, Duet
 from webdemo.inference import SceneRequest
 from webdemo.inference.story import Beat
@@ -29,8 +28,8 @@ def follower(monkeypatch: pytest.MonkeyPatch) -> Follower:
     return Follower(monkeypatch)
 
 
-def told(*words: str) -> list[Told]:
-    return [staged(read(each).acts) for each in words]
+def score(*words: str) -> list[Score]:
+    return [score_of(read(each).acts) for each in words]
 
 
 def scene(follower: Follower, *words: str, **fields: Any) -> np.ndarray:
@@ -110,7 +109,7 @@ def test_the_heads_of_two_who_bow_are_counted_to_their_tops() -> None:
 def test_who_gets_up_sits_up_first_and_keeps_the_feet_low() -> None:
     stand = Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi]))
     last = lying(np.zeros(2), 0.0)
-    poses = dict(postures(told("Person A falls over.", "Person A gets up."), 1, 0, 60, 180, stand, last))
+    poses = dict(postures(score("Person A falls over.", "Person A gets up."), 1, 0, 60, 180, stand, last))
     frames = sorted(poses)
     heights = [poses[f][0, 1] for f in frames]
     assert np.diff(heights).min() > -0.01 and heights[-1] > 0.9
@@ -126,7 +125,7 @@ def test_who_gets_up_sits_up_first_and_keeps_the_feet_low() -> None:
 @pytest.mark.parametrize("words", ["sits down", "kneels down", "falls over", "sits down on the floor"])
 def test_nobody_drops_into_a_posture(words: str) -> None:
     stand = Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi]))
-    poses = postures(told("They wave.", f"Person A {words}."), 1, 0, 60, 180, stand, upright(np.zeros(2), 0.0))
+    poses = postures(score("They wave.", f"Person A {words}."), 1, 0, 60, 180, stand, upright(np.zeros(2), 0.0))
     low = poses[-1][1][0, 1]
     frame = next(frame for frame, pose in poses if pose[0, 1] < low + 0.02)
     assert low < 0.7 and 1.0 <= (frame - 60) / FPS <= 2.0, "seconds that people take for it"
@@ -136,7 +135,7 @@ def test_who_lies_down_sits_down_first_and_takes_longer_than_who_falls() -> None
     stand, up = (Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi])), upright(np.zeros(2), 0.0))
     flat = {}
     for words in ("lies down", "falls over"):
-        poses = postures(told("They wave.", f"Person A {words}."), 1, 0, 60, 180, stand, up)
+        poses = postures(score("They wave.", f"Person A {words}."), 1, 0, 60, 180, stand, up)
         heads = [pose[SMPL22.index("head"), 1] for _, pose in poses]
         assert np.diff(heads).max() < 0.02, "down all the way"
         assert any(0.4 < head < 0.75 for head in heads), "the trunk goes down between sitting and lying"
@@ -144,7 +143,7 @@ def test_who_lies_down_sits_down_first_and_takes_longer_than_who_falls() -> None
         halfway = next(frame for (frame, _), head in zip(poses, heads, strict=True) if head < 1.2)
         assert halfway - 60 >= 15, "nobody drops at once"
     assert flat["lies down"] - flat["falls over"] > 30 and flat["lies down"] - 60 < 105
-    hurried = postures(told("They wave.", "Person A lies down."), 1, 0, 60, 110, stand, up)
+    hurried = postures(score("They wave.", "Person A lies down."), 1, 0, 60, 110, stand, up)
     assert hurried[-1][1][0, 1] < 0.2, "in a short beat as well"
 
 
@@ -171,15 +170,9 @@ def test_who_lies_at_rest_has_a_hand_on_the_belly() -> None:
 
 def test_a_trunk_bends_down_and_rises_evenly() -> None:
     stand = Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi]))
-    story = told("They wave.", "Person A bends down.", "Person A straightens up.")
+    story = score("They wave.", "Person A bends down.", "Person A straightens up.")
     for beat, last, sign in ((1, upright(np.zeros(2), 0.0), -1), (2, stooping(np.zeros(2), 0.0), 1)):
         poses = postures(story, beat, 0, 60, 180, stand, last)
         heads = np.array([pose[SMPL22.index("head"), 1] for frame, pose in poses if frame <= 60 + 40])
         steps = sign * np.diff(heads)
         assert abs(heads[-1] - heads[0]) > 0.4 and steps.min() > -0.01 and steps.max() < 0.2
-
-
-def test_a_note_lets_nobody_stand_who_sits() -> None:
-    (note,) = plan_note(SceneRequest(beats=(Beat("Two people sit back to back on the floor."),)))
-    assert "sits on the ground" in note and "has their back to the other's" in note
-    assert "stands" not in note

@@ -251,8 +251,6 @@ def test_words_that_send_people_are_followed(engine: Engine) -> None:
     free = run(engine, SceneRequest(beats=beats, seed=3, planned=False, cleanup=False, **QUICK))
     assert apart(planned)[-1] > 3.0 and apart(planned)[-1] > apart(free)[-1] + 0.5
     np.testing.assert_array_equal(positions(planned)[:, :60], positions(free)[:, :60])
-    assert any("person A walks away" in note for note in planned.notes)
-    assert not any("From the words" in note for note in free.notes)
 
 
 def test_a_result_says_what_share_of_it_the_plan_lays_out(engine: Engine) -> None:
@@ -298,7 +296,6 @@ def test_a_span_and_a_loop_are_left_to_the_network(engine: Engine, story: Result
     assert isinstance(given, Duet)
     words = Beat("They walk away from each other.")
     span = SceneRequest(beats=(words,), motion=given, start=2.0, end=5.0, **QUICK)
-    assert not [note for note in run(engine, span).notes if "From the words" in note]
     np.testing.assert_array_equal(positions(run(engine, span)), positions(run(engine, replace(span, planned=False))))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from acts.staging.bodies.poses import about
+from acts.staging.poses import about
 from motion import SMPL22
 from motion.arm_swing import swinging
 from motion.kinematics import forward_kinematics

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from acts.staging.bodies.poses import kneeling, lying, upright
+from acts.staging.poses import kneeling, lying, upright
 from motion import SMPL22
 from motion.ground import _turned_up, above_floor
 

@@ -5,73 +5,68 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from acts import read
-from acts.staging.bodies.gestures import Gesture
-from acts.staging.bodies.strikes import Strike
-from acts.staging.contacts import Contact
-from acts.staging.floor import Standing
-from acts.staging.holds import Hold
-from acts.staging.lifts import Lift
-from acts.staging.moves import Move
-from acts.staging.postures import Change
-from acts.staging.stage import staged
-from acts.staging.told import Told
+from acts.shapes import Gesture
+from acts.staging.beginnings import placed
+from acts.staging.places import Standing
+from acts.staging.score import Change, Lift, Move, Score, Strike, Touch
+from acts.staging.stage import score_of
 
 
-def told(words: str) -> Told:
-    return staged(read(words).acts)
+def score(words: str) -> Score:
+    return score_of(read(words).acts)
 
 
 def moves(words: str) -> tuple[Move, ...]:
-    return told(words).moves
+    return score(words).moves
 
 
-def contact(words: str) -> Contact | None:
-    return told(words).contact
+def contact(words: str) -> Touch | None:
+    return score(words).touch
 
 
-def hold(words: str) -> Hold | None:
-    return told(words).hold
+def hold(words: str) -> str:
+    return score(words).hold
 
 
 def twirls(words: str) -> str:
-    return told(words).twirls
+    return score(words).twirls
 
 
 def lift(words: str) -> Lift | None:
-    return told(words).lift
+    return score(words).lift
 
 
 def strike(words: str) -> Strike | None:
-    return told(words).strike
+    return score(words).strike
 
 
 def gestures(words: str) -> Mapping[str, Gesture]:
-    return told(words).gestures
+    return score(words).gestures
 
 
 def changes(words: str) -> Mapping[str, tuple[Change, ...]]:
-    return told(words).changes
+    return score(words).changes
 
 
 def leaps(words: str) -> Mapping[str, int]:
-    return told(words).leaps
+    return {who: jump.times for who, jump in score(words).jumps.items()}
 
 
 def bows(words: str) -> Mapping[str, tuple[int, bool]]:
-    return told(words).bows
+    return {who: (bow.times, bow.deep) for who, bow in score(words).bows.items()}
 
 
 def beginning(words: str) -> Standing | None:
-    return told(words).placed
+    return placed(score(words))
 
 
 def idle(words: str) -> frozenset[str]:
-    return told(words).idle
+    return score(words).idle
 
 
 def gesturing(words: str) -> frozenset[str]:
-    return told(words).gesturing
+    return score(words).gesturing
 
 
 def is_planned(words: str) -> bool:
-    return told(words).is_planned
+    return score(words).is_planned

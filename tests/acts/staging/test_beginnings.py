@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from acts.staging.beginnings import BACKS
-from acts.staging.bodies.poses import grounded, upright
 from acts.staging.floor import ABREAST
+from acts.staging.poses import grounded, upright
 from motion import SMPL22
 
 from .staged_words import beginning

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acts.staging.bodies.poses import bending, kneeling, lying, upright
-from acts.staging.contacts import Contact, Region, beside, kneels, lean, middle, reach, touched, touching
+from acts.shapes import Part
+from acts.staging.poses import bending, kneeling, lying, upright
+from acts.staging.score import Touch
+from acts.staging.touches import beside, kneels, lean, middle, reach, touched, touching
 from motion import SMPL22
 
 from .staged_words import contact
@@ -17,21 +19,21 @@ ORIGIN = np.zeros(2)
 @pytest.mark.parametrize(
     ("sentence", "found"),
     [
-        ("Person B pats person A on the shoulder.", ("b", Region.SHOULDER, 1, 2)),
-        ("Person A lays a hand on person B's head.", ("a", Region.HEAD, 1, 0)),
-        ("A puts both hands on B's shoulders", ("a", Region.SHOULDER, 2, 0)),
-        ("Person A is tapped on the back by person B.", ("b", Region.BACK, 1, 2)),
-        ("A girl kisses a boy on the cheek.", ("a", Region.HEAD, 0, 0)),
-        ("The man kisses her.", ("a", Region.HEAD, 0, 0)),
-        ("She grabs him by the arm.", ("a", Region.ARM, 1, 0)),
-        ("She examines his knee.", ("a", Region.LEG, 1, 0)),
-        ("He pats her head twice.", ("a", Region.HEAD, 1, 2)),
-        ("Person A covers person B's eyes with both hands.", ("a", Region.HEAD, 2, 0)),
-        ("Person B gets hugged from behind by person A.", ("a", Region.WAIST, 2, 0)),
-        ("They turn to each other and kiss.", ("a", Region.HEAD, 0, 0)),
-        ("Person A is knocked over by the other person.", ("b", Region.CHEST, 2, 1)),
-        ("Person A pushes person B to the ground.", ("a", Region.CHEST, 2, 1)),
-        ("A mother comforts her crying child.", ("a", Region.SHOULDER, 1, 0)),
+        ("Person B pats person A on the shoulder.", ("b", "shoulder", 1, 2)),
+        ("Person A lays a hand on person B's head.", ("a", "head", 1, 0)),
+        ("A puts both hands on B's shoulders", ("a", "shoulder", 2, 0)),
+        ("Person A is tapped on the back by person B.", ("b", "back", 1, 2)),
+        ("A girl kisses a boy on the cheek.", ("a", "head", 0, 0)),
+        ("The man kisses her.", ("a", "head", 0, 0)),
+        ("She grabs him by the arm.", ("a", "arm", 1, 0)),
+        ("She examines his knee.", ("a", "leg", 1, 0)),
+        ("He pats her head twice.", ("a", "head", 1, 2)),
+        ("Person A covers person B's eyes with both hands.", ("a", "head", 2, 0)),
+        ("Person B gets hugged from behind by person A.", ("a", "waist", 2, 0)),
+        ("They turn to each other and kiss.", ("a", "head", 0, 0)),
+        ("Person A is knocked over by the other person.", ("b", "chest", 2, 1)),
+        ("Person A pushes person B to the ground.", ("a", "chest", 2, 1)),
+        ("A mother comforts her crying child.", ("a", "shoulder", 1, 0)),
         # none that is planned
         ("He covers his eyes.", None),
         ("Person A does not touch person B's arm.", None),
@@ -42,9 +44,9 @@ ORIGIN = np.zeros(2)
         ("", None),
     ],
 )
-def test_contacts_are_read(sentence: str, found: tuple[str, Region, int, int] | None) -> None:
+def test_contacts_are_read(sentence: str, found: tuple[str, str, int, int] | None) -> None:
     touch = contact(sentence)
-    assert (touch and (touch.person, touch.region, len(touch.sides), touch.times)) == found
+    assert (touch and (touch.person, touch.part, len(touch.sides), touch.times)) == found
 
 
 def test_a_named_hand_touches_and_a_touch_may_come_late() -> None:
@@ -54,13 +56,13 @@ def test_a_named_hand_touches_and_a_touch_may_come_late() -> None:
     assert late is not None and late.late
 
 
-@pytest.mark.parametrize("region", [region for region in list(Region)[:7] if region is not Region.WAIST])
-def test_a_hand_that_comes_near_is_at_the_joint(region: Region) -> None:
-    touch = Contact("a", region, ("right",))
+@pytest.mark.parametrize("part", ["head", "shoulder", "back", "chest", "arm", "hand"])
+def test_a_hand_that_comes_near_is_at_the_joint(part: Part) -> None:
+    touch = Touch(person="a", part=part, hands="right")
     for pose in (upright(ORIGIN, np.pi), kneeling(ORIGIN, np.pi)):
         apart = reach(touch, pose)
         assert 0.3 < apart < 1.0
-        head = pose[SMPL22.index("head")] if region is Region.HEAD else pose[0]
+        head = pose[SMPL22.index("head")] if part == "head" else pose[0]
         place = np.array([head[0], head[2] - apart])
         own = bending(place, 0.0, lean(touch, pose))
         (wrist,) = touched(touch, pose, own)
@@ -68,9 +70,9 @@ def test_a_hand_that_comes_near_is_at_the_joint(region: Region) -> None:
         assert np.linalg.norm(own[SMPL22.index("right_shoulder")] - wrist) < 0.75, "about an arm away"
 
 
-@pytest.mark.parametrize("region", [Region.HEAD, Region.SHOULDER, Region.CHEST, Region.LEG, Region.FOOT])
-def test_who_touches_a_person_who_lies_kneels_down_beside_them(region: Region) -> None:
-    touch, pose = Contact("a", region, ("right",)), lying(ORIGIN, 0.0)
+@pytest.mark.parametrize("part", ["head", "shoulder", "chest", "leg", "foot"])
+def test_who_touches_a_person_who_lies_kneels_down_beside_them(part: Part) -> None:
+    touch, pose = Touch(person="a", part=part, hands="right"), lying(ORIGIN, 0.0)
     heading = beside(pose, np.array([2.0, -1.0]))
     assert heading is not None and abs(heading + np.pi / 2) < 0.01, "across the body, from their side of it"
     place = middle(touch, pose)[[0, 2]] + reach(touch, pose) * np.array([1.0, 0.0])
@@ -81,9 +83,10 @@ def test_who_touches_a_person_who_lies_kneels_down_beside_them(region: Region) -
 
 
 def test_nobody_kneels_to_touch_a_person_on_their_feet_above_the_knee() -> None:
-    for region in (Region.HEAD, Region.ARM, Region.HAND, Region.CHEST):
-        assert not kneels(Contact("a", region, ("right",)), upright(ORIGIN, 0.0))
-    assert kneels(Contact("a", Region.FOOT, ("right",)), upright(ORIGIN, 0.0))
+    parts: tuple[Part, ...] = ("head", "arm", "hand", "chest")
+    for part in parts:
+        assert not kneels(Touch(person="a", part=part, hands="right"), upright(ORIGIN, 0.0))
+    assert kneels(Touch(person="a", part="foot", hands="right"), upright(ORIGIN, 0.0))
     assert beside(upright(ORIGIN, 0.0), np.ones(2)) is None
 
 
@@ -97,16 +100,16 @@ def test_arms_go_round_who_is_hugged_from_behind() -> None:
 
 
 def test_who_reaches_down_leans_forward_and_who_reaches_up_does_not() -> None:
-    touch = Contact("a", Region.SHOULDER, ("right",))
+    touch = Touch(person="a", part="shoulder", hands="right")
     assert lean(touch, lying(ORIGIN, 0.0)) > 0.9 > 0.2 > lean(touch, upright(ORIGIN, 0.0))
 
 
 def test_two_hands_are_apart_and_a_back_is_touched_from_behind() -> None:
     other, own = upright(ORIGIN, 0.0), upright(np.array([0.0, -0.5]), 0.0)
-    left, right = touched(Contact("a", Region.HEAD, ("left", "right")), other, own)
+    left, right = touched(Touch(person="a", part="head", hands="both"), other, own)
     assert left[0] - right[0] > 0.1
-    (wrist,) = touched(Contact("a", Region.BACK, ("right",)), other, own)
+    (wrist,) = touched(Touch(person="a", part="back", hands="right"), other, own)
     spine, shoulder = (other[SMPL22.index(name)] for name in ("spine3", "right_shoulder"))
     assert np.linalg.norm(wrist - spine) < 0.2 and wrist[2] < spine[2]
-    (front,) = touched(Contact("a", Region.BACK, ("right",)), other, upright(np.array([0.0, 0.5]), np.pi))
+    (front,) = touched(Touch(person="a", part="back", hands="right"), other, upright(np.array([0.0, 0.5]), np.pi))
     assert np.linalg.norm(front - shoulder) > np.linalg.norm(front - other[SMPL22.index("left_shoulder")])

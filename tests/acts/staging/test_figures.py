@@ -9,9 +9,10 @@ import pytest
 from numpy.typing import NDArray
 
 from acts import shapes
-from acts.staging.bodies.figure_floor import _CLEARANCES
-from acts.staging.bodies.figures import Figure, figured, figures
-from acts.staging.bodies.poses import upright
+from acts.shapes import Figure
+from acts.staging.figure_floor import _CLEARANCES
+from acts.staging.figures import figured, figures
+from acts.staging.poses import upright
 from motion import SMPL22
 
 J = {name: i for i, name in enumerate(SMPL22.joint_names)}
@@ -22,7 +23,7 @@ IN_THE_AIR = ("jumping-jacks", "leapfrog", "shoots", "skips-rope", "hops", "smas
 
 def made(name: str, seconds: float = 6.0, **more: object) -> NDArray[np.floating]:
     """A figure of a person who stands at the origin and faces +Z."""
-    return figured(Figure(name, **more), np.zeros(2), 0.0, round(seconds * 30))  # type: ignore[arg-type]
+    return figured(Figure(figure=name, **more), np.zeros(2), 0.0, round(seconds * 30))  # type: ignore[arg-type]
 
 
 def heights(poses: NDArray[np.floating]) -> NDArray[np.floating]:
@@ -130,7 +131,7 @@ def test_a_person_who_follows_the_other_is_as_late_as_said() -> None:
 
 
 def test_each_seed_wavers_in_its_own_way_with_hands_in_the_air_alone() -> None:
-    one, other = (figured(Figure("handstand"), np.zeros(2), 0.0, 150, seed) for seed in (1, 2))
+    one, other = (figured(Figure(figure="handstand"), np.zeros(2), 0.0, 150, seed) for seed in (1, 2))
     apart = np.linalg.norm(one - other, axis=-1)
     assert apart[:, HANDS].max() > 0.01 and apart[:, FEET][:20].max() < 1e-3
     down = (one[:, HANDS, 1] < 0.075).all(axis=1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acts.staging.bodies.gaits import CYCLE, GAITS, low_gait
+from acts.staging.gaits import CYCLE, GAITS, low_gait
 from motion import SMPL22
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.poses import low

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acts.staging.bodies.poses import upright
-from acts.staging.holds import TWIRL, Hold, joined, raised
+from acts.staging.holds import HOLDS, TWIRL, joined, raised
+from acts.staging.poses import upright
 from motion import SMPL22
 
 from .staged_words import hold, twirls
@@ -19,26 +19,26 @@ LEFT, RIGHT = 0, 1
 @pytest.mark.parametrize(
     ("sentence", "found"),
     [
-        ("A couple dances the tango.", Hold.CLOSED),
-        ("couple dancing a slow waltz", Hold.CLOSED),
-        ("They take each other by both hands and spin round and round.", Hold.RING),
-        ("Two girls join hands and dance around in circles.", Hold.RING),
-        ("They push palm against palm.", Hold.PALMS),
-        ("They try to push each other over, palms against palms.", Hold.PALMS),
+        ("A couple dances the tango.", "closed"),
+        ("couple dancing a slow waltz", "closed"),
+        ("They take each other by both hands and spin round and round.", "ring"),
+        ("Two girls join hands and dance around in circles.", "ring"),
+        ("They push palm against palm.", "palms"),
+        ("They try to push each other over, palms against palms.", "palms"),
         # no hold
-        ("They dance.", None),
-        ("They hold hands and walk.", None),
-        ("Person A dances a tango while person B watches.", None),
-        ("They stop dancing the tango.", None),
-        ("", None),
+        ("They dance.", ""),
+        ("They hold hands and walk.", ""),
+        ("Person A dances a tango while person B watches.", ""),
+        ("They stop dancing the tango.", ""),
+        ("", ""),
     ],
 )
-def test_holds_are_read(sentence: str, found: Hold | None) -> None:
-    assert hold(sentence) is found
+def test_holds_are_read(sentence: str, found: str) -> None:
+    assert hold(sentence) == found
 
 
 def test_a_leads_with_the_left_hand_and_has_the_right_on_the_partners_back() -> None:
-    hands = joined(Hold.CLOSED, FACING)[:, :, 0]
+    hands = joined("closed", FACING)[:, :, 0]
     assert np.linalg.norm(hands[0, LEFT] - hands[1, RIGHT]) < 0.1
     assert hands[0, LEFT][0] > 0.3, "out to a's left side, which is +X"
     assert abs(hands[0, RIGHT][2] - 0.5) < 0.1 and hands[0, RIGHT][1] > 1.0
@@ -50,7 +50,7 @@ def test_both_hands_are_joined_in_a_ring_wherever_it_has_turned_to() -> None:
     for angle in np.linspace(0, 6, 7):
         ahead = np.array([np.sin(angle), np.cos(angle)])
         places = np.stack([-0.4 * ahead, 0.4 * ahead])[:, None]
-        hands = joined(Hold.RING, places)[:, :, 0]
+        hands = joined("ring", places)[:, :, 0]
         assert np.linalg.norm(hands[0, LEFT] - hands[1, RIGHT]) < 0.1
         assert np.linalg.norm(hands[0, RIGHT] - hands[1, LEFT]) < 0.1
         assert np.linalg.norm(hands[0, LEFT] - hands[0, RIGHT]) > 0.4
@@ -82,7 +82,7 @@ def test_the_hands_over_a_twirl_are_above_both_heads_and_in_reach_of_both() -> N
 
 
 def test_palms_are_against_palms_before_the_shoulders_of_two_who_lean_in_and_do_not_turn() -> None:
-    hands = joined(Hold.PALMS, np.array([[[0.0, 0.0]], [[0.0, Hold.PALMS.value]]]))[:, :, 0]
+    hands = joined("palms", np.array([[[0.0, 0.0]], [[0.0, HOLDS["palms"].apart]]]))[:, :, 0]
     for own, theirs in ((LEFT, RIGHT), (RIGHT, LEFT)):
         assert np.linalg.norm(hands[0, own] - hands[1, theirs]) < 0.15 and hands[0, own][1] > 1.2
-    assert Hold.PALMS.turns == 0 and Hold.PALMS.lean > 0.2 and Hold.RING.lean == 0
+    assert HOLDS["palms"].turns == 0 and HOLDS["palms"].lean > 0.2 and HOLDS["ring"].lean == 0

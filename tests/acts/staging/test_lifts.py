@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acts.staging.lifts import Carry, Lift, carried
+from acts.staging.lifts import carried
+from acts.staging.score import Lift
 from motion import SMPL22
 from motion.metrics.naturalness import limb_depth
 
@@ -15,21 +16,21 @@ from .staged_words import beginning, lift, moves
 @pytest.mark.parametrize(
     ("words", "found"),
     [
-        ("He picks her up.", Lift("a", Carry.UP)),
-        ("He picks her up and spins her around.", Lift("a", Carry.UP, spins=True)),
-        ("The groom sweeps the bride off her feet and whirls her round.", Lift("a", Carry.UP, spins=True)),
-        ("A man lifts a woman off the ground.", Lift("a", Carry.UP)),
-        ("She picks up her baby.", Lift("a", Carry.UP)),
-        ("The groom sweeps the bride off her feet.", Lift("a", Carry.UP)),
-        ("She runs to him and jumps into his arms.", Lift("b", Carry.UP, comes="a")),
-        ("A father carries his daughter on his back.", Lift("a", Carry.BACK)),
-        ("Person A gives person B a piggyback ride.", Lift("a", Carry.BACK)),
-        ("Person A jumps onto person B's back.", Lift("b", Carry.BACK)),
-        ("The groom carries the bride in his arms.", Lift("a", Carry.ARMS)),
-        ("She is carried away by him.", Lift("b", Carry.ARMS)),
-        ("He walks up to her, picks her up and carries her away.", Lift("a", Carry.ARMS, comes="a")),
-        ("Someone is dragging an unconscious man across the floor.", Lift("a", Carry.DRAGS)),
-        ("He pulls her by the ankles.", Lift("a", Carry.DRAGS)),
+        ("He picks her up.", Lift(carrier="a", carry="up")),
+        ("He picks her up and spins her around.", Lift(carrier="a", carry="up", spins=True)),
+        ("The groom sweeps the bride off her feet and whirls her round.", Lift(carrier="a", carry="up", spins=True)),
+        ("A man lifts a woman off the ground.", Lift(carrier="a", carry="up")),
+        ("She picks up her baby.", Lift(carrier="a", carry="up")),
+        ("The groom sweeps the bride off her feet.", Lift(carrier="a", carry="up")),
+        ("She runs to him and jumps into his arms.", Lift(carrier="b", carry="up", comes="a")),
+        ("A father carries his daughter on his back.", Lift(carrier="a", carry="back")),
+        ("Person A gives person B a piggyback ride.", Lift(carrier="a", carry="back")),
+        ("Person A jumps onto person B's back.", Lift(carrier="b", carry="back")),
+        ("The groom carries the bride in his arms.", Lift(carrier="a", carry="arms")),
+        ("She is carried away by him.", Lift(carrier="b", carry="arms")),
+        ("He walks up to her, picks her up and carries her away.", Lift(carrier="a", carry="arms", comes="a")),
+        ("Someone is dragging an unconscious man across the floor.", Lift(carrier="a", carry="drags")),
+        ("He pulls her by the ankles.", Lift(carrier="a", carry="drags")),
     ],
 )
 def test_lifts_are_read(words: str, found: Lift) -> None:
@@ -58,9 +59,9 @@ def test_other_words_lift_nobody(words: str) -> None:
     assert lift(words) is None
 
 
-@pytest.mark.parametrize("carry", list(Carry))
+@pytest.mark.parametrize("carry", ["up", "arms", "back", "drags"])
 @pytest.mark.parametrize("angle", [0.0, 1.9])
-def test_who_is_carried_is_off_the_floor_in_reach_of_both_hands(carry: Carry, angle: float) -> None:
+def test_who_is_carried_is_off_the_floor_in_reach_of_both_hands(carry: str, angle: float) -> None:
     pose, carrier = carried(carry, np.array([0.4, -0.2]), angle)
     feet = [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("ankle", "foot")]
     assert pose[feet, 1].min() > 0.15 and pose[:, 1].min() > -0.02 and np.abs(carrier[feet, 1]).max() < 0.15
@@ -70,7 +71,7 @@ def test_who_is_carried_is_off_the_floor_in_reach_of_both_hands(carry: Carry, an
             shoulder, wrist = one[SMPL22.index(f"{side}_shoulder")], one[SMPL22.index(f"{side}_wrist")]
             assert np.linalg.norm(wrist - shoulder) < arm + 0.12
             loose = one is pose and (
-                carry is Carry.DRAGS or (carry is Carry.ARMS and side == "left")
+                carry == "drags" or (carry == "arms" and side == "left")
             )  # their arms trail on the floor, or a hand lies in the lap
             assert loose or np.linalg.norm(other - wrist, axis=-1).min() < 0.25
     still, other = carried(carry, np.zeros(2), 0.0)
@@ -79,7 +80,7 @@ def test_who_is_carried_is_off_the_floor_in_reach_of_both_hands(carry: Carry, an
 
 
 def test_the_legs_of_somebody_on_the_back_are_beside_the_carrier_and_not_inside() -> None:
-    pose, carrier = carried(Carry.BACK, np.zeros(2), 0.4)
+    pose, carrier = carried("back", np.zeros(2), 0.4)
     arms = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("elbow", "wrist")]
     pose[arms], carrier[arms] = [0.0, 9.0, 0.0], [0.0, 19.0, 0.0]  # arms are bent later
     assert limb_depth(pose[None], carrier[None])[0] < 0.02
@@ -87,7 +88,7 @@ def test_the_legs_of_somebody_on_the_back_are_beside_the_carrier_and_not_inside(
 
 
 def test_the_arm_that_carries_the_legs_goes_under_the_thighs_and_not_through() -> None:
-    pose, carrier = carried(Carry.ARMS, np.zeros(2), 0.4)
+    pose, carrier = carried("arms", np.zeros(2), 0.4)
     carrier[[SMPL22.index("left_elbow"), SMPL22.index("left_wrist")]] = carrier[SMPL22.index("left_shoulder")]
     pose[[SMPL22.index("right_elbow"), SMPL22.index("right_wrist")]] = pose[SMPL22.index("right_shoulder")]
     assert limb_depth(carrier[None], pose[None])[0] < 0.03
@@ -100,7 +101,7 @@ def test_the_arm_that_carries_the_legs_goes_under_the_thighs_and_not_through() -
 def test_who_is_carried_from_the_start_is_behind_and_who_is_lifted_before_the_other() -> None:
     behind, before = beginning("He carries her away."), beginning("She is lifted up by him.")
     assert behind is not None and behind.places[1, 1] < behind.places[0, 1] and not behind.headings.any()
-    assert before is not None and before.gap() == pytest.approx(Carry.UP.near)
+    assert before is not None and before.gap() == pytest.approx(0.45)
     other = beginning("Person B carries person A away.")
     assert other is not None and other.places[0, 1] < other.places[1, 1]
     assert beginning("He walks up to her and picks her up.") is None

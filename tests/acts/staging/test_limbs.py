@@ -8,9 +8,10 @@ import pytest
 from acts import lexicon
 from acts.checking import checked
 from acts.plan import Act, Plan
-from acts.staging.bodies.limbs import MOVES, RAISES, Limb, limbed
-from acts.staging.bodies.poses import upright
-from acts.staging.stage import staged
+from acts.shapes import Limb
+from acts.staging.limbs import MOVES, RAISES, limbed
+from acts.staging.poses import upright
+from acts.staging.stage import score_of
 from motion import FPS, SMPL22, Duet
 from webdemo.inference.pipelines.given import NAMES
 
@@ -18,7 +19,7 @@ SECONDS = np.arange(150) / FPS
 
 
 def motion(does: str, **fields: object) -> np.ndarray:
-    return limbed([Limb(does, **fields)], np.array([0.5, 1.0]), 0.7, SECONDS, 5.0)  # type: ignore[arg-type]
+    return limbed([Limb(does=does, **fields)], np.array([0.5, 1.0]), 0.7, SECONDS, 5.0)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("does", sorted(MOVES))
@@ -42,8 +43,8 @@ def test_the_foot_that_is_not_raised_stays(does: str) -> None:
 
 
 def test_the_one_who_is_dipped_leans_far_back_in_the_others_hands() -> None:
-    stage = staged((Act(id="1", act="dip", agents=("a",), patient="b"),))
-    assert stage.contact is not None and stage.contact.person == "a" and "a" not in stage.limbs
+    stage = score_of((Act(id="1", act="dip", agents=("a",), patient="b"),))
+    assert stage.touch is not None and stage.touch.person == "a" and "a" not in stage.limbs
     (limb,) = stage.limbs["b"]
     found = limbed([limb], np.zeros(2), 0.0, SECONDS, 5.0)
     neck, pelvis = found[75, SMPL22.index("neck")], found[75, 0]
@@ -60,7 +61,7 @@ def test_an_act_of_limbs_does_what_its_rule_asks_for(name: str) -> None:
     """The rule fails on a standing person, and holds for the poses that the stage gives."""
     act = Act(id="1", act=name, agents=("a",))
     other = np.tile(upright(np.array([0.0, 1.2]), np.pi), (len(SECONDS), 1, 1))
-    moved = limbed(staged((act,)).limbs["a"], np.zeros(2), 0.0, SECONDS, 5.0)
+    moved = limbed(score_of((act,)).limbs["a"], np.zeros(2), 0.0, SECONDS, 5.0)
     plain = np.tile(upright(np.zeros(2), 0.0), (len(SECONDS), 1, 1))
     plan = Plan(acts=(act,))
     (still,), (done,) = (
@@ -70,8 +71,10 @@ def test_an_act_of_limbs_does_what_its_rule_asks_for(name: str) -> None:
 
 
 def test_sides_directions_and_numbers_reach_the_limbs() -> None:
-    (limb,) = staged((Act(id="1", act="raise-leg", agents=("b",), side="left", direction="back", times=2),)).limbs["b"]
-    assert limb == Limb("raises leg", "left", "back", 2)
+    (limb,) = score_of((Act(id="1", act="raise-leg", agents=("b",), side="left", direction="back", times=2),)).limbs[
+        "b"
+    ]
+    assert limb == Limb(does="raises leg", side="left", direction="back", times=2)
     ahead, back = (motion("raises leg", direction=d)[75, SMPL22.index("right_foot")] for d in ("forward", "back"))
     towards = np.array([np.sin(0.7), 0.0, np.cos(0.7)])
     assert (ahead - back) @ towards > 0.5
@@ -90,14 +93,14 @@ def test_a_lunge_is_a_long_step_over_a_bent_knee_as_often_as_it_is_told() -> Non
 
 def test_the_free_leg_is_held_as_the_other_movement_says() -> None:
     place = np.zeros(2)
-    knee, leg = Limb("raises knee", "left"), Limb("stands on one leg", "left")
+    knee, leg = Limb(does="raises knee", side="left"), Limb(does="stands on one leg", side="left")
     np.testing.assert_array_equal(
         limbed([leg, knee], place, 0.0, SECONDS, 5.0), limbed([knee], place, 0.0, SECONDS, 5.0)
     )
 
 
 def test_legs_are_turned_out_before_they_are_bent() -> None:
-    limbs = [Limb("bends knees", "both"), Limb("turns legs out", "both")]
+    limbs = [Limb(does="bends knees", side="both"), Limb(does="turns legs out", side="both")]
     found = limbed(limbs, np.zeros(2), 0.0, SECONDS, 5.0)[75]
     knees, hips = (
         np.abs(np.diff(found[[SMPL22.index(f"{side}_{name}") for side in ("left", "right")], 0]))

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from acts.staging.bodies.poses import (
+from acts.staging.poses import (
     LOWER,
     bending,
     bowed,

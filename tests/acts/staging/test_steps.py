@@ -9,9 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 from acts import shapes
-from acts.staging.bodies.gaits import GAITS
-from acts.staging.bodies.poses import SOLE
-from acts.staging.bodies.steps import ON_FEET, stepped
+from acts.staging.gaits import GAITS, STEPS, stepped
+from acts.staging.poses import SOLE
 from motion import SMPL22
 
 from .staged_words import moves
@@ -35,10 +34,10 @@ def standing(poses: Array) -> Array:
 
 
 def test_the_lexicon_may_name_each_gait() -> None:
-    assert set(get_args(shapes.Go.model_fields["gait"].annotation)) == {"", *GAITS, *ON_FEET}
+    assert set(get_args(shapes.Go.model_fields["gait"].annotation)) == {"", *GAITS, *STEPS}
 
 
-@pytest.mark.parametrize("gait", ON_FEET)
+@pytest.mark.parametrize("gait", STEPS)
 @pytest.mark.parametrize(("metres", "turn"), [(2.5, 0.0), (1.0, np.pi), (0.1, 0.0), (0.0, 0.0)])
 def test_bones_are_kept_and_a_foot_that_stands_stays(gait: str, metres: float, turn: float) -> None:
     poses = gone(gait, metres, turn)
@@ -54,7 +53,7 @@ def test_bones_are_kept_and_a_foot_that_stands_stays(gait: str, metres: float, t
     assert np.linalg.norm(np.diff(poses, axis=0), axis=-1).max() * 30 < 6.0
 
 
-@pytest.mark.parametrize("gait", ON_FEET)
+@pytest.mark.parametrize("gait", STEPS)
 def test_the_body_turns_with_its_way(gait: str) -> None:
     poses = gone(gait, 1.0, np.pi)
     across = poses[:, J["left_hip"], 0] - poses[:, J["right_hip"], 0]
@@ -63,7 +62,7 @@ def test_the_body_turns_with_its_way(gait: str) -> None:
     assert toes[0].min() > 0.05 and toes[-1].max() < -0.05
 
 
-@pytest.mark.parametrize("gait", ON_FEET)
+@pytest.mark.parametrize("gait", STEPS)
 def test_feet_take_turns(gait: str) -> None:
     stands = standing(gone(gait))
     assert (~stands[:, 0]).sum() > 20 and (~stands[:, 1]).sum() > 20

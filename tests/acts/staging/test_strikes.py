@@ -6,42 +6,42 @@ import numpy as np
 import pytest
 
 from acts import read
-from acts.staging.bodies.strikes import Bout, Strike, blows, catching, poses, ready
-from acts.staging.stage import staged
-from acts.staging.ways import Way
+from acts.staging.score import Strike
+from acts.staging.stage import score_of
+from acts.staging.strikes import BOUTS, blows, catching, poses, ready
 from motion import SMPL22
 from webdemo.inference.story.sentences import beats_of
 
 from .staged_words import beginning, moves, strike
 
-HERE, THERE = np.zeros(2), np.array([0.0, Bout.FISTS.value])
+HERE, THERE = np.zeros(2), np.array([0.0, BOUTS["fists"].apart])
 HEAD = SMPL22.index("head")
 
 
 @pytest.mark.parametrize(
     ("words", "bout", "turns", "goes_on"),
     [
-        ("They fight.", Bout.FISTS, "ab", True),
-        ("Two people are boxing.", Bout.FISTS, "ab", True),
-        ("Two boxers throw punches at each other.", Bout.FISTS, "ab", True),
-        ("He fights with her.", Bout.FISTS, "ab", True),
-        ("Two knights fight with swords.", Bout.WEAPONS, "ab", True),
-        ("They fence.", Bout.WEAPONS, "ab", True),
-        ("Two people play tennis.", Bout.RACKETS, "ab", True),
-        ("Two kids are throwing a ball to each other.", Bout.THROWS, "ab", True),
-        ("Person A throws a ball to person B, who catches it.", Bout.THROWS, "a", False),
-        ("Person B catches keys thrown by person A.", Bout.THROWS, "a", False),
-        ("Person B punches person A.", Bout.FISTS, "b", False),
-        ("She hits back.", Bout.FISTS, "a", False),
-        ("He slaps her in the face.", Bout.SLAPS, "a", False),
-        ("He slaps her in the face twice.", Bout.SLAPS, "aa", False),
+        ("They fight.", "fists", "ab", True),
+        ("Two people are boxing.", "fists", "ab", True),
+        ("Two boxers throw punches at each other.", "fists", "ab", True),
+        ("He fights with her.", "fists", "ab", True),
+        ("Two knights fight with swords.", "weapons", "ab", True),
+        ("They fence.", "weapons", "ab", True),
+        ("Two people play tennis.", "rackets", "ab", True),
+        ("Two kids are throwing a ball to each other.", "throws", "ab", True),
+        ("Person A throws a ball to person B, who catches it.", "throws", "a", False),
+        ("Person B catches keys thrown by person A.", "throws", "a", False),
+        ("Person B punches person A.", "fists", "b", False),
+        ("She hits back.", "fists", "a", False),
+        ("He slaps her in the face.", "slaps", "a", False),
+        ("He slaps her in the face twice.", "slaps", "aa", False),
     ],
 )
-def test_blows_are_read(words: str, bout: Bout, turns: str, goes_on: bool) -> None:
+def test_blows_are_read(words: str, bout: str, turns: str, goes_on: bool) -> None:
     assert strike(words) == Strike(bout, turns, goes_on)
     found = moves(words)
-    assert {m.person for m in found} == {"a", "b"} and {m.way for m in found} == {Way.SPAR}
-    assert all(move.near == bout.value for move in found)
+    assert {m.person for m in found} == {"a", "b"} and {m.way for m in found} == {"spar"}
+    assert all(move.near == BOUTS[bout].apart for move in found)
 
 
 def test_a_blow_that_ends_something_comes_late() -> None:
@@ -77,31 +77,31 @@ def test_other_words_are_left_to_the_network(words: str) -> None:
     ],
 )
 def test_answers_to_a_punch_are_read(words: str, turns: str) -> None:
-    assert strike(words) == Strike(Bout.FISTS, turns, goes_on=False, answered=True)
+    assert strike(words) == Strike("fists", turns, goes_on=False, answered=True)
     placed = beginning(words)
-    assert placed is not None and placed.gap() == pytest.approx(Bout.FISTS.value)
-    assert moves(words)[0].person == turns[0] and all(move.way is not Way.SPAR for move in moves(words))
+    assert placed is not None and placed.gap() == pytest.approx(BOUTS["fists"].apart)
+    assert moves(words)[0].person == turns[0] and all(move.way != "spar" for move in moves(words))
 
 
 def test_two_who_fight_strike_in_turn_with_either_fist() -> None:
-    made = blows(Strike(Bout.FISTS, "ab"), 150)
+    made = blows(Strike("fists", "ab"), 150)
     assert [blow.person for blow in made[:4]] == [0, 1, 0, 1]
     assert [blow.side for blow in made[:4]] == ["right", "right", "left", "left"]
     assert np.all(np.diff([blow.frame for blow in made]) > 15) and made[-1].frame < 150
 
 
 def test_one_blow_is_struck_once_when_the_two_are_near() -> None:
-    made = blows(Strike(Bout.FISTS, "b", goes_on=False), 150, first=40)
+    made = blows(Strike("fists", "b", goes_on=False), 150, first=40)
     assert [blow.person for blow in made] == [1] and made[0].frame > 40
-    assert blows(Strike(Bout.FISTS, "b", goes_on=False), 20) == []
+    assert blows(Strike("fists", "b", goes_on=False), 20) == []
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_a_fist_shoots_out_to_the_head_and_not_into_it(side: str) -> None:
-    frames, found = poses(Bout.FISTS, side, HERE, THERE)
+    frames, found = poses("fists", side, HERE, THERE)
     wrist = found[:, SMPL22.index(f"{side}_wrist")]
     ahead = ready(HERE, THERE)[HEAD]
-    head = np.array([0.0, ahead[1], Bout.FISTS.value - ahead[2]])
+    head = np.array([0.0, ahead[1], BOUTS["fists"].apart - ahead[2]])
     away = np.linalg.norm(wrist - head, axis=-1)
     landed = frames.index(-1)
     assert 0.08 < away[landed] < 0.2 < 0.3 < away[0]
@@ -111,19 +111,19 @@ def test_a_fist_shoots_out_to_the_head_and_not_into_it(side: str) -> None:
 
 
 def test_a_slap_comes_from_the_side_and_lands_on_the_cheek() -> None:
-    there = np.array([0.0, Bout.SLAPS.value])
-    frames, found = poses(Bout.SLAPS, "right", HERE, there)
+    there = np.array([0.0, BOUTS["slaps"].apart])
+    frames, found = poses("slaps", "right", HERE, there)
     drawn, landed = (found[i, SMPL22.index("right_wrist")] for i in (0, frames.index(-1)))
     head = ready(HERE, there)[HEAD]
-    beside = landed - [0.0, head[1], Bout.SLAPS.value - head[2]]
+    beside = landed - [0.0, head[1], BOUTS["slaps"].apart - head[2]]
     assert drawn[0] < -0.35 < -0.2 < beside[0] < -0.06, "on the right of the one who slaps"
     assert np.linalg.norm(beside) < 0.16
 
 
-@pytest.mark.parametrize("bout", [Bout.WEAPONS, Bout.RACKETS, Bout.THROWS])
-def test_an_arm_swings_from_behind_to_before_the_body(bout: Bout) -> None:
+@pytest.mark.parametrize("bout", ["weapons", "rackets", "throws"])
+def test_an_arm_swings_from_behind_to_before_the_body(bout: str) -> None:
     angle = 1.1
-    there = bout.value * np.array([np.sin(angle), np.cos(angle)])
+    there = BOUTS[bout].apart * np.array([np.sin(angle), np.cos(angle)])
     ahead = np.array([np.sin(angle), 0.0, np.cos(angle)])
     frames, found = poses(bout, "right", HERE, there)
     reach = found[:, SMPL22.index("right_wrist")] @ ahead
@@ -145,9 +145,9 @@ def test_who_kicks_begins_within_reach(words: str) -> None:
 
 
 def test_blows_are_struck_with_the_hands_that_the_words_name() -> None:
-    told = strike("He throws two jabs with the left.")
-    assert told is not None and told.hands == ("left", "left")
-    assert [(blow.person, blow.side) for blow in blows(told, 150)] == [(0, "left"), (0, "left")]
+    score = strike("He throws two jabs with the left.")
+    assert score is not None and score.hands == ("left", "left")
+    assert [(blow.person, blow.side) for blow in blows(score, 150)] == [(0, "left"), (0, "left")]
 
 
 def test_a_person_who_stands_behind_begins_behind() -> None:
@@ -158,11 +158,11 @@ def test_a_person_who_stands_behind_begins_behind() -> None:
 
 def test_two_who_circle_face_to_face_keep_circling() -> None:
     ways = {move.way for move in moves("They circle each other without losing eye contact.")}
-    assert ways == {Way.ROUND}
+    assert ways == {"around"}
 
 
 @pytest.mark.parametrize("words", ["A punches B and B falls down.", "A kicks B and B falls down."])
 def test_who_is_struck_falls_afterwards(words: str) -> None:
     (beat,) = beats_of(read(words))
-    ((fall,),) = staged(beat.acts).changes.values()
+    ((fall,),) = score_of(beat.acts).changes.values()
     assert 0.3 < fall.after < 0.6

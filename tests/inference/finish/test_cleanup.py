@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from acts.staging.bodies.poses import lying
+from acts.staging.poses import lying
 from motion import SMPL22
 from motion.metrics.naturalness import standing_foot
 from tests.motion.test_pivots import apart, turned

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acts.staging.bodies.gestures import Gesture, Hand, wrist
+from acts.staging.gestures import wrist
+from acts.staging.score import SIDES
 from motion import SMPL22
 from motion.transforms import heading_matrix
 from motion.video.gaze import HIDDEN
@@ -44,11 +45,10 @@ def bent(wrists: dict[str, np.ndarray], frames: int) -> np.ndarray:
     return seen
 
 
-def gesture(hand: Hand, frames: int = 60) -> np.ndarray:
+def gesture(hand: str, frames: int = 60) -> np.ndarray:
     """(T, 22, 3) a person who makes a gesture of the library with both hands."""
-    made = Gesture(hand, ("left", "right"))
     towards = np.tile([0.0, 0.0, 1.0], (frames, 1))
-    return bent({side: wrist(made, side, np.arange(frames) / 30, towards) for side in made.sides}, frames)
+    return bent({side: wrist(hand, side, np.arange(frames) / 30, towards) for side in SIDES}, frames)
 
 
 def rubbing(speed: float = 2.0, frames: int = 60) -> np.ndarray:
@@ -94,20 +94,20 @@ def at_nose(
         (at_nose(higher=0.12), None),
         (at_nose(aside=0.075), None),
         (at_nose(guard=True), None),
-        (gesture(Hand.EARS), LOUD),
-        (gesture(Hand.EYES), BRIGHT),
+        (gesture("ears"), LOUD),
+        (gesture("eyes"), BRIGHT),
         (rubbing(), COLD),
         (fanning(), HOT),
-        (gesture(Hand.FANS), HOT),
+        (gesture("fans"), HOT),
         (fanning(rate=0.7, wide=0.24), None),
         (rubbing(speed=0.1), None),
         (bent({}, 60), None),
-        (gesture(Hand.WAVES), None),
-        (gesture(Hand.HIGH), None),
-        (gesture(Hand.CROSSED), None),
-        (gesture(Hand.AHEAD), None),
-        (gesture(Hand.CLAPS), None),
-        (gesture(Hand.EARS, FRAMES - 1), None),
+        (gesture("waves"), None),
+        (gesture("high"), None),
+        (gesture("crossed"), None),
+        (gesture("ahead"), None),
+        (gesture("claps"), None),
+        (gesture("ears", FRAMES - 1), None),
     ],
 )
 def test_complaints_are_told_from_other_gestures(seen: np.ndarray, said: Complaint | None) -> None:
@@ -128,7 +128,7 @@ def watched(complaining: np.ndarray, *, frames: int = LONG, gaze=None) -> tuple[
 
 
 @pytest.mark.parametrize(
-    ("seen", "said", "kind"), [(gesture(Hand.EARS), LOUD, "hi-fi"), (gesture(Hand.EYES), BRIGHT, "window")]
+    ("seen", "said", "kind"), [(gesture("ears"), LOUD, "hi-fi"), (gesture("eyes"), BRIGHT, "window")]
 )
 def test_the_agent_goes_to_the_thing_uses_it_and_comes_back(seen: np.ndarray, said: Complaint, kind: str) -> None:
     agent, poses, beliefs = watched(seen)
@@ -166,7 +166,7 @@ def test_who_holds_their_nose_has_a_closed_window_opened() -> None:
 
 def test_curtains_move_while_hands_are_there_and_what_is_done_is_not_done_again() -> None:
     agent = LiveAgent(Scripted(NOTHING), Recorded())  # type: ignore[arg-type]
-    seen = gesture(Hand.EYES)
+    seen = gesture("eyes")
     agent.step(STANDING)
     before = [thing.places.copy() for thing in agent.things if thing.kind == "curtain"]
     errands = 0
@@ -180,7 +180,7 @@ def test_curtains_move_while_hands_are_there_and_what_is_done_is_not_done_again(
 
 
 def test_who_speaks_to_others_sends_the_agent_nowhere() -> None:
-    agent, poses, _ = watched(gesture(Hand.EARS), frames=150, gaze=HIDDEN)
+    agent, poses, _ = watched(gesture("ears"), frames=150, gaze=HIDDEN)
     assert np.ptp(poses[:, 0], axis=0).max() < 1e-6 and agent._room.errand is None
 
 

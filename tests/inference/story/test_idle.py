@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from acts.staging.bodies.poses import standing
+from acts.staging.poses import standing
 from motion import SMPL22
 from motion.metrics.naturalness import mirror_gap
 from motion.transforms import heading
-from tests.acts.staging.staged_words import gesturing, idle, is_planned, told
+from tests.acts.staging.staged_words import gesturing, idle, is_planned, score
 
 
 @pytest.mark.parametrize(
@@ -54,7 +54,7 @@ def test_plain_sentences_have_no_plan() -> None:
     ("sentence", "found"), [("He stands like a statue.", "a"), ("Person B freezes.", "b"), ("They wait.", "")]
 )
 def test_statues_are_told_from_those_who_wait(sentence: str, found: str) -> None:
-    assert "".join(sorted(told(sentence).frozen)) == found
+    assert "".join(sorted(score(sentence).frozen)) == found
 
 
 def test_a_bystander_stands_on_the_floor_and_sways() -> None:
@@ -85,7 +85,7 @@ def test_a_bystander_stands_on_the_floor_and_sways() -> None:
     ],
 )
 def test_the_arms_of_those_who_only_walk_or_rest_have_nothing_to_do(sentence: str, found: str) -> None:
-    assert "".join(sorted(told(sentence).loose)) == found
+    assert "".join(sorted(score(sentence).loose)) == found
 
 
 def test_two_arms_hang_differently_and_so_do_those_of_others() -> None:

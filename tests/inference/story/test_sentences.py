@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from acts import read
-from acts.staging.stage import staged
-from acts.staging.ways import Way
+from acts.staging.beginnings import placed as beginning
+from acts.staging.stage import score_of
 from motion import InputError
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.story import SceneRequest, split_sentence
@@ -68,8 +68,8 @@ def test_a_sentence_that_is_not_understood_keeps_its_words_and_its_place() -> No
 
 def test_speech_and_remarks_are_no_acts() -> None:
     (beat,) = split_sentence('"Follow me!" She bows (he likes that).')
-    told = staged(plan_of_beat(beat).acts)
-    assert told.bows == {"a": (1, False)} and not told.moves
+    score = score_of(plan_of_beat(beat).acts)
+    assert score.bows["a"].times == 1 and not score.moves
 
 
 def test_nothing_is_no_beat() -> None:
@@ -84,40 +84,40 @@ def test_stories_longer_than_any_scene_are_refused_before_they_are_read() -> Non
 
 
 def test_people_sit_side_by_side_where_they_are_said_to() -> None:
-    told = staged(read("Two strangers sit next to each other on a park bench.").acts)
-    assert told.keeps_place and told.placed is not None and set(told.changes) == {"a", "b"}
+    score = score_of(read("Two strangers sit next to each other on a park bench.").acts)
+    assert score.side and beginning(score) is not None and set(score.changes) == {"a", "b"}
 
 
 def test_who_sits_in_a_chair_sits_from_the_start() -> None:
-    told = staged(read("Dad reads the paper in his armchair while the baby crawls about.").acts)
-    assert told.changes["a"][0].already
+    score = score_of(read("Dad reads the paper in his armchair while the baby crawls about.").acts)
+    assert score.changes["a"][0].already
 
 
 def test_who_keeps_their_back_turned_stands_so() -> None:
-    told = staged(read("She keeps her back turned to him while he is talking to her.").acts)
-    assert [(move.person, move.way) for move in told.moves] == [("a", Way.AVERTED), ("b", Way.STAY)]
+    score = score_of(read("She keeps her back turned to him while he is talking to her.").acts)
+    assert [(move.person, move.way) for move in score.moves] == [("a", "averted"), ("b", "stay")]
 
 
 def test_who_turns_round_at_a_tap_was_tapped_from_behind() -> None:
     beats = beats_of(read("She taps him on the shoulder, he turns around, and she gives him a letter."))
-    first, second, _ = SceneRequest(beats=beats).told
-    assert first.contact is not None and first.contact.behind
-    assert ("b", Way.FACE) in [(move.person, move.way) for move in second.moves]
-    assert not (alone := SceneRequest(beats=beats[:1]).told[0].contact) or not alone.behind
+    first, second, _ = SceneRequest(beats=beats).scores
+    assert first.touch is not None and first.touch.behind
+    assert ("b", "face") in [(move.person, move.way) for move in second.moves]
+    assert not (alone := SceneRequest(beats=beats[:1]).scores[0].touch) or not alone.behind
 
 
 def test_who_jumps_on_the_others_back_runs_up_from_behind() -> None:
-    placed = staged(read("A runs up and jumps onto B's back.").acts).placed
+    placed = beginning(score_of(read("A runs up and jumps onto B's back.").acts))
     assert placed is not None and placed.places[0, 1] < placed.places[1, 1] - 1.0
 
 
 def test_who_bends_down_to_a_shoe_kneels_down_to_it_at_once() -> None:
     (beat,) = beats_of(read("A bends down and ties B's shoe."))
-    told = staged(beat.acts)
-    assert told.contact is not None and not told.contact.late
-    assert not told.changes, "a bow on the spot comes before the shoe"
+    score = score_of(beat.acts)
+    assert score.touch is not None and not score.touch.late
+    assert not score.changes, "a bow on the spot comes before the shoe"
     (alone,) = beats_of(read("A bends down."))
-    assert [change.posture.value for change in staged(alone.acts).changes["a"]] == ["bends down"]
+    assert [change.posture for change in score_of(alone.acts).changes["a"]] == ["bends down"]
 
 
 @pytest.mark.parametrize(

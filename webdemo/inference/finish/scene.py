@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from acts.staging.bodies.gestures import Hand
-from acts.staging.told import Told
+from acts.staging.score import Score
 from motion import FPS
 from motion.arm_swing import swinging
 from motion.easing import smoothstep
@@ -59,18 +58,18 @@ def finishes(request: SceneRequest) -> tuple[BeatFinish, ...]:
     """The finish of each beat: as it was kept, or else as the words say."""
     if request.plan is not None and request.plan.finishes:
         return request.plan.finishes[: len(request.beats)]
-    return tuple(finish_of(told) for told in (request.told if request.plans_words else ()))
+    return tuple(finish_of(score) for score in (request.scores if request.plans_words else ()))
 
 
-def finish_of(told: Told) -> BeatFinish:
+def finish_of(score: Score) -> BeatFinish:
     """The finish that a beat's words ask for."""
-    around = any(gesture.hand is Hand.AROUND for gesture in told.gestures.values())
+    around = any(gesture.gesture == "around" for gesture in score.gestures.values())
     # a head that is tilted is not turned to the other
-    still = {*told.frozen, *told.limbs, *told.figures}
-    if (touch := told.contact) is not None and touch.beside:
+    still = {*score.frozen, *score.limbs, *score.figures}
+    if (touch := score.touch) is not None and touch.beside:
         still.add(touch.person)
-    loose = "".join(sorted(told.loose - told.frozen))
-    return BeatFinish(bool(told.reaching), "".join(sorted(still)), told.linked and not around, loose)
+    loose = "".join(sorted(score.loose - score.frozen))
+    return BeatFinish(bool(score.reaching), "".join(sorted(still)), score.linked and not around, loose)
 
 
 def in_touch(scene: Array, free: Array, raised: Array, held: Array) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from acts.staging.parts import KnownFrames, Part
+from acts.staging.window import KnownFrames, Part
 from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
 from motion import FPS, SMPL22, Clip, Duet, InputError

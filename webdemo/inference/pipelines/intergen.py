@@ -14,7 +14,7 @@ from torch import Tensor, nn
 
 from acts import Plan, lexicon
 from acts.captions import of_each
-from acts.staging.stage import staged
+from acts.staging.stage import score_of
 from models.compiled import Precision, compile_network, has_bfloat16
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
 from models.intergen.released import ReleasedInterGen, load_released
@@ -155,7 +155,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
 
 def _unsplit(plan: KeptPlan, planned: bool) -> KeptPlan:
     """The plan of a sentence that is given to the network as it is."""
-    finishes = (finish_of(staged(plan.acts[0].acts)),) if planned else ()
+    finishes = (finish_of(score_of(plan.acts[0].acts)),) if planned else ()
     return replace(plan, alone=of_each(plan.acts[0].acts, lexicon()), finishes=finishes)
 
 

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acts import Plan
-from acts.staging.given.beat import plan_note
 from acts.staging.window import Window
 from models.intergen.compact import CompactInterGen
 from motion import FPS, Duet, InputError
@@ -123,7 +122,7 @@ class SceneMaker:
         steps, done, duets = request.steps * len(listed) * request.samples, 0, []
         made_plans: list[WindowPlan] = []
         shares: list[float] = []
-        planning = kept.notes if kept else (*notes, *plan_note(request, cancel.raise_if_cancelled))
+        planning = kept.notes if kept else notes
         said = [*planning, *_notes(request)]
         for sample in range(request.samples):
             scene, laid = _blank(request), 0.0

@@ -11,10 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from acts.staging.given.beat import planned
-from acts.staging.given.paths import known_paths
-from acts.staging.parts import KnownFrames, Part
-from acts.staging.window import Window
+from acts.staging.given import Story, plan_parts
+from acts.staging.window import KnownFrames, Part, Window, known_paths
 from models.intergen.compact import CompactInterGen
 from motion import FPS, InputError
 from motion.placement import MEDIAN_START_DISTANCE, Placement
@@ -129,8 +127,10 @@ def _plan(request: SceneRequest, window: Window, scene: Array, place: tuple[floa
     placement, beat = _at(place), request.beats[window.beat]
     parts, notes = wishes(request, window, scene, placement)
     if request.plans_words:
-        parts += planned(request, window, scene, placement, {part.person for part in parts})
-    alone = beat.alone if any(beat.alone) else request.told[window.beat].alone
+        seconds, placed = [each.length for each in request.beats], bool(request.paths or request.poses)
+        story = Story(request.scores, seconds, request.edges, request.seed, placed)
+        parts += plan_parts(story, window, scene, placement, {part.person for part in parts})
+    alone = beat.alone if any(beat.alone) else request.scores[window.beat].alone
     return WindowPlan(place, tuple(parts), alone, tuple(notes))
 
 

@@ -21,7 +21,7 @@ from pydantic import BaseModel, ConfigDict, Field, PlainSerializer, PlainValidat
 from pydantic.dataclasses import dataclass
 
 from acts.plan import Plan, plan_of, problem
-from acts.staging.parts import KnownFrames, KnownPath, Part
+from acts.staging.window import KnownFrames, KnownPath, Part
 from motion import SMPL22, InputError
 
 Array = NDArray[np.floating]

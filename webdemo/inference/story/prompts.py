@@ -8,8 +8,8 @@ from dataclasses import fields, replace
 import numpy as np
 
 from acts import Plan
-from acts.staging.stage import staged
-from acts.staging.told import Told
+from acts.staging.score import Score
+from acts.staging.stage import score_of
 from motion import FPS, InputError
 from webdemo.inference import methods
 from webdemo.inference.requests import GenerateRequest, SamplingRequest
@@ -47,7 +47,7 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
         return None
     plans = tuple(plan_of_beat(beat) if beat.acts else whole for beat in beats)
     as_it_is = len(beats) == 1 and request.acts is None and not request.paths and not replays
-    if not beats or (as_it_is and not (request.planned and staged(plans[0].acts).is_planned)):
+    if not beats or (as_it_is and not (request.planned and score_of(plans[0].acts).is_planned)):
         return None
     if not replays:
         beats = _filling(request.seconds, beats, plans)
@@ -77,7 +77,7 @@ def _staying(paths: Sequence[FloorPath], beats: Sequence[Beat]) -> tuple[FloorPa
     for path in paths:
         last = path.points[-1]
         led = any(
-            end > (last.seconds or 0.0) and _leads(staged(beat.acts), path.person)
+            end > (last.seconds or 0.0) and _leads(score_of(beat.acts), path.person)
             for beat, end in zip(beats, ends, strict=True)
         )
         rest = float(ends[-1]) - 1 / FPS
@@ -86,9 +86,9 @@ def _staying(paths: Sequence[FloorPath], beats: Sequence[Beat]) -> tuple[FloorPa
     return tuple(staying)
 
 
-def _leads(told: Told, person: str) -> bool:
+def _leads(score: Score, person: str) -> bool:
     """True if a person of a beat goes somewhere, or has to do with the other's body."""
-    return person in told.going or told.joined or bool(told.contact or told.strike or told.reaching)
+    return person in score.going or score.joined or bool(score.touch or score.strike or score.reaching)
 
 
 def _beats(request: GenerateRequest, script: Plan) -> tuple[Beat, ...]:
@@ -103,5 +103,5 @@ def _beats(request: GenerateRequest, script: Plan) -> tuple[Beat, ...]:
     beats = beats_of(script, own_words=request.acts is None)
     if not beats or len(beats) > most:
         return (Beat(words, acts=script.acts),)
-    told = words and all(act.happens for act in script.acts)  # a network hears no "not"
-    return (replace(beats[0], words=words),) if len(beats) == 1 and told else beats
+    score = words and all(act.happens for act in script.acts)  # a network hears no "not"
+    return (replace(beats[0], words=words),) if len(beats) == 1 and score else beats

@@ -12,11 +12,8 @@ from typing import Any
 import numpy as np
 
 from acts import Plan
-from acts.staging.contacts import Region
-from acts.staging.postures import Posture
-from acts.staging.stage import staged
-from acts.staging.told import Told, at_start
-from acts.staging.ways import Way
+from acts.staging.score import Score
+from acts.staging.stage import scores_of
 from acts.staging.window import AFTER, MOST_FRAMES, PAST, Window
 from motion import FPS, Duet, InputError
 from webdemo.inference import methods
@@ -212,16 +209,9 @@ class SceneRequest(SamplingRequest):
         return kept if len(kept) == len(self.beats) else tuple(map(plan_of_beat, self.beats))
 
     @cached_property
-    def told(self) -> tuple[Told, ...]:
-        """The stage of each beat."""
-        story = [staged(beat.acts or plan.acts) for beat, plan in zip(self.beats, self.plans, strict=True)]
-        _told_before(story)
-        _touched_from_behind(story)
-        for i in range(len(story)):  # who is down does not stand by
-            down = {who for who, held in at_start(story, i).items() if held is not Posture.STANDS}
-            if story[i].idle & down:
-                story[i] = replace(story[i], idle=story[i].idle - down)
-        return tuple(story)
+    def scores(self) -> tuple[Score, ...]:
+        """The score of each beat."""
+        return scores_of([beat.acts or plan.acts for beat, plan in zip(self.beats, self.plans, strict=True)])
 
     @property
     def num_frames(self) -> int:
@@ -280,28 +270,6 @@ class SceneRequest(SamplingRequest):
         )
 
 
-def _told_before(story: list[Told]) -> None:
-    """Leaves out the postures in which people of a later beat are "already", where an earlier one has put them."""
-    known: set[str] = set()
-    for i, told in enumerate(story):
-        again = {who for who, listed in told.changes.items() if who in known and listed[0].already and len(listed) > 1}
-        changes = {who: listed[1:] if who in again else listed for who, listed in told.changes.items()}
-        story[i] = replace(told, changes=changes) if again else told
-        known |= set(told.changes) | told.going
-
-
-def _touched_from_behind(story: list[Told]) -> None:
-    """Puts somebody behind the other whom they touch, where that one turns to them in the next beat."""
-    for i, (told, then) in enumerate(pairwise(story)):
-        touch = told.contact
-        turned = {move.person for move in then.moves if move.way is Way.FACE}
-        if touch is None or touch.region not in (Region.SHOULDER, Region.BACK) or touch.person in turned:
-            continue
-        if turned and not told.changes and all(move.way is Way.STAY for move in told.moves):
-            story[i] = replace(told, contact=replace(touch, behind=True))
-
-
-# ---- windows ---------------------------------------------------------------------------------------------
 def windows(request: SceneRequest) -> list[Window]:
     """The windows of a scene in the order in which they are made."""
     edges = request.edges

@@ -10,7 +10,7 @@ from acts import Act, Plan
 from acts.captions import sentence
 from acts.lexicon import Entry, Lexicon, lexicon
 from acts.staging.act_kinds import hits, reaches_low
-from acts.staging.postures import LOWERED
+from acts.staging.score import LOWERED
 from acts.things import is_fixture
 from motion import InputError
 from webdemo.inference.requests.limits import MAX_PROMPT
@@ -29,7 +29,6 @@ _AT_ONCE = 1200
 _MOST_SENTENCES = 30
 """Sentences that are read together, at most: a plan holds sixty acts."""
 _THEN = frozenset(("then", "next", "afterwards", "finally"))
-_LOWERED = frozenset(posture.value for posture in LOWERED)
 _ENDS = re.compile(r"(?<=[.!?;])\s+")
 
 
@@ -218,7 +217,7 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry, text: str) -> boo
         return True  # who passes the other comes up to them on the way
     if ("lift" in does and "lift" in then) or _posture(does) == _posture(then) != "":
         return same  # "drops to one knee and proposes"
-    if same and _posture(does) in _LOWERED and reaches_low(later, after):
+    if same and _posture(does) in LOWERED and reaches_low(later, after):
         return True  # "bends down and ties his shoe"
     if not same:
         down = "posture" in does and not act.already

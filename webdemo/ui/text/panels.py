@@ -17,7 +17,7 @@ Summary = Mapping[str, float]
 
 QUALITY = tuple(measure for measure in MEASURES if measure.better)
 RELATION = tuple(measure for measure in MEASURES if not measure.better)
-_NO_WARNINGS = ("This was made as ", "From the words: ", "Read as ")
+_NO_WARNINGS = ("This was made as ", "Read as ")
 """Beginnings of notes that say how a sentence was understood."""
 _SAME = '<td class="pd-same">same</td>'
 _MOST_IN_WORDS = 4

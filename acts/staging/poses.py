@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,11 @@ from motion.transforms import heading, heading_matrix
 
 Array = NDArray[np.floating]
 
+Pose = tuple[int, Array]
+"""A frame of the scene and a pose (22, 3) in metres of its world."""
+
+UPRIGHT = 0.8
+"""Height in metres of the pelvis above which a person is on their feet."""
 STANCE = 0.12
 """Metres by which a standing person's toes are ahead of the place where they stand."""
 SOLE = 0.02
@@ -59,11 +64,17 @@ FLAT = (
 """The same with the trunk, the head and the shoulders, for those who lie or bend down."""
 TRUNK = tuple(joint for joint in FLAT if joint not in LOWER or joint == SMPL22.index("spine1"))
 """Joints of the trunk, the head and the shoulders."""
+ALL = tuple(range(SMPL22.num_joints))
 TOES = (SMPL22.index("left_foot"), SMPL22.index("right_foot"))
 _UNALIKE = np.array([0.06, 0.1, 0.15])
 """Radians by which each arm of a person who stands hangs closer, further ahead and more bent, or less, than usual."""
 _SIDES = {"left": 1.0, "right": -1.0}
 """Sides of the body, with the sign of their x for a person who faces +Z."""
+
+
+def all_but(free: Collection[int]) -> list[int]:
+    """All joints of a body but some."""
+    return [joint for joint in ALL if joint not in free]
 
 
 def standing(place: Array, angle: float, seconds: Array, *, seed: int = 0) -> Array:

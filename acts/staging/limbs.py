@@ -6,17 +6,20 @@ No caption of the training data names them, so the whole body but the arms is gi
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22
+from acts.shapes import Limb
+from motion import FPS, SMPL22
 from motion.easing import minimum_jerk
 from motion.kinematics import forward_kinematics
+from motion.skeleton import ARMS
 from motion.transforms import heading_matrix
 
-from .poses import SOLE, STANDS, TOES, about
+from .poses import HANDS, SOLE, STANDS, TOES, about, all_but, standing
+from .score import Score
+from .window import OFTEN, SETTLES, Part, Stretch
 
 Array = NDArray[np.floating]
 Turns = dict[str, Array]
@@ -29,23 +32,6 @@ SWING = 1.5
 """Seconds of a swing to and fro."""
 LUNGE = 2.4
 """Seconds of one of several lunges."""
-
-
-@dataclass(frozen=True)
-class Limb:
-    """A part of one's own body that is moved.
-
-    Attributes:
-        does: a name of :data:`MOVES`.
-        side: "left", "right" or "both", of the leg or towards which trunk and head go.
-        direction: "forward", "back", "left", "right", "out", "up" or "down"; "" for the usual one.
-        times: how often, of what is repeated; 0 for as long as the beat lasts.
-    """
-
-    does: str
-    side: str = "right"
-    direction: str = ""
-    times: int = 0
 
 
 def limbed(limbs: Sequence[Limb], place: Array, angle: float, seconds: Array, length: float) -> Array:
@@ -323,3 +309,24 @@ RAISES = frozenset(
     ("raises leg", "raises knee", "swings leg", "kicks", "stamps", "stands on one leg", "crosses legs", "lunges")
 )
 """Those in which a foot leaves the floor."""
+
+
+def limb_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part]:
+    """The body of a person who moves single limbs, as far as it falls into a window.
+
+    Their arms hang, unless their hands have something else to do: a network that is free there crosses them.
+    """
+    frames = beat.every(OFTEN, SETTLES // 2 if beat.start else 0)
+    if not len(frames):
+        return []
+    limbs = score.limbs["ab"[person]]
+    angle, seconds = float(beat.stand.headings[person]), beat.frames / FPS
+    poses = limbed(limbs, beat.halt(person), angle, frames / FPS, seconds)
+    with_arms = any(limb.does in WITH_ARMS for limb in limbs)
+    if not with_arms:
+        stands = standing(beat.halt(person), angle, (frames + beat.start) / FPS, seed=seed + person)
+        for shoulder, *arm in ARMS:
+            poses[:, arm] = poses[:, [shoulder]] + stands[:, arm] - stands[:, [shoulder]]
+    busy = "ab"[person] in score.gestures or score.touch is not None
+    free = HANDS if busy and not with_arms else ()
+    return [beat.known(person, frames, poses, all_but(free), kept=True)]

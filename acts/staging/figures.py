@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -17,10 +17,15 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from motion import FPS
+from acts.shapes import Figure
+from motion import FPS, SMPL22
 from motion.easing import smoothstep
 
 from .figure_floor import grounded_poses
+from .poses import ALL, Pose
+from .postures import RISING, posture_joints, postures
+from .score import Change, Score
+from .window import OFTEN, SETTLES, Part, Stretch, late_by
 
 Array = NDArray[np.floating]
 
@@ -56,10 +61,16 @@ FASTEST, SLOWEST = 0.75, 1.25
 """Shares of their own seconds in which figures are done to fit into a beat."""
 _ROUND = 2.0
 """Frames over which the angles are rounded at a pose (the width of a Gaussian)."""
+DOWN = 0.35
+"""Height in metres of the pelvis of a person on the ground, who has to get up before a figure."""
+SHORTEST = 20
+"""Frames for which a figure is begun, at least."""
+_SEEN = 6
+"""Frames between two poses of a figure that are looked at for the room that it needs."""
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class Keys:
     """A figure as it stands in the file: seconds from the pose before (N,) and angles (N, angles) in radians.
 
     Attributes:
@@ -77,35 +88,13 @@ class Course:
         return FASTEST * sum(float(part[0].sum()) for part in (self.into, self.again, self.out))
 
 
-@dataclass(frozen=True)
-class Figure:
-    """A figure of one person.
-
-    Attributes:
-        name: of :func:`figures`.
-        times: how often its middle is done; 0 for as long as the beat lasts.
-        mirrored: left and right are exchanged.
-        meets: it is done to the other, who stands within its reach: the two do not move apart for it.
-        late, early: seconds by which it begins later, and by which it ends before the beat does.
-        in_time: two people who do it, do it as one.
-    """
-
-    name: str
-    times: int = 0
-    mirrored: bool = False
-    meets: bool = False
-    late: float = 0.0
-    early: float = 0.0
-    in_time: bool = False
-
-
 @lru_cache(maxsize=1)
-def figures() -> Mapping[str, Course]:
+def figures() -> Mapping[str, Keys]:
     """All figures by name."""
     found = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))
     poses = {"stand": {}, **found["poses"]}
     return {
-        name: Course(*(_keys(rows.get(part, ()), poses) for part in ("into", "again", "out")))
+        name: Keys(*(_keys(rows.get(part, ()), poses) for part in ("into", "again", "out")))
         for name, rows in found["figures"].items()
     }
 
@@ -125,7 +114,7 @@ def figured(figure: Figure, place: Array, angle: float, frames: int, seed: int =
     """
     length = frames / FPS
     late, early = (min(seconds, length / 4) for seconds in (figure.late, figure.early))
-    times, rows = _scheduled(figures()[figure.name], figure.times, length - late - early)
+    times, rows = _scheduled(figures()[figure.figure], figure.times, length - late - early)
     times[1:] += late
     if figure.mirrored:
         rows = _mirrored(rows)
@@ -153,7 +142,7 @@ def _wavering(at: Array, seed: int) -> Array:
     return found
 
 
-def _scheduled(course: Course, times: int, length: float) -> tuple[Array, Array]:
+def _scheduled(course: Keys, times: int, length: float) -> tuple[Array, Array]:
     """Seconds (N,) of a beat and the angles (N, angles) at them, beginning and ending with standing."""
     room = max(length - BEGINS - RESTS, 0.1)
     cycle = float(course.again[0].sum())
@@ -212,3 +201,55 @@ def _mirrored(rows: Array) -> Array:
     found = np.concatenate([rows[:, :count], right, left], axis=1)
     found[:, _ASIDE] *= -1.0
     return found
+
+
+def figure_parts(scores: Sequence[Score], person: int, beat: Stretch, last: Array | None, seed: int) -> list[Part]:
+    """The body of a person who does a figure, as far as it falls into a window; one who is down gets up before.
+
+    Args:
+        scores: of all beats.
+        person: 0 for a, 1 for b.
+        beat: the beat.
+        last: (22, 3) the person before it; None in a first beat.
+        seed: draws how late they are, and how they waver.
+    """
+    parts: list[Part] = []
+    first = SETTLES // 2 if beat.start else 0
+    if last is not None and last[0, 1] <= DOWN:
+        first = min(RISING, beat.frames)
+        rising = _getting_up(scores, person, beat, last)
+        for joints, at, known in posture_joints(rising, beat.window.start, beat.window.stop):
+            parts.append(beat.known(person, np.asarray(at) - beat.start, known, joints))
+    frames, poses = _figure(scores[beat.window.beat], person, beat, first, seed)
+    if len(shown := np.isin(frames, beat.shown(frames)).nonzero()[0]):
+        parts.append(beat.known(person, frames[shown], poses[shown], ALL, kept=True))
+    return parts
+
+
+def figure_poses(score: Score, person: int, beat: Stretch, seed: int) -> list[Pose]:
+    """Some poses of a figure, with their frames of the scene, that show the room it needs."""
+    frames, poses = _figure(score, person, beat, 0, seed)
+    return [(int(frame) + beat.start, pose) for frame, pose in zip(frames, poses, strict=True)][:: _SEEN // OFTEN]
+
+
+def _figure(score: Score, person: int, beat: Stretch, first: int, seed: int) -> tuple[NDArray[np.integer], Array]:
+    """Frames (N,) of a beat and the poses (N, 22, 3) of a figure that begins with its ``first`` frame, or later."""
+    figure, angle = score.figures["ab"[person]], float(beat.stand.headings[person])
+    together = figure.meets or figure.in_time
+    late = 0.0 if together else late_by(seed, person, beat.frames)
+    count = beat.frames - first
+    if count < SHORTEST:
+        return np.zeros(0, dtype=int), np.zeros((0, SMPL22.num_joints, 3))
+    figure = figure.model_copy(update={"late": figure.late + late})
+    poses = figured(figure, beat.halt(person), angle, count, seed + person)
+    frames = np.union1d(np.arange(0, count, OFTEN), [count - 1])
+    return frames + first, poses[frames]
+
+
+def _getting_up(scores: Sequence[Score], person: int, beat: Stretch, last: Array) -> list[Pose]:
+    """The poses of a person who gets up before a figure."""
+    number = beat.window.beat
+    up = replace(scores[number], figures={}, changes={"ab"[person]: (Change(posture="stands"),)})
+    score = [*scores[:number], up, *scores[number + 1 :]]
+    found = postures(score, number, person, beat.start, beat.stop, beat.stand, last)
+    return [pose for pose in found if pose[0] < beat.start + min(RISING, beat.frames)]

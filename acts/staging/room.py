@@ -12,13 +12,9 @@ from numpy.typing import NDArray
 from motion import FPS, SMPL22
 from motion.placement import Placement
 
-from ..bodies.curves import eased
-from ..bodies.poses import upright
-from ..floor import Standing
-from ..parts import Part
-from ..window import Window
-from .paths import known_paths
-from .postures import Pose
+from .places import Standing, eased
+from .poses import Pose, upright
+from .window import Part, Window, known_paths
 
 Array = NDArray[np.floating]
 
@@ -75,7 +71,7 @@ def roomy(stand: Standing, poses: Mapping[int, Sequence[Pose]], fixed: Sequence[
 
     Args:
         stand: where they are when it begins.
-        poses: by person, as :func:`~.scene_postures.postures` gives them for people who stand there. Who has none
+        poses: by person, as :func:`.postures.postures` gives them for people who stand there. Who has none
             stands upright.
         fixed: people who cannot step aside, as they are down already.
         first: nothing comes before: they begin where they have room.

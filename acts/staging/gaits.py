@@ -1,12 +1,14 @@
-"""Gaits on two feet that no caption of the training data shows: somebody limps, or sneaks on tiptoe.
+"""Gaits that no caption of the training data shows: people crawl, walk on their knees, limp, or sneak on tiptoe.
 
-Footprints are laid along the way, each in the middle of the time for which its foot carries the body; the other foot
-swings to its next one meanwhile, and two-bone IK gives the knees.
+The whole body is given. Of people on hands and knees it is one pose a place, its phase the way that was gone. Of people
+on two feet, footprints are laid along the way, each in the middle of the time for which its foot carries the body; the
+other foot swings to its next one meanwhile, and two-bone IK gives the knees.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,11 +22,100 @@ from motion.kinematics import forward_kinematics
 from motion.skeleton import LEGS
 from motion.transforms import heading_matrix
 
-from .poses import SOLE, STANDS, about
+from .poses import HANDS, SOLE, STANDS, about, all_but
+from .score import Score
+from .window import OFTEN, SETTLES, Part, Stretch
 
 Array = NDArray[np.floating]
 
-_SIDES = (("left", 1.0, 0.0), ("right", -1.0, 0.5))
+GETS_DOWN = 40
+"""Frames in which somebody gets down on hands and knees."""
+CYCLE = 0.46
+"""Metres of two steps, so that a knee stays where it was set down while the other one moves."""
+_SWING, _LIFT = 0.3, 0.12
+"""Radians of a thigh or an arm to either side of the vertical, and by which a knee is bent more as it comes forward."""
+_LEVEL, _TALL = 1.35, 0.08
+"""Radians by which the trunk of a person leans who crawls, and who walks on the knees."""
+_SIDES = (("left", 1.0), ("right", -1.0))
+
+
+def low_gait(gait: str, places: Array, headings: Array) -> Array:
+    """A person who goes low over the floor.
+
+    Args:
+        gait: a name of :data:`GAITS`.
+        places: (N, 2) x and z of the pelvis in metres, one after another.
+        headings: (N,) radians from +Z towards +X.
+
+    Returns:
+        (N, 22, 3) metres, on the floor.
+    """
+    steps = np.linalg.norm(np.diff(places, axis=0, prepend=places[:1]), axis=1)
+    phase = 2 * math.pi * np.cumsum(steps) / CYCLE
+    poses = forward_kinematics(GAITS[gait](phase, headings), np.zeros((len(places), 3)))
+    poses += np.insert(places, 1, SOLE - poses[..., 1].min(axis=1), axis=1)[:, None]
+    return poses
+
+
+def on_all_fours(place: Array, angle: float) -> Array:
+    """Somebody on hands and knees, the pelvis over a place (x, z) and the face to a heading: (22, 3) metres."""
+    return low_gait("crawls", np.asarray(place, dtype=float)[None], np.array([angle]))[0]
+
+
+def _crawls(phase: Array, headings: Array) -> Array:
+    """Rotations (N, 22, 3, 3) on hands and knees; a hand and the knee of the other side move together."""
+    turns = _on_knees(phase, headings, _LEVEL)
+    for side, sign in _SIDES:
+        arm = about(0, math.pi / 2 - _LEVEL + _SWING * np.sin(phase + (math.pi if sign > 0 else 0.0)))
+        turns[:, SMPL22.index(f"{side}_shoulder")] = arm @ heading_matrix(-sign * 1.5)
+    turns[:, SMPL22.index("neck")] = about(0, -0.5)
+    return turns
+
+
+def _kneels(phase: Array, headings: Array) -> Array:
+    """Rotations (N, 22, 3, 3) on the knees, the trunk upright and the arms hanging."""
+    turns = _on_knees(phase, headings, _TALL)
+    for side, sign in _SIDES:
+        turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * 1.35)
+        turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * 0.4)
+    return turns
+
+
+def _on_knees(phase: Array, headings: Array, lean: float) -> Array:
+    """Rotations (N, 22, 3, 3) of a person whose thighs swing about the vertical and whose shins lie on the floor."""
+    turns = np.tile(np.eye(3), (len(phase), SMPL22.num_joints, 1, 1))
+    turns[:, 0] = np.stack([heading_matrix(float(angle)) for angle in headings]) @ about(0, lean)
+    for side, sign in _SIDES:
+        own = phase + (0.0 if sign > 0 else math.pi)
+        swing, lift = _SWING * np.sin(own), _LIFT * np.maximum(-np.cos(own), 0.0)
+        turns[:, SMPL22.index(f"{side}_hip")] = about(0, swing - lift - lean)
+        turns[:, SMPL22.index(f"{side}_knee")] = about(0, math.pi / 2 - swing + lift)
+        turns[:, SMPL22.index(f"{side}_ankle")] = about(0, np.full(len(phase), 0.95))
+    return turns
+
+
+GAITS: Mapping[str, Callable[[Array, Array], Array]] = {"crawls": _crawls, "on the knees": _kneels}
+"""The gaits: rotations of the joints, of the phase (N,) in radians and of the heading (N,)."""
+
+
+def low_gait_parts(gait: str, person: int, down: Collection[int], stretch: Stretch) -> list[Part]:
+    """The poses of a person who crawls or walks on the knees along a way.
+
+    Args:
+        gait: of :data:`GAITS`.
+        person: 0 for a, 1 for b.
+        down: the people who are down already when the beat begins; the others get down first.
+        stretch: the beat.
+    """
+    course = stretch.course(person)
+    poses = low_gait(gait, course.places, course.headings)
+    first = GETS_DOWN if stretch.start and person not in down else 0
+    frames = np.union1d(np.arange(first, stretch.frames, OFTEN), [stretch.frames - 1])
+    frames = stretch.shown(frames)
+    return [stretch.known(person, frames, poses[frames])] if len(frames) else []
+
+
+_FEET = (("left", 1.0, 0.0), ("right", -1.0, 0.5))
 """Sides with the sign of their x and the share of a cycle by which their foot is ahead."""
 _SWINGS = 0.43
 """Share of a cycle in which a foot swings."""
@@ -40,7 +131,7 @@ _WIDE = 0.1
 """Metres of a foot beside the line that is walked."""
 _REACH = 0.985
 """Share of a leg's length that is used at most."""
-_SMOOTH = 5.0
+_ROUND = 5.0
 """Frames over which a way that is given now and then is rounded."""
 _EVEN = 4.0
 """Frames over which the height of the hips is evened out."""
@@ -72,7 +163,7 @@ class Gait:
     short: float = 0.0
 
 
-ON_FEET: Mapping[str, Gait] = {
+STEPS: Mapping[str, Gait] = {
     "limps": Gait(0.44, (0.05, 0.025), sinks=0.03, pitch=0.12, arms=0.45, lurch=0.16, short=0.14),
     "on tiptoe": Gait(0.4, (0.1, 0.1), heels=0.75, sinks=0.05, pitch=0.16, arms=0.9),
 }
@@ -83,16 +174,16 @@ def stepped(gait: str, places: Array, headings: Array) -> Array:
     """A person who walks with a gait.
 
     Args:
-        gait: a name of :data:`ON_FEET`.
+        gait: a name of :data:`STEPS`.
         places: (N, 2) x and z of the pelvis in metres, one a frame.
         headings: (N,) radians from +Z towards +X.
 
     Returns:
         (N, 22, 3) metres, on the floor.
     """
-    steps = ON_FEET[gait]
+    steps = STEPS[gait]
     places, headings = (
-        scipy.ndimage.gaussian_filter1d(values, _SMOOTH, axis=0, mode="nearest")
+        scipy.ndimage.gaussian_filter1d(values, _ROUND, axis=0, mode="nearest")
         for values in (np.asarray(places, dtype=float), np.unwrap(headings))
     )
     gone = np.linalg.norm(np.diff(places, axis=0, prepend=places[:1]), axis=1)
@@ -102,7 +193,7 @@ def stepped(gait: str, places: Array, headings: Array) -> Array:
     phase = cycles * gone / max(float(gone[-1]), 1e-6)
     feet = [_foot(steps, side, phase, cycles, places, headings) for side in range(2)]
     poses = forward_kinematics(_trunk(steps, phase, headings), np.zeros((len(places), 3)))
-    ankles = [_ankle(steps, toe, sign, headings) for toe, (_, sign, _) in zip(feet, _SIDES, strict=True)]
+    ankles = [_ankle(steps, toe, sign, headings) for toe, (_, sign, _) in zip(feet, _FEET, strict=True)]
     poses += np.insert(places, 1, _height(steps, poses, places, ankles), axis=1)[:, None]
     ahead = np.stack([np.sin(headings), np.zeros(len(headings)), np.cos(headings)], axis=1)
     for (hip, knee, ankle, toe), goal, foot in zip(LEGS, ankles, feet, strict=True):
@@ -116,7 +207,7 @@ def stepped(gait: str, places: Array, headings: Array) -> Array:
 
 def _foot(steps: Gait, side: int, phase: Array, cycles: float, places: Array, headings: Array) -> Array:
     """The way (N, 3) of a toe from footprint to footprint."""
-    _, sign, ahead = _SIDES[side]
+    _, sign, ahead = _FEET[side]
     own = phase + ahead
     number, share = np.floor(own + 1e-9), own - np.floor(own + 1e-9)
     late = steps.short / (2 * steps.length) if sign > 0 else 0.0
@@ -171,10 +262,20 @@ def _trunk(steps: Gait, phase: Array, headings: Array) -> Array:
     for name in ("spine1", "spine2"):
         turns[:, SMPL22.index(name)] = lean
     turns[:, SMPL22.index("neck")] = about(2, -0.5 * steps.lurch * over)
-    for side, sign, _ in _SIDES:
+    for side, sign, _ in _FEET:
         swing = 0.12 * sign * np.sin(cycle)
         turns[:, SMPL22.index(f"{side}_shoulder")] = about(0, swing) @ about(2, -sign * STANDS["shoulder"])
         turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * steps.arms)
         turns[:, SMPL22.index(f"{side}_hip")] = about(0, np.full(len(phase), -0.2))
         turns[:, SMPL22.index(f"{side}_knee")] = about(0, np.full(len(phase), 0.4))
     return turns
+
+
+def step_parts(gait: str, person: int, score: Score, beat: Stretch) -> list[Part]:
+    """The body of a person who limps or walks on tiptoe along a way, as far as it falls into a window."""
+    course = beat.course(person)
+    poses = stepped(gait, course.places, course.headings)
+    if not len(frames := beat.every(OFTEN, SETTLES // 2 if beat.start else 0)):
+        return []
+    joints = all_but(HANDS if "ab"[person] in score.gestures else ())
+    return [beat.known(person, frames, poses[frames], joints, kept=True)]

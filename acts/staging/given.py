@@ -1,0 +1,288 @@
+"""What a window of a story is given: the parts that the scores of its beats ask for.
+
+Who has the body of a person who stays where they are is decided in :meth:`_Beat.on_the_spot`; what comes on the ways of
+the two is collected in :meth:`_Beat.on_the_way`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import FPS
+from motion.placement import Placement
+from motion.transforms import heading
+
+from .arms import hand_parts, outer_hand_parts
+from .beginnings import beginning, going, starting
+from .figures import figure_parts, figure_poses
+from .floor import plan
+from .gaits import STEPS, low_gait_parts, step_parts
+from .holds import hold_parts, pull_parts, twirl_parts
+from .lifts import Carrying
+from .limbs import limb_parts
+from .places import Standing, Way2D
+from .poses import ARMS, HANDS, UPRIGHT, Pose, all_but, standing, upright
+from .postures import bow_parts, posture_parts, postures
+from .room import Room, roomy
+from .score import Move, Score, Touch, goes
+from .strikes import strike_parts
+from .touches import coming, meeting, touch_parts, towards_touched
+from .window import SETTLES, KnownFrames, Part, Stretch, Window
+
+Array = NDArray[np.floating]
+
+_POSED = 4
+"""Frames between two poses of a bystander: as many as between the network's knots, of which others would waver."""
+
+
+@dataclass(frozen=True)
+class Story:
+    """A story as it is staged.
+
+    Attributes:
+        scores: of its beats.
+        seconds: the lengths of the beats.
+        edges: the first frame of each beat and the end of the last one.
+        seed: draws how people stand and how late they are.
+        placed: paths or poses of the request say where it begins, and the words do not.
+    """
+
+    scores: Sequence[Score]
+    seconds: Sequence[float]
+    edges: Sequence[int]
+    seed: int
+    placed: bool = False
+
+
+def plan_parts(
+    story: Story, window: Window, scene: Array, placement: Placement, taken: Collection[int] = ()
+) -> list[Part]:
+    """The places, poses and hands that the words of a window's beat ask for, in the network's frame.
+
+    Args:
+        story: the story.
+        window: the window.
+        scene: (2, T, 22, 3), whose frames before the window are there.
+        placement: from the scene's world to the network's frame.
+        taken: the people whose way or poses the request gives. Two who hold or carry each other are then left to the
+            network.
+    """
+    score, start = story.scores[window.beat], story.edges[window.beat]
+    if (taken and score.joined) or (not start and story.placed):
+        return []
+    if not start and not score.is_planned:
+        parts = _apart(story, window, placement)
+    else:
+        parts = _Beat(story, window, scene, placement).parts()
+    return [part for part in parts if part.person not in taken]
+
+
+@dataclass(frozen=True)
+class _Beat:
+    """One beat of a story, and the window of it that is made; see :func:`plan_parts`."""
+
+    story: Story
+    window: Window
+    scene: Array
+    placement: Placement
+
+    @property
+    def score(self) -> Score:
+        """Of the beat."""
+        return self.story.scores[self.window.beat]
+
+    @property
+    def start(self) -> int:
+        """Its first frame in the scene."""
+        return self.story.edges[self.window.beat]
+
+    @cached_property
+    def down(self) -> list[int]:
+        """The people who are not on their feet when it begins."""
+        return [person for person in (0, 1) if self.start and self.scene[person, self.start - 1, 0, 1] <= UPRIGHT]
+
+    def last(self, person: int) -> Array | None:
+        """A person's pose (22, 3) before it; None if it is the first."""
+        return self.scene[person, self.start - 1] if self.start else None
+
+    def stretch(self, stand: Standing) -> Stretch:
+        """Its frames, with the people where they stand."""
+        return Stretch(self.window, self.placement, stand, self.start, self.story.edges[self.window.beat + 1])
+
+    def parts(self) -> list[Part]:
+        """All that the window is given of it."""
+        score, start, lift = self.score, self.start, self.score.lift
+        before = self.scene[:, max(start - 4, 0) : start]
+        stand = _stand(before) if start else beginning(self.story.scores, self.story.seconds)
+        moves = coming(score, stand, self.down) if start else score.moves
+        room = self._room(moves, stand)
+        stand = room.stand
+        stretch = self.stretch(stand)
+        parts, posed = ([], {}) if lift else self.on_the_spot(moves, replace(stretch, start=start + room.delay))
+        parts += room.steps(start, self.window, self.placement)
+        touch, moves = meeting(score.touch, moves, posed, stand)
+        if lift is not None and not start and not lift.comes:  # they are held from the first frame
+            moves = tuple(m for m in moves if (m.person, m.way) != (lift.carrier, "stay"))
+        if touch is not None:
+            parts = [part for part in parts if part.person != "ab".index(touch.person)]
+        if not start and not parts and not moves and score.side:
+            moves = tuple(Move(who, "averted") for who in "ab")
+        goal = towards_touched(touch, posed, stand, score.pulls)
+        there = {part.person for part in parts}
+        ways = {
+            way.person: way for way in plan(moves, goal, stretch.frames, first=not start) if way.person not in there
+        }
+        stretch = replace(stretch, ways=ways)
+        if lift is not None and len(ways) == 2:
+            carrying = Carrying(lift, stretch, score.gestures.get("ab"["ba".index(lift.carrier)]))
+            parts += carrying.parts()
+            stretch = replace(stretch, ways=carrying.before())
+        return parts + self.on_the_way(moves, touch, posed, stretch)
+
+    def on_the_spot(self, moves: Sequence[Move], stretch: Stretch) -> tuple[list[Part], dict[int, Array]]:
+        """The parts of people who stay where they are, and a pose (22, 3) of those whose hands are still free.
+
+        A figure comes before limbs, these before a bow, a bow before standing by, and that before a posture.
+        """
+        score, seed = self.score, self.story.seed
+        gone = {move.person for move in moves if move.way not in ("stay", "back to back")}
+        parts: list[Part] = []
+        posed: dict[int, Array] = {}
+        for person, who in enumerate("ab"):
+            last, up, stays = self.last(person), person not in self.down, who not in gone
+            turned = last is None and _keeps_back(score, who)
+            stands = upright(stretch.stand.places[person], float(stretch.stand.headings[person]))
+            if stays and who in score.figures:
+                parts += figure_parts(self.story.scores, person, stretch, last, seed)
+                posed[person] = stands
+            elif stays and up and who in score.limbs:
+                parts += limb_parts(person, score, stretch, seed)
+                posed[person] = stands
+            elif stays and up and who in score.bows and _only_bows(score, who):
+                parts += bow_parts(person, score, stretch, seed)
+                posed[person] = stands
+            elif up and who in score.idle:
+                parts += _standing_parts(person, stretch, seed)
+            elif stays and up and (turned or who in score.gesturing):
+                touched = score.touch is not None and score.touch.person != who and who not in score.gestures
+                parts += _standing_parts(person, stretch, seed, () if touched else HANDS if turned else ARMS)
+                posed[person] = stands
+            elif stays:
+                poses = self._postures(person, stretch)
+                if len(poses) > 1:
+                    posed[person] = poses[-1][1]
+                parts += posture_parts(poses, person, score, stretch, self.window.tail(self.story.edges[-1]))
+        return parts, posed
+
+    def on_the_way(
+        self, moves: Sequence[Move], touch: Touch | None, posed: dict[int, Array], stretch: Stretch
+    ) -> list[Part]:
+        """The ways of the two, and the touches, holds, blows and gestures on them."""
+        score, ways, parts = self.score, stretch.ways, list[Part]()
+        hand = None if touch is None else touch_parts(touch, posed, stretch)
+        if hand is not None:
+            parts.append(hand)
+        if score.pulls:
+            lifted = self._postures(1 - "ab".index(score.pulls), stretch)
+            parts += pull_parts(score.pulls, lifted, stretch, both=score.by_both_hands)
+        gaits = {"ab".index(move.person): move.gait for move in moves if move.gait}
+        free = not (score.touch or score.joined or score.linked or score.strike)
+        for person, way in ways.items():
+            if (gait := gaits.get(person)) is None:
+                parts += stretch.known_way(_until_posed(way, hand, stretch))
+            elif gait not in STEPS:
+                parts += low_gait_parts(gait, person, self.down, stretch)
+            else:
+                parts += step_parts(gait, person, score, stretch) if free else stretch.known_way(way)
+        leads = "ring" if any(move.backwards for move in moves) and score.by_both_hands else ""
+        if (hold := score.hold or leads) and len(ways) == 2:
+            parts += hold_parts(hold, stretch)
+        if len(ways) == 2 and score.twirls:
+            parts += twirl_parts(stretch)
+        if (strike := score.strike) is not None and "ab".index(strike.turns[0]) in ways:
+            parts += strike_parts(strike, score, stretch)
+        before = self.scene[:, self.start - 1].astype(np.float64) if self.start else None
+        for arms in hand_parts(score, moves, posed, stretch, before, self.story.seed):
+            if score.lift is None or "ab"[arms.person] == score.lift.carrier:
+                parts.append(arms)
+        parts += outer_hand_parts(score, moves, stretch)
+        return parts
+
+    def _postures(self, person: int, stretch: Stretch) -> list[Pose]:
+        """The poses by which a person's posture is held."""
+        beat, last = self.window.beat, self.last(person)
+        return postures(self.story.scores, beat, person, stretch.start, stretch.stop, stretch.stand, last)
+
+    def _room(self, moves: Sequence[Move], stand: Standing) -> Room:
+        """The room that the postures of a beat need, in which nobody goes anywhere or touches the other."""
+        score, stretch = self.score, self.stretch(stand)
+        meets = any(figure.meets for figure in score.figures.values())
+        if score.joined or score.strike or score.touch or meets or going(moves):
+            return Room(stand)
+        poses = {
+            person: figure_poses(score, person, stretch, self.story.seed)
+            if who in score.figures
+            else self._postures(person, stretch)
+            for person, who in enumerate("ab")
+            if who not in score.idle
+        }
+        return roomy(stand, poses, self.down, first=not self.start)
+
+
+def _until_posed(way: Way2D, hand: KnownFrames | None, stretch: Stretch) -> Way2D:
+    """A way, up to where the same person kneels down to what they touch: from then on poses say where they are."""
+    if hand is None or hand.person != way.person or 0 not in hand.joints:
+        return way
+    kept = np.asarray(stretch.in_window(way.frames)) < min(hand.frames)
+    headings = None if way.headings is None else way.headings[kept]
+    return Way2D(way.person, np.asarray(way.frames)[kept].tolist(), way.places[kept], headings)
+
+
+def _only_bows(score: Score, who: str) -> bool:
+    """True for a person who bows and keeps their feet and hands out of other things."""
+    return not (who in score.changes or who in score.jumps or who in score.gestures or score.touch)
+
+
+def _keeps_back(score: Score, who: str) -> bool:
+    """True for a person who stands so that the network would turn their trunk to the other, against their feet."""
+    touch = score.touch
+    if who in score.changes or (touch is not None and touch.beside and touch.person == who):
+        return False  # they are down, lean to the other, or reach around them
+    return bool(score.side) or (touch is not None and touch.behind and touch.person != who)
+
+
+def _standing_parts(person: int, stretch: Stretch, seed: int, free: Collection[int] = ()) -> list[Part]:
+    """The poses of a person who stands by, but for the joints that are ``free``."""
+    frames = stretch.every(_POSED, SETTLES if stretch.start else 0)
+    if not len(frames):
+        return []
+    seconds = (frames + stretch.start) / FPS
+    poses = standing(stretch.halt(person), float(stretch.stand.headings[person]), seconds, seed=seed + person)
+    return [stretch.known(person, frames, poses, all_but(free))]
+
+
+def _apart(story: Story, window: Window, placement: Placement) -> list[Part]:
+    """The places where two people begin who only come or go in a later beat; free if they touch before."""
+    for score, seconds in list(zip(story.scores, story.seconds, strict=True))[1:]:
+        if goes(score.moves):
+            comes = any(move.way in ("to", "away") for move in score.moves)
+            if not comes or window.part or story.scores[0].reaching:
+                return []
+            stand = starting(score.moves, seconds)
+            stretch = Stretch(window, placement, stand, 0, window.stop)
+            ways = [Way2D(i, [0], stand.places[i : i + 1], stand.headings[i : i + 1]) for i in (0, 1)]
+            return [part for way in ways for part in stretch.known_way(way)]
+    return []
+
+
+def _stand(poses: Array) -> Standing:
+    """Places and speeds of the two people at the last of some frames (2, N, 22, 3)."""
+    poses = np.asarray(poses, dtype=np.float64)
+    places = poses[:, :, 0][..., [0, 2]]
+    speeds = (places[:, -1] - places[:, 0]) / max(poses.shape[1] - 1, 1) * FPS
+    return Standing(places[:, -1], heading(poses[:, -1]), speeds)

@@ -1,0 +1,259 @@
+"""The score of a beat: the shapes of its acts, cast with its two people, who are "a" and "b".
+
+The shapes are those of :mod:`acts.shapes`. Where the stage needs more of one, such as the person who touches, a class
+here adds that and nothing else. :mod:`.stage` makes scores of acts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from acts import shapes
+from acts.shapes import Bow, Figure, Gesture, Jump, Limb
+
+SIDES = ("left", "right")
+Way = Literal[
+    "to",
+    "away",
+    "past",
+    "around",
+    "behind",
+    "along",
+    "after",
+    "back",
+    "aside",
+    "ahead",
+    "to and fro",
+    "beside",
+    "turn",
+    "face",
+    "stay",
+    "averted",
+    "back to back",
+    "hold",
+    "spar",
+    "thing",
+]
+"""Ways over the floor, and of staying: those of :class:`acts.shapes.Go`, and a walk up ``beside`` the other; a ``turn``
+on the spot and one to ``face`` the other; somebody who stays, with their back ``averted``, or ``back to back``; two who
+go round each other in ``hold`` or ``spar``; and a way to a ``thing``."""
+IN_PLACE = ("stay", "face", "back to back")
+"""Ways that need no legs."""
+LOW = frozenset(("leg", "foot"))
+"""Parts of a standing person's body that one kneels down to reach."""
+LOWERED = frozenset(("kneels", "crouches", "bends down"))
+"""Postures by which somebody gets down to what is low."""
+
+
+@dataclass(frozen=True)
+class Move:
+    """A way of one person over the floor.
+
+    Attributes:
+        person: "a" or "b".
+        way: how they move.
+        speed: metres a second.
+        turns: whole turns, of ways "around" and "turn"; a second, of "hold" and "spar".
+        until: the move ends early, because something happens then.
+        linked: they hold each other by the hands or arms.
+        late: it comes after something else that is done in place.
+        metres: length of the way, of "ahead" and "back"; 0 for the usual one.
+        near: metres between the two pelvises at its end; 0 leaves that to the network.
+        backwards: they go away with their face to the other.
+        gait: as in :class:`acts.shapes.Go`.
+        rightwards: to their right; of turns and of ways around, clockwise as seen from above.
+    """
+
+    person: str
+    way: Way
+    speed: float = 1.1
+    turns: float = 0.5
+    until: bool = False
+    linked: bool = False
+    late: bool = False
+    metres: float = 0.0
+    near: float = 0.0
+    backwards: bool = False
+    gait: str = ""
+    rightwards: bool = False
+
+    @property
+    def sense(self) -> float:
+        """1 to the left and counter-clockwise, -1 to the right and clockwise."""
+        return -1.0 if self.rightwards else 1.0
+
+
+class Change(shapes.Posture):
+    """A posture that one person takes up in a beat, or is in already when it begins ("while she sits").
+
+    Attributes:
+        after: share of the beat that comes before, from 0 to 1.
+        gently: they let themselves down and do not fall.
+    """
+
+    after: float = 0.0
+    gently: bool = False
+
+
+class Touch(shapes.Touch):
+    """A touch; "waist" is the part only where it is touched from behind.
+
+    Attributes:
+        person: the one who touches the other.
+        late: something else goes on until then.
+    """
+
+    person: str
+    late: bool = False
+
+    @property
+    def sides(self) -> tuple[str, ...]:
+        """The hands that touch; none for a kiss, or a head that is laid on the other's shoulder from beside."""
+        return {"both": SIDES, "none": ()}.get(self.hands, (self.hands,))
+
+
+class Lift(shapes.Lift):
+    """A lift.
+
+    Attributes:
+        carrier: the one who lifts the other.
+        comes: the one who walks up to the other first; "" for nobody.
+    """
+
+    carrier: str
+    comes: str = ""
+
+
+@dataclass(frozen=True)
+class Strike:
+    """The blows or throws of a beat.
+
+    Attributes:
+        bout: as in :class:`acts.shapes.Strike`.
+        turns: who strikes, in order, "a" and "b", over and over where ``goes_on``.
+        goes_on: they strike through the whole beat.
+        answered: the other ducks, falls or steps back at the first blow.
+        late: something else goes on until then.
+        hands: the hand of each blow, where the words name them; "" leaves it open.
+        up: what is thrown goes up, and comes down to the one who threw it.
+    """
+
+    bout: str
+    turns: str
+    goes_on: bool = True
+    answered: bool = False
+    late: bool = False
+    hands: tuple[str, ...] = ()
+    up: bool = False
+
+
+@dataclass(frozen=True)
+class Score:
+    """All that the acts of a beat have its people do.
+
+    Attributes:
+        moves: of each person in order; () where nobody is sent anywhere.
+        idle: those who stand by.
+        frozen: those who stand like statues.
+        gesturing: those who only stand and make a gesture that the network knows little of.
+        gestures: of hands, by person.
+        touch: the first one.
+        hold: in which both dance or spin; "" for none.
+        by_both_hands: one holds both of the other's hands.
+        twirls: under whose raised arm the other turns; "" if nobody does.
+        pulls: the one who pulls the other up by the hand; "" if nobody does.
+        linked: they hold each other by the hand.
+        lift: of one by the other.
+        strike: blows or throws.
+        changes: of posture in order, by person.
+        limbs: legs, trunk and head that move by themselves, by person.
+        figures: what whole bodies do on the spot, by person.
+        jumps, bows: by person.
+        on_feet: those who do what needs legs.
+        loose: those who do nothing with their hands: they walk, sit, jump or stand by.
+        side: how the two are, and stay, to each other: "beside", "back to back", or "" for neither.
+        behind: the person who stands behind the other when a story begins with the beat; "" for nobody.
+        apart: metres between them then; 0 leaves it free.
+        reaching: those who do something within the other's reach, and the metres between the two for it.
+        alone: a sentence on what a does and one on what b does; "" for a person who has none of their own.
+    """
+
+    moves: tuple[Move, ...] = ()
+    idle: frozenset[str] = frozenset()
+    frozen: frozenset[str] = frozenset()
+    gesturing: frozenset[str] = frozenset()
+    gestures: Mapping[str, Gesture] = field(default_factory=dict)
+    touch: Touch | None = None
+    hold: str = ""
+    by_both_hands: bool = False
+    twirls: str = ""
+    pulls: str = ""
+    linked: bool = False
+    lift: Lift | None = None
+    strike: Strike | None = None
+    changes: Mapping[str, tuple[Change, ...]] = field(default_factory=dict)
+    limbs: Mapping[str, tuple[Limb, ...]] = field(default_factory=dict)
+    figures: Mapping[str, Figure] = field(default_factory=dict)
+    jumps: Mapping[str, Jump] = field(default_factory=dict)
+    bows: Mapping[str, Bow] = field(default_factory=dict)
+    on_feet: frozenset[str] = frozenset()
+    loose: frozenset[str] = frozenset()
+    side: str = ""
+    behind: str = ""
+    apart: float = 0.0
+    reaching: Mapping[str, float] = field(default_factory=dict)
+    alone: tuple[str, str] = ("", "")
+
+    @property
+    def is_planned(self) -> bool:
+        """True if people go somewhere, stand by, sit, kneel, lie down, jump, bow or touch."""
+        bodies = (self.touch, self.changes, self.jumps, self.bows, self.limbs, self.figures)
+        return goes(self.moves) or self.has_places or any(bodies) or bool(self.idle or self.gesturing)
+
+    @property
+    def has_places(self) -> bool:
+        """True if it says where the two are when a story begins with it, whatever they do then."""
+        return bool(self.side or self.behind or self.apart)
+
+    @property
+    def going(self) -> set[str]:
+        """The people who walk, jump, dance or the like."""
+        going = {move.person for move in self.moves if move.way not in IN_PLACE}
+        return going | self.on_feet | set(self.jumps) | set(self.figures)
+
+    @property
+    def joined(self) -> bool:
+        """True if two hold or carry each other, so that neither can be placed alone."""
+        return bool(self.lift or self.twirls or self.hold)
+
+
+def goes(moves: Sequence[Move]) -> bool:
+    """True if any of the moves takes a person elsewhere or turns them."""
+    return any(move.way != "stay" for move in moves)
+
+
+def at_start(scores: Sequence[Score], beat: int) -> dict[str, str]:
+    """The postures of both people, "a" and "b", when a beat of a story begins."""
+    held = dict.fromkeys("ab", "stands") | _from_the_start(scores)
+    for i, score in enumerate(scores[: beat + 1]):
+        held |= dict.fromkeys(score.going, "stands")
+        for person, listed in score.changes.items():
+            if i == 0 and listed[0].posture == "stands":
+                held[person] = "sits"  # a person who gets up was down
+            if i < beat and not listed[-1].passing:
+                held[person] = listed[-1].posture
+    return held
+
+
+def _from_the_start(scores: Sequence[Score]) -> dict[str, str]:
+    """The postures of people of whom a later beat first says that they are down already."""
+    found: dict[str, str] = {}
+    known: set[str] = set()
+    for score in scores:
+        for person, listed in score.changes.items():
+            if person not in known and listed[0].already:
+                found[person] = listed[0].posture
+        known |= set(score.changes) | score.going
+    return found

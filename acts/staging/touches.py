@@ -1,0 +1,428 @@
+"""Touches: a hand that is laid on the other's shoulder, a pat on the back, a kiss on the cheek.
+
+The network makes the touches of its training sentences. It often misses by a hand's breadth after a
+walk, on a person who sits or kneels, or on a part of the body that those sentences never name. In such cases the person
+who touches is led to where they reach the other, and the hand is given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import FPS, SMPL22
+from motion.transforms import heading, heading_matrix
+from motion.vectors import unit
+
+from .floor import ABEAM
+from .places import Course, Standing, direction
+from .poses import LOWER, TRUNK, about, kneeling, leaning, upright
+from .score import SIDES, Move, Score, Touch, Way
+from .window import KnownFrames, Stretch
+
+Array = NDArray[np.floating]
+
+_JOINTS = {
+    "head": "head",
+    "shoulder": "{side}_shoulder",
+    "back": "spine3",
+    "chest": "spine2",
+    "waist": "spine2",
+    "arm": "{side}_elbow",
+    "hand": "{side}_wrist",
+    "leg": "{side}_knee",
+    "foot": "{side}_ankle",
+}
+_SKIN = 0.1
+"""Metres between a wrist and the joint inside the part of the body that its hand is on."""
+_PALM = 0.05
+"""Metres by which a wrist is further from the spine, so that the palm and not the wrist is on the back."""
+_KISS = 0.22
+"""Metres between two heads at a kiss."""
+_ARM = 0.45
+"""Metres from the shoulder to the wrist of an arm that is nearly straight."""
+_TRUNK = 0.47
+"""Metres from the pelvis to the line of the shoulders."""
+_HIP, _KNEELING = 0.93, float(kneeling(np.zeros(2), 0.0)[0, 1])
+"""Height in metres of the pelvis of a person who stands, and who kneels."""
+_DOWN = 0.33
+"""Metres that the hand of a person who kneels is below their shoulder."""
+_FLAT = 0.3
+"""Metres between the heights of head and pelvis of a person who lies, at most."""
+BESIDE = 0.46
+"""Metres between the pelvises of two people one of whom has an arm around the other or the head on their shoulder."""
+_RESTS, _WHISPERS = (0.2, 0.65), (0.34, 0.7)
+"""Radians to the side of a trunk, and further ones of the head, of a person whose head is on a shoulder, and of one who
+whispers."""
+_OWN_HAND = np.array([0.04, 0.1, 0.22])
+"""Metres from their pelvis to that side, up and ahead, of the wrist on that side: clear of the other's body."""
+_AT_MOUTH = np.array([0.05, -0.1, 0.16])
+"""The same from the head of a person who whispers, of the other hand, whose fingers are before the mouth."""
+_AROUND = (0.13, 0.06, 0.04)
+"""Metres behind, inside of and under the other's far shoulder of a wrist whose arm is around them."""
+LOWEST = 0.55
+"""Height in metres of the lowest place that somebody on their feet reaches."""
+FAR_APART = 1.8
+"""Metres between two people beyond which one comes up to do something within the other's reach."""
+REACHES = 12
+"""Frames in which a hand is brought to the place that it touches."""
+HELD = 1.6
+"""Seconds that a hand stays, where the beat is long enough."""
+BEAT = 20
+"""Frames from one pat to the next."""
+TAKEN_BACK = 0.2
+"""Metres by which a hand is taken back between two pats."""
+LOWERS = 24
+"""Frames in which a hand that has patted somebody's back goes down."""
+KNEELS = 40
+"""Frames in which somebody kneels down to touch what is low."""
+_COMES = ("to", "behind", "beside", "stay", "face")
+_WAITS = ("stay", "averted", "face", "turn")
+
+
+def kneels(touch: Touch, pose: Array) -> bool:
+    """True for a place of a pose (22, 3) so low that the person who touches it kneels down to it."""
+    return float(middle(touch, pose)[1]) < LOWEST and not touch.fells
+
+
+def beside(pose: Array, place: Array) -> float | None:
+    """The heading across a person's lying body (22, 3), from the side of a place (2,); None if they do not lie."""
+    body = np.asarray(pose)[SMPL22.index("head")] - pose[0]
+    if abs(body[1]) > _FLAT or pose[0][1] > _KNEELING:
+        return None
+    across = np.array([body[2], -body[0]])
+    side = 1.0 if across @ (np.asarray(pose)[0][[0, 2]] - place) >= 0 else -1.0
+    return float(np.arctan2(*(side * across)))
+
+
+def touching(touch: Touch, pose: Array, place: Array, angle: float) -> Array:
+    """The pose (22, 3) of a person at a place (2,) who leans, or kneels down, to the other's pose, arms hanging."""
+    if touch.beside:
+        own = upright(place, angle)
+        return own if touch.sides else _tilted(pose, own, angle, whispers=touch.part == "head")
+    make = kneeling if kneels(touch, pose) else upright
+    return leaning(make(place, angle), angle, lean(touch, pose))
+
+
+def reach(touch: Touch, pose: Array) -> float:
+    """Metres over the floor from a person's pelvis to what they touch of the other, leaning or kneeling if it is low.
+
+    Args:
+        touch: the contact.
+        pose: (22, 3) metres of the one who is touched.
+    """
+    if touch.beside:
+        return BESIDE
+    height, angle = float(middle(touch, pose)[1]), lean(touch, pose)
+    if kneels(touch, pose):
+        return float(_TRUNK * np.sin(angle) + np.sqrt(_ARM**2 - _DOWN**2))
+    ahead, up = _TRUNK * np.sin(angle), _HIP + _TRUNK * np.cos(angle)
+    if not touch.sides:
+        return float(ahead + 0.08 + _KISS)
+    if touch.part == "waist":
+        return 0.36
+    arm = float(np.sqrt(max(_ARM**2 - (up - height) ** 2, 0.1**2)))
+    return float(min(ahead + arm, 0.55)) + _SKIN
+
+
+def lean(touch: Touch, pose: Array) -> float:
+    """Radians by which a person leans forward to touch the other, whose pose (22, 3) is given."""
+    if kneels(touch, pose):
+        over = float(middle(touch, pose)[1]) + _DOWN - _KNEELING
+        return float(np.arccos(np.clip(over / _TRUNK, 0.2, 1.0)))
+    least = 0.05 if touch.sides else 0.15
+    return float(np.clip(0.1 + 1.2 * (1.3 - middle(touch, pose)[1]), least, 1.0))
+
+
+def middle(touch: Touch, pose: Array) -> Array:
+    """The middle (3,) of the joints of a pose (22, 3) that are touched."""
+    return np.asarray(pose)[_joints(touch.part)].mean(axis=0)
+
+
+def _joints(part: str) -> list[int]:
+    name = _JOINTS[part]
+    return [SMPL22.index(name.format(side=side)) for side in (SIDES if "{" in name else SIDES[:1])]
+
+
+def touched(touch: Touch, other: Array, own: Array) -> Array:
+    """The places of the wrists, or of the head, at a contact.
+
+    Args:
+        touch: the contact.
+        other: (22, 3) metres, a pose of the one who is touched.
+        own: (22, 3) metres, a pose of the one who touches, who leans forward at their place.
+
+    Returns:
+        (len(sides), 3) metres; (1, 3) for a kiss.
+    """
+    joints = _joints(touch.part)
+    back = other[SMPL22.index("spine3")]
+    if touch.part == "back" and float((own[0] - other[0]) @ _facing(other)) > 0:
+        joints = _joints("shoulder")  # as far as an arm gets round somebody from the front
+    if not touch.sides:
+        return other[joints[0]] + _KISS * unit(own[SMPL22.index("head")] - other[joints[0]])[None]
+    found = []
+    for side in touch.sides:
+        shoulder = own[SMPL22.index(f"{side}_shoulder")]
+        if touch.beside:
+            found.append(_around(other, shoulder))
+            continue
+        joint = min(joints, key=lambda j: float(np.linalg.norm(other[j] - shoulder)))
+        place = other[joint] + _SKIN * unit(shoulder - other[joint])
+        if touch.part == "waist":  # the arms go round
+            across = unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
+            place = other[joint] + 0.12 * _facing(other) - 0.02 * across + np.array([0.0, 0.02, 0.0])
+        elif len(joints) == 1 and len(touch.sides) == 2:
+            place = place + 0.08 * unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
+        if touch.part == "back" and len(joints) == 1:
+            place = place + _PALM * unit(shoulder - back)
+        found.append(place)
+    return np.stack(found)
+
+
+def inner_side(other: Array, place: Array, angle: float) -> str:
+    """The side, "left" or "right", on which a person at a place (2,) has the other (22, 3)."""
+    left = np.array([np.cos(angle), -np.sin(angle)])
+    return SIDES[0] if float((np.asarray(other)[0][[0, 2]] - place) @ left) > 0 else SIDES[1]
+
+
+def arms_beside(touch: Touch, other: Array, place: Array, angle: float) -> tuple[str, ...]:
+    """The sides of the arms that are given of a person at a place (2,) beside the other (22, 3): the inner one, and of
+    one who whispers both."""
+    whispers = touch.part == "head" and not touch.sides
+    return SIDES if whispers else (inner_side(other, place, angle),)
+
+
+def _tilted(other: Array, own: Array, angle: float, *, whispers: bool = False) -> Array:
+    """A pose (22, 3) whose trunk and head are tilted to the side where the other (22, 3) is.
+
+    The hand on that side is before the belly; of a person who whispers the other hand is before the mouth.
+    """
+    side = inner_side(other, own[0][[0, 2]], angle)
+    sign = -1.0 if side == SIDES[0] else 1.0
+    found = own.copy()
+    neck, head = SMPL22.index("neck"), SMPL22.index("head")
+    for root, moved, tilt in zip((0, neck), (list(TRUNK), [head]), _WHISPERS if whispers else _RESTS, strict=True):
+        turn = heading_matrix(angle) @ about(2, sign * tilt) @ heading_matrix(-angle)
+        found[moved] = found[root] + (found[moved] - found[root]) @ turn.T
+    inner = SIDES.index(side)
+    hands = [(inner, 0, _OWN_HAND), *([(1 - inner, head, _AT_MOUTH)] if whispers else [])]
+    for hand, root, at in hands:
+        place = heading_matrix(angle) @ (at * [-sign, 1.0, 1.0])
+        found[SMPL22.index(f"{SIDES[hand]}_wrist")] = found[root] + place
+    return found
+
+
+def _around(other: Array, shoulder: Array) -> Array:
+    """The place (3,) of a wrist on the other's (22, 3) far shoulder, behind them, of an arm from a shoulder (3,)."""
+    behind, inside, under = _AROUND
+    far, near = sorted(
+        (other[SMPL22.index(f"{side}_shoulder")] for side in SIDES),
+        key=lambda joint: -float(np.linalg.norm(joint - shoulder)),
+    )
+    return np.asarray(far + inside * unit(near - far) - behind * _facing(other) - [0.0, under, 0.0])
+
+
+def _facing(pose: Array) -> Array:
+    angle = float(heading(np.asarray(pose)[None])[0])
+    return np.array([np.sin(angle), 0.0, np.cos(angle)])
+
+
+def meeting(
+    touch: Touch | None, found: Sequence[Move], posed: Mapping[int, Array], stand: Standing
+) -> tuple[Touch | None, tuple[Move, ...]]:
+    """The contact, if it can be planned, and the moves of the beat with those that it needs.
+
+    Args:
+        touch: as the words name it.
+        found: the beat's moves.
+        posed: a pose (22, 3) of those whose posture is given, by person.
+        stand: where the people are when the beat begins.
+    """
+    moves = tuple(found)
+    if touch is None:
+        return None, moves
+    giver = "ab".index(touch.person)
+    own = [move for move in moves if move.person == touch.person]
+    theirs = [move for move in moves if move.person != touch.person]
+    if touch.fells:
+        if 1 - giver not in posed:
+            return None, moves  # the network knows pushes
+        posed = {}
+        if middle(touch, upright(np.zeros(2), 0.0))[1] < LOWEST:
+            return None, moves
+    pose = posed.get(1 - giver, upright(np.zeros(2), 0.0))
+    down = kneels(touch, pose)
+    if (giver in posed and not down) or any(move.way not in _COMES for move in own):
+        return None, moves
+    if any(move.way not in (*_WAITS, "to") for move in theirs):
+        return None, moves
+    near = reach(touch, pose)
+    lies = 1 - giver in posed and beside(pose, stand.places[giver]) is not None
+    way: Way = "behind" if touch.behind or lies else "beside" if touch.beside else "to"
+    comes = [
+        Move(m.person, way if m.way == "to" else m.way, m.speed, late=m.late, near=near) if m.way in _COMES[:3] else m
+        for m in own
+    ]
+    if not any(move.near for move in comes):
+        speed = 1.2 if touch.beside else 0.8
+        comes = [*(m for m in comes if m.way == "face"), Move(touch.person, way, speed, near=near)]
+    other = "ab"[1 - giver]
+    waits = [Move(m.person, m.way, m.speed, near=near) if m.way == "to" else m for m in theirs]
+    if 1 - giver not in posed and not touch.fells and (not waits or waits[0].way in ("turn", "face")):
+        waits = [Move(other, "averted" if touch.behind else "stay"), *waits]
+    return touch, (*comes, *waits)
+
+
+def coming(score: Score, stand: Standing, down: Collection[int]) -> tuple[Move, ...]:
+    """The moves of a beat; who does something within the other's reach comes up to them first, if they are far apart.
+
+    The other turns to them, and both stay there. Their arms are left to the network.
+
+    Args:
+        told: of the beat.
+        stand: where the people are when it begins.
+        down: those who are not on their feet.
+    """
+    found = score.moves
+    if found or score.touch or score.has_places or score.strike or not score.reaching or stand.gap() < FAR_APART:
+        return found
+    comes = sorted(who for who in score.reaching if "ab".index(who) not in down)
+    turned = [
+        who
+        for i, who in enumerate("ab")
+        if i not in down and direction(float(stand.headings[i])) @ stand.towards(i) < ABEAM
+    ]
+    waits = [Move(who, "face") for who in turned if who not in comes]
+    return (*(Move(who, "to", until=True, near=score.reaching[who]) for who in comes), *waits)
+
+
+def towards_touched(touch: Touch | None, posed: Mapping[int, Array], stand: Standing, pulls: str = "") -> Standing:
+    """The places that a way to the other is planned from: of a person who is posed, the one that is touched.
+
+    A person who lies is taken to face away from the one who comes, so that they are touched from the side. A person
+    whom the other ``pulls`` up is where they will stand.
+    """
+    giver = touch.person if touch is not None and not touch.fells else pulls
+    other = 1 - "ab".index(giver) if giver else 0
+    if not giver or other not in posed:
+        return stand
+    places, headings = stand.places.copy(), stand.headings.copy()
+    pose = posed[other]
+    places[other] = (middle(touch, pose) if touch is not None else pose[0])[[0, 2]]
+    across = beside(pose, stand.places[1 - other])
+    headings[other] = headings[other] if across is None else across
+    return replace(stand, places=places, headings=headings)
+
+
+def touch_parts(touch: Touch, posed: Mapping[int, Array], stretch: Stretch) -> KnownFrames | None:
+    """The trunk and hands of the person who touches, as the network is given them; None if the beat is too short.
+
+    Of a person who kneels down to what they touch, also the pelvis and the legs.
+
+    Args:
+        touch: the contact.
+        posed: a pose (22, 3) of those whose posture is given, by person.
+        stretch: the beat.
+    """
+    giver, frames = "ab".index(touch.person), stretch.frames
+    if giver not in stretch.ways:
+        return None
+    own, other = stretch.course(giver), stretch.course(1 - giver)
+    arms = touch.sides
+    if touch.beside:
+        there = upright(other.places[-1], float(other.headings[-1]))
+        arms = arms_beside(touch, there, own.places[-1], float(own.headings[-1]))
+        touch = touch.model_copy(update={"hands": arms[0] if touch.sides else "none"})
+    down = kneels(touch, posed.get(1 - giver, upright(np.zeros(2), 0.0)))
+    first = _turned(own) if touch.beside else 0
+    first = max(first, _arrival(own), _arrival(other) if 1 - giver in stretch.ways else 0)
+    first += KNEELS if down else REACHES
+    first = max(first, round(0.6 * frames)) if touch.late else first
+    last = min(frames, _leaving(other, first))
+    at = _moments(touch, first, last)
+    if down and at:
+        rest = TAKEN_BACK if touch.times else 0.0
+        at += [(frame, rest) for frame in range(at[-1][0] + REACHES // 2, frames, REACHES // 2)]
+    wrists = [SMPL22.index(f"{side}_wrist") for side in arms]
+    joints = [*(LOWER if down else ()), *(j for j in TRUNK if not down or j not in LOWER), *wrists]
+    kept: list[int] = []
+    poses: list[Array] = []
+    for frame, back in at:
+        if not stretch.shows(frame):
+            continue
+        target = None if touch.fells else posed.get(1 - giver)
+        if target is None:
+            target = upright(other.places[frame], float(other.headings[frame]))
+        pose = _reaching(touch, target, own, frame, back)
+        pose -= 0.0 if down else pose[0].copy()
+        kept.append(frame)
+        poses.append(pose)
+    comes = range(REACHES, first - REACHES, REACHES) if touch.beside and stretch.start else range(0)
+    for frame in (*comes, *_rests(touch, at, frames)):
+        if stretch.shows(frame):
+            kept.append(frame)
+            pose = upright(own.places[frame], float(own.headings[frame]))
+            poses.append(pose - pose[0])
+    if not kept:
+        return None
+    order = np.argsort(kept)
+    return stretch.known(giver, np.array(kept)[order], np.stack(poses)[order], joints)
+
+
+def _reaching(touch: Touch, target: Array, own: Course, frame: int, back: float) -> Array:
+    """The pose (22, 3) of a person who touches the other's ``target``, with the hands taken ``back`` by some metres."""
+    pose = touching(touch, target, own.places[frame], float(own.headings[frame]))
+    if touch.sides:
+        wrists = [SMPL22.index(f"{side}_wrist") for side in touch.sides]
+        places = touched(touch, target, pose)
+        away = pose[wrists] - places
+        away /= np.linalg.norm(away, axis=1, keepdims=True).clip(min=1e-6)
+        pose[wrists] = places + back * away
+    return pose
+
+
+def _moments(touch: Touch, first: int, last: int) -> list[tuple[int, float]]:
+    """The frames at which the hand is given, and metres by which it is taken back then."""
+    if not touch.times:
+        stop = min(last, max(first + round(HELD * FPS), round(0.85 * last)))
+        return [(frame, 0.0) for frame in range(first, stop, 3)]
+    found: list[tuple[int, float]] = []
+    for i in range(touch.times):
+        on = first + i * BEAT
+        found += [(frame, 0.0) for frame in range(on, on + 7, 3)]
+        if i + 1 < touch.times:
+            found.append((on + BEAT // 2 + 3, TAKEN_BACK))
+    return [(frame, back) for frame, back in found if frame < last]
+
+
+def _rests(touch: Touch, at: Sequence[tuple[int, float]], frames: int) -> range:
+    """The frames after the last pat of somebody's back: their hands hang, where the network would pat the front."""
+    if not touch.times or not touch.behind or not at:
+        return range(0)
+    return range(at[-1][0] + LOWERS, frames, REACHES // 2)
+
+
+def _arrival(course: Course) -> int:
+    """The frame from which somebody stays within 4 cm of where they end up."""
+    away = np.linalg.norm(course.places - course.places[-1], axis=1) > 0.04
+    return int(np.flatnonzero(away)[-1]) + 1 if away.any() else 0
+
+
+def _turned(course: Course) -> int:
+    """The frame from which somebody faces where they will face in the end."""
+    away = np.abs(course.headings - course.headings[-1]) > 0.2
+    return int(np.flatnonzero(away)[-1]) + 1 if away.any() else 0
+
+
+def _leaving(course: Course, first: int) -> int:
+    """The frame after ``first`` at which somebody begins to turn or to go."""
+    if first >= len(course.places):
+        return len(course.places)
+    moved = np.linalg.norm(course.places[first:] - course.places[first], axis=1) > 0.1
+    turned = np.abs(course.headings[first:] - course.headings[first]) > 0.4
+    gone = np.flatnonzero(moved | turned)
+    return first + int(gone[0]) if len(gone) else len(course.places)
