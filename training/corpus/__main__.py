@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import argparse
 import logging
-import sys
-import time
 from pathlib import Path
 
-from motion import InputError
-from training.core.shell import add_options
+from training.core.shell import add_options, exit_code
 
 from .build import build, save
-from .compose import FPS
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -25,18 +21,13 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--cache", type=Path, help="folder that keeps the fitted pairs for the next build")
     options = parser.parse_args(arguments)
     logging.basicConfig(level=logging.WARNING, format="%(message)s")
-    began = time.monotonic()
-    try:
+
+    def job() -> None:
         scenes, tally = build(options.data, hours=options.hours, seed=options.seed, cache=options.cache)
         save(scenes, options.out)
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
-    for line in tally.lines():
-        print(line)
-    total = sum(scene.positions.shape[1] for scene in scenes) / FPS / 3600
-    print(f"{len(scenes)} scenes, {total:.2f} h, in {time.monotonic() - began:.0f} s -> {options.out}")
-    return 0
+        print(*tally.lines(), f"{len(scenes)} scenes -> {options.out}", sep="\n")
+
+    return exit_code(job)
 
 
 if __name__ == "__main__":

@@ -1,11 +1,11 @@
-"""Builds the corpus: draws scenes of each kind, checks each, writes them."""
+"""Builds the corpus: composes scenes of beats, adds the recorded duets, checks each scene and writes them."""
 
 from __future__ import annotations
 
 import json
 import logging
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -14,50 +14,38 @@ import numpy as np
 from motion import InputError
 from motion.formats.files import replacing, write_text
 
-from .beats.formation import DANCERS, formation
 from .beats.script import compose
 from .checks import fault
 from .compose import FPS
+from .duets import load_duets
 from .library import Library
+from .pairs import load_pairs
 from .scene import Scene
 from .sources import load_sources
 
 logger = logging.getLogger(__name__)
 TEST_SHARE = 0.08
+NEEDS = ("walk", "walk-back", "idle", "wave", "bow")
+"""Source actions without which no scene is composed."""
 TRIES = 30
-
-
-@dataclass(frozen=True)
-class Kind:
-    """A kind of composed scene.
-
-    Attributes:
-        make: makes one scene with its label and captions.
-        needs: source actions without which it cannot be made.
-        weight: its share of the corpus relative to the other kinds.
-    """
-
-    make: Callable[[np.random.Generator, Library], Scene]
-    needs: tuple[str, ...]
-    weight: float
-
-
-KINDS = {
-    "beats": Kind(compose, ("walk", "walk-back", "idle", "wave", "bow"), 65.0),
-    "formation": Kind(formation, DANCERS, 1.0),
-}
+"""Scenes in a row that may be turned away before no more are composed."""
 
 
 @dataclass
 class Tally:
-    """Counts of a build: frames by kind, and rejected scenes by kind and reason."""
+    """Counts of a build: frames and scenes by kind, and rejected scenes by kind and reason."""
 
     frames: Counter[str] = field(default_factory=Counter)
     scenes: Counter[str] = field(default_factory=Counter)
     rejected: Counter[tuple[str, str]] = field(default_factory=Counter)
 
+    def add(self, kind: str, scene: Scene) -> None:
+        """Counts a scene."""
+        self.frames[kind] += scene.positions.shape[1]
+        self.scenes[kind] += 1
+
     def lines(self) -> list[str]:
-        """One line a family."""
+        """One line a kind, and one a reason."""
         lines = [
             f"{name}: {self.scenes[name]} scenes, {self.frames[name] / FPS / 60:.1f} min"
             for name in sorted(self.frames)
@@ -65,47 +53,38 @@ class Tally:
         return lines + [f"rejected {count}: {name}: {why}" for (name, why), count in self.rejected.most_common()]
 
 
-def draw(rng: np.random.Generator, library: Library, kinds: dict[str, Kind], frames: int, tally: Tally) -> list[Scene]:
-    """Checked scenes of ``frames`` frames in all, spread over the kinds by their weights.
-
-    A kind whose scenes fail :data:`TRIES` times in a row is left out from then on, with a warning.
-    """
-    left = {name: kind for name, kind in kinds.items() if library.has(*kind.needs)}
-    own: Counter[str] = Counter()
-    failures: Counter[str] = Counter()
+def draw(rng: np.random.Generator, library: Library, frames: int, tally: Tally) -> list[Scene]:
+    """Checked scenes of beats of ``frames`` frames in all; fewer, with a warning, where none passes any more."""
     scenes: list[Scene] = []
-    while left and sum(own.values()) < frames:
-        name = min(left, key=lambda key: own[key] / left[key].weight)
+    made = failures = 0
+    while library.has(*NEEDS) and made < frames and failures < TRIES:
         try:
-            scene = left[name].make(rng, library)
+            scene = compose(rng, library)
             why = fault(scene)
         except LookupError as error:
             why = str(error)
         if why:
-            tally.rejected[name, why] += 1
-            failures[name] += 1
-            if failures[name] >= TRIES:
-                logger.warning("%s is left out of the %s split: %s", name, library.split, why)
-                del left[name]
+            tally.rejected["beats", why] += 1
+            failures += 1
+            if failures == TRIES:
+                logger.warning("No more scenes for the %s split: %s", library.split, why)
             continue
-        failures[name] = 0
-        own[name] += scene.positions.shape[1]
-        tally.frames[name] += scene.positions.shape[1]
-        tally.scenes[name] += 1
+        failures = 0
+        made += scene.positions.shape[1]
+        tally.add("beats", scene)
         scenes.append(scene)
     return scenes
 
 
 def build(
-    data_dir: str | Path, *, hours: float = 5.0, seed: int = 0, recorded: bool = True, cache: Path | None = None
+    data_dir: str | Path, *, hours: float = 5.0, seed: int = 0, cache: Path | None = None
 ) -> tuple[list[Scene], Tally]:
-    """All scenes of a corpus.
+    """All scenes of a corpus; recorded pairs and real duets join where their data are there.
 
     Args:
         data_dir: the unpacked or packed data sets; see :func:`training.corpus.sources.load_sources`.
         hours: composed motion, of which 8 % is the test split.
         seed: the same seed, data and code give the same corpus.
-        recorded: whether the recorded pairs and the real duets join where their data are there.
         cache: where the skeletons fitted to the recorded pairs are kept from one build to the next.
 
     Raises:
@@ -117,18 +96,12 @@ def build(
     tally, scenes = Tally(), []
     for number, (split, share) in enumerate((("train", 1 - TEST_SHARE), ("test", TEST_SHARE))):
         rng = np.random.default_rng([seed, number])
-        frames = int(hours * share * 3600 * FPS)
-        scenes += draw(rng, Library(clips, split), KINDS, frames, tally)
-    if recorded:
-        scenes += _recorded(data_dir, tally, cache)
-    return scenes, tally
+        scenes += draw(rng, Library(clips, split), int(hours * share * 3600 * FPS), tally)
+    return scenes + recorded(data_dir, tally, cache), tally
 
 
-def _recorded(data_dir: str | Path, tally: Tally, cache: Path | None) -> list[Scene]:
-    """The recorded pairs, without the benchmark's test sets, and the real duets."""
-    from .duets import load_duets
-    from .pairs import load_pairs
-
+def recorded(data_dir: str | Path, tally: Tally, cache: Path | None) -> list[Scene]:
+    """The real duets and the recorded pairs, without the benchmark's test sets."""
     left_out: Counter[str] = Counter()
     kept = load_duets(data_dir, left_out)
     try:
@@ -136,8 +109,7 @@ def _recorded(data_dir: str | Path, tally: Tally, cache: Path | None) -> list[Sc
     except InputError as error:
         logger.warning("No recorded pairs: %s", error)
     for scene in kept:
-        tally.frames[f"recorded {scene.family}"] += scene.positions.shape[1]
-        tally.scenes[f"recorded {scene.family}"] += 1
+        tally.add(f"recorded {scene.family}", scene)
     for why, count in left_out.items():
         tally.rejected["real duets", why] += count
     return kept
@@ -175,10 +147,4 @@ def save(scenes: Sequence[Scene], folder: Path) -> None:
         np.lib.format.write_array_header_1_0(file, header)
         for scene in scenes:
             file.write(np.ascontiguousarray(scene.positions.swapaxes(0, 1), dtype="<f4").tobytes())
-    write_text(folder / "index.json", json.dumps(index, default=_plain))
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, np.generic):
-        return value.item()
-    raise TypeError(f"{type(value).__name__} cannot be written to the index.")
+    write_text(folder / "index.json", json.dumps(index, default=np.generic.item))

@@ -16,30 +16,11 @@ from .scene import Scene
 Array = NDArray[np.floating]
 FEET = tuple(tuple(SMPL22.index(f"{side}_{joint}") for joint in ("ankle", "foot")) for side in ("left", "right"))
 TRUNK = tuple(SMPL22.index(name) for name in ("pelvis", "spine1", "spine2", "spine3", "neck", "head"))
-FLYING = {
-    "run",
-    "jump",
-    "jumping",
-    "dance",
-    "spin",
-    "crawl",
-    "somersault",
-    "cartwheel",
-    "kick",
-    "push",
-    "fall",
-    "cheer",
-    "chase",
-    "throw",
-    "rage",
-    "swing",
-    "punch",
-    "shadow",
-    "skip",
-    "lie",
-    "shoot",
-    "squats",
-}
+_FLYING = (
+    "run jump jumping dance spin crawl somersault cartwheel kick push fall cheer chase throw rage swing punch "
+    "shadow skip lie shoot squats"
+)
+FLYING = frozenset(_FLYING.split())
 """First words of entries during which nobody stands on a foot, or pivots on it."""
 
 

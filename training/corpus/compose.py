@@ -102,20 +102,9 @@ def facing_at(motion: Motion, frame: int, *, window: int = 5) -> float:
     return float(motion[max(frame - window, 0) : frame + window + 1].headings.mean())
 
 
-def travel_heading(motion: Motion) -> float:
-    """Heading of the straight line from the first to the last frame's root."""
-    step = motion.root[-1] - motion.root[0]
-    return float(np.arctan2(step[0], step[2]))
-
-
-def place(motion: Motion, x: float, z: float, angle: float, *, frame: int = 0, along: str = "facing") -> Motion:
-    """Moves a motion so that at ``frame`` its root is at (x, z) and it looks towards heading ``angle``.
-
-    Args:
-        along: "facing": the hips' heading at that frame counts; "travel": the line from start to end.
-    """
-    current = facing_at(motion, frame) if along == "facing" else travel_heading(motion)
-    motion = turned(motion, angle - current)
+def place(motion: Motion, x: float, z: float, angle: float, *, frame: int = 0) -> Motion:
+    """Moves a motion so that at ``frame`` its root is at (x, z) and its hips look towards heading ``angle``."""
+    motion = turned(motion, angle - facing_at(motion, frame))
     shift = np.array([x - motion.root[frame, 0], 0.0, z - motion.root[frame, 2]])
     return replace(motion, root=motion.root + shift)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +11,12 @@ from scipy.ndimage import binary_closing, binary_opening, uniform_filter1d
 
 from motion.skeleton import SMPL22
 from motion.transforms import heading
+from motion.vectors import runs
 
 from .compose import FPS
 from .cues import Beat
 
 Array = NDArray[np.floating]
-Mask = NDArray[np.bool_]
 
 JOINED = 0.25
 """Metres between two wrists whose hands hold each other."""
@@ -55,7 +56,7 @@ def dance_beats(people: Array) -> list[Beat]:
     for patient, start, stop in twirls(people):
         kinds[start:stop] = f"twirl {patient}"
     beats = []
-    for kind, start, stop in _runs(_merged(kinds)):
+    for kind, start, stop in _stretches(_merged(kinds)):
         if kind.startswith("twirl"):
             acts = ("", "twirl") if kind.endswith("0") else ("twirl", "")
             beats.append(Beat(acts, start, stop, first=int(kind.endswith("0")), relation="while"))
@@ -77,7 +78,7 @@ def twirls(people: Array) -> list[tuple[int, int, int]]:
         raised = led & (height > people[patient, :, _NECK, 1])
         rate = uniform_filter1d(np.gradient(angles[patient]) * FPS, 5, mode="nearest")
         for sign in (1.0, -1.0):
-            for start, stop in _spans(sign * rate > np.radians(45)):
+            for start, stop in runs(sign * rate > np.radians(45)):
                 turned = abs(angles[patient][stop - 1] - angles[patient][start])
                 led_by = abs(angles[1 - patient][stop - 1] - angles[1 - patient][start])
                 if turned >= TURN and led_by < turned / 2 and raised[start:stop].mean() > 0.3:
@@ -100,7 +101,7 @@ def handshake_beats(people: Array) -> list[Beat]:
     return beats
 
 
-def _steady(mask: Mask) -> Mask:
+def _steady(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Without gaps and moments shorter than :data:`BRIEF`."""
     padded = np.pad(mask, BRIEF, mode="edge")
     line = np.ones(BRIEF)
@@ -111,24 +112,20 @@ def _merged(kinds: NDArray[np.object_]) -> list[str]:
     """The kind of each frame, where a hold or its absence that is too brief, as beside a turn, joins its neighbour."""
     merged = [str(kind) for kind in kinds]
     while True:
-        runs = list(_runs(merged))
-        brief = [run for run in enumerate(runs) if run[1][2] - run[1][1] < BRIEF and not run[1][0].startswith("twirl")]
-        if not brief or len(runs) == 1:
+        stretches = list(_stretches(merged))
+        brief = [
+            one for one in enumerate(stretches) if one[1][2] - one[1][1] < BRIEF and not one[1][0].startswith("twirl")
+        ]
+        if not brief or len(stretches) == 1:
             return merged
-        number, (_, start, stop) = min(brief, key=lambda run: run[1][2] - run[1][1])
-        merged[start:stop] = [runs[number - 1 if number else 1][0]] * (stop - start)
+        number, (_, start, stop) = min(brief, key=lambda one: one[1][2] - one[1][1])
+        merged[start:stop] = [stretches[number - 1 if number else 1][0]] * (stop - start)
 
 
-def _runs(kinds: list[str]) -> Iterator[tuple[str, int, int]]:
+def _stretches(kinds: list[str]) -> Iterator[tuple[str, int, int]]:
     """(kind, first, last frame (exclusive)) of each stretch of one kind."""
     start = 0
-    for frame in range(1, len(kinds) + 1):
-        if frame == len(kinds) or kinds[frame] != kinds[start]:
-            yield str(kinds[start]), start, frame
-            start = frame
-
-
-def _spans(mask: Mask) -> Iterator[tuple[int, int]]:
-    """First and last (exclusive) frame of each stretch in which the mask holds."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
-    yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+    for kind, frames in groupby(kinds):
+        stop = start + len(list(frames))
+        yield kind, start, stop
+        start = stop

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import InputError, stacked_positions
-from motion.formats.bvh import read_bvh
 from motion.retarget import retarget_duet
 from motion.transforms import canonicalize
 
@@ -25,8 +24,8 @@ from .compose import FPS
 from .cues import Beat, label
 from .duet_acts import dance_beats, danced, handshake_beats
 from .scene import Scene
-from .telling import Teller, describe, texts
-from .vocabulary import unpacked, upright, without_first
+from .sources import read_upright, unpacked
+from .telling import Teller, describe
 
 Array = NDArray[np.floating]
 
@@ -72,35 +71,28 @@ def load_duets(root: str | Path, tally: Counter[str] | None = None) -> list[Scen
 
 
 def read_takes(root: Path) -> Iterator[Take]:
-    """The takes of every set that is there."""
+    """The takes of every set that is there: ``NAME_a.bvh`` beside ``NAME_b.bvh``.
+
+    Where one file of each kind is all there is, they are a pair whatever their names.
+    """
     for dataset in SETS:
-        with unpacked(root / dataset, dataset) as folder:
-            for name, a, b in pairs_in(folder):
+        with unpacked(root / dataset) as files:
+            a, b = ([path for path in files if path.stem.endswith(f"_{who}")] for who in "ab")
+            for path in a:
+                name = path.stem.removesuffix("_a")
+                other = b[0] if len(a) == len(b) == 1 else path.with_name(f"{name}_b.bvh")
+                if other not in b:
+                    continue
                 try:
-                    yield Take(f"{dataset}/{name}", read_people(a, b))
+                    yield Take(f"{dataset}/{name}", read_people(path, other))
                 except InputError:
                     continue
 
 
-def pairs_in(folder: Path) -> list[tuple[str, Path, Path]]:
-    """(name, file of a, file of b) of every take in a folder: ``NAME_a.bvh`` beside ``NAME_b.bvh``.
-
-    Where one file of each kind is all there is, they are a pair whatever their names.
-    """
-    a, b = (sorted(folder.rglob(f"*_{who}.bvh")) for who in "ab")
-    if len(a) == len(b) == 1:
-        return [(a[0].stem.removesuffix("_a"), a[0], b[0])]
-    return [
-        (path.stem.removesuffix("_a"), path, other)
-        for path in a
-        if (other := path.with_name(path.name.replace("_a.bvh", "_b.bvh"))) in b
-    ]
-
-
 def read_people(a: Path, b: Path) -> Array:
     """(2, T, 22, 3) metres at 30 fps of two files that share one world; Y is up in them, their first frame a T-pose."""
-    one, other = (without_first(upright(read_bvh(path))) for path in (a, b))
-    return stacked_positions(retarget_duet(one, other, fps=FPS)).astype(np.float64)
+    duet = retarget_duet(read_upright(a), read_upright(b), fps=FPS)
+    return stacked_positions(duet).astype(np.float64)
 
 
 def windows(take: Take) -> Iterator[Scene]:
@@ -143,6 +135,6 @@ def _in_short(rng: np.random.Generator, scene: Scene) -> None:
     whole = Beat(("dance", "dance"), 0, scene.positions.shape[1], relation="while")
     short = Teller(rng, label([whole], scene.positions.shape[1]), scene.split)
     captions = [text for text in scene.captions if "waltz" not in text]
-    scene.captions = list(dict.fromkeys([*captions[:5], *texts(short.scene(3))]))
+    scene.captions = list(dict.fromkeys([*captions[:5], *short.scene(3)]))
     alone = [[text for text in own if "waltz" not in text] for own in scene.alone]
-    scene.alone = (alone[0] or texts(short.alone("a")), alone[1] or texts(short.alone("b")))
+    scene.alone = (alone[0] or short.alone("a"), alone[1] or short.alone("b"))

@@ -15,14 +15,14 @@ from .blending import Array, ease
 FPS = 30
 
 
-def planted(positions: Array, *, height: float = 0.055, speed: float = 0.3) -> NDArray[np.bool_]:
-    """(T, 2) True where a foot rests on the floor: the toe low (metres) and slow (metres a second).
+def planted(positions: Array) -> NDArray[np.bool_]:
+    """(T, 2) True where a foot rests on the floor: the toe under 5.5 cm and slower than 0.3 m/s.
 
     Gaps and runs shorter than four frames are closed and dropped.
     """
     toes = positions[:, [LEGS[0][3], LEGS[1][3]]]
     moving = np.linalg.norm(np.gradient(gaussian_filter1d(toes, 1.0, axis=0), axis=0)[..., [0, 2]], axis=-1)
-    resting = (toes[..., 1] - np.percentile(toes[..., 1], 3) < height) & (moving * FPS < speed)
+    resting = (toes[..., 1] - np.percentile(toes[..., 1], 3) < 0.055) & (moving * FPS < 0.3)
     for foot in range(2):
         for value in (True, False):  # first close gaps, then drop short runs
             for start, stop in runs(resting[:, foot] != value):

@@ -1,6 +1,6 @@
 """Corrects a Kinect's errors on two people: lean, sides, spikes, open trunks; then fits bodies.
 
-The joints go in as recorded (:class:`training.corpus.sbu.KinectPair`) and come out on the 22-joint skeleton
+The joints go in as recorded (:class:`training.corpus.kinect_files.KinectPair`) and come out on the 22-joint skeleton
 of constant bones.
 """
 
@@ -18,7 +18,7 @@ from motion.skeleton import SMPL22, Skeleton
 from motion.transforms import heading_matrix, resample
 from motion.vectors import wrapped
 
-from .sbu import KinectPair
+from .kinect_files import KinectPair
 
 Array = NDArray[np.floating]
 

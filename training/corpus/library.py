@@ -34,7 +34,6 @@ class Take:
         side: the hand, foot or turn as performed (after mirroring).
         peaks: the frames at which blows reach furthest; none where the action is no blow.
         aim: heading of the first blow against the motion's first heading, radians.
-        speed: playing speed against the source, 1 where untouched.
     """
 
     motion: Motion
@@ -43,7 +42,6 @@ class Take:
     side: str | None = None
     peaks: tuple[int, ...] = ()
     aim: float = 0.0
-    speed: float = 1.0
 
     def __len__(self) -> int:
         return len(self.motion)
@@ -69,10 +67,6 @@ class Library:
     def has(self, *actions: str) -> bool:
         """True if there is at least one clip of each action."""
         return all(self._clips.get(action) for action in actions)
-
-    def clips(self, action: str) -> list[SourceClip]:
-        """The recordings of an action as they are."""
-        return list(self._clips.get(action, ()))
 
     def styles(self, action: str) -> list[str]:
         """The manners in which an action is performed."""
@@ -120,7 +114,6 @@ class Library:
             side=OTHER[chosen.side] if flip else chosen.side,
             peaks=tuple(round(peak / speed) for peak in chosen.peaks),
             aim=-chosen.aim if flip else chosen.aim,
-            speed=speed,
         )
 
     def idle(self, rng: np.random.Generator, frames: int, *, at_ease: float = 0.75) -> Motion:
@@ -318,10 +311,10 @@ def stride(
     passes = passes[(passes > 6) & (passes < len(motion) - 7)]
     warp = float(np.clip(rng.normal(1.0, 0.07), 0.85, 1.15))
     if len(passes) < 2:
-        return Take(time_warp(motion, warp), action, take.style, take.side, speed=warp)
+        return Take(time_warp(motion, warp), action, take.style, take.side)
     first = int(passes[rng.integers(min(3, len(passes)))])
     travelled = np.linalg.norm((motion.root - motion.root[first])[:, [0, 2]], axis=-1)
     later = passes[passes > first]
     last = int(later[np.abs(travelled[later] - distance).argmin()]) if len(later) else len(motion) - 7
     steps = time_warp(motion[first - 6 : last + 7], warp)
-    return Take(steps, action, take.style, take.side, speed=warp)
+    return Take(steps, action, take.style, take.side)

@@ -9,11 +9,9 @@ pairs teach more than many broken ones.
 from __future__ import annotations
 
 import json
-import os
-import tempfile
+import logging
 import zlib
 from collections import Counter
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -22,20 +20,21 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_closing, binary_opening, gaussian_filter1d
 
 from motion.cleaning import plant_feet, solve_two_bones
+from motion.formats.files import replacing
 from motion.skeleton import SMPL22
 from motion.transforms import canonicalize, facing
 from motion.vectors import unit
 
 from .checks import foot_skate
 from .cues import STILL, Beat
-from .k3hi import read_k3hi
 from .kinect import ANKLE, FPS, fit_pair
-from .sbu import KinectPair, read_sbu
+from .kinect_files import KinectPair, read_pairs
 from .scene import Scene
 from .telling import describe as write_words
 
 Array = NDArray[np.floating]
 
+logger = logging.getLogger(__name__)
 CACHE_VERSION = 3
 _ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
 _TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
@@ -58,30 +57,12 @@ SHOWS = {
 _MEANT_TO_FACE = {"kick", "push", "handshake", "exchange", "punch"}
 
 
-@dataclass
-class Report:
-    """Results of the fit: kept clips and reasons for dropped ones by data set and family, and errors in metres."""
-
-    kept: Counter[str] = field(default_factory=Counter)
-    dropped: Counter[str] = field(default_factory=Counter)
-    errors: dict[str, list[float]] = field(default_factory=dict)
-
-    def lines(self) -> list[str]:
-        """The report as lines of text."""
-        lines = [
-            f"{name}: {count} kept, fit error {1000 * np.median(self.errors[name]):.0f} mm"
-            for name, count in sorted(self.kept.items())
-        ]
-        return lines + [f"dropped {count}: {reason}" for reason, count in sorted(self.dropped.items())]
-
-
-def load_pairs(data_dir: str | Path, cache: str | Path | None = None, *, report: Report | None = None) -> list[Scene]:
+def load_pairs(data_dir: str | Path, cache: str | Path | None = None) -> list[Scene]:
     """All good recorded pairs as scenes, fitted once and then read from a cache.
 
     Args:
         data_dir: the folder that holds ``sbu`` and ``k3hi``, unpacked or as archives.
         cache: folder of the cache file; by default ``data_dir``.
-        report: filled with counts and errors.
 
     Returns:
         scenes with split "train" or "benchmark" (the published test lists: keep them out of training).
@@ -90,25 +71,34 @@ def load_pairs(data_dir: str | Path, cache: str | Path | None = None, *, report:
         InputError: if the data are not there.
     """
     path = Path(cache or data_dir) / f"pairs-{CACHE_VERSION}.npz"
-    if path.is_file():
-        return _load(path, report)
-    report = report if report is not None else Report()
-    scenes = []
-    for pair in [*read_sbu(data_dir), *read_k3hi(data_dir)]:
-        scene = build_scene(pair, report)
-        if scene is not None:
-            scenes.append(scene)
-    _save(path, scenes, report)
-    return scenes
+    if not path.is_file():
+        left_out: Counter[str] = Counter()
+        made = [build_scene(pair, left_out) for pair in read_pairs(data_dir)]
+        for reason, count in sorted(left_out.items()):
+            logger.warning("Left out %d recorded pairs: %s", count, reason)
+        scenes = [scene for scene in made if scene is not None]
+        _save(path, scenes)
+        return scenes
+    with np.load(path, allow_pickle=False) as stored:
+        meta = json.loads(str(stored["meta"]))
+        parts = np.split(stored["positions"], np.cumsum(stored["lengths"])[:-1], axis=1)
+    return [_told(positions, **entry) for positions, entry in zip(parts, meta, strict=True)]
 
 
-def build_scene(pair: KinectPair, report: Report | None = None) -> Scene | None:
-    """One recorded pair as a scene, or ``None`` if it is rejected (``report`` says why)."""
-    report = report if report is not None else Report()
+def _save(path: Path, scenes: list[Scene]) -> None:
+    meta = [{"family": s.family, "source": s.sources[0], "split": s.split} for s in scenes]
+    lengths = np.array([scene.positions.shape[1] for scene in scenes])
+    joined = np.concatenate([s.positions for s in scenes], axis=1) if scenes else np.zeros((2, 0, 22, 3), np.float32)
+    with replacing(path) as temporary, open(temporary, "wb") as file:
+        np.savez(file, positions=joined, lengths=lengths, meta=json.dumps(meta))
+
+
+def build_scene(pair: KinectPair, left_out: Counter[str]) -> Scene | None:
+    """One recorded pair as a scene, or ``None`` if it is not good enough, whose reason is counted."""
     name = f"{pair.dataset} {pair.family}"
     if pair.split == "unlisted":
         if pair.family not in ("approach", "depart"):
-            report.dropped[f"{name}: who acts is not known"] += 1
+            left_out[f"{name}: who acts is not known"] += 1
             return None
         # The person who walks farther is the one who approaches or departs.
         travel = [np.linalg.norm(np.ptp(person[:, :, [0, 2]].mean(axis=1), axis=0)) for person in pair.positions]
@@ -119,13 +109,10 @@ def build_scene(pair: KinectPair, report: Report | None = None) -> Scene | None:
     people = canonicalize(people)
     reason = _fault(people, family, error)
     if reason:
-        report.dropped[f"{name}: {reason}"] += 1
+        left_out[f"{name}: {reason}"] += 1
         return None
-    report.kept[name] += 1
-    report.errors.setdefault(name, []).append(error)
-    source = f"{pair.dataset}/{pair.name}"
     split = "benchmark" if pair.split == "benchmark" else "train"
-    return _told(people.astype(np.float32), family, source, split)
+    return _told(people.astype(np.float32), family, f"{pair.dataset}/{pair.name}", split)
 
 
 def _told(people: Array, family: str, source: str, split: str) -> Scene:
@@ -325,26 +312,3 @@ def _striking_side(people: Array, part: str, *, up: bool = False) -> str | None:
     if abs(reach[_LEFT] - reach[_RIGHT]) < 0.12:
         return None
     return max(reach, key=lambda side: reach[side])
-
-
-def _save(path: Path, scenes: list[Scene], report: Report) -> None:
-    meta = [{"family": s.family, "source": s.sources[0], "split": s.split} for s in scenes]
-    summary = {"kept": report.kept, "dropped": report.dropped, "errors": report.errors}
-    lengths = np.array([scene.positions.shape[1] for scene in scenes])
-    joined = np.concatenate([s.positions for s in scenes], axis=1) if scenes else np.zeros((2, 0, 22, 3), np.float32)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".npz", delete=False) as file:
-        np.savez(file, positions=joined, lengths=lengths, meta=json.dumps(meta), report=json.dumps(summary))
-    os.replace(file.name, path)
-
-
-def _load(path: Path, report: Report | None) -> list[Scene]:
-    with np.load(path, allow_pickle=False) as stored:
-        meta = json.loads(str(stored["meta"]))
-        parts = np.split(stored["positions"], np.cumsum(stored["lengths"])[:-1], axis=1)
-        summary = json.loads(str(stored["report"]))
-    if report is not None:
-        report.kept.update(summary["kept"])
-        report.dropped.update(summary["dropped"])
-        report.errors.update(summary["errors"])
-    return [_told(positions, **entry) for positions, entry in zip(parts, meta, strict=True)]

@@ -43,86 +43,24 @@ _PLAIN = (
     Cast(("one player", "the other player"), ("the first player", "the second player"), group="two players"),
     Cast(("one dancer", "the other dancer"), ("the first dancer", "the second dancer"), group="two dancers"),
 )
-_ROLES = {
+_LISTS = {
     "he": (
-        "a man",
-        "a man",
-        "a boy",
-        "an old man",
-        "a young man",
-        "a waiter",
-        "a gentleman",
-        "a policeman",
-        "a father",
-        "a brother",
-        "a husband",
-        "a grandfather",
-        "a king",
-        "a businessman",
-        "an actor",
-        "a guy",
+        "a man, a man, a boy, an old man, a young man, a waiter, a gentleman, a policeman, a father, a brother, a "
+        "husband, a grandfather, a king, a businessman, an actor, a guy"
     ),
     "she": (
-        "a woman",
-        "a woman",
-        "a girl",
-        "an old woman",
-        "a young woman",
-        "a waitress",
-        "a lady",
-        "an actress",
-        "a mother",
-        "a sister",
-        "a wife",
-        "a grandmother",
-        "a queen",
-        "a businesswoman",
-        "a bride",
-        "a daughter",
+        "a woman, a woman, a girl, an old woman, a young woman, a waitress, a lady, an actress, a mother, a "
+        "sister, a wife, a grandmother, a queen, a businesswoman, a bride, a daughter"
     ),
     "they": (
-        "a stranger",
-        "a child",
-        "a teacher",
-        "a student",
-        "a dancer",
-        "a neighbour",
-        "a guest",
-        "a colleague",
-        "a doctor",
-        "a player",
-        "a coach",
-        "a tourist",
-        "a customer",
-        "a guard",
-        "a soldier",
-        "a visitor",
-        "a boxer",
-        "a runner",
-        "a nurse",
-        "a clown",
-        "a thief",
-        "a driver",
-        "a boss",
-        "a worker",
-        "a passenger",
-        "a patient",
-        "a toddler",
-        "a partner",
-        "an opponent",
-        "a rival",
-        "an artist",
-        "a cook",
-        "a drunk",
-        "a commuter",
-        "a shopkeeper",
-        "a referee",
-        "a hiker",
-        "a monk",
-        "a pilot",
-        "a farmer",
+        "a stranger, a child, a teacher, a student, a dancer, a neighbour, a guest, a colleague, a doctor, a "
+        "player, a coach, a tourist, a customer, a guard, a soldier, a visitor, a boxer, a runner, a nurse, a "
+        "clown, a thief, a driver, a boss, a worker, a passenger, a patient, a toddler, a partner, an opponent, a "
+        "rival, an artist, a cook, a drunk, a commuter, a shopkeeper, a referee, a hiker, a monk, a pilot, a "
+        "farmer"
     ),
 }
+_ROLES = {pronoun: names.split(", ") for pronoun, names in _LISTS.items()}
 
 
 def draw_cast(rng: Rng, *, joint: bool = False) -> Cast:

@@ -6,7 +6,6 @@ Writes ``corpus.md``, one row an act of the lexicon, and ``corpus/ACT.webp``, a 
 from __future__ import annotations
 
 import argparse
-import re
 from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
@@ -30,15 +29,6 @@ MEASURED = 250
 PICTURE_WIDTH = 640
 RECORDED = ("sbu/", "k3hi/", "cmu-salsa/", "cmu-handshake/")
 """How the sources begin whose two people were recorded together."""
-_PERFORMERS = (
-    (r"accad_(Female1|Male1)_", ("accad {}",)),
-    (r"cmu-(?:iclone_0|solo_)(\d\d)[_-]", ("cmu {}",)),
-    (r"cmu-dance-martial_(indian|martial)", ("cmu {}",)),
-    (r"perfume_([ABC])_", ("perfume {}",)),
-    (r"cmu-(salsa)/", ("cmu 60", "cmu 61")),
-    (r"cmu-(handshake)/", ("cmu 18", "cmu 19")),
-)
-"""Patterns of sources that name their performers."""
 
 
 def touch_gap(duet: Duet, contacts: Sequence[dict[str, Any]]) -> float:
@@ -59,20 +49,6 @@ def is_recorded(scene: dict[str, Any]) -> bool:
     return any(source.startswith(RECORDED) for source in scene.get("sources") or ())
 
 
-def performers(source: str) -> set[str]:
-    """The people whom a source names; none where it names nobody.
-
-    >>> sorted(performers("cmu-salsa/05"))
-    ['cmu 60', 'cmu 61']
-    """
-    if source.startswith("sbu/"):
-        return {f"sbu {number}" for number in re.findall(r"s(\d\d)", source.split("/")[1])}
-    for pattern, names in _PERFORMERS:
-        if match := re.match(pattern, source):
-            return {name.format(match[1]) for name in names}
-    return set()
-
-
 def report(motions: NDArray[np.floating], index: list[dict[str, Any]], out: Path) -> str:
     """Writes the report of a corpus (see :func:`training.prepare.load_corpus`) and returns its Markdown."""
     (out / "corpus").mkdir(parents=True, exist_ok=True)
@@ -85,14 +61,13 @@ def _head(motions: NDArray[np.floating], index: list[dict[str, Any]]) -> list[st
     recorded = [scene for scene in index if is_recorded(scene)]
     frames, real = (sum(scene["frames"] for scene in part) for part in (index, recorded))
     captions = {caption for scene in index for caption in scene["captions"]}
-    found = {who for scene in index for source in scene.get("sources") or () for who in performers(source)}
     lines = [
         "# The corpus",
         "",
         f"{len(index):,} scenes, {frames / FPS / 3600:.1f} hours at {FPS:.0f} fps, {len(captions):,} different "
         f"captions; {sum(scene['split'] == 'test' for scene in index):,} scenes are for testing.",
         f"{len(recorded):,} scenes ({real / FPS / 60:.0f} minutes, {100 * real / max(frames, 1):.1f} %) are recorded "
-        f"duets. The files name {len(found)} performers; some sets do not say who performs.",
+        "duets.",
         "",
         "| | Foot skate, cm/s | Jerk, m/s³ | Penetration, cm |",
         "|---|---|---|---|",

@@ -25,8 +25,6 @@ class SourceClip:
         source: unique stem of the file, for credit and for splits.
         dataset: "bandai-namco-1", "bandai-namco-2", "reactidle", …
         split: "train", "test", or "both" where an action has too few recordings to hold one out.
-        place: x and z in metres and heading in radians of the first frame in the file, by which people who
-            were recorded together are put together again.
     """
 
     positions: Array = field(repr=False)
@@ -36,7 +34,6 @@ class SourceClip:
     source: str
     dataset: str
     split: str = "train"
-    place: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def num_frames(self) -> int:
@@ -50,7 +47,7 @@ class Scene:
 
     Attributes:
         positions: (2, T, 22, 3) metres, 30 fps, canonical: a's root at XZ = 0 facing +Z at frame 0.
-        family: its kind: "beats-2", "formation", "salsa", or a recorded interaction such as "handshake".
+        family: its kind: "beats-2", "salsa", or a recorded interaction such as "handshake".
         sources: the files the motion comes from.
         split: "train" or "test".
         events: what a person would check, each key only where it applies:

@@ -1,8 +1,9 @@
 """The single-person recordings that the corpus is made of, on one skeleton, read once and cached.
 
-The data folder holds ``bandai-namco/`` (Bandai Namco Research Motion datasets 1 and 2, CC BY-NC 4.0) and
-``reactidle/`` (ReActIdle, MIT), each unpacked or as a ``.tar.xz``; archives are read in place. The sets of
-:mod:`training.corpus.vocabulary` widen what a body can do, where they are there.
+Each data set is a folder below the data folder, unpacked or as ``.tar.xz`` archives. The files of :data:`NAMED` say in
+their names what they show; of the other sets ``cuts.toml`` lists the parts that are used. Mesh2Motion's clips are
+animated by hand: their shapes are good, their timing is ideal, so they are smoothed and slowed to what a body does
+(:func:`humanly`).
 """
 
 from __future__ import annotations
@@ -14,34 +15,82 @@ import lzma
 import os
 import re
 import tarfile
+import tomllib
 import zipfile
 from collections import defaultdict
 from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
+from tempfile import TemporaryDirectory
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
 
 from motion import InputError
+from motion.cleaning import foot_contacts, plant_feet
 from motion.formats.bvh import read_bvh
 from motion.formats.files import replacing
+from motion.formats.glb_motion import animations_in, read_glb_people
+from motion.kinematics import project_to_skeleton
 from motion.retarget import retarget
-from motion.transforms import canonicalize, heading
+from motion.rigs import RigMotion
+from motion.skeleton import SMPL22
+from motion.transforms import canonicalize, resample
 
-from . import vocabulary
+from .deepmimic import read_deepmimic
 from .scene import SourceClip
 
+Array = NDArray[np.floating]
+Described = tuple[str, str, str | None, str, str]
+"""Action, style, side, source and data set of a recording, as in :class:`SourceClip`."""
 logger = logging.getLogger(__name__)
 
 FPS = 30.0
 MAX_FRAMES = 600
 TEST_SHARE = 0.08
 MIN_CLIPS_FOR_TEST = 6
-_CACHE_VERSION = 8  # raise when the reader or the retargeting changes its results
+_CACHE_VERSION = 9  # raise when the reader or the retargeting changes its results
 
-_FOLDERS = ("bandai-namco", "reactidle")
+NAMED = ("bandai-namco", "reactidle")
+ANIMATED = "mesh2motion"
+FILES = {ANIMATED: "*-animations.glb", "deepmimic": "*.txt"}
+"""Pattern of the files of a data set that is not in BVH."""
+MOST_SPEED, MOST_ACCELERATION = 6.5, 150.0
+"""What a wrist or ankle of a made clip may reach, in metres a second and metres a second squared: recorded
+gestures, jumps and dances of the other sets stay below it."""
+_TIPS = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("wrist", "ankle")]
 _ACTIONS = {"byebye": "bye", "dance-short": "dance"}
 _STYLES = {"masculinity": "masculine", "acted": "normal", "genuine": "normal"}
 _SIDED = re.compile(r"(wave|raise-up|walk-turn)-(left|right|both)(?:-hands?)?")
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A part of a file.
+
+    Attributes:
+        clip: the file's stem, or the animation's name in a .glb.
+        action, side: as in :class:`training.corpus.scene.SourceClip`; side None where none leads.
+        start, stop: seconds, ``stop`` 0 for the end.
+        style: the actor's manner.
+        backwards: played from its end.
+    """
+
+    clip: str
+    action: str
+    side: str | None = None
+    start: float = 0.0
+    stop: float = 0.0
+    style: str = "normal"
+    backwards: bool = False
+
+
+CUTS = {
+    dataset: tuple(Cut(**cut) for cut in listed["cuts"])
+    for dataset, listed in tomllib.loads(Path(__file__).with_name("cuts.toml").read_text(encoding="utf-8")).items()
+}
 
 
 def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -> list[SourceClip]:
@@ -50,117 +99,158 @@ def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -
     Clips longer than 20 s are cut into equal pieces that share their source. Files that cannot be read,
     hold NaN or a single frame are left out and counted in the log. About 8 % of the sources of every action
     and side are the test split, chosen by the hash of their names; the few recordings of an action with fewer
-    than six belong to ``both`` splits, so that no family is without a test scene.
+    than six belong to ``both`` splits, so that no action is without a test scene.
 
     Args:
-        data_dir: the folder with ``bandai-namco`` and ``reactidle``; either may be missing, not both.
+        data_dir: the folder of the data sets; those that are missing are left out.
         cache_dir: where the read clips are kept; by default ``~/.cache/pas-de-deux``.
 
     Raises:
-        InputError: where the folder is missing, holds no recordings or mostly damaged ones.
+        InputError: where the folder holds no recordings, a damaged archive or mostly damaged recordings.
     """
     root = Path(data_dir)
-    if not root.is_dir():
-        raise InputError(f"The data folder {root} does not exist: give the folder that holds {' and '.join(_FOLDERS)}.")
-    found = _find_files(root)
-    free = vocabulary.files(root)
-    if not found + free:
-        raise InputError(
-            f"{root} holds no motion recordings: put {' or '.join(_FOLDERS)} there (.bvh files or a .tar.xz)."
-        )
-    cache = _cache_path(root, found + free, cache_dir)
+    sets = [root / dataset for dataset in (*NAMED, *CUTS)]
+    files = [path for folder in sets for path in _files(folder) or sorted(folder.glob("*.tar.xz"))]
+    if not files:
+        raise InputError(f"{root} holds no motion recordings: put {' or '.join(NAMED)} there, or their .tar.xz.")
+    cache = _cache_path(root, files, cache_dir)
     if cache.exists():
         try:
             return _load_cache(cache)
         except (zipfile.BadZipFile, EOFError, OSError, ValueError, KeyError):
             logger.warning("The cache %s is damaged; the recordings are read again.", cache)
-    clips = _read_all(root, found)
-    if not clips:
+    read = sorted([*_named(root), *_cut(root)], key=lambda item: item[0][3])
+    if not read:
         raise InputError(f"No recording in {root} can be read: unpack its archives again.")
+    splits = _splits([described for described, _ in read])
+    clips = [
+        SourceClip(canonicalize(piece).astype(np.float32), *described, splits[described[3]])
+        for described, positions in read
+        for piece in np.array_split(positions, -(-len(positions) // MAX_FRAMES))
+    ]
     _save_cache(cache, clips)
     return clips
 
 
-def describe_source(name: str) -> tuple[str, str, str | None, str, str]:
-    """(action, style, side, source, dataset) from a recording's path.
+def describe_source(name: str) -> Described:
+    """What a recording of :data:`NAMED` shows, from its path.
 
     >>> describe_source("data/dataset-2_wave-left-hand_active_003.bvh")
     ('wave', 'active', 'left', 'dataset-2_wave-left-hand_active_003', 'bandai-namco-2')
     """
-    path = PurePosixPath(name)
-    match = re.fullmatch(r"dataset-(\d)_([a-z-]+)_([a-z-]+)_(\d+)", path.stem)
-    if match:
-        content, style = match[2], _STYLES.get(match[3], match[3])
-        sided = _SIDED.fullmatch(content)
-        if sided:
-            action = {"raise-up": "raise-hand"}.get(sided[1], sided[1])
-            return action, style, sided[2], path.stem, f"bandai-namco-{match[1]}"
-        side = content.removeprefix("walk-") if content in ("walk-left", "walk-right") else None
-        return _ACTIONS.get(content, content), style, side, path.stem, f"bandai-namco-{match[1]}"
-    return "idle", "normal", None, f"reactidle_{path.stem}", "reactidle"
+    stem = PurePosixPath(name).stem
+    match = re.fullmatch(r"dataset-(\d)_([a-z-]+)_([a-z-]+)_(\d+)", stem)
+    if match is None:
+        return "idle", "normal", None, f"reactidle_{stem}", "reactidle"
+    content, style = match[2], _STYLES.get(match[3], match[3])
+    action, side = _ACTIONS.get(content, content), None
+    if sided := _SIDED.fullmatch(content):
+        action, side = {"raise-up": "raise-hand"}.get(sided[1], sided[1]), sided[2]
+    elif content in ("walk-left", "walk-right"):
+        side = content.removeprefix("walk-")
+    return action, style, side, stem, f"bandai-namco-{match[1]}"
 
 
-def _find_files(root: Path) -> list[Path]:
-    files = []
-    for folder in _FOLDERS:
-        inside = sorted((root / folder).rglob("*.bvh")) if (root / folder).is_dir() else []
-        files += inside or sorted((root / folder).glob("*.tar.xz"))
-    return files
+def _files(folder: Path) -> list[Path]:
+    """The files of a data set's unpacked folder."""
+    return sorted(folder.rglob(FILES.get(folder.name, "*.bvh")))
 
 
-def _recordings(files: list[Path]) -> Iterator[tuple[str, bytes]]:
-    """(name, bytes) of every .bvh, whether it lies in a folder or in an archive."""
-    for path in files:
-        if path.suffix == ".bvh":
-            yield path.as_posix(), path.read_bytes()
-            continue
-        try:
-            with tarfile.open(path, "r:xz") as archive:
-                for member in archive:
-                    if member.isfile() and member.name.endswith(".bvh"):
-                        yield member.name, archive.extractfile(member).read()  # type: ignore[union-attr]
-        except (tarfile.TarError, lzma.LZMAError, EOFError, OSError) as error:
-            raise InputError(f"The archive {path} is damaged ({error}): download it again.") from None
+@contextmanager
+def unpacked(folder: Path) -> Iterator[list[Path]]:
+    """The files of a data set's folder, or of its ``.tar.xz`` archives for as long as they are read.
+
+    Raises:
+        InputError: where an archive is damaged.
+    """
+    archives = [] if _files(folder) else sorted(folder.glob("*.tar.xz"))
+    with TemporaryDirectory() as place:
+        there = Path(place) / folder.name if archives else folder
+        for archive in archives:
+            try:
+                with tarfile.open(archive, "r:xz") as packed:
+                    packed.extractall(there, filter="data")
+            except (tarfile.TarError, lzma.LZMAError, EOFError, OSError) as error:
+                raise InputError(f"The archive {archive} is damaged ({error}): download it again.") from None
+        yield _files(there)
 
 
-def _read_all(root: Path, files: list[Path]) -> list[SourceClip]:
-    read: list[tuple[tuple[str, str, str | None, str, str], np.ndarray]] = []
-    dropped: dict[str, str] = {}
-    for name, data in _recordings(files):
-        described = describe_source(name)
-        try:
-            positions = retarget(read_bvh(data, name=PurePosixPath(name).name), fps=FPS).positions
-            if len(positions) < 2:
-                raise InputError("It has a single frame.")
-        except InputError as error:
-            dropped[name] = str(error)
-            continue
-        read.append((described, positions))
-    for name, reason in list(dropped.items())[:5]:
-        logger.warning("Left out %s: %s", name, reason)
+def _named(root: Path) -> list[tuple[Described, Array]]:
+    """What the recordings of :data:`NAMED` show, and (T, 22, 3) metres of each."""
+    read, dropped = [], {}
+    for dataset in NAMED:
+        with unpacked(root / dataset) as files:
+            for path in files:
+                try:
+                    positions = retarget(read_bvh(path), fps=FPS).positions
+                    if len(positions) < 2:
+                        raise InputError("It has a single frame.")
+                    read.append((describe_source(path.name), positions))
+                except InputError as error:
+                    dropped[path.name] = error
     if dropped:
-        logger.warning("%d of %d recordings were left out.", len(dropped), len(dropped) + len(read))
-    read += vocabulary.read_vocabulary(root)
-    if len(dropped) > len(read):
-        raise InputError(
-            f"{len(dropped)} of {len(dropped) + len(read)} recordings in {root} cannot be used, the first: "
-            f"{next(iter(dropped.values()))} Unpack or download the data again."
-        )
-    read.sort(key=lambda item: item[0][3])
-    splits = _splits([described for described, _ in read])
-    return [
-        SourceClip(
-            canonicalize(piece).astype(np.float32),
-            *described,
-            splits[described[3]],
-            (float(piece[0, 0, 0]), float(piece[0, 0, 2]), float(heading(piece[0]))),
-        )
-        for described, positions in read
-        for piece in np.array_split(positions, -(-len(positions) // MAX_FRAMES))
-    ]
+        first, reason = next(iter(dropped.items()))
+        said = f"{len(dropped)} of {len(dropped) + len(read)} recordings were left out, the first {first}: {reason}"
+        logger.warning(said)
+        if len(dropped) > len(read):
+            raise InputError(f"{said} Unpack or download the data again.")
+    return read
 
 
-def _splits(described: list[tuple[str, str, str | None, str, str]]) -> dict[str, str]:
+def _cut(root: Path) -> Iterator[tuple[Described, Array]]:
+    """What each cut whose file is there and can be read shows, and its (T, 22, 3) metres."""
+    for dataset, cuts in CUTS.items():
+        clips = _rigs(root / dataset, {cut.clip for cut in cuts})
+        for cut in cuts:
+            if cut.clip not in clips:
+                continue
+            positions = retarget(clips[cut.clip], fps=FPS).positions.astype(np.float64)
+            positions = positions[round(cut.start * FPS) : round(cut.stop * FPS) or None]
+            positions = positions[::-1] if cut.backwards else positions
+            positions = humanly(positions) if dataset == ANIMATED else positions
+            source = f"{dataset}_{cut.clip.replace(' ', '-')}"
+            yield (cut.action, cut.style, cut.side, source, dataset), positions
+
+
+def _rigs(folder: Path, wanted: set[str]) -> dict[str, RigMotion]:
+    """The rigs of a data set's files by clip, Y up; a file that cannot be read is as good as missing."""
+    found: dict[str, RigMotion] = {}
+    with unpacked(folder) as files:
+        for path in files:
+            try:
+                if folder.name == ANIMATED:
+                    for name in wanted & set(animations_in(path).names):
+                        found[name] = replace(read_glb_people(path, animation=name)[0], up="y")
+                elif path.stem in wanted and folder.name in FILES:
+                    found[path.stem] = read_deepmimic(path.read_bytes(), name=path.name)
+                elif path.stem in wanted:
+                    found[path.stem] = read_upright(path)
+            except InputError:
+                continue
+    return found
+
+
+def read_upright(path: Path) -> RigMotion:
+    """A BVH file of CMU or ACCAD without the T-pose in its first frame; Y is up, which nobody has to guess where a body
+    lies or crawls all the time."""
+    rig = read_bvh(path)
+    return replace(rig, positions=rig.positions[1:], up="y")
+
+
+def humanly(positions: Array) -> Array:
+    """A made clip (T, 22, 3) as a body could move: corners rounded, and slowed as a whole where it is too
+    fast (:data:`MOST_SPEED`, :data:`MOST_ACCELERATION` of wrists and ankles against the pelvis)."""
+    smooth = project_to_skeleton(gaussian_filter1d(positions, 1.2, axis=0, mode="nearest"))[0]
+    tips = smooth[:, _TIPS] - smooth[:, :1]
+    speed = np.linalg.norm(np.diff(tips, axis=0), axis=-1).max(initial=0.0) * FPS
+    push = np.linalg.norm(np.diff(tips, n=2, axis=0), axis=-1).max(initial=0.0) * FPS**2
+    slow = max(1.0, speed / MOST_SPEED, float(np.sqrt(push / MOST_ACCELERATION)))
+    if slow > 1.0:
+        smooth = project_to_skeleton(resample(smooth, FPS, FPS * slow))[0]
+    return project_to_skeleton(plant_feet(smooth, foot_contacts(smooth, FPS, speed=0.25)))[0]
+
+
+def _splits(described: list[Described]) -> dict[str, str]:
     """The split of every source: in each action and side those whose names hash lowest are for testing.
 
     Where there are fewer than :data:`MIN_CLIPS_FOR_TEST`, all are in ``both`` splits.
@@ -182,12 +272,12 @@ def _splits(described: list[tuple[str, str, str | None, str, str]]) -> dict[str,
 def _cache_path(root: Path, files: list[Path], cache_dir: str | Path | None) -> Path:
     folder = Path(cache_dir or Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "pas-de-deux")
     state = [(path.relative_to(root).as_posix(), path.stat().st_size, path.stat().st_mtime_ns) for path in files]
-    digest = hashlib.sha256(json.dumps([_CACHE_VERSION, repr(vocabulary.CUTS), state]).encode()).hexdigest()[:16]
+    digest = hashlib.sha256(json.dumps([_CACHE_VERSION, repr(CUTS), state]).encode()).hexdigest()[:16]
     return folder / f"sources-{digest}.npz"
 
 
 def _save_cache(path: Path, clips: list[SourceClip]) -> None:
-    rows = [[c.action, c.style, c.side, c.source, c.dataset, c.split, c.place, c.num_frames] for c in clips]
+    rows = [[c.action, c.style, c.side, c.source, c.dataset, c.split, c.num_frames] for c in clips]
     positions = np.concatenate([clip.positions for clip in clips])
     try:
         with replacing(path) as temporary, open(temporary, "wb") as file:
@@ -200,7 +290,7 @@ def _load_cache(path: Path) -> list[SourceClip]:
     with np.load(path, allow_pickle=False) as stored:
         rows, positions = json.loads(str(stored["rows"])), stored["positions"]
     clips, start = [], 0
-    for *described, place, frames in rows:
-        clips.append(SourceClip(positions[start : start + frames], *described, tuple(place)))
+    for *described, frames in rows:
+        clips.append(SourceClip(positions[start : start + frames], *described))
         start += frames
     return clips

@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from motion.formats.files import replacing
 from motion.transforms import canonicalize
 
-from .k3hi import read_k3hi
 from .kinect import fit_pair
-from .sbu import KinectPair, read_sbu
+from .kinect_files import KinectPair, read_pairs
 
 Array = NDArray[np.floating]
 
@@ -59,7 +58,7 @@ def strict_pairs(data: str | Path, cache: str | Path | None = None) -> list[Stri
     """
     path = Path(cache or data) / CACHE
     if not path.is_file():
-        pairs = list(_fitted_of([*read_sbu(data), *read_k3hi(data)]))
+        pairs = list(_fitted_of(read_pairs(data)))
         arrays = {f"positions{number}": pair.positions for number, pair in enumerate(pairs)}
         kept = {key: np.array([getattr(pair, key) for pair in pairs]) for key in ("label", "dataset", "test", "name")}
         with replacing(path) as temporary, open(temporary, "wb") as file:

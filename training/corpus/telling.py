@@ -1,25 +1,22 @@
-"""Captions of a scene from its label: of both people, of one alone, and of one beat, each with the plan that it tells.
+"""Captions of a scene from its label: of both people, of one alone, and of one beat.
 
 A caption tells less than the label knows: a transition, a person who stands still, a side or a manner may be left out.
-What it does tell is its own plan, so that reading it back (:func:`acts.read`) can be checked.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from acts import Act, Plan, Relation
-from acts.plan import other_of
+from acts import Act
 from motion.metrics.sentences import kept_out
 
 from .cues import STILL, Label, entry, label
 from .people import Cast, Names, draw_cast
-from .phrasing import fitting, held_out, names_side, spoken
+from .phrasing import fitting, held_out, spoken
 from .scene import Scene
 
 Rng = np.random.Generator
@@ -39,48 +36,13 @@ _THEN = (
 )
 _PAIRS = ("After {}, {}", "First {}, then {}", "{} and then {}")
 """How two clauses that follow each other may stand in one sentence."""
-_WHERE = (
-    "in a park",
-    "in the street",
-    "at a party",
-    "in a gym",
-    "on a stage",
-    "in an office",
-    "in a kitchen",
-    "in a school",
-    "outside a shop",
-    "at the station",
-    "in a garden",
-    "in a hall",
-    "at home",
-    "on the beach",
-    "in a corridor",
-    "at night",
-    "in the morning",
-    "one day",
-    "as usual",
-    "for no reason",
-    "without a word",
-    "in this scene",
-    "in this clip",
-    "here",
+_PLACES = (
+    "in a park, in the street, at a party, in a gym, on a stage, in an office, in a kitchen, in a school, outside "
+    "a shop, at the station, in a garden, in a hall, at home, on the beach, in a corridor, at night, in the "
+    "morning, one day, as usual, for no reason, without a word, in this scene, in this clip, here"
 )
+_WHERE = _PLACES.split(", ")
 """Where and when it may happen, which the motion does not show."""
-
-
-@dataclass(frozen=True)
-class Told:
-    """A caption.
-
-    Attributes:
-        text: a sentence or a few.
-        plan: the acts that it tells, in its own words; "a" is the person it names first.
-        test: whether it uses words that are kept for the test split.
-    """
-
-    text: str
-    plan: Plan
-    test: bool
 
 
 def describe(rng: Rng, scene: Scene, *, sides: bool = True) -> Scene:
@@ -92,12 +54,12 @@ def describe(rng: Rng, scene: Scene, *, sides: bool = True) -> Scene:
     frames = scene.positions.shape[1]
     scene.label = label(scene.played, frames)
     teller = Teller(rng, scene.label, scene.split, sides=sides and "side" in scene.events)
-    scene.captions = texts(teller.scene())
+    scene.captions = teller.scene()
     _keep_named_sides(scene)
-    scene.alone = (texts(teller.alone("a")), texts(teller.alone("b")))
+    scene.alone = (teller.alone("a"), teller.alone("b"))
     if scene.family.startswith("beats"):
         scene.beats = [
-            beat.row(frames, texts(teller.beat(ids))) for beat, ids in zip(scene.played, scene.label.beats, strict=True)
+            beat.row(frames, teller.beat(ids)) for beat, ids in zip(scene.played, scene.label.beats, strict=True)
         ]
     return scene
 
@@ -107,11 +69,6 @@ def _keep_named_sides(scene: Scene) -> None:
     sides = {side for side in (scene.events.get("side") or {}).values() if side}
     if not all(re.search(rf"\b{side}\b", text) for side in sides for text in scene.captions):
         scene.events = {key: value for key, value in scene.events.items() if key != "side"}
-
-
-def texts(told: Sequence[Told]) -> list[str]:
-    """The captions alone."""
-    return [one.text for one in told]
 
 
 class Teller:
@@ -129,32 +86,33 @@ class Teller:
     def _groups(self) -> list[list[Act]]:
         return self.label.plan.beats()
 
-    def scene(self, count: int = JOINT) -> list[Told]:
+    def scene(self, count: int = JOINT) -> list[str]:
         """Up to ``count`` different captions of the whole scene."""
         return self._collect(count, None, "ab")
 
-    def alone(self, who: str, count: int = ALONE) -> list[Told]:
+    def alone(self, who: str, count: int = ALONE) -> list[str]:
         """Up to ``count`` different captions of what one person does."""
         return self._collect(count, None, who)
 
-    def beat(self, acts: Collection[str], count: int = ONE_BEAT) -> list[Told]:
+    def beat(self, acts: Collection[str], count: int = ONE_BEAT) -> list[str]:
         """Up to ``count`` different captions of some of the acts, by their ids."""
         return self._collect(count, acts, "ab")
 
-    def _collect(self, count: int, only: Collection[str] | None, people: str) -> list[Told]:
-        found: dict[str, Told] = {}
+    def _collect(self, count: int, only: Collection[str] | None, people: str) -> list[str]:
+        found: dict[str, None] = {}
         for _ in range(15 * count):
             groups = self._chosen(only, people)
             if not groups:
                 break
             cast = draw_cast(self.rng, joint=len(groups[0][0].agents) == 2)
-            told = _Writer(self.rng, cast, self.split, self.sides, alone=len(people) == 1).write(groups)
-            if told.test != (self.split == "test") or len(told.text) > LONGEST or kept_out(told.text):
+            writer = _Writer(self.rng, cast, self.split, self.sides, alone=len(people) == 1)
+            text = writer.write(groups)
+            if writer.test != (self.split == "test") or len(text) > LONGEST or kept_out(text):
                 continue
-            found.setdefault(told.text, told)
+            found[text] = None
             if len(found) == count:
                 break
-        return list(found.values())
+        return list(found)
 
     def _chosen(self, only: Collection[str] | None, people: str) -> list[list[Act]]:
         """The acts that a caption tells, in groups that follow each other."""
@@ -185,65 +143,56 @@ def _without_repeats(groups: list[list[Act]]) -> list[list[Act]]:
 
 
 class _Writer:
-    """One caption in the making."""
+    """One caption in the making.
+
+    Attributes:
+        test: whether it uses words that are kept for the test split.
+        going: whether it says what the people are doing, as in "is waving".
+    """
 
     def __init__(self, rng: Rng, cast: Cast, split: str, sides: bool, *, alone: bool) -> None:
         self.rng, self.split, self.sides, self.alone = rng, split, sides, alone
         self.names = Names(rng, cast)
         self.test = held_out(cast.first[0] + cast.first[1])
-        self.told: list[Act] = []
         self.going = False
-        """Whether it says what the people are doing, as in "is waving"."""
 
-    def write(self, groups: Sequence[Sequence[Act]]) -> Told:
+    def write(self, groups: Sequence[Sequence[Act]]) -> str:
         """The caption of acts in groups that follow each other."""
-        text = ""
         self.going = len(groups) == 1 and self.rng.random() < 0.25
-        links = self._pair() if len(groups) == 2 and not self.alone else None
-        clauses: list[str] = []
+        pair = len(groups) == 2 and not self.alone and self.rng.random() < 0.4
+        link = self._one_of(_PAIRS) if pair else ""
+        text = ""
         last: list[str] = []
-        for k, group in enumerate(groups):
-            made, subjects = self._clause(group, last if links is None else [], k)
-            if links is not None:
-                clauses.append(made)
-            elif k == 0:
-                text = made
-            elif subjects and subjects == last and not made.startswith("\0"):
-                text += self._then().format(made)
-            else:
-                text += made.removeprefix("\0") if made.startswith("\0") else self._then().format(made)
-            last = subjects
-        if links is not None:
-            text = links.format(*clauses)
+        clauses: list[str] = []
+        for group in groups:
+            made, last = self._clause(group, [] if pair else last)
+            clauses.append(made)
+            text += made if made[0] in ", " or not text or pair else self._one_of(_THEN).format(made)
+        if pair:
+            text = link.format(*clauses)
         if self.rng.random() < 0.15:
-            text = f"{_WHERE[int(self.rng.integers(len(_WHERE)))]}, {text[:1].lower()}{text[1:]}"
-        return Told(finished(text), self._plan(groups), self.test)
+            text = f"{self._one_of(_WHERE)}, {text[:1].lower()}{text[1:]}"
+        return finished(text)
+
+    def _one_of(self, items: Sequence[str]) -> str:
+        return items[int(self.rng.integers(len(items)))]
 
     def _pick(self, items: Sequence[str]) -> str:
         """One phrase; a training caption avoids those that are held out, unless there are no others."""
         free = [text for text in items if not held_out(text)]
-        pool = free if free and self.split != "test" else items
-        chosen = pool[int(self.rng.integers(len(pool)))]
+        chosen = self._one_of(free if free and self.split != "test" else items)
         self.test |= bool(free) and held_out(chosen)
         return chosen
 
-    def _then(self) -> str:
-        return _THEN[int(self.rng.integers(len(_THEN)))]
-
-    def _pair(self) -> str | None:
-        return _PAIRS[int(self.rng.integers(len(_PAIRS)))] if self.rng.random() < 0.4 else None
-
-    # ---- clauses ----------------------------------------------------------------------------------------
-    def _clause(self, group: Sequence[Act], last: Sequence[str], number: int) -> tuple[str, list[str]]:
+    def _clause(self, group: Sequence[Act], last: Sequence[str]) -> tuple[str, list[str]]:
         """A clause on acts at the same time, and its subjects.
 
-        It begins with a zero character where it goes on with the subject of the clause before.
+        It begins with a comma or a space where it goes on with the subject of the clause before, ``last``.
         """
         subjects = list(dict.fromkeys("".join(sorted(act.agents)) for act in group))
-        goes_on = subjects == list(last) and len(subjects) == 1
-        if number and goes_on and (self.alone or self.rng.random() < 0.6):
-            link = (", and then ", " and then ", " and ", ", then ")[int(self.rng.integers(4))]
-            return f"\0{link}{self._phrases(group, subjects[0])}", subjects
+        if subjects == list(last) and len(subjects) == 1 and (self.alone or self.rng.random() < 0.6):
+            link = self._one_of((", and then ", " and then ", " and ", ", then "))
+            return f"{link}{self._phrases(group, subjects[0])}", subjects
         parts = []
         for subject in subjects:
             name = self.names.subject(subject)
@@ -267,42 +216,12 @@ class _Writer:
         whom = ""
         if "{b}" in phrase:  # "pats her shoulder" may be one's own
             whom = "each other" if both else self.names.object(other, pronoun="{b}'s" not in phrase)
-        base = phrase
         if act.modality == "offered":
             phrase = re.sub(r"\[([a-z-]+)\]", r"[offer] to \1", phrase, count=1)
         text = spoken(act, phrase, whom, self.names.own(act.agents), form)
-        told: dict[str, object] = {
-            "patient": other if not both and "{b}" in phrase else None,
-            "side": act.side if names_side(base) else None,
-            "part": act.part if "{part}" in base or "{limb}" in base else None,
-            "manner": (),
-            "speed": 1.0,
-            "direction": act.direction if "{direction}" in base else None,
-        }
         if act.manner and self.rng.random() < 0.4:
-            text, told["manner"], told["speed"] = f"{text} {act.manner[0]}", act.manner, act.speed
-        self.told.append(act.model_copy(update=told))
+            text = f"{text} {act.manner[0]}"
         return text
-
-    def _plan(self, groups: Sequence[Sequence[Act]]) -> Plan:
-        """The acts that were told, in the order of its groups; a is the person named first."""
-        swap = self.names.order[:1] == ["b"]
-        told, before = [], []
-        by_id = {act.id: act for act in self.told}
-        for group in groups:
-            now: list[str] = []
-            for act in group:
-                order = [Relation(kind="while", act=now[0])] if now else [Relation(kind="after", act=x) for x in before]
-                one = by_id[act.id].model_copy(update={"order": tuple(order)})
-                told.append(_swapped(one) if swap else one)
-                now.append(act.id)
-            before = now
-        return Plan(acts=tuple(told), reader="corpus")
-
-
-def _swapped(act: Act) -> Act:
-    agents = tuple(map(other_of, act.agents))
-    return act.model_copy(update={"agents": agents, "patient": other_of(act.patient) or None})
 
 
 def finished(text: str) -> str:

@@ -7,14 +7,12 @@ import pytest
 
 from motion.skeleton import SMPL22
 from motion.transforms import heading
-from tests.training.corpus.test_compose import bone_error, bow, clips, motion, walk
+from tests.training.corpus.test_compose import bone_error, clips, motion, walk
 from training.corpus import checks
 from training.corpus.beats import script
-from training.corpus.beats.acts import deepened
 from training.corpus.beats.stories import pattern
 from training.corpus.compose import realise
 from training.corpus.library import Library
-from training.corpus.retell import retold
 from training.corpus.scene import Scene, SourceClip
 
 J = SMPL22.index
@@ -134,32 +132,12 @@ def test_who_waves_while_coming_does_both_at_once(library: Library) -> None:
     assert (raised[1:] & (speed > 0.4)).sum() > 8
 
 
-def test_one_stops_while_the_other_goes_on(library: Library) -> None:
-    scene = staged(library, "walk-together ; stand-still / walk-ahead")
-    beat = next(b for b in scene.beats if "walk-ahead" in b["acts"])
-    i = beat["acts"].index("stand-still")
-    gone = [np.linalg.norm(path(scene, k, beat)[-1] - path(scene, k, beat)[0]) for k in (i, 1 - i)]
-    assert gone[1] > gone[0] + 0.4
-
-
 def test_a_full_turn_is_one(library: Library) -> None:
     scene = staged(library, "spin / stand-still")
     beat = main(scene)[0]
     i = beat["acts"].index("spin")
     angles = np.unwrap(heading(scene.positions[i, beat["start"] : beat["end"]]))
     assert np.ptp(angles) > np.radians(320)
-
-
-def test_bows_are_deep() -> None:
-    shallow = motion(bow(80))
-    shallow = type(shallow)(
-        np.where(np.arange(22)[:, None, None] == J("spine1"), shallow.rotations * 1.0, shallow.rotations),
-        shallow.root,
-        shallow.contacts,
-        shallow.sources,
-    )
-    head = realise(deepened(shallow, 0.32))[:, J("head"), 1]
-    assert head.max() - head.min() >= 0.25
 
 
 def test_feet_hold_where_people_walk_and_turn(library: Library) -> None:
@@ -169,13 +147,3 @@ def test_feet_hold_where_people_walk_and_turn(library: Library) -> None:
         assert max(checks.foot_skate(person) for person in scene.positions) < own + 0.02, story
     scene = staged(library, "turn-to / stand-still")
     assert max(checks.foot_skate(person) for person in scene.positions) < 0.08
-
-
-def test_captions_can_be_written_anew(library: Library) -> None:
-    scene = staged(library, "walk-up / stand-still ; shake-hands")
-    assert scene.label
-    row = {"beats": scene.beats, "split": "train", "captions": scene.captions, "label": scene.label.row()}
-    again = retold(row, np.random.default_rng(8))
-    assert again["captions"] != scene.captions and len(again["captions"]) >= 3
-    assert [beat["acts"] for beat in again["beats"]] == [beat["acts"] for beat in scene.beats]
-    assert retold({"captions": ["x"], "beats": []}, np.random.default_rng(8))["captions"] == ["x"]

@@ -11,13 +11,11 @@ import pytest
 from acts.reading import read
 from models.motion_tokens import TokenLayout
 from tests.training.corpus.test_beats import more
-from tests.training.corpus.test_compose import clips, walk
+from tests.training.corpus.test_compose import clips
 from training.corpus import __main__ as command
-from training.corpus import build, retell
-from training.corpus.beats.formation import formation
+from training.corpus import build
 from training.corpus.cues import Label, class_of
 from training.corpus.library import Library
-from training.corpus.scene import SourceClip
 from training.prepare import prepare
 from training.trainers.bigraphdiff import labels_of, of_classes
 
@@ -65,21 +63,10 @@ def test_a_scene_has_its_class_from_its_label(corpus: Path) -> None:
     assert all(class_of(row) in names for row in scenes.split("train"))
 
 
-def test_captions_are_written_anew_and_the_rest_stays(corpus: Path) -> None:
-    before = rows(corpus)
-    assert retell.main(["--corpus", str(corpus), "--seed", "3"]) == 0
-    after = rows(corpus)
-    assert any(one["captions"] != other["captions"] for one, other in zip(before, after, strict=True))
-    words = ("captions", "alone", "beats")
-    assert [{k: v for k, v in row.items() if k not in words} for row in before] == [
-        {k: v for k, v in row.items() if k not in words} for row in after
-    ]
-
-
 def test_a_written_corpus_reads_back(corpus: Path, tmp_path: Path) -> None:
     tally = build.Tally()
-    scenes = build.draw(np.random.default_rng(0), Library(SOURCES, "train"), build.KINDS, 600, tally)
-    assert not tally.scenes["formation"] and sum(tally.frames.values()) >= 600
+    scenes = build.draw(np.random.default_rng(0), Library(SOURCES, "train"), 600, tally)
+    assert tally.frames["beats"] >= 600 and tally.scenes["beats"] == len(scenes)
     build.save(scenes, tmp_path)
     motions = np.load(tmp_path / "motions.npy", allow_pickle=False)
     index = json.loads((tmp_path / "index.json").read_text())
@@ -91,20 +78,9 @@ def test_a_written_corpus_reads_back(corpus: Path, tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["index.json", "motions.npy"]
 
 
-def test_a_kind_that_never_passes_is_left_out(monkeypatch, caplog) -> None:
+def test_where_no_scene_passes_the_build_goes_on_without(monkeypatch, caplog) -> None:
     monkeypatch.setattr(build, "fault", lambda scene: "broken")
     tally = build.Tally()
-    assert build.draw(np.random.default_rng(0), Library(SOURCES, "train"), build.KINDS, 400, tally) == []
+    assert build.draw(np.random.default_rng(0), Library(SOURCES, "train"), 400, tally) == []
     assert tally.rejected["beats", "broken"] > 1
-    assert "beats is left out" in caplog.text
-
-
-def test_dancers_keep_the_places_of_their_formation() -> None:
-    def dancer(name: str, place: tuple[float, float, float]) -> SourceClip:
-        return SourceClip(walk(200), f"formation-{name}", "normal", None, name, "made-up", place=place)
-
-    library = Library([dancer("a", (0, 0, 0)), dancer("b", (1.5, 0, 0)), dancer("c", (-1.5, 0, 0))], "train")
-    scene = formation(np.random.default_rng(0), library)
-    gap = np.linalg.norm(scene.positions[0, :, 0] - scene.positions[1, :, 0], axis=-1)
-    assert scene.label and {act.act for act in scene.label.plan.acts} == {"dance"}
-    assert np.allclose(gap, 1.5, atol=0.05) or np.allclose(gap, 3.0, atol=0.05)
+    assert "No more scenes for the train split: broken" in caplog.text

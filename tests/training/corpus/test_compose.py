@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from motion.kinematics import forward_kinematics
 from motion.skeleton import LEGS, SMPL22
 from training.corpus import __main__ as command
-from training.corpus import blending, checks, compose, feet
+from training.corpus import checks, compose, feet
 from training.corpus.library import Library, extend, shorten
 from training.corpus.scene import Scene, SourceClip
 
@@ -93,20 +93,6 @@ def motion(positions: np.ndarray) -> compose.Motion:
     return compose.motion_from_positions(positions, sources=("one",))
 
 
-def test_slerp_agrees_with_quaternions_up_to_half_turns() -> None:
-    rng = np.random.default_rng(0)
-    first = Rotation.random(300, rng)
-    axis = rng.normal(size=(300, 3))
-    axis /= np.linalg.norm(axis, axis=-1, keepdims=True)
-    angles = np.concatenate([[0, 1e-9, np.pi - 1e-4, np.pi - 0.02], rng.uniform(0, 3.1, 296)])
-    weight = rng.random(300)
-    found = blending.slerp(
-        first.as_matrix(), (first * Rotation.from_rotvec(axis * angles[:, None])).as_matrix(), weight
-    )
-    expected = (first * Rotation.from_rotvec(axis * (angles * weight)[:, None])).as_matrix()
-    np.testing.assert_allclose(found, expected, atol=1e-7)
-
-
 def test_join_goes_on_where_the_first_ended_without_a_jump() -> None:
     first, second = motion(walk(120)), compose.turned(motion(gesture(90, "left")), 2.0)
     joined = compose.join(first, second, blend=12)
@@ -145,25 +131,6 @@ def test_a_foot_that_is_carried_far_steps_and_the_feet_take_turns() -> None:
     np.testing.assert_allclose(np.ptp(toes[:, 0, 2]), 0.4, atol=0.05)
 
 
-def test_one_after_the_other_keeps_lone_steps() -> None:
-    assert feet.one_after_the_other([[20, 60], [62]], apart=12) == [[20, 55], [67]]
-    assert feet.one_after_the_other([[20], [90]]) == [[20], [90]]
-
-
-def test_place_puts_root_and_facing() -> None:
-    placed = compose.place(motion(gesture(60, "left")), 1.0, -2.0, 0.7, frame=30)
-    np.testing.assert_allclose(placed.root[30, [0, 2]], [1.0, -2.0], atol=1e-9)
-    assert abs(compose.facing_at(placed, 30) - 0.7) < 1e-6
-
-
-def test_mirror_twice_is_the_motion_and_once_swaps_hands() -> None:
-    wave = motion(gesture(60, "left"))
-    back = compose.mirror(compose.mirror(wave))
-    np.testing.assert_allclose(back.rotations, wave.rotations, atol=1e-9)
-    swapped = compose.realise(compose.mirror(wave))
-    assert swapped[30, J("right_wrist"), 1] > swapped[30, J("left_wrist"), 1] + 0.5
-
-
 def test_steer_turns_left_for_positive_angles() -> None:
     straight = motion(walk(91))
     bent = compose.steer(straight, np.linspace(0, np.pi / 2, 91))
@@ -180,13 +147,6 @@ def test_look_at_turns_the_head_to_the_target_and_not_backwards() -> None:
     assert nose[0] > 0.02
     behind = compose.realise(compose.look_at(still, np.tile([0.0, 1.5, -2.0], (60, 1))))
     np.testing.assert_allclose(behind, compose.realise(still), atol=1e-9)
-
-
-def test_time_warp_changes_the_length_only() -> None:
-    wave = motion(gesture(61, "right"))
-    fast = compose.time_warp(wave, 1.2)
-    assert len(fast) == 51
-    np.testing.assert_allclose(fast.rotations[[0, -1]], wave.rotations[[0, -1]], atol=1e-9)
 
 
 def test_layer_waves_while_walking() -> None:

@@ -11,19 +11,7 @@ from motion.skeleton import SMPL22
 from motion.transforms import turn
 from training.corpus.beats.script import compose
 from training.corpus.compose import ARMS
-from training.corpus.contact import (
-    bend,
-    envelope,
-    impulse,
-    lean_to,
-    meeting,
-    on_body,
-    pose_arm,
-    reach,
-    settle,
-    shaking,
-    shift_hips,
-)
+from training.corpus.contact import envelope, reach
 from training.corpus.library import Library
 from training.corpus.scene import SourceClip
 
@@ -64,18 +52,6 @@ def _roughest(positions: np.ndarray) -> float:
     return float(np.linalg.norm(np.diff(positions, 2, axis=0) * 900, axis=-1).max())
 
 
-def test_envelope_rises_holds_and_falls_without_corners():
-    weight = envelope(100, 10, 30, 60, 90)
-    assert weight[10] == 0 and weight[90] == 0 and np.all(weight[30:61] == 1)
-    assert np.all(np.diff(weight[10:31]) >= 0) and np.all(np.diff(weight[60:91]) <= 0)
-    assert np.abs(np.diff(weight, 2)).max() < 6 / 20**2
-
-
-def test_impulse_peaks_after_its_rise():
-    shape = impulse(60, 20, rise=5, fall=20)
-    assert shape.argmax() == 25 and shape[20] == 0 and shape[45] == 0
-
-
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_a_reach_arrives_keeps_bones_and_leaves_other_frames_alone(side):
     body = _body()
@@ -106,58 +82,6 @@ def test_an_impossible_target_is_approached_without_a_jolt():
     reached = reach(_body(), {"right": np.tile([0.0, 1.0, 3.0], (FRAMES, 1))}, envelope(FRAMES, 20, 40, 55, 75))
     assert np.isfinite(reached).all() and _bone_error(reached) < 1e-6
     assert _roughest(reached) < 60
-
-
-@pytest.mark.parametrize(
-    ("sides", "away"), [(("right", "right"), 0.9), (("left", "right"), 0.8), (("left", "left"), 1.0)]
-)
-def test_hands_meet_and_stay_together(sides, away):
-    a, b = _body(), _body(away=away, heading=np.pi)
-    weights = (envelope(FRAMES, 10, 30, 60, 80), envelope(FRAMES, 15, 35, 60, 82))
-    points = meeting(a, b, *sides, height=1.05, apart=0.08)
-    a = reach(a, {sides[0]: points[0]}, weights[0])
-    b = reach(b, {sides[1]: points[1]}, weights[1])
-    a, b = settle(a, b, sides, weights, apart=0.08)
-    gap = np.linalg.norm(a[:, ARMS[sides[0]][3]] - b[:, ARMS[sides[1]][3]], axis=-1)
-    assert gap[35:61].max() < 0.1
-    assert gap[0] > 0.3
-
-
-def test_bending_and_shifting_keep_bones_and_feet():
-    body = _body()
-    forward = np.tile([0.0, 0.0, 1.0], (FRAMES, 1))
-    leant = lean_to(body, forward, np.full(FRAMES, 0.4))
-    assert leant[0, SMPL22.index("head"), 2] > body[0, SMPL22.index("head"), 2] + 0.1
-    assert _bone_error(leant) < 1e-6
-    np.testing.assert_allclose(bend(body, np.zeros((FRAMES, 3))), body, atol=1e-12)
-    sunk = shift_hips(body, np.tile([0.05, -0.4, 0.0], (FRAMES, 1)))
-    assert _bone_error(sunk) < 1e-6
-    np.testing.assert_allclose(sunk[:, 0], body[:, 0] + [0.05, -0.4, 0.0])
-    np.testing.assert_allclose(sunk[:, SMPL22.index("left_foot")], body[:, SMPL22.index("left_foot")], atol=1e-6)
-
-
-def test_posing_points_both_bones():
-    up, ahead = np.tile([0.0, 1.0, 0.0], (FRAMES, 1)), np.tile([0.0, 0.0, 1.0], (FRAMES, 1))
-    posed = pose_arm(_body(), "left", ahead, up, np.ones(FRAMES))
-    _, shoulder, elbow, wrist = ARMS["left"]
-    upper, lower = posed[0, elbow] - posed[0, shoulder], posed[0, wrist] - posed[0, elbow]
-    np.testing.assert_allclose(upper / np.linalg.norm(upper), ahead[0], atol=1e-9)
-    np.testing.assert_allclose(lower / np.linalg.norm(lower), up[0], atol=1e-9)
-
-
-def test_points_on_the_body_turn_with_it():
-    ahead = on_body(_body(), "spine3", 0.0, 0.0, 0.2)[0] - _body()[0, SMPL22.index("spine3")]
-    np.testing.assert_allclose(ahead, [0, 0, 0.2], atol=0.02)
-    turned = _body(heading=np.pi / 2)
-    ahead = on_body(turned, "spine3", 0.0, 0.0, 0.2)[0] - turned[0, SMPL22.index("spine3")]
-    np.testing.assert_allclose(ahead, [0.2, 0, 0], atol=0.02)
-
-
-def test_a_handshake_dies_away():
-    shake = shaking(90, 20, 60, hertz=2.5, size=0.04)
-    assert np.all(shake[:20] == 0) and np.all(shake[61:] == 0)
-    assert 0.02 < np.abs(shake).max() < 0.04
-    assert 3 <= np.sum(np.diff(np.sign(shake[21:60])) != 0) <= 8
 
 
 # ---- beats on small made-up sources

@@ -165,7 +165,7 @@ def test_a_window_in_which_a_joint_jumps_is_left_out(tmp_path: Path, monkeypatch
 
 def test_a_corpus_takes_the_duets_along(data: Path) -> None:
     tally = build.Tally()
-    scenes = build._recorded(data, tally, None)
+    scenes = build.recorded(data, tally, None)
     assert {scene.split for scene in scenes} == {"train", "test"}
     assert tally.scenes["recorded salsa"] == sum(scene.family == "salsa" for scene in scenes) > 0
-    assert build._recorded(data / "cmu-salsa" / "bvh", build.Tally(), None) == []
+    assert build.recorded(data / "cmu-salsa" / "bvh", build.Tally(), None) == []

@@ -1,6 +1,8 @@
 """Recorded pairs: readers undo the files' scaling, repairs a Kinect's errors, and scenes come out."""
 
 import tarfile
+from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +15,10 @@ from motion.kinematics import forward_kinematics
 from motion.layouts import LAYOUTS
 from motion.skeleton import K3HI15, SBU15, SMPL22, Skeleton
 from motion.transforms import heading_matrix
-from training.corpus.k3hi import read_k3hi
-from training.corpus.kinect import exchanged, unswap, upright, without_sideways_lean, without_spikes
-from training.corpus.pairs import Report, build_scene, load_pairs
-from training.corpus.sbu import KinectPair, read_sbu
+from training.corpus.kinect import exchanged, unswap
+from training.corpus.kinect_files import KinectPair, read_release
+from training.corpus.pairs import build_scene, load_pairs
+from training.corpus.strict_pairs import CACHE, label_of, strict_pairs
 
 
 def standing(frames: int, place: tuple[float, float], heading: float, reach: np.ndarray | None = None) -> np.ndarray:
@@ -77,12 +79,12 @@ def data_dir(tmp_path: Path) -> Path:
 
 
 def test_readers_give_metres_roles_and_splits(data_dir: Path) -> None:
-    clips = {clip.name: clip for clip in read_sbu(data_dir)}
+    clips = {clip.name: clip for clip in read_release(data_dir, "sbu")}
     assert [clips[n].split for n in ("s01s02/05/001", "s02s06/05/001")] == ["train", "benchmark"]
     assert clips["s01s02/05/001"].family == "handshake"
     np.testing.assert_allclose(clips["s01s02/05/001"].positions, handshake(), atol=1e-9)
     np.testing.assert_allclose(clips["s01s03/05/001"].positions, handshake()[::-1], atol=1e-9)  # B acts
-    listed, unlisted = read_k3hi(data_dir / "k3hi")
+    listed, unlisted = read_release(data_dir / "k3hi", "k3hi")
     assert (listed.split, unlisted.split, listed.fps) == ("train", "unlisted", 30.0)
     wrist = listed.skeleton.index("right_wrist")
     np.testing.assert_allclose(listed.positions[:, :, wrist], handshake()[:, :, SBU15.index("right_wrist")], atol=1e-9)
@@ -94,15 +96,15 @@ def test_readers_take_the_archive(data_dir: Path, tmp_path: Path) -> None:
     with tarfile.open(packed / "skeletons_check.tar.xz", "w:xz") as tar:
         for name in ("Skeletons_Check", "Train.txt", "Test.txt"):
             tar.add(data_dir / "sbu" / name, arcname=name)
-    unpacked = read_sbu(data_dir)
-    for one, other in zip(read_sbu(packed), unpacked, strict=True):
+    unpacked = read_release(data_dir, "sbu")
+    for one, other in zip(read_release(packed, "sbu"), unpacked, strict=True):
         assert (one.name, one.split) == (other.name, other.split)
         np.testing.assert_array_equal(one.positions, other.positions)
 
 
 def test_missing_data_are_explained(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="No sbu data"):
-        read_sbu(tmp_path)
+        read_release(tmp_path, "sbu")
 
 
 def test_exchanged_legs_are_put_back() -> None:
@@ -116,27 +118,9 @@ def test_exchanged_legs_are_put_back() -> None:
     assert unswap(true, SBU15, ("knee", "foot"), 15.0)[1] == 0
 
 
-def test_spikes_are_taken_out_and_motion_is_not() -> None:
-    true = handshake()[0]
-    assert np.isfinite(without_spikes(true, 15.0)).all()
-    spoilt = true.copy()
-    spoilt[12, SBU15.index("left_wrist")] += 0.4
-    found = np.isnan(without_spikes(spoilt, 15.0))
-    assert found[12, SBU15.index("left_wrist")].all() and found.sum() == 3
-
-
-def test_a_lean_in_depth_is_turned_back() -> None:
-    true = handshake()[0]
-    leaning = upright(true - true[0, 2], -12.0) + true[0, 2]
-    mended = without_sideways_lean(leaning, SBU15)
-    trunk = mended[:, SBU15.index("neck")] - mended[:, SBU15.index("torso")]
-    assert np.abs(np.degrees(np.arctan2(trunk[:, 2], trunk[:, 1]))).max() < 0.5
-
-
 def test_a_handshake_becomes_a_scene() -> None:
-    report = Report()
-    scene = build_scene(pair(handshake()), report)
-    assert scene is not None and report.kept == {"sbu handshake": 1}
+    scene = build_scene(pair(handshake()), Counter())
+    assert scene is not None
     a, b = scene.positions.astype(np.float64)
     assert len(a) == 59  # 30 frames at 15 fps
     lengths = np.linalg.norm(scene.positions[:, :, 1:] - scene.positions[:, :, list(SMPL22.parents[1:])], axis=-1)
@@ -155,20 +139,20 @@ def test_a_handshake_becomes_a_scene() -> None:
 
 def test_a_body_taken_for_its_back_is_turned_round() -> None:
     people = handshake()
-    scene = build_scene(pair(np.stack([exchanged(people[0], SBU15), people[1]]), family="push"))
+    scene = build_scene(pair(np.stack([exchanged(people[0], SBU15), people[1]]), family="push"), Counter())
     assert scene is not None
     towards = scene.positions[1, 20, 0] - scene.positions[0, 20, 0]
     assert towards[2] > 0.8 * np.linalg.norm(towards)  # b stands ahead of a, who faces +Z
 
 
 def test_bad_clips_are_counted_with_their_reason() -> None:
-    report = Report()
+    left_out: Counter[str] = Counter()
     people = handshake()
     far = people + np.array([[[[-0.5, 0, 0]]], [[[0.5, 0, 0]]]])
-    assert build_scene(pair(far), report) is None
-    assert build_scene(pair(people[:, :8]), report) is None
-    assert build_scene(pair(people, split="unlisted"), report) is None
-    assert sorted(reason.split(": ")[1] for reason in report.dropped) == [
+    assert build_scene(pair(far), left_out) is None
+    assert build_scene(pair(people[:, :8]), left_out) is None
+    assert build_scene(pair(people, split="unlisted"), left_out) is None
+    assert sorted(reason.split(": ")[1] for reason in left_out) == [
         "shorter than 0.8 s",
         "the hands do not meet",
         "who acts is not known",
@@ -178,28 +162,35 @@ def test_bad_clips_are_counted_with_their_reason() -> None:
 def test_who_walks_is_the_actor_of_an_approach() -> None:
     people = handshake(frames=20)
     people = np.stack([people[0], people[1] + np.linspace(0.8, 0, 20)[:, None, None] * [1.0, 0, 0]])
-    scene = build_scene(pair(people, family="approach"))
+    scene = build_scene(pair(people, family="approach"), Counter())
     assert scene is not None and scene.family == "approach"
     path = scene.positions[:, :, 0]
     assert np.linalg.norm(path[0, -1] - path[0, 0]) > 0.7 > 0.1 > np.linalg.norm(path[1, -1] - path[1, 0])
     both = people + np.stack([-np.linspace(0.8, 0, 20), np.zeros(20)])[:, :, None, None] * [1.0, 0, 0]
-    together = build_scene(pair(both, family="approach"))
+    together = build_scene(pair(both, family="approach"), Counter())
     assert together is not None and together.family == "meet"
 
 
-def test_the_second_load_reads_the_cache(data_dir: Path, tmp_path: Path) -> None:
-    first_report, second_report = Report(), Report()
-    first = load_pairs(data_dir, tmp_path / "cache", report=first_report)
-    second = load_pairs(tmp_path / "nowhere", tmp_path / "cache", report=second_report)
+def test_pairs_are_fitted_once_and_the_thesis_lists_take_every_listed_clip(data_dir: Path, tmp_path: Path) -> None:
+    cache = tmp_path / "cache"
+    first, second = load_pairs(data_dir, cache), load_pairs(tmp_path / "nowhere", cache)
     assert {scene.split for scene in first} == {"train", "benchmark"}
-    assert first_report.lines() == second_report.lines() and len(first) == sum(first_report.kept.values())
     for one, other in zip(first, second, strict=True):
         np.testing.assert_array_equal(one.positions, other.positions)
-        assert (one.family, one.captions, one.sources, one.split, one.events) == (
-            other.family,
-            other.captions,
-            other.sources,
-            other.split,
-            other.events,
-        )
-    assert [path.suffix for path in (tmp_path / "cache").iterdir()] == [".npz"]
+        assert (one.family, one.captions, one.events) == (other.family, other.captions, other.events)
+    strict, again = strict_pairs(data_dir, cache), strict_pairs(tmp_path / "nowhere", cache)
+    assert [(one.dataset, one.label, one.test) for one in strict] == [
+        ("sbu", "handshake", False),
+        ("sbu", "handshake", False),
+        ("sbu", "handshake", True),
+        ("k3hi", "handshake", False),
+    ]
+    for one, other in zip(strict, again, strict=True):
+        np.testing.assert_array_equal(one.positions, other.positions)
+    assert sorted(path.name for path in cache.iterdir())[1:] == [CACHE]
+
+
+def test_approaching_and_departing_are_one_class_of_sbu_alone() -> None:
+    walk = pair(handshake(8), family="approach")
+    assert label_of(walk) == label_of(replace(walk, family="depart")) == "walking"
+    assert label_of(replace(walk, dataset="k3hi")) == "approach"

@@ -47,6 +47,7 @@ def test_clips_are_described_placed_and_split(data, tmp_path, caplog):
     with caplog.at_level(logging.WARNING):
         clips = load_sources(data, cache_dir=tmp_path / "cache")
     assert "4 of 24 recordings were left out" in caplog.text
+    assert not [path for path in (tmp_path / "cache").iterdir() if path.suffix != ".npz"]
     waves = [clip for clip in clips if clip.action == "wave"]
     assert len(waves) == 16 and {(c.side, c.style, c.dataset) for c in waves} == {("left", "normal", "bandai-namco-2")}
     assert sum(clip.split == "test" for clip in waves) == 1
@@ -62,7 +63,7 @@ def test_clips_are_described_placed_and_split(data, tmp_path, caplog):
         assert clip.positions[..., 1].min() > -0.02
 
 
-def test_second_load_reads_the_cache_and_changes_are_noticed(data, tmp_path, monkeypatch):
+def test_second_load_reads_the_cache_a_damaged_one_is_read_again_and_changes_are_noticed(data, tmp_path, monkeypatch):
     first = load_sources(data, cache_dir=tmp_path / "cache")
     with monkeypatch.context() as patch:
         patch.setattr("training.corpus.sources.read_bvh", lambda *a, **k: pytest.fail("read again"))
@@ -70,15 +71,11 @@ def test_second_load_reads_the_cache_and_changes_are_noticed(data, tmp_path, mon
     assert [(c.source, c.split, c.side) for c in first] == [(c.source, c.split, c.side) for c in second]
     for one, other in zip(first, second, strict=True):
         np.testing.assert_array_equal(one.positions, other.positions)
-    next(data.rglob("*bow*000.bvh")).unlink()
-    assert len(load_sources(data, cache_dir=tmp_path / "cache")) == len(first) - 1
-
-
-def test_damaged_cache_is_read_again(data, tmp_path):
-    first = load_sources(data, cache_dir=tmp_path / "cache")
     (cache,) = (tmp_path / "cache").glob("*.npz")
     cache.write_bytes(cache.read_bytes()[:1000])
     assert len(load_sources(data, cache_dir=tmp_path / "cache")) == len(first)
+    next(data.rglob("*bow*000.bvh")).unlink()
+    assert len(load_sources(data, cache_dir=tmp_path / "cache")) == len(first) - 1
 
 
 def test_archives_are_read_in_place(data, tmp_path):
@@ -95,11 +92,8 @@ def test_archives_are_read_in_place(data, tmp_path):
 
 
 def test_missing_empty_and_damaged_data_is_said(data, tmp_path):
-    with pytest.raises(InputError, match="does not exist"):
-        load_sources(tmp_path / "nowhere")
-    (tmp_path / "void").mkdir()
     with pytest.raises(InputError, match="no motion recordings"):
-        load_sources(tmp_path / "void")
+        load_sources(tmp_path / "nowhere")
     for path in data.rglob("*.bvh"):
         path.write_text("HIERARCHY")
     with pytest.raises(InputError, match="24 of 24 recordings"):

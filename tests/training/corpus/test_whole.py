@@ -9,11 +9,9 @@ import pytest
 
 from tests.training.corpus.test_beats import main, more, path, staged
 from tests.training.corpus.test_compose import clips, walk
-from training.corpus.beats.act import Done
-from training.corpus.beats.acts import shadow_box
 from training.corpus.beats.script import draw_story, opening
 from training.corpus.beats.stories import stories
-from training.corpus.beats.whole import WHOLE, part_of
+from training.corpus.beats.whole import WHOLE
 from training.corpus.library import Library
 from training.corpus.scene import SourceClip
 
@@ -63,25 +61,6 @@ def test_who_skips_passes_the_other_who_stays(library: Library) -> None:
     assert (own[-1] - other[0]) @ ahead > 0.2 > (own[0] - other[0]) @ ahead
     assert np.linalg.norm(other[-1] - other[0]) < 0.3
     assert all("skip" in text or "pranc" in text or "gallop" in text for text in scene.captions)
-
-
-def test_a_stretch_of_a_long_clip_lasts_as_long_as_wished(library: Library) -> None:
-    play = opening(np.random.default_rng(0), library)
-    before = len(play.people[0])
-    done = part_of("sway", 2.0, 3.0)(play, 0)
-    assert isinstance(done, Done) and 60 <= done.stop - done.start <= 90 and done.stop > before
-
-
-def test_boxing_is_taken_from_recordings_of_boxers_too(library: Library) -> None:
-    drawn = set()
-    for seed in range(6):
-        play = opening(np.random.default_rng(seed), library)
-        try:
-            shadow_box(play, 1)
-        except LookupError:  # the small library has no punch
-            continue
-        drawn |= {source for source in play.sources() if "shadow-box" in source}
-    assert drawn == {"train-shadow-box"}
 
 
 def test_clips_that_follow_each_other_are_mirrored_alike(library: Library, monkeypatch: pytest.MonkeyPatch) -> None:

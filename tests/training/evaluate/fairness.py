@@ -15,7 +15,7 @@ from motion.transforms import mirrored
 from training.corpus import phrasing
 from training.corpus.beats.stories import stories
 from training.corpus.cues import Beat, label, steps
-from training.corpus.telling import Teller, texts
+from training.corpus.telling import Teller
 
 from .puppets import play
 
@@ -70,7 +70,7 @@ def captions_of(acts: tuple[str, str], split: str = "train") -> list[str]:
     rng = np.random.default_rng(zlib.crc32(f"{acts} {split}".encode()))
     sides = ("left", None) if rng.random() < 0.5 else (None, None)
     teller = Teller(rng, label([Beat(acts, 0, 60, relation="while", sides=sides)], 60), split)
-    return texts([*teller.scene(12), *teller.alone("a", 4)])
+    return [*teller.scene(12), *teller.alone("a", 4)]
 
 
 def phrases() -> Iterator[str]:

@@ -54,7 +54,7 @@ def hand_in_hand(play: Play, i: int) -> None:
             person.hold(play.seconds(1.8, 3.0))
         name, stop = "hold-hands", play.frames
     else:
-        start, stop, _, side = abreast(play, i, gap, length=(2.0, 2.8 if play.brisk else 4.2))
+        start, stop, _, side = abreast(play, i, gap, (2.0, 2.8 if play.brisk else 4.2))
         name = "walk-hand-in-hand"
     if start - begun > 35:
         play.beats_before(begun, start - 14, i)

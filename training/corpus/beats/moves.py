@@ -99,19 +99,19 @@ def make_room(play: Play, i: int, room: float) -> None:
     play.note(("step-back", STILL), start, i=i, relation="while", minor=True)
 
 
-def walk_up(play: Play, i: int, *, distance: float | None = None) -> None:
+def walk_up(play: Play, i: int) -> None:
     """i comes up to the other, who stands; or both do."""
     rng = play.rng
     start = play.sync()
     action, name = gait(play, fast=0.25)
     both = play.wish == ("walk-up", "walk-up") if play.wish else rng.random() < 0.25
-    take = close_in(play, i, distance or rng.uniform(0.8, 1.3), both=both, action=action)
+    take = close_in(play, i, rng.uniform(0.8, 1.3), both=both, action=action)
     style = take.style if take else "normal"
     acts = ("walk-up", "walk-up") if both else ("creep-up" if name == "sneak" else f"{name}-up", STILL)
     play.note(acts, start, i=i, relation="while", styles=(style, "normal"))
 
 
-def leave(play: Play, i: int, *, distance: tuple[float, float] = (1.6, 3.0)) -> None:
+def leave(play: Play, i: int) -> None:
     """i turns and goes away; the other stays, with or without an answer."""
     rng = play.rng
     start = play.sync()
@@ -121,7 +121,7 @@ def leave(play: Play, i: int, *, distance: tuple[float, float] = (1.6, 3.0)) -> 
     answer = play.wanted((STILL, STILL, "wave", "wave", "beckon", "turn-away", "shake-head", "shrug", "point"), 1)
     if answer in ACTS and not play.library.has(*ACTS[answer].needs):
         answer = STILL
-    take = own.go(own.spot + rng.uniform(*distance) * ahead(way), None, action=action, stop=rng.random() < 0.6)
+    take = own.go(own.spot + rng.uniform(1.6, 3.0) * ahead(way), None, action=action, stop=rng.random() < 0.6)
     side, style = None, "normal"
     if answer == "turn-away":
         _turn_off(play, 1 - i, start)
@@ -277,15 +277,13 @@ def side_by_side(play: Play, i: int, gap: float) -> tuple[float, int]:
     return way, side
 
 
-def abreast(
-    play: Play, i: int, gap: float, *, length: tuple[float, float] = (2.2, 4.0), action: str = "walk"
-) -> tuple[int, int, Take, int]:
+def abreast(play: Play, i: int, gap: float, length: tuple[float, float]) -> tuple[int, int, Take, int]:
     """Both walk side by side, in step; (first frame, last frame, walk, side of the other: 1 left)."""
     rng = play.rng
     own, other = play.people[i], play.people[1 - i]
     _, side = side_by_side(play, i, gap)
     start = play.frames
-    take = stride(rng, play.library, action, rng.uniform(*length), style=own.style)
+    take = stride(rng, play.library, "walk", rng.uniform(*length), style=own.style)
     frames = len(take.motion)
     turn = (pick(rng, (-1, 1)) * rng.uniform(0.2, 1.4) if rng.random() < 0.5 else 0.0) * ease(frames)
     steps = np.linalg.norm(np.diff(take.motion.root[:, [0, 2]], axis=0), axis=-1)
@@ -301,7 +299,7 @@ def walk_together(play: Play, i: int) -> None:
     rng = play.rng
     begun = play.sync()
     far = (3.2, 4.2) if play.wish and play.wish[0] == STILL else (2.2, 3.2 if play.brisk else 4.0)
-    start, stop, take, _ = abreast(play, i, rng.uniform(0.65, 0.95), length=far)
+    start, stop, take, _ = abreast(play, i, rng.uniform(0.65, 0.95), far)
     own, other = play.people[i], play.people[1 - i]
     style = (take.style, take.style)
     if start - begun > 35:

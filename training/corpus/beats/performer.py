@@ -115,21 +115,7 @@ class Performer:
         if abs(angle) > 0.05:
             self.hold(int(12 + 13 * abs(angle)), turn=angle)
 
-    def face(self, point: Array) -> float:
-        """Turns on the spot towards a point; returns by how much."""
-        angle = wrapped(bearing(np.asarray(point) - self.spot) - self.angle)
-        self.turn(angle)
-        return angle
-
-    def go(
-        self,
-        target: Array,
-        angle: float | None = None,
-        *,
-        action: str = "walk",
-        style: str | None = None,
-        stop: bool = True,
-    ) -> Take:
+    def go(self, target: Array, angle: float | None = None, *, action: str = "walk", stop: bool = True) -> Take:
         """Walks to ``target`` (x, z), turning on the way and, with ``angle``, to that heading at its end.
 
         Returns:
@@ -142,7 +128,7 @@ class Performer:
             turn = 0.0 if angle is None else wrapped(angle - self.angle)
             self.hold(int(16 + 30 * distance + 12 * abs(turn)), turn=turn, shift=gap)
             return Take(self.motion[-1:], action, "normal")
-        take, course = self._walk(gap, angle, action, style or self.style)
+        take, course = self._walk(gap, angle, action)
         self.append(course)
         if stop:
             self.hold(int(self.rng.integers(8, 16)))
@@ -150,12 +136,12 @@ class Performer:
                 self.hold(int(10 + 14 * abs(left)), turn=left)
         return take
 
-    def _walk(self, gap: Array, angle: float | None, action: str, style: str | None) -> tuple[Take, Motion]:
+    def _walk(self, gap: Array, angle: float | None, action: str) -> tuple[Take, Motion]:
         """A walk that ends ``gap`` from here: turned, bent and scaled a little until it does."""
         distance = float(np.linalg.norm(gap))
         best: tuple[float, Take] | None = None
         for _ in range(4):
-            take = stride(self.rng, self.library, action, distance, style=style)
+            take = stride(self.rng, self.library, action, distance, style=self.style)
             length = float(np.linalg.norm((take.motion.root[-1] - take.motion.root[0])[[0, 2]]))
             ratio = distance / max(length, 1e-3)
             if best is None or abs(np.log(ratio)) < abs(np.log(best[0])):

@@ -67,27 +67,11 @@ def _close(play: Play, i: int) -> bool:
     return play.gap < 2.4
 
 
-ANSWERS = (
-    "nod",
-    "clap",
-    "wave",
-    "shake-head",
-    "shrug",
-    "bow",
-    "point",
-    "fold-arms",
-    "arms-out",
-    "raise-arm",
-    "talk",
-    "hands-on-hips",
-    "jump",
-    "make-fist",
-    "cover-face",
-    "wave-off",
-    "rage",
-    "dance",
-    "hand-on-chest",
+_ANSWERS = (
+    "nod clap wave shake-head shrug bow point fold-arms arms-out raise-arm talk hands-on-hips jump make-fist "
+    "cover-face wave-off rage dance hand-on-chest"
 )
+ANSWERS = _ANSWERS.split()
 
 
 def solo(name: str) -> Callable[[Play, int], None]:

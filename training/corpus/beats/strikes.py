@@ -14,19 +14,17 @@ from .performer import Rng
 TIPS = {"punch": "wrist", "kick": "ankle"}
 
 
-def blow(rng: Rng, library: Library, action: str, *, most: int = 2, least: int = 1) -> Take:
-    """``least`` to ``most`` blows in a row."""
+def blow(rng: Rng, library: Library, action: str, *, most: int) -> Take:
+    """One to ``most`` blows in a row."""
     for _ in range(40):
         take = library.take(rng, action)
-        if least <= len(take.peaks) <= most:
+        if 1 <= len(take.peaks) <= most:
             break
     return take
 
 
 def reach(take: Take) -> float:
     """Reach of the blow at its first peak, in metres in front of the attacker's first place."""
-    if take.action == "slash":
-        return 0.9
     joint = SMPL22.index(f"{take.side}_{TIPS[take.action]}")
     peak = take.peaks[0]
     tip = forward_kinematics(take.motion.rotations[peak], take.motion.root[peak])[joint]
@@ -41,9 +39,9 @@ def pulse(frames: int, start: int, rise: int, fall: int) -> np.ndarray:
     return up * down
 
 
-def recoil(rng: Rng, motion: Motion, frame: int, *, strength: float = 1.0) -> Motion:
+def recoil(rng: Rng, motion: Motion, frame: int) -> Motion:
     """The upper body is thrown back at ``frame`` and comes forward again; the hips give way a little."""
-    shape = pulse(len(motion), frame, int(rng.integers(5, 8)), int(rng.integers(16, 26))) * strength
+    shape = pulse(len(motion), frame, int(rng.integers(5, 8)), int(rng.integers(16, 26)))
     motion = lean(motion, -shape * rng.uniform(0.5, 0.85), towards=float(rng.normal(0, 0.4)))
     back = -np.stack([np.sin(motion.headings), np.zeros(len(motion)), np.cos(motion.headings)], axis=-1)
     return drift(motion, back * shape[:, None] * rng.uniform(0.08, 0.16))

@@ -1,10 +1,8 @@
-"""Readers of the free single-person sets, on made-up files; made clips slowed to what a body does."""
+"""Parts of the files of the free single-person sets, on made-up files; made clips slowed to what a body does."""
 
 from __future__ import annotations
 
-import io
 import json
-import tarfile
 
 import numpy as np
 import pytest
@@ -16,8 +14,7 @@ from motion.kinematics import forward_kinematics
 from motion.retarget import retarget
 from motion.skeleton import SMPL22
 from tests.motion.bodies import marching
-from tests.motion.formats.rigs import RIGS, bvh_text
-from training.corpus import vocabulary
+from training.corpus import sources
 from training.corpus.beats.script import MENU
 from training.corpus.deepmimic import WIDTH, read_deepmimic
 from training.corpus.sources import load_sources
@@ -29,21 +26,9 @@ def row(seconds: float = 1 / 30, **angles: float) -> list[float]:
     """A DeepMimic frame of a person who stands at (1, 0.9, 2), with angles of the joints of one number."""
     quaternion = [1.0, 0.0, 0.0, 0.0]
     values = [seconds, 1.0, 0.9, 2.0]
-    for name in (
-        "root",
-        "chest",
-        "neck",
-        "right_hip",
-        "right_knee",
-        "right_ankle",
-        "right_shoulder",
-        "right_elbow",
-        "left_hip",
-        "left_knee",
-        "left_ankle",
-        "left_shoulder",
-        "left_elbow",
-    ):
+    joints = "root chest neck right_hip right_knee right_ankle right_shoulder right_elbow "
+    joints += "left_hip left_knee left_ankle left_shoulder left_elbow"
+    for name in joints.split():
         values += [angles.get(name, 0.0)] if name.endswith(("knee", "elbow")) else quaternion
     return values
 
@@ -64,10 +49,6 @@ def test_deepmimic_bends_elbows_forward_and_keeps_the_root() -> None:
     assert person[0, J("right_wrist"), 1] > person[0, J("left_wrist"), 1] + 0.1
 
 
-def test_deepmimic_is_resampled_by_its_own_seconds() -> None:
-    assert len(read_deepmimic(clip([row(0.1)] * 11)).positions) == 31
-
-
 @pytest.mark.parametrize(
     ("data", "message"),
     [
@@ -83,13 +64,13 @@ def test_damaged_deepmimic_is_said(data: bytes, message: str) -> None:
 
 
 def test_clips_made_by_hand_are_read_from_glb_and_damaged_files_left_out(tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(vocabulary, "CUTS", {"mesh2motion": (vocabulary.Cut("duet", "sit-down"),)})
+    monkeypatch.setattr(sources, "CUTS", {"mesh2motion": (sources.Cut("duet", "sit-down"),)})
     people = np.stack([marching(90)[0], marching(90, seed=1)[0]])
     (tmp_path / "mesh2motion").mkdir()
     (tmp_path / "mesh2motion" / "x-animations.glb").write_bytes(b"glTF" + bytes(40))
-    assert not list(vocabulary.read_vocabulary(tmp_path))
+    assert not list(sources._cut(tmp_path))
     (tmp_path / "mesh2motion" / "y-animations.glb").write_bytes(glb_bytes(Duet.from_positions(people, fps=30.0)))
-    ((action, *_, source, dataset), positions), *others = vocabulary.read_vocabulary(tmp_path)
+    ((action, *_, source, dataset), positions), *others = sources._cut(tmp_path)
     assert (action, source, dataset) == ("sit-down", "mesh2motion_duet", "mesh2motion") and not others
     assert len(positions) >= 85 and np.ptp(positions[:, 0, 2]) > 0.2
 
@@ -103,11 +84,11 @@ def test_made_clips_are_slowed_and_rounded_and_slow_ones_kept() -> None:
         rotations[:, J("left_shoulder")] = Rotation.from_rotvec(turn).as_matrix()
         return forward_kinematics(rotations, np.tile([0.0, 0.95, 0.0], (40, 1)))
 
-    fast, calm = vocabulary.humanly(wave(3.0)), vocabulary.humanly(wave(0.0))
+    fast, calm = sources.humanly(wave(3.0)), sources.humanly(wave(0.0))
     tip = fast[:, J("left_wrist")] - fast[:, 0]
     assert len(calm) == 40 < len(fast)
-    assert np.linalg.norm(np.diff(tip, axis=0), axis=-1).max() * 30 < 1.1 * vocabulary.MOST_SPEED
-    assert np.linalg.norm(np.diff(tip, n=2, axis=0), axis=-1).max() * 900 < 1.2 * vocabulary.MOST_ACCELERATION
+    assert np.linalg.norm(np.diff(tip, axis=0), axis=-1).max() * 30 < 1.1 * sources.MOST_SPEED
+    assert np.linalg.norm(np.diff(tip, n=2, axis=0), axis=-1).max() * 900 < 1.2 * sources.MOST_ACCELERATION
     lengths = np.linalg.norm(fast[:, 1:] - fast[:, list(SMPL22.parents[1:])], axis=-1)
     np.testing.assert_allclose(lengths, np.tile(SMPL22.bone_lengths[1:], (len(fast), 1)), atol=1e-6)
 
@@ -124,48 +105,10 @@ def test_sources_take_the_vocabulary_along(tmp_path) -> None:
     up, down = clips["get-up-front"].positions, clips["lie-down-front"].positions
     bend = [body[:, J("right_wrist"), 1] - body[:, J("right_elbow"), 1] for body in (up, down)]
     assert bend[0][-1] > bend[0][0] + 0.1 and bend[1][0] > bend[1][-1] + 0.1
-    again = load_sources(tmp_path / "data", cache_dir=tmp_path / "cache")
-    assert [c.place for c in again] == [c.place for c in clips.values()] or len(again) == 3
-
-
-def test_sets_that_are_still_packed_are_read(tmp_path) -> None:
-    folder = tmp_path / "data" / "deepmimic"
-    folder.mkdir(parents=True)
-    data = clip([row()] * 60)
-    with tarfile.open(folder / "motions.tar.xz", "w:xz") as packed:
-        entry = tarfile.TarInfo("motions/humanoid3d_jump.txt")
-        entry.size = len(data)
-        packed.addfile(entry, io.BytesIO(data))
-    clips = load_sources(tmp_path / "data", cache_dir=tmp_path / "cache")
-    assert [c.action for c in clips] == ["jump"]
-    (folder / "motions.tar.xz").write_bytes(b"no archive")
-    with pytest.raises(InputError):
-        load_sources(tmp_path / "data", cache_dir=tmp_path / "cache")
-
-
-def test_the_axis_of_listed_sets_is_given_and_their_cuts_are_made(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
-    axes: dict[str, str | None] = {}
-
-    def retargeted(rig, *, fps: float):
-        axes[rig.name] = rig.up
-        return retarget(rig, fps=fps)
-
-    monkeypatch.setattr(vocabulary, "retarget", retargeted)
-    positions, rotations = marching(150)
-    rotations, root = rotations.copy(), positions[:, 0] * [1, 0, 1] + [0, 0.15, 0]
-    rotations[:, 0] = Rotation.from_euler("x", 85, degrees=True).as_matrix()  # face down
-    for folder, stem in (("accad", "Female1_A08_CrouchToLie"), ("cmu-iclone", "002_01")):
-        (tmp_path / "data" / folder).mkdir(parents=True)
-        (tmp_path / "data" / folder / f"{stem}.bvh").write_text(bvh_text(rotations, root, RIGS["cmu"]))
-    found = {one.action: one for one in load_sources(tmp_path / "data", cache_dir=tmp_path / "cache")}
-    assert axes == {"Female1_A08_CrouchToLie.bvh": "y", "002_01.bvh": None}
-    body = found["crouch-to-lie"].positions
-    assert (body[:, J("head"), 1] - body[:, 0, 1]).max() < 0.4
-    assert len(body) == round(4.3 * 30) - round(1.6 * 30)
 
 
 def test_every_listed_action_is_played_by_a_beat() -> None:
     used = {name for option in MENU.values() for name in option.needs}
     used |= {"run", "shadow-box", "dance-show", "ballet", "talking"}  # besides others, where they are there
-    listed = {cut.action for name in ("accad", "cmu-solo", "cmu-dance-martial") for cut in vocabulary.CUTS[name]}
+    listed = {cut.action for name in ("accad", "cmu-solo", "cmu-dance-martial") for cut in sources.CUTS[name]}
     assert listed and listed <= used
