@@ -32,7 +32,6 @@ class CompactBiGraphDiffConfig:
     labels: names of the classes.
     touches: of each class, the joints that come together; () where nothing does, or () for all.
     max_tokens: of a motion.
-    graph: see :class:`models.bigraphdiff.BiGraphDiffConfig`.
     """
 
     labels: tuple[str, ...] = ()
@@ -44,7 +43,6 @@ class CompactBiGraphDiffConfig:
     embed_dim: int = 192
     cond_dim: int = 128
     max_tokens: int = 48
-    graph: str = "bipartite"
     layout: TokenLayout = field(default_factory=TokenLayout)
 
     def __post_init__(self) -> None:
@@ -99,7 +97,6 @@ class CompactBiGraphDiff(DuetSpace):
                 max_frames=config.max_tokens,
                 dropout=0.0,
                 embed_dim=config.embed_dim,
-                graph=config.graph,
             )
         )
         self.classes = nn.Embedding(len(config.labels), config.cond_dim)

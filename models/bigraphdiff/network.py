@@ -143,9 +143,8 @@ class BipartiteGraph(nn.Module):
     convolution of its own, scattered back by the same projection, batch-normalised and added.
     """
 
-    def __init__(self, channels: int, num_nodes: int, *, simple: bool = False) -> None:
+    def __init__(self, channels: int, num_nodes: int) -> None:
         super().__init__()
-        self.simple = simple
         states = 2 * num_nodes
         self.conv_state = nn.Conv2d(channels, states, 1)
         self.conv_proj = nn.Conv2d(channels, num_nodes, 1)
@@ -157,8 +156,7 @@ class BipartiteGraph(nn.Module):
     def forward(self, x: Tensor) -> Tensor:
         """(N, 2·channels, H, W), the streams stacked along channels → the same."""
         first, second = x.chunk(2, dim=1)
-        others = (first, second) if self.simple else (second, first)
-        updated = self._update(first, others[0], self.gcn1), self._update(second, others[1], self.gcn2)
+        updated = self._update(first, second, self.gcn1), self._update(second, first, self.gcn2)
         return torch.cat(updated, dim=1)
 
     def _update(self, own: Tensor, other: Tensor, gcn: GraphConvolution) -> Tensor:
@@ -173,7 +171,6 @@ class BiGraphDiffConfig:
     """Sizes; the defaults are the paper's, with 25 joints of NTU a person.
 
     embed_dim: width of the embedding that styles every block; 0: four times `latent_dim`, as in the paper.
-    graph: "bipartite", "simple" (each stream reasons over its own features alone, S3 of Table 4.6) or "none" (S2).
     """
 
     input_features: int = 75
@@ -186,7 +183,6 @@ class BiGraphDiffConfig:
     num_nodes: int = 16
     dropout: float = 0.1
     embed_dim: int = 0
-    graph: str = "bipartite"
 
     @property
     def embedding(self) -> int:
@@ -212,20 +208,16 @@ class Layer(nn.Module):
 
         self.sa_block_1, self.sa_block_2 = attention(), attention()
         self.ca_block_1, self.ca_block_2 = text_attention(), text_attention()
-        if config.graph != "none":
-            simple = config.graph == "simple"
-            self.bipartite_graph = BipartiteGraph(d // NODE_GRID**2, config.num_nodes, simple=simple)
-        self.graph = config.graph
+        self.bipartite_graph = BipartiteGraph(d // NODE_GRID**2, config.num_nodes)
         self.ffn_1, self.ffn_2 = feed_forward(), feed_forward()
 
     def forward(self, a: Tensor, b: Tensor, text: Tensor, emb: Tensor, mask: Tensor) -> tuple[Tensor, Tensor]:
         """a and b (B, T, d), text (B, L, C), emb (B, E), mask (B, T, 1) → a and b."""
         a = self.ca_block_1(self.sa_block_1(a, emb, mask), text, emb)
         b = self.ca_block_2(self.sa_block_2(b, emb, mask), text, emb)
-        if self.graph != "none":
-            grid = (a.shape[-1] // NODE_GRID**2, NODE_GRID, NODE_GRID)
-            frames = torch.cat([s.flatten(0, 1).unflatten(-1, grid) for s in (a, b)], dim=1)
-            a, b = (s.reshape(a.shape) for s in self.bipartite_graph(frames).chunk(2, dim=1))
+        grid = (a.shape[-1] // NODE_GRID**2, NODE_GRID, NODE_GRID)
+        frames = torch.cat([s.flatten(0, 1).unflatten(-1, grid) for s in (a, b)], dim=1)
+        a, b = (s.reshape(a.shape) for s in self.bipartite_graph(frames).chunk(2, dim=1))
         return self.ffn_1(a, emb), self.ffn_2(b, emb)
 
 

@@ -17,7 +17,7 @@ It differs, because it learns from a few hundred clips only:
 - a linear part, solved in closed form (:mod:`training.trainers.interformer`), gives a first estimate of that step,
   which the attention corrects.
 
-A reaction is made by :class:`models.interformer.decoding.ReactionDecoder`, frame by frame.
+A reaction is made frame by frame (:meth:`CompactInterFormer.poses_after`).
 
 Shapes: B batch, T frames, J = 15 joints in the order of SBU's files, W numbers a joint, D = J · W.
 Positions are in metres in the actor's frame: the actor at the origin at the start, facing +Z, floor at 0.
@@ -25,6 +25,7 @@ Positions are in metres in the actor's frame: the actor at the origin at the sta
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -270,11 +271,11 @@ class CompactInterFormer(nn.Module):
             x = layer(x, mask[:, None, None, :], self.graph)
         return self.encoder_norm(x)
 
-    def embed(self, reactor: Tensor, previous: Tensor, actor: Tensor, encoded: Tensor, first: int) -> Tensor:
-        """The decoder's input at frames ``first`` …, each with the actor's frame to come: (B, T, D)."""
+    def embed(self, reactor: Tensor, previous: Tensor, actor: Tensor, encoded: Tensor) -> Tensor:
+        """The decoder's input, each frame with the actor's frame to come: (B, T, D)."""
         features = _reactor_features(reactor, previous, actor)
         x = self.embed_reactor((features - self.reactor_mean) / self.reactor_std).flatten(-2)
-        x = x + (self.joints[1] + self.positions[first : first + x.shape[1]])
+        x = x + (self.joints[1] + self.positions[: x.shape[1]])
         return x + self.align(encoded)
 
     def distances(self, reactor: Tensor, actor: Tensor) -> Tensor:
@@ -301,12 +302,32 @@ class CompactInterFormer(nn.Module):
         """:meth:`forward` from the encoder's output on; fewer frames of the reactor may be given."""
         length = reactor.shape[1]
         coming, previous = actor[:, 1 : length + 1], torch.cat([reactor[:, :1], reactor[:, :-1]], dim=1)
-        x = self.embed(reactor, previous, coming, encoded[:, 1 : length + 1], 0)
+        x = self.embed(reactor, previous, coming, encoded[:, 1 : length + 1])
         causal = torch.ones(length, length, dtype=torch.bool, device=x.device).tril()
         distances = self.distances(reactor, coming)
         for layer in self.decoder:
             x = layer(x, encoded, causal, mask[:, None, None, :], self.graph, distances)
         return reactor + self.step(x, self.linear_features(actor, reactor))
+
+    @torch.no_grad()
+    def poses_after(self, actor: Tensor, first: Tensor, noise: Tensor, mask: Tensor | None = None) -> Iterator[Tensor]:
+        """The poses (B, J, 3) after the first one, T − 1 of them, each as soon as it is made.
+
+        Args:
+            actor: (B, T, J, 3) metres, T ≤ window.
+            first: (B, J, 3) metres.
+            noise: (B, noise).
+            mask: (B, T) bool, false at padding.
+        """
+        mask = torch.ones(actor.shape[:2], dtype=torch.bool) if mask is None else mask
+        encoded, made = self.encode(actor, noise, mask), first[:, None]
+        for _ in range(actor.shape[1] - 1):
+            made = torch.cat([made, self.decode(actor, encoded, made, mask)[:, -1:]], dim=1)
+            yield made[:, -1]
+
+    def react(self, actor: Tensor, first: Tensor, noise: Tensor, mask: Tensor | None = None) -> Tensor:
+        """The reaction (B, T, J, 3) to a window of the actor; arguments as in :meth:`poses_after`."""
+        return torch.stack([first, *self.poses_after(actor, first, noise, mask)], dim=1)
 
     @staticmethod
     def linear_features(actor: Tensor, reactor: Tensor) -> Tensor:

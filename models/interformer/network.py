@@ -47,19 +47,12 @@ class InterFormerConfig:
     """The sizes of an `InterFormer`; the defaults are the released ones.
 
     max_length: frames of the position table, start and end frames among them.
-    spatial_heads: 3, one an axis, or 1 over all three.
-    spatial, adjacency, interaction: whether joints attend to joints, along the skeleton's graph alone, and with the
-        interaction distances: the parts that sections 3.4.5's S2, S3 and S4 add one after the other.
     """
 
     num_layers: int = 6
     num_heads: int = 3
     ff_size: int = 2048
     max_length: int = 200
-    spatial_heads: int = 3
-    spatial: bool = True
-    adjacency: bool = True
-    interaction: bool = True
 
 
 def skeleton_mask() -> Tensor:
@@ -149,10 +142,8 @@ class TemporalAttention(nn.Module):
 class SpatialAttention(nn.Module):
     """Attention over the joints of a frame, one head an axis (section 3.3.1)."""
 
-    def __init__(self, config: InterFormerConfig) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self.num_heads = config.spatial_heads
-        self.reach = DISTANCE_WEIGHT if config.interaction else 0.0
         self.q_linear_sp, self.v_linear_sp, self.k_linear_sp = (nn.Linear(AXES, AXES) for _ in range(3))
         self.out = nn.Linear(WIDTH, WIDTH)
 
@@ -166,14 +157,14 @@ class SpatialAttention(nn.Module):
     ) -> Tensor:
         """query (B, T, 45), graph (J, J) bool, distances (B, T, J, J) → (B, T, 45)."""
         made = self.q_linear_sp(query.unflatten(-1, (AXES, JOINTS)).mT).mT
-        q, k, v = (x.unflatten(-2, (self.num_heads, -1)) for x in (made, *memory))  # (B, T, heads, width, J)
-        scores = (q.mT @ k / math.sqrt(q.shape[-2])).abs()  # (B, T, heads, J, J)
+        q, k, v = (x[..., None, :] for x in (made, *memory))  # (B, T, 3, 1, J)
+        scores = (q.mT @ k).abs()  # (B, T, 3, J, J), heads of width 1
         if graph is not None:
             scores = scores.masked_fill(~graph, _HIDDEN)
         weights = scores.flatten(-2).softmax(-1).view_as(scores)
         if distances is not None:
-            weights = weights + self.reach * distances[:, :, None]
-        seen = (weights @ v.mT).mT.flatten(-3, -2)  # (B, T, 3, J)
+            weights = weights + DISTANCE_WEIGHT * distances[:, :, None]
+        seen = (weights @ v.mT)[..., 0]  # (B, T, 3, J)
         return self.out(seen.mT.flatten(-2))
 
 
@@ -194,17 +185,14 @@ class EncoderLayer(nn.Module):
 
     def __init__(self, config: InterFormerConfig) -> None:
         super().__init__()
-        self.spatial = config.spatial
         self.norm_1, self.norm_space_1, self.norm_2 = Norm(), Norm(), Norm()
-        self.attn, self.attn_space = TemporalAttention(config.num_heads), SpatialAttention(config)
+        self.attn, self.attn_space = TemporalAttention(config.num_heads), SpatialAttention()
         self.ff = PositionwiseFeedForward(config.ff_size)
 
     def forward(self, x: Tensor, mask: Tensor, graph: Tensor) -> Tensor:
         """x (B, T, 45), padding mask and skeleton graph (J, J) → (B, T, 45)."""
         y = self.norm_1(x)
         time = x + self.attn(y, self.attn.remember(y), mask)
-        if not self.spatial:
-            return time + self.ff(self.norm_2(time))
         space = x + self.attn_space(y, self.attn_space.remember(y), graph=graph)
         return time + space + self.ff(self.norm_2(time) + self.norm_space_1(space))
 
@@ -214,11 +202,10 @@ class DecoderLayer(nn.Module):
 
     def __init__(self, config: InterFormerConfig) -> None:
         super().__init__()
-        self.spatial = config.spatial
         self.norm_1, self.norm_2, self.norm_3 = Norm(), Norm(), Norm()
         self.norm_space_1, self.norm_space_2 = Norm(), Norm()
         self.attn_1, self.attn_2 = (TemporalAttention(config.num_heads) for _ in range(2))
-        self.attn_space_1, self.attn_space_2 = SpatialAttention(config), SpatialAttention(config)
+        self.attn_space_1, self.attn_space_2 = SpatialAttention(), SpatialAttention()
         self.ff = PositionwiseFeedForward(config.ff_size)
 
     def forward(
@@ -229,10 +216,8 @@ class DecoderLayer(nn.Module):
         joints = tuple(part[:, kept.length : kept.length + x.shape[1]] for part in kept.joints)
         both = self.norm_2(x + self.attn_1(y, kept.extended(self.attn_1.remember(y)), mask))
         both = self.norm_3(both + self.attn_2(both, kept.actor, source_mask))
-        if self.spatial:
-            space = self.norm_space_1(x + self.attn_space_1(y, self.attn_space_1.remember(y), graph=graph))
-            space = self.norm_space_2(space + self.attn_space_2(space, joints, distances=distances))
-            both = both + space
+        space = self.norm_space_1(x + self.attn_space_1(y, self.attn_space_1.remember(y), graph=graph))
+        both = both + self.norm_space_2(space + self.attn_space_2(space, joints, distances=distances))
         return both + self.ff(both)
 
 
@@ -312,8 +297,7 @@ class InterFormer(nn.Module):
         self.config = config = config or InterFormerConfig()
         self.encoder, self.decoder = Encoder(config), Decoder(config)
         self.out = nn.Linear(WIDTH, WIDTH)
-        graph = skeleton_mask() if config.adjacency else torch.ones(JOINTS, JOINTS, dtype=torch.bool)
-        self.register_buffer("graph", graph, persistent=False)
+        self.register_buffer("graph", skeleton_mask(), persistent=False)
 
     def forward(
         self, source: Tensor, target_input: Tensor, distances: Tensor, source_mask: Tensor, target_mask: Tensor

@@ -108,7 +108,6 @@ class Generator(nn.Module):
     def __init__(self, config: MAWGANConfig) -> None:
         super().__init__()
         self.config = config
-        self.convolutions = True
         high, wide = config.grid
         first = config.fc // (high * wide)
         self.fc = nn.Linear(config.past * 3 * config.joints + config.beside, first * high * wide)
@@ -136,10 +135,8 @@ class Generator(nn.Module):
         """``beside`` is (B, :attr:`MAWGANConfig.beside`)."""
         coordinates, points = self.config.image
         x = self.dropout(torch.relu(self.fc(torch.cat([s.flatten(1), beside], 1))))
-        made = s.new_zeros(len(s), points, coordinates)
-        if self.convolutions:
-            image = self.up(x.unflatten(1, (-1, *self.config.grid)))
-            made = image[:, 0, :coordinates, :points].transpose(1, 2)
+        image = self.up(x.unflatten(1, (-1, *self.config.grid)))
+        made = image[:, 0, :coordinates, :points].transpose(1, 2)
         if self.linear is None:
             return made
         given = [self.coefficients(s, beside)] + [x] * self.config.shortcut

@@ -116,21 +116,6 @@ def test_a_cache_that_is_of_no_use_is_made_anew(damage: str, tmp_path: Path) -> 
     torch.testing.assert_close(made(*given)[real], plain(*given)[real], atol=1e-5, rtol=1e-5)
 
 
-def test_only_the_latest_translations_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiled, "KEPT", 2)
-    for key in ("one", "two", "three"):
-        assert compile_network(network(), key, tmp_path)
-    assert len(list(tmp_path.iterdir())) == 2
-
-
-def test_a_cache_that_cannot_be_written_is_done_without(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-    made, plain = network(), network()
-    assert compile_network(made, "weights", tmp_path / "file" / "cache")
-    given = plain.example()
-    torch.testing.assert_close(made(*given), plain(*given), atol=1e-5, rtol=1e-5)
-
-
 def test_without_openvino_the_network_stays_plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "openvino", None)
     made, plain = network(), network()

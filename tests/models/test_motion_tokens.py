@@ -14,8 +14,6 @@ from models.motion_tokens import (
     feature_rows,
     headings,
     mirror_control,
-    pack,
-    unpack,
 )
 from motion import SMPL22
 from motion.transforms import canonicalize, heading, heading_matrix
@@ -56,13 +54,6 @@ def test_a_length_that_fills_no_tokens_is_refused() -> None:
         encode(smooth(4)[:, :-1], torch.ones(2, LAYOUT.num_frames(4) - 1, 4), LAYOUT)
 
 
-def test_mirror_twice_is_the_same() -> None:
-    control = torch.randn(2, 8, FEATURES)
-    once = mirror_control(control, SMPL22.mirror)
-    assert not torch.equal(once, control)
-    assert torch.equal(mirror_control(once, SMPL22.mirror), control)
-
-
 def test_mirror_is_that_of_positions_and_contacts() -> None:
     positions = smooth(6)
     contacts = (torch.rand(2, positions.shape[1], 4, generator=torch.Generator().manual_seed(0)) > 0.5).float()
@@ -70,15 +61,6 @@ def test_mirror_is_that_of_positions_and_contacts() -> None:
     expected = encode(seen, contacts[..., [2, 3, 0, 1]], LAYOUT)
     mirrored = mirror_control(encode(positions, contacts, LAYOUT), SMPL22.mirror)
     torch.testing.assert_close(mirrored, expected, atol=1e-5, rtol=0)
-
-
-def test_unpack_undoes_pack() -> None:
-    control = torch.randn(3, 2, 10, FEATURES)
-    x = pack(control, LAYOUT)
-    assert x.shape == (3, 5, 2 * LAYOUT.token_features)
-    assert torch.equal(unpack(x, LAYOUT), control)
-    first_person = x[..., : LAYOUT.token_features]
-    assert torch.equal(first_person.reshape(3, 10, FEATURES), control[:, 0])
 
 
 def turned(positions: torch.Tensor, angle: float) -> torch.Tensor:

@@ -75,15 +75,6 @@ def test_a_turn_dies_out_and_the_other_person_stays() -> None:
     assert torch.allclose(unpack(found, LAYOUT)[:, 1], unpack(x, LAYOUT)[:, 1], atol=1e-5)
 
 
-def test_a_turn_begins_where_the_pose_is_given_whole() -> None:
-    known = Known.nothing(FRAMES)
-    known.add_person(0, standing(0.5)[:45])
-    facing(known, 2.0, [70, 80])
-    found = angles(Hold(known, LAYOUT, MEAN, STD).bend(predicted()), SHOULDERS)
-    assert np.abs(found[:42] - np.degrees(0.5)).max() < 1 and abs(found[75] - np.degrees(2.0)) < 7
-    assert (np.diff(found[45:70]) > 0).all(), "from the given pose, and not from the predicted one"
-
-
 def test_a_turn_goes_on_past_half_a_turn() -> None:
     known = Known.nothing(FRAMES)
     for frame, angle in ((40, 2.6), (55, 3.3), (70, 4.0)):

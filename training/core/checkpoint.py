@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from pathlib import Path
 
 import torch
@@ -15,9 +13,6 @@ from motion import InputError
 from motion.formats.files import replacing
 
 Parts = dict[str, nn.Module | torch.optim.Optimizer]
-
-RENAMED = {"unconditional": "cond_drop_prob"}
-"""Settings of older checkpoints by their present names."""
 
 
 def _tensors(parts: Parts) -> dict[str, Tensor]:
@@ -45,26 +40,12 @@ def _read(path: Path) -> tuple[dict[str, Tensor], dict[str, str]]:
             tensors = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118
     except (OSError, SafetensorError) as error:
         raise InputError(f"{path} is missing or damaged ({error}): delete it to begin anew.") from error
-    return tensors, metadata | {"settings": _renamed(metadata.get("settings", "{}"))}
+    return tensors, metadata
 
 
-def _renamed(settings: str) -> str:
-    """Settings (JSON text) under their present names."""
-    try:
-        known = json.loads(settings)
-    except ValueError:  # the settings of no run agree with these
-        return settings
-    if not isinstance(known, dict) or not known.keys() & RENAMED.keys():
-        return settings
-    return json.dumps({RENAMED.get(name, name): value for name, value in known.items()}, sort_keys=True)
-
-
-def digest(path: Path) -> str:
-    """SHA-256 of a checkpoint's bytes; raises InputError if it is missing."""
-    try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError as error:
-        raise InputError(f"{path} is missing or damaged ({error}): give the folder of a run.") from error
+def _part(tensors: dict[str, Tensor], name: str) -> dict[str, Tensor]:
+    """The tensors of one part by their own names."""
+    return {key.removeprefix(f"{name}/"): v for key, v in tensors.items() if key.startswith(f"{name}/")}
 
 
 def metadata(path: Path) -> dict[str, str]:
@@ -77,10 +58,8 @@ def restore_part(path: Path, name: str, module: nn.Module) -> None:
 
     Raises InputError for a damaged file and for a module of other sizes.
     """
-    tensors, _ = _read(path)
-    own = {key.removeprefix(f"{name}/"): v for key, v in tensors.items() if key.startswith(f"{name}/")}
     try:
-        module.load_state_dict(own)
+        module.load_state_dict(_part(_read(path)[0], name))
     except RuntimeError as error:
         raise InputError(f"{path} holds a network of other sizes: give the settings it was trained with.") from error
 
@@ -96,7 +75,7 @@ def restore(path: Path, parts: Parts, settings: str) -> int:
     if metadata.get("settings") != settings:
         raise InputError(f"{path} belongs to a run of other settings: give another --out, or the same settings.")
     for name, part in parts.items():
-        own = {key.removeprefix(f"{name}/"): v for key, v in tensors.items() if key.startswith(f"{name}/")}
+        own = _part(tensors, name)
         if isinstance(part, nn.Module):
             part.load_state_dict(own)
             continue

@@ -51,11 +51,11 @@ class Loop(ABC):
     """A run that counts its steps and can be stopped and saved after any of them.
 
     Attributes:
-        settings: ``steps`` is the length of the run. :meth:`optimizer_step` and :meth:`ema_update` read
-            ``learning_rate``, ``warmup`` and ``ema``.
+        settings: ``steps`` is the length of the run. :meth:`step_on` reads ``learning_rate``, ``warmup`` and ``ema``.
         out: folder of the checkpoint and of ``log.jsonl``.
         step: steps done so far.
         settings_json: the settings that a checkpoint must agree with.
+        model, ema, optimizer: the network, its average, which is exported, and what trains it.
     """
 
     settings: Any
@@ -72,7 +72,7 @@ class Loop(ABC):
         return self.out / "last.safetensors"
 
     def parts(self) -> Parts:
-        """The contents of a checkpoint, by name; ``ema`` is the network that is exported."""
+        """The contents of a checkpoint, by name."""
         return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
 
     def restore(self, settings: dict[str, Any]) -> None:
@@ -93,29 +93,33 @@ class Loop(ABC):
     def train_step(self) -> dict[str, float]:
         """Takes one optimiser step and counts it; returns the loss terms."""
 
-    def optimizer_step(
-        self, loss: Tensor, optimizer: torch.optim.Optimizer, trained: Iterable[nn.Parameter], *, clip: float = 1.0
-    ) -> None:
-        """Takes one optimiser step at the learning rate of :func:`warm_cosine`, and counts it.
+    def step_on(self, terms: dict[str, Tensor], *, clip: float = 1.0) -> dict[str, float]:
+        """Takes an optimiser step that lowers the sum of the loss terms, and counts it; the terms and their sum.
 
-        Args:
-            trained: parameters; their joint gradient norm is clipped to ``clip``.
+        The learning rate is that of :func:`warm_cosine`, and the joint norm of all gradients is clipped to ``clip``.
         """
-        s = self.settings
-        rate = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
-        for group in optimizer.param_groups:
-            group["lr"] = rate
-        optimizer.zero_grad(set_to_none=True)
-        loss.backward()
-        nn.utils.clip_grad_norm_(list(trained), clip)
-        optimizer.step()
+        s, values = self.settings, torch.stack(list(terms.values()))
+        total = values.sum()
+        for group in self.optimizer.param_groups:
+            group["lr"] = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
+        self.optimizer.zero_grad(set_to_none=True)
+        total.backward()
+        nn.utils.clip_grad_norm_([p for p in self.model.parameters() if p.requires_grad], clip)
+        self.optimizer.step()
         self.step += 1
+        self.average()
+        numbers = torch.cat([values, total[None]]).tolist()  # a GPU is waited for once
+        return dict(zip([*terms, "total"], numbers, strict=True))
 
     @torch.no_grad()
-    def ema_update(self, averaged: Iterable[Tensor], current: Iterable[Tensor]) -> None:
-        """Updates exponential moving averages of weights; the decay grows to ``settings.ema`` over the first steps."""
+    def average(self) -> None:
+        """Updates the moving average of weights and norms; its decay grows to ``settings.ema`` over the first steps."""
         decay = min(self.settings.ema, (self.step + 1) / (self.step + 10))
-        torch._foreach_lerp_(list(averaged), list(current), 1 - decay)
+        kept, current = (
+            [value for value in network.state_dict().values() if value.is_floating_point()]
+            for network in (self.ema, self.model)
+        )
+        torch._foreach_lerp_(kept, current, 1 - decay)
 
     def run(self, *, minutes: float, save_every: float = 5.0) -> Iterator[dict[str, float]]:
         """Trains until the steps or the minutes are over, or somebody asks the process to end (Ctrl+C, SIGTERM).

@@ -25,6 +25,7 @@ OPTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     "corpus": ("--corpus", _NEEDED | {"help": "what `python -m training.corpus` wrote"}),
     "damping": ("--damping", {"type": float, "default": 0.7}),
     "device": ("--device", {"help": "of torch: cuda where there is one, else cpu"}),
+    "export": ("--export", _FOLDER | {"help": "folder that the trained network is also written to, as it is shipped"}),
     "guidance": ("--guidance", {"type": float, "default": 4.3}),
     "out": ("--out", _NEEDED | {"help": "JSON file for all scores"}),
     "pairs": ("--data", _NEEDED | {"help": "folder that holds sbu and k3hi"}),

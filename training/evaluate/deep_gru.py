@@ -12,12 +12,13 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-import scipy.linalg
 import torch
 import torch.nn.functional as F
 from numpy.typing import NDArray
 from torch import Tensor, nn
 from torch.nn.utils.rnn import pack_padded_sequence, pad_packed_sequence
+
+from motion.metrics.generation import frechet_distance
 
 Array = NDArray[np.floating]
 
@@ -103,14 +104,6 @@ def _varied(clip: Array, rng: np.random.Generator) -> Array:
 def accuracy(network: DeepGRU, clips: Sequence[Array], labels: Sequence[int]) -> float:
     """Share of clips that are taken for what they are."""
     return float((network(*padded(clips)).argmax(-1).numpy() == np.array(labels)).mean())
-
-
-def frechet_distance(real: Array, made: Array) -> float:
-    """FVD (eq. 3.10) of two sets of deep features (N, D)."""
-    difference = real.mean(0) - made.mean(0)
-    covariances = [np.cov(x, rowvar=False) for x in (real, made)]
-    root = scipy.linalg.sqrtm(covariances[0] @ covariances[1]).real
-    return float(difference @ difference + np.trace(covariances[0] + covariances[1] - 2 * root))
 
 
 def spread(features: Array) -> float:

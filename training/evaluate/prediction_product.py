@@ -17,7 +17,7 @@ from motion.cleaning import foot_contacts
 from training.core.shell import add_options, exit_code
 from training.evaluate.prediction import put_into
 from training.evaluate.prediction_scores import Array
-from training.trainers.prediction.windows import CorpusWindows
+from training.trainers.prediction import CorpusWindows
 from webdemo.inference.pipelines.predictor import PredictorPipeline
 from webdemo.inference.requests.predict import mean_steps
 

@@ -15,7 +15,6 @@ classes.
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -24,15 +23,14 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import t as student
 
 from motion import Clip, Duet, InputError
-from motion.formats.files import write_text
 from motion.metrics import summary
-from training.core.shell import add_options, exit_code
+from motion.metrics.generation import frechet_distance, interval
+from training.core.shell import add_options, exit_code, write_scores
 from training.corpus.pairs import load_pairs
 from training.corpus.strict_pairs import strict_pairs
-from training.evaluate.deep_gru import accuracy, deep_features, fit, frechet_distance, measured
+from training.evaluate.deep_gru import accuracy, deep_features, fit, measured
 from webdemo.inference import Engine, ReactRequest, Result
 from webdemo.inference.method import WEIGHTS
 from webdemo.inference.pipelines.nearest import Bank
@@ -170,7 +168,7 @@ def nearest(bank: Bank, people: Array) -> Array:
     return bank.reactor(found, people.shape[1], people[1, 0])
 
 
-def zero_velocity(reaction: Reaction, _: int) -> Array:
+def zero_velocity(reaction: Reaction) -> Array:
     """Person b as they stand at first."""
     return np.repeat(reaction.people[1, :1], reaction.people.shape[1], axis=0)
 
@@ -230,13 +228,6 @@ def readouts(test: Sequence[Reaction], people: Sequence[Array]) -> dict[str, flo
     return rounded
 
 
-def interval(values: Sequence[float]) -> tuple[float, float]:
-    """Mean, and half the width of its 95 % interval by Student's t."""
-    few = len(values)
-    half = student.ppf(0.975, few - 1) * np.std(values, ddof=1) / np.sqrt(few) if few > 1 else 0.0
-    return float(np.mean(values)), float(half)
-
-
 def table(scores: dict[str, Any]) -> str:
     """Markdown of all scores."""
     lines = []
@@ -251,7 +242,7 @@ def table(scores: dict[str, Any]) -> str:
         for method, values in found["scores"].items():
             cells = []
             for name, factor in (("accuracy", 100), ("fvd", 1), ("diversity", 1)):
-                mean, half = interval(np.array(values[name]) * factor)
+                mean, half = interval([factor * value for value in values[name]])
                 cells.append(f"{mean:.1f} ± {half:.1f}")
             shown = [found["readouts"][method][key] for key, _ in READOUTS]
             cells += ["–" if value is None else f"{value:.2f}" for value in shown]
@@ -279,7 +270,7 @@ def _run(options: argparse.Namespace) -> None:
     for dataset in options.datasets:
         read = strictly if options.strict else recorded
         train, test, classes = read(options.data, options.cache, dataset)
-        made = {"Zero velocity": [[zero_velocity(reaction, 0) for reaction in test]]}
+        made = {"Zero velocity": [[zero_velocity(reaction) for reaction in test]]}
         bank = Bank([reaction.people for reaction in train])
         made["Nearest recorded reaction"] = [[nearest(bank, reaction.people) for reaction in test]]
         for method in options.methods:
@@ -296,10 +287,7 @@ def _run(options: argparse.Namespace) -> None:
             "scores": score(train, test, made, seeds=options.seeds),
             "readouts": {method: readouts(test, people) for method, people in shown.items()},
         }
-        write_text(options.out, json.dumps(scores, indent=1))
-    print(table(scores))
-    if options.table:
-        write_text(options.table, table(scores))
+        write_scores(options, scores, table(scores))
 
 
 def reacted(engine: Engine, pair: Reaction, classes: Sequence[str], seed: int, method: str) -> Array:

@@ -4,8 +4,6 @@ Chopin's thesis, chapter 4, on the scenes of :mod:`training.prepare`: what a sce
 is its class. The loss is that of :mod:`training.trainers.intergen` (x0 prediction and InterGen's damped regularisers),
 where the thesis has the noise's alone (eq. 4.12). A scene in which one hand leads is shown right-handed, as a
 class names no side; the others are mirrored half of the time.
-
-Everything random is drawn from the seed and the step number, so a run that stops goes on as if it had not.
 """
 
 from __future__ import annotations
@@ -21,20 +19,18 @@ import torch
 from torch import Tensor
 
 from models.bigraphdiff.compact import CompactBiGraphDiff, CompactBiGraphDiffConfig
-from models.diffusion import NoiseSchedule
 from models.intergen.compact import Touch
-from models.intergen.losses import InterGenLoss, LossWeights, simple_loss
-from models.motion_tokens import FEATURES
+from models.intergen.losses import LossWeights
 from models.weights_io import save_network
 from motion import InputError
-from training.core.ahead import moved
-from training.core.loop import Loop, adamw
+from training.core.loop import adamw
 from training.core.precision import mixed_precision
 from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.corpus.cues import class_of
 from training.prepare import Scenes, load
 from training.trainers import intergen_data
-from training.trainers.intergen import draw_timesteps
+from training.trainers.intergen_data import Batch
+from training.trainers.scenes import DuetTrainer
 from training.trainers.touch import touch_of
 
 SUMMARY = (
@@ -48,11 +44,7 @@ COMMON = 0.4
 
 @dataclass(frozen=True)
 class Settings:
-    """The settings of a run; a checkpoint of others is refused. Named as in training.trainers.intergen.
-
-    graph: see :class:`models.bigraphdiff.BiGraphDiffConfig`. diffusion: if false, the network makes the motion from
-    its class alone and in one pass, S1 of the thesis' Table 4.6.
-    """
+    """The settings of a run; a checkpoint of others is refused. Named as in training.trainers.intergen_data."""
 
     latent_dim: int = 192
     ff_size: int = 512
@@ -70,16 +62,12 @@ class Settings:
     root_weight: float = 4.0
     t_bar: float = 0.7
     noisiest: float = 0.4
-    graph: str = "bipartite"
-    diffusion: bool = True
     seed: int = 0
     weights: LossWeights = field(default_factory=lambda: intergen_data.Settings().weights)
 
     def __post_init__(self) -> None:
         if self.latent_dim % 16 or self.latent_dim % self.num_heads:
             raise InputError(f"latent_dim {self.latent_dim} must be a multiple of 16 and of {self.num_heads} heads.")
-        if self.graph not in ("bipartite", "simple", "none"):
-            raise InputError(f"graph is {self.graph!r:.40}: give bipartite, simple or none.")
 
 
 def of_classes(scenes: Scenes) -> Scenes:
@@ -118,12 +106,12 @@ class Data(intergen_data.Data):
     """Batches as :mod:`training.trainers.intergen` draws them, conditioned on their class."""
 
     def __init__(self, scenes: Scenes, settings: Settings, device: str) -> None:
-        super().__init__(scenes, settings, Path(), device, captions=False)  # type: ignore[arg-type]  # of the same names
+        super().__init__(scenes, settings, Path(), device, captions=False)
         self.names, self.touches = labels_of(scenes)
 
     def sentences(self, row: dict[str, Any], draw: Sequence[float]) -> tuple[list[str], list[bool]]:
-        """The class as the joint condition, nothing for each person alone, and which of them are given."""
-        return [class_of(row), "", ""], [True, False, False]
+        """The class as the joint condition, nothing for each person alone, and whether it is read."""
+        return [class_of(row), "", ""], [draw[0] >= self.settings.cond_drop_prob, False, False]
 
     def continued(self, row: dict[str, Any], draw: Sequence[float]) -> None:
         """No scene is cut: its class is that of the whole."""
@@ -134,83 +122,37 @@ class Data(intergen_data.Data):
         return places, torch.ones_like(places)
 
 
-class Trainer(Loop):
+class Trainer(DuetTrainer):
     """One training run, which resumes from its checkpoint in ``out``."""
 
     def __init__(self, scenes: Scenes, settings: Settings, out: Path, *, device: str = "cpu") -> None:
-        self.settings, self.out, self.device = settings, out, device
         torch.manual_seed(settings.seed)
-        self.data = Data(of_classes(scenes), settings, device)
+        data = Data(of_classes(scenes), settings, device)
+        self.begin(settings, out, data, device)
+        sizes = ("latent_dim", "ff_size", "num_layers", "num_heads", "embed_dim", "cond_dim")
         config = CompactBiGraphDiffConfig(
-            self.data.names,
-            self.data.touches,
-            settings.latent_dim,
-            settings.ff_size,
-            settings.num_layers,
-            settings.num_heads,
-            settings.embed_dim,
-            settings.cond_dim,
-            graph=settings.graph,
-            layout=scenes.layout,
+            data.names, data.touches, **{name: getattr(settings, name) for name in sizes}, layout=scenes.layout
         )
         self.model, self.ema = (CompactBiGraphDiff(config).to(device) for _ in range(2))
-        self.model.mean.copy_(self.data.mean)
-        self.model.std.copy_(self.data.std)
+        self.model.mean.copy_(data.mean)
+        self.model.std.copy_(data.std)
         self.ema.load_state_dict(self.model.state_dict())
         self.ema.eval().requires_grad_(False)
         self.optimizer = adamw(self.model.parameters(), settings)
-        self.schedule = NoiseSchedule(device=device)
-        self.loss = InterGenLoss(
-            settings.weights, t_bar=round(settings.t_bar * self.schedule.timesteps), near_by="truth"
-        )
-        # Three of 70 numbers say where a person stands; they count more than their share.
-        self.feature_weights = torch.ones(FEATURES, device=device)
-        self.feature_weights[:3] = settings.root_weight**0.5
-        self.feature_weights = self.feature_weights.repeat(scenes.layout.knots_per_token)
         self.restore(asdict(settings))
 
-    def terms(self, batch: intergen_data.Batch, t: Tensor, noise: Tensor, keep: Tensor) -> dict[str, Tensor]:
+    def terms(self, batch: Batch, t: Tensor, noise: Tensor, hold: object = None) -> dict[str, Tensor]:
         """Every loss term of one batch, weighted."""
-        people = (*batch.x0.shape[:2], 2, -1)
-        if self.settings.diffusion:
-            xt = self.schedule.q_sample(batch.x0, t, noise)
-        else:
-            xt, t = torch.zeros_like(batch.x0), torch.zeros_like(t)
+        xt = self.schedule.q_sample(batch.x0, t, noise)
         with mixed_precision(self.device):
-            cond = self.model.classes(batch.text) * keep[:, None]
-            predicted = self.model.denoiser(xt, t, cond, batch.mask)
-        predicted = predicted.float()
-        weighted = [x.view(people) * self.feature_weights for x in (predicted, batch.x0)]
-        positions = [self.model.positions(x)[0].transpose(1, 2) for x in (predicted, batch.x0)]
-        terms = {"simple": simple_loss(*weighted, batch.mask)}
-        return terms | self.loss.regularizers(*positions, t, batch.frame_mask)
-
-    def train_step(self) -> dict[str, float]:
-        """One optimiser step; returns the loss terms."""
-        s, batch = self.settings, moved(self.data.batch(self.step), self.device)
-        generator = intergen_data.seeded(s.seed, 3, self.step)
-        size = len(batch.x0)
-        t = draw_timesteps(size, self.schedule.timesteps, s.noisiest, generator).to(self.device)
-        noise = torch.randn(batch.x0.shape, generator=generator).to(self.device)
-        keep = (torch.rand(size, generator=generator) >= s.cond_drop_prob).float().to(self.device)
-        self.model.train()
-        terms = self.terms(batch, t, noise, keep)
-        total = torch.stack(list(terms.values())).sum()
-        self.optimizer_step(total, self.optimizer, self.model.parameters())
-        kept = [self.ema.state_dict(), self.model.state_dict()]  # with what the batch norms have seen
-        self.ema_update(*([v for v in state.values() if v.is_floating_point()] for state in kept))
-        return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
-
-    def export(self, folder: Path) -> None:
-        """Writes the averaged network as the folder that is shipped."""
-        save_network(folder, self.ema, card={"summary": SUMMARY}, trained_steps=self.step)
+            predicted = self.model.denoiser(xt, t, self.model.classes(batch.text) * batch.read[:, :1], batch.mask)
+        return self.motion_terms(predicted.float(), batch.x0, t, batch)
 
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train the compact BiGraphDiff on prepared scenes.")
-    add_options(parser, "scenes", "device")
-    parser.add_argument("--export", type=Path, help="also write the trained network to this folder")
+    add_options(parser, "scenes", "device", "export")
     add_run_options(parser, Settings, leave_out=("weights",))
     options = parser.parse_args(argv)
 
@@ -218,7 +160,7 @@ def main(argv: list[str] | None = None) -> int:
         trainer = Trainer(load(options.scenes), chosen(options, Settings), options.out, device=options.device)
         trainer.run_logged(minutes=options.minutes)
         if options.export:
-            trainer.export(options.export)
+            save_network(options.export, trainer.ema, card={"summary": SUMMARY}, trained_steps=trainer.step)
 
     return exit_code(job)
 

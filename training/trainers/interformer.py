@@ -32,12 +32,12 @@ from torch import Tensor
 
 from models.interformer import JOINTS
 from models.interformer.compact import FPS, JOINTS_15, CompactInterFormer, CompactInterFormerConfig
-from models.interformer.decoding import ReactionDecoder
+from models.intergen.losses import masked_mean
 from models.weights_io import save_network
 from motion import InputError
 from motion.skeleton import SBU15
 from motion.transforms import canonicalize, mirrored, turn
-from training.core.loop import Loop
+from training.core.loop import Loop, adamw
 from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.corpus.pairs import load_pairs
 
@@ -132,11 +132,6 @@ def collate(scenes: Sequence[Array]) -> Batch:
     return Batch(people[:, 0], people[:, 1], torch.arange(longest) < lengths[:, None])
 
 
-def masked_mean(values: Tensor, mask: Tensor) -> Tensor:
-    """(B,) means of (B, T) over the frames of the mask."""
-    return (values * mask).sum(-1) / mask.sum(-1).clamp_min(1)
-
-
 class Trainer(Loop):
     """One training run, which resumes from its checkpoint.
 
@@ -164,16 +159,10 @@ class Trainer(Loop):
         self.model.linear.requires_grad_(False)
         self.ema = CompactInterFormer(self.model.config).requires_grad_(False).eval()
         self.ema.load_state_dict(self.model.state_dict())
-        self.optimizer = torch.optim.AdamW(
-            self.trained(), lr=settings.learning_rate, weight_decay=settings.weight_decay
-        )
+        self.optimizer = adamw((p for p in self.model.parameters() if p.requires_grad), settings)
         weights = [next((w for part, w in _IMPORTANCE.items() if part in name), 1.0) for name in SBU15.joint_names]
         self.importance = torch.tensor(weights) / np.mean(weights)
         self.restore(asdict(settings))
-
-    def trained(self) -> list[torch.nn.Parameter]:
-        """The parameters that the optimizer changes."""
-        return [p for p in self.model.parameters() if p.requires_grad]
 
     def _normalize(self) -> None:
         """Means and deviations of what the network reads and makes, over the training pairs as recorded."""
@@ -216,7 +205,7 @@ class Trainer(Loop):
                 past = self.drifted(batch, generator)
                 if turn_:
                     noise = torch.zeros(len(past), model.config.noise)
-                    past = ReactionDecoder(model).react(batch.actor, batch.reactor[:, 0], noise, batch.mask)
+                    past = model.react(batch.actor, batch.reactor[:, 0], noise, batch.mask)
                 past = past[:, :-1]
                 seen = batch.mask[:, 1:]
                 features = model.linear_features(batch.actor, past)[seen].double()
@@ -242,12 +231,11 @@ class Trainer(Loop):
         noise = torch.randn(s.tries * size, self.model.config.noise, generator=generator)
         actor, mask = actor.repeat(s.tries, 1, 1, 1), batch.mask.repeat(s.tries, 1)
         self.model.eval()
-        made = ReactionDecoder(self.model).react(actor, batch.reactor[:, 0].repeat(s.tries, 1, 1), noise, mask)
+        made = self.model.react(actor, batch.reactor[:, 0].repeat(s.tries, 1, 1), noise, mask)
         self.model.train()
-        made = made.unflatten(0, (s.tries, size))
-        error = ((made - batch.reactor).square().sum(-1) * self.importance).mean(-1)
-        best = masked_mean(error, batch.mask).argmin(0), torch.arange(size)
-        return noise.unflatten(0, (s.tries, size))[best], made[best]
+        error = ((made - batch.reactor.repeat(s.tries, 1, 1, 1)).square().sum(-1) * self.importance).mean(-1)
+        best = masked_mean(error, mask).view(s.tries, size).argmin(0) * size + torch.arange(size)
+        return noise[best], made[best]
 
     def drifted(self, batch: Batch, generator: torch.Generator) -> Tensor:
         """The recorded reaction with a drift that grows from zero at the first pose."""
@@ -293,39 +281,29 @@ class Trainer(Loop):
         torch.manual_seed(s.seed * 1_000_003 + self.step)  # for dropout
         self.model.train()
         terms = self.terms(batch, torch.Generator().manual_seed(s.seed * 999_983 + self.step))
-        total = torch.stack(list(terms.values())).sum()
-        self.optimizer_step(total, self.optimizer, self.trained())
-        self.ema_update(self.ema.parameters(), self.model.parameters())
-        return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
+        return self.step_on(terms)
 
     @torch.no_grad()
     def tried(self) -> dict[str, float]:
-        """Evaluates reactions to the held-out actors: error relative to standing still, and amount of movement.
+        """Evaluates reactions to the held-out actors.
 
-        ``error`` is the mean joint distance divided by that of standing still, ``best`` the same for the best of 8
-        noise vectors, ``moves`` the path length of the joints divided by the recorded one.
+        ``error`` is the mean joint distance divided by that of standing still, ``moves`` the path length of the joints
+        divided by the recorded one.
         """
         if not self.held:
             return {}
         batch = collate([scene[:, ::2][:, : self.settings.window] for scene in self.held])
-        noise = torch.randn(8, len(self.held), self.ema.config.noise, generator=torch.Generator().manual_seed(1))
-        decoder = ReactionDecoder(self.ema)
-        made = torch.stack([decoder.react(batch.actor, batch.reactor[:, 0], one, batch.mask) for one in noise])
-        still = batch.reactor[:, :1].expand_as(batch.reactor)
+        noise = torch.randn(len(self.held), self.ema.config.noise, generator=torch.Generator().manual_seed(1))
+        made = self.ema.react(batch.actor, batch.reactor[:, 0], noise, batch.mask)
 
         def distance(people: Tensor) -> Tensor:
-            return masked_mean((people - batch.reactor).norm(dim=-1).mean(-1), batch.mask)
+            return masked_mean((people - batch.reactor).norm(dim=-1).mean(-1), batch.mask).mean()
 
         def path(people: Tensor) -> Tensor:
-            return (people.diff(dim=-3).norm(dim=-1).mean(-1) * batch.mask[:, 1:]).sum(-1).mean()
+            return (people.diff(dim=-3).norm(dim=-1).mean(-1) * batch.mask[:, 1:]).sum()
 
-        errors = torch.stack([distance(people) for people in made])
-        zero = distance(still).mean()
-        return {
-            "error": (errors.mean() / zero).item(),
-            "best": (errors.amin(0).mean() / zero).item(),
-            "moves": (path(made[0]) / path(batch.reactor)).item(),
-        }
+        still = distance(batch.reactor[:, :1].expand_as(batch.reactor))
+        return {"error": float(distance(made) / still), "moves": float(path(made) / path(batch.reactor))}
 
 
 def _standing(pose: Array) -> Array:
@@ -336,25 +314,20 @@ def _standing(pose: Array) -> Array:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train the compact InterFormer on SBU and K3HI.")
-    add_options(parser, "pairs", "cache")
-    parser.add_argument("--export", type=Path, help="after that, write the averaged weights to this folder")
+    add_options(parser, "pairs", "cache", "export")
     add_run_options(parser, Settings)
     options = parser.parse_args(argv)
-    return exit_code(lambda: _run(options))
 
+    def job() -> None:
+        pairs = load_pairs(options.data, options.cache)
+        learned = [pair.positions for pair in pairs if pair.split == "train"]
+        trainer = Trainer(learned, chosen(options, Settings), options.out)
+        trainer.run_logged(minutes=options.minutes)
+        print(json.dumps({name: round(value, 3) for name, value in trainer.tried().items()}))
+        if options.export:
+            save_network(options.export, trainer.ema, trained_steps=trainer.step)
 
-def _run(options: argparse.Namespace) -> None:
-    pairs = load_pairs(options.data, options.cache)
-    learned = [pair.positions for pair in pairs if pair.split == "train"]
-    trainer = Trainer(learned, chosen(options, Settings), options.out)
-
-    def after() -> None:
-        if trainer.step % 50 == 0:
-            print(json.dumps({k: round(v, 3) for k, v in trainer.tried().items()}), flush=True)
-
-    trainer.run_logged(minutes=options.minutes, every=25, after=after)
-    if options.export:
-        save_network(options.export, trainer.ema, trained_steps=trainer.step)
+    return exit_code(job)
 
 
 if __name__ == "__main__":

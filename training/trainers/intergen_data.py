@@ -180,22 +180,21 @@ class Data:
     """Draws batches of similar lengths, on the CPU; batch ``step`` is the same in every run of the same seed.
 
     Args:
+        settings: its ``batch``, ``seed`` and ``cond_drop_prob``, and of InterGen ``words`` and ``continued``.
         cache: where the features of sentences are kept.
         device: where the text encoder runs: on a CPU once for all sentences, on a GPU in each step.
         captions: whether the batches have words.
     """
 
-    captions: CaptionFeatures | CaptionTokens
+    captions: CaptionFeatures | CaptionTokens | None = None
 
-    def __init__(self, scenes: Scenes, settings: Settings, cache: Path, device: str, *, captions: bool = True) -> None:
+    def __init__(self, scenes: Scenes, settings: Any, cache: Path, device: str, *, captions: bool = True) -> None:
         self.scenes, self.settings, self.device = scenes, settings, device
-        self.rows = balanced(scenes.split("train"))
+        self.rows = self.weighted(scenes.split("train"))
         if len(self.rows) < settings.batch:
             raise InputError(f"{len(self.rows)} training scenes do not fill a batch of {settings.batch}.")
         if captions:
-            known = {c for row in self.rows for sentences in sentence_lists(row) for c in sentences}
-            if settings.words and settings.continued:
-                known |= {c for row in self.rows for beat in later_beats(row) for c in beat["captions"]}
+            known = self.known_captions()
             known |= {mirror_caption(c) for c in known}
             on_cpu = torch.device(device).type == "cpu"
             self.captions = CaptionFeatures(sorted(known), cache) if on_cpu else CaptionTokens(device)
@@ -203,6 +202,17 @@ class Data:
         self.tokens = torch.tensor([row["tokens"] for row in self.rows])
         self.batches_an_epoch = len(self.rows) // settings.batch
         self._epoch, self._order = -1, torch.empty(0)
+
+    def weighted(self, rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+        """The rows, each as often as it is drawn."""
+        return balanced(rows)
+
+    def known_captions(self) -> set[str]:
+        """All captions that a batch may have, but for their mirror images."""
+        known = {c for row in self.rows for sentences in sentence_lists(row) for c in sentences}
+        if self.settings.words and self.settings.continued:
+            known |= {c for row in self.rows for beat in later_beats(row) for c in beat["captions"]}
+        return known
 
     def _rows_of(self, step: int) -> Tensor:
         epoch, place = divmod(step, self.batches_an_epoch)
@@ -257,13 +267,18 @@ class Data:
         words = beat["captions"][int(draw[2] * len(beat["captions"]))]
         return canonical_control(one), before, words
 
+    def mirrors(self, row: dict[str, Any], text: str, draw: float) -> bool:
+        """Whether a scene is shown mirrored under this text; ``draw`` is uniform in [0, 1)."""
+        return mirrored(text, row.get("hand"), draw)
+
     def features(self, captions: list[str]) -> tuple[Tensor, Tensor]:
         """The text encoder's output for captions: features (B, …) and their mask."""
+        assert self.captions is not None
         return self.captions.batch(captions)
 
     def control(self, x0: Tensor) -> Tensor:
         """Normalised motion (B, tokens, 2·F) → control points (B, 2, K, 70) in metres."""
-        return unpack(x0, self.scenes.layout) * self.std + self.mean
+        return unpack(x0, self.scenes.layout) * self.std.to(x0) + self.mean.to(x0)
 
     def batch(self, step: int) -> Batch:
         """The batch of a step; the same for the same seed and step."""
@@ -286,7 +301,7 @@ class Data:
             own = one.shape[1] // layout.knots_per_token
             named = [s for s, wanted in zip(sentences, chosen, strict=True) if wanted]
             text = " ".join(named or sentences[:1])
-            mirror = mirrored(text, row.get("hand"), draw[0])
+            mirror = self.mirrors(row, text, draw[0])
             if mirror:
                 one = mirror_control(one, SMPL22.mirror)
                 sentences = [mirror_caption(sentence) for sentence in sentences]
@@ -307,4 +322,6 @@ class Data:
     def on_device(self, batch: Batch) -> Batch:
         """A batch on the device, with the features of its sentences."""
         batch = moved(batch, self.device)
+        if self.captions is None:
+            return batch
         return replace(batch, text=self.captions.features_of(batch.text, batch.text_mask))

@@ -12,8 +12,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
-from pathlib import Path
+from dataclasses import dataclass
 
 import numpy as np
 import torch
@@ -35,12 +34,9 @@ from models.mawgan import (
     without_flicker,
 )
 from models.mawgan.srvf import exp_map, karcher_mean, log_map, to_srvf
-from models.predictors import load_predictor, save_predictor
 from motion import InputError
 from training.core.shell import exit_code
-from training.trainers.motion_mlp import add_predictor_options, liveliness, train
-from training.trainers.prediction.rollout import ADVANCE, check_own_pasts
-from training.trainers.prediction.trainer import PredictionTrainer
+from training.trainers.prediction import PredictionTrainer, add_predictor_options, train
 
 
 @dataclass(frozen=True)
@@ -52,16 +48,8 @@ class Settings:
     linear, length, pose, coefficients, shortcut, dropout: as in :class:`~models.mawgan.MAWGANConfig`.
     ridge: above 0, the penalty with which the linear map is fitted in closed form, to ``fit`` windows, before the
         first step.
-    convolutions: false leaves them untrained; with ``ridge`` their output is then 0.
     noise: metres of noise on the pasts.
-    own_pasts: most recursive passes of the network that generated a past, as in
-        :class:`training.trainers.motion_mlp.Settings`.
-    groups: parts of the batch, from slow to fast pasts, each with its own mean speed.
-    limbs: compares the speed of each joint over five frames, as :func:`training.trainers.motion_mlp.liveliness`
-        does, instead of the mean speed of all joints at each frame; ``acceleration`` is the weight of its second
-        part.
     final_rate: share of the learning rate at which its cosine schedule ends; 1 keeps it constant, as in the thesis.
-    init: folder of a trained predictor to start from.
     """
 
     windows: str = "cmu"
@@ -84,39 +72,25 @@ class Settings:
     gradient_penalty: float = 10.0
     position: float = 0.0
     speed: float = 0.0
-    init: str = ""
     linear: bool = False
     length: bool = False
     pose: bool = False
     coefficients: int = 0
     shortcut: bool = False
-    convolutions: bool = True
     dropout: float = 0.0
     ridge: float = 0.0
     fit: int = 20_000
     noise: float = 0.0
-    own_pasts: int = 0
-    groups: int = 1
-    limbs: bool = False
-    acceleration: float = 0.0
     weight_decay: float = 0.0
     seed: int = 0
 
     def __post_init__(self) -> None:
         if self.width % 8 or self.width < 32:
             raise InputError(f"width is {self.width}: give a multiple of 8, 32 or more.")
-        least = {"past": 2, "future": 2, "fc": 2, "batch": 2, "critic_steps": 1, "critic_stride": 1, "groups": 1}
+        least = {"past": 2, "future": 2, "fc": 2, "batch": 2, "critic_steps": 1, "critic_stride": 1}
         for name, number in least.items():
             if getattr(self, name) < number:
                 raise InputError(f"{name} is {getattr(self, name)}: give {number} or more.")
-        check_own_pasts(self.own_pasts, self.windows, self.future)
-        if not self.convolutions and not self.linear:
-            raise InputError("Without convolutions there is nothing but the linear map: ask for linear.")
-
-    @property
-    def ahead(self) -> int:
-        """Frames of a window behind its past."""
-        return self.future + ADVANCE * self.own_pasts
 
     def network(self, joints: int) -> MAWGANConfig:
         """The sizes of predictor and critic."""
@@ -169,6 +143,7 @@ LEAN = {
 class Trainer(PredictionTrainer):
     """Trains predictor and critic against each other."""
 
+    kind = "mawgan"
     settings: Settings
     model: PredictiveMAWGAN
     ema: PredictiveMAWGAN
@@ -180,13 +155,9 @@ class Trainer(PredictionTrainer):
         self.model, self.ema = (PredictiveMAWGAN(config).to(self.device) for _ in range(2))
         self.ema.eval()
         self.critic = Critic(config).to(self.device)
-        if s.init:
-            self.model.load_state_dict(load_predictor(Path(s.init)).network.state_dict())
-        elif not self.checkpoint.exists():
+        if not self.checkpoint.exists():
             self.measure()
         self.ema.load_state_dict(self.model.state_dict())
-        for network in (self.model, self.ema):
-            network.generator.convolutions = s.convolutions
         self.ema.requires_grad_(False)
         self.optimizer, self.critic_optimizer = (
             torch.optim.AdamW(part.parameters(), lr=s.learning_rate, betas=(0.5, 0.9), weight_decay=decay, fused=True)
@@ -210,13 +181,7 @@ class Trainer(PredictionTrainer):
 
     def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
         """The contents of a checkpoint, by name."""
-        return {
-            "model": self.model,
-            "ema": self.ema,
-            "critic": self.critic,
-            "optimizer": self.optimizer,
-            "critic_optimizer": self.critic_optimizer,
-        }
+        return super().parts() | {"critic": self.critic, "critic_optimizer": self.critic_optimizer}
 
     def curves(self, windows: Tensor) -> tuple[Tensor, Tensor]:
         """Past (B, past, D), and the future with the last pose before it (B, future + 1, D)."""
@@ -267,22 +232,6 @@ class Trainer(PredictionTrainer):
             self.critic_optimizer.step()
             yield loss.item()
 
-    def speed(self, past: Tensor, made: Tensor, recorded: Tensor) -> Tensor:
-        """Difference of mean speeds from the true ones, in metres a frame.
-
-        Args:
-            past, made: (B, …, D) given and predicted curves.
-            recorded: (B, past + future, J, 3) metres.
-        """
-        s, last = self.settings, past[:, -2:]
-        calm = to_positions(without_flicker(last[:, 1:], made))
-        if not s.limbs:
-            return speed_loss(calm, recorded[:, s.past :], to_positions(last[:, 1:]), groups=s.groups)
-        kept = len(past) // s.groups * s.groups
-        own = torch.cat([to_positions(last), calm], dim=1).diff(dim=1)[:kept]
-        speed, acceleration = liveliness(own, recorded[:kept, s.past - 2 :].diff(dim=1), s.groups)
-        return speed + s.acceleration * acceleration
-
     def train_step(self) -> dict[str, float]:
         """Takes one optimizer step; returns each loss by name."""
         torch.manual_seed(self.settings.seed + self.step)  # dropout
@@ -290,24 +239,26 @@ class Trainer(PredictionTrainer):
         for optimizer in (self.optimizer, self.critic_optimizer):
             for group in optimizer.param_groups:
                 group["lr"] = self.settings.learning_rate * self.rate()
-        windows, recorded, passes = self.window()
+        windows = self.batch()
         moves, past, real = self.pairs(windows)
         truth = windows[moves, self.settings.past :]
-        known = 1 / (1 + passes)
         s, longer = self.model.generate(past + self.settings.noise * torch.randn_like(past))
         made = self.seen(s)
         critic = list(self.critic_steps(real, made.detach())) if weights.adversarial else [0.0]
         curves = self.model.decode(s, longer, past)
         positions = to_positions(curves)
         terms = {
-            "reconstruction": known * weights.reconstruction * reconstruction_loss(made, real),
-            "skeleton": known * weights.skeleton * skeleton_loss(positions, truth),
+            "reconstruction": weights.reconstruction * reconstruction_loss(made, real),
+            "skeleton": weights.skeleton * skeleton_loss(positions, truth),
             "bone": weights.bone * bone_loss(positions, truth, self.windows.bones),
         }
         if weights.position:
-            terms["position"] = known * weights.position * position_loss(positions, truth)
+            terms["position"] = weights.position * position_loss(positions, truth)
         if weights.speed:
-            terms["speed"] = weights.speed * self.speed(past, curves, recorded[moves])
+            last = past[:, -1:]
+            terms["speed"] = weights.speed * speed_loss(
+                to_positions(without_flicker(last, curves)), truth, to_positions(last)
+            )
         if weights.adversarial:
             terms["adversarial"] = -weights.adversarial * self.critic(made).mean()
         total = torch.stack(list(terms.values())).sum()
@@ -316,21 +267,10 @@ class Trainer(PredictionTrainer):
         nn.utils.clip_grad_norm_(self.model.parameters(), 10.0)
         self.optimizer.step()
         self.step += 1
-        self.ema_update(self.ema.parameters(), self.model.parameters())
+        self.average()
         values = {name: value.item() for name, value in terms.items()}
         error = (positions - truth).norm(dim=-1).mean().item()
         return values | {"critic": sum(critic) / len(critic), "mm": 1000 * error}
-
-    def export(self, folder: Path) -> None:
-        """Writes the averaged predictor as a predictor's folder."""
-        save_predictor(
-            folder,
-            self.ema,
-            kind="mawgan",
-            fps=self.windows.fps,
-            bones=self.windows.bones,
-            training={**asdict(self.settings), "steps": self.step, "init": Path(self.settings.init).name},
-        )
 
 
 _STILL = 1e-3

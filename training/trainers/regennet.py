@@ -7,8 +7,6 @@ batches are masked causally (online), the others see all of the actor (offline),
 
 Online, a share of the scenes is learned after the network's own past instead of the recorded one, from some step on:
 see :mod:`training.trainers.regennet_past`.
-
-Everything random is drawn from the seed and the step number, so a run that stops goes on as if it had not.
 """
 
 from __future__ import annotations
@@ -25,20 +23,20 @@ from torch.nn.attention import SDPBackend, sdpa_kernel
 from models.diffusion import NoiseSchedule
 from models.errors import load_strictly
 from models.intergen.compact import load_folder as load_intergen
-from models.intergen.losses import bone_lengths, facing, joint_distances
+from models.intergen.losses import bone_lengths, facing, joint_distances, masked_mean
 from models.motion_tokens import FEATURES, NUM_CONTACTS
 from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, load_folder
 from models.weights_io import save_network
 from motion import InputError
 from motion.skeleton import FEET
-from training.core.loop import Loop, adamw
+from training.core.loop import adamw
 from training.core.precision import mixed_precision
 from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
-from training.trainers.intergen import draw_timesteps
-from training.trainers.intergen_data import seeded
-from training.trainers.regennet_data import Batch, Conditions, Data, knot_positions, seen_rows
+from training.trainers.intergen_data import Batch, seeded
+from training.trainers.regennet_data import Data, knot_positions, seen_rows
 from training.trainers.regennet_past import Past, make_past, plan
+from training.trainers.scenes import SceneTrainer
 from training.trainers.touch import with_touches
 
 SUMMARY = (
@@ -115,11 +113,6 @@ class Settings:
             )
 
 
-def masked_mean(values: Tensor, mask: Tensor) -> Tensor:
-    """Mean over the real rows of each sample: values and mask (B, K) → (B,)."""
-    return (values * mask).sum(1) / mask.sum(1).clamp_min(1)
-
-
 def interaction_loss(predicted: Tensor, reactor: Tensor, actor: Tensor, mask: Tensor) -> Tensor:
     """ReGenNet's interaction loss (eq. 3–4): relative pose, orientation and translation → (B,).
 
@@ -179,15 +172,18 @@ def apart_loss(predicted: Tensor, reactor: Tensor, actor: Tensor, mask: Tensor) 
     return masked_mean((gap(reactor).clamp_max(APART) - gap(predicted)).clamp_min(0).square(), mask)
 
 
-class Trainer(Loop):
+class Trainer(SceneTrainer):
     """One training run, which resumes from its checkpoint.
 
     Args:
         words: a shipped InterGen's folder, whose text conditioner is taken over.
         init: a shipped ReGenNet's folder, whose weights, normalisers and text conditioner a new run begins
             with; ``words`` then counts nothing.
-        device: "cpu" or "cuda".
+        workers: processes that draw batches ahead; 0 draws each when it is needed.
     """
+
+    data: Data
+    model: CompactReGenNet
 
     def __init__(
         self,
@@ -198,16 +194,13 @@ class Trainer(Loop):
         words: Path,
         init: Path | None = None,
         device: str = "cpu",
+        workers: int = 0,
     ) -> None:
-        self.settings, self.out, self.device = settings, out, device
+        self.settings, self.out, self.device, self.workers = settings, out, device, workers
         out.mkdir(parents=True, exist_ok=True)
         torch.manual_seed(settings.seed)
-        if init is None:
-            language, source = load_intergen(words)
-            conditioner = language.conditioner
-        else:
-            shipped, source = load_folder(init)
-            conditioner = shipped.conditioner
+        shipped = load_folder(init)[0] if init else None
+        conditioner = shipped.conditioner if shipped else load_intergen(words)[0].conditioner
         sizes = ("latent_dim", "ff_size", "num_layers", "num_heads", "window")
         self.config = CompactReGenNetConfig(
             **{name: getattr(settings, name) for name in sizes},
@@ -215,33 +208,22 @@ class Trainer(Loop):
             text_layers=conditioner.config.num_layers,
             frames_per_knot=scenes.layout.frames_per_knot,
         )
-        self.data = Data(
-            scenes,
-            size=settings.batch,
-            crop=settings.crop,
-            recorded=settings.recorded,
-            seed=settings.seed,
-            device=device,
-        )
-        self.conditions = Conditions(self.data.captions(), conditioner.to(device), out, source.digest, device=device)
+        self.data = Data(scenes, settings, out, device)
         self.model = CompactReGenNet(self.config)
-        if init is None:
+        if shipped is None:
             self.model.conditioner.load_state_dict(conditioner.state_dict())
             self.data.normalize(self.model)
         else:
             known = {k: v for k, v in shipped.state_dict().items() if not k.startswith("touch_reader.")}
-            load_strictly(self.model, known, network=init.name)
+            load_strictly(self.model, known, network="ReGenNet")
         self.model.to(device).conditioner.requires_grad_(False)
         self.ema = CompactReGenNet(self.config).to(device).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
-        self.trained = [p for p in self.model.parameters() if p.requires_grad]
-        self.averaged = [
-            p for p, q in zip(self.ema.parameters(), self.model.parameters(), strict=True) if q.requires_grad
-        ]
-        self.optimizer = adamw(self.trained, settings)
+        self.optimizer = adamw((p for p in self.model.parameters() if p.requires_grad), settings)
         self.schedule = NoiseSchedule(device=device)
         self.weights = torch.ones(FEATURES, device=device)
         self.weights[:3] = settings.root_weight
+        self.used = torch.zeros(())
         self.restore(asdict(settings))
 
     def own_share(self) -> float:
@@ -249,28 +231,23 @@ class Trainer(Loop):
         s = self.settings
         return s.own * min(max((self.step - s.own_after + 1) / s.own_growth, 0.0), 1.0)
 
-    def network_input(self, batch: Batch, generator: torch.Generator) -> dict[str, Tensor]:
+    def network_input(
+        self, batch: Batch, actor: Tensor, reactor: Tensor, generator: torch.Generator
+    ) -> dict[str, Tensor]:
         """All that the network sees of a batch beside the noised reaction and its timestep, by argument."""
-        s, model, size = self.settings, self.model, len(batch.mask)
-        keep = torch.rand(size, 1, generator=generator) >= s.cond_drop_prob
+        s, model, size = self.settings, self.model, len(batch.past)
         start = torch.randint(150, (size,), generator=generator)
         start = start * (torch.rand(size, generator=generator) < 0.5)
-        seen = seen_rows(batch.actor)
-        seen = seen + s.jitter * self.normal(seen, 4)
         given = torch.rand(size, generator=generator) < s.begin
-        given = given.to(self.device) | batch.cropped
+        given = given.to(self.device) | (batch.past > 0)
+        seen = seen_rows(actor)
+        seen = seen + s.jitter * self.normal(seen, 6)
         return {
             "actor": (seen - model.actor_mean) / model.actor_std,
-            "condition": batch.words * keep.to(self.device),
+            "condition": model.conditioner(batch.text, batch.text_mask) * batch.read[:, :1],
             "start": start.to(self.device),
-            "begin": model.begin_row(knot_positions(batch.reactor[:, :3])[:, 0]) * given[:, None],
+            "begin": model.begin_row(knot_positions(reactor[:, :3])[:, 0]) * given[:, None],
         }
-
-    def normal(self, like: Tensor, use: int) -> Tensor:
-        """Standard normal numbers of a tensor's shape for a use of this step."""
-        seed = seeded(self.settings.seed, use, self.step).initial_seed()
-        generator = torch.Generator(self.device).manual_seed(seed)
-        return torch.randn(like.shape, generator=generator, device=self.device)
 
     def predict(self, x: Tensor, t: Tensor, seen: dict[str, Tensor], *, causal: bool) -> Tensor:
         """The network's clean reaction (B, K, 70) in float32; ``seen`` of :meth:`network_input`."""
@@ -280,61 +257,57 @@ class Trainer(Loop):
             made: Tensor = self.model(x, t, causal=causal, **seen)
         return made.float()
 
-    def past(self, x0: Tensor, batch: Batch, seen: dict[str, Tensor], share: float, generator: torch.Generator) -> Past:
+    def past(
+        self, x0: Tensor, t: Tensor, mask: Tensor, seen: dict[str, Tensor], share: float, generator: torch.Generator
+    ) -> Past:
         """The noised motion of a batch, with a past of the network's own for a share of the scenes."""
         s = self.settings
-        t = draw_timesteps(len(x0), self.schedule.timesteps, s.noisiest, generator).to(self.device)
-        xt = self.schedule.q_sample(x0, t, self.normal(x0, 5))
+        xt = self.schedule.q_sample(x0, t, self.normal(x0, 7))
         if not share:
             none = torch.zeros(len(x0), dtype=torch.bool, device=self.device)
-            return Past(xt, t, x0, x0, torch.ones_like(batch.mask, dtype=torch.bool), none)
-        planned = plan(batch.rows, share=share, steps=s.sampler, rollout=s.rollout, generator=generator)
+            return Past(xt, t, x0, x0, torch.ones_like(mask, dtype=torch.bool), none)
+        rows = mask.sum(1).long().cpu()
+        planned = plan(rows, share=share, steps=s.sampler, rollout=s.rollout, generator=generator)
 
         def predict(x: Tensor, t: Tensor, places: Tensor) -> Tensor:
             return self.predict(x, t, {name: value[places] for name, value in seen.items()}, causal=True)
 
-        noise, std = self.normal(x0, 6), self.model.std
+        noise, std = self.normal(x0, 8), self.model.std
         return make_past(predict, planned, x0, (xt, t), self.schedule, std, steps=s.sampler, noise=noise)
 
-    def terms(self, batch: Batch, generator: torch.Generator) -> tuple[dict[str, Tensor], Tensor]:
-        """Every loss term of one batch, weighted, and the share of scenes with a past of the network's own."""
-        s, model = self.settings, self.model
-        x0 = (batch.reactor - model.mean) / model.std
+    def terms(self, batch: Batch, t: Tensor, noise: Tensor, hold: object = None) -> dict[str, Tensor]:
+        """Every loss term of one batch, weighted; ``used`` becomes the share of scenes with a past of its own."""
+        s, model, generator = self.settings, self.model, seeded(self.settings.seed, 9, self.step)
+        actor, reactor, mask = self.data.people(batch)
+        x0 = (reactor - model.mean) / model.std
         causal = bool(torch.rand(1, generator=generator) >= s.offline)
-        seen = self.network_input(batch, generator)
-        past = self.past(x0, batch, seen, self.own_share() if causal else 0.0, generator)
+        seen = self.network_input(batch, actor, reactor, generator)
+        past = self.past(x0, t, mask, seen, self.own_share() if causal else 0.0, generator)
+        self.used = past.used.float().mean()
         predicted = self.predict(past.x, past.t, seen, causal=causal)
-        learned = batch.mask * past.learned
+        learned = mask * past.learned
         error = ((predicted - past.wanted).square() * self.weights).mean(-1)
         terms = {"simple": masked_mean(error, learned).mean()}
 
         # A knot is where three control points meet: of those that are past, it takes the network's own.
         rows = past.learned[..., None]
         full, wanted = (torch.where(rows, x, past.past) * model.std + model.mean for x in (predicted, past.wanted))
-        mask = learned[:, 2:]
         early = past.t <= s.t_bar * self.schedule.timesteps
-        stands = batch.reactor[:, 2:, -NUM_CONTACTS:] > 0.5
-        losses = motion_losses(full, wanted, knot_positions(batch.actor), mask, stands)
+        stands = reactor[:, 2:, -NUM_CONTACTS:] > 0.5
+        losses = motion_losses(full, wanted, knot_positions(actor), learned[:, 2:], stands)
         return terms | {
             name: getattr(s, name) * (value * early).sum() / early.sum().clamp_min(1) for name, value in losses.items()
-        }, past.used.float().mean()
+        }
 
     def train_step(self) -> dict[str, float]:
-        """One optimiser step; returns the loss terms."""
-        batch = self.data.batch(self.step, self.conditions)
-        self.model.train()
-        terms, own = self.terms(batch, seeded(self.settings.seed, 3, self.step))
-        total = torch.stack(list(terms.values())).sum()
-        self.optimizer_step(total, self.optimizer, self.trained)
-        self.ema_update(self.averaged, self.trained)
-        shown = terms | {"total": total, "own": own}
-        return dict(zip(shown, torch.stack(list(shown.values())).tolist(), strict=True))
+        """One optimiser step; returns the loss terms, and the share of scenes with a past of the network's own."""
+        return super().train_step() | {"own": self.used.item()}
 
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Train the compact ReGenNet on prepared scenes.")
-    add_options(parser, "scenes", "threads", "device")
+    add_options(parser, "scenes", "threads", "device", "workers", "export")
     parser.add_argument(
         "--words",
         type=Path,
@@ -342,28 +315,22 @@ def main(argv: list[str] | None = None) -> int:
         help="a shipped InterGen, whose text conditioner is taken over",
     )
     parser.add_argument("--init", type=Path, help="begin with a shipped ReGenNet, its words and all")
-    parser.add_argument("--export", type=Path, help="after that, write the averaged weights to this folder")
     add_run_options(parser, Settings)
     options = parser.parse_args(argv)
     if options.threads:
         torch.set_num_threads(options.threads)
-    return exit_code(lambda: _run(options))
 
+    def job() -> None:
+        scenes, settings = load(options.scenes), chosen(options, Settings)
+        given = {name: getattr(options, name) for name in ("words", "init", "device", "workers")}
+        trainer = Trainer(scenes, settings, options.out, **given)
+        trainer.run_logged(minutes=options.minutes)
+        if options.export:
+            model, reads = with_touches(trainer.ema.cpu(), scenes)
+            print(f"touches read from test captions: {reads:.1%}")
+            save_network(options.export, model, card={"summary": SUMMARY}, trained_steps=trainer.step)
 
-def _run(options: argparse.Namespace) -> None:
-    trainer = Trainer(
-        load(options.scenes),
-        chosen(options, Settings),
-        options.out,
-        words=options.words,
-        init=options.init,
-        device=options.device,
-    )
-    trainer.run_logged(minutes=options.minutes)
-    if options.export:
-        model, reads = with_touches(trainer.ema.cpu(), trainer.data.scenes)
-        print(f"touches read from test captions: {reads:.1%}")
-        save_network(options.export, model, card={"summary": SUMMARY}, trained_steps=trainer.step)
+    return exit_code(job)
 
 
 if __name__ == "__main__":

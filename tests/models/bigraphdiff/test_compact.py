@@ -50,24 +50,6 @@ def test_the_class_changes_what_is_predicted(model: CompactBiGraphDiff) -> None:
         model.condition(["juggle"])
 
 
-def test_guidance_is_the_papers_sum(model: CompactBiGraphDiff) -> None:
-    x, t = noised(model)
-    cond = model.condition(["wave"]).expand(2, -1)
-    given, plain = model.denoiser(x, t, cond), model.denoiser(x, t, torch.zeros_like(cond))
-    for scale in (0.0, 1.0, 3.5):
-        found = model.denoiser.guided(x, t, cond, scale=scale)
-        assert torch.allclose(found, scale * given + (1 - scale) * plain, atol=1e-4)
-
-
-def test_padding_changes_nothing(model: CompactBiGraphDiff) -> None:
-    x, t = noised(model)
-    cond = model.condition(["wave", "shake hands"])
-    padded = torch.cat([x, torch.full((2, 3, x.shape[-1]), 7.0)], dim=1)
-    mask = torch.ones(2, 9, 2)
-    mask[:, 6:] = 0
-    assert torch.allclose(model.denoiser(padded, t, cond, mask)[:, :6], model.denoiser(x, t, cond), atol=1e-4)
-
-
 def test_a_folder_gives_the_same_network_back(model: CompactBiGraphDiff, tmp_path: Path) -> None:
     save_network(tmp_path, model.half().float())
     again, _ = load_folder(tmp_path)
@@ -81,11 +63,3 @@ def test_a_folder_gives_the_same_network_back(model: CompactBiGraphDiff, tmp_pat
     (tmp_path / "config.json").write_text(json.dumps(meta))
     with pytest.raises(WeightsError, match="do not fit their config"):
         load_folder(tmp_path)
-
-
-def test_positions_are_of_two_people(model: CompactBiGraphDiff) -> None:
-    x, _ = noised(model)
-    positions, contacts = model.positions(x)
-    frames = model.layout.num_frames(6)
-    assert positions.shape == (2, 2, frames, 22, 3) and contacts.shape == (2, 2, frames, 4)
-    assert model.scale.shape == (2 * model.layout.token_features,)

@@ -1,4 +1,4 @@
-"""The trained InterFormer's network: causal, cached as well as plain, and alive to all it is given."""
+"""The trained InterFormer's network: causal, and alive to all it is given."""
 
 from __future__ import annotations
 
@@ -11,9 +11,7 @@ import torch
 from models.errors import WeightsError
 from models.interformer import JOINTS
 from models.interformer.compact import CompactInterFormer, CompactInterFormerConfig, load_folder
-from models.interformer.decoding import ReactionDecoder
 from models.weights_io import save_network
-from webdemo.inference.method import WEIGHTS
 
 
 @pytest.fixture(scope="module")
@@ -24,10 +22,6 @@ def model() -> CompactInterFormer:
     for layer in (network.linear, network.out):
         torch.nn.init.normal_(layer.weight, std=0.05)
     network.step_std.uniform_(0.01, 0.03)
-    for part in network.modules():  # what is folded must be something
-        if isinstance(part, torch.nn.LayerNorm):
-            torch.nn.init.normal_(part.weight, mean=1.0, std=0.3)
-            torch.nn.init.normal_(part.bias, std=0.3)
     for name in ("actor", "reactor"):
         getattr(network, f"{name}_mean").normal_(std=0.5)
         getattr(network, f"{name}_std").uniform_(0.5, 1.5)
@@ -45,25 +39,12 @@ def scene() -> tuple[torch.Tensor, ...]:
     return actor, reactor, torch.randn(2, 16, generator=g), mask
 
 
-def test_cached_and_plain_decoding_are_equal(model, scene):
+def test_a_reaction_made_pose_by_pose_is_what_the_network_gives_for_it(model, scene):
     actor, reactor, noise, mask = scene
-    made = ReactionDecoder(model).react(actor, reactor[:, 0], noise, mask)
+    made = model.react(actor, reactor[:, 0], noise, mask)
     assert made.shape == actor.shape
     again = model(actor, made[:, :-1], noise, mask)
     torch.testing.assert_close(again, made[:, 1:], atol=1e-5, rtol=1e-5)
-
-
-def test_the_shipped_network_decodes_a_whole_window_as_a_plain_run_of_its_decoder_does():
-    network, _ = load_folder(WEIGHTS / "interformer")
-    g = torch.Generator().manual_seed(2)
-    actor, first = 0.5 * torch.randn(3, 48, JOINTS, 3, generator=g), torch.randn(3, JOINTS, 3, generator=g)
-    noise, mask = torch.randn(3, 16, generator=g), torch.ones(3, 48, dtype=torch.bool)
-    made = ReactionDecoder(network).react(actor, first, noise)
-    plain, encoded = first[:, None], network.encode(actor, noise, mask)
-    while plain.shape[1] < 48:
-        plain = torch.cat([plain, network.decode(actor, encoded, plain, mask)[:, -1:]], dim=1)
-    torch.testing.assert_close(made, plain, atol=1e-5, rtol=1e-5)
-    assert (made[:, -1] - made[:, 0]).abs().mean() > 0.01
 
 
 def test_no_frame_of_the_reactor_sees_a_later_one(model, scene):
@@ -77,11 +58,11 @@ def test_no_frame_of_the_reactor_sees_a_later_one(model, scene):
 
 def test_the_whole_actor_and_the_noise_are_seen(model, scene):
     actor, reactor, noise, mask = scene
-    before = ReactionDecoder(model).react(actor, reactor[:, 0], noise, mask)
+    before = model.react(actor, reactor[:, 0], noise, mask)
     later = actor.clone()
     later[0, 12] += 0.5
-    assert (ReactionDecoder(model).react(later, reactor[:, 0], noise, mask) - before)[0, 1].abs().max() > 1e-5
-    assert (ReactionDecoder(model).react(actor, reactor[:, 0], -noise, mask) - before)[:, 1].abs().max() > 1e-5
+    assert (model.react(later, reactor[:, 0], noise, mask) - before)[0, 1].abs().max() > 1e-5
+    assert (model.react(actor, reactor[:, 0], -noise, mask) - before)[:, 1].abs().max() > 1e-5
 
 
 def test_attention_does_not_see_padding(model, scene):
@@ -95,7 +76,7 @@ def test_attention_does_not_see_padding(model, scene):
 def test_before_anything_is_learned_nobody_moves(scene):
     actor, reactor, noise, mask = scene
     network = CompactInterFormer(CompactInterFormerConfig(joint_width=4, ff_size=16, window=20)).eval()
-    made = ReactionDecoder(network).react(actor, reactor[:, 0], noise, mask)
+    made = network.react(actor, reactor[:, 0], noise, mask)
     assert torch.equal(made, reactor[:, :1].expand_as(made))
 
 

@@ -6,15 +6,7 @@ import pytest
 import torch
 
 from models.errors import WeightsError
-from models.interformer import (
-    WIDTH,
-    InterFormer,
-    InterFormerConfig,
-    Positions,
-    from_released,
-    joint_distances,
-    target_mask,
-)
+from models.interformer import InterFormer, InterFormerConfig, Positions, from_released, joint_distances, target_mask
 from tests.models.reference_arrays import Reference, assert_equal
 
 
@@ -76,16 +68,6 @@ def test_padding_of_the_actor_changes_nothing_in_time(ref, network):
     assert torch.equal(network(changed, *others), network(source, *others))
 
 
-def test_it_trains():
-    torch.manual_seed(0)
-    network = InterFormer(InterFormerConfig(num_layers=1, ff_size=16, max_length=6))
-    source, target = torch.rand(2, 6, WIDTH), torch.rand(2, 6, WIDTH)
-    mask = torch.ones(2, 1, 6, dtype=torch.bool)
-    made = network(source, target, joint_distances(source, target), mask, target_mask(6))
-    made.square().mean().backward()
-    assert all(p.grad is not None and torch.isfinite(p.grad).all() for p in network.parameters())
-
-
 def test_other_weights_are_refused(ref):
     with pytest.raises(WeightsError, match="not InterFormer weights"):
         from_released({"a": torch.zeros(1)})
@@ -93,18 +75,3 @@ def test_other_weights_are_refused(ref):
     del weights["decoder.layers.1.norm_3.bias"]
     with pytest.raises(WeightsError, match=r"norm_3\.bias is missing"):
         from_released(weights)
-
-
-@pytest.mark.parametrize(
-    "changes", [{"spatial": False}, {"adjacency": False}, {"interaction": False}, {"spatial_heads": 1}]
-)
-def test_what_the_ablations_leave_out_counts(ref, network, changes):
-    source, target, table, *masks = inputs(ref)
-    config = InterFormerConfig(**{**vars(network.config), **changes})
-    without = InterFormer(config).eval()
-    without.load_state_dict(network.state_dict())
-    made = without(source, target, table, *masks)
-    assert not torch.allclose(made, network(source, target, table, *masks), atol=1e-3)
-    unmoved = without(source, target, table.flip(-1), *masks)
-    blind = not (config.spatial and config.interaction)
-    assert torch.equal(made, unmoved) is blind  # without them, distances change nothing

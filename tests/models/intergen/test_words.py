@@ -7,7 +7,6 @@ from torch import Tensor
 from models.intergen.compact import CompactConfig, CompactInterGen
 from models.known import KNOWN_FEATURES
 from models.text import TokenFeatures
-from models.weights_io import save_network
 from motion.errors import InputError
 
 SIZES = {"latent_dim": 32, "ff_size": 48, "num_layers": 2, "num_heads": 4, "cond_dim": 64, "role_text": True}
@@ -148,23 +147,3 @@ def test_what_is_known_is_seen(grown):
     assert torch.allclose(
         model.denoiser.guided(x, t, condition, None, known, scale=2.5), 2.5 * halves[0] - 1.5 * halves[1], atol=1e-4
     )
-
-
-def test_the_full_size_stays_within_its_budget():
-    with torch.device("meta"):
-        model = CompactInterGen(CompactConfig(role_text=True, words=True))
-    count = sum(parameter.numel() for parameter in model.parameters())
-    assert 15e6 < count < 20e6, count
-
-
-def test_a_folder_of_a_grown_network_loads(grown, tmp_path):
-    from models.intergen.compact import load_folder
-
-    save_network(tmp_path, stirred(grown))
-    again, _ = load_folder(tmp_path)
-    x, t = inputs()
-    assert again.config.words
-    for parameter in grown.parameters():
-        parameter.copy_(parameter.half().float())
-    found, expected = (m.denoiser(x, t, m.condition(words(5, 3))) for m in (again, grown))
-    assert torch.equal(found, expected)

@@ -43,11 +43,6 @@ def test_losses_by_hand() -> None:
     last = torch.zeros(2, 1, 5, 3)
     assert float(speed_loss(1.5 * walk, walk, last)) == pytest.approx(0.025, abs=1e-5)
     assert float(speed_loss(walk.flip(-1), walk, last)) == pytest.approx(0, abs=1e-6)
-    # One too fast and one too slow are right on average, and wrong each for itself.
-    faster = torch.cat([1.5 * walk[:1], 0.5 * walk[:1]])
-    both, start = (x[:1].repeat(2, 1, 1, 1) for x in (walk, last))
-    assert float(speed_loss(faster, both, start)) == pytest.approx(0, abs=1e-6)
-    assert float(speed_loss(faster, both, start, groups=2)) == pytest.approx(0.025, abs=1e-5)
     pose = torch.tensor([[0.0, 0, 0], [0, 2, 0], [0, 2, 1]]).expand(2, 4, 3, 3)
     assert float(bone_loss(pose * 1.1, pose, [(0, 1), (1, 2)])) == pytest.approx(0.15)
     assert float(bone_loss(pose.flip(-1), pose, [(0, 1), (1, 2)])) == pytest.approx(0, abs=1e-6)

@@ -43,15 +43,6 @@ def test_tokens_tell_left_from_right_where_the_pooled_vector_hardly_does(encoder
     assert torch.cosine_similarity(*found.features[:, word], dim=0) < 0.9
 
 
-def test_padding_changes_nothing(encoder):
-    short, long = "a bow", "two people walk up to each other and then shake hands for a while"
-    together, alone = encoder([short, long]), encoder([short])
-    length = alone.features.shape[1]
-    assert together.mask[0].sum() == length
-    assert_equal(together.features[:1, :length], alone.features, 1e-4)
-    assert_equal(together.pooled()[:1], alone.pooled(), 1e-5)
-
-
 @pytest.mark.parametrize("prompt", ["", "walk " * 5000, "二人が握手する 🤝 <b>${x}</b>\x00"])
 def test_any_prompt_gives_at_most_128_finite_tokens(encoder, prompt):
     found = encoder([prompt])
@@ -101,19 +92,3 @@ def test_the_conditioner_ignores_padding():
     out = conditioner(features, mask)
     assert out.shape == (3, SMALL.latent_dim)
     assert_equal(conditioner(features[1:2, :3], mask[1:2, :3]), out[1:2], 1e-5)
-
-
-def test_every_token_reaches_the_condition():
-    conditioner = TextConditioner(SMALL).eval()
-    features, mask = random_tokens()
-    features.requires_grad_()
-    conditioner(features, mask)[:, 0].sum().backward()
-    assert torch.equal(features.grad.abs().sum(-1) > 0, mask)
-
-
-def test_the_conditioner_trains():
-    torch.manual_seed(0)
-    conditioner = TextConditioner(SMALL)
-    features, mask = random_tokens()
-    conditioner(features, mask)[:, 0].sum().backward()
-    assert all(p.grad is not None and torch.isfinite(p.grad).all() for p in conditioner.parameters())

@@ -36,20 +36,6 @@ def test_no_checkpoint_is_step_zero(tmp_path: Path) -> None:
     assert checkpoint.restore(tmp_path / "last.safetensors", parts(0), "{}") == 0
 
 
-@pytest.mark.parametrize(("now", "resumes"), [(0.1, True), (0.2, False)])
-def test_older_name_of_a_setting_is_read(tmp_path: Path, now: float, resumes: bool) -> None:
-    path = tmp_path / "last.safetensors"
-    older = json.dumps({"unconditional": 0.1, "batch": 4}, sort_keys=True)
-    checkpoint.save(path, parts(0), 3, older)
-    assert json.loads(checkpoint.metadata(path)["settings"]) == {"cond_drop_prob": 0.1, "batch": 4}
-    settings = json.dumps({"cond_drop_prob": now, "batch": 4}, sort_keys=True)
-    if resumes:
-        assert checkpoint.restore(path, parts(1), settings) == 3
-    else:
-        with pytest.raises(InputError, match="other settings"):
-            checkpoint.restore(path, parts(1), settings)
-
-
 def test_a_part_of_other_sizes_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "last.safetensors"
     checkpoint.save(path, parts(0), 1, "{}")

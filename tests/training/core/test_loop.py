@@ -31,9 +31,7 @@ class Line(Loop):
     def train_step(self) -> dict[str, float]:
         x = torch.tensor([[0.0], [1.0]])
         loss = (self.model(x) - 3 * x - 1).square().mean()
-        self.optimizer_step(loss, self.optimizer, self.model.parameters())
-        self.ema_update(self.ema.parameters(), self.model.parameters())
-        return {"loss": loss.item()}
+        return self.step_on({"loss": loss})
 
 
 def test_learning_rate_warms_up_and_falls_to_two_percent() -> None:

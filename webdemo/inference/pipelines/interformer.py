@@ -20,7 +20,6 @@ from torch import Tensor
 from models.diffusion import sample_noise
 from models.interformer.compact import FPS as NETWORK_FPS
 from models.interformer.compact import JOINTS_15, load_folder
-from models.interformer.decoding import ReactionDecoder
 from models.interformer.network import NETWORK, WIDTH, InterFormer, from_released
 from models.released import read_tensors, without_wrapper
 from motion import FPS, SMPL22, Clip
@@ -60,7 +59,6 @@ class InterFormerPipeline:
 
     def __init__(self, folder: Path) -> None:
         self.model, source = load_folder(folder)
-        self.decoder = ReactionDecoder(self.model)
         self.name, self.digest, self.meta = folder.name, source.digest, source.meta
 
     def run(self, request: ReactRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
@@ -103,8 +101,8 @@ class InterFormerPipeline:
             seen = torch.tensor(here.to_network(window)[:, list(JOINTS_15)], dtype=torch.float32)
             first = torch.tensor(here.to_network(reaction[-1]), dtype=torch.float32)
             actors = seen.expand(request.samples, -1, -1, -1)
-            for pose in self.decoder.poses_after(actors, first, noise):
-                reaction.append(here.to_world(pose.astype(np.float64)))
+            for pose in self.model.poses_after(actors, first, noise):
+                reaction.append(here.to_world(pose.double().numpy()))
                 yield timer.progress("sample", len(reaction) - 1, total, "frame")
                 cancel.raise_if_cancelled()
         return np.stack(reaction, axis=1)

@@ -1,9 +1,10 @@
-"""Windows of recorded motion, past and future in one, as the networks of prediction take them."""
+"""The common part of the predictors' trainers: windows of recorded motion, past and future in one, and the command."""
 
 from __future__ import annotations
 
-import json
+import argparse
 from abc import ABC, abstractmethod
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -13,9 +14,13 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from models.predictors import save_predictor
 from motion import SMPL22, InputError
 from motion.transforms import mirrored
+from training.core.loop import Loop
+from training.core.shell import add_options, add_run_options, chosen
 from training.corpus import cmu
+from training.prepare import load_corpus
 from webdemo.inference.pipelines.predictor import to_last_pose
 
 Array = NDArray[np.floating]
@@ -114,8 +119,7 @@ class CorpusWindows(Windows):
     """People of a corpus of two-person scenes, in the frame of the last pose of their past.
 
     Args:
-        folder: of ``python -m training.corpus``: ``motions.npy`` (frames, 2, 22, 3) metres at 30 fps, and
-            ``index.json`` with ``start``, ``frames`` and ``split`` of every scene.
+        folder: of ``python -m training.corpus``.
         split: only scenes of this split are seen.
 
     Raises:
@@ -128,11 +132,7 @@ class CorpusWindows(Windows):
     def __init__(self, folder: Path, past: int = 30, future: int = 30, *, split: str = "train") -> None:
         super().__init__(past, future)
         self.bones = [(int(a), int(b)) for a, b in SMPL22.bones]
-        try:
-            rows: list[dict[str, Any]] = json.loads((folder / "index.json").read_text())
-            self.motions = np.load(folder / "motions.npy", mmap_mode="r", allow_pickle=False)
-        except (OSError, ValueError) as error:
-            raise InputError(f"{folder} is no corpus of `python -m training.corpus` ({error}).") from error
+        self.motions, rows = load_corpus(folder)
         kept = [row for row in rows if row["split"] == split and row["frames"] >= self.length]
         if not kept:
             raise InputError(f"{folder} has no scenes of the {split} split with {self.length} frames.")
@@ -154,3 +154,58 @@ def open_windows(kind: str, folder: Path, past: int, future: int) -> Windows:
     if kind not in kinds:
         raise InputError(f"Windows {kind!r} are not known: choose one of {', '.join(kinds)}.")
     return kinds[kind](folder, past, future)
+
+
+class PredictionTrainer(Loop):
+    """One training run, which resumes from its checkpoint.
+
+    Everything random is drawn from the seed and the step number, so a run that stops and is started again
+    with the same command goes on exactly as if it had never stopped.
+
+    Args:
+        windows: of the training data.
+        settings: a dataclass with ``past``, ``future``, ``steps``, ``batch``, ``seed`` and ``ema``; a checkpoint of
+            other settings is refused.
+        out: folder of the checkpoint ``last.safetensors``.
+        device: "cpu" or "cuda".
+    """
+
+    kind: str
+    """Kind of the predictor, as :func:`models.predictors.save_predictor` takes it."""
+
+    def __init__(self, windows: Windows, settings: Any, out: Path, *, device: str = "cpu") -> None:
+        self.windows, self.settings, self.out, self.device = windows, settings, out, device
+        torch.manual_seed(settings.seed)
+        self.build()
+        self.restore(asdict(settings))
+
+    @abstractmethod
+    def build(self) -> None:
+        """Makes networks and optimisers; runs once, under the run's seed."""
+
+    def batch(self, part: int = 0) -> Tensor:
+        """The windows (B, past + future, J, 3) of this step."""
+        return self.windows.batch(self.settings.batch, (self.settings.seed, self.step, part)).to(self.device)
+
+    def export(self, folder: Path) -> None:
+        """Writes the averaged network as a predictor's folder."""
+        training = {**asdict(self.settings), "steps": self.step}
+        windows = self.windows
+        save_predictor(folder, self.ema, kind=self.kind, fps=windows.fps, bones=windows.bones, training=training)
+
+
+def add_predictor_options(parser: argparse.ArgumentParser, settings: type) -> None:
+    """Options that every training of a predictor takes: data, folders, minutes and each setting."""
+    parser.add_argument("--data", type=Path, required=True, help="folder of the data set")
+    add_options(parser, "device", "export")
+    add_run_options(parser, settings)
+
+
+def train(trainer: type, settings: type, options: argparse.Namespace) -> None:
+    """Runs what :func:`add_predictor_options` understood."""
+    asked = chosen(options, settings)
+    windows = open_windows(asked.windows, options.data, asked.past, asked.future)
+    run = trainer(windows, asked, options.out, device=options.device)
+    run.run_logged(minutes=options.minutes)
+    if options.export:
+        run.export(options.export)
