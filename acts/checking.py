@@ -17,9 +17,8 @@ from typing import Any
 
 from acts.plan import other_of
 from motion import SMPL22, Duet
-from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.joints import Motion, stretches
 from motion.metrics.sentences.language import check, mask_of, masks, measured
-from motion.metrics.sentences.stretches import stretches
 from motion.metrics.sentences.touches import BODY
 
 from .accounting import account, shown_caption

@@ -14,8 +14,8 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .easing import smoothstep
 from .skeleton import ARMS, LEGS, SMPL22
+from .smoothing import smoothstep
 from .transforms import facing
 from .vectors import unit
 

@@ -3,6 +3,8 @@
 A body is a closed surface bound to SMPL22 (``static/bodies``, made from MakeHuman's mesh, CC0). Joint positions alone
 pose it: :func:`bone_rotations` finds how each bone is turned, twist included, and :func:`skin` moves the surface by
 linear blend skinning. ``static/player/pose.js`` and ``skin.js`` do the same in the browser, number for number.
+
+Eyes turn to what is seen, as far as eyes do without the head; ``static/player/eyes.js`` does the same.
 """
 
 from __future__ import annotations
@@ -14,17 +16,17 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from .clip import Clip
-from .easing import smoothstep
 from .errors import InputError
-from .eyes import Eyes, eye_zones
 from .hands import NUMBERS, SHAPES, Fingers
 from .kinematics import swing
 from .looks import LOOKS
 from .skeleton import SMPL22
-from .vectors import square_frame, unit
+from .smoothing import smoothstep
+from .vectors import rotations_by, square_frame, unit
 
 Array = NDArray[np.floating]
 
@@ -240,9 +242,9 @@ def _turn_trunk(positions: Array, world: Array) -> None:
     chest = square_frame(_toward(positions, "spine3", "neck"), _toward(positions, "right_collar", "left_collar"))
     chest = chest @ square_frame(_rest_toward("spine3", "neck"), _rest_toward("right_collar", "left_collar")).T
     world[:, _J["pelvis"]], world[:, _J["spine3"]] = pelvis, chest
-    between = _rotation_vector(np.swapaxes(pelvis, -1, -2) @ chest)
+    between = scipy.spatial.transform.Rotation.from_matrix(np.swapaxes(pelvis, -1, -2) @ chest).as_rotvec()
     for name, child, share in (("spine1", "spine2", 1 / 3), ("spine2", "spine3", 2 / 3)):
-        world[:, _J[name]] = _follow(positions, pelvis @ _rotation(share * between), name, child)
+        world[:, _J[name]] = _follow(positions, pelvis @ rotations_by(share * between), name, child)
 
 
 def _turn_head(positions: Array, world: Array) -> None:
@@ -252,12 +254,12 @@ def _turn_head(positions: Array, world: Array) -> None:
     ahead = np.einsum("tji,tj->ti", chest, _toward(positions, "neck", "head"))
     yaw = np.clip(np.arctan2(ahead[:, 0], np.maximum(ahead[:, 2], _LEAST_AHEAD)), -_MOST_YAW, _MOST_YAW)
     for name, share in (("neck", 0.5), ("head", 1.0)):
-        turned = chest @ _rotation(share * yaw[:, None] * np.array([0.0, 1.0, 0.0]))
+        turned = chest @ rotations_by(share * yaw[:, None] * np.array([0.0, 1.0, 0.0]))
         world[:, _J[name]] = _follow(positions, turned, "neck", "head")
     # People who bend their necks go on looking ahead.
     pitch = -np.arcsin(np.clip(world[:, _J["head"], 1, 2], -1.0, 1.0))
     level = _MOST_LEVEL * np.tanh(0.6 * pitch / _MOST_LEVEL)
-    world[:, _J["head"]] = world[:, _J["head"]] @ _rotation(level[:, None] * np.array([-1.0, 0.0, 0.0]))
+    world[:, _J["head"]] = world[:, _J["head"]] @ rotations_by(level[:, None] * np.array([-1.0, 0.0, 0.0]))
 
 
 def _turn_arm(positions: Array, world: Array, side: str, sign: float) -> None:
@@ -269,8 +271,8 @@ def _turn_arm(positions: Array, world: Array, side: str, sign: float) -> None:
     hinge = straight @ np.array([0.0, sign, 0.0])
     twist = _hinge_twist(upper, _toward(positions, elbow, wrist), hinge, _ARM_BEND)
     # Half of the twist sits in the upper arm, all of it in the forearm: shoulders keep their shape.
-    world[:, _J[shoulder]] = _rotation(0.5 * twist[:, None] * upper) @ straight
-    world[:, _J[elbow]] = _follow(positions, _rotation(twist[:, None] * upper) @ straight, elbow, wrist)
+    world[:, _J[shoulder]] = rotations_by(0.5 * twist[:, None] * upper) @ straight
+    world[:, _J[elbow]] = _follow(positions, rotations_by(twist[:, None] * upper) @ straight, elbow, wrist)
     world[:, _J[wrist]] = _flat_hand(positions[:, _J[wrist], 1], world[:, _J[elbow]], sign)
 
 
@@ -287,7 +289,7 @@ def _flat_hand(height: Array, forearm: Array, sign: float) -> Array:
     axis = np.cross(palm, down)
     angle = np.arctan2(np.linalg.norm(axis, axis=-1), palm @ down)
     bent = steep * (1 - smoothstep(height, *_LOW_HAND)) * angle
-    return _rotation(bent[:, None] * unit(axis)) @ forearm
+    return rotations_by(bent[:, None] * unit(axis)) @ forearm
 
 
 def _turn_leg(positions: Array, world: Array, side: str) -> None:
@@ -300,18 +302,18 @@ def _turn_leg(positions: Array, world: Array, side: str) -> None:
     by_knee = _hinge_twist(thigh, shin, straight @ np.array([1.0, 0.0, 0.0]), _LEG_BEND)
     by_foot = _angle_about(shin, _follow(positions, straight, knee, ankle) @ rest_sole, sole)
     twist = np.clip(by_knee, -1.2, 1.2) + (1 - bend) * 0.6 * np.clip(by_foot, -_MOST_SHIN, _MOST_SHIN)
-    world[:, _J[hip]] = _rotation(twist[:, None] * thigh) @ straight
+    world[:, _J[hip]] = rotations_by(twist[:, None] * thigh) @ straight
     lower = _follow(positions, world[:, _J[hip]], knee, ankle)
     by_foot = np.clip(_angle_about(shin, lower @ rest_sole, sole), -_MOST_SHIN, _MOST_SHIN)
-    world[:, _J[knee]] = _rotation(by_foot[:, None] * shin) @ lower
+    world[:, _J[knee]] = rotations_by(by_foot[:, None] * shin) @ lower
     loose = _follow(positions, world[:, _J[knee]], ankle, foot)
     low = 1 - smoothstep(positions[:, _J[foot], 1], *_LOW_FOOT)
     up = np.broadcast_to(np.array([0.0, 1.0, 0.0]), sole.shape)
     roll = np.clip(_angle_about(sole, loose[:, :, 1], up), -_MOST_ROLL, _MOST_ROLL)
-    world[:, _J[ankle]] = _rotation((low * roll)[:, None] * sole) @ loose
+    world[:, _J[ankle]] = rotations_by((low * roll)[:, None] * sole) @ loose
     raised = np.arcsin(np.clip(-world[:, _J[ankle], 1, 2], 0.0, 0.9))  # the heel above the toes
     axis = np.array([-1.0, 0.0, 0.0])
-    world[:, _J[foot]] = world[:, _J[ankle]] @ _rotation((low * raised)[:, None] * axis)
+    world[:, _J[foot]] = world[:, _J[ankle]] @ rotations_by((low * raised)[:, None] * axis)
 
 
 def _bend(first: Array, second: Array, span: tuple[float, float]) -> Array:
@@ -333,25 +335,52 @@ def _angle_about(axis: Array, first: Array, second: Array) -> Array:
     return np.arctan2(np.sum(axis * np.cross(first, second), axis=-1), np.sum(first * second, axis=-1))
 
 
-def _rotation(vector: Array) -> Array:
-    """(…, 3, 3) rotation by the length of ``vector`` (…, 3) about its direction (Rodrigues)."""
-    angle = np.linalg.norm(vector, axis=-1)[..., None, None]
-    x, y, z = np.moveaxis(vector / np.maximum(angle[..., 0], 1e-12), -1, 0)
-    zero = np.zeros_like(x)
-    skew = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
-    return np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew
+# ---- Eyes ------------------------------------------------------------------------------------------------------------
+ZONES = ("eyes", "whites")
+"""Zones of a body's surface that are eyes."""
+_ASIDE, _UP = np.radians([26.0, 8.0])
+"""Radians by which eyes turn to a side, and up or down, at most: their lids do not go with them."""
+_SEES = np.radians([55.0, 85.0])
+"""Radians beside where the face points up to which eyes turn to a place, and from which they look ahead."""
 
 
-def _rotation_vector(rotation: Array) -> Array:
-    """(…, 3) the inverse of :func:`_rotation`, for less than half a turn."""
-    axis = np.stack(
-        [
-            rotation[..., 2, 1] - rotation[..., 1, 2],
-            rotation[..., 0, 2] - rotation[..., 2, 0],
-            rotation[..., 1, 0] - rotation[..., 0, 1],
-        ],
-        axis=-1,
-    )
-    sine = np.linalg.norm(axis, axis=-1, keepdims=True) / 2
-    cosine = (np.trace(rotation, axis1=-2, axis2=-1)[..., None] - 1) / 2
-    return axis / np.maximum(2 * sine, 1e-9) * np.arctan2(sine, cosine)
+@dataclass(frozen=True, eq=False)
+class Eyes:
+    """The eyes of a body in its pose of binding, which faces +Z.
+
+    Attributes:
+        middles: (2, 3) metres, of the left and of the right eye.
+        vertices: (E,) indices of the vertices of both.
+        sides: (E,) 0 for a vertex of the left eye, 1 for one of the right.
+    """
+
+    middles: Array
+    vertices: NDArray[np.integer]
+    sides: NDArray[np.integer]
+
+    @classmethod
+    def of(cls, middles: Array, vertices: Array, faces: NDArray[np.integer]) -> Eyes:
+        """The eyes with these middles, of a body's vertices (V, 3) and those of its faces that are eyes."""
+        used = np.unique(faces)
+        return cls(middles, used, (vertices[used, 0] < 0).astype(np.int64))
+
+    def turns(self, places: Array) -> Array:
+        """(T, 3, 3) rotation of both eyes to places (T, 3) in the frame of binding."""
+        way = places - self.middles.mean(axis=0)
+        yaw = np.arctan2(way[:, 0], way[:, 2])
+        pitch = np.arctan2(way[:, 1], np.hypot(way[:, 0], way[:, 2]))
+        share = 1 - smoothstep(np.abs(yaw), *_SEES)
+        yaw, pitch = share * _ASIDE * np.tanh(yaw / _ASIDE), share * _UP * np.tanh(pitch / _UP)
+        cy, sy, cp, sp, zero = np.cos(yaw), np.sin(yaw), np.cos(pitch), np.sin(pitch), 0 * yaw
+        rows = [cy, -sy * sp, sy * cp, zero, cp, sp, -sy, -cy * sp, cy * cp]
+        return np.stack(rows, axis=-1).reshape(-1, 3, 3)
+
+    def shift(self, vertices: Array, places: Array) -> Array:
+        """(T, E, 3) by how much the eyes' vertices move from the body's (V, 3) where they look at places (T, 3)."""
+        out = vertices[self.vertices] - self.middles[self.sides]
+        return np.asarray(out @ np.swapaxes(self.turns(places), -1, -2) - out)
+
+
+def eye_zones(zones: tuple[str, ...]) -> list[int]:
+    """Indices of the zones that are eyes."""
+    return [number for number, zone in enumerate(zones) if zone in ZONES]

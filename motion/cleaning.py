@@ -6,12 +6,11 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .easing import smoothstep
-from .heels import heel_raised
-from .skeleton import SMPL22, Skeleton
-from .smoothing import REACH, frames_from, least_jerk, led
+from .limbs import heel_raised, solve_two_bones, steadied
+from .skeleton import FEET, LEGS
+from .smoothing import REACH, frames_from, led, smoothstep
 from .transforms import facing
-from .vectors import runs, unit
+from .vectors import runs
 
 Array = NDArray[np.floating]
 
@@ -19,14 +18,6 @@ Array = NDArray[np.floating]
 ANKLE_HEIGHT, TOE_HEIGHT = 0.12, 0.05
 # How much faster and higher than a standing joint must be one that has left the floor.
 _LOOSE = 1.5
-_SIDES = ("left", "right")
-_BENT, _STRAIGHT, _STEADY = 0.12, 1e-3, 0.1
-"""Metres of a joint beside the line of its limb from which its side is certain, the weight of the side of a straight
-limb, and the weight of what was made against least jerk."""
-_FOLDED = (0.15, 0.35)
-"""Shares of a limb's length between its ends up to which it is folded, and from which it is not."""
-_LEANS = 0.03
-"""Metres by which the side of a limb leans towards the one to which people bend it."""
 # A foot that drifts further than this within one contact was stepping or turning, not standing (metres).
 _MAX_DRIFT = 0.25
 # What a correction may move a joint from frame to frame (metres).
@@ -36,9 +27,7 @@ _SOFT = 0.01
 """Share of a leg's length by which it is never straight: its knee would tremble."""
 
 
-def foot_contacts(
-    positions: Array, fps: float, *, speed: float = 0.4, skeleton: Skeleton = SMPL22
-) -> NDArray[np.bool_]:
+def foot_contacts(positions: Array, fps: float, *, speed: float = 0.4) -> NDArray[np.bool_]:
     """Detects the foot joints that stand on the floor.
 
     A joint stands where it is near the floor and slower than ``speed``, and goes on standing until it is
@@ -53,7 +42,7 @@ def foot_contacts(
     Returns:
         (T, 4) bool: left ankle, left toe, right ankle, right toe.
     """
-    feet = positions[:, _feet(skeleton)]
+    feet = positions[:, list(FEET)]
     heights = np.array([ANKLE_HEIGHT, TOE_HEIGHT] * 2)
     if len(feet) < 2:
         return feet[..., 1] < heights
@@ -68,12 +57,7 @@ def foot_contacts(
 
 
 def plant_feet(
-    positions: Array,
-    contacts: NDArray[np.bool_],
-    *,
-    blend: int = 5,
-    skeleton: Skeleton = SMPL22,
-    held: NDArray[np.bool_] | None = None,
+    positions: Array, contacts: NDArray[np.bool_], *, blend: int = 5, held: NDArray[np.bool_] | None = None
 ) -> Array:
     """Holds standing feet where they stand and keeps every foot above the floor.
 
@@ -93,16 +77,18 @@ def plant_feet(
     """
     result = np.array(positions, dtype=np.float64)
     stays = np.zeros(len(result), dtype=bool) if held is None else held
-    ankles, toes = _goals(result, contacts, blend, stays, skeleton)
+    ankles, toes = _goals(result, contacts, blend, stays)
     # A leg is kept from being straight where its foot stands or is led to where it stands, and free frames stay free.
     near = smoothstep(1 - frames_from(np.asarray(contacts.any(axis=1))) / (REACH + 1))[:, None]
     soft = _SOFT * near * (1 - _fade(stays, blend))
-    ankles = _over_toes(result, ankles, toes, soft, skeleton)
-    sink = _needed_sink(result, ankles, soft, skeleton) * (1 - _fade(stays, blend)[:, 0])
+    reaches = _reaches(result, soft)
+    ankles = [
+        heel_raised(hip, ankle, toe, reach) for (hip, reach), ankle, toe in zip(reaches, ankles, toes, strict=True)
+    ]
+    sink = _needed_sink(reaches, ankles) * (1 - _fade(stays, blend)[:, 0])
     result[..., 1] -= sink[:, None]
-    forward = facing(result, skeleton)
-    for name, ankle_goal, toe_goal in zip(_SIDES, ankles, toes, strict=True):
-        hip, knee, ankle, toe = (skeleton.index(f"{name}_{part}") for part in ("hip", "knee", "ankle", "foot"))
+    forward = facing(result)
+    for (hip, knee, ankle, toe), ankle_goal, toe_goal in zip(LEGS, ankles, toes, strict=True):
         new_knee, new_ankle = solve_two_bones(
             result[:, hip], result[:, knee], result[:, ankle], ankle_goal, forward, soft=soft
         )
@@ -115,60 +101,13 @@ def plant_feet(
     return result
 
 
-def solve_two_bones(
-    root: Array, middle: Array, end: Array, goal: Array, pole: Array, *, soft: Array | float = 0.0
-) -> tuple[Array, Array]:
-    """Analytic IK of a limb of two bones.
-
-    The middle joint of a limb that is nearly straight moves by centimetres where its end moves by a millimetre. With
-    ``soft`` the last part of the reach is used up ever more slowly, and the limb is never quite straight (Nicholson
-    2009, "Soft IK").
-
-    Args:
-        root, middle, end: (…, 3) the limb's joints; they give the bone lengths and the plane it bends in.
-        goal: (…, 3) where the end should go; out of reach, it is drawn in along the line to the root.
-        pole: (…, 3) the direction in which a straight limb bends.
-        soft: share of the limb's length before its end that is softened, a number or (…, 1); the goal is missed by
-            less than half of it.
-
-    Returns:
-        (…, 3) new middle joint, and (…, 3) new end.
-    """
-    upper = np.linalg.norm(middle - root, axis=-1, keepdims=True)
-    lower = np.linalg.norm(end - middle, axis=-1, keepdims=True)
-    reach = goal - root
-    distance = np.linalg.norm(reach, axis=-1, keepdims=True)
-    axis = reach / np.maximum(distance, 1e-9)
-    margin = np.maximum(soft * (upper + lower), 1e-9)
-    over = distance - (upper + lower - margin)
-    distance = np.where(over > 0, upper + lower - margin * np.exp(-over.clip(0) / margin), distance)
-    distance = np.clip(distance, np.abs(upper - lower) + 1e-6, upper + lower - 1e-6)
-    along = (distance**2 + upper**2 - lower**2) / (2 * distance)
-    aside = np.sqrt(np.maximum(upper**2 - along**2, 0.0))
-    old_axis = end - root
-    old_axis = unit(old_axis)
-    bend = middle - root
-    bend = bend - np.sum(bend * old_axis, axis=-1, keepdims=True) * old_axis
-    # What the limb bends more than before goes towards the pole: the direction in which a nearly straight
-    # limb bends is noise. A limb that need not bend more keeps its own.
-    more = np.maximum(aside - np.linalg.norm(bend, axis=-1, keepdims=True), 0.0)
-    bend = bend + more * pole
-    bend = bend - np.sum(bend * axis, axis=-1, keepdims=True) * axis
-    bend = unit(bend)
-    return root + along * axis + aside * bend, root + distance * axis
-
-
-def _feet(skeleton: Skeleton) -> list[int]:
-    return [skeleton.index(f"{side}_{part}") for side in _SIDES for part in ("ankle", "foot")]
-
-
 def _goals(
-    positions: Array, contacts: NDArray[np.bool_], blend: int, held: NDArray[np.bool_], skeleton: Skeleton
+    positions: Array, contacts: NDArray[np.bool_], blend: int, held: NDArray[np.bool_]
 ) -> tuple[list[Array], list[Array]]:
     """Targets (T, 3) of the ankle and of the toe of each side."""
     ankles, toes = [], []
-    for side, name in enumerate(_SIDES):
-        ankle, toe = (positions[:, skeleton.index(f"{name}_{part}")] for part in ("ankle", "foot"))
+    for side, leg in enumerate(LEGS):
+        ankle, toe = (positions[:, joint] for joint in leg[2:])
         stands = contacts[:, 2 * side], contacts[:, 2 * side + 1]
         length = float(np.median(np.linalg.norm(toe - ankle, axis=-1)))
         ankle_goal, toe_goal = _foot_goals(ankle, toe, *stands, length, blend, held)
@@ -273,40 +212,23 @@ def _split(joint: Array, start: int, stop: int, blend: int) -> list[tuple[int, i
 
 def _fade(stands: NDArray[np.bool_], blend: int) -> Array:
     """(T, 1) 1 through contacts, easing to 0 over ``blend`` frames outside."""
-    if not stands.any():
-        return np.zeros((len(stands), 1))
-    index = np.arange(len(stands))
-    on = np.flatnonzero(stands)
-    after = np.searchsorted(on, index).clip(0, len(on) - 1)
-    before = (np.searchsorted(on, index, side="right") - 1).clip(0)
-    distance = np.minimum(np.abs(on[after] - index), np.abs(index - on[before]))
-    return smoothstep(1 - distance / (blend + 1))[:, None]
+    return stands.any() * smoothstep(1 - frames_from(stands) / (blend + 1))[:, None]
 
 
-def _over_toes(
-    positions: Array, ankles: list[Array], toes: list[Array], soft: Array, skeleton: Skeleton
-) -> list[Array]:
-    """Targets (T, 3) of both ankles, with heels that rise where a foot behind is out of reach."""
-    return [
-        heel_raised(hip, ankle, toe, reach)
-        for (hip, reach), ankle, toe in zip(_reaches(positions, soft, skeleton), ankles, toes, strict=True)
-    ]
-
-
-def _reaches(positions: Array, soft: Array, skeleton: Skeleton) -> list[tuple[Array, Array]]:
+def _reaches(positions: Array, soft: Array) -> list[tuple[Array, Array]]:
     """The hip (T, 3) and the metres (T, 1) that a leg reaches, of each side."""
     found = []
-    for name in _SIDES:
-        hip, knee, ankle = (positions[:, skeleton.index(f"{name}_{part}")] for part in ("hip", "knee", "ankle"))
+    for leg in LEGS:
+        hip, knee, ankle = (positions[:, joint] for joint in leg[:3])
         leg = np.linalg.norm(knee - hip, axis=-1) + np.linalg.norm(ankle - knee, axis=-1)
         found.append((hip, (1 - soft) * leg[:, None] - 1e-3))
     return found
 
 
-def _needed_sink(positions: Array, ankles: list[Array], soft: Array, skeleton: Skeleton) -> Array:
+def _needed_sink(reaches: list[tuple[Array, Array]], ankles: list[Array]) -> Array:
     """(T,) metres the body must go down for both legs to reach their goals, at most 0.12, smooth."""
-    need = np.zeros(len(positions))
-    for (hip, leg), goal in zip(_reaches(positions, soft, skeleton), ankles, strict=True):
+    need = np.zeros(len(ankles[0]))
+    for (hip, leg), goal in zip(reaches, ankles, strict=True):
         aside = hip - goal
         height = np.sqrt(np.maximum(leg[:, 0] ** 2 - aside[:, 0] ** 2 - aside[:, 2] ** 2, 0.0))
         need = np.maximum(need, aside[:, 1] - height)
@@ -320,57 +242,3 @@ def _smooth(need: Array, reach: int) -> Array:
     """(T,) at least about ``need`` (T,), without kinks; it begins some 3 * ``reach`` frames earlier."""
     widened = scipy.ndimage.maximum_filter1d(need, 2 * reach + 1, mode="nearest")
     return scipy.ndimage.gaussian_filter1d(widened, 0.75 * reach, mode="nearest")
-
-
-def steadied(
-    root: Array,
-    middle: Array,
-    end: Array,
-    guide: Array,
-    pole: Array,
-    *,
-    free: Array | float = 1.0,
-    hinged: bool = False,
-) -> Array:
-    """(T, 3) the middle joints of a limb, turned about the line between its ends so that they go round it smoothly.
-
-    Where a limb is nearly straight, the side to which it bends is noise, and its middle joint jumps from one side to
-    the other. There the side follows from the frames around it, and more and more from the pole.
-
-    Args:
-        root, middle, end: (T, 3) the limb's joints.
-        guide: (T, 3) where the middle joint was seen, on bones of any length.
-        pole: (T, 3) the direction in which a straight limb bends.
-        free: (T,) from 1, where the joint may move, to 0, where it stays.
-        hinged: the limb bends towards the pole alone, as a knee does: a joint seen on the other side is mirrored.
-    """
-    axis = end - root
-    axis = unit(axis)
-    along = _along(middle - root, axis)
-    aside = np.linalg.norm(middle - root - along, axis=-1, keepdims=True)
-    share = np.broadcast_to(np.asarray(free, dtype=np.float64), (len(root),))[:, None]
-    share = share * open_limb(root, middle, end)
-    out = guide - root - _along(guide - root, axis)
-    if hinged:
-        towards = pole - _along(pole, axis)
-        out += 2 * np.maximum(-np.sum(out * towards, axis=-1, keepdims=True), 0.0) * towards
-    out = share * (out + _LEANS * (pole - _along(pole, axis))) + (1 - share) * (middle - root - along)
-    length = np.linalg.norm(out, axis=-1, keepdims=True)
-    side = out / np.maximum(length, 1e-9)
-    sure = np.clip((length[:, 0] / _BENT) ** 2, _STRAIGHT, 1.0) * _STEADY
-    side = least_jerk(side, np.where(share[:, 0] > 0, sure, 1e6))
-    side = side - _along(side, axis)
-    length = np.linalg.norm(side, axis=-1, keepdims=True)
-    found = root + along + aside * side / np.maximum(length, 1e-9)
-    return np.where((length > 0.1) & (share > 0), found, middle)
-
-
-def open_limb(root: Array, middle: Array, end: Array) -> Array:
-    """(…, 1) from 0, where a limb is folded so far that the line between its ends has no direction, to 1."""
-    length = np.linalg.norm(middle - root, axis=-1) + np.linalg.norm(end - middle, axis=-1)
-    reach = np.linalg.norm(end - root, axis=-1) / np.maximum(length, 1e-9)
-    return smoothstep((reach - _FOLDED[0]) / (_FOLDED[1] - _FOLDED[0]))[..., None]
-
-
-def _along(vector: Array, axis: Array) -> Array:
-    return np.asarray(np.sum(vector * axis, axis=-1, keepdims=True) * axis)

@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .easing import smoothstep
 from .errors import InputError
+from .smoothing import smoothstep
+from .vectors import rotations_by
 
 Array = NDArray[np.floating]
 
@@ -151,9 +152,9 @@ class Fingers:
     def local(self, shapes: Array) -> Array:
         """(T, 2, 5, 3, 3, 3) rotation of each joint against the one above it, for shapes (T, 2, 20)."""
         bends = shapes[..., :15].reshape(-1, 2, 5, 3)
-        turns = _rotations(bends[..., None] * self.flex)
+        turns = rotations_by(bends[..., None] * self.flex)
         closing = shapes[..., 15:, None] * self.close[..., None] * self.normals[:, None]
-        turns[:, :, :, 0] = _rotations(closing) @ turns[:, :, :, 0]
+        turns[:, :, :, 0] = rotations_by(closing) @ turns[:, :, :, 0]
         return turns
 
     def moves(self, shapes: Array) -> tuple[Array, Array]:
@@ -179,15 +180,6 @@ class Fingers:
             out = np.einsum("thij,hj->thi", turns[:, bone], rest - joints[bone]) + places[:, bone] - rest
             moved += share * out
         return moved[which.reshape(-1)]
-
-
-def _rotations(vectors: Array) -> Array:
-    """(…, 3, 3) rotations by the length of vectors (…, 3) about their directions (Rodrigues)."""
-    angle = np.linalg.norm(vectors, axis=-1)[..., None, None]
-    x, y, z = np.moveaxis(vectors / np.maximum(angle[..., 0], 1e-12), -1, 0)
-    zero = np.zeros_like(x)
-    skew = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
-    return np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew
 
 
 def to_lists(grips: Sequence[Grip]) -> list[list[Any]]:

@@ -17,13 +17,12 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .cleaning import solve_two_bones
-from .easing import minimum_jerk, smoothstep
-from .planted import HIPS, UPPER, over_planted_feet
+from .limbs import HIPS, UPPER, over_planted_feet, solve_two_bones
 from .skeleton import LEGS, SMPL22
-from .smoothing import least_jerk
+from .smoothing import least_jerk, minimum_jerk, smoothstep
 from .touch.arms import ARMS
 from .transforms import facing
+from .vectors import rotations_by, unit
 
 Array = NDArray[np.floating]
 
@@ -175,7 +174,7 @@ def _calmed(own: Array, fps: float, rest: Array, laid: Array) -> Array:
     for joints in groups.values():
         bones = own[:, joints] - own[:, [parents[joint] for joint in joints]]
         calm = _smoothed(bones, 10.0 ** weights[joints[0]])
-        calm = _unit(calm) * np.linalg.norm(bones, axis=-1, keepdims=True)
+        calm = unit(calm) * np.linalg.norm(bones, axis=-1, keepdims=True)
         for joint, bone in zip(joints, np.moveaxis(calm, 1, 0), strict=True):
             result[:, joint] = result[:, parents[joint]] + bone
     return result
@@ -200,18 +199,18 @@ def _rested(own: Array, other: Array, fps: float, rest: Array, manner: _Manner) 
     shift += (stands * BOW * manner.body[:, 1])[:, None] * forward
     result[:, [*HIPS, *UPPER]] += shift[:, None]
     # The trunk leans back over the feet, and turns by itself and after what is looked at.
-    trunk = _unit(own[:, _CHEST] - own[:, 0])
+    trunk = unit(own[:, _CHEST] - own[:, 0])
     lean = np.cross(trunk, -0.5 * shift) / np.linalg.norm(own[:, _CHEST] - own[:, 0], axis=-1, keepdims=True)
     looks = rest * _calm(_speed(own[:, _HEAD] - own[:, _CHEST], fps), _HAND_WAITS)
     gaze, nod = _look(own, other, manner.head)
     turned = rest * TURN * manner.body[:, 2] + looks * np.clip(0.25 * gaze, -_FOLLOWS, _FOLLOWS)
     turned *= smoothstep(trunk[:, 1], 0.5, 0.85)  # who lies does not turn over
-    result[:, UPPER] = _about(result[:, 0], _rotations(lean), result[:, UPPER])
-    result[:, _ABOVE] = _about(result[:, _WAIST], _rotations(turned[:, None] * trunk), result[:, _ABOVE])
+    result[:, UPPER] = _about(result[:, 0], rotations_by(lean), result[:, UPPER])
+    result[:, _ABOVE] = _about(result[:, _WAIST], rotations_by(turned[:, None] * trunk), result[:, _ABOVE])
     yaw = looks * (gaze - np.clip(0.25 * gaze, -_FOLLOWS, _FOLLOWS))
-    axis = _unit(result[:, _NECK] - result[:, _CHEST])
-    result[:, _HEAD] = _about(result[:, _NECK], _rotations((looks * nod)[:, None] * left), result[:, _HEAD])
-    result[:, _HEAD] = _about(result[:, _NECK], _rotations(yaw[:, None] * axis), result[:, _HEAD])
+    axis = unit(result[:, _NECK] - result[:, _CHEST])
+    result[:, _HEAD] = _about(result[:, _NECK], rotations_by((looks * nod)[:, None] * left), result[:, _HEAD])
+    result[:, _HEAD] = _about(result[:, _NECK], rotations_by(yaw[:, None] * axis), result[:, _HEAD])
     result = over_planted_feet(own, result) if stands.any() else result
     return _with_arms(own, result, fps, rest, stands, manner)
 
@@ -225,7 +224,7 @@ def _with_arms(own: Array, moved: Array, fps: float, rest: Array, stands: Array,
         rise = (rest * BREATH * manner.breath)[:, None] * [0.0, 1.0, 0.0]
         collar = _J(("left_collar", "right_collar")[side])
         bone = result[:, shoulder] - result[:, collar]
-        lifted = _unit(bone + rise) * np.linalg.norm(bone, axis=-1, keepdims=True) - bone
+        lifted = unit(bone + rise) * np.linalg.norm(bone, axis=-1, keepdims=True) - bone
         result[:, [shoulder, elbow, wrist]] += lifted[:, None]
         arm = own[:, wrist] - own[:, shoulder]
         length = np.linalg.norm(own[:, elbow] - own[:, shoulder], axis=-1)
@@ -234,9 +233,9 @@ def _with_arms(own: Array, moved: Array, fps: float, rest: Array, stands: Array,
         hangs = stands * low * _calm(_speed(arm, fps), _HAND_WAITS)
         ahead, out, bend = (manner.arms[:, side, i] for i in range(3))
         swing = -(hangs * SWING * ahead)[:, None] * left + (hangs * SPREAD * out * sign)[:, None] * forward
-        result[:, [elbow, wrist]] = _about(result[:, shoulder], _rotations(swing), result[:, [elbow, wrist]])
+        result[:, [elbow, wrist]] = _about(result[:, shoulder], rotations_by(swing), result[:, [elbow, wrist]])
         hinge = -(hangs * BEND * bend)[:, None] * left
-        result[:, wrist] = _about(result[:, elbow], _rotations(hinge), result[:, wrist])
+        result[:, wrist] = _about(result[:, elbow], rotations_by(hinge), result[:, wrist])
         # A sitting or lying person's hands stay where they are.
         lies = (rest * (1 - smoothstep(own[:, 0, 1], *_STANDS)))[:, None]
         goal = result[:, wrist] + lies * (own[:, wrist] - result[:, wrist])
@@ -250,9 +249,9 @@ def _with_arms(own: Array, moved: Array, fps: float, rest: Array, stands: Array,
 
 def _look(own: Array, other: Array, manner: Array) -> tuple[Array, Array]:
     """(T,) radians by which a head turns to the left and nods, towards the other's head and past it."""
-    left = _unit(own[:, ARMS[0][0]] - own[:, ARMS[1][0]])
-    up = _unit(own[:, _NECK] - own[:, _CHEST])
-    ahead = _unit(np.cross(left, up))
+    left = unit(own[:, ARMS[0][0]] - own[:, ARMS[1][0]])
+    up = unit(own[:, _NECK] - own[:, _CHEST])
+    ahead = unit(np.cross(left, up))
 
     def aside(way: Array) -> Array:
         return np.asarray(np.arctan2(np.sum(way * left, axis=-1), np.sum(way * ahead, axis=-1)))
@@ -306,12 +305,3 @@ def _about(centre: Array, turns: Array, places: Array) -> Array:
     several = places if places.ndim == 3 else places[:, None]
     found = np.einsum("tij,tnj->tni", turns, several - centre[:, None]) + centre[:, None]
     return np.asarray(found if places.ndim == 3 else found[:, 0])
-
-
-def _rotations(vectors: Array) -> Array:
-    """(T, 3, 3) rotations by vectors (T, 3)."""
-    return np.asarray(scipy.spatial.transform.Rotation.from_rotvec(vectors).as_matrix())
-
-
-def _unit(vector: Array) -> Array:
-    return np.asarray(vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9))

@@ -24,8 +24,7 @@ from numpy.typing import NDArray
 from .errors import InputError
 from .ik_solver import MIN_NOISE, solve
 from .kinematics import fit_rotations, forward_kinematics
-from .layouts import Layout, find_layout
-from .skeleton import SMPL22, Skeleton
+from .skeleton import SMPL22, Layout, Skeleton, find_layout
 
 Array = NDArray[np.floating]
 

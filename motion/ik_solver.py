@@ -10,8 +10,7 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from .kinematics import forward_kinematics, global_rotations
-from .layouts import Layout
-from .skeleton import SMPL22, Skeleton
+from .skeleton import SMPL22, Layout, Skeleton
 
 Array = NDArray[np.floating]
 

@@ -14,13 +14,12 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .cleaning import solve_two_bones
-from .easing import smoothstep
-from .planted import HIPS, UPPER, over_planted_feet
+from .limbs import HIPS, UPPER, over_planted_feet, solve_two_bones
 from .skeleton import ARMS, SMPL22
+from .smoothing import smoothstep
 from .touch.arms import arms_apart
 from .transforms import facing
-from .vectors import FLAT, unit
+from .vectors import FLAT, rotations_by, unit
 
 Array = NDArray[np.floating]
 
@@ -249,7 +248,7 @@ def _stooped(own: Array, other: Array, lean: Array, short: Array) -> Array:
     """A person (T, 22, 3) who leans to the other by radians (T,) and bends the knees, over feet that stay."""
     way = unit((other[:, _NECK] - own[:, _NECK]) * FLAT)
     axis = np.cross([0.0, 1.0, 0.0], way)
-    turn = scipy.spatial.transform.Rotation.from_rotvec(lean[:, None] * axis).as_matrix()
+    turn = rotations_by(lean[:, None] * axis)
     moved = own.copy()
     leaned = own[:, :1] + np.einsum("tij,tkj->tki", turn, own - own[:, :1])
     moved[:, UPPER] = leaned[:, UPPER]
@@ -270,7 +269,7 @@ def _looking(made: Array, pair: Array, leans: list[Array]) -> Array:
         angle = faces * np.clip(now - before + leans[person], -_NODS, _NODS)
         angle = scipy.ndimage.gaussian_filter1d(angle, _EASED, mode="nearest")
         right = np.cross(ahead, [0.0, 1.0, 0.0])
-        turn = scipy.spatial.transform.Rotation.from_rotvec(angle[:, None] * right).as_matrix()
+        turn = rotations_by(angle[:, None] * right)
         result[person, :, _HEAD] = own[:, _NECK] + np.einsum("tij,tj->ti", turn, own[:, _HEAD] - own[:, _NECK])
     return result
 

@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 from .cleaning import foot_contacts, plant_feet
 from .clip import Clip, Duet
 from .errors import InputError
+from .guesses import axis_of, find_up, places_of, turn_of
 from .ik import body_scale, fit_skeleton
 from .kinematics import project_to_skeleton
 from .rigs import BodyParts, RigMotion, match_joints
 from .skeleton import SMPL22
 from .transforms import resample
-from .up import axis_of, find_up, places_of, turn_of
 from .vectors import square_frame, unit
 
 Array = NDArray[np.floating]
@@ -158,7 +158,7 @@ def _finished(positions: Array, fps: float, name: str, plant: bool) -> Clip:
 
 
 def up_axis(*rigs: RigMotion) -> str:
-    """The axis of :data:`~motion.up.AXES` that is up for rigs of one world, as they say or :func:`find_up` finds.
+    """The axis of :data:`~motion.guesses.AXES` that is up for rigs of one world, as they say or :func:`find_up` finds.
 
     The usual axis is the one along which the rest pose stands; in a BVH its people may lie or crawl all the time.
     """

@@ -13,14 +13,12 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from motion.vectors import FLAT
-
-from .cleaning import solve_two_bones
-from .easing import smoothstep
+from .limbs import solve_two_bones
 from .meeting import met_again
 from .skeleton import LEGS, SMPL22
-from .smoothing import eased_marks, without_flicker
+from .smoothing import eased_marks, smoothstep, without_flicker
 from .transforms import facing
+from .vectors import FLAT
 
 Array = NDArray[np.floating]
 

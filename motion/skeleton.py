@@ -8,11 +8,14 @@ network works on, carries the proportions of an average adult.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .errors import InputError
 
 Array = NDArray[np.floating]
 
@@ -138,183 +141,168 @@ ARMS = tuple(tuple(SMPL22.index(f"{side}_{n}") for n in ("shoulder", "elbow", "w
 LEGS = tuple(tuple(SMPL22.index(f"{side}_{n}") for n in ("hip", "knee", "ankle", "foot")) for side in ("left", "right"))
 """Hip, knee, ankle and toe of the left leg and of the right one."""
 
-_SBU = [
-    ("head", None),
-    ("neck", "head"),
-    ("torso", "neck"),
-    ("left_shoulder", "neck"),
-    ("left_elbow", "left_shoulder"),
-    ("left_wrist", "left_elbow"),
-    ("right_shoulder", "neck"),
-    ("right_elbow", "right_shoulder"),
-    ("right_wrist", "right_elbow"),
-    ("left_hip", "torso"),
-    ("left_knee", "left_hip"),
-    ("left_foot", "left_knee"),
-    ("right_hip", "torso"),
-    ("right_knee", "right_hip"),
-    ("right_foot", "right_knee"),
-]
-SBU15 = _topology("sbu15", _SBU)
+
+def _chains(name: str, chains: str) -> Skeleton:
+    """A skeleton from chains of joints between commas; joints are numbered as they appear, the first is the root."""
+    parents: dict[str, str | None] = {}
+    for chain in chains.split(","):
+        above: str | None = None
+        for joint in chain.split():
+            parents.setdefault(joint, above)
+            above = joint
+    return _topology(name, list(parents.items()))
+
+
+SBU15 = _chains(
+    "sbu15",
+    "head neck torso, neck left_shoulder left_elbow left_wrist, neck right_shoulder right_elbow right_wrist,"
+    "torso left_hip left_knee left_foot, torso right_hip right_knee right_foot",
+)
 """SBU Kinect Interaction (Yun et al. 2012); joints in the order of its files."""
 
-_K3HI_ORDER = [
-    "head",
-    "neck",
-    "left_shoulder",
-    "right_shoulder",
-    "left_elbow",
-    "right_elbow",
-    "left_wrist",
-    "right_wrist",
-    "torso",
-    "left_hip",
-    "right_hip",
-    "left_knee",
-    "right_knee",
-    "left_foot",
-    "right_foot",
-]
-_SBU_PARENT = dict(_SBU)
-K3HI15 = Skeleton(
+K3HI15 = _chains(
     "k3hi15",
-    tuple(_K3HI_ORDER),
-    # The torso (index 8) stands before the hips but after the arms, so every parent still comes first.
-    tuple(-1 if _SBU_PARENT[n] is None else _K3HI_ORDER.index(_SBU_PARENT[n] or "") for n in _K3HI_ORDER),
-    np.zeros((15, 3)),
+    "head neck left_shoulder, neck right_shoulder, left_shoulder left_elbow, right_shoulder right_elbow,"
+    "left_elbow left_wrist, right_elbow right_wrist, neck torso left_hip, torso right_hip, left_hip left_knee,"
+    "right_hip right_knee, left_knee left_foot, right_knee right_foot",
 )
 """K3HI (Hu et al.); the same 15 joints as SBU in another order."""
 
-NTU25 = Skeleton(
+NTU25 = _chains(
     "ntu25",
-    (
-        "base_of_spine",
-        "middle_of_spine",
-        "neck",
-        "head",
-        "left_shoulder",
-        "left_elbow",
-        "left_wrist",
-        "left_hand",
-        "right_shoulder",
-        "right_elbow",
-        "right_wrist",
-        "right_hand",
-        "left_hip",
-        "left_knee",
-        "left_ankle",
-        "left_foot",
-        "right_hip",
-        "right_knee",
-        "right_ankle",
-        "right_foot",
-        "spine_shoulder",
-        "left_hand_tip",
-        "left_thumb",
-        "right_hand_tip",
-        "right_thumb",
-    ),
     # The Kinect v2 order puts "spine_shoulder" after the joints that hang on it; here those hang on the
     # middle of the spine instead, which keeps parents before children without reordering the file's joints.
-    (-1, 0, 1, 2, 1, 4, 5, 6, 1, 8, 9, 10, 0, 12, 13, 14, 0, 16, 17, 18, 1, 7, 6, 11, 10),
-    np.zeros((25, 3)),
+    "base_of_spine middle_of_spine neck head, middle_of_spine left_shoulder left_elbow left_wrist left_hand,"
+    "middle_of_spine right_shoulder right_elbow right_wrist right_hand,"
+    "base_of_spine left_hip left_knee left_ankle left_foot, base_of_spine right_hip right_knee right_ankle right_foot,"
+    "middle_of_spine spine_shoulder, left_hand left_hand_tip, left_wrist left_thumb, right_hand right_hand_tip,"
+    "right_wrist right_thumb",
 )
 """Kinect v2 / NTU RGB+D 25 joints in file order."""
 
-CMU17 = _topology(
-    "cmu17",
-    [
-        ("pelvis", None),
-        ("left_hip", "pelvis"),
-        ("left_knee", "left_hip"),
-        ("left_ankle", "left_knee"),
-        ("right_hip", "pelvis"),
-        ("right_knee", "right_hip"),
-        ("right_ankle", "right_knee"),
-        ("spine1", "pelvis"),
-        ("spine3", "spine1"),
-        ("neck", "spine3"),
-        ("head", "neck"),
-        ("left_shoulder", "spine3"),
-        ("left_elbow", "left_shoulder"),
-        ("left_wrist", "left_elbow"),
-        ("right_shoulder", "spine3"),
-        ("right_elbow", "right_shoulder"),
-        ("right_wrist", "right_elbow"),
-    ],
-)
+_LEFT_ARM, _RIGHT_ARM = (f"{side}_shoulder {side}_elbow {side}_wrist" for side in ("left", "right"))
+_LEFT_LEG, _RIGHT_LEG = (f"pelvis {side}_hip {side}_knee {side}_ankle" for side in ("left", "right"))
+_UPPER_BODY = f"pelvis spine1 spine3 neck head, spine3 {_LEFT_ARM}, spine3 {_RIGHT_ARM}"
+CMU17 = _chains("cmu17", f"{_LEFT_LEG}, {_RIGHT_LEG}, {_UPPER_BODY}")
 """The 17 joints that motion-prediction papers keep of CMU MoCap, in their order."""
 
-H36M17 = _topology(
-    "h36m17",
-    [
-        ("pelvis", None),
-        ("right_hip", "pelvis"),
-        ("right_knee", "right_hip"),
-        ("right_ankle", "right_knee"),
-        ("left_hip", "pelvis"),
-        ("left_knee", "left_hip"),
-        ("left_ankle", "left_knee"),
-        ("spine1", "pelvis"),
-        ("spine3", "spine1"),
-        ("neck", "spine3"),
-        ("head", "neck"),
-        ("left_shoulder", "spine3"),
-        ("left_elbow", "left_shoulder"),
-        ("left_wrist", "left_elbow"),
-        ("right_shoulder", "spine3"),
-        ("right_elbow", "right_shoulder"),
-        ("right_wrist", "right_elbow"),
-    ],
-)
+H36M17 = _chains("h36m17", f"{_RIGHT_LEG}, {_LEFT_LEG}, {_UPPER_BODY}")
 """The 17 joints of Human3.6M in the order of pose estimators (VideoPose3D): legs right first, arms left first."""
 
-COCO17 = _topology(
+COCO17 = _chains(
     "coco17",
-    [
-        ("nose", None),
-        ("left_eye", "nose"),
-        ("right_eye", "nose"),
-        ("left_ear", "nose"),
-        ("right_ear", "nose"),
-        ("left_shoulder", "nose"),
-        ("right_shoulder", "nose"),
-        ("left_elbow", "left_shoulder"),
-        ("right_elbow", "right_shoulder"),
-        ("left_wrist", "left_elbow"),
-        ("right_wrist", "right_elbow"),
-        ("left_hip", "left_shoulder"),
-        ("right_hip", "right_shoulder"),
-        ("left_knee", "left_hip"),
-        ("right_knee", "right_hip"),
-        ("left_ankle", "left_knee"),
-        ("right_ankle", "right_knee"),
-    ],
+    "nose left_eye, nose right_eye, nose left_ear, nose right_ear, nose left_shoulder, nose right_shoulder,"
+    "left_shoulder left_elbow, right_shoulder right_elbow, left_elbow left_wrist, right_elbow right_wrist,"
+    "left_shoulder left_hip, right_shoulder right_hip, left_hip left_knee, right_hip right_knee,"
+    "left_knee left_ankle, right_knee right_ankle",
 )
 """The 17 key points of COCO, in metres."""
 
-POINTS17 = _topology(
-    "points17",
-    [
-        ("pelvis", None),
-        ("left_hip", "pelvis"),
-        ("left_knee", "left_hip"),
-        ("left_ankle", "left_knee"),
-        ("left_foot", "left_ankle"),
-        ("right_hip", "pelvis"),
-        ("right_knee", "right_hip"),
-        ("right_ankle", "right_knee"),
-        ("right_foot", "right_ankle"),
-        ("neck", "pelvis"),
-        ("head", "neck"),
-        ("left_shoulder", "neck"),
-        ("left_elbow", "left_shoulder"),
-        ("left_wrist", "left_elbow"),
-        ("right_shoulder", "neck"),
-        ("right_elbow", "right_shoulder"),
-        ("right_wrist", "right_elbow"),
-    ],
+POINTS17 = _chains(
+    "points17", f"{_LEFT_LEG} left_foot, {_RIGHT_LEG} right_foot, pelvis neck head, neck {_LEFT_ARM}, neck {_RIGHT_ARM}"
 )
 """Joint centres that are found from markers or key points (:mod:`motion.formats.markers`)."""
 
 SKELETONS: dict[str, Skeleton] = {s.name: s for s in (SMPL22, SBU15, K3HI15, NTU25, CMU17, H36M17, COCO17, POINTS17)}
+
+
+# ---- Layouts: the joints of other recordings, each on a body with the tree of SMPL22 ---------------------------------
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """The SMPL22 joint of each recorded joint.
+
+    Attributes:
+        name: what the recording is called in messages.
+        joints: for every recorded joint, the index of its SMPL22 joint, or -1 where it has none.
+        offsets: (22, 3) rest offsets in metres of an average adult as the recording sees one.
+        variety: how far a bone may differ from the body's size, as a fraction. People differ by a tenth; a
+            depth camera's arms differ more, but that is its error.
+    """
+
+    name: str
+    joints: tuple[int, ...]
+    offsets: Array = field(repr=False)
+    variety: float = 0.33
+
+    @property
+    def columns(self) -> list[int]:
+        """Indices of the recorded joints that SMPL22 has."""
+        return [column for column, joint in enumerate(self.joints) if joint >= 0]
+
+    @property
+    def observed(self) -> list[int]:
+        """The SMPL22 joints of :attr:`columns`."""
+        return [joint for joint in self.joints if joint >= 0]
+
+
+# OpenNI/NITE (Kinect v1) proportions of an adult of SMPL22's height, medians over SBU and K3HI: the trunk is
+# a flat rigid plate of neck, shoulders and hips with "torso" in its middle, and "foot" is the ankle.
+_OPENNI = {
+    "left_hip": (0.100, -0.050, 0.0),
+    "right_hip": (-0.100, -0.050, 0.0),
+    "spine1": (0.0, 0.080, 0.0),
+    "spine2": (0.0, 0.087, 0.0),
+    "spine3": (0.0, 0.083, 0.0),
+    "neck": (0.0, 0.134, 0.0),
+    "head": (0.0, 0.212, 0.0),
+    "left_collar": (0.053, 0.100, 0.0),
+    "right_collar": (-0.053, 0.100, 0.0),
+    "left_shoulder": (0.100, 0.034, 0.0),
+    "right_shoulder": (-0.100, 0.034, 0.0),
+    "left_elbow": (0.287, 0.0, 0.0),
+    "right_elbow": (-0.287, 0.0, 0.0),
+    "left_wrist": (0.287, 0.0, 0.0),
+    "right_wrist": (-0.287, 0.0, 0.0),
+    "left_knee": (0.0, -0.435, 0.0),
+    "right_knee": (0.0, -0.435, 0.0),
+    "left_ankle": (0.0, -0.415, 0.0),
+    "right_ankle": (0.0, -0.415, 0.0),
+}
+_OPENNI_NAMES = {"torso": "spine2", "left_foot": "left_ankle", "right_foot": "right_ankle"}
+# Kinect v2: "base of spine" lies between the hips, "spine shoulder" at the height of the shoulders.
+_KINECT2 = {"left_hip": (0.080, -0.030, 0.0), "right_hip": (-0.080, -0.030, 0.0)}
+_KINECT2_NAMES = {"base_of_spine": "pelvis", "middle_of_spine": "spine2"}
+
+
+def _layout(
+    source: Skeleton, names: dict[str, str], offsets: dict[str, tuple[float, float, float]], variety: float = 0.33
+) -> Layout:
+    wanted = [names.get(name, name) for name in source.joint_names]
+    joints = tuple(SMPL22.joint_names.index(n) if n in SMPL22.joint_names else -1 for n in wanted)
+    body = SMPL22.offsets.copy()
+    for name, offset in offsets.items():
+        body[SMPL22.index(name)] = offset
+    return Layout(source.name, joints, body, variety)
+
+
+LAYOUTS: dict[str, Layout] = {
+    "sbu15": _layout(SBU15, _OPENNI_NAMES, _OPENNI, 0.1),
+    "k3hi15": _layout(K3HI15, _OPENNI_NAMES, _OPENNI, 0.1),
+    "ntu25": _layout(NTU25, _KINECT2_NAMES, _KINECT2, 0.15),
+    "cmu17": _layout(CMU17, {}, {}),
+    "h36m17": _layout(H36M17, {}, {}),
+    "coco17": _layout(COCO17, {"nose": "head"}, {"head": (0.0, 0.09, 0.13)}),
+    "points17": _layout(POINTS17, {}, {}),
+    "smpl22": _layout(SMPL22, {}, {}),
+}
+"""The layouts that a fit knows by the name of their skeleton."""
+
+
+def find_layout(joints: Layout | Skeleton | str | Sequence[str]) -> Layout:
+    """The layout of a skeleton, of a skeleton's name, or of a list of SMPL22 joint names.
+
+    Raises:
+        InputError: for a skeleton without a layout or a joint that SMPL22 does not have.
+    """
+    if isinstance(joints, Layout):
+        return joints
+    if isinstance(joints, Skeleton):
+        joints = joints.name
+    if isinstance(joints, str):
+        if joints not in LAYOUTS:
+            raise InputError(f"No joint layout is called {joints!r}: use one of {', '.join(sorted(LAYOUTS))}.")
+        return LAYOUTS[joints]
+    unknown = [name for name in joints if name not in SMPL22.joint_names]
+    if unknown:
+        raise InputError(f"The joint {unknown[0]!r} is not one of the 22: use {', '.join(SMPL22.joint_names)}.")
+    return Layout("named", tuple(SMPL22.joint_names.index(name) for name in joints), SMPL22.offsets)

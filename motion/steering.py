@@ -12,11 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import FPS, SMPL22
-
-from .cleaning import solve_two_bones
-from .easing import minimum_jerk
-from .skeleton import LEGS
+from .clip import FPS
+from .limbs import solve_two_bones
+from .skeleton import LEGS, SMPL22
+from .smoothing import minimum_jerk
 from .transforms import facing, heading, heading_matrix
 from .vectors import FLAT, wrapped
 

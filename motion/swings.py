@@ -6,12 +6,11 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from motion.vectors import runs
-
-from .skeleton import SMPL22, Skeleton
+from .limbs import solve_two_bones
+from .skeleton import LEGS, SMPL22
 from .smoothing import least_jerk
 from .transforms import facing
-from .vectors import unit
+from .vectors import floor_speed, runs, unit
 
 Array = NDArray[np.floating]
 
@@ -41,7 +40,7 @@ _FORWARDS = np.array([0, 8, 35, 63, 70, 60, 43, 28, 20, 23, 38, 43, 24, 3, 0]) /
 _ASIDE = np.array([0, 5, 20, 35, 42, 45, 45, 42, 36, 30, 24, 17, 9, 2, 0]) / 1000
 
 
-def lift_swinging_feet(positions: Array, fps: float, *, skeleton: Skeleton = SMPL22) -> Array:
+def lift_swinging_feet(positions: Array, fps: float) -> Array:
     """Raises the toes of feet that swing to the height that people's have, where they are lower.
 
     Only toes move, about their ankles. Feet that stand, people who lie or crawl, and feet that glide along with the
@@ -57,10 +56,9 @@ def lift_swinging_feet(positions: Array, fps: float, *, skeleton: Skeleton = SMP
     result = np.array(positions, dtype=np.float64)
     if len(result) < 3:
         return result
-    forward = facing(result, skeleton)
-    hips = _speed(result[:, 0], fps)
-    for side in ("left", "right"):
-        ankle, toe = (skeleton.index(f"{side}_{part}") for part in ("ankle", "foot"))
+    forward = facing(result)
+    hips = floor_speed(result[:, 0], fps)
+    for *_, ankle, toe in LEGS:
         height = _heights(result[:, toe], hips, result[:, 0, 1] > _UPRIGHT, forward, fps)
         lift = np.maximum(height - result[:, toe, 1], 0.0)
         lift = scipy.ndimage.gaussian_filter1d(lift, _SOFT * fps, mode="nearest")
@@ -81,7 +79,7 @@ def _turned(ankle: Array, toe: Array, raised: Array, moved: NDArray[np.bool_]) -
 
 def _heights(toe: Array, hips: Array, upright: NDArray[np.bool_], forward: Array, fps: float) -> Array:
     """(T,) heights that a toe (T, 3) should have at least; none where it does not swing."""
-    speed, found = _speed(toe, fps), np.full(len(toe), -np.inf)
+    speed, found = floor_speed(toe, fps), np.full(len(toe), -np.inf)
     for start, stop in runs(speed > _FAST):
         way = toe[stop - 1] - toe[start]
         way[1] = 0.0
@@ -119,6 +117,82 @@ def _raised(ankle: Array, toe: Array, lift: Array, forward: Array) -> Array:
     return np.where((lift > _LEAST)[:, None], turned, toe)
 
 
-def _speed(place: Array, fps: float) -> Array:
-    """(T,) metres a second over the floor."""
-    return np.linalg.norm(np.gradient(place[:, [0, 2]], axis=0), axis=-1) * fps
+# ---- Bodies that lie, fall and get up --------------------------------------------------------------------------------
+_DEEP = {
+    "pelvis": 0.08,
+    "left_hip": 0.05,
+    "right_hip": 0.05,
+    "spine1": 0.07,
+    "spine2": 0.07,
+    "spine3": 0.07,
+    "neck": 0.05,
+    "head": 0.07,
+    "left_collar": 0.05,
+    "right_collar": 0.05,
+    "left_shoulder": 0.05,
+    "right_shoulder": 0.05,
+}
+"""Metres from the joints of the trunk and the head to the skin of a body that lies."""
+_LIMBS = (("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle"))
+_THIN = 0.03
+"""The same for elbows, wrists and knees."""
+_REACH = 4
+"""Frames over which a body is raised and let down again."""
+_HALVINGS = 12
+
+
+def above_floor(positions: Array) -> Array:
+    """Raises a body whose trunk is in the floor, and turns limbs that are in it about their ends.
+
+    A body that stays above the floor is not changed. Feet are left to :func:`motion.cleaning.plant_feet`.
+
+    Args:
+        positions: (T, J, 3) metres on constant bones, floor at 0.
+
+    Returns:
+        (T, J, 3) with the bone lengths of the input.
+    """
+    result = np.array(positions, dtype=np.float64)
+    trunk = [SMPL22.index(name) for name in _DEEP]
+    need = np.max(np.array(list(_DEEP.values())) - result[:, trunk, 1], axis=1).clip(min=0.0)
+    if need.any():
+        widened = scipy.ndimage.maximum_filter1d(need, 2 * _REACH + 1, mode="nearest")
+        result[..., 1] += scipy.ndimage.gaussian_filter1d(widened, 0.5 * _REACH, mode="nearest")[:, None]
+    for parts in _LIMBS:
+        for side in ("left", "right"):
+            root, middle, end = (SMPL22.index(f"{side}_{part}") for part in parts)
+            if parts[-1] == "wrist":
+                goal = result[:, end].copy()
+                goal[:, 1] = np.maximum(goal[:, 1], _THIN)
+                moved = goal[:, 1] > result[:, end, 1]
+                up = np.broadcast_to([0.0, 1.0, 0.0], goal.shape)
+                bent, met = solve_two_bones(result[:, root], result[:, middle], result[:, end], goal, up)
+                result[moved, middle], result[moved, end] = bent[moved], met[moved]
+            result[:, middle] = _turned_up(result[:, root], result[:, middle], result[:, end])
+    return result
+
+
+def _turned_up(root: Array, middle: Array, end: Array) -> Array:
+    """(T, 3) the middle joint of a limb, turned about the line between its ends until it is above the floor."""
+    low = middle[:, 1] < _THIN
+    if not low.any():
+        return middle
+    axis = end - root
+    axis = unit(axis)
+    on_axis = root + np.sum((middle - root) * axis, axis=-1, keepdims=True) * axis
+    out = middle - on_axis
+    aside = np.linalg.norm(out, axis=-1, keepdims=True)
+    up = np.array([0.0, 1.0, 0.0]) - axis[:, 1:2] * axis
+    up = unit(up) * aside
+    low_share, high_share = np.zeros((len(root), 1)), np.ones((len(root), 1))
+    for _ in range(_HALVINGS):
+        share = (low_share + high_share) / 2
+        under = _between(out, up, aside, share)[:, 1:2] + on_axis[:, 1:2] < _THIN
+        low_share, high_share = np.where(under, share, low_share), np.where(under, high_share, share)
+    return np.where(low[:, None], on_axis + _between(out, up, aside, high_share), middle)
+
+
+def _between(first: Array, second: Array, length: Array, share: Array) -> Array:
+    """(T, 3) vectors between two others, as long as they are."""
+    mixed = first + share * (second - first)
+    return unit(mixed) * length

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, TypeVar
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 Array = NDArray[np.floating]
@@ -24,6 +25,17 @@ def square_frame(up: Array, across: Array) -> Array:
     y = unit(up)
     x = unit(across - np.sum(across * y, axis=-1, keepdims=True) * y)
     return np.stack([x, y, np.cross(x, y)], axis=-1)
+
+
+def rotations_by(vectors: Array) -> Array:
+    """(…, 3, 3) rotations by the length of vectors (…, 3), radians, about their directions."""
+    turns = scipy.spatial.transform.Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
+    return np.asarray(turns).reshape(*vectors.shape, 3)
+
+
+def floor_speed(place: Array, fps: float) -> Array:
+    """(T,) metres a second over the floor of a joint (T, 3)."""
+    return np.asarray(np.linalg.norm(np.gradient(place[:, [0, 2]], axis=0), axis=-1) * fps)
 
 
 def wrapped(angle: Angle) -> Angle:

@@ -1,7 +1,7 @@
 """Makes the faults of ``tests/mutations.toml`` one by one in a copy of the sources and tells which no test finds.
 
-``python -m tests.mutations`` runs all, ``python -m tests.mutations motion/easing.py …`` those of some files. Its status
-is 1 if a fault survives. What all tests need is imported once; each fault then has a process of its own.
+``python -m tests.mutations`` runs all, ``python -m tests.mutations motion/smoothing.py …`` those of some files. Its
+status is 1 if a fault survives. What all tests need is imported once; each fault then has a process of its own.
 """
 
 from __future__ import annotations

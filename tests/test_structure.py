@@ -182,7 +182,7 @@ NETWORKS = """
 import numpy as np, webdemo.inference.engine, webdemo.inference.pipelines.intergen
 from models.motion_tokens import TokenLayout
 from motion import SMPL22, Duet
-from motion.formats.glb import glb_bytes
+from motion.formats.glb_writer import glb_bytes
 TokenLayout().fit(10)
 glb_bytes(Duet.from_positions(np.stack([[SMPL22.rest_positions()] * 2] * 2), fps=30))
 """
@@ -198,6 +198,7 @@ def test_what_the_page_and_a_request_do_not_use_is_not_loaded(start: str) -> Non
 
 TESTED_FROM_OUTSIDE = {
     "e2e",  # the page in a browser
+    "e2e/tour",  # the page as a visitor who uses everything twice
     "second_programs",  # files as other programs read them
     "server/attacks",  # a server as an attacker sees it
 }

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from acts.shapes import Gesture
 from motion import FPS, SMPL22
-from motion.cleaning import solve_two_bones
-from motion.easing import minimum_jerk
+from motion.limbs import solve_two_bones
+from motion.smoothing import minimum_jerk
 from motion.transforms import heading, heading_matrix
 from motion.vectors import unit
 

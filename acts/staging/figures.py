@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from acts.shapes import Figure
 from motion import FPS, SMPL22
-from motion.easing import smoothstep
+from motion.smoothing import smoothstep
 
 from .figure_floor import grounded_poses
 from .poses import ALL, Pose

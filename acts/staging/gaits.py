@@ -16,10 +16,10 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion import FPS, SMPL22
-from motion.cleaning import solve_two_bones
-from motion.easing import minimum_jerk
 from motion.kinematics import forward_kinematics
+from motion.limbs import solve_two_bones
 from motion.skeleton import LEGS
+from motion.smoothing import minimum_jerk
 from motion.transforms import heading_matrix
 
 from .poses import HANDS, SOLE, STANDS, about, all_but

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from acts.shapes import Gesture
 from motion import FPS, SMPL22
 from motion.kinematics import forward_kinematics
+from motion.limbs import bent_towards
 from motion.steering import STRIDE, Steps
-from motion.touch.bending import bent_towards
 from motion.transforms import heading_matrix
 
 from .gestures import hands_of, wrist

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from acts.shapes import Limb
 from motion import FPS, SMPL22
-from motion.easing import minimum_jerk
 from motion.kinematics import forward_kinematics
 from motion.skeleton import ARMS
+from motion.smoothing import minimum_jerk
 from motion.transforms import heading_matrix
 
 from .poses import HANDS, SOLE, STANDS, TOES, about, all_but, standing

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
-from motion.easing import minimum_jerk
 from motion.kinematics import forward_kinematics
-from motion.touch.bending import bent_towards
+from motion.limbs import bent_towards
+from motion.smoothing import minimum_jerk
 from motion.transforms import heading, heading_matrix
 
 Array = NDArray[np.floating]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from acts.shapes import Bow, Jump
 from motion import FPS, SMPL22
-from motion.easing import minimum_jerk
+from motion.smoothing import minimum_jerk
 from motion.transforms import heading
 
 from .gaits import on_all_fours

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
-from motion.easing import smoothstep
-from motion.metrics.sentences.stretches import stretches
-from motion.things import FIXTURES, Thing, room, shape
+from motion.metrics.sentences.joints import stretches
+from motion.smoothing import smoothstep
+from motion.things import FIXTURES, Thing, kinds, shape
 from motion.things.hands import Hands, level, smoothed, yaw_of
 from motion.transforms import heading_matrix
 from motion.vectors import FLAT
@@ -49,7 +49,7 @@ FOOT = 0.08
 LEGS = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("knee", "ankle", "foot")]
 TAKES = 1.1
 """Seconds in which a part opens or closes."""
-_HALF = room.CURTAIN / 2 + 0.01
+_HALF = kinds.CURTAIN / 2 + 0.01
 _SWUNG = np.radians(105.0)
 
 
@@ -183,8 +183,8 @@ LEAVES: dict[str, tuple[Leaf, ...]] = {
             Leaf(
                 "sash",
                 "window",
-                (-side * room.PANE_WIDTH, room.SILL, 0.0, hinge),
-                (-side * room.PANE_WIDTH, room.SILL, 0.0, hinge + side * _SWUNG),
+                (-side * kinds.PANE_WIDTH, kinds.SILL, 0.0, hinge),
+                (-side * kinds.PANE_WIDTH, kinds.SILL, 0.0, hinge + side * _SWUNG),
             )
             for side, hinge in ((1, 0.0), (-1, np.pi))
         ),
@@ -194,7 +194,7 @@ LEAVES: dict[str, tuple[Leaf, ...]] = {
         ),
     ),
     "door frame": (
-        Leaf("door", "door frame", (-room.DOOR_WIDTH / 2, 0.0, 0.0, 0.0), (-room.DOOR_WIDTH / 2, 0.0, 0.0, _SWUNG)),
+        Leaf("door", "door frame", (-kinds.DOOR_WIDTH / 2, 0.0, 0.0, 0.0), (-kinds.DOOR_WIDTH / 2, 0.0, 0.0, _SWUNG)),
     ),
 }
 """The moving parts of fixtures by kind; seen from the front, which is where the people are, they open to the back."""

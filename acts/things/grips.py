@@ -14,9 +14,8 @@ from acts.checking import rules_of
 from motion import SMPL22, Duet
 from motion.hands import SIDES, Grip
 from motion.metrics.bodies import point_segment_distance
-from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.joints import Motion, stretches
 from motion.metrics.sentences.language import mask_of, masks
-from motion.metrics.sentences.stretches import stretches
 from motion.things.hands import Hands
 
 from .courses import ThingCourse

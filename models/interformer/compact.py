@@ -36,7 +36,7 @@ from torch import Tensor, nn
 from models.interformer import JOINTS, skeleton_mask
 from models.layers import FeedForward, sinusoids
 from models.weights_io import WeightsFolder, load_network
-from motion.layouts import find_layout
+from motion.skeleton import find_layout
 
 FPS = 15.0
 JOINTS_15 = tuple(find_layout("sbu15").joints)

@@ -7,14 +7,18 @@ from pathlib import Path
 from motion import Clip, Duet, InputError
 from motion.retarget import to_smpl
 
-from .choices import Animation, ImportChoices
-from .crowd import Crowd, Motion, gathered
+from .bvh_writer import bvh_on_rig, bvh_text
+from .files import write_files
 from .glb_motion import animations_in
+from .glb_rig import glb_on_rig
 from .importing import import_motion, import_pair
-from .one_person import write_clip
+from .npz import write_npy, write_npz
+from .recording import Animation, ImportChoices
 from .registry import FORMATS, GLBS, RIGS, Format, can_read, can_write, read_rigs, suffix_of, unknown, with_stem
+from .smpl import SUFFIX, smpl_bytes
 
 __all__ = [
+    "ALONE",
     "FORMATS",
     "GLBS",
     "RIGS",
@@ -24,13 +28,15 @@ __all__ = [
     "animation_note",
     "can_read",
     "can_write",
+    "check_rig",
+    "on_rig",
     "read",
-    "read_everyone",
     "read_pair",
     "read_rigs",
     "suffix_of",
     "with_stem",
     "write",
+    "write_clip",
 ]
 
 
@@ -62,17 +68,15 @@ def read(
     """
     label = name or ("" if isinstance(path, bytes) else str(path))
     found = import_motion(path, name=name, choices=choices)
-    motion = gathered(found.people, Path(label).name, everyone=False, beside=found.beside)
-    assert not isinstance(motion, Crowd)  # not everyone was asked for
+    if (count := len(found.people)) > 2:
+        raise InputError(
+            f"{Path(label).name} holds {count} people: choose one on the React tab, or save one or two of them."
+        )
+    first = found.people[0]
+    motion = Duet(first, found.people[1], **found.beside) if count == 2 else first
     if longest is not None and motion.seconds > longest:
         raise InputError(f"{label} lasts {motion.seconds:.0f} s: cut it to {longest:g} s or less.")
     return motion if keep_skeleton else to_smpl(motion)
-
-
-def read_everyone(path: str | Path | bytes, *, name: str | None = None, choices: ImportChoices | None = None) -> Motion:
-    """Like :func:`read`, but returns all people, even more than two, with the file's own joints."""
-    found = import_motion(path, name=name, choices=choices)
-    return gathered(found.people, name or "", everyone=True, beside=found.beside)
 
 
 def animation_note(path: str | Path, animation: Animation | None = None) -> str:
@@ -109,3 +113,58 @@ def write(duet: Duet | Clip, path: str | Path) -> list[Path]:
     if known is None or known.writer is None:
         raise InputError(unknown(suffix, "written", [f.suffix for f in FORMATS.values() if f.writer]))
     return write_clip(duet, path) if isinstance(duet, Clip) else known.writer(duet, path)
+
+
+ALONE = (".npz", ".bvh", ".npy", SUFFIX)
+"""Suffixes of files that hold one person, without a second."""
+
+
+def write_clip(clip: Clip, path: str | Path) -> list[Path]:
+    """Writes one person in the format of the path's suffix, as :func:`read` reads them.
+
+    A .npz holds positions (T, J, 3) float32, fps, joint_names and parents; a .npy the positions alone.
+
+    Returns:
+        the one path.
+
+    Raises:
+        InputError: for a suffix that holds two people only, or where the file cannot be written.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix not in ALONE:
+        raise InputError(f"{path.name}: one person is written as {', '.join(ALONE[:-1])} or {ALONE[-1]}: choose one.")
+    if path.name.lower().endswith(SUFFIX):
+        return write_files({path: smpl_bytes(clip)})
+    if suffix == ".bvh":
+        return write_files({path: bvh_text(clip).encode()})
+    return write_npy(clip, path) if suffix == ".npy" else write_npz(clip, path)
+
+
+def on_rig(clip: Clip, reference: Path, *, animation: Animation | None = None) -> bytes:
+    """One person's motion as a file of the reference's kind, on its rig and in its world.
+
+    Args:
+        clip: on SMPL22, metres.
+        reference: a .bvh or .glb of one person.
+        animation: the one that the person was read from, of a .glb with several.
+
+    Raises:
+        InputError: as :func:`check_rig`, and where the rig cannot be moved.
+    """
+    _check_kind(reference)
+    if reference.suffix.lower() in GLBS:
+        return glb_on_rig(clip, reference, animation=animation)
+    return bvh_on_rig(clip, reference)
+
+
+def check_rig(reference: Path) -> None:
+    """Raises InputError for a file that is no .bvh or .glb of one person, before a partner is made."""
+    _check_kind(reference)
+    if (count := len(read_rigs(reference))) > 1:
+        raise InputError(f"A partner is taken on the rig of one person, and {reference.name} holds {count}.")
+
+
+def _check_kind(reference: Path) -> None:
+    if reference.suffix.lower() not in RIGS:
+        raise InputError(f"A partner is taken on the rig of a BVH or .glb file, and {reference.name} is none.")

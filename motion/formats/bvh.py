@@ -21,8 +21,7 @@ from motion.errors import InputError
 from motion.rigs import RigMotion
 from motion.skeleton import SMPL22
 
-from .bvh_hierarchy import Joint, parse_hierarchy, trees
-from .bvh_numbers import Motion, find_motion
+from .bvh_numbers import Joint, Motion, find_motion, parse_hierarchy, trees
 from .files import MAX_NUMBERS, ascii_bytes, read_bytes
 
 Array = NDArray[np.floating]

@@ -1,20 +1,18 @@
-"""The numbers of a BVH file's MOTION part, block after block, so that they are never held at once."""
+"""The two parts of a BVH file: its HIERARCHY, and the numbers of MOTION block after block, never all at once."""
 
 from __future__ import annotations
 
-import csv
-import io
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion.errors import InputError
 
-from .bvh_hierarchy import Joint
 from .files import MAX_NUMBERS, check_duration
+from .recording import MAX_PEOPLE
 
 Array = NDArray[np.floating]
 
@@ -62,7 +60,8 @@ class Motion:
         while done < self.frames and start < len(self.data):
             stop = _piece_end(self.data, start)
             try:
-                found = _numbers(self.data[start:stop], self.width)
+                piece = self.data[start:stop]
+                found = np.empty(0) if piece.isspace() else np.fromstring(piece, dtype=np.float64, sep=" ")
             except ValueError:
                 raise InputError(self._bad_word(start, stop, done * self.width + len(rest))) from None
             found = np.concatenate([rest, found]) if len(rest) else found
@@ -134,38 +133,6 @@ def _frame_rate(frame_time: float) -> float:
     return float(round(rate)) if abs(rate - round(rate)) < 5e-4 * rate else round(rate, 4)
 
 
-def _numbers(piece: bytes, width: int) -> Array:
-    """(N,) the numbers of a piece; raises ValueError if something is none.
-
-    A line a frame, as nearly all programs write it, goes through pandas, which is five times as fast as
-    NumPy; whatever else is parsed by NumPy, which knows no lines. Pandas makes a column of every word of the
-    first line, so that a long one would cost seconds and hundreds of megabytes.
-    """
-    import pandas
-
-    if piece.isspace():  # of which NumPy makes a number
-        return np.empty(0)
-    first_line = re.split(rb"[\r\n]", piece.lstrip(), maxsplit=1)[0]
-    if len(first_line.split(None, width)) != width:
-        return np.fromstring(piece, dtype=np.float64, sep=" ")
-    try:
-        table = pandas.read_csv(
-            io.BytesIO(piece),
-            sep=r"\s+",
-            header=None,
-            index_col=False,
-            dtype=np.float64,
-            engine="c",
-            na_filter=False,
-            quoting=csv.QUOTE_NONE,
-        ).to_numpy()
-        if table.shape[1] == width and np.isfinite(table).all():
-            return table.reshape(-1)
-    except (ValueError, OverflowError):  # pandas' own errors are ValueErrors
-        pass
-    return np.fromstring(piece, dtype=np.float64, sep=" ")
-
-
 def _piece_end(data: bytes, start: int) -> int:
     """End of a piece of about a megabyte: after a line, or after a word if lines are longer."""
     if start + _PIECE >= len(data):
@@ -183,3 +150,134 @@ def _joint_of_column(joints: list[Joint], column: int) -> str:
             return joint.name
         column -= len(joint.channels)
     return joints[-1].name
+
+
+# ---- The HIERARCHY part ----------------------------------------------------------------------------------------------
+MAX_JOINTS = 200
+_LONGEST_NAME = 80
+_AXES = {"x": 0, "y": 1, "z": 2}
+
+
+@dataclass
+class Joint:
+    """A joint, or the tip of a chain; ``channels`` are ("position" or "rotation", axis) in their order."""
+
+    name: str
+    parent: int
+    line: int
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    channels: list[tuple[str, int]] = field(default_factory=list)
+    is_end: bool = False
+    keeps_offset: bool = False
+    """Its position channels say nothing."""
+
+
+def parse_hierarchy(text: str, label: str) -> list[Joint]:
+    """The joints of a HIERARCHY part, parents first.
+
+    Raises:
+        InputError: one sentence with the line and joint where it is wrong.
+    """
+    parser = _Parser(label)
+    for number, line in enumerate(text.splitlines(), 1):
+        # Braces may share a line with other words.
+        for piece in re.findall(r"[{}]|[^{}]+", line):
+            if words := piece.split():
+                parser.take(words, number)
+    joints = parser.finished()
+    for first, stop in trees(joints, label):
+        names = [joint.name for joint in joints[first:stop]]
+        for joint in joints[first:stop]:
+            if names.count(joint.name) > 1 and not joint.is_end:
+                raise InputError(f"{label}, line {joint.line}: two joints are named {joint.name}: rename one.")
+    return joints
+
+
+class _Parser:
+    """Takes a HIERARCHY part a statement at a time; every error is one sentence with its line."""
+
+    def __init__(self, label: str) -> None:
+        self.label = label
+        self.joints: list[Joint] = []
+        self.stack: list[int] = []
+        """The joints whose braces are open, the innermost last."""
+        self.pending: int | None = None
+        """The joint whose "{" has not come yet."""
+
+    def take(self, words: list[str], number: int) -> None:
+        """Takes one statement, split into words, of a line."""
+        where, keyword = f"{self.label}, line {number}", words[0].upper()
+        if keyword in ("ROOT", "JOINT", "END"):
+            self._joint(keyword, words, number, where)
+        elif keyword == "{":
+            if self.pending is None:
+                raise InputError(f"{where}: '{{' without a joint before it.")
+            self.stack.append(self.pending)
+            self.pending = None
+        elif keyword == "}":
+            if not self.stack:
+                raise InputError(f"{where}: one '}}' too many.")
+            self.stack.pop()
+        elif keyword == "OFFSET" and self.stack:
+            joint = self.joints[self.stack[-1]]
+            joint.offset = _three_numbers(words[1:], where, joint.name)
+        elif keyword == "CHANNELS" and self.stack:
+            joint = self.joints[self.stack[-1]]
+            joint.channels = _channels(words[1:], where, joint.name)
+        elif keyword != "HIERARCHY":
+            raise InputError(f"{where}: {words[0][:40]!r} is not understood in the HIERARCHY part.")
+
+    def _joint(self, keyword: str, words: list[str], number: int, where: str) -> None:
+        if keyword != "ROOT" and not self.stack:
+            what = "an End Site" if keyword == "END" else f"JOINT {' '.join(words[1:])}"
+            raise InputError(f"{where}: {what} has no parent.")
+        parent = self.stack[-1] if self.stack else -1
+        is_end = keyword == "END"
+        name = f"{self.joints[parent].name}_end" if is_end else " ".join(words[1:])[:_LONGEST_NAME]
+        if not name:
+            raise InputError(f"{where}: a joint has no name.")
+        self.joints.append(Joint(name, parent, number, is_end=is_end))
+        self.pending = len(self.joints) - 1
+        if sum(not joint.is_end for joint in self.joints) > MAX_JOINTS or len(self.joints) > 2 * MAX_JOINTS:
+            raise InputError(f"{where}: more than {MAX_JOINTS} joints; export the body without extras.")
+
+    def finished(self) -> list[Joint]:
+        """All joints; raises InputError if there are none or a brace is open."""
+        if self.stack or self.pending is not None:
+            joint = self.joints[self.stack[-1] if self.stack else self.pending or 0]
+            raise InputError(f"{self.label}: joint {joint.name} (line {joint.line}) is never closed by '}}'.")
+        if not self.joints:
+            raise InputError(f"{self.label} has no ROOT joint.")
+        return self.joints
+
+
+def trees(joints: list[Joint], label: str) -> list[tuple[int, int]]:
+    """(first, stop) joint of each person, who is a tree of joints; they follow one another."""
+    roots = [index for index, joint in enumerate(joints) if joint.parent < 0]
+    if len(roots) > MAX_PEOPLE:
+        raise InputError(f"{label} holds {len(roots)} people: give {MAX_PEOPLE} or fewer a file.")
+    return list(zip(roots, [*roots[1:], len(joints)], strict=True))
+
+
+def _three_numbers(words: list[str], where: str, joint: str) -> tuple[float, float, float]:
+    try:
+        x, y, z = (float(word) for word in words)
+    except ValueError:
+        raise InputError(
+            f"{where}: OFFSET of joint {joint} must be three numbers, not {' '.join(words)[:40]!r}."
+        ) from None
+    if not np.isfinite([x, y, z]).all() or max(abs(x), abs(y), abs(z)) > 1e6:
+        raise InputError(f"{where}: OFFSET of joint {joint} is not a usable length.")
+    return x, y, z
+
+
+def _channels(words: list[str], where: str, joint: str) -> list[tuple[str, int]]:
+    found = []
+    for word in words[1:]:
+        match = re.fullmatch(r"([XYZ])(position|rotation)", word, re.IGNORECASE)
+        if not match:
+            raise InputError(f"{where}: joint {joint} has an unknown channel {word[:40]!r}.")
+        found.append((match[2].lower(), _AXES[match[1].lower()]))
+    if not words or words[0] != str(len(found)) or len(set(found)) != len(found):
+        raise InputError(f"{where}: CHANNELS of joint {joint} must be a count and that many different channels.")
+    return found

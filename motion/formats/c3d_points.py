@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 
 from motion.errors import InputError
 
-from .choices import ImportChoices
-from .crowd import Recording
 from .files import check_duration
 from .markers import people_of
+from .recording import ImportChoices, Recording
 
 Array = NDArray[np.floating]
 

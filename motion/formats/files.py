@@ -194,3 +194,9 @@ def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask
+
+
+def safe_cell(value: Any) -> Any:
+    """The value; text that a spreadsheet would compute begins with an apostrophe."""
+    formula = isinstance(value, str) and value.lstrip()[:1] in ("=", "+", "-", "@")
+    return f"'{value}" if formula else value

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +16,10 @@ from motion.retarget import leg_scale
 from motion.rigs import RigMotion, match_joints
 
 from .bvh_numbers import MAX_NUMBERS
-from .choices import Animation
 from .files import check_duration
-from .glb_animations import Animations, chosen
 from .glb_file import GlbFile, opened
-from .glb_nodes import Channel, Rig, bind_pose, channels, people, placed, with_those_above
+from .glb_nodes import Channel, Rig, bind_pose, channels, moves, people, placed, with_those_above
+from .recording import Animation, Animations, check_animation, listed
 
 Array = NDArray[np.floating]
 
@@ -184,3 +184,65 @@ def _rate(moved: Sequence[Channel]) -> float:
     if not _RATES[0] <= rate <= _RATES[1]:
         return _RATE if rate < _RATES[0] else _RATES[1]
     return float(round(rate)) if abs(rate - round(rate)) < 5e-3 * rate else round(rate, 4)
+
+
+# ---- Which animation is read -----------------------------------------------------------------------------------------
+_LONGEST = 40
+"""Characters of a name that are shown."""
+
+
+def chosen(
+    file: GlbFile, people: Sequence[Collection[int]], animation: Animation | None
+) -> tuple[list[Any], Animations]:
+    """One animation for each person, and what there was to choose from.
+
+    A person whom the chosen animation does not move keeps the first of their own.
+
+    Args:
+        file: whose animations.
+        people: the nodes that each person moves by.
+        animation: its name, or its number among those that move a person; the first by default.
+
+    Raises:
+        InputError: where a person has none, or there is none of this name or number.
+    """
+    known = file.document["animations"]
+    joints = [set(nodes) for nodes in people]
+    moved = [{who for who, nodes in enumerate(joints) if moves(each, nodes)} for each in known]
+    theirs = [number for number, who in enumerate(moved) if who]
+    if set().union(*moved) < set(range(len(people))):
+        raise InputError(f"{file.label} has an animation, but it moves no joint of the skeleton: export it again.")
+    names = [known[number].get("name") for number in theirs]
+    first = theirs[0 if animation is None else _found(names, animation, file.label)]
+    taken = [
+        first if who in moved[first] else next(number for number in theirs if who in moved[number])
+        for who in range(len(people))
+    ]
+    numbers = sorted({theirs.index(number) + 1 for number in taken})
+    found = Animations(file.label, tuple(map(_shown, names)), tuple(numbers))
+    return [known[number] for number in taken], found
+
+
+def _found(names: Sequence[Any], animation: Animation, label: str) -> int:
+    """The index of an animation by its name, or else by its number."""
+    check_animation(animation)
+    if isinstance(animation, str):
+        asked = animation.strip()
+        for same in (str, str.casefold):
+            for index, name in enumerate(names):
+                if isinstance(name, str) and same(name.strip()) == same(asked):
+                    return index
+        animation = int(asked) if asked.isdecimal() and len(asked) < 9 else 0
+    if not 1 <= animation <= len(names):
+        those = listed([_shown(name) for name in names], range(1, len(names) + 1), "or")
+        raise InputError(f"{label} has no such animation: choose {those}.")
+    return animation - 1
+
+
+def _shown(name: Any) -> str:
+    """A name on one line, without characters that cannot be seen, cut where it is too long."""
+    if not isinstance(name, str):
+        return ""
+    seen = "".join(each if each.isprintable() else " " for each in name[: 10 * _LONGEST])
+    seen = " ".join(seen.split())
+    return seen if len(seen) <= _LONGEST else f"{seen[: _LONGEST - 1].rstrip()}…"

@@ -22,16 +22,16 @@ from motion.errors import InputError
 from motion.retarget import floor_on_smpl, leg_scale, retarget, up_rotation
 from motion.rigs import RigMotion, match_joints, pairs_of
 from motion.skeleton import SMPL22
+from motion.smoothing import smoothstep
 from motion.transforms import mirrored
 
-from ..easing import smoothstep
-from .choices import Animation
 from .files import check_smpl
-from .glb_buffer import Buffer
 from .glb_file import GlbFile, opened
 from .glb_motion import MESHES, metres_per_unit, read_glb_people
 from .glb_nodes import Rig, bind_pose, parts_of, people, placed, quaternions, split, with_those_above
 from .glb_reader import read_character
+from .glb_writer import Buffer
+from .recording import Animation
 from .rig_pose import posed, reached, root_path
 
 Array = NDArray[np.floating]

@@ -16,19 +16,14 @@ from numpy.typing import NDArray
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
-from motion.joint_names import without_beginning
-from motion.layouts import LAYOUTS
+from motion.guesses import Places, calibration_frames, find_up, places_of, turn_of
 from motion.retarget import rest_axis, retarget, retarget_duet, to_smpl, up_axis
-from motion.rigs import RigMotion, matched_names
-from motion.skeleton import SMPL22
-from motion.up import Places, find_up, places_of, turn_of
+from motion.rigs import RigMotion, matched_names, without_beginning
+from motion.skeleton import LAYOUTS, SMPL22
 
 from .arrays import says_no_rate
-from .calibration import calibration_frames
-from .choices import ORDERS, UNITS, ImportChoices
-from .crowd import Recording
 from .files import check_duration
-from .glb_animations import Animations
+from .recording import MAX_PEOPLE, ORDERS, UNITS, Animations, ImportChoices, Recording
 from .registry import RIG_FPS, recordings
 
 Array = NDArray[np.floating]
@@ -48,14 +43,14 @@ class Imported:
     Attributes:
         people: all people in the file, in metres, Y up. Joints that must be fitted, as a Kinect's, are the
             file's own. The two of a pair come first.
-        up: what points up in the file, of :data:`motion.up.AXES`.
+        up: what points up in the file, of :data:`motion.guesses.AXES`.
         unit: its unit; "none" if its lengths were scaled to an average person.
         fps: its frames a second.
         joints: (joint of the file, joint of SMPL22).
         order: joint order of an array, if several orders have that number of joints.
         animations: those of a .glb file, and which of them this is; None for any other file.
         asks: True if a thing was assumed that nobody said: the frame rate, an unusual up axis, the joints' order.
-        beside: what a duet holds beside its people, as :class:`~motion.formats.crowd.Recording`.
+        beside: what a duet holds beside its people, as :class:`~motion.formats.recording.Recording`.
     """
 
     people: tuple[Clip, ...]
@@ -132,6 +127,8 @@ def _together(found: Sequence[Recording]) -> Recording:
 
 
 def _imported(recording: Recording, label: str, choices: ImportChoices) -> Imported:
+    if (count := len(recording.people)) > MAX_PEOPLE:
+        raise InputError(f"{label} holds {count} people: give {MAX_PEOPLE} or fewer a file.")
     people = [without_calibration(person) for person in recording.people]
     rigs = [person for person in people if isinstance(person, RigMotion)]
     clips = [person for person in people if isinstance(person, Clip)]

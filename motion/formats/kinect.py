@@ -20,9 +20,8 @@ from motion.errors import InputError
 from motion.skeleton import NTU25, SBU15
 
 from .arrays import filled
-from .choices import ImportChoices
-from .crowd import Recording
 from .files import MAX_FRAMES, MAX_SECONDS, check_duration, decode_text
+from .recording import ImportChoices, Recording
 
 Array = NDArray[np.floating]
 Track = dict[int, Array]

@@ -1,13 +1,28 @@
 """NumPy files: our two-person .npz, single arrays, and the parameters of SMPL bodies.
 
 Uploads are never unpickled, and nothing is unpacked before the sizes that a file declares have been checked.
+
+Beside the people's positions, a two-person .npz may hold:
+
+========================  ======================================================================================
+``thing_kinds``           (K,) text, such as "chair"
+``thing_names``           (K,) text, what the words call each
+``thing_places``          (K, T, 3) float32 metres
+``thing_rotations``       (K, T, 3, 3) float32
+``thing_sizes``           (K, 2) vertices and triangles of each
+``thing_vertices``        (V, 3) float32 metres, one thing after another, each in its own frame
+``thing_faces``           (F, 3) int32, counted from each thing's own first vertex
+``thing_colours``         (F, 3) uint8 sRGB
+``grips``                 JSON text: person, side, shape, first frame and last frame of each, see :mod:`motion.hands`
+``looks``                 (2,) text, the bodies that the two wear, see :mod:`motion.looks`; absent where nothing is said
+========================  ======================================================================================
 """
 
 from __future__ import annotations
 
 import io
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,16 +32,17 @@ from numpy.typing import NDArray
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
+from motion.guesses import likely_skeleton
+from motion.hands import Grip, grips_of, to_lists
+from motion.looks import UNSAID, checked
 from motion.representation import NUM_FEATURES, RAW_FEATURES, decode_humanml3d, decode_positions, read_raw
 from motion.rigs import RigMotion
 from motion.skeleton import SKELETONS, SMPL22, Skeleton
+from motion.things.thing import MOST_THINGS, Mesh, Thing
 
-from . import npz_things
 from .arrays import frame_rate, load_array, load_members, no_rate, numbers
-from .choices import ORDERS, ImportChoices
-from .crowd import MAX_PEOPLE, Recording
 from .files import check_duration, read_json, write_files
-from .joint_order import likely_skeleton
+from .recording import MAX_PEOPLE, ORDERS, ImportChoices, Recording
 from .smpl import FPS_KEYS, PARAMETER_KEYS, has_parameters, read_parameters
 
 Array = NDArray[Any]
@@ -37,29 +53,9 @@ _INTERHUMAN = 492
 """InterHuman's processed frames: 62 joints' positions and 51 joints' rotations, the body's first in both."""
 _BODY_POSITIONS, _BODY_ROTATIONS = slice(0, 66), slice(186, 312)
 _HUMANML3D, _HUMANML3D_FPS = 263, 20.0
-_SOMA_NAMES = (
-    "Hips",
-    "LeftLeg",
-    "RightLeg",
-    "Spine1",
-    "LeftShin",
-    "RightShin",
-    "Spine2",
-    "LeftFoot",
-    "RightFoot",
-    "Chest",
-    "LeftToeBase",
-    "RightToeBase",
-    "Neck1",
-    "LeftShoulder",
-    "RightShoulder",
-    "Head",
-    "LeftArm",
-    "RightArm",
-    "LeftForeArm",
-    "RightForeArm",
-    "LeftHand",
-    "RightHand",
+_SOMA_JOINTS = (
+    "Hips LeftLeg RightLeg Spine1 LeftShin RightShin Spine2 LeftFoot RightFoot Chest LeftToeBase RightToeBase Neck1 "
+    "LeftShoulder RightShoulder Head LeftArm RightArm LeftForeArm RightForeArm LeftHand RightHand"
 )
 """The joints of SOMA's skeleton that SMPL22 has too, in its order, so that its parents are theirs."""
 _SOMA = {
@@ -69,24 +65,24 @@ _SOMA = {
 """Where they are among the 30 or 77 of Kimodo's ``posed_joints``."""
 _COUNTS = {_SMPL24, *_SOMA, *(skeleton.num_joints for skeleton in SKELETONS.values())}
 _POSITIONS = ("positions", "posed_joints")
-_KEYS = (
-    *_POSITIONS,
-    "fps",
-    "joint_names",
-    "parents",
-    "roles",
-    "manifest",
-    *npz_things.KEYS,
-    npz_things.GRIPS,
-    npz_things.LOOKS,
-)
+_SHAPES = {
+    "thing_places": ("f", 3),
+    "thing_rotations": ("f", 4),
+    "thing_sizes": ("iu", 2),
+    "thing_vertices": ("f", 2),
+    "thing_faces": ("iu", 2),
+    "thing_colours": ("u", 2),
+}
+"""Kind of number and number of axes of each array of numbers."""
+THING_KEYS = ("thing_kinds", "thing_names", *_SHAPES)
+_KEYS = (*_POSITIONS, "fps", "joint_names", "parents", "roles", "manifest", *THING_KEYS, "grips", "looks")
 
 
 def write_npz(motion: Duet | Clip, path: str | Path) -> list[Path]:
     """Writes positions (2, T, J, 3) or (T, J, 3) float32 with fps, joint_names and parents.
 
     A duet's roles and manifest, things beside the people, the grips of their hands and their looks are further arrays,
-    see :mod:`.npz_things`.
+    see above.
     """
     arrays: dict[str, Any] = {
         "positions": motion.positions,
@@ -98,9 +94,9 @@ def write_npz(motion: Duet | Clip, path: str | Path) -> list[Path]:
         arrays |= {
             "roles": np.array(motion.roles),
             "manifest": np.array(json.dumps(motion.manifest or {}, ensure_ascii=False)),
-            **npz_things.arrays_of(motion.things),
-            **npz_things.grips_array(motion.grips),
-            **npz_things.looks_array(motion.looks),
+            **arrays_of(motion.things),
+            **grips_array(motion.grips),
+            **looks_array(motion.looks),
         }
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)
@@ -188,7 +184,7 @@ def _recording(
     people = numbers(people, label)
     names = _names(named or {}, people.shape[-2])
     if names is None and people.shape[-2] in _SOMA:
-        people, names = people[:, :, _SOMA[people.shape[-2]]], (_SOMA_NAMES, SMPL22.parents)
+        people, names = people[:, :, _SOMA[people.shape[-2]]], (tuple(_SOMA_JOINTS.split()), SMPL22.parents)
     try:
         if names is not None:
             still = np.zeros((len(names[0]), 3))
@@ -262,7 +258,103 @@ def _beside(arrays: dict[str, Array], found: Recording, label: str) -> dict[str,
     return {
         "roles": (roles[0], roles[1]) if len(roles) == 2 else ("a", "b"),
         "manifest": manifest if isinstance(manifest, dict) and manifest else None,
-        "things": npz_things.things_of(arrays, found.people[0].num_frames, label),
-        "grips": npz_things.grips_in(arrays, label),
-        "looks": npz_things.looks_in(arrays, label),
+        "things": things_of(arrays, found.people[0].num_frames, label),
+        "grips": grips_in(arrays, label),
+        "looks": looks_in(arrays, label),
     }
+
+
+# ---- Things, grips and looks -----------------------------------------------------------------------------------------
+
+
+def arrays_of(things: Sequence[Thing]) -> dict[str, Array]:
+    """The arrays of some things; none for no things."""
+    if not things:
+        return {}
+    meshes = [thing.mesh for thing in things]
+    return {
+        "thing_kinds": np.array([thing.kind for thing in things]),
+        "thing_names": np.array([thing.name for thing in things]),
+        "thing_places": np.stack([thing.places for thing in things]),
+        "thing_rotations": np.stack([thing.rotations for thing in things]),
+        "thing_sizes": np.array([[len(mesh.vertices), len(mesh.faces)] for mesh in meshes], dtype=np.int64),
+        "thing_vertices": np.concatenate([mesh.vertices for mesh in meshes]),
+        "thing_faces": np.concatenate([mesh.faces for mesh in meshes]).astype(np.int32),
+        "thing_colours": np.concatenate([mesh.colours for mesh in meshes]),
+    }
+
+
+def things_of(arrays: Mapping[str, Array], frames: int, label: str) -> tuple[Thing, ...]:
+    """The things of a file whose arrays have been read; () where it holds none.
+
+    Args:
+        arrays: of the file, by name.
+        frames: of its people.
+        label: what to call the file in messages.
+
+    Raises:
+        InputError: one sentence on what is wrong with them.
+    """
+    if not any(key in arrays for key in THING_KEYS):
+        return ()
+    if missing := [key for key in THING_KEYS if key not in arrays]:
+        raise InputError(f"{label} holds things without {missing[0]}: save it again.")
+    kinds, names = (np.atleast_1d(arrays[key]) for key in ("thing_kinds", "thing_names"))
+    count = len(kinds)
+    if not 1 <= count <= MOST_THINGS or kinds.shape != (count,) or names.shape != (count,):
+        raise InputError(f"{label} holds {count} things: {MOST_THINGS} are the limit.")
+    for key, (number, axes) in _SHAPES.items():
+        if arrays[key].dtype.kind not in number or arrays[key].ndim != axes:
+            raise InputError(f"{label}, {key}: it is not an array of the right kind: save it again.")
+    if arrays["thing_places"].shape[:2] != (count, frames) or len(arrays["thing_rotations"]) != count:
+        raise InputError(f"{label}: the tracks of its things are not as long as the motion: save it again.")
+    sizes = arrays["thing_sizes"]
+    if sizes.shape != (count, 2) or (sizes.astype(np.float64) < 0).any():
+        raise InputError(f"{label}: the sizes of its things are damaged: save it again.")
+    ends = np.minimum(np.cumsum(sizes.astype(np.float64), axis=0), 1e9).astype(np.int64)
+    if ends[-1].tolist() != [len(arrays["thing_vertices"]), len(arrays["thing_faces"])]:
+        raise InputError(f"{label}: the surfaces of its things are cut off: save it again.")
+    try:
+        return tuple(_thing(arrays, i, ends - sizes.astype(np.int64), ends) for i in range(count))
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None
+
+
+def _thing(arrays: Mapping[str, Array], i: int, starts: Array, ends: Array) -> Thing:
+    vertices = arrays["thing_vertices"][starts[i, 0] : ends[i, 0]]
+    rows = slice(int(starts[i, 1]), int(ends[i, 1]))
+    mesh = Mesh(vertices, arrays["thing_faces"][rows], arrays["thing_colours"][rows])
+    kind, name = (str(arrays[key][i])[:40] for key in ("thing_kinds", "thing_names"))
+    return Thing(kind, mesh, arrays["thing_places"][i], arrays["thing_rotations"][i], name)
+
+
+def grips_array(grips: Sequence[Grip]) -> dict[str, Array]:
+    """The array of some grips; none for none."""
+    return {"grips": np.array(json.dumps(to_lists(grips)))} if grips else {}
+
+
+def grips_in(arrays: Mapping[str, Array], label: str) -> tuple[Grip, ...]:
+    """The grips of a file whose arrays have been read; raises InputError for what is none."""
+    if "grips" not in arrays:
+        return ()
+    try:
+        return grips_of(read_json(str(arrays["grips"])))
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None
+    except ValueError as error:
+        raise InputError(f"{label}: the text of its grips {error}: save it again.") from None
+
+
+def looks_array(looks: tuple[str, str]) -> dict[str, Array]:
+    """The array of the looks of two people; none where nothing is said."""
+    return {} if looks == UNSAID else {"looks": np.array(looks)}
+
+
+def looks_in(arrays: Mapping[str, Array], label: str) -> tuple[str, str]:
+    """The looks in a file whose arrays have been read; raises InputError for what is none."""
+    if "looks" not in arrays:
+        return UNSAID
+    try:
+        return checked([str(look) for look in np.atleast_1d(arrays["looks"])[:3]])
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None

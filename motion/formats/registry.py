@@ -13,14 +13,13 @@ from motion.rigs import RigMotion
 from .bvh import read_bvh_people
 from .bvh_writer import write_bvh
 from .c3d_points import read_c3d
-from .choices import Animation, ImportChoices
-from .crowd import Recording
 from .files import read_bytes
-from .glb import write_glb
 from .glb_motion import read_glb
+from .glb_writer import write_glb
 from .kinect import read_kinect
 from .npz import read_npy, read_npz, write_npy, write_npz
 from .pairs import Source, in_folder, in_zip
+from .recording import Animation, ImportChoices, Recording
 from .smpl import write_smpl
 from .trc import read_trc
 from .usd import write_usd

@@ -18,14 +18,15 @@ from numpy.typing import NDArray
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
-from motion.kinematics import fit_rotations, forward_kinematics
+from motion.kinematics import forward_kinematics
 from motion.looks import size_of
 from motion.sizes import of_adults
 from motion.skeleton import SMPL22
 
 from .arrays import frame_rate, no_rate, numbers
-from .crowd import Recording
 from .files import check_duration, check_smpl, write_files
+from .recording import Recording
+from .skinned import rigged
 
 Array = NDArray[Any]
 
@@ -169,7 +170,7 @@ def smpl_bytes(clip: Clip) -> bytes:
         InputError: for joints other than SMPL22's.
     """
     check_smpl(clip, SUFFIX)
-    rotations = fit_rotations(clip.positions) if clip.rotations is None else np.array(clip.rotations, np.float64)
+    rotations, _ = rigged(clip)
     rotations[:, 0] = _Z_UP_TO_Y_UP.T @ rotations[:, 0]
     vectors = scipy.spatial.transform.Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec()
     poses = np.zeros((clip.num_frames, _POSES))

@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from motion.errors import InputError
 
-from .choices import ImportChoices
-from .crowd import Recording
 from .files import MAX_FRAMES, MAX_NUMBERS, MAX_SECONDS, check_duration, decode_text
 from .markers import people_of
+from .recording import ImportChoices, Recording
 
 Array = NDArray[np.floating]
 

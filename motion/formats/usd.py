@@ -7,18 +7,22 @@ animation, and a body of :mod:`motion.body` bound to it. The stage is in metres 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion.clip import Duet
+from motion.looks import hex_of, linear
+from motion.things.thing import Thing
 
 from .files import check_smpl, write_files
 from .glb_nodes import quaternions
+from .glb_writer import ROUGH, names_of, unit_normals
 from .skinned import ABOVE, JOINTS, Skinned, skinned
-from .usd_text import identifier, materials, matrices, rows, samples, subsets, surface
-from .usd_things import things_text
 
 _AROUND = 0.4
 """Metres from the joints to the edge of the box that holds a body."""
@@ -148,3 +152,128 @@ def _paths() -> Iterable[str]:
 
 
 _PATHS = json.dumps(list(_paths()))
+
+
+# ---- Numbers, names, surfaces and materials as OpenUSD's text has them ----------------------------------------------
+Array = NDArray[np.floating]
+
+
+def identifier(called: str, other: str) -> str:
+    """A name as that of a prim: ASCII letters, digits and underscores, no digit first; ``other`` where none is left."""
+    name = re.sub(r"\W+", "_", called, flags=re.ASCII).strip("_")[:40] or other
+    return f"_{name}" if name[0].isdigit() else name
+
+
+def tuple_of(values: Any) -> str:
+    """Numbers as a tuple."""
+    return str(tuple(np.asarray(values).tolist()))
+
+
+def rows(values: Array) -> str:
+    """(N, k) numbers as an array of tuples."""
+    return str(list(map(tuple, np.round(values.astype(np.float64), 6).tolist())))
+
+
+def matrices(values: Array) -> str:
+    """(N, 4, 4) as an array of tuples of rows."""
+    return str([tuple(map(tuple, each)) for each in np.round(values, 7).tolist()])
+
+
+def samples(values: Array) -> str:
+    """(T, N, k) as an array of tuples for each frame."""
+    frames = "".join(f"{frame}: {rows(each)},\n" for frame, each in enumerate(values))
+    return f"{{\n{frames}}}"
+
+
+def surface(vertices: Array, faces: NDArray[np.integer]) -> str:
+    """Attributes of a mesh of triangles."""
+    return f"""
+    uniform token subdivisionScheme = "none"
+    float3[] extent = {rows(np.stack([vertices.min(axis=0), vertices.max(axis=0)]))}
+    int[] faceVertexCounts = {[3] * len(faces)}
+    int[] faceVertexIndices = {faces.reshape(-1).tolist()}
+    point3f[] points = {rows(vertices)}"""
+
+
+def subsets(zones: Mapping[str, NDArray[np.integer]], place: str) -> str:
+    """A mesh's triangles by zones, each bound to the material of the zone's name at a place."""
+    return "".join(
+        f"""
+    def GeomSubset "{zone}" (
+        prepend apiSchemas = ["MaterialBindingAPI"]
+    )
+    {{
+        uniform token elementType = "face"
+        uniform token familyName = "materialBind"
+        int[] indices = {indices.tolist()}
+        rel material:binding = <{place}/{zone}>
+    }}
+"""
+        for zone, indices in zones.items()
+    )
+
+
+def materials(colours: Mapping[str, str], place: str, rough: float) -> str:
+    """A material for each zone, of a hex colour, at a place."""
+    return "".join(
+        f"""
+    def Material "{zone}"
+    {{
+        token outputs:surface.connect = <{place}/{zone}/surface.outputs:surface>
+
+        def Shader "surface"
+        {{
+            uniform token info:id = "UsdPreviewSurface"
+            color3f inputs:diffuseColor = {tuple_of(np.round(linear(colour), 5))}
+            float inputs:roughness = {rough}
+            token outputs:surface
+        }}
+    }}
+"""
+        for zone, colour in colours.items()
+    )
+
+
+# ---- Things in a .usda -----------------------------------------------------------------------------------------------
+def things_text(things: Sequence[Thing], taken: Sequence[str]) -> str:
+    """Prims of things for the root of the stage; ``taken`` are the names of the prims beside them."""
+    used = [name.lower() for name in taken]
+    found = []
+    for thing, called in zip(things, names_of(things), strict=True):
+        name = identifier(called, "thing")
+        while name.lower() in used:
+            name += "_"
+        used.append(name.lower())
+        found.append(_thing(thing, name))
+    return "".join(found)
+
+
+def _thing(thing: Thing, name: str) -> str:
+    place = np.tile(np.eye(4), (thing.num_frames, 1, 1))  # USD stores rows: points stand to the left
+    place[:, :3, :3] = np.swapaxes(thing.rotations, 1, 2)
+    place[:, 3, :3] = thing.places
+    if thing.moves:
+        frames = "".join(f"{frame}: {matrices(each[None])[1:-1]},\n" for frame, each in enumerate(place))
+        track = f"xformOp:transform.timeSamples = {{\n{frames}}}"
+    else:
+        track = f"xformOp:transform = {matrices(place[:1])[1:-1]}"
+    mesh, prim = thing.mesh, f"/duet/{name}"
+    colours, which = mesh.by_colour()
+    shades = {f"colour_{number}": hex_of(colour) for number, colour in enumerate(colours.tolist(), 1)}
+    zones = {zone: np.flatnonzero(which == number) for number, zone in enumerate(shades)}
+    return f"""
+    def Xform "{name}"
+    {{
+        matrix4d {track}
+        uniform token[] xformOpOrder = ["xformOp:transform"]
+
+        def Mesh "{name}_mesh" (
+            prepend apiSchemas = ["MaterialBindingAPI"]
+        )
+        {{{surface(mesh.vertices, mesh.faces)}
+            normal3f[] normals = {rows(unit_normals(mesh.vertices, mesh.faces))} (
+                interpolation = "vertex"
+            )
+{subsets(zones, prim)}        }}
+{materials(shades, prim, ROUGH)}    }}
+"""

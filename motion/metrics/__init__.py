@@ -4,11 +4,17 @@ Every measure takes a :class:`~motion.clip.Duet` of any of the project's skeleto
 """
 
 from .bodies import Capsules, capsules
-from .interaction import Contact, contact_events, facing_angle, hand_distance, hand_to_body, pelvis_distance
+from .interaction import (
+    Contact,
+    contact_events,
+    facing_angle,
+    hand_distance,
+    hand_to_body,
+    pelvis_distance,
+    response_delay,
+)
 from .quality import FootSkate, Penetration, bone_drift, foot_skate, jerk, penetration
 from .readouts import MEASURES, Measure, compare, readouts, summary
-from .regions import contact_precision_recall, region_contacts
-from .response import response_delay
 
 __all__ = [
     "MEASURES",
@@ -21,7 +27,6 @@ __all__ = [
     "capsules",
     "compare",
     "contact_events",
-    "contact_precision_recall",
     "facing_angle",
     "foot_skate",
     "hand_distance",
@@ -30,7 +35,6 @@ __all__ = [
     "pelvis_distance",
     "penetration",
     "readouts",
-    "region_contacts",
     "response_delay",
     "summary",
 ]

@@ -134,3 +134,31 @@ def closest_points(start_a: Array, end_a: Array, start_b: Array, end_b: Array) -
     s = np.where(t < 0, np.clip(-c / a, 0, 1), np.where(t > 1, np.clip((b - c) / a, 0, 1), s))
     t = np.clip(t, 0.0, 1.0)
     return start_a + s[:, None] * along_a, start_b + t[:, None] * along_b
+
+
+def depths(first: Array, one: Capsules, second: Array, two: Capsules) -> Array:
+    """(T,) metres of the deepest overlap of capsules on joints (T, J, 3) of one person with the other's; 0 for none.
+
+    The overlap of two capsules is the sum of their radii less the distance of their middle lines. Pairs whose bounding
+    spheres do not meet are left out before any distance is computed.
+    """
+    ends = first[:, one.starts], first[:, one.ends], second[:, two.starts], second[:, two.ends]
+    reach_a, reach_b = (
+        np.linalg.norm(end - start, axis=-1) / 2 + radii
+        for start, end, radii in ((*ends[:2], one.radii), (*ends[2:], two.radii))
+    )
+    # |m_a − m_b|² of all pairs as one matrix product; middles are taken from a nearby origin so that
+    # float32 loses nothing.
+    origin = 0.5 * (first[:, :1] + second[:, :1])
+    middle_a, middle_b = (ends[0] + ends[1]) / 2 - origin, (ends[2] + ends[3]) / 2 - origin
+    gap2 = (
+        np.einsum("tci,tci->tc", middle_a, middle_a)[:, :, None]
+        + np.einsum("tci,tci->tc", middle_b, middle_b)[:, None]
+        - 2 * middle_a @ middle_b.swapaxes(1, 2)
+    )
+    frame, i, j = np.nonzero(gap2 < (reach_a[:, :, None] + reach_b[:, None]) ** 2)
+    found = np.zeros(len(first))
+    if len(frame):
+        distance = segment_segment_distance(ends[0][frame, i], ends[1][frame, i], ends[2][frame, j], ends[3][frame, j])
+        np.maximum.at(found, frame, one.radii[i] + two.radii[j] - distance)
+    return found

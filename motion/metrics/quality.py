@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import Duet
+from motion import SMPL22, Duet
+from motion.cleaning import ANKLE_HEIGHT, TOE_HEIGHT
 from motion.looks import size_of
+from motion.transforms import facing
+from motion.vectors import wrapped
 
-from .bodies import capsules, segment_segment_distance
+from .bodies import capsules, depths, sideless
 
 Array = NDArray[np.floating]
 
-TOE_HEIGHT, ANKLE_HEIGHT = 0.05, 0.12
-"""Metres below which a toe and an ankle joint count as on the floor (InterGen, section 4.3, as released)."""
 SKATE_SPEED = 0.5
 """Metres a second above which a planted foot skates: 2.5 cm a frame at 20 fps (Karunratanakul et al.,
 Guided Motion Diffusion, ICCV 2023, section 5)."""
@@ -104,29 +106,146 @@ class Penetration:
 def penetration(duet: Duet) -> Penetration:
     """Overlap of the two people's capsule bodies (see :func:`~motion.metrics.bodies.capsules`).
 
-    The overlap of two capsules is the sum of their radii less the distance of their axes. Pairs whose
-    bounding spheres do not meet are left out before any distance is computed. A child's body is as thin as it is short.
+    A child's body is as thin as it is short.
     """
     body = capsules(duet.skeleton)
-    radii_a, radii_b = (body.of_size(size_of(look)).radii for look in duet.looks)
-    a, b = duet.positions
-    starts_a, ends_a, starts_b, ends_b = (a[:, body.starts], a[:, body.ends], b[:, body.starts], b[:, body.ends])
-    reach_a = np.linalg.norm(ends_a - starts_a, axis=-1) / 2 + radii_a
-    reach_b = np.linalg.norm(ends_b - starts_b, axis=-1) / 2 + radii_b
-    # |m_a − m_b|² of all pairs as one matrix product; middles are taken from a nearby origin so that
-    # float32 loses nothing.
-    origin = 0.5 * (a[:, :1] + b[:, :1])
-    middle_a, middle_b = (starts_a + ends_a) / 2 - origin, (starts_b + ends_b) / 2 - origin
-    gap2 = (
-        np.einsum("tci,tci->tc", middle_a, middle_a)[:, :, None]
-        + np.einsum("tci,tci->tc", middle_b, middle_b)[:, None]
-        - 2 * middle_a @ middle_b.swapaxes(1, 2)
-    )
-    reach = reach_a[:, :, None] + reach_b[:, None]
-    frame, i, j = np.nonzero(gap2 < reach * reach)
-    depth = np.zeros(duet.num_frames)
-    if len(frame):
-        distance = segment_segment_distance(starts_a[frame, i], ends_a[frame, i], starts_b[frame, j], ends_b[frame, j])
-        np.maximum.at(depth, frame, radii_a[i] + radii_b[j] - distance)
-    depth *= 100
+    one, two = (body.of_size(size_of(look)) for look in duet.looks)
+    depth = 100 * depths(duet.a.positions, one, duet.b.positions, two)
     return Penetration(depth, float(depth.mean()), float(depth.max()))
+
+
+PHYSICAL = {
+    "foot_skate": ("foot skate", "cm/s"),
+    "jerk": ("jerk", "m/s³"),
+    "penetration": ("penetration", "cm"),
+    "bone_drift": ("bone drift", "%"),
+}
+"""Key → (label, unit) of each measure."""
+
+
+def physical(duets: Sequence[Duet]) -> dict[str, float]:
+    """The mean of each measure of :data:`PHYSICAL` over duets."""
+    values = [(foot_skate(duet).speed, jerk(duet), penetration(duet).mean, bone_drift(duet)) for duet in duets]
+    return {key: round(float(mean), 4) for key, mean in zip(PHYSICAL, np.mean(values, axis=0), strict=True)}
+
+
+# ---- How planned a motion looks: feet, jolts, arms that mirror each other, limbs in the other's body
+# Measures of one person on SMPL22, to be compared with those of recorded people who do the same kind of thing.
+DEEP = 0.02
+"""Metres that a limb may be in the other's body: soft tissue gives way as far as that."""
+SLOW = 1.0
+"""Hertz below which people's arms have most of their energy (Hogan and Sternad 2007 hold jerk to be set by tempo)."""
+TWISTED = 60.0
+"""Degrees between shoulders and hips beyond which a spine hardly turns."""
+_TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
+_ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
+_HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
+_SHOULDERS = (SMPL22.index("left_shoulder"), SMPL22.index("right_shoulder"))
+_WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
+_ARMS = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("elbow", "wrist")]
+_LIMBS = ("elbow", "wrist", "knee", "ankle", "foot")
+
+
+@dataclass(frozen=True)
+class Naturalness:
+    """The measures of one person in a scene.
+
+    Attributes:
+        standing_foot: mean speed over the floor of the foot that stands, cm/s; NaN where none does.
+        jerk: 95th percentile over joints and frames of the third derivative, m/s³.
+        fastest: the fastest joint at any frame, m/s.
+        mirror_gap: mean distance between one wrist and the mirror image of the other, cm.
+        slow_arms: share of the energy of elbows and wrists beside the pelvis under 1 Hz, 0 to 1.
+        twisted: share of frames in which shoulders and hips are turned apart by more than 60°, 0 to 1.
+        deep: share of frames with a limb of theirs deeper than 2 cm in the other's body, 0 to 1; NaN if alone.
+    """
+
+    standing_foot: float
+    jerk: float
+    fastest: float
+    mirror_gap: float
+    slow_arms: float
+    twisted: float
+    deep: float = float("nan")
+
+
+def naturalness(positions: Array, fps: float, other: Array | None = None) -> Naturalness:
+    """All measures of a person.
+
+    Args:
+        positions: (T, 22, 3) metres, Y up, floor at 0, T of at least 4.
+        fps: frames a second.
+        other: (T, 22, 3), the other person.
+    """
+    return Naturalness(
+        standing_foot=standing_foot(positions, fps),
+        jerk=jerk_percentile(positions, fps),
+        fastest=float(joint_speeds(positions, fps).max()),
+        mirror_gap=mirror_gap(positions),
+        slow_arms=slow_arms(positions, fps),
+        twisted=float((trunk_twist(positions) > TWISTED).mean()),
+        deep=float("nan") if other is None else float((limb_depth(positions, other) > DEEP).mean()),
+    )
+
+
+def standing_foot(positions: Array, fps: float) -> float:
+    """Mean speed over the floor, in cm/s, of the foot that stands: the slower one of the feet that are on the floor.
+
+    A foot is on the floor where its toe joint is below 5 cm and its ankle joint below 12. No speed is asked of it, so
+    that a foot that glides is not taken for one that swings.
+    """
+    low = (positions[:, _TOES, 1] < TOE_HEIGHT) & (positions[:, _ANKLES, 1] < ANKLE_HEIGHT)
+    speed = np.linalg.norm(np.diff(positions[:, _TOES][..., [0, 2]], axis=0), axis=-1) * fps
+    slower = np.where(low[1:] & low[:-1], speed, np.inf).min(axis=1)
+    slower = slower[np.isfinite(slower)]
+    return float(100 * slower.mean()) if len(slower) else float("nan")
+
+
+def jerk_percentile(positions: Array, fps: float, share: float = 95.0) -> float:
+    """A percentile of the length of the third derivative over all joints and frames, in m/s³."""
+    third = np.diff(positions, n=3, axis=0) * fps**3
+    return float(np.percentile(np.linalg.norm(third, axis=-1), share))
+
+
+def joint_speeds(positions: Array, fps: float) -> Array:
+    """(T - 1, J) metres a second of each joint."""
+    return np.asarray(np.linalg.norm(np.diff(positions, axis=0), axis=-1) * fps)
+
+
+def mirror_gap(positions: Array) -> float:
+    """Mean distance in cm of one wrist from the mirror image of the other in the body's middle plane.
+
+    The plane goes through the pelvis, upright, along the way that the hips face. Two arms that do the same at the same
+    time have 0.
+    """
+    forward = facing(positions)
+    left = np.stack([forward[:, 2], np.zeros(len(forward)), -forward[:, 0]], axis=-1)
+    one, other = (positions[:, wrist] - positions[:, 0] for wrist in _WRISTS)
+    image = other - 2 * np.sum(other * left, axis=-1, keepdims=True) * left
+    return float(100 * np.linalg.norm(one - image, axis=-1).mean())
+
+
+def slow_arms(positions: Array, fps: float) -> float:
+    """Share of the kinetic energy of elbows and wrists, as seen from the pelvis, that is slower than 1 Hz."""
+    beside = positions[:, _ARMS] - positions[:, :1]
+    velocity = np.diff(beside, axis=0) * fps
+    power = (np.abs(np.fft.rfft(velocity, axis=0)) ** 2).sum(axis=(1, 2))
+    slow = np.fft.rfftfreq(len(velocity), 1 / fps) < SLOW
+    return float(power[slow].sum() / max(power.sum(), 1e-12))
+
+
+def trunk_twist(positions: Array) -> Array:
+    """(T,) degrees between the line of the shoulders and that of the hips, as seen from above."""
+    hips, shoulders = (positions[:, left] - positions[:, right] for left, right in (_HIPS, _SHOULDERS))
+    turned = np.arctan2(hips[:, 2], hips[:, 0]) - np.arctan2(shoulders[:, 2], shoulders[:, 0])
+    return np.asarray(np.degrees(np.abs(wrapped(turned))))
+
+
+def limb_depth(person: Array, other: Array) -> Array:
+    """(T,) metres that the forearms, upper arms, shanks, thighs and feet of a person are in the other's body.
+
+    Hands are no part of it: hands that are held are not in each other.
+    """
+    body = capsules(SMPL22)
+    limbs = body.part([sideless(SMPL22.joint_names[end]) in _LIMBS for end in body.ends])
+    return depths(person, limbs, other, body)

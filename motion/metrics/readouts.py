@@ -7,9 +7,8 @@ from typing import Any
 
 from motion import Duet
 
-from .interaction import contact_events, facing_angle, hand_distance, hand_to_body, pelvis_distance
+from .interaction import contact_events, facing_angle, hand_distance, hand_to_body, pelvis_distance, response_delay
 from .quality import bone_drift, foot_skate, jerk, penetration
-from .response import response_delay
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from motion.colours import rgb
+from motion.looks import rgb
 
 from .thing import Mesh
 

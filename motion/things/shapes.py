@@ -1,92 +1,30 @@
-"""The shapes of things, parametric, in metres; each opens with what its frame is."""
+"""The shapes of things, parametric, in metres; each opens with what its frame is.
+
+What a room has stands on the floor on its origin and faces +Z, where the people are. A part that moves is a shape of
+its own.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from motion.errors import InputError
-
-from . import room
-from .thing import Mesh
-
-if TYPE_CHECKING:
-    from .parts import Part
+from .kinds import CURTAIN, DOOR_HEIGHT, DOOR_WIDTH, PANE_HEIGHT, PANE_WIDTH, RAIL, SILL
+from .parts import Part, ball, box, hoop, placed, pleated, rod, slab, turned, upper
 
 OAK, WALNUT, STEEL, CLOTH = "#c79a63", "#8a5a34", "#aab2bd", "#6f8fa8"
 CREAM, RED, GREEN, INK, GOLD = "#efe6d6", "#c8453c", "#4f8a4c", "#2b3240", "#d9ab3f"
-CARD, TEAL, ROSE = "#cfa877", "#3d8f8a", "#d8647f"
-
-FIXTURES = ("door frame", "window", "curtain", "hi-fi")
-"""What stands where it is: people go to it, face it and use it."""
-FURNITURE = ("chair", "bench", "table", "computer", "bed", *FIXTURES)
-"""What stands on the floor: the origin is on the floor in its middle, and its front is +Z."""
-HELD = (
-    "box",
-    "ball",
-    "book",
-    "cup",
-    "phone",
-    "umbrella",
-    "flower",
-    "ring",
-    "sword",
-    "stick",
-    "guitar",
-    "bag",
-    "cigarette",
-)
-"""What hands hold: the origin is where a hand holds it, and its length or its upright is +Y."""
-KINDS = (*FURNITURE, *HELD)
-"""The kinds of things there are."""
-LEAVES = ("sash", "door")
-"""Parts of fixtures that move, beside curtains."""
-
-
-@lru_cache(maxsize=64)
-def shape(kind: str, *, height: float | None = None, width: float | None = None) -> Mesh:
-    """The surface of a kind of thing.
-
-    Args:
-        kind: one of :data:`KINDS` or :data:`LEAVES`.
-        height: metres from the floor to a seat, a table's top, a bed's mattress or the lintel of a door frame, and
-            of a box; the usual by default. Other things have one height.
-        width: metres along X of furniture, of a box, and across a ball; the usual by default.
-
-    Raises:
-        InputError: if there is no such kind, or a size is not between 1 cm and 3 m.
-    """
-    if kind not in (*KINDS, *LEAVES):
-        raise InputError(f"There is no thing {kind!r:.40}: choose one of {', '.join(KINDS)}.")
-    for size in (height, width):
-        if size is not None and not 0.01 <= size <= 3.0:
-            raise InputError(f"A thing of {size:g} m cannot be built: give 0.01 to 3 m.")
-    from .parts import joined  # trimesh takes a while to load
-
-    sizes = {name: value for name, value in (("height", height), ("width", width)) if value is not None}
-    takes = {"height": HIGH, "width": WIDE}
-    return joined(_BUILD[kind](**{name: value for name, value in sizes.items() if kind in takes[name]}))
-
-
-HIGH = ("chair", "bench", "table", "bed", "door frame", "box")
-"""Kinds whose height can be chosen."""
-WIDE = (*HIGH, "ball")
-"""Kinds whose width can be chosen."""
+CARD, TEAL, ROSE, SKY = "#cfa877", "#3d8f8a", "#d8647f", "#9cc7e8"
+PLASTER, WHITE, LINEN = "#ddd5c6", "#f4f1ea", "#b9695a"
 
 
 def _legs(width: float, depth: float, height: float, thick: float, colour: str) -> list[Part]:
-    from .parts import box
-
     x, z = width / 2 - thick / 2, depth / 2 - thick / 2
     return [box((thick, height, thick), (sx * x, height / 2, sz * z), colour) for sx in (-1, 1) for sz in (-1, 1)]
 
 
 def _chair(height: float = 0.45, width: float = 0.44) -> list[Part]:
-    from .parts import box
-
     back = [box((0.035, 0.46, 0.03), (s * (width / 2 - 0.03), height + 0.22, -0.215), OAK, lean=-0.1) for s in (-1, 1)]
     rails = [
         box((width - 0.06, 0.075, 0.018), (0, height + up, -0.215 - 0.1 * (up - 0.22)), OAK, lean=-0.1)
@@ -100,8 +38,6 @@ def _chair(height: float = 0.45, width: float = 0.44) -> list[Part]:
 
 
 def _bench(height: float = 0.45, width: float = 1.4) -> list[Part]:
-    from .parts import box
-
     planks = [box((width, 0.035, 0.115), (0, height - 0.0175, z), OAK) for z in (-0.13, 0.0, 0.13)]
     feet = [
         part
@@ -116,8 +52,6 @@ def _bench(height: float = 0.45, width: float = 1.4) -> list[Part]:
 
 
 def _table(height: float = 0.74, width: float = 1.2) -> list[Part]:
-    from .parts import box
-
     depth = min(0.75, 0.9 * width)
     apron = [box((width - 0.12, 0.07, 0.02), (0, height - 0.07, s * (depth / 2 - 0.07)), WALNUT) for s in (-1, 1)]
     return [
@@ -129,8 +63,6 @@ def _table(height: float = 0.74, width: float = 1.2) -> list[Part]:
 
 def _computer() -> list[Part]:
     """A table with a screen, and a keyboard before the person at it."""
-    from .parts import box, upper
-
     top = 0.74
     return [
         *_table(top),
@@ -142,8 +74,6 @@ def _computer() -> list[Part]:
 
 
 def _bed(height: float = 0.48, width: float = 1.0) -> list[Part]:
-    from .parts import box
-
     return [
         *_legs(width, 2.04, height - 0.24, 0.06, WALNUT),
         box((width, 0.08, 2.04), (0, height - 0.2, 0), WALNUT),
@@ -155,8 +85,6 @@ def _bed(height: float = 0.48, width: float = 1.0) -> list[Part]:
 
 
 def _door_frame(height: float = 2.05, width: float = 0.95) -> list[Part]:
-    from .parts import box
-
     posts = [box((0.09, height, 0.14), (s * (width / 2 + 0.045), height / 2, 0), CREAM) for s in (-1, 1)]
     return [
         *posts,
@@ -167,23 +95,17 @@ def _door_frame(height: float = 2.05, width: float = 0.95) -> list[Part]:
 
 def _box(height: float = 0.28, width: float = 0.38) -> list[Part]:
     """The origin is its middle."""
-    from .parts import box, upper
-
     return upper(box((width, height, 0.75 * width), (0, 0, 0), CARD), "y", "#e2c194")
 
 
 def _ball(width: float = 0.2) -> list[Part]:
     """The origin is its middle; white bands show how it turns."""
-    from .parts import ball, hoop, placed
-
     band = hoop(width / 2, 0.03 * width, "#ffffff", sides=4, steps=24)
     return [ball(width / 2, (0, 0, 0), RED, fine=2), band, placed(band, turns=[(np.pi / 2, "y")])]
 
 
 def _book() -> list[Part]:
     """The origin is the middle of its back cover, its spine on -X, and its front cover towards +Z."""
-    from .parts import box
-
     covers = [box((0.15, 0.215, 0.004), (0, 0, z), TEAL) for z in (0.002, 0.032)]
     return [
         *covers,
@@ -194,8 +116,6 @@ def _book() -> list[Part]:
 
 def _cup() -> list[Part]:
     """The origin is in its middle, its handle towards +X."""
-    from .parts import hoop, placed, turned
-
     wall = [(0, -0.045), (0.032, -0.045), (0.04, -0.035), (0.042, 0.045), (0.037, 0.045), (0.035, -0.036), (0, -0.036)]
     drink = turned([(0.0355, 0.026), (0, 0.026)], "#6b4226", sides=14)
     handle = placed(hoop(0.026, 0.006, CREAM, arc=np.pi, steps=10), (0.036, 0, 0), [(-np.pi / 2, "z")])
@@ -204,15 +124,11 @@ def _cup() -> list[Part]:
 
 def _phone() -> list[Part]:
     """The origin is its middle, the screen towards +Z."""
-    from .parts import box, upper
-
     return upper(box((0.074, 0.15, 0.009), (0, 0, 0), INK), "z", "#9cc7e8")
 
 
 def _umbrella() -> list[Part]:
     """The origin is on its handle, the open canopy 0.75 m above it."""
-    from .parts import hoop, placed, rod, turned
-
     canopy = [
         (0, 0.86),
         (0.18, 0.83),
@@ -233,8 +149,6 @@ def _umbrella() -> list[Part]:
 
 def _flower() -> list[Part]:
     """The origin is on its stem, the blossom 0.3 m above it."""
-    from .parts import ball, placed, rod
-
     petals = [
         placed(
             ball(0.036, (0.042, 0, 0), ROSE, fine=1, stretch=(1, 0.38, 0.8)),
@@ -261,15 +175,11 @@ def _flower() -> list[Part]:
 
 def _ring() -> list[Part]:
     """The origin is its middle; wider than a finger, so that it is seen across a room."""
-    from .parts import ball, hoop
-
     return [hoop(0.014, 0.0028, GOLD), ball(0.007, (0, 0.021, 0), "#bfe3f2", fine=1)]
 
 
 def _sword() -> list[Part]:
     """The origin is in the middle of its grip, the blade along +Y."""
-    from .parts import ball, box, rod, slab
-
     blade = [(-0.022, 0.11), (0.022, 0.11), (0.018, 0.82), (0, 0.92), (-0.018, 0.82)]
     return [
         slab(blade, 0.007, STEEL),
@@ -281,15 +191,11 @@ def _sword() -> list[Part]:
 
 def _stick() -> list[Part]:
     """The origin is a third of its length from one end, the longer part along +Y."""
-    from .parts import rod
-
     return [rod((0, -0.4, 0), (0, 0.8, 0), 0.016, WALNUT), rod((0, -0.41, 0), (0, -0.37, 0), 0.019, INK)]
 
 
 def _guitar() -> list[Part]:
     """The origin is the middle of its body, the neck along +Y and the strings towards +Z."""
-    from .parts import box, slab
-
     angles = np.linspace(0, 2 * np.pi, 20, endpoint=False)
     lower = np.stack([0.19 * np.cos(angles), 0.16 * np.sin(angles) - 0.08], axis=1)
     upper = np.stack([0.14 * np.cos(angles), 0.12 * np.sin(angles) + 0.13], axis=1)
@@ -307,8 +213,6 @@ def _guitar() -> list[Part]:
 
 def _cigarette() -> list[Part]:
     """The origin is between the fingers, the glowing end along +Y."""
-    from .parts import rod
-
     return [
         rod((0, -0.03, 0), (0, 0, 0), 0.0045, OAK, sides=6),
         rod((0, 0, 0), (0, 0.055, 0), 0.0045, "#ffffff", sides=6),
@@ -318,13 +222,85 @@ def _cigarette() -> list[Part]:
 
 def _bag() -> list[Part]:
     """The origin is at the top of its handles; the bag hangs below."""
-    from .parts import box, hoop, placed
-
     handles = [placed(hoop(0.07, 0.007, WALNUT, arc=np.pi, steps=10), (0, -0.07, z)) for z in (-0.03, 0.03)]
     return [box((0.34, 0.2, 0.13), (0, -0.23, 0), TEAL), box((0.345, 0.06, 0.135), (0, -0.1, 0), WALNUT), *handles]
 
 
-_BUILD: dict[str, Callable[..., list[Part]]] = {
+def window() -> list[Part]:
+    """A piece of wall with an opening for two sashes, a sill, and a curtain rail before it."""
+    side, top = PANE_WIDTH + 0.08, SILL + PANE_HEIGHT
+    posts = [box((0.16, PANE_HEIGHT, 0.12), (s * side, SILL + PANE_HEIGHT / 2, 0), PLASTER) for s in (-1, 1)]
+    ends = [box((0.05, 0.05, 0.05), (s * 1.24, RAIL, 0.14), WALNUT) for s in (-1, 1)]
+    return [
+        box((2 * side + 0.16, SILL, 0.12), (0, SILL / 2, 0), PLASTER),
+        box((2 * side + 0.16, 0.18, 0.12), (0, top + 0.09, 0), PLASTER),
+        *posts,
+        box((2 * PANE_WIDTH + 0.14, 0.035, 0.13), (0, SILL, 0.03), OAK),
+        box((2.48, 0.028, 0.028), (0, RAIL, 0.14), WALNUT),
+        *ends,
+    ]
+
+
+def sash() -> list[Part]:
+    """Half a window, hinged about its origin at the lower corner, along +X."""
+    wide, high, thick = PANE_WIDTH, PANE_HEIGHT, 0.05
+    stiles = [box((thick, high, 0.04), (x, high / 2, 0), WHITE) for x in (thick / 2, wide - thick / 2)]
+    rails = [box((wide, thick, 0.04), (wide / 2, y, 0), WHITE) for y in (thick / 2, high - thick / 2)]
+    bars = [
+        box((wide, 0.02, 0.03), (wide / 2, 0.62 * high, 0), WHITE),
+        box((0.02, high, 0.03), (wide / 2, high / 2, 0), WHITE),
+    ]
+    return [*stiles, *rails, *bars]
+
+
+def curtain() -> list[Part]:
+    """One of two curtains in folds, down to the floor, about its middle."""
+    across = np.linspace(-CURTAIN / 2, CURTAIN / 2, 13)
+    folds = np.stack([across, 0.035 * (-1.0) ** np.arange(13)], axis=1)
+    return [pleated(folds, RAIL, 0.012, LINEN)]
+
+
+def door_leaf() -> list[Part]:
+    """A door without its frame, hinged about its origin at the floor, along +X."""
+    wide, high = DOOR_WIDTH, DOOR_HEIGHT
+    panels = [
+        box((0.62 * wide, part * high, 0.055), (wide / 2, y * high, 0), OAK) for y, part in ((0.27, 0.36), (0.72, 0.4))
+    ]
+    knobs = [ball(0.03, (wide - 0.08, 1.02, z), STEEL, fine=1) for z in (-0.07, 0.07)]
+    pin = rod((wide - 0.08, 1.02, -0.07), (wide - 0.08, 1.02, 0.07), 0.01, STEEL, sides=6)
+    return [box((wide, high - 0.02, 0.04), (wide / 2, high / 2, 0), WALNUT), *panels, pin, *knobs]
+
+
+def hifi() -> list[Part]:
+    """A sideboard with an amplifier between two loudspeakers, its knobs at the height of a hand."""
+    top = 0.92
+    legs = [box((0.05, 0.12, 0.05), (sx * 0.48, 0.06, sz * 0.15), INK) for sx in (-1, 1) for sz in (-1, 1)]
+    doors = [box((0.5, top - 0.2, 0.02), (s * 0.265, (top + 0.1) / 2, 0.19), OAK) for s in (-1, 1)]
+    speakers = [
+        part
+        for s in (-1, 1)
+        for part in (
+            box((0.22, 0.38, 0.26), (s * 0.41, top + 0.19, 0), WALNUT),
+            rod((s * 0.41, top + 0.13, 0.12), (s * 0.41, top + 0.13, 0.138), 0.08, INK, sides=16),
+            rod((s * 0.41, top + 0.29, 0.12), (s * 0.41, top + 0.29, 0.138), 0.04, INK, sides=12),
+        )
+    ]
+    knobs = [
+        rod((x, top + 0.09, 0.14), (x, top + 0.09, 0.18), radius, STEEL, sides=12)
+        for x, radius in ((0.16, 0.036), (0.06, 0.018), (-0.02, 0.018))
+    ]
+    return [
+        *legs,
+        box((1.08, top - 0.12, 0.38), (0, (top + 0.12) / 2, 0), WALNUT),
+        *doors,
+        *speakers,
+        box((0.5, 0.18, 0.28), (0, top + 0.09, 0), INK),
+        box((0.14, 0.05, 0.01), (-0.15, top + 0.11, 0.143), SKY),
+        *knobs,
+    ]
+
+
+BUILD: dict[str, Callable[..., list[Part]]] = {
     "chair": _chair,
     "bench": _bench,
     "table": _table,
@@ -344,5 +320,9 @@ _BUILD: dict[str, Callable[..., list[Part]]] = {
     "guitar": _guitar,
     "bag": _bag,
     "cigarette": _cigarette,
-    **room.BUILD,
+    "window": window,
+    "curtain": curtain,
+    "hi-fi": hifi,
+    "sash": sash,
+    "door": door_leaf,
 }

@@ -7,7 +7,7 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from motion.easing import smoothstep
+from motion.smoothing import smoothstep
 from motion.vectors import FLAT, square_frame, unit
 
 from .hands import Hands, level, smoothed

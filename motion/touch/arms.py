@@ -13,7 +13,7 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from motion.cleaning import solve_two_bones
+from motion.limbs import solve_two_bones
 from motion.metrics.bodies import Capsules, capsules, sideless
 from motion.skeleton import ARMS, SMPL22
 from motion.vectors import runs

@@ -14,14 +14,13 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from motion.planted import HIPS, UPPER, over_planted_feet
+from motion.limbs import HIPS, UPPER, across, bent_towards, over_planted_feet
 from motion.skeleton import ARMS, LEGS, SMPL22
 from motion.smoothing import eased_marks, without_flicker
 from motion.transforms import facing
-from motion.vectors import FLAT
+from motion.vectors import FLAT, rotations_by
 
 from .arms import grips_of_hands
-from .bending import across, bent_towards
 
 Array = NDArray[np.floating]
 Hands = tuple[tuple[float, float, float, float], ...]
@@ -168,7 +167,7 @@ def _leaned(own: Array, ahead: Array) -> Array:
     axis = np.cross(arm, goal)
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
     angle = np.arctan2(sine, np.sum(arm * goal, axis=-1, keepdims=True))
-    turn = scipy.spatial.transform.Rotation.from_rotvec(axis / np.maximum(sine, 1e-9) * angle).as_matrix()
+    turn = rotations_by(axis / np.maximum(sine, 1e-9) * angle)
     return own[:, :1] + np.einsum("tij,tkj->tki", turn, own - own[:, :1])
 
 

@@ -7,19 +7,19 @@ once. Noise is filtered by the 1 € filter (Casiez et al., 2012), which lags li
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.errors import InputError
 from motion.ik import pose_bodies
 from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
+from motion.vectors import FLAT
 
-from .gaze import Gaze, gaze
-from .landmarks import INDEX, TORSO, Landmarks
-from .people import LAYOUT, LENSES, TILTS, layout_points
-from .place import LENS, body_tilt, focal_length, towards, translation, upright
+from .landmarks import INDEX, LENS, TORSO, Landmarks
+from .people import LAYOUT, TILTS, check_camera, layout_points
+from .place import body_tilt, focal_length, towards, translation, upright
 
 Array = NDArray[np.floating]
 
@@ -88,10 +88,7 @@ class FollowedPerson:
     """
 
     def __init__(self, *, lens: float = LENS, tilt: float | None = None) -> None:
-        if not LENSES[0] <= lens <= LENSES[1]:
-            raise InputError(f"A lens of {lens:g}° is not possible: give {LENSES[0]:g} to {LENSES[1]:g}.")
-        if tilt is not None and not TILTS[0] <= tilt <= TILTS[1]:
-            raise InputError(f"A tilt of {tilt:g}° is not possible: give {TILTS[0]:g} to {TILTS[1]:g}.")
+        check_camera(lens, tilt)
         self.lens, self.tilt = lens, tilt
         self._measured: list[tuple[Array, Array]] = []
         self._turn: Array | None = None
@@ -182,3 +179,53 @@ def _in_camera(landmarks: Landmarks, pose: int, lens: float) -> tuple[Array, Arr
     depth = translation(world, pixels, seen, focal)[:, 2:]
     z = np.maximum(world[..., 2] + depth, 0.2)
     return np.concatenate([pixels * z[..., None] / focal, z[..., None]], axis=-1)[0], seen[0]
+
+
+# ---- The direction of a face, from ears and nose, the only points of a head that the pose network finds --------------
+_NOSE, _EARS = INDEX["nose"], [INDEX["left_ear"], INDEX["right_ear"]]
+_SEEN = 0.5
+"""A nose that is seen less surely than this is turned away."""
+_LEAST = 0.03
+"""Metres from between the ears to the nose, over the floor, below which a face points nowhere."""
+
+
+@dataclass(frozen=True, eq=False)
+class Gaze:
+    """The direction of a face over the floor.
+
+    Attributes:
+        ahead: (3,) unit vector in the world of the poses, with no part along Y; zero for a face that is not seen.
+        camera: cosine of the angle between it and the way to the camera; -1 for a face that is not seen.
+    """
+
+    ahead: Array
+    camera: float
+
+    def towards(self, way: Array) -> float:
+        """Cosine of the angle between the face and a way (3,) over the floor; 0 where one of them points nowhere."""
+        length = float(np.linalg.norm(way * FLAT))
+        return float(self.ahead @ way) / length if length > 1e-6 else 0.0
+
+
+HIDDEN = Gaze(np.zeros(3), -1.0)
+"""Of a face that is turned away from the camera."""
+
+
+def gaze(points: Array, seen: Array, turn: Array) -> Gaze | None:
+    """The gaze of one person; None where the points do not tell.
+
+    Args:
+        points: (33, 3) metres along the camera's axes, the camera at the origin.
+        seen: (33,) how surely they are seen.
+        turn: (3, 3) from the camera's axes to the world's.
+    """
+    if seen[_NOSE] < _SEEN:
+        return HIDDEN
+    middle = points[_EARS].mean(axis=0)
+    ahead = (points[_NOSE] - middle) @ turn.T * FLAT
+    length = float(np.linalg.norm(ahead))
+    if not length > _LEAST:
+        return None
+    way = -middle @ turn.T * FLAT
+    found = Gaze(ahead / length, 0.0)
+    return Gaze(found.ahead, found.towards(way))

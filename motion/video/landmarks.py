@@ -1,57 +1,42 @@
-"""The 33 points that MediaPipe's pose network finds on a body, and what they say about SMPL22's joints."""
+"""The 33 points that MediaPipe's pose network finds on a body, and what they say about SMPL22's joints.
+
+The browser sends them (``static/camera/landmarks.js``) as JSON with plain numbers and base64 of little-endian whole
+numbers: ``times`` (uint32, milliseconds), ``counts`` (uint8, poses in each picture), ``world`` (int16, millimetres),
+``image`` (int16, 8000 to the picture's side) and ``seen`` (uint8, 255 is sure); beside them ``name`` of the film, and
+``tilt`` and ``lens`` of the camera in degrees, or null. The text is taken to be hostile.
+"""
 
 from __future__ import annotations
 
+import base64
+import binascii
+import json
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.errors import InputError
+
 Array = NDArray[np.floating]
 
+_SIDES = ("left", "right")
 POINTS = (
     "nose",
-    "left_eye_inner",
-    "left_eye",
-    "left_eye_outer",
-    "right_eye_inner",
-    "right_eye",
-    "right_eye_outer",
-    "left_ear",
-    "right_ear",
-    "mouth_left",
-    "mouth_right",
-    "left_shoulder",
-    "right_shoulder",
-    "left_elbow",
-    "right_elbow",
-    "left_wrist",
-    "right_wrist",
-    "left_pinky",
-    "right_pinky",
-    "left_index",
-    "right_index",
-    "left_thumb",
-    "right_thumb",
-    "left_hip",
-    "right_hip",
-    "left_knee",
-    "right_knee",
-    "left_ankle",
-    "right_ankle",
-    "left_heel",
-    "right_heel",
-    "left_foot_index",
-    "right_foot_index",
+    *(f"{side}_eye{part}" for side in _SIDES for part in ("_inner", "", "_outer")),
+    *("left_ear", "right_ear", "mouth_left", "mouth_right"),
+    *(f"{side}_{part}" for part in ("shoulder", "elbow", "wrist", "pinky", "index", "thumb") for side in _SIDES),
+    *(f"{side}_{part}" for part in ("hip", "knee", "ankle", "heel", "foot_index") for side in _SIDES),
 )
 """Names in the network's order (Bazarevsky et al., BlazePose, 2020)."""
 INDEX = {name: index for index, name in enumerate(POINTS)}
-TORSO = [INDEX[name] for name in ("left_shoulder", "right_shoulder", "left_hip", "right_hip")]
-LIMBS = [
-    INDEX[f"{side}_{part}"]
-    for part in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
-    for side in ("left", "right")
-]
+TORSO = [INDEX[f"{side}_{part}"] for part in ("shoulder", "hip") for side in _SIDES]
+LIMBS = [INDEX[f"{side}_{part}"] for part in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for side in _SIDES]
+
+
+LENS = 70.0
+"""Degrees from corner to corner of the picture of an ordinary phone's or laptop's camera."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,3 +65,128 @@ class Landmarks:
     def pixels(self) -> Array:
         """(N, 33, 2) pixels from the upper left corner."""
         return self.image * np.array([self.width, self.height])
+
+
+# ---- What the browser sends ------------------------------------------------------------------------------------------
+VERSION = 1
+LONGEST = 61.0
+"""Seconds; the page offers 60."""
+MOST_FRAMES = 1900
+MOST_POSES = 3
+"""Poses in a picture."""
+MOST_TEXT = 4_000_000
+"""Characters."""
+SIDES = (16, 16384)
+"""Pixels: the smallest and the largest width and height."""
+_IMAGE = 8000.0
+_BROKEN = "The landmarks of the film are damaged: reload the page and choose the film again."
+
+
+@dataclass(frozen=True)
+class Sent:
+    """A film as the page sends it.
+
+    Attributes:
+        landmarks: of its pictures.
+        name: of the film.
+        tilt: degrees by which the camera looked down, None where it is to be found.
+        lens: degrees that it saw from corner to corner.
+    """
+
+    landmarks: Landmarks
+    name: str = "Film"
+    tilt: float | None = None
+    lens: float = LENS
+
+
+def unpack_film(text: str) -> Sent:
+    """The landmarks in a text, and what it says of the camera.
+
+    Raises:
+        InputError: where it is not what the page sends.
+    """
+    if not isinstance(text, str) or len(text) > MOST_TEXT:
+        raise InputError("The landmarks of the film are too long: choose a film of 60 s or less.")
+    try:
+        fields = json.loads(text)
+    except (ValueError, RecursionError):
+        raise InputError(_BROKEN) from None
+    if not isinstance(fields, dict):
+        raise InputError(_BROKEN)
+    lens = camera_number(fields.get("lens"))
+    tilt = camera_number(fields.get("tilt"))
+    return Sent(landmarks_of(fields), _name(fields.get("name")), tilt, LENS if lens is None else lens)
+
+
+def landmarks_of(fields: dict[str, Any]) -> Landmarks:
+    """The landmarks in the fields of a text that was read as JSON.
+
+    Raises:
+        InputError: where they are not what the page sends.
+    """
+    if fields.get("landmarks") != VERSION:
+        raise InputError(_BROKEN)
+    width, height = (_side(fields.get(name)) for name in ("width", "height"))
+    times = _numbers(fields.get("times"), "<u4") / 1000.0
+    counts = _numbers(fields.get("counts"), "u1")
+    if len(times) != len(counts) or not 1 <= len(times) <= MOST_FRAMES or counts.max() > MOST_POSES:
+        raise InputError(_BROKEN)
+    if (np.diff(times) <= 0).any() or times[-1] - times[0] > LONGEST:
+        raise InputError(_BROKEN)
+    poses = int(counts.sum())
+    points = len(POINTS)
+    world, image, seen = (
+        _numbers(fields.get(name), kind) for name, kind in (("world", "<i2"), ("image", "<i2"), ("seen", "u1"))
+    )
+    if (len(world), len(image), len(seen)) != (3 * points * poses, 2 * points * poses, points * poses):
+        raise InputError(_BROKEN)
+    return Landmarks(
+        width,
+        height,
+        times,
+        np.repeat(np.arange(len(counts)), counts),
+        world.reshape(poses, points, 3) / 1000.0,
+        image.reshape(poses, points, 2) / _IMAGE,
+        seen.reshape(poses, points) / 255.0,
+    )
+
+
+def camera_number(value: Any) -> float | None:
+    """A number of degrees, or None where it is not known.
+
+    Raises:
+        InputError: where it is neither.
+    """
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= 1e12:
+        raise InputError(_BROKEN)
+    return float(value)
+
+
+def _name(value: Any) -> str:
+    """A film's name without what cannot be shown, at most 80 characters."""
+    if not isinstance(value, str):
+        return Sent.name
+    shown = "".join(letter for letter in value[:80] if letter.isprintable() and letter not in "/\\")
+    return shown.strip() or Sent.name
+
+
+def _side(value: Any) -> int:
+    if type(value) is not int or not SIDES[0] <= value <= SIDES[1]:
+        raise InputError(_BROKEN)
+    return value
+
+
+def _numbers(value: Any, kind: str) -> np.ndarray:
+    """The whole numbers of a base64 text, as float64 where they are more than a byte."""
+    if not isinstance(value, str):
+        raise InputError(_BROKEN)
+    try:
+        data = base64.b64decode(value, validate=True)
+    except (binascii.Error, ValueError):
+        raise InputError(_BROKEN) from None
+    if len(data) % np.dtype(kind).itemsize:
+        raise InputError(_BROKEN)
+    numbers = np.frombuffer(data, kind)
+    return numbers.astype(np.int64) if kind != "u1" else numbers

@@ -17,13 +17,11 @@ from motion.clip import FPS, Clip, Duet
 from motion.errors import InputError
 from motion.ik import fit_skeleton
 from motion.kinematics import project_to_skeleton
-from motion.layouts import Layout
-from motion.skeleton import SMPL22
+from motion.skeleton import SMPL22, Layout
 from motion.transforms import resample
 
-from .floor import level, steady_path
-from .landmarks import INDEX, Landmarks
-from .place import LENS, body_tilt, centred, focal_length, smooth, towards, translation, upright
+from .landmarks import INDEX, LENS, Landmarks
+from .place import body_tilt, centred, focal_length, level, smooth, steady_path, towards, translation, upright
 from .tracks import Track, tracks_of
 
 Array = NDArray[np.floating]
@@ -108,7 +106,7 @@ def people_of(landmarks: Landmarks, *, lens: float = LENS, tilt: float | None = 
     Raises:
         InputError: where nobody can be followed, or not enough of them is seen.
     """
-    _check(lens, tilt)
+    check_camera(lens, tilt)
     tracks = tracks_of(landmarks)
     if len(tracks[0]) / tracks[0].fps < SHORTEST:
         raise InputError("The film shows somebody for less than half a second: film for longer.")
@@ -135,7 +133,8 @@ def people_of(landmarks: Landmarks, *, lens: float = LENS, tilt: float | None = 
     )
 
 
-def _check(lens: float, tilt: float | None) -> None:
+def check_camera(lens: float, tilt: float | None) -> None:
+    """Raises InputError for a lens or a tilt, in degrees, that is not possible."""
     if not LENSES[0] <= lens <= LENSES[1]:
         raise InputError(f"A lens of {lens:g}° is not possible: give {LENSES[0]:g} to {LENSES[1]:g}.")
     if tilt is not None and not TILTS[0] <= tilt <= TILTS[1]:

@@ -1,5 +1,5 @@
 // What is sent to the server of a film: landmarks as small whole numbers, never a picture.
-// motion/video/packed.py reads it.
+// motion/video/landmarks.py reads it.
 
 const POINTS = 33;
 const clamp = (value, most) => Math.max(-most, Math.min(most, Math.round(value)));

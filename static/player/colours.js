@@ -1,5 +1,5 @@
 // Colours (sRGB) and lamps of both themes. What is exported is plain JSON: Python reads it from this file as well
-// (motion/colours.py, webdemo/view/theme.py), so that films, contact sheets and models look like the page.
+// (motion/looks.py, webdemo/view/theme.py), so that films, contact sheets and models look like the page.
 //
 // `floor` is the floor at the camera's target, `far` the floor in the distance, `horizon` the sky right above it.
 // `people` are the middle, left and right limbs of A's and B's skeletons; `given` those of a motion that is given.

@@ -1,4 +1,4 @@
-// Eyes that turn to what is seen, as far as eyes do without the head: motion/eyes.py in the browser, number for number.
+// Eyes that turn to what is seen, as far as eyes do without the head: motion/body.py in the browser, number for number.
 
 import { apply, smoothStep } from "./pose.js";
 

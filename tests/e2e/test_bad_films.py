@@ -121,11 +121,20 @@ OPENS = "await openFilm(document.querySelector('video'), document.querySelector(
     [
         ("libx264", [0.0], "The video is a single picture or very short"),
         ("libx264", [0.0, 1.0, 75.0], "The video lasts 75 s: cut it to 60 s or less."),
+        ("libx265", [i / 30 for i in range(30)], "This browser cannot show the video (HEVC, for example)"),
         ("libx264", [0.0, 0.1, 0.5, 0.6, 1.4, 2.0], "nothing was wrong"),
     ],
-    ids=["one frame", "75 seconds", "uneven times"],
+    ids=["one frame", "75 seconds", "HEVC", "uneven times"],
 )
 def test_films_of_the_wrong_kind(page: Page, tmp_path: Path, codec: str, times: list[float], sentence: str) -> None:
     film = {"name": "film.mp4", "mimeType": "video/mp4", "buffer": encoded(tmp_path / "film.mp4", codec, times)}
     page.set_input_files("input", film)
     assert sentence in said(page, OPENS)
+
+
+def test_files_that_are_not_even_opened(page: Page) -> None:
+    opens = "await openFilm({ load() { throw new Error('it was opened'); } }, given);"
+    huge = said(page, opens, {"type": "video/mp4", "size": 2e9, "name": "film.mp4"})
+    assert huge == "FilmError: The video has 2.0 GB, more than the 1 GB allowed: cut it to 60 s."
+    photo = said(page, opens, {"type": "image/jpeg", "size": 1000, "name": "me.jpg"})
+    assert photo == "FilmError: This is a photograph: choose a video of a second or more."

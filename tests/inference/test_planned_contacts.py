@@ -11,7 +11,7 @@ from acts.staging.places import Standing
 from acts.staging.score import Move, Score, Touch
 from acts.staging.touches import coming, meeting
 from motion import FPS, SMPL22
-from motion.metrics.naturalness import jerk_percentile
+from motion.metrics.quality import jerk_percentile
 from motion.transforms import heading
 from webdemo.inference import Engine
 from webdemo.inference.method import WEIGHTS

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from motion import FPS, SMPL22
-from motion.metrics.naturalness import standing_foot
+from motion.metrics.quality import standing_foot
 from webdemo.inference import Engine, SceneRequest
 from webdemo.inference.story import Beat, FloorPath, FloorPoint
 from webdemo.inference.story.sentences import split_sentence

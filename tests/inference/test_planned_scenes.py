@@ -10,7 +10,7 @@ import pytest
 from acts.staging.poses import lying, seated, stooping, upright
 from acts.staging.postures import posture_joints, still_down
 from motion import SMPL22
-from motion.metrics.naturalness import mirror_gap
+from motion.metrics.quality import mirror_gap
 from webdemo.inference import Engine, GenerateRequest, SceneRequest
 from webdemo.inference.story import Beat
 

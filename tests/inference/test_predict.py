@@ -12,8 +12,7 @@ import torch
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import save_predictor
 from motion import SMPL22, Clip, Duet, InputError, stacked_positions
-from motion.formats import read
-from motion.formats.one_person import write_clip
+from motion.formats import read, write_clip
 from motion.kinematics import forward_kinematics
 from motion.skeleton import SBU15
 from motion.transforms import heading, heading_matrix

@@ -7,8 +7,7 @@ import pytest
 import torch
 
 from motion import SKELETONS, SMPL22, Clip, Duet, InputError
-from motion.handedness import leading_wrist
-from motion.placement import MEDIAN_START_DISTANCE, Placement
+from motion.placement import MEDIAN_START_DISTANCE, Placement, leading_wrist
 from motion.transforms import heading, heading_matrix, mirrored
 from webdemo.inference import Cancelled, CancelToken, Progress, ReactRequest, Result
 from webdemo.inference.engine import Engine

@@ -7,7 +7,7 @@ import pytest
 
 from motion import SMPL22
 from motion.idling import alive
-from motion.metrics.naturalness import jerk_percentile, slow_arms
+from motion.metrics.quality import jerk_percentile, slow_arms
 from motion.transforms import heading_matrix
 
 J = SMPL22.index
@@ -50,21 +50,6 @@ def test_a_statue_sways_as_recorded_people_do_over_feet_that_stay() -> None:
         assert jerk_percentile(person, FPS) < 15
 
 
-def test_nobody_stands_like_the_other_and_arms_differ() -> None:
-    found = alive(_pair(), FPS, seed=3)
-    mirrored = found[1] @ heading_matrix(np.pi).T + np.array([0.0, 0.0, 1.5])
-    assert np.abs(mirrored - found[0]).max() > 0.02
-    wrists = found[:, :, [J("left_wrist"), J("right_wrist")]] - found[:, :, :1]
-    mirror = wrists[:, :, 0] * [-1.0, 1.0, 1.0] - wrists[:, :, 1]
-    assert (np.linalg.norm(mirror, axis=-1).mean(axis=1) > 0.02).all()
-
-
-def test_the_same_seed_gives_the_same_rest_and_another_one_another() -> None:
-    first, again, other = (alive(_pair(), FPS, seed=seed) for seed in (3, 3, 4))
-    np.testing.assert_array_equal(first, again)
-    assert np.abs(first - other).max() > 0.01
-
-
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_head_follows_somebody_who_walks_round(sign: float) -> None:
     pair = _pair()
@@ -85,17 +70,6 @@ def test_people_who_walk_touch_or_may_not_be_changed_stay_as_they_are() -> None:
     touches[0, :, J("left_wrist")] = touches[1, :, J("head")] + [0.0, 0.0, -0.1]
     np.testing.assert_allclose(alive(touches, FPS), touches, atol=1e-6)
     np.testing.assert_array_equal(alive(pair, FPS, free=np.zeros((2, FRAMES))), pair)
-
-
-def test_a_raised_hand_goes_along_but_makes_its_own_movement() -> None:
-    pair = _pair()
-    shoulder = pair[0, :, J("right_shoulder")]
-    swing = np.stack([-0.2 + 0.1 * np.sin(0.6 * np.arange(FRAMES)), np.full(FRAMES, 0.4), np.zeros(FRAMES)], axis=-1)
-    pair[0, :, J("right_elbow")] = shoulder + np.array([-0.2, 0.1, 0.0])
-    pair[0, :, J("right_wrist")] = shoulder + swing
-    found = alive(pair, FPS, seed=2)[0]
-    waved = np.ptp(np.diff(found[:, J("right_wrist"), 0]))
-    assert waved == pytest.approx(np.ptp(np.diff(pair[0, :, J("right_wrist"), 0])), rel=0.1)
 
 
 def test_hands_of_somebody_who_sits_stay_where_they_lie() -> None:

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from motion import SMPL22
 from motion.cleaning import foot_contacts, plant_feet
 from motion.footsteps import stepping
-from motion.ground import above_floor
 from motion.looks import SIZES
-from motion.sizes import at_sizes, bones_of, floor_scale, of_adults
+from motion.sizes import at_sizes, floor_scale, of_adults
 from motion.skeleton import LEGS
+from motion.swings import above_floor
 from motion.transforms import heading_matrix
-
-from .touch.test_embraces import HUGS, SPINE, _pair
 
 FPS, CHILD = 30.0, SIZES["girl"]
 MIXED = (1.0, CHILD)
@@ -72,20 +69,6 @@ def test_adults_stay_bit_for_bit() -> None:
     assert at_sizes(pair, (1.0, 1.0)) is pair
 
 
-def test_two_children_are_the_scene_in_small() -> None:
-    pair = hand_in_hand()
-    np.testing.assert_allclose(at_sizes(pair, (CHILD, CHILD)), CHILD * pair)
-
-
-@pytest.mark.parametrize("sizes", [MIXED, MIXED[::-1]])
-def test_bones_have_the_lengths_of_their_people(sizes: tuple[float, float]) -> None:
-    pair = _pair()
-    found = lengths(at_sizes(pair, sizes))
-    wanted = lengths(pair) * np.array(sizes)[:, None, None]
-    np.testing.assert_allclose(found, wanted, atol=1e-6)
-    np.testing.assert_allclose(bones_of(sizes)[1], sizes[1] * SMPL22.bone_lengths)
-
-
 def test_feet_that_stand_do_not_slide_and_the_two_go_as_far() -> None:
     pair = hand_in_hand()
     found = at_sizes(pair, MIXED)
@@ -94,13 +77,6 @@ def test_feet_that_stand_do_not_slide_and_the_two_go_as_far() -> None:
         assert found[person, :, [joint for leg in LEGS for joint in leg[2:]], 1].min() > -1e-6
     went = found[:, -1, 0, 2] - found[:, 0, 0, 2]
     np.testing.assert_allclose(went, floor_scale(MIXED) * (pair[0, -1, 0, 2] - pair[0, 0, 0, 2]), atol=0.03)
-
-
-def test_a_child_in_small_alone_would_fall_behind() -> None:
-    """What the test before this one measures does not come by itself."""
-    pair = hand_in_hand()
-    alone = CHILD * pair[1]
-    assert pair[0, -1, 0, 2] - alone[-1, 0, 2] > 0.5
 
 
 def test_hands_that_hold_each_other_still_do() -> None:
@@ -124,27 +100,6 @@ def test_a_hand_on_the_head_is_on_the_childs_head() -> None:
     assert (np.linalg.norm(wrist - head, axis=-1) < 0.22).all()
     assert (wrist[:, 1] > head[:, 1] + 0.08).all(), "from above"
     np.testing.assert_allclose(head[:, 1], CHILD * child[:, J("head"), 1], atol=0.03)
-
-
-def test_an_embrace_is_lower_and_arms_go_round_each_other() -> None:
-    found = at_sizes(_pair(0.45), MIXED)[:, HUGS]
-    gap = np.linalg.norm((found[0, :, SPINE] - found[1, :, SPINE]) * FLAT, axis=-1)
-    for person, other in ((0, 1), (1, 0)):
-        wrists = found[person][:, [J("left_wrist"), J("right_wrist")]]
-        low, high = found[other, :, 0, 1], found[other, :, J("neck"), 1]
-        assert (wrists[..., 1] > low[:, None] - 0.05).all() and (wrists[..., 1] < high[:, None] + 0.12).all()
-        reach = np.linalg.norm((wrists - found[person][:, [SPINE]]) * FLAT, axis=-1)
-        assert (reach > 0.6 * gap[:, None]).all()
-
-
-def test_the_taller_looks_down_at_the_child() -> None:
-    pair = np.stack([np.tile(standing(), (40, 1, 1))] * 2)
-    pair[1] = pair[1] @ heading_matrix(np.pi).T + np.array([0.0, 0.0, 1.0])
-    found = at_sizes(pair, MIXED)
-    nods = [found[p, 20, J("head")] - found[p, 20, J("neck")] for p in (0, 1)]
-    before = pair[0, 20, J("head")] - pair[0, 20, J("neck")]
-    assert nods[0][1] < before[1] - 0.01, "down"
-    assert nods[1][1] > CHILD * before[1] + 0.005, "up"
 
 
 def test_a_child_is_lifted_to_where_the_adults_hands_are() -> None:
@@ -180,3 +135,13 @@ def test_adults_come_back_from_children() -> None:
     np.testing.assert_allclose(back[:, :, 0] * FLAT, pair[:, :, 0] * FLAT, atol=0.01)
     assert (np.abs(back - pair)[:, :, 0, 1] < 0.1).all(), "who has bent their knees keeps them bent"
     np.testing.assert_allclose(of_adults(CHILD * pair, (CHILD, CHILD)), pair)
+
+
+def test_the_taller_looks_down_at_the_child() -> None:
+    pair = np.stack([np.tile(standing(), (40, 1, 1))] * 2)
+    pair[1] = pair[1] @ heading_matrix(np.pi).T + np.array([0.0, 0.0, 1.0])
+    found = at_sizes(pair, MIXED)
+    nods = [found[p, 20, J("head")] - found[p, 20, J("neck")] for p in (0, 1)]
+    before = pair[0, 20, J("head")] - pair[0, 20, J("neck")]
+    assert nods[0][1] < before[1] - 0.01, "down"
+    assert nods[1][1] > CHILD * before[1] + 0.005, "up"

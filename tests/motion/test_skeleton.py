@@ -23,23 +23,3 @@ def test_rest_pose_is_a_symmetric_t_pose() -> None:
     assert joint["left_foot"][2] > joint["left_ankle"][2]  # it faces +Z
     lengths = [np.linalg.norm(rest[child] - rest[parent]) for parent, child in SMPL22.bones]
     np.testing.assert_allclose(lengths, SMPL22.bone_lengths[1:])
-
-
-@pytest.mark.parametrize(
-    ("names", "parents", "offsets", "says"),
-    [
-        (("a", "b"), (-1,), np.zeros((1, 3)), "2 names but 1 parents"),
-        (("a", "b"), (-1, 0), np.zeros((3, 3)), r"must be \(2, 3\)"),
-        (("a", "b"), (1, -1), np.zeros((2, 3)), "before its children"),
-    ],
-)
-def test_what_is_no_tree_is_refused(
-    names: tuple[str, ...], parents: tuple[int, ...], offsets: np.ndarray, says: str
-) -> None:
-    with pytest.raises(ValueError, match=says):
-        Skeleton("test", names, parents, offsets)
-
-
-def test_an_unknown_joint_is_named_with_those_that_exist() -> None:
-    with pytest.raises(KeyError, match=r"tail.*pelvis"):
-        SMPL22.index("tail")

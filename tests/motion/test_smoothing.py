@@ -1,8 +1,10 @@
 """Paths of least jerk."""
 
+from __future__ import annotations
+
 import numpy as np
 
-from motion.smoothing import REACH, frames_from, least_jerk, led
+from motion.smoothing import REACH, least_jerk, led, smoothstep
 
 
 def third(path: np.ndarray) -> float:
@@ -28,13 +30,9 @@ def test_a_path_keeps_its_fixed_frames_and_starts_from_them_without_a_jolt() -> 
     assert third(found) < 0.2 * third(path)
 
 
-def test_nothing_fixed_or_all_fixed_changes_nothing() -> None:
-    path = np.random.default_rng(0).normal(size=(20, 3))
-    for fixed in (np.zeros(20, bool), np.ones(20, bool)):
-        np.testing.assert_array_equal(led(path, fixed), path)
-    np.testing.assert_array_equal(least_jerk(path[:3], np.ones(3)), path[:3])
-
-
-def test_distances_from_marked_frames() -> None:
-    assert frames_from(np.array([0, 0, 1, 0, 0, 0, 1], bool)).tolist() == [2, 1, 0, 1, 2, 1, 0]
-    assert frames_from(np.zeros(4, bool)).tolist() == [4] * 4
+def test_it_rests_at_both_ends_and_rises_between() -> None:
+    values = smoothstep(np.linspace(-1, 7, 801), 1.0, 5.0)
+    assert values.min() == 0 and values.max() == 1 and (np.diff(values) >= 0).all()
+    np.testing.assert_allclose(smoothstep(np.array([1.0, 2.0, 3.0, 5.0]), 1.0, 5.0), [0, 0.15625, 0.5, 1])
+    slope = np.gradient(values, 0.01)
+    assert slope[[200, 600]].max() < 0.01 and abs(slope[400] - 1.5 / 4) < 1e-3

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from acts.staging.poses import kneeling, lying, upright
 from motion import SMPL22
-from motion.swings import lift_swinging_feet
+from motion.swings import above_floor, lift_swinging_feet
 
 Array = NDArray[np.floating]
 FPS = 30.0
@@ -37,20 +38,6 @@ def test_a_toe_passes_over_the_floor_and_is_up_before_the_foot_comes_down() -> N
     assert lifted[:7].max() < 1e-3 and lifted[-7:].max() < 1e-3
 
 
-def test_only_toes_of_swinging_feet_move_and_bones_keep_their_length() -> None:
-    poses = step()
-    lifted = lift_swinging_feet(poses, FPS)
-    others = [joint for joint in range(22) if joint != TOE]
-    np.testing.assert_array_equal(lifted[:, others], poses[:, others])
-    before, after = (np.linalg.norm(p[:, TOE] - p[:, ANKLE], axis=-1) for p in (poses, lifted))
-    np.testing.assert_allclose(after, before, atol=1e-9)
-
-
-def test_longer_steps_raise_the_toe_higher() -> None:
-    short, long = ((lift_swinging_feet(step(length), FPS) - step(length))[:, TOE, 1].max() for length in (0.4, 1.0))
-    assert long > 1.8 * short > 0.01
-
-
 @pytest.mark.parametrize("forwards", [True, False])
 def test_who_steps_backwards_does_not_come_down_on_the_heel(forwards: bool) -> None:
     poses = step(0.9 if forwards else -0.9)
@@ -74,8 +61,47 @@ def test_other_feet_stay(still: Array) -> None:
     np.testing.assert_array_equal(lift_swinging_feet(still, FPS), still)
 
 
-def test_a_toe_that_is_high_enough_stays() -> None:
-    poses = step()
-    poses[10:24, [ANKLE, TOE], 1] += 0.2
-    change = np.abs(lift_swinging_feet(poses, FPS) - poses)
-    assert change[11:23].max() < 0.02
+HERE = np.zeros(2)
+TRUNK = [SMPL22.index(name) for name in ("pelvis", "spine2", "neck", "head", "left_shoulder", "right_hip")]
+LIMBS = [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("elbow", "wrist", "knee")]
+
+
+def lengths(positions: Array) -> Array:
+    parents, children = zip(*SMPL22.bones, strict=True)
+    return np.linalg.norm(positions[:, children] - positions[:, parents], axis=-1)
+
+
+def falling(deep: float) -> Array:
+    """(40, 22, 3) a person who lies and sinks by so many metres and comes back."""
+    sunk = deep * np.sin(np.linspace(0, np.pi, 40)) ** 2
+    return lying(HERE, 0.3)[None] - sunk[:, None, None] * [0.0, 1.0, 0.0]
+
+
+@pytest.mark.parametrize("deep", [0.1, 0.4])
+def test_a_body_that_sinks_into_the_floor_is_raised_without_a_jolt(deep: float) -> None:
+    sunk = falling(deep)
+    raised = above_floor(sunk)
+    assert raised[:, TRUNK, 1].min() > 0.02 > sunk[:, TRUNK, 1].min()
+    assert raised[:, LIMBS, 1].min() > 0.0
+    np.testing.assert_allclose(lengths(raised), lengths(sunk), atol=1e-9)
+    assert np.abs(np.diff(raised[:, 0, 1], n=2)).max() < np.abs(np.diff(sunk[:, 0, 1], n=2)).max() + 0.02
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_only_an_arm_in_the_floor_is_turned(side: str) -> None:
+    pose = lying(HERE, 0.0)
+    shoulder, elbow, wrist = (SMPL22.index(f"{side}_{part}") for part in ("shoulder", "elbow", "wrist"))
+    down = np.array([0.3, -0.9, 0.1]) / np.linalg.norm([0.3, -0.9, 0.1])
+    pose[elbow] = pose[shoulder] + SMPL22.bone_lengths[elbow] * down
+    pose[wrist] = pose[elbow] + SMPL22.bone_lengths[wrist] * down
+    raised = above_floor(np.stack([pose] * 5))
+    assert raised[:, [elbow, wrist], 1].min() > 0.02
+    np.testing.assert_allclose(lengths(raised), lengths(np.stack([pose] * 5)), atol=1e-9)
+    others = [joint for joint in range(22) if joint not in (elbow, wrist)]
+    np.testing.assert_array_equal(raised[:, others], np.stack([pose] * 5)[:, others])
+
+
+@pytest.mark.parametrize("pose", [upright(HERE, 1.0), kneeling(HERE, 0.0), lying(HERE, 2.0)])
+def test_who_is_above_the_floor_stays(pose: Array) -> None:
+    still = np.stack([pose] * 3)
+    np.testing.assert_allclose(above_floor(still), still, atol=1e-9)

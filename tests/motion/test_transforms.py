@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from motion import SMPL22
-from motion.transforms import canonicalize, facing, heading, heading_matrix, mirrored, put_on_floor, resample, turn
+from motion.transforms import canonicalize, facing, heading, mirrored, put_on_floor, resample, turn
+from motion.vectors import square_frame, unit, wrapped
 
 from .bodies import FPS, marching
 
@@ -22,14 +24,6 @@ def test_heading_follows_a_turn(angle):
     assert np.isclose(heading(body), 0)
     assert np.isclose(heading(turn(body, angle)), angle, atol=1e-9)
     np.testing.assert_allclose(facing(turn(body, angle)), [np.sin(angle), 0, np.cos(angle)], atol=1e-9)
-
-
-@quick
-@given(ANGLES, ANGLES)
-def test_headings_add_up(first, second):
-    np.testing.assert_allclose(
-        heading_matrix(first) @ heading_matrix(second), heading_matrix(first + second), atol=1e-12
-    )
 
 
 @quick
@@ -54,14 +48,6 @@ def test_mirror_is_its_own_inverse_and_swaps_hands():
     np.testing.assert_allclose(heading(reflected), -heading(positions), atol=1e-9)
 
 
-def test_floor_is_the_lowest_joint_of_all():
-    positions, _ = marching()
-    people = np.stack([positions + np.array([0, 0.3, 0]), positions - np.array([0, 0.4, 0])])
-    floored = put_on_floor(people)
-    assert floored[..., 1].min() == 0
-    np.testing.assert_allclose(floored[0] - floored[1], people[0] - people[1])
-
-
 @quick
 @given(st.sampled_from([24.0, 25.0, 30.0, 50.0, 60.0, 120.0]))
 def test_resampling_keeps_length_and_smooth_motion(fps):
@@ -74,15 +60,31 @@ def test_resampling_keeps_length_and_smooth_motion(fps):
         np.testing.assert_allclose(back, positions[: len(back)], atol=0.003)
 
 
-def test_resampling_short_motion():
-    positions, _ = marching(2)
-    assert len(resample(positions, 30, 60)) == 3
-    assert len(resample(positions[:1], 30, 60)) == 1
-
-
 def test_resampled_motion_runs_through_curves_not_along_chords() -> None:
     def thrown(fps: float) -> np.ndarray:
         times = np.arange(int(fps) + 1) / fps
         return np.stack([times, 2 + 3 * times - 4.9 * times**2, times**3], axis=-1)[:, None]
 
     assert np.allclose(resample(thrown(10), 10, 30), thrown(30), atol=1e-9)
+
+
+def test_floor_is_the_lowest_joint_of_all():
+    positions, _ = marching()
+    people = np.stack([positions + np.array([0, 0.3, 0]), positions - np.array([0, 0.4, 0])])
+    floored = put_on_floor(people)
+    assert floored[..., 1].min() == 0
+    np.testing.assert_allclose(floored[0] - floored[1], people[0] - people[1])
+
+
+def test_a_frame_has_up_as_its_y_and_is_a_rotation() -> None:
+    up, across = np.array([[0.0, 2, 0], [1, 1, 0]]), np.array([[3.0, 5, 0], [0, 1, 1]])
+    frames = square_frame(up, across)
+    assert np.allclose(frames[..., 1], unit(up))
+    assert np.allclose(frames.mT @ frames, np.eye(3)) and np.allclose(np.linalg.det(frames), 1)
+    assert (np.einsum("ni,ni->n", frames[..., 0], across) > 0).all()
+
+
+def test_angles_are_wrapped_to_a_turn_about_zero() -> None:
+    assert wrapped(0.5) == pytest.approx(0.5)
+    assert wrapped(np.pi) == pytest.approx(-np.pi)
+    assert np.allclose(wrapped(np.array([7.0, -4.0, 0.0])), [7 - 2 * np.pi, 2 * np.pi - 4, 0])

@@ -19,8 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_closing, binary_opening, gaussian_filter1d
 
-from motion.cleaning import plant_feet, solve_two_bones
+from motion.cleaning import plant_feet
 from motion.formats.files import replacing
+from motion.limbs import solve_two_bones
 from motion.skeleton import SMPL22
 from motion.transforms import canonicalize, facing
 from motion.vectors import unit

@@ -21,7 +21,7 @@ from torch import Tensor
 from models.diffusion import NoiseSchedule, top_timesteps
 from models.motion_tokens import FEATURES, NUM_CONTACTS
 from models.regennet.compact import LEAD
-from motion.easing import smoothstep
+from motion.smoothing import smoothstep
 
 SHORTEST = 4
 """Rows that are learned at least, beside the ones that come at once with the first frame."""

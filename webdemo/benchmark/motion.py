@@ -1,7 +1,7 @@
 """Measures of planned motion beside the network's own and recorded motion, by kind of act.
 
 ``python -m webdemo benchmark --motion`` makes the sentences of ``motion.toml`` with and without their plans and prints
-medians over people (:mod:`motion.metrics.naturalness`), so that walks are compared with walks. What was recorded is in
+medians over people (:mod:`motion.metrics.quality`), so that walks are compared with walks. What was recorded is in
 ``recorded.json``; ``--recorded FOLDER`` measures it anew.
 """
 
@@ -19,7 +19,7 @@ import numpy as np
 
 from motion import Clip, Duet, InputError
 from motion.formats.files import write_text
-from motion.metrics.naturalness import Naturalness, joint_speeds, naturalness
+from motion.metrics.quality import Naturalness, joint_speeds, naturalness
 
 HERE = Path(__file__).parent
 RECORDED = HERE / "recorded.json"

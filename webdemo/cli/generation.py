@@ -12,7 +12,7 @@ import numpy as np
 
 from acts.plan import Plan, plan_of
 from motion import FPS, Duet, InputError
-from motion.formats.on_rig import check_rig, on_rig
+from motion.formats import check_rig, on_rig
 from webdemo.inference.methods import AUTOMATIC, automatic, methods
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.acting import acted

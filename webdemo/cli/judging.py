@@ -17,8 +17,7 @@ import numpy as np
 from motion import Duet, InputError
 from motion.formats.files import write_text
 from motion.metrics.sentences import Sentence, load_sentences, read_sentences
-from motion.metrics.sentences.kept import Motions
-from motion.metrics.sentences.scores import ALL, score, table
+from motion.metrics.sentences.scores import ALL, Motions, score, table
 from webdemo.inference.method import Method
 from webdemo.inference.methods import method
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
@@ -89,7 +88,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
     ruled = [i for i, sentence in enumerate(sentences) if sentence.rule]
     scores = score([sentences[i] for i in ruled], [duets[i] for i in ruled])
     if len(ruled) < len(sentences):  # the others are measured, not judged
-        from motion.metrics.physical import physical
+        from motion.metrics.quality import physical
 
         scores["physical"] = physical([duet for drawn in duets for duet in drawn])
     weights = digest[:12] or "none"

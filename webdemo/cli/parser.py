@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from motion import Clip, Duet, InputError
-from motion.formats.choices import AXES, ORDERS, ImportChoices
+from motion.formats.recording import AXES, ORDERS, ImportChoices
 from webdemo.inference.method import Task
 from webdemo.inference.methods import AUTOMATIC, method, methods
 from webdemo.inference.requests import ReactRequest, SamplingRequest

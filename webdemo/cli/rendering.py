@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from motion import Clip, Duet, InputError
-from motion.formats.choices import ImportChoices
+from motion.formats.recording import ImportChoices
 
 from .parser import add_reading, reading_choices, with_notes
 

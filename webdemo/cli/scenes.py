@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from motion import Duet, InputError
-from motion.formats.choices import ImportChoices
+from motion.formats.recording import ImportChoices
 from webdemo.inference.requests import SamplingRequest
 from webdemo.inference.story import SceneRequest, read_story, split_sentence
 from webdemo.inference.story.request import MOST_SECONDS

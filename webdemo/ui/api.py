@@ -11,8 +11,7 @@ from typing import Any
 import gradio as gr
 
 from motion import Clip, Duet, InputError
-from motion.formats import ImportChoices, animation_note, read
-from motion.formats.on_rig import check_rig
+from motion.formats import ImportChoices, animation_note, check_rig, read
 from webdemo.inference.methods import AUTOMATIC, methods
 from webdemo.inference.requests import OWN_STEPS, GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.requests.acting import acted

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.body import Body, vertex_normals
-from motion.easing import smoothstep
 from motion.skeleton import Skeleton
+from motion.smoothing import smoothstep
 from motion.vectors import unit
 
 from .camera import Camera

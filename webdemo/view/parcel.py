@@ -14,9 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.body import Body
+from motion.body import Body, Eyes
 from motion.clip import Clip, Duet
-from motion.eyes import Eyes
 from motion.hands import Fingers, Grip
 from motion.skeleton import Skeleton
 from motion.things.thing import Mesh, Thing

@@ -15,10 +15,10 @@ from PIL import Image, ImageDraw, ImageFont
 
 from motion.body import Body, load_body, skin
 from motion.clip import Clip, Duet, stacked_positions
-from motion.easing import smoothstep
 from motion.errors import InputError
 from motion.looks import UNSAID
 from motion.skeleton import SMPL22
+from motion.smoothing import smoothstep
 from motion.things.thing import Thing
 
 from .camera import Camera, sampled

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from motion.colours import Colour, rgb, themes
+from motion.looks import Colour, rgb, themes
 
 Worn = Mapping[str, Colour]
 

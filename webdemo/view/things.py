@@ -12,8 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from motion.body import in_base64
 from motion.clip import Clip, Duet
-from motion.colours import hex_of
 from motion.hands import angles
+from motion.looks import hex_of
 from motion.things import FIXTURES
 from motion.things.thing import Mesh, Thing
 

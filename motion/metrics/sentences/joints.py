@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
@@ -11,6 +12,7 @@ from scipy.ndimage import gaussian_filter1d
 from motion import SMPL22
 from motion.metrics.interaction import palms
 from motion.transforms import facing
+from motion.vectors import FLAT, runs
 
 Array = NDArray[np.floating]
 
@@ -19,6 +21,14 @@ _SMOOTH = 0.15
 _A_CHILD = 0.87
 """Length of the thighs, as a share of an adult's, below which somebody is a child."""
 SIDES = ("left", "right")
+
+
+_LIMBS = ("wrist", "elbow", "knee", "ankle")
+
+
+def flat(vectors: Array, axis: Array) -> Array:
+    """(…, T) metres of vectors (…, T, 3) along an axis over the floor, (T, 2)."""
+    return np.sum(vectors[..., [0, 2]] * axis, axis=-1)
 
 
 class Motion:
@@ -110,6 +120,23 @@ class Motion:
         cos = np.sum(self.forward[who] * self.towards(who), axis=-1)
         return np.degrees(np.arccos(np.clip(cos, -1.0, 1.0)))
 
+    def left(self, who: int) -> Array:
+        """(T, 2) unit vectors over the floor to a person's left."""
+        x, z = self.forward[who].T
+        return np.stack([z, -x], axis=-1)
+
+    def limbs(self, who: int, *, mirrored: bool = False) -> Array:
+        """(T, 8, 3) m/s of wrists, elbows, knees and ankles in the body's own frame (left, up, ahead).
+
+        ``mirrored`` exchanges the sides.
+        """
+        order = SIDES[::-1] if mirrored else SIDES
+        points = np.stack([self.joint(who, f"{side}_{part}") for part in _LIMBS for side in order])
+        points = points - self.joint(who, "pelvis") * FLAT
+        left = flat(points, self.left(who)) * (-1 if mirrored else 1)
+        local = np.stack([left, points[..., 1], flat(points, self.forward[who])], axis=-1)
+        return gaussian_filter1d(np.gradient(local, axis=1), 0.1 * self.fps, axis=1).swapaxes(0, 1) * self.fps
+
     # ---- heights ---------------------------------------------------------------------------------------
     def height(self, who: int) -> Array:
         """(T,) height of the pelvis as a share of its height in standing, which the leg's bones give."""
@@ -133,3 +160,73 @@ class Motion:
         """(T,) metres by which the head is below where it mostly is (its 90th percentile)."""
         head = self.joint(who, "head")[:, 1]
         return np.percentile(head, 90) - head
+
+
+# ---- Stretches of time -----------------------------------------------------------------------------------------------
+Mask = NDArray[np.bool_]
+
+PAUSE = 0.2
+"""Seconds for which something may stop holding and still count as going on."""
+
+
+def stretches(mask: Mask, fps: float, *, pause: float = PAUSE) -> list[tuple[int, int]]:
+    """(first frame, one past the last) of a mask's runs; runs less than ``pause`` seconds apart are one."""
+    found: list[tuple[int, int]] = []
+    for start, stop in runs(np.asarray(mask)):
+        if found and start - found[-1][1] < pause * fps:
+            found[-1] = (found[-1][0], stop)
+        else:
+            found.append((start, stop))
+    return found
+
+
+def keep(mask: Mask, fps: float, holds: Callable[[int, int], bool], *, pause: float = PAUSE) -> Mask:
+    """The stretches of a mask of which ``holds(start, stop)`` is true, pauses filled in."""
+    kept = np.zeros(len(mask), dtype=bool)
+    for start, stop in stretches(mask, fps, pause=pause):
+        if holds(start, stop):
+            kept[start:stop] = True
+    return kept
+
+
+def longest(mask: Mask, fps: float) -> float:
+    """Seconds of the longest stretch."""
+    return max((stop - start for start, stop in stretches(mask, fps)), default=0) / fps
+
+
+# ---- The words of the rules that say what happens at each frame, by name, and how they combine ----------------------
+PREDICATES: dict[str, Callable[..., Mask]] = {}
+"""The predicates by the name that rules use."""
+
+
+def predicate(function: Callable[..., Mask]) -> Callable[..., Mask]:
+    """Adds a predicate to the vocabulary."""
+    PREDICATES[function.__name__] = function
+    return function
+
+
+@predicate
+def both(m: Motion, *masks: Mask) -> Mask:
+    """All of them at once."""
+    return np.logical_and.reduce(masks)
+
+
+@predicate
+def either(m: Motion, *masks: Mask) -> Mask:
+    """At least one of them."""
+    return np.logical_or.reduce(masks)
+
+
+@predicate
+def without(m: Motion, mask: Mask) -> Mask:
+    """The frames where a predicate does not hold."""
+    return ~mask
+
+
+@predicate
+def begins(m: Motion, mask: Mask, seconds: float = 0.3) -> Mask:
+    """The first ``seconds`` of every stretch: a state that is entered, as a beat of its own."""
+    found = np.zeros(m.frames, dtype=bool)
+    for i, j in stretches(mask, m.fps):
+        found[i : min(j, i + round(seconds * m.fps))] = True
+    return found

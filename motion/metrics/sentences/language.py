@@ -13,11 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from . import paths, poses, shapes, small, touches  # noqa: F401 (they fill the vocabulary)
-from .joints import Motion
+from . import paths, poses, shapes, touches  # noqa: F401 (they fill the vocabulary)
+from .joints import PREDICATES, Mask, Motion, longest, stretches
 from .measures import MEASURES
-from .stretches import Mask, longest, stretches
-from .vocabulary import PREDICATES
 
 SLACK = 0.3
 """Seconds by which the middle of a later beat may come before the end of an earlier one."""

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .joints import Array, Motion
-from .stretches import Mask, keep
-from .vocabulary import predicate
+from .joints import Array, Mask, Motion, keep, predicate
 
 # ---- going and standing ----------------------------------------------------------------------------------
 WALK = 0.3
@@ -72,8 +70,7 @@ def sidesteps(m: Motion, who: int, metres: float = 0.3) -> Mask:
 @predicate
 def steps_aside(m: Motion, who: int, way: str = "any", metres: float = 0.25) -> Mask:
     """Goes by ``metres`` or more to the body's own "left" or "right", or to either ("any"), and not ahead."""
-    x, z = m.forward[who].T
-    left = np.sum(m.velocities[who] * np.stack([z, -x], axis=-1), axis=-1)
+    left = np.sum(m.velocities[who] * m.left(who), axis=-1)
     ahead = np.abs(np.sum(m.velocities[who] * m.forward[who], axis=-1))
     rates = {"left": left, "right": -left}
     found = [
@@ -87,9 +84,8 @@ def steps_aside(m: Motion, who: int, way: str = "any", metres: float = 0.25) -> 
 @predicate
 def goes_way(m: Motion, who: int, way: str, metres: float = 0.3) -> Mask:
     """Goes by ``metres`` or more to the "left" or "right" of where the person first faced."""
-    x, z = m.forward[who][0]
     sign = {"left": 1.0, "right": -1.0}[way]
-    return _gained(m, sign * (m.velocities[who] @ np.array([z, -x])), metres, 0.12)
+    return _gained(m, sign * (m.velocities[who] @ m.left(who)[0]), metres, 0.12)
 
 
 @predicate

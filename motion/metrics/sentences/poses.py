@@ -6,9 +6,7 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from scipy.ndimage import gaussian_filter1d
 
-from .joints import SIDES, Array, Motion
-from .stretches import Mask, keep
-from .vocabulary import predicate
+from .joints import SIDES, Array, Mask, Motion, keep, predicate
 
 
 # ---- the body's height -----------------------------------------------------------------------------------

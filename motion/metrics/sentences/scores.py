@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from motion import Duet
+import numpy as np
+
+from motion import FPS, Duet, InputError
+from motion.formats.files import replacing
 from motion.metrics.generation import share
-from motion.metrics.physical import PHYSICAL, physical
+from motion.metrics.quality import PHYSICAL, physical
 
 from .catalogue import Sentence
 
@@ -92,3 +98,34 @@ def table(scores: Mapping[str, Any], beside: Mapping[str, Any] | None = None) ->
         shown = ["–" if value is None else f"{value:.3g}" for value in columns]
         lines.append(f"| {label}, {unit} | {' | '.join(shown)} |")
     return "\n".join(lines) + "\n"
+
+
+# ---- Kept motions, so that a run that was stopped goes on ------------------------------------------------------------
+@dataclass(frozen=True)
+class Motions:
+    """A folder with one ``.npy`` of positions (2, T, 22, 3) for each sentence and seed.
+
+    Attributes:
+        folder: one for every model and sampling.
+    """
+
+    folder: Path
+
+    def path(self, sentence: Sentence, seed: int) -> Path:
+        """The file of a sentence; its name changes with the words and the length."""
+        text = zlib.crc32(f"{sentence.words} {sentence.seconds}".encode())
+        return self.folder / f"{sentence.id}-{text:08x}-{seed}.npy"
+
+    def read(self, sentence: Sentence, seed: int) -> Duet:
+        """One motion; raises InputError if it has not been generated or cannot be read."""
+        path = self.path(sentence, seed)
+        try:
+            positions = np.load(path, allow_pickle=False)
+        except (OSError, ValueError) as error:
+            raise InputError(f"{path.name} is missing or damaged: draw the motions again.") from error
+        return Duet.from_positions(positions, fps=FPS)
+
+    def write(self, sentence: Sentence, seed: int, duet: Duet) -> None:
+        """Keeps one motion."""
+        with replacing(self.path(sentence, seed)) as temporary, temporary.open("wb") as file:
+            np.save(file, duet.positions.astype(np.float32))

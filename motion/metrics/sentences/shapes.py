@@ -1,40 +1,20 @@
-"""Predicates on the shape of a body and on two bodies that move alike: limbs, levels, half turns, unison."""
+"""Predicates on the shape of one body: limbs, levels and half turns, and small movements of head and shoulders."""
 
 from __future__ import annotations
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 from scipy.ndimage import gaussian_filter1d
 
-from .joints import SIDES, Array, Motion
-from .stretches import Mask, keep
-from .touches import to_joints
-from .vocabulary import predicate
-
-
-def _side(values: Mask, side: str) -> Mask:
-    """(2, T) by side to (T,): "any" either one, "both" both, "left" or "right" that one and not the other."""
-    if side in ("any", "both"):
-        return (np.logical_or if side == "any" else np.logical_and).reduce(values)
-    own = SIDES.index(side)
-    return values[own] & ~values[1 - own]
-
-
-def _flat(vectors: Array, axis: Array) -> Array:
-    """(…, T) metres of vectors (…, T, 3) along an axis over the floor, (T, 2)."""
-    return np.sum(vectors[..., [0, 2]] * axis, axis=-1)
-
-
-def _left(m: Motion, who: int) -> Array:
-    """(T, 2) unit vectors to a person's left over the floor."""
-    x, z = m.forward[who].T
-    return np.stack([z, -x], axis=-1)
+from .joints import Array, Mask, Motion, flat, keep, predicate
+from .poses import _lift, _of_side
 
 
 # ---- one body ----------------------------------------------------------------------------------------------
 @predicate
 def hand_over_head(m: Motion, who: int, side: str = "any") -> Mask:
     """A wrist is above the head joint; a named side means that hand alone."""
-    return _side(m.pair(who, "wrist")[..., 1] > m.joint(who, "head")[:, 1], side)
+    return _of_side(m.pair(who, "wrist")[..., 1] > m.joint(who, "head")[:, 1], side)
 
 
 @predicate
@@ -63,7 +43,7 @@ def arms_crossed(m: Motion, who: int, gap: float = 0.2) -> Mask:
 def holds_in_front(m: Motion, who: int, metres: float = 0.45) -> Mask:
     """Both hands before the body as if on one thing: ``metres`` apart at most, above the waist and ahead of it."""
     wrists, pelvis = m.pair(who, "wrist"), m.joint(who, "pelvis")
-    ahead = (_flat(wrists - pelvis, m.forward[who]) > 0.15).all(axis=0)
+    ahead = (flat(wrists - pelvis, m.forward[who]) > 0.15).all(axis=0)
     over = (wrists[..., 1] > pelvis[:, 1]).all(axis=0) & (wrists[..., 1] < m.joint(who, "head")[:, 1]).all(axis=0)
     return ahead & over & (np.linalg.norm(wrists[0] - wrists[1], axis=-1) < metres)
 
@@ -72,7 +52,7 @@ def holds_in_front(m: Motion, who: int, metres: float = 0.45) -> Mask:
 def hands_ahead(m: Motion, who: int, metres: float = 0.15) -> Mask:
     """Both wrists are ``metres`` or more ahead of the pelvis, between the knees and the shoulders."""
     wrists, shoulders, knees = (m.pair(who, part) for part in ("wrist", "shoulder", "knee"))
-    ahead = _flat(wrists - m.joint(who, "pelvis"), m.forward[who]) > metres
+    ahead = flat(wrists - m.joint(who, "pelvis"), m.forward[who]) > metres
     between = (wrists[..., 1] > knees[..., 1]) & (wrists[..., 1] < shoulders[..., 1])
     return np.all(ahead & between, axis=0)
 
@@ -94,21 +74,21 @@ def wrist_over_pelvis(m: Motion, who: int, metres: float = 0.3) -> Mask:
 def reaches_out(m: Motion, who: int, metres: float = 0.35) -> Mask:
     """A wrist is ``metres`` or more from the pelvis towards the other, at any height."""
     arm = m.pair(who, "wrist") - m.joint(who, "pelvis")
-    return np.any(_flat(arm, m.towards(who)) > metres, axis=0)
+    return np.any(flat(arm, m.towards(who)) > metres, axis=0)
 
 
 @predicate
 def arm_level(m: Motion, who: int, side: str = "any") -> Mask:
     """A wrist is 40 cm or more out from its shoulder, in any direction and within 25 cm of its height."""
     arm = m.pair(who, "wrist") - m.pair(who, "shoulder")
-    return _side((np.linalg.norm(arm[..., [0, 2]], axis=-1) > 0.4) & (np.abs(arm[..., 1]) < 0.25), side)
+    return _of_side((np.linalg.norm(arm[..., [0, 2]], axis=-1) > 0.4) & (np.abs(arm[..., 1]) < 0.25), side)
 
 
 @predicate
 def knee_high(m: Motion, who: int, side: str = "any", below: float = 0.2) -> Mask:
     """A knee is no more than ``below`` metres lower than its hip while the pelvis is up."""
     drop = m.pair(who, "hip")[..., 1] - m.pair(who, "knee")[..., 1]
-    return _side(drop < below, side) & (m.height(who) > 0.8)
+    return _of_side(drop < below, side) & (m.height(who) > 0.8)
 
 
 @predicate
@@ -129,14 +109,14 @@ def hand_behind_back(m: Motion, who: int, side: str = "any") -> Mask:
     """A wrist is behind the pelvis, within 30 cm to its side and below the shoulders."""
     arm = m.pair(who, "wrist") - m.joint(who, "pelvis")
     below = m.pair(who, "wrist")[..., 1] < m.pair(who, "shoulder")[..., 1] - 0.1
-    near = np.abs(_flat(arm, _left(m, who))) < 0.3
-    return _side((_flat(arm, m.forward[who]) < -0.08) & near & below, side)
+    near = np.abs(flat(arm, m.left(who))) < 0.3
+    return _of_side((flat(arm, m.forward[who]) < -0.08) & near & below, side)
 
 
 @predicate
 def knees_bent(m: Motion, who: int, degrees: float = 40.0, side: str = "both") -> Mask:
     """The knees are bent by ``degrees`` or more (0 is a straight leg); "any": one of them."""
-    return _side(_knees(m, who) > degrees, side)
+    return _of_side(_knees(m, who) > degrees, side)
 
 
 def _knees(m: Motion, who: int) -> Array:
@@ -151,7 +131,7 @@ def _knees(m: Motion, who: int) -> Array:
 def foot_up(m: Motion, who: int, side: str = "any", metres: float = 0.2) -> Mask:
     """An ankle is ``metres`` or more above the other one, which stands: on one leg."""
     heights = m.pair(who, "ankle")[..., 1]
-    return _side(np.stack([heights[0] - heights[1], heights[1] - heights[0]]) > metres, side)
+    return _of_side(np.stack([heights[0] - heights[1], heights[1] - heights[0]]) > metres, side)
 
 
 @predicate
@@ -170,9 +150,9 @@ def leans(m: Motion, who: int, way: str, degrees: float = 15.0) -> Mask:
     if way == "any":
         return m.lean(who) > degrees
     trunk = m.joint(who, "neck") - m.joint(who, "pelvis")
-    ahead, left, to_other = m.forward[who], _left(m, who), m.towards(who)
+    ahead, left, to_other = m.forward[who], m.left(who), m.towards(who)
     axes = {"forward": ahead, "back": -ahead, "left": left, "right": -left, "towards": to_other, "away": -to_other}
-    return np.degrees(np.arctan2(_flat(trunk, axes[way]), trunk[:, 1])) > degrees
+    return np.degrees(np.arctan2(flat(trunk, axes[way]), trunk[:, 1])) > degrees
 
 
 @predicate
@@ -218,103 +198,139 @@ def goes_ahead(m: Motion, who: int, metres: float = 0.5) -> Mask:
 @predicate
 def moves(m: Motion, who: int, speed: float = 0.35) -> Mask:
     """Is on the way, or moves a limb against the body, at ``speed`` m/s or more over a quarter of a second."""
-    limbs = np.linalg.norm(_limbs(m, who, False), axis=-1).max(axis=1)
+    limbs = np.linalg.norm(m.limbs(who), axis=-1).max(axis=1)
     return gaussian_filter1d(np.maximum(limbs, m.speeds[who]), 0.12 * m.fps) > speed
 
 
-# ---- two bodies --------------------------------------------------------------------------------------------
-@predicate
-def higher(m: Motion, who: int, metres: float = 0.25) -> Mask:
-    """The person's head is ``metres`` or more above the other's."""
-    return m.joint(who, "head")[:, 1] - m.joint(1 - who, "head")[:, 1] > metres
+# ---- Small movements -------------------------------------------------------------------------------------------------
+def _pitch(m: Motion, who: int) -> Array:
+    """(T,) degrees by which the head leans forward, against the trunk."""
+    trunk = m.joint(who, "neck") - m.joint(who, "pelvis")
+    head = m.joint(who, "head") - m.joint(who, "neck")
+    ahead = m.forward[who]
+    angles = [np.degrees(np.arctan2(flat(part, ahead), part[:, 1])) for part in (head, trunk)]
+    return angles[0] - angles[1]
+
+
+def _strokes(path: Array, least: float) -> int:
+    """Counts how often a path (T,) turns back after ``least`` of its unit or more."""
+    return len(scipy.signal.find_peaks(path, prominence=least)[0]) + len(
+        scipy.signal.find_peaks(-path, prominence=least)[0]
+    )
 
 
 @predicate
-def back_to_back(m: Motion, metres: float = 0.7) -> Mask:
-    """Both face away from each other, ``metres`` apart at most."""
-    return (m.off(0) > 120) & (m.off(1) > 120) & (m.distance < metres)
-
-
-@predicate
-def in_front(m: Motion, who: int, degrees: float = 60.0) -> Mask:
-    """Is where the other faces, give or take ``degrees``."""
-    return m.off(1 - who) < degrees
-
-
-@predicate
-def at_others_start(m: Motion, who: int, metres: float = 0.7) -> Mask:
-    """Is within ``metres`` of where the other began, and further from where they themselves began."""
-    there = np.linalg.norm(m.roots[who] - m.roots[1 - who][0], axis=-1)
-    home = np.linalg.norm(m.roots[who] - m.roots[who][0], axis=-1)
-    return (there < metres) & (home > there)
-
-
-@predicate
-def arm_on(m: Motion, who: int, part: str, gap: float = 0.22) -> Mask:
-    """An elbow, wrist or palm is on a part of the other's body."""
-    arms = np.concatenate([m.hands(who), m.pair(who, "elbow")])
-    return to_joints(m, arms, 1 - who, part).min(axis=0) < gap
-
-
-@predicate
-def feet_near(m: Motion, metres: float = 0.3) -> Mask:
-    """A foot of one is within ``metres`` of a foot of the other."""
-    feet = [m.pair(who, "foot") for who in (0, 1)]
-    return np.linalg.norm(feet[0][:, None] - feet[1][None], axis=-1).min(axis=(0, 1)) < metres
-
-
-@predicate
-def shoulders_touch(m: Motion, gap: float = 0.25) -> Mask:
-    """A shoulder of one is within ``gap`` metres of a shoulder of the other, or a back of the other's back."""
-    shoulders = [m.pair(who, "shoulder") for who in (0, 1)]
-    near = np.linalg.norm(shoulders[0][:, None] - shoulders[1][None], axis=-1).min(axis=(0, 1))
-    backs = np.linalg.norm(m.joint(0, "spine3") - m.joint(1, "spine3"), axis=-1)
-    return np.minimum(near, backs) < gap
-
-
-_LIMBS = ("wrist", "elbow", "knee", "ankle")
-
-
-def _limbs(m: Motion, who: int, mirrored: bool) -> Array:
-    """(T, 8, 3) velocities of the limbs in the body's own frame (left, up, ahead), m/s; sides swapped if mirrored."""
-    order = SIDES[::-1] if mirrored else SIDES
-    points = np.stack([m.joint(who, f"{side}_{part}") for part in _LIMBS for side in order])
-    points = points - m.joint(who, "pelvis") * [1, 0, 1]
-    left = _flat(points, _left(m, who)) * (-1 if mirrored else 1)
-    local = np.stack([left, points[..., 1], _flat(points, m.forward[who])], axis=-1)
-    return gaussian_filter1d(np.gradient(local, axis=1), 0.1 * m.fps, axis=1).swapaxes(0, 1) * m.fps
-
-
-@predicate
-def alike(m: Motion, mirrored: bool = False, lag: float = 0.0, least: float = 0.55) -> Mask:
-    """Both move their limbs the same way at once, or b ``lag`` seconds after a.
-
-    The limbs' velocities, each in its own body's frame, have a cosine of ``least`` or more over about a second, and
-    both move. With ``mirrored`` a's left is compared with b's right.
-    """
-    first, second = _limbs(m, 0, mirrored), _limbs(m, 1, False)
-    shift = round(lag * m.fps)
-    if abs(shift) >= m.frames:
-        return np.zeros(m.frames, dtype=bool)
-    first = np.roll(first, shift, axis=0)
-
-    def over(values: Array) -> Array:
-        return gaussian_filter1d(values.sum(axis=(1, 2)), 0.3 * m.fps, mode="nearest")
-
-    energies = over(first**2), over(second**2)
-    cos = over(first * second) / np.sqrt(np.maximum(energies[0] * energies[1], 1e-12))
-    mask = (cos > least) & (np.minimum(*energies) > 0.15)
-    mask[: max(shift, 0)] = False
-    mask[m.frames + min(shift, 0) :] = False
-    return keep(mask, m.fps, lambda i, j: j - i >= 0.5 * m.fps, pause=0.1)
-
-
-@predicate
-def copies(m: Motion, who: int, least: float = 0.55) -> Mask:
-    """Moves as the other did 0.4 to 2 s before, on the same side or mirrored."""
-    sign = 1.0 if who == 1 else -1.0
+def nods(m: Motion, who: int, degrees: float = 6.0) -> Mask:
+    """The head goes down and up again, by ``degrees`` or more against the trunk, while the pelvis stays up."""
     found = np.zeros(m.frames, dtype=bool)
-    for lag in np.arange(0.4, 2.01, 0.2):
-        for mirrored in (False, True):
-            found |= alike(m, mirrored, sign * lag, least)
+    for peak in scipy.signal.find_peaks(_pitch(m, who), prominence=degrees)[0]:
+        found[max(0, peak - round(0.15 * m.fps)) : peak + round(0.15 * m.fps) + 1] = True
+    return found & (m.height(who) > 0.8)
+
+
+@predicate
+def head_down(m: Motion, who: int, degrees: float = 10.0) -> Mask:
+    """The head leans forward by ``degrees`` more than it mostly does, against the trunk."""
+    pitch = _pitch(m, who)
+    return pitch > np.percentile(pitch, 20) + degrees
+
+
+@predicate
+def head_up(m: Motion, who: int, degrees: float = 8.0) -> Mask:
+    """The head leans back by ``degrees`` more than it mostly does, against the trunk."""
+    pitch = _pitch(m, who)
+    return pitch < np.percentile(pitch, 80) - degrees
+
+
+@predicate
+def head_aside(m: Motion, who: int, degrees: float = 10.0) -> Mask:
+    """The head leans to a side by ``degrees`` more than it mostly does, against the trunk."""
+    left = m.left(who)
+    parts = (m.joint(who, "head") - m.joint(who, "neck"), m.joint(who, "neck") - m.joint(who, "pelvis"))
+    angles = [np.degrees(np.arctan2(flat(part, left), part[:, 1])) for part in parts]
+    aside = angles[0] - angles[1]
+    return np.abs(aside - np.median(aside)) > degrees
+
+
+@predicate
+def beats(m: Motion, who: int, side: str = "any", strokes: int = 3, metres: float = 0.05, over: float = -0.6) -> Mask:
+    """A hand goes to and fro ``strokes`` times within 2 s, by ``metres`` or more each time.
+
+    Args:
+        m: the motion.
+        who: the person.
+        side: "left", "right", "both" or "any".
+        strokes: turns of the hand, two for once to and fro.
+        metres: of each stroke, against the shoulder.
+        over: least height of the wrist over the shoulder, metres.
+    """
+    found = []
+    for path, lift in zip(m.pair(who, "wrist") - m.pair(who, "shoulder"), _lift(m, who), strict=True):
+        busy = np.zeros(m.frames, dtype=bool)
+        for axis in path.T:
+            peaks = np.sort(
+                np.concatenate([scipy.signal.find_peaks(sign * axis, prominence=metres)[0] for sign in (1, -1)])
+            )
+            for i, j in zip(peaks, peaks[strokes - 1 :], strict=False):
+                if j - i <= 2.0 * m.fps and np.all(lift[i : j + 1] > over):
+                    busy[i : j + 1] = True
+        found.append(busy)
+    return _of_side(np.stack(found), side)
+
+
+@predicate
+def palms_strike(m: Motion, who: int, metres: float = 0.2, opens: float = 0.05) -> Mask:
+    """The palms of one person strike each other: within ``metres``, and ``opens`` more apart just before and after."""
+    left, right = m.palms[who]
+    gap = np.linalg.norm(left - right, axis=-1)
+    found = np.zeros(m.frames, dtype=bool)
+    for peak in scipy.signal.find_peaks(-gap, prominence=opens)[0]:
+        reach = round(0.5 * m.fps)
+        around = gap[max(0, peak - reach) : peak], gap[peak + 1 : peak + reach + 1]
+        if gap[peak] < metres and all(part.size and part.max() > gap[peak] + opens for part in around):
+            found[max(0, peak - 1) : peak + 2] = True
     return found
+
+
+@predicate
+def shrugs(m: Motion, who: int, rise: float = 0.02) -> Mask:
+    """Both shoulders are ``rise`` metres or more higher over the chest than they mostly are."""
+    over = m.pair(who, "shoulder")[..., 1] - m.joint(who, "spine3")[:, 1]
+    return np.all(over > np.percentile(over, 20, axis=-1, keepdims=True) + rise, axis=0)
+
+
+@predicate
+def twists(m: Motion, who: int, degrees: float = 20.0) -> Mask:
+    """The line of the shoulders is turned by ``degrees`` or more against the line of the hips."""
+    lines = [m.pair(who, part)[0] - m.pair(who, part)[1] for part in ("shoulder", "hip")]
+    angles = [np.arctan2(line[:, 0], line[:, 2]) for line in lines]
+    return np.abs(np.degrees(np.angle(np.exp(1j * (angles[0] - angles[1]))))) > degrees
+
+
+@predicate
+def sways(m: Motion, who: int, metres: float = 0.04, strokes: int = 2) -> Mask:
+    """The trunk or the hips go to a side over the feet, ``strokes`` times by ``metres`` or more: all or none."""
+    feet = m.pair(who, "ankle").mean(axis=0)
+    left = m.left(who)
+    aside = [flat(m.joint(who, name) - feet, left) for name in ("neck", "pelvis")]
+    swung = max(_strokes(path, metres) for path in aside) >= strokes
+    return np.full(m.frames, swung) & (m.speeds[who] < 0.5)
+
+
+@predicate
+def hands_on_hips(m: Motion, who: int, side: str = "both") -> Mask:
+    """The wrists are at the sides of the waist and the elbows further out; "any": one of them."""
+    wrists, elbows, shoulders = (m.pair(who, part) for part in ("wrist", "elbow", "shoulder"))
+    pelvis, left = m.joint(who, "pelvis"), m.left(who)
+    at_waist = np.linalg.norm(wrists - pelvis, axis=-1) < 0.32
+    signs = np.array([1.0, -1.0])[:, None]
+    out = [signs * flat(points - pelvis, left) for points in (elbows, shoulders, wrists)]
+    mask = at_waist & (out[0] > out[1] + 0.06) & (out[0] > out[2] + 0.06) & (out[2] > 0.15)
+    return np.any(mask, axis=0) if side == "any" else np.all(mask, axis=0)
+
+
+@predicate
+def legs_crossed(m: Motion, who: int) -> Mask:
+    """The left ankle is on the right of the right one, for half a second or more."""
+    feet = m.pair(who, "ankle")
+    return keep(flat(feet[0] - feet[1], m.left(who)) < -0.02, m.fps, lambda i, j: j - i >= 0.5 * m.fps)

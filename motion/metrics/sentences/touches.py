@@ -1,60 +1,38 @@
-"""Predicates on touches between two people, and of a person with their own body."""
+"""Predicates on two bodies: touches, of a person's own body too, places beside each other, and unison."""
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
-from .joints import SIDES, Array, Motion
-from .stretches import Mask
-from .vocabulary import predicate
+from .joints import SIDES, Array, Mask, Motion, keep, predicate
 
+_SPINE = ("spine1", "spine2", "spine3")
+
+
+def _sides(*parts: str) -> tuple[str, ...]:
+    return tuple(f"{side}_{part}" for part in parts for side in SIDES)
+
+
+_TRUNK = ("pelvis", *_SPINE, "neck", *_sides("collar", "shoulder"))
 BODY = {
-    "shoulder": ("left_shoulder", "right_shoulder", "left_collar", "right_collar"),
-    "back": ("spine1", "spine2", "spine3", "neck", "left_collar", "right_collar", "left_shoulder", "right_shoulder"),
-    "trunk": (
-        "pelvis",
-        "spine1",
-        "spine2",
-        "spine3",
-        "neck",
-        "left_collar",
-        "right_collar",
-        "left_shoulder",
-        "right_shoulder",
-    ),
-    "chest": ("spine2", "spine3", "left_collar", "right_collar"),
+    "shoulder": _sides("shoulder", "collar"),
+    "back": _TRUNK[1:],
+    "trunk": _TRUNK,
+    "chest": ("spine2", "spine3", *_sides("collar")),
     "head": ("head", "neck"),
     "face": ("head",),
-    "breast": ("spine3", "left_collar", "right_collar"),
-    "hand": ("left_wrist", "right_wrist"),
-    "arm": ("left_elbow", "right_elbow", "left_wrist", "right_wrist"),
-    "elbow": ("left_elbow", "right_elbow"),
-    "wrist": ("left_wrist", "right_wrist"),
-    "hip": ("left_hip", "right_hip"),
-    "waist": ("pelvis", "spine1", "left_hip", "right_hip"),
-    "knee": ("left_knee", "right_knee"),
-    "leg": ("left_hip", "right_hip", "left_knee", "right_knee", "left_ankle", "right_ankle"),
-    "foot": ("left_foot", "right_foot", "left_ankle", "right_ankle"),
-    "body": (
-        "pelvis",
-        "spine1",
-        "spine2",
-        "spine3",
-        "neck",
-        "head",
-        "left_collar",
-        "right_collar",
-        "left_shoulder",
-        "right_shoulder",
-        "left_elbow",
-        "right_elbow",
-        "left_wrist",
-        "right_wrist",
-        "left_hip",
-        "right_hip",
-        "left_knee",
-        "right_knee",
-    ),
+    "breast": ("spine3", *_sides("collar")),
+    "hand": _sides("wrist"),
+    "arm": _sides("elbow", "wrist"),
+    "elbow": _sides("elbow"),
+    "wrist": _sides("wrist"),
+    "hip": _sides("hip"),
+    "waist": ("pelvis", "spine1", *_sides("hip")),
+    "knee": _sides("knee"),
+    "leg": _sides("hip", "knee", "ankle"),
+    "foot": _sides("foot", "ankle"),
+    "body": (*_TRUNK, "head", *_sides("elbow", "wrist", "hip", "knee")),
 }
 """Joints by the words for a part of the body."""
 
@@ -163,3 +141,88 @@ def heads_near(m: Motion, metres: float = 0.4) -> Mask:
 def touches(m: Motion) -> Mask:
     """A hand of either one is on the other's body or hands."""
     return hands_meet(m) | hand_on(m, 0, "body", gap=0.15) | hand_on(m, 1, "body", gap=0.15)
+
+
+# ---- two bodies --------------------------------------------------------------------------------------------
+@predicate
+def higher(m: Motion, who: int, metres: float = 0.25) -> Mask:
+    """The person's head is ``metres`` or more above the other's."""
+    return m.joint(who, "head")[:, 1] - m.joint(1 - who, "head")[:, 1] > metres
+
+
+@predicate
+def back_to_back(m: Motion, metres: float = 0.7) -> Mask:
+    """Both face away from each other, ``metres`` apart at most."""
+    return (m.off(0) > 120) & (m.off(1) > 120) & (m.distance < metres)
+
+
+@predicate
+def in_front(m: Motion, who: int, degrees: float = 60.0) -> Mask:
+    """Is where the other faces, give or take ``degrees``."""
+    return m.off(1 - who) < degrees
+
+
+@predicate
+def at_others_start(m: Motion, who: int, metres: float = 0.7) -> Mask:
+    """Is within ``metres`` of where the other began, and further from where they themselves began."""
+    there = np.linalg.norm(m.roots[who] - m.roots[1 - who][0], axis=-1)
+    home = np.linalg.norm(m.roots[who] - m.roots[who][0], axis=-1)
+    return (there < metres) & (home > there)
+
+
+@predicate
+def arm_on(m: Motion, who: int, part: str, gap: float = 0.22) -> Mask:
+    """An elbow, wrist or palm is on a part of the other's body."""
+    arms = np.concatenate([m.hands(who), m.pair(who, "elbow")])
+    return to_joints(m, arms, 1 - who, part).min(axis=0) < gap
+
+
+@predicate
+def feet_near(m: Motion, metres: float = 0.3) -> Mask:
+    """A foot of one is within ``metres`` of a foot of the other."""
+    feet = [m.pair(who, "foot") for who in (0, 1)]
+    return np.linalg.norm(feet[0][:, None] - feet[1][None], axis=-1).min(axis=(0, 1)) < metres
+
+
+@predicate
+def shoulders_touch(m: Motion, gap: float = 0.25) -> Mask:
+    """A shoulder of one is within ``gap`` metres of a shoulder of the other, or a back of the other's back."""
+    shoulders = [m.pair(who, "shoulder") for who in (0, 1)]
+    near = np.linalg.norm(shoulders[0][:, None] - shoulders[1][None], axis=-1).min(axis=(0, 1))
+    backs = np.linalg.norm(m.joint(0, "spine3") - m.joint(1, "spine3"), axis=-1)
+    return np.minimum(near, backs) < gap
+
+
+@predicate
+def alike(m: Motion, mirrored: bool = False, lag: float = 0.0, least: float = 0.55) -> Mask:
+    """Both move their limbs the same way at once, or b ``lag`` seconds after a.
+
+    The limbs' velocities, each in its own body's frame, have a cosine of ``least`` or more over about a second, and
+    both move. With ``mirrored`` a's left is compared with b's right.
+    """
+    first, second = m.limbs(0, mirrored=mirrored), m.limbs(1)
+    shift = round(lag * m.fps)
+    if abs(shift) >= m.frames:
+        return np.zeros(m.frames, dtype=bool)
+    first = np.roll(first, shift, axis=0)
+
+    def over(values: Array) -> Array:
+        return gaussian_filter1d(values.sum(axis=(1, 2)), 0.3 * m.fps, mode="nearest")
+
+    energies = over(first**2), over(second**2)
+    cos = over(first * second) / np.sqrt(np.maximum(energies[0] * energies[1], 1e-12))
+    mask = (cos > least) & (np.minimum(*energies) > 0.15)
+    mask[: max(shift, 0)] = False
+    mask[m.frames + min(shift, 0) :] = False
+    return keep(mask, m.fps, lambda i, j: j - i >= 0.5 * m.fps, pause=0.1)
+
+
+@predicate
+def copies(m: Motion, who: int, least: float = 0.55) -> Mask:
+    """Moves as the other did 0.4 to 2 s before, on the same side or mirrored."""
+    sign = 1.0 if who == 1 else -1.0
+    found = np.zeros(m.frames, dtype=bool)
+    for lag in np.arange(0.4, 2.01, 0.2):
+        for mirrored in (False, True):
+            found |= alike(m, mirrored, sign * lag, least)
+    return found

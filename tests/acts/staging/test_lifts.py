@@ -8,7 +8,7 @@ import pytest
 from acts.staging.lifts import carried
 from acts.staging.score import Lift
 from motion import SMPL22
-from motion.metrics.naturalness import limb_depth
+from motion.metrics.quality import limb_depth
 
 from .staged_words import beginning, lift, moves
 

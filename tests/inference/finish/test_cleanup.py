@@ -5,8 +5,8 @@ import pytest
 
 from acts.staging.poses import lying
 from motion import SMPL22
-from motion.metrics.naturalness import standing_foot
-from tests.motion.test_pivots import apart, turned
+from motion.metrics.quality import standing_foot
+from tests.motion.test_footsteps import apart, turned
 from webdemo.inference.finish import cleanup
 from webdemo.inference.finish.cleanup import FollowingCleanup, _elbow_pole, clean_person, on_constant_bones
 

@@ -10,7 +10,7 @@ import pytest
 from motion import InputError
 from motion.steering import Goal, Steering
 from motion.transforms import heading, heading_matrix
-from motion.video.gaze import HIDDEN, Gaze
+from motion.video.following import HIDDEN, Gaze
 from tests.inference.people import waver
 from tests.inference.test_reactor import bones_off, engine, folder
 from webdemo.inference.engine import Engine

@@ -9,7 +9,7 @@ from acts.staging.gestures import wrist
 from acts.staging.score import SIDES
 from motion import SMPL22
 from motion.transforms import heading_matrix
-from motion.video.gaze import HIDDEN
+from motion.video.following import HIDDEN
 from webdemo.inference.live.agent import BESIDE, LiveAgent
 from webdemo.inference.live.room import (
     BRIGHT,

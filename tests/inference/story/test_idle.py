@@ -5,7 +5,7 @@ import pytest
 
 from acts.staging.poses import standing
 from motion import SMPL22
-from motion.metrics.naturalness import mirror_gap
+from motion.metrics.quality import mirror_gap
 from motion.transforms import heading
 from tests.acts.staging.staged_words import gesturing, idle, is_planned, score
 

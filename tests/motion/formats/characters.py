@@ -15,22 +15,7 @@ from motion import SMPL22
 from .rigs import RIGS
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (0, 1) for z in (-1, 1)], dtype=float)
-_FACES = np.array(
-    [
-        [0, 1, 3],
-        [0, 3, 2],
-        [4, 6, 7],
-        [4, 7, 5],
-        [0, 4, 5],
-        [0, 5, 1],
-        [2, 3, 7],
-        [2, 7, 6],
-        [0, 2, 6],
-        [0, 6, 4],
-        [1, 5, 7],
-        [1, 7, 3],
-    ]
-)
+_FACES = np.array([int(corner) for corner in "013032467475045051237276026064157173"]).reshape(-1, 3)
 THICK = 0.04
 """Half of a box's width in metres."""
 

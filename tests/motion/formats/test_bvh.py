@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,8 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, InputError, formats
 from motion.formats.bvh import read_bvh
-from motion.formats.choices import ImportChoices
 from motion.formats.importing import import_motion
+from motion.formats.recording import ImportChoices
 from motion.retarget import retarget
 from motion.rigs import match_joints
 from tests.motion.bodies import marching
@@ -38,15 +36,7 @@ def test_rigs_come_back_as_the_motion_they_were(name):
 
 @pytest.mark.parametrize(
     "lacking",
-    [
-        ["left_collar"],
-        ["left_collar", "right_collar"],
-        ["head"],
-        ["neck", "head"],
-        ["left_foot", "right_foot"],
-        ["left_wrist", "right_wrist"],
-        ["spine1", "spine2"],
-    ],
+    [["left_collar"], ["left_collar", "right_collar"], ["left_foot", "right_foot"], ["spine1", "spine2"]],
     ids=" ".join,
 )
 def test_rigs_that_lack_joints(lacking):
@@ -64,11 +54,6 @@ def test_units_are_found(unit):
     rig = read_bvh(bvh_text(ROTATIONS, ROOT, unit=unit).encode())
     assert rig.metres_per_unit == pytest.approx(1 / unit, rel=1e-3)
     np.testing.assert_allclose(rig.positions[:, 0], ROOT, atol=1e-3)
-
-
-def test_files_in_no_unit_become_a_person():
-    rig = read_bvh(bvh_text(ROTATIONS, ROOT, RIGS["mixamo"], unit=17.7).encode())
-    assert 1.4 < np.ptp(retarget(rig).positions[0, :, 1]) < 1.8
 
 
 @settings(max_examples=12, deadline=None)
@@ -179,41 +164,12 @@ def test_a_given_rate_comes_before_what_a_file_says_of_its_own(frame_time):
     assert formats.read(text.encode(), name="x.bvh", choices=ImportChoices(fps=30)).num_frames == 800
 
 
-def test_one_and_two_rotation_channels():
-    text = """HIERARCHY
-ROOT hip
-{
- OFFSET 0 0 0
- CHANNELS 4 Xposition Yposition Zposition Zrotation
- JOINT knee { OFFSET 0 -0.8 0 CHANNELS 2 Xrotation Yrotation
- End Site { OFFSET 0 0 0.4 } } }
-MOTION
-Frames: 2
-Frame Time: 0.04
-1 2 3 90 90 0
-1 2 3 0 0 90"""
-    # CHANNELS on the line of OFFSET is no BVH; the message says where.
-    with pytest.raises(InputError, match="line 6"):
-        read_bvh(text.encode())
-    text = text.replace("0 -0.8 0 CHANNELS", "0 -0.8 0\nCHANNELS").replace("0 0 0.4 }", "0 0 0.4\n }")
-    rig = read_bvh(text.encode())
-    assert rig.joint_names == ("hip", "knee", "knee_end") and rig.fps == 25
-    np.testing.assert_allclose(rig.positions[0, 1] - rig.positions[0, 0], [0.8, 0, 0], atol=1e-9)
-    np.testing.assert_allclose(rig.positions[1, 2] - rig.positions[1, 1], [0.4, 0, 0], atol=1e-9)
-
-
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "latin-1"])
 @pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])
 def test_encodings_and_line_ends(encoding, newline):
     names = {**RIGS["mixamo"], "spine2": "Rücken"}
     data = bvh_text(ROTATIONS, ROOT, names).replace("\n", newline).encode(encoding)
     assert read_bvh(data).num_frames == 40
-
-
-def test_resampling_to_thirty():
-    rig = read_bvh(bvh_text(ROTATIONS, ROOT, RIGS["mixamo"], frame_time=1 / 120).encode())
-    assert rig.fps == 120
-    assert formats.read(bvh_text(ROTATIONS, ROOT, RIGS["mixamo"], frame_time=1 / 120).encode(), name="x.bvh").fps == 30
 
 
 GOOD = bvh_text(ROTATIONS[:3], ROOT[:3], RIGS["mixamo"])
@@ -231,13 +187,6 @@ def test_of_a_faster_file_only_the_frames_that_are_needed_are_placed(file_fps, e
     assert import_motion(data, name="x.bvh").fps == file_fps
 
 
-def test_a_known_rate_decides_which_frames_are_needed():
-    found = import_motion(FAST.encode(), name="x.bvh", choices=ImportChoices(fps=120.0))
-    assert found.fps == 120 and found.people[0].num_frames == -(-(4 * 40 - 2) // 4)
-    truth = retarget(replace(read_bvh(FAST.encode()), fps=120.0)).positions
-    np.testing.assert_allclose(found.people[0].positions, truth, atol=2e-3)
-
-
 def test_numbers_may_stand_on_any_lines():
     head, numbers = GOOD.split("Frame Time: 0.0333333\n")
     words = numbers.split()
@@ -247,46 +196,24 @@ def test_numbers_may_stand_on_any_lines():
     np.testing.assert_allclose(found.positions, read_bvh(GOOD.encode()).positions, atol=1e-6)
 
 
-def test_our_own_joints_are_taken_as_they_are():
-    clip = formats.read(bvh_text(ROTATIONS, ROOT, unit=1.0).encode(), name="own.bvh")
-    np.testing.assert_allclose(clip.positions, POSITIONS, atol=1e-4)
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
         ("", "empty"),
-        ("hello", "not a BVH"),
         (GOOD.split("MOTION")[0], "no MOTION"),
-        (GOOD.replace("HIERARCHY", "HIERARCHIE"), "not a BVH"),
         (GOOD.replace("Frames: 3", "Frames: 1000000000"), "600 s allowed"),
         (GOOD.replace("Frames: 3", "Frames: 9"), "cut short"),
-        (GOOD.replace("Frames: 3", "Frames: none"), "not a number"),
         (GOOD.replace("Frames: 3", "Frames: 0"), "no frames"),
-        (GOOD.replace("Frames: 3", "Bilder: 3"), "Frames: N"),
-        (GOOD.replace("Frame Time: 0.03", "Frame Time: 99990.03"), "Frame Time"),
-        (GOOD.replace("Frame Time: 0.03", "Frame Time: -0.03"), "Frame Time"),
         (GOOD.replace("Frame Time: 0.0333333", "Frame Time: nan"), "Frame Time"),
         (GOOD.replace(LAST, LAST.replace(LAST.split()[7], "nan", 1)), "mixamorig:.*frame 3"),
         (GOOD.replace(LAST, LAST.replace(LAST.split()[3], "abc", 1)), r"line \d+: 'abc'"),
         (GOOD.replace(LAST, LAST[: len(LAST) // 2]), "cut short|not a number"),
         (GOOD.replace("OFFSET 0.000000 0.000000 0.000000", "OFFSET 0 0", 1), "line 4: OFFSET of joint mixamorig:Hips"),
-        (GOOD.replace("OFFSET 0.000000 0.000000 0.000000", "OFFSET 0 0 inf", 1), "usable"),
         (GOOD.replace("CHANNELS 3", "CHANNELS 4", 1), "CHANNELS of joint mixamorig:LeftUpLeg"),
-        (GOOD.replace("Zrotation", "Wrotation", 1), "unknown channel"),
-        (GOOD.replace("Zrotation Xrotation", "Xrotation Xrotation", 1), "different channels"),
         (GOOD.replace("}\nMOTION", "MOTION"), "never closed"),
-        (GOOD.replace("MOTION", "}\nMOTION", 1), "too many"),
-        (GOOD.replace("{", "", 1), "line"),
         (GOOD.replace("mixamorig:RightArm", "mixamorig:LeftArm"), "two joints are named"),
-        (GOOD.replace("ROOT mixamorig:Hips", "ROOT "), "no name"),
-        (GOOD.replace("ROOT", "BONE"), "not understood"),
-        ("HIERARCHY\nMOTION\nFrames: 1\nFrame Time: 0.03\n", "no ROOT"),
-        ("HIERARCHY\nEnd Site\n{\n}\nMOTION\nFrames: 1\nFrame Time: 0.03\n1", "has no parent"),
         ("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n}\nMOTION\nFrames: 1\nFrame Time: 0.03\n1", "CHANNELS"),
-        ("HIERARCHY\nROOT a\n{\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 0.03\n1", "no size"),
         ("HIERARCHY\n" + "".join(f"ROOT j{i}\n{{\n" for i in range(5000)) + "}" * 5000 + "\nMOTION\n", "200 joints"),
-        ("HIERARCHY\n" + "".join(f"ROOT {i}\n{{\n}}\n" for i in range(7)) + "MOTION\n", "7 people"),
     ],
 )
 def test_wrong_files_are_refused_in_one_sentence(text, message):
@@ -295,39 +222,7 @@ def test_wrong_files_are_refused_in_one_sentence(text, message):
     assert "take.bvh" in str(error.value) and "\n" not in str(error.value) and len(str(error.value)) < 250
 
 
-def test_binary_and_large_files_are_refused():
-    with pytest.raises(InputError, match="not a BVH"):
-        read_bvh(bytes(range(256)) * 40)
-    with pytest.raises(InputError, match="50 MB"):
-        read_bvh(b" " * (50 * 2**20 + 1))
-    with pytest.raises(InputError, match="check the path"):
-        read_bvh("no/such/file.bvh")
-
-
 def test_a_rig_without_a_body_names_what_is_missing():
     names = {**RIGS["mixamo"], "left_elbow": "Tentacle"}
     with pytest.raises(InputError, match="left elbow"):
         match_joints(read_bvh(bvh_text(ROTATIONS[:2], ROOT[:2], names).encode()))
-
-
-@settings(max_examples=120, deadline=None)
-@given(st.data())
-def test_damaged_files_never_raise_anything_else(data):
-    raw = bytearray(GOOD.encode())
-    for _ in range(data.draw(st.integers(1, 4))):
-        at = data.draw(st.integers(0, len(raw) - 1))
-        change = data.draw(st.sampled_from(["cut", "flip", "insert", "repeat"]))
-        if change == "cut" and len(raw) > 200:
-            del raw[at : at + data.draw(st.integers(1, 3000))]
-        elif change == "flip":
-            raw[min(at, len(raw) - 1)] = data.draw(st.integers(0, 255))
-        elif change == "insert":
-            raw[at:at] = data.draw(st.sampled_from([b"{", b"}", b"nan ", b"1e999 ", b"JOINT x\n", b"\xff", b"-"]))
-        else:
-            raw += raw[at : at + 500]
-        if not raw:
-            break
-    try:
-        formats.read(bytes(raw), name="fuzz.bvh")
-    except InputError as error:
-        assert len(str(error)) < 400

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from motion import Clip, InputError
 from motion.formats import FORMATS
-from motion.formats.choices import AXES, ORDERS, UNITS, ImportChoices
 from motion.formats.importing import import_motion
-from motion.formats.npz_things import arrays_of
+from motion.formats.npz import arrays_of
+from motion.formats.recording import AXES, ORDERS, UNITS, ImportChoices
 from motion.things import Thing, shape
 from tests.motion.bodies import marching
 from tests.motion.formats.arrays import npy, npz

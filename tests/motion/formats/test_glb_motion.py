@@ -11,17 +11,17 @@ from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, Duet, InputError
 from motion.formats import glb_motion as reader
-from motion.formats import glb_nodes, read, read_everyone, write
-from motion.formats.choices import ImportChoices
+from motion.formats import glb_nodes, on_rig, read, write
 from motion.formats.glb_file import GlbFile, Stored
-from motion.formats.glb_motion import read_glb_people
+from motion.formats.glb_motion import animations_in, read_glb, read_glb_people
 from motion.formats.glb_nodes import Channel
-from motion.formats.importing import import_motion
+from motion.formats.importing import Imported, import_motion
+from motion.formats.recording import Animations, ImportChoices
 from motion.retarget import retarget
 from motion.transforms import mirrored
 from tests.motion.bodies import marching
 
-from .characters import glb_character, glb_motion, in_a_mirror, packed, unpacked
+from .characters import glb_motion, glb_takes, in_a_mirror, packed, unpacked
 from .rigs import RIGS
 
 POSITIONS, ROTATIONS = marching(30)
@@ -56,14 +56,6 @@ def test_joints_stand_where_they_do_in_the_file(rig: str, given: dict[str, Any])
     assert imported.describe() == "22 joints matched, m, Y up, 30 frames a second"
 
 
-def test_a_file_in_centimetres_is_found_to_be() -> None:
-    document, _ = unpacked(glb_motion(ROTATIONS, ROOT, unit=100.0))
-    document["nodes"][0]["scale"] = [1, 1, 1]
-    found = import_motion(glb_motion(ROTATIONS, ROOT, unit=100.0, nodes=document["nodes"]), name="walk.glb")
-    assert found.unit == "cm"
-    assert np.linalg.norm(found.people[0].positions - POSITIONS, axis=-1).max() < 0.1
-
-
 @pytest.mark.parametrize(("fps", "count", "rate"), [(24.0, 37, 24), (60.0, 15, 60), (120.0, 8, 120), (2.0, 436, 30)])
 def test_frame_rates_are_those_of_the_keys(fps: float, count: int, rate: float) -> None:
     found = import_motion(glb_motion(ROTATIONS, ROOT, fps=fps), name="walk.glb")
@@ -87,15 +79,7 @@ def test_several_people_share_one_clock_and_one_world() -> None:
     assert [len(person.positions) for person in people] == [30] * 3
     for number, person in enumerate(people):
         np.testing.assert_allclose(person.positions[:, 0], ROOT + np.array([2 * number, 0, 0]), atol=1e-4)
-    assert len(read_everyone(data, name="crowd.glb").people) == 3
-
-
-def test_a_prop_with_bones_is_no_person() -> None:
-    document, _ = unpacked(glb_motion(ROTATIONS, ROOT, people=2))
-    for node in document["nodes"][25:47]:
-        node["name"] = "rope"
-    nodes = document["nodes"]
-    assert len(read_glb_people(glb_motion(ROTATIONS, ROOT, people=2, nodes=nodes), name="x.glb")) == 1
+    assert len(import_motion(data, name="crowd.glb").people) == 3
 
 
 def test_a_spline_goes_through_its_keys_along_its_tangents() -> None:
@@ -128,17 +112,12 @@ GLTF = unpacked(WALK)[0]
 WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "no animation": ({"animations": []}, "has no animation: export it with one, or put it on"),
     "nothing moves": (_animated(channels=[]), "moves no joint"),
-    "only weights": (_animated(channels=[{"sampler": 0, "target": {"node": 1, "path": "weights"}}]), "moves no joint"),
     "keys of another number": (_sampled(output=0), "do not fit|not read here"),
-    "keys that are not there": (_sampled(input=999), "is not there"),
     "another way": (_sampled(interpolation="BEZIER"), "is not known"),
-    "splines of one value": (_sampled(interpolation="CUBICSPLINE"), "do not fit"),
     "a sampler that is not there": (_animated(samplers=[]), "is not there"),
     "a node nowhere": ({"nodes": [each | {"translation": [1e999, 0, 0]} for each in GLTF["nodes"]]}, "nowhere|damaged"),
-    "a node of no length": ({"nodes": [each | {"translation": [1, 2]} for each in GLTF["nodes"]]}, "nowhere"),
     "no person": ({"nodes": [each | {"name": "rope"} for each in GLTF["nodes"]]}, "no joint that looks like"),
     "everything in one place": ({"nodes": [{**each, "scale": [0, 0, 0]} for each in GLTF["nodes"]]}, "of no length"),
-    "wrong kinds": ({"animations": [7]}, "is damaged"),
     "compression": ({"extensionsRequired": ["EXT_meshopt_compression"]}, "EXT_meshopt"),
 }
 
@@ -151,16 +130,6 @@ def test_what_is_wrong_is_one_sentence(name: str) -> None:
     assert "\n" not in str(error.value) and str(error.value).startswith("walk.glb")
 
 
-def test_a_character_alone_says_where_it_can_be_worn() -> None:
-    with pytest.raises(InputError, match=r"robot\.glb has no animation.*Wear a character"):
-        import_motion(glb_character(), name="robot.glb")
-
-
-def test_compressed_meshes_do_no_harm() -> None:
-    data = glb_motion(ROTATIONS, ROOT, extensionsRequired=["KHR_draco_mesh_compression", "KHR_texture_basisu"])
-    assert len(read_glb_people(data, name="walk.glb")) == 1
-
-
 def test_long_motions_are_refused_before_they_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InputError, match="more than the 600 s allowed"):
         read_glb_people(glb_motion(ROTATIONS[:4], ROOT[:4], fps=1 / 300), name="walk.glb")
@@ -171,13 +140,6 @@ def test_long_motions_are_refused_before_they_are_read(monkeypatch: pytest.Monke
     monkeypatch.setattr(reader, "MAX_NUMBERS", 100)
     with pytest.raises(InputError, match="lower its frame rate"):
         read_glb_people(WALK, name="walk.glb")
-
-
-def test_large_files_are_refused_for_meshes_not_for_frames(tmp_path: Path) -> None:
-    with (tmp_path / "large.glb").open("wb") as file:
-        file.truncate(51 * 2**20)
-    with pytest.raises(InputError, match="reduce its mesh"):
-        read_glb_people(tmp_path / "large.glb")
 
 
 def _shared(joints: int, keys: int, *, apart: int = 0) -> bytes:
@@ -241,15 +203,6 @@ def test_key_frames_that_overlap_are_refused_before_they_are_decoded(monkeypatch
     assert decoding.rows == 0
 
 
-def test_thousands_of_skins_are_refused_before_any_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
-    document, blob = unpacked(WALK)
-    document["skins"] *= 5000
-    decoding = Decoding(monkeypatch)
-    with pytest.raises(InputError, match="it has 5,000 skins"):
-        read_glb_people(packed(document, blob), name="walk.glb")
-    assert decoding.rows == 0
-
-
 BONES = {
     "hip": "UpperLeg",
     "knee": "LowerLeg",
@@ -287,3 +240,79 @@ def test_a_mirrored_armature_walks_forwards() -> None:
     truth = read(glb_motion(ROTATIONS, walk), name="walk.glb")
     assert isinstance(found, Clip) and isinstance(truth, Clip)
     np.testing.assert_allclose(found.positions, mirrored(truth.positions), atol=0.02)
+
+
+FILE = glb_takes(ROTATIONS, ROOT, ["Walk", "glide", "3", "2"])
+NOTE = "Of the 4 animations in x.glb, {} was taken; the others are {}."
+
+
+def limbs(found: Imported) -> float:
+    """Metres by which the wrists move against the pelvis: none where the person glides."""
+    moved = found.people[0].positions - found.people[0].positions[:, :1]
+    return float(np.ptp(moved[:, [20, 21]], axis=0).max())
+
+
+def imported(animation: Any = None, data: bytes = FILE) -> Imported:
+    return import_motion(data, name="x.glb", choices=ImportChoices(animation=animation))
+
+
+def noted(found: Imported) -> str:
+    assert found.animations is not None
+    return found.animations.note
+
+
+def test_the_first_of_several_is_read_and_the_others_are_named() -> None:
+    found = imported()
+    assert limbs(found) > 0.1
+    assert noted(found) == NOTE.format("1 (“Walk”)", "2 (“glide”), 3 (“3”) and 4 (“2”)")
+
+
+@pytest.mark.parametrize(
+    ("choice", "number"),
+    [("Walk", 1), ("walk", 1), (1, 1), ("1", 1), ("glide", 2), (" GLIDE ", 2), (2, 2), ("2", 4), ("3", 3), ("4", 4)],
+)
+def test_another_is_chosen_by_its_name_or_else_by_its_number(choice: Any, number: int) -> None:
+    found = imported(choice)
+    assert found.animations is not None and found.animations.taken == (number,)
+    assert (limbs(found) > 0.1) == (number == 1)
+
+
+@pytest.mark.parametrize("choice", [5, "5", "run", 10**12, "9" * 5000, "²", "\ud800"])
+def test_one_that_is_not_there_is_a_sentence_that_lists_them(choice: Any) -> None:
+    with pytest.raises(InputError) as error:
+        imported(choice)
+    listed = "1 (“Walk”), 2 (“glide”), 3 (“3”) or 4 (“2”)"
+    assert str(error.value) == f"x.glb has no such animation: choose {listed}."
+
+
+def test_people_with_animations_of_their_own_keep_them() -> None:
+    data = glb_motion(ROTATIONS, ROOT, people=2)
+    assert animations_in(data, name="x.glb") == Animations("x.glb", ("walk 0", "walk 1"), (1, 2))
+    assert animations_in(data, name="x.glb").note == "", "both are read"
+    document, blob = unpacked(data)
+    document["animations"].append({**document["animations"][1], "name": "wave 1"})
+    several = packed(document, blob)
+    people, found = read_glb(several, name="x.glb", animation="wave 1")
+    assert len(people) == 2 and found.taken == (1, 3)
+    assert found.note == (
+        "Of the 3 animations in x.glb, 1 (“walk 0”) and 3 (“wave 1”) were taken; the other is 2 (“walk 1”)."
+    )
+
+
+def test_a_partner_stands_in_the_world_of_the_chosen_animation(tmp_path: Path) -> None:
+    high = glb_takes(ROTATIONS, ROOT + np.array([0, 5.0, 0]), ["high"])
+    document, blob = unpacked(high)
+    still = {
+        "name": "low",
+        "samplers": document["animations"][0]["samplers"],
+        "channels": [c for c in document["animations"][0]["channels"] if c["target"]["path"] == "rotation"],
+    }
+    document["animations"].append(still)
+    path = tmp_path / "x.glb"
+    path.write_bytes(packed(document, blob))
+    made = {
+        choice: read_glb(on_rig(Clip(POSITIONS, 30.0), path, animation=choice), name="y.glb")[0][0].positions
+        for choice in (1, "low")
+    }
+    lower = made[1][:, 0, 1].mean() - made["low"][:, 0, 1].mean()
+    assert lower == pytest.approx(5.0 + ROOT[:, 1].mean(), abs=0.3), "the floor is where that animation has it"

@@ -14,12 +14,9 @@ from hypothesis import strategies as st
 
 from motion import InputError
 from motion.character import character_body
-from motion.formats import files
-from motion.formats.glb_file import GlbFile
 from motion.formats.glb_reader import read_character
 
-from .characters import glb_character, packed, unpacked
-from .rigs import RIGS
+from .characters import glb_character
 from .test_fuzz import EDITS, PATIENT, SECONDS
 
 VALID = glb_character()
@@ -44,22 +41,15 @@ def _changed(kind: str, number: int, **fields: Any) -> dict[str, Any]:
 
 WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "a view outside": (_changed("bufferViews", 0, byteOffset=2**30), "outside of the file"),
-    "a view of no size": (_changed("bufferViews", 0, byteLength=-5), "is no size"),
-    "an accessor past its view": (_changed("accessors", 0, byteOffset=10_000), "outside of the file"),
     "too many vertices": (_changed("accessors", 0, count=10**9), "300,000 are the limit"),
-    "another kind": (_changed("accessors", 0, type="VEC2"), "not read here"),
-    "sparse": (_changed("accessors", 0, sparse={"count": 1}), "not read here"),
     "a stride of none": (_changed("bufferViews", 0, byteStride=3), "outside of the file"),
     "another file": ({"buffers": [{"byteLength": 4, "uri": "file:///etc/passwd"}]}, "in other files"),
     "compression": ({"extensionsRequired": ["KHR_draco_mesh_compression"]}, "KHR_draco"),
     "a circle": (_changed("nodes", 21, children=[0]), "circle|two parents"),
     "a node that is not there": (_changed("nodes", 0, children=[999]), "is not there"),
-    "too many nodes": ({"nodes": [{}] * 6000}, "6,000 nodes"),
     "no skin": (_changed("nodes", 22, skin=None), "bound to a skeleton"),
     "no bind pose": ({"skins": [{"joints": list(range(22))}]}, "no bind pose"),
-    "joints twice": ({"skins": [{"joints": [0, 0], "inverseBindMatrices": 4}]}, "no joints"),
     "fewer joints than weights say": ({"skins": [{"joints": [0], "inverseBindMatrices": 4}]}, "not there"),
-    "lists that are none": ({"accessors": {"0": 1}}, "its list of accessors"),
     "wrong kinds": ({"meshes": [7]}, "is damaged"),
 }
 
@@ -77,23 +67,12 @@ def test_what_is_wrong_is_one_sentence(name: str) -> None:
     [
         (b"nothing at all, really", "no glTF binary"),
         (VALID[:-3000], "cut off"),
-        (b"", "is empty"),
         (VALID[:4] + b"\1\0\0\0" + VALID[8:], "version 1"),
     ],
 )
 def test_other_files_are_one_sentence(data: bytes, says: str) -> None:
     with pytest.raises(InputError, match=says):
         read_character(data, name="box.glb")
-
-
-def test_deep_descriptions_are_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    deep = b"[" * 100_000
-    data = struct.pack("<III", 0x46546C67, 2, 20 + len(deep)) + struct.pack("<II", len(deep), 0x4E4F534A) + deep
-    with pytest.raises(InputError, match="its description is not JSON text"):
-        read_character(data, name="box.glb")
-    monkeypatch.setattr(files, "MAX_JSON", 100)
-    with pytest.raises(InputError, match="its description has more"):
-        read_character(VALID, name="box.glb")
 
 
 @pytest.mark.parametrize("rig", ["mixamo", "unreal"])
@@ -124,21 +103,3 @@ def test_damaged_characters_are_read_or_a_sentence(rig: str) -> None:
         assert time.process_time() - began < SECONDS
 
     read()
-
-
-def test_every_known_rig_is_a_character() -> None:
-    for rig in RIGS:
-        assert len(read_character(glb_character(rig), name="x.glb").joint_names) >= 17, rig
-
-
-def test_of_many_skins_only_the_largest_is_decoded(monkeypatch: pytest.MonkeyPatch) -> None:
-    document, blob = unpacked(glb_character())
-    document["skins"] *= 100
-    document["nodes"] += [{"mesh": 0, "skin": number} for number in range(1, 100)]
-    decoded: list[str] = []
-    whole = GlbFile.decoded
-    monkeypatch.setattr(
-        GlbFile, "decoded", lambda file, stored, what: decoded.append(what) or whole(file, stored, what)
-    )
-    read_character(packed(document, blob), name="robot.glb")
-    assert sorted(decoded) == ["bind matrices", "corners of triangles", "joints of vertices", "vertices", "weights"]

@@ -4,16 +4,15 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, InputError, formats
-from motion.formats.choices import ImportChoices
-from motion.formats.files import decode_text
 from motion.formats.importing import import_motion
+from motion.formats.recording import ImportChoices
+from motion.guesses import AXES, likely_skeleton, turn_of
 from motion.kinematics import forward_kinematics
 from motion.retarget import to_smpl
-from motion.up import AXES, turn_of
+from motion.skeleton import K3HI15, LAYOUTS, SBU15, SKELETONS, Skeleton
+from motion.transforms import heading_matrix
 from tests.motion.bodies import marching
 from tests.motion.formats.arrays import npy
-
-from .rigs import RIGS, bvh_text
 
 
 def standing(frames: int = 40) -> np.ndarray:
@@ -80,40 +79,6 @@ def test_a_calibration_pose_that_the_motion_jumps_from_is_left_out(held: int, fp
     assert kept.motion.num_frames == 60 and kept.notes == ()
 
 
-def test_what_is_known_is_believed() -> None:
-    found = import_motion(npy(standing() * 2), name="a.npy", choices=ImportChoices(unit="m", fps=60.0))
-    assert found.fps == 60
-    assert found.motion.positions[0, 15, 1] > 2.5
-
-
-@pytest.mark.parametrize("joints", [15, 17, 22, 24, 25])
-def test_known_counts_of_joints_are_read(joints: int) -> None:
-    from motion import SKELETONS
-    from motion.layouts import LAYOUTS
-
-    body = standing(12)
-    if joints == 24:
-        array = np.concatenate([body, body[:, 20:22]], axis=1)
-    else:
-        name = {15: "sbu15", 17: "cmu17", 22: "smpl22", 25: "ntu25"}[joints]
-        assert SKELETONS[name].num_joints == joints
-        array = np.stack([body[:, max(ours, 0)] for ours in LAYOUTS[name].joints], axis=1)
-    found = import_motion(npy(array), name="a.npy")
-    assert found.motion.skeleton is SMPL22
-    assert np.abs(found.motion.positions[:, 15] - body[:, 15]).max() < 0.25
-
-
-@pytest.mark.parametrize("rig", ["mixamo", "rokoko", "xsens", "motionbuilder", "bandai-namco", "cmu"])
-def test_rigs_show_which_joint_is_which(rig: str) -> None:
-    positions, rotations = marching(20)
-    text = bvh_text(rotations, positions[:, 0], RIGS[rig], unit=100, z_up=True)
-    found = import_motion(text.encode(), name="clip.bvh")
-    assert (found.up, found.unit) == ("z", "cm")
-    named = {ours: theirs for theirs, ours in found.joints}
-    for part in ("pelvis", "left_elbow", "right_knee", "left_wrist", "right_ankle", "head"):
-        assert named[part] == RIGS[rig][part]
-
-
 @pytest.mark.parametrize(
     ("choices", "says"),
     [({"up": "w"}, "choose x, y or z"), ({"unit": "ell"}, "choose one of m"), ({"fps": 0.0}, "not possible")],
@@ -121,18 +86,6 @@ def test_rigs_show_which_joint_is_which(rig: str) -> None:
 def test_wrong_choices_are_refused_in_words(choices: dict, says: str) -> None:
     with pytest.raises(InputError, match=says):
         ImportChoices(**choices)
-
-
-def test_a_rate_that_makes_a_clip_too_long_is_refused() -> None:
-    with pytest.raises(InputError, match="give its true rate"):
-        import_motion(npy(standing(700)), name="a.npy", choices=ImportChoices(fps=1.0))
-
-
-@pytest.mark.parametrize("shape", [(5, 23, 3), (5, 201, 3), (5, 22, 2)])
-def test_unknown_arrays_name_what_is_known(shape: tuple[int, ...]) -> None:
-    with pytest.raises(InputError) as error:
-        import_motion(npy(np.ones(shape, np.float32)), name="a.npy")
-    assert "\n" not in str(error.value)
 
 
 def test_a_recording_that_is_too_long_is_refused_before_its_joints_are_fitted(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -149,9 +102,37 @@ def test_joints_in_one_place_are_no_body() -> None:
             to_smpl(nobody)
 
 
-@pytest.mark.parametrize(
-    ("data", "text"),
-    [(b"\xef", "ï"), (b"\xef\xbb", "ï»"), (b"\xef\xbb\xbfHi", "Hi"), (b"\xff\xfeH\0", "H"), (b"\xe9t\xe9", "été")],
-)
-def test_text_is_decoded_whatever_breaks_off(data: bytes, text: str) -> None:
-    assert decode_text(data, "a.txt", "a text") == text
+def moving(skeleton: Skeleton, scale: float = 1.0) -> np.ndarray:
+    """(40, J, 3) a body with bones of constant length that turn, its sides alike."""
+    rng = np.random.default_rng(0)
+    lengths = {name.replace("right_", "left_"): rng.uniform(0.1, 0.5) for name in skeleton.joint_names}
+    positions = np.zeros((40, skeleton.num_joints, 3))
+    for parent, child in skeleton.bones:
+        way = rng.normal(size=3) + 0.2 * rng.normal(size=(40, 3)).cumsum(0)
+        way /= np.linalg.norm(way, axis=1, keepdims=True)
+        name = skeleton.joint_names[child].replace("right_", "left_")
+        positions[:, child] = positions[:, parent] + lengths[name] * way
+    return scale * positions
+
+
+@pytest.mark.parametrize("skeleton", [SBU15, K3HI15], ids=lambda s: s.name)
+@pytest.mark.parametrize("scale", [1.0, 1000.0])
+def test_bones_that_keep_their_length_decide_between_two_orders(skeleton: Skeleton, scale: float) -> None:
+    assert likely_skeleton(moving(skeleton, scale))[0] is skeleton
+    assert likely_skeleton(np.stack([moving(skeleton, scale)] * 2))[0] is skeleton
+
+
+@pytest.mark.parametrize("name", ["cmu17", "h36m17", "coco17"])
+@pytest.mark.parametrize("turn", [0.0, 1.0, 3.0])
+def test_seventeen_joints_are_of_the_order_in_which_they_are_a_body(name: str, turn: float) -> None:
+    body = marching(30)[0] @ heading_matrix(turn).T
+    positions = np.stack(
+        [body[:, ours if ours >= 0 else SMPL22.index("head")] for ours in LAYOUTS[name].joints], axis=1
+    )
+    assert likely_skeleton(positions) == (SKELETONS[name], None)
+
+
+def test_an_order_that_stays_unsure_is_asked() -> None:
+    assert likely_skeleton(np.zeros((3, 17, 3)))[1] is not None
+    found = import_motion(npy(np.zeros((3, 17, 3))), name="a.npy")
+    assert found.asks and any("Choose the order" in note for note in found.notes)

@@ -13,10 +13,9 @@ import numpy as np
 import pytest
 
 from motion import InputError
-from motion.formats import read_everyone
-from motion.formats.choices import ImportChoices
 from motion.formats.files import MAX_BYTES
 from motion.formats.importing import import_motion
+from motion.formats.recording import ImportChoices
 from tests.motion.bodies import marching
 
 from .characters import packed
@@ -42,29 +41,20 @@ def moving(frames: int, last: str) -> bytes:
 HOSTILE: dict[str, tuple[Callable[[], bytes], str]] = {
     "lines.txt": (lambda: b"1,0.5" + b"\n" * FULL, "90 are needed"),
     "one-line.txt": (lambda: b"1," * (FULL // 2), "too long"),
-    "latin.txt": (lambda: b"\xff" * FULL, "too long"),
     "hours.txt": (lambda: ("0," * 90 + "0\n").encode() * (FULL // 182), "600 s allowed"),
-    "billion.skeleton": (lambda: b"999999999\n" + b"1\n" * (FULL // 2 - 10), "600 s allowed"),
     "joints.skeleton": (lambda: b"17000\n" + b"1\n" * (FULL // 2 - 10), "25 joints"),
     "braces.bvh": (lambda: b"HIERARCHY\n" + b"{" * FULL, "first megabyte"),
-    "offsets.bvh": (lambda: b"HIERARCHY\nROOT a\n{\n" + b"OFFSET 0 0 0\n" * (FULL // 14), "first megabyte"),
-    "spaces.bvh": (lambda: b"HIERARCHY\nROOT a\n{\n" + b" " * FULL, "first megabyte"),
     "lines.bvh": (lambda: b"HIERARCHY\n" + b" \t\n" * (FULL // 3), "first megabyte"),
-    "utf-16.bvh": (lambda: ("HIERARCHY\n" + "a" * (FULL // 2 - 20)).encode("utf-16"), "first megabyte"),
     "frames.bvh": (lambda: moving(2, "0").replace(b"Frames: 2", b"Frames: 1000000000"), "600 s allowed"),
     "late.bvh": (lambda: moving(50_000, "x"), "line 50164: 'x'"),
-    "short.bvh": (lambda: moving(50_000, ""), "cut short"),
     "parts.npz": (lambda: b"PK\x01\x02" * (FULL // 4), "200 parts"),
     "noise.npz": (lambda: b"\x13\x37" * (FULL // 2), "not a whole .npz"),
-    "parts.zip": (lambda: b"PK\x01\x02" * (FULL // 4), "200 parts"),
     "noise.zip": (lambda: b"\x13\x37" * (FULL // 2), "not a whole .zip"),
     "head.trc": (lambda: b"DataRate\t" * (FULL // 9), "head of five lines"),
     "line.trc": (lambda: trc_text(keypoints()).encode() + b"1\t" * (FULL // 2 - 10_000), "is longer than"),
-    "hours.trc": (lambda: trc_text(keypoints()).encode() + b"1\t0\n" * (FULL // 4 - 10_000), "600 s allowed"),
     "noise.c3d": (lambda: b"\x02\x50" * (FULL // 2), "not possible"),
     "lists.glb": (lambda: packed({"asset": {"version": "2.0"}, "extras": [[]] * 900_000}, b""), "100,000 parts"),
     "manifest.npz": (lambda: _with_text("manifest"), "100,000 parts"),
-    "grips.npz": (lambda: _with_text("grips"), "100,000 parts"),
     "noise.npy": (lambda: b"\x93NUMPY\x01\x00\xff\xff" + b"(" * FULL, "not a NumPy"),
 }
 
@@ -165,7 +155,7 @@ def test_the_largest_valid_file_of_a_reader_takes_five_times_the_limit_at_most(n
     tracemalloc.start()
     try:
         with contextlib.suppress(InputError):  # what is said of its body comes after its numbers
-            read_everyone(data, name=name, choices=ImportChoices(fps=60.0))
+            import_motion(data, name=name, choices=ImportChoices(fps=60.0))
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
@@ -174,16 +164,4 @@ def test_the_largest_valid_file_of_a_reader_takes_five_times_the_limit_at_most(n
 
 def test_more_numbers_than_a_motion_may_have_are_refused_before_they_are_kept() -> None:
     with pytest.raises(InputError, match="196 markers in more than"):
-        read_everyone(_markers(196, 35_900), name="many.trc")
-
-
-@pytest.mark.parametrize("ending", [b" ", b"\r"])
-def test_a_motion_on_one_line_is_read_soon(ending: bytes) -> None:
-    """Pandas makes a column of every word of the first line: two megabytes took half a minute, and 0.5 GB."""
-    head, _, numbers = moving(10_000, "0").partition(b"Frame Time: 0.00833333\n")
-    long_line = head + b"Frame Time: 0.00833333\n" + numbers.replace(b"\n", ending)
-    assert len(long_line) > 1.8 * MEGABYTE
-    began = time.process_time()
-    with pytest.raises(InputError, match="no joint that looks like"):  # but it is read to its end
-        import_motion(long_line, name="line.bvh")
-    assert time.process_time() - began < 2.0
+        import_motion(_markers(196, 35_900), name="many.trc")

@@ -9,8 +9,6 @@ import zipfile
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from motion import SKELETONS, SMPL22, Clip, Duet, InputError, formats
@@ -76,11 +74,6 @@ def test_npy_forms():
     np.testing.assert_allclose(formats.read(_npy(raw), name="a.npy").positions[:, 0, 1], raw[:, 2] - floor, atol=1e-6)
 
 
-def test_npy_round_trip(tmp_path):
-    (path,) = formats.write(DUET, tmp_path / "x.npy")
-    np.testing.assert_array_equal(formats.read(path).positions, DUET.positions)
-
-
 def test_amass_is_turned_upright_and_put_on_the_floor():
     to_z_up = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
     rotations = ROTATIONS.copy()
@@ -121,22 +114,13 @@ def _with_header(shape: str) -> bytes:
     ("data", "name", "message"),
     [
         (b"", "x.npz", "empty"),
-        (b"PK\x03\x04" + bytes(50), "x.npz", "not a whole .npz"),
         (_npz(positions=A)[:-200], "x.npz", "not a whole .npz"),
         (_npz(motion=A), "x.npz", "none of 'positions'"),
         (_npz(positions=np.full((2, 3, 22, 3), np.nan)), "x.npz", "NaN"),
         (_npz(positions=np.full((2, 3, 22, 3), 1e9)), "x.npz", "metres"),
-        (_npz(positions=np.zeros((2, 0, 22, 3))), "x.npz", "no frames"),
-        (_npz(positions=np.zeros((3, 5, 22, 3))), "x.npz", "holds 3 people"),
         (_npz(positions=np.zeros((9, 5, 22, 3))), "x.npz", "holds 9 people"),
         (_npz(positions=np.zeros((5, 7, 3))), "x.npz", "7 joints"),
-        (_npz(positions=np.zeros((5, 22, 2))), "x.npz", "shape"),
-        (_npz(positions=np.zeros(5)), "x.npz", "shape"),
-        (_npz(positions=np.array(3.0)), "x.npz", "shape"),
-        (_npz(positions=np.full((2, 22, 3), "a")), "x.npz", "numbers are needed"),
         (_npz(positions=A, fps=np.array(np.nan)), "x.npz", "frame rate"),
-        (_npz(positions=A, fps=np.array([1, 2])), "x.npz", "frame rate"),
-        (_npz(positions=A, fps=np.array("abc")), "x.npz", "frame rate"),
         (_npz(positions=A, joint_names=np.array(["a"] * 22)), "x.npz", "not known"),
         (_npz(positions=DUET.positions, manifest=np.array("{")), "x.npz", "JSON"),
         (_npz(positions=np.zeros((20000, 22, 3))), "x.npz", "600 s"),
@@ -146,65 +130,13 @@ def _with_header(shape: str) -> bytes:
         (_npy(np.array([_Bomb()], dtype=object), allow_pickle=True), "x.npy", "Python objects"),
         (pickle.dumps(_Bomb()), "x.npy", "not a NumPy"),
         (_with_header("(2, 1000000000, 22, 3)"), "x.npy", "another size"),
-        (_with_header("(-1, 22, 3)"), "x.npy", "another size|not a NumPy"),
         (_npy(A)[:-8], "x.npy", "another size"),
-        (_npy(np.zeros((5, 9))), "x.npy", "shape"),
-        (_npy(np.zeros((5, 22, 3), dtype=complex)), "x.npy", "numbers are needed"),
-        (b"hello", "x.npy", "not a NumPy"),
     ],
 )
 def test_wrong_files_are_refused_in_one_sentence(data, name, message):
     with pytest.raises(InputError, match=message) as error:
         formats.read(data, name=name)
     assert "\n" not in str(error.value) and len(str(error.value)) < 300
-
-
-SMALL_NPZ = _npz(positions=A[:2], fps=np.float64(30), joint_names=np.array(SMPL22.joint_names))
-SMALL_NPY = _npy(A[:2])
-
-
-@settings(max_examples=150, deadline=None)
-@given(st.data())
-def test_damaged_files_never_raise_anything_else(data):
-    name, raw = data.draw(st.sampled_from([("f.npz", SMALL_NPZ), ("f.npy", SMALL_NPY)]))
-    raw = bytearray(raw)
-    for _ in range(data.draw(st.integers(1, 3))):
-        at = data.draw(st.one_of(st.integers(0, len(raw) - 1), st.integers(0, min(200, len(raw) - 1))))
-        if data.draw(st.booleans()):
-            raw[at] = data.draw(st.integers(0, 255))
-        else:
-            del raw[at : at + data.draw(st.integers(1, 400))]
-        if not raw:
-            break
-    try:
-        formats.read(bytes(raw), name=name)
-    except InputError as error:
-        assert "\n" not in str(error)
-
-
-@pytest.mark.parametrize("layout", ["ntu25", "cmu17"])
-def test_other_layouts_are_brought_onto_smpl(layout):
-    joints = [SMPL22.joint_names.index(name) for name in SKELETONS["cmu17"].joint_names]
-    if layout == "cmu17":
-        people = DUET.positions[:, :, joints]
-    else:
-        names = {"base_of_spine": "pelvis", "middle_of_spine": "spine2", "spine_shoulder": "spine3"}
-        tips = {"hand": "wrist", "hand_tip": "wrist", "thumb": "wrist"}
-
-        def place(name: str) -> int:
-            side, _, part = name.partition("_")
-            return SMPL22.index(names.get(name, f"{side}_{tips[part]}" if part in tips else name))
-
-        people = DUET.positions[:, :, [place(name) for name in SKELETONS[layout].joint_names]]
-    duet = formats.read(
-        _npz(positions=people, fps=30, joint_names=np.array(SKELETONS[layout].joint_names)), name="x.npz"
-    )
-    assert duet.skeleton is SMPL22 and duet.num_frames == 20
-    bones = [np.linalg.norm(duet.positions[:, :, j] - duet.positions[:, :, p], axis=-1) for p, j in SMPL22.bones]
-    np.testing.assert_allclose(np.ptp(bones, axis=(1, 2)), 0, atol=1e-4)
-    assert duet.positions[..., 1].min() > -0.05
-    wrists = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
-    assert np.linalg.norm(duet.positions - DUET.positions, axis=-1)[:, :, wrists].mean() < 0.12
 
 
 @pytest.mark.parametrize("joints", [30, 77])

@@ -11,11 +11,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from motion import SMPL22, Clip, Duet, InputError, formats
+from motion import SMPL22, Clip, Duet, formats
 from motion.body import load_body, skin
 from motion.formats.usd import usd_text
 from motion.hands import Grip, angles
-from motion.skeleton import SBU15
 from motion.transforms import turn
 from tests.motion.bodies import marching
 
@@ -46,40 +45,6 @@ def test_rotations_and_places_give_the_joints() -> None:
             at[:, joint] = at[:, parent] + (world[:, parent] @ local[:, joint, :, None])[..., 0]
             world[:, joint] = world[:, parent] @ world[:, joint]
         np.testing.assert_allclose(at, clip.positions, atol=2e-5)
-
-
-def test_the_stage_is_in_metres_and_y_up_and_keeps_the_manifest() -> None:
-    text = usd_text(DUET)
-    for line in ("metersPerUnit = 1", 'upAxis = "Y"', "timeCodesPerSecond = 30", "endTimeCode = 23"):
-        assert f"    {line}" in text.splitlines()
-    (stored,) = re.findall(r"string manifest = (.*)", text)
-    assert json.loads(json.loads(stored)) == DUET.manifest
-    assert text.isascii() and text.count("{") == text.count("}") and text.count('"') % 2 == 0
-
-
-@pytest.mark.parametrize(
-    ("roles", "names"),
-    [
-        (("actor", "reactor"), ("actor", "reactor")),
-        (("a", "A"), ("a_a", "A_b")),
-        (("2nd", 'x"{/}\n'), ("_2nd", "x")),
-        (("é", "x" * 500), ("person", "x" * 40)),
-    ],
-)
-def test_roles_become_names_of_scopes(roles: tuple[str, str], names: tuple[str, str]) -> None:
-    text = usd_text(Duet(DUET.a, DUET.b, roles))
-    assert tuple(re.findall(r'^    def Scope "(.*)"$', text, flags=re.MULTILINE)) == names
-
-
-def test_it_is_written_and_only_for_people_with_a_rest_pose(tmp_path: Path) -> None:
-    assert formats.can_write(".usda") and not formats.can_read(".usda")
-    (path,) = formats.write(DUET, tmp_path / "take.usda")
-    assert path.read_text().startswith("#usda 1.0\n")
-    with pytest.raises(InputError, match="needs a rest pose"):
-        formats.write(Duet.from_positions(np.zeros((2, 4, 15, 3)), fps=30, skeleton=SBU15), tmp_path / "x.usda")
-    with pytest.raises(InputError, match="one person is written as"):
-        formats.write(DUET.a, tmp_path / "x.usda")
-    assert [each.name for each in tmp_path.iterdir()] == ["take.usda"]
 
 
 def test_openusd_reads_the_same_joints_and_bodies(tmp_path: Path) -> None:

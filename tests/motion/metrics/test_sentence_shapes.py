@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
-from motion.metrics.sentences import shapes
-from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.joints import PREDICATES, Motion
 from motion.metrics.sentences.language import CONDITIONS, RuleError, check
-from motion.metrics.sentences.vocabulary import PREDICATES
 
 FPS, FRAMES = 30.0, 120
 Edit = Callable[[np.ndarray], None]
@@ -147,11 +145,6 @@ IDLE = duet()
 TILTED = duet(tilt(30, (1, 0)))
 
 
-def test_every_predicate_of_the_module_is_shown() -> None:
-    own = {name for name, found in PREDICATES.items() if found.__module__ == shapes.__name__}
-    assert own == set(DOES)
-
-
 @pytest.mark.parametrize("name", DOES)
 def test_it_holds_for_those_who_do_it_and_not_for_those_who_stand(name: str) -> None:
     motion, arguments = DOES[name]
@@ -165,44 +158,17 @@ def test_it_holds_for_those_who_do_it_and_not_for_those_who_stand(name: str) -> 
     ("name", "arguments"),
     [
         ("hand_over_head", "a, 'right'"),
-        ("arm_level", "a, 'right'"),
-        ("hand_behind_back", "a, 'right'"),
-        ("knee_high", "a, 'right'"),
-        ("foot_up", "a, 'right'"),
         ("leans", "a, 'back'"),
-        ("leans", "a, 'left'"),
-        ("turned", "a, 90, 30"),
         ("turns_way", "a, 'right'"),
-        ("goes_at", "a, 0.8, 2.0"),
         ("higher", "b"),
         ("copies", "a"),
         ("alike", "mirrored=True"),
-        ("alike", "lag=-0.8"),
-        ("wide_stance", "b"),
-        ("off_floor", "b"),
         ("at_others_start", "b"),
         ("arm_on", "b, 'shoulder'"),
     ],
 )
 def test_it_does_not_hold_for_the_other_side_way_or_person(name: str, arguments: str) -> None:
-    condition = "end" if name == "turned" else "happens"
-    assert not check(f"{condition}({name}({arguments}))", DOES[name][0])
-
-
-def test_a_mirror_and_a_lag_are_told_from_unison() -> None:
-    mirrored, late = duet(swing(0, "left"), swing(1, "right")), duet(swing(0, "left"), swing(1, "left", 0.5))
-    assert check("happens(alike(mirrored=True), 1.0)", mirrored) and not check("happens(alike())", mirrored)
-    assert check("happens(alike(lag=0.5), 1.0)", late)
-    assert not check("happens(alike(lag=90.0))", late)
-
-
-def test_either_may_copy_the_other() -> None:
-    ahead = duet(swing(0, "left", 0.8), swing(1, "left"))
-    assert check("happens(copies(a))", ahead) and not check("happens(copies(b))", ahead)
-
-
-def test_left_and_right_are_the_leaning_persons_own() -> None:
-    assert check("happens(leans(a, 'left'))", TILTED) and not check("happens(leans(a, 'right'))", TILTED)
+    assert not check(f"happens({name}({arguments}))", DOES[name][0])
 
 
 # ---- conditions -------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ import trimesh
 
 from motion import SMPL22
 from motion.things import Thing, shape
-from motion.things.sight import distance, gazes, looked_at
+from motion.things.sight import distance, looked_at
 
 STANDING = SMPL22.rest_positions() - [0, SMPL22.rest_positions()[:, 1].min(), 0]
 """A person at the origin who faces +Z."""
@@ -44,13 +44,6 @@ def test_a_ray_meets_a_surface_as_far_as_it_is_and_only_ahead():
     assert distance(ball, np.array([0, 0, 2.0]), np.array([0, 0, 1.0])) == np.inf, "it lies behind"
 
 
-def test_eyes_are_before_the_head_and_look_ahead():
-    eyes, ways = gazes(facing(90))
-    head = facing(90)[0, SMPL22.index("head")]
-    assert ways[0] == pytest.approx([1, 0, 0], abs=0.05)
-    assert 0.05 < eyes[0, 0] - head[0] < 0.15 and eyes[0, 1] > head[1]
-
-
 @pytest.mark.parametrize(("yaw", "seen"), [(0, 0), (20, 0), (60, -1), (180, -1)])
 def test_who_faces_a_window_looks_at_it_though_it_is_open(yaw, seen):
     assert looked_at([window((0, 0, 2))], facing(yaw), FAR).tolist() == [seen]
@@ -62,10 +55,3 @@ def test_the_nearer_of_two_is_looked_at_and_a_person_is_in_the_way():
     other = facing(180, (0, 0, 0.9))
     assert looked_at([far, near], facing(0), other).tolist() == [2]
     assert looked_at([far], facing(0), FAR, most=2.0).tolist() == [-1], "it is too far off"
-
-
-def test_each_frame_is_judged_by_where_the_thing_is_then():
-    places = np.array([[0.0, 0.0, 2.0], [4.0, 0.0, -2.0]])
-    moving = Thing("window", shape("window"), places, np.tile(np.eye(3), (2, 1, 1)))
-    people = np.concatenate([facing(0), facing(0)])
-    assert looked_at([moving], people, np.concatenate([FAR, FAR])).tolist() == [0, -1]

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import io
+import re
+from dataclasses import replace
 
 import numpy as np
+import pygltflib
 import pytest
+import trimesh
 
 from motion import Duet, InputError, formats
-from motion.formats.npz_things import KEYS
-from motion.things import FURNITURE, HIGH, KINDS, WIDE, Mesh, Thing, shape
+from motion.formats.glb_writer import glb_bytes
+from motion.formats.usd import usd_text
+from motion.looks import hex_of, linear
+from motion.things import FURNITURE, KINDS, Mesh, Thing, shape
 from tests.motion.bodies import marching
 
 FRAMES = 12
@@ -44,28 +50,6 @@ def test_a_seat_or_a_top_is_as_high_as_asked(kind, height):
     mesh = shape(kind, height=height)
     level = mesh.vertices[np.abs(mesh.vertices[:, 1] - height) < 0.011]
     assert np.ptp(level[:, 0]) > 0.3 and np.ptp(level[:, 2]) > 0.3
-
-
-def test_widths_and_heights_are_what_is_said_of_them():
-    for kind in WIDE:
-        assert shape(kind, width=0.9).size[0] == pytest.approx(0.9, abs=0.2)
-    for kind in set(KINDS) - set(HIGH):
-        assert shape(kind, height=0.9).size[1] == shape(kind).size[1]
-
-
-def test_unknown_kinds_and_sizes_are_refused():
-    with pytest.raises(InputError, match="choose one of chair, bench"):
-        shape("spaceship")
-    with pytest.raises(InputError, match="cannot be built"):
-        shape("chair", height=30)
-
-
-def test_a_thing_between_two_frames_is_between_its_places():
-    ball = thrown()
-    middle = ball.at(3.5).mean(axis=0)
-    np.testing.assert_allclose(middle, (ball.at(3).mean(axis=0) + ball.at(4).mean(axis=0)) / 2, atol=1e-3)
-    size = np.ptp(ball.at(3.5), axis=0)
-    assert size == pytest.approx(np.ptp(ball.at(3), axis=0), abs=0.01), "it shrinks between frames"
 
 
 def test_tracks_that_are_none_are_refused():
@@ -103,19 +87,11 @@ def test_things_come_back_from_our_file(tmp_path):
     assert not chair.moves and thrown().moves
 
 
-def test_a_file_without_things_is_as_before(tmp_path):
-    formats.write(PEOPLE, tmp_path / "x.npz")
-    with np.load(tmp_path / "x.npz") as stored:
-        assert not set(stored) & set(KEYS)
-    back = formats.read(tmp_path / "x.npz")
-    assert isinstance(back, Duet) and back.things == ()
-
-
 def _damaged(**changes) -> bytes:
     """A file of ours with some arrays replaced; None leaves one out."""
     buffer = io.BytesIO()
     duet = Duet(PEOPLE.a, PEOPLE.b, things=(thrown(),))
-    from motion.formats.npz_things import arrays_of
+    from motion.formats.npz import arrays_of
 
     arrays = {"positions": duet.positions, "fps": np.float64(30), **arrays_of(duet.things)} | changes
     np.savez_compressed(buffer, **{key: value for key, value in arrays.items() if value is not None})
@@ -128,19 +104,57 @@ def _damaged(**changes) -> bytes:
         {"thing_faces": None},
         {"thing_faces": np.full((3, 3), 2**31 - 1, dtype=np.int32)},
         {"thing_sizes": np.array([[2**62, 2**62]])},
-        {"thing_sizes": np.array([[-5, -5]])},
-        {"thing_sizes": np.zeros((0, 2), dtype=np.int64)},
         {"thing_places": np.zeros((1, FRAMES + 1, 3), dtype=np.float32)},
         {"thing_places": np.full((1, FRAMES, 3), np.inf, dtype=np.float32)},
-        {"thing_rotations": np.zeros((1, FRAMES, 3, 3), dtype=np.float32)},
-        {"thing_rotations": np.zeros((1, 3), dtype=np.float32)},
-        {"thing_vertices": np.zeros((3, 3), dtype=np.int64)},
-        {"thing_colours": np.zeros((3, 3))},
         {"thing_kinds": np.array([])},
         {"thing_kinds": np.array(["cup"] * 99)},
-        {"thing_names": np.array([["a"]])},
     ],
 )
 def test_damaged_things_are_one_sentence(changes):
     with pytest.raises(InputError, match=r"^x\.npz"):
         formats.read(_damaged(**changes), name="x.npz")
+
+
+NOW = np.linspace(0, 1, FRAMES)
+ZERO, COS, SIN = 0 * NOW, np.cos(2 * NOW), np.sin(2 * NOW)
+TURNS = np.stack([COS, -SIN, ZERO, SIN, COS, ZERO, ZERO, ZERO, ZERO + 1], axis=1).reshape(-1, 3, 3)
+BALL = Thing("ball", shape("ball"), np.stack([2 * NOW, 1 + NOW, ZERO], axis=1), TURNS)
+CHAIRS = tuple(Thing.at_rest("chair", shape("chair"), np.array([x, 0, 0.5]), x, FRAMES) for x in (1.0, 2.0))
+DUET = replace(PEOPLE, things=(BALL, *CHAIRS))
+
+
+def test_a_glb_holds_things_at_their_first_frame_in_their_colours(tmp_path):
+    (path,) = formats.write(DUET, tmp_path / "x.glb")
+    scene = trimesh.load_scene(path)
+    for name, thing in zip(("ball", "chair", "chair 2"), DUET.things, strict=True):
+        parts = [node for node in scene.graph.nodes_geometry if str(scene.graph[node][1]).startswith(f"{name}")]
+        parts = [p for p in parts if (name == "chair 2") == ("chair 2" in str(scene.graph[p][1]))]
+        found = np.concatenate(
+            [trimesh.transform_points(scene.geometry[scene.graph[p][1]].vertices, scene.graph[p][0]) for p in parts]
+        )
+        np.testing.assert_allclose(found.min(axis=0), thing.at(0).min(axis=0), atol=1e-4)
+        np.testing.assert_allclose(found.max(axis=0), thing.at(0).max(axis=0), atol=1e-4)
+    gltf = pygltflib.GLTF2.load_from_bytes(path.read_bytes())
+    light = {tuple(np.round(m.pbrMetallicRoughness.baseColorFactor[:3], 4)) for m in gltf.materials}
+    for thing in DUET.things:
+        for colour in thing.mesh.by_colour()[0].tolist():
+            assert tuple(np.round(linear(hex_of(colour)), 4)) in light
+
+
+def test_only_what_moves_is_animated_in_a_glb():
+    gltf = pygltflib.GLTF2.load_from_bytes(glb_bytes(DUET))
+    names = [gltf.nodes[channel.target.node].name for channel in gltf.animations[0].channels]
+    assert names.count("ball") == 2 and "chair" not in names
+
+
+def test_a_usd_stage_holds_things_beside_people():
+    text = usd_text(DUET)
+    assert re.findall(r'^    def (?:Xform|Scope) "(\w+)"', text, flags=re.MULTILINE) == [
+        "a",
+        "b",
+        "ball",
+        "chair",
+        "chair_2",
+    ]
+    assert text.count("xformOp:transform.timeSamples") == 1, "what stands still has one place"
+    assert text.isascii() and text.count("{") == text.count("}")

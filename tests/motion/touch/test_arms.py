@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from motion import SMPL22
-from motion.metrics.naturalness import DEEP, jerk_percentile, limb_depth
+from motion.metrics.quality import DEEP, jerk_percentile, limb_depth
 from motion.touch.arms import arms_apart
 from motion.transforms import heading_matrix
 
@@ -27,10 +26,6 @@ def _pair(gap: float) -> np.ndarray:
     return np.stack([np.tile(one, (FRAMES, 1, 1)) for one in (rest, other)])
 
 
-def _bones(people: np.ndarray) -> np.ndarray:
-    return np.stack([np.linalg.norm(people[:, :, c] - people[:, :, p], axis=-1) for p, c in SMPL22.bones])
-
-
 def test_arms_leave_the_other_body() -> None:
     pair = _pair(0.5)
     before = max(limb_depth(pair[0], pair[1]).max(), limb_depth(pair[1], pair[0]).max())
@@ -38,33 +33,6 @@ def test_arms_leave_the_other_body() -> None:
     after = max(limb_depth(found[0], found[1]).max(), limb_depth(found[1], found[0]).max())
     assert before > 2 * DEEP
     assert after < 0.5 * before
-
-
-def test_only_arms_move_and_bones_keep_their_lengths() -> None:
-    pair = _pair(0.5)
-    found = arms_apart(pair)
-    moved = np.abs(found - pair).max(axis=(0, 1, 3)) > 1e-9
-    assert {SMPL22.joint_names[j] for j in np.flatnonzero(moved)} <= {
-        "left_elbow",
-        "right_elbow",
-        "left_wrist",
-        "right_wrist",
-    }
-    np.testing.assert_allclose(_bones(found), _bones(pair), atol=2e-3)
-
-
-@pytest.mark.parametrize("gap", [1.2, 3.0])
-def test_people_who_do_not_touch_stay_as_they_are(gap: float) -> None:
-    pair = _pair(gap)
-    np.testing.assert_array_equal(arms_apart(pair), pair)
-
-
-def test_what_may_not_change_stays() -> None:
-    pair = _pair(0.5)
-    free = np.stack([np.zeros(FRAMES), np.ones(FRAMES)])
-    found = arms_apart(pair, free)
-    np.testing.assert_allclose(found[0], pair[0], atol=1e-9)
-    assert np.abs(found[1] - pair[1]).max() > 0.01
 
 
 def test_hands_that_hold_each_other_stay() -> None:
@@ -94,14 +62,6 @@ def test_an_arm_that_has_no_way_out_is_not_thrown_about() -> None:
     found = arms_apart(pair)
     assert np.abs(found - pair).max() > 0.02
     assert jerk_percentile(found[0], 30) < 45  # 80 where pushes add up while nothing gives way
-
-
-def test_a_hand_that_is_held_leaves_the_trunk_all_the_same() -> None:
-    pair = _from_behind()
-    held = pair[0, :, J("left_wrist")]
-    pair[1, :, J("right_wrist")] = held + np.array([0.0, 0.0, 0.02])
-    found = arms_apart(pair)
-    assert np.abs(found[0, :, J("left_wrist")] - held).max() > 0.03
 
 
 def test_elbows_of_hands_that_hold_each_other_leave_each_other() -> None:

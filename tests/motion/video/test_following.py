@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from motion import SMPL22, InputError
+from motion import InputError
 from motion.video import Landmarks
-from motion.video.following import MEASURED, FollowedPerson, OneEuro
+from motion.video.following import HIDDEN, MEASURED, FollowedPerson, Gaze
 
 from .filming import film, stepping
 
@@ -50,22 +50,6 @@ def test_no_pose_depends_on_later_pictures() -> None:
     assert not np.array_equal(found[20 - MEASURED], other[20 - MEASURED])
 
 
-def test_bones_are_constant() -> None:
-    found, _ = followed(film([stepping(1.5)], noise=0.05))
-    lengths = np.stack([np.linalg.norm(found[:, a] - found[:, b], axis=-1) for a, b in SMPL22.bones])
-    assert lengths.std(axis=1).max() < 0.02
-
-
-def test_the_person_who_was_followed_is_followed_on() -> None:
-    left, right = stepping(2.0), stepping(2.0)
-    left[..., 0] -= 0.3
-    right[..., 0] += 1.0
-    both = film([left, right], order=5)
-    person = FollowedPerson()
-    path = [pose[0, 0] for i in range(30) if (pose := person.add(both, i)) is not None]
-    assert np.ptp(path) < 0.1, "the nearer to the middle, whatever order the two are found in"
-
-
 def test_what_the_camera_cannot_be_is_refused_and_half_a_person_gets_a_hint() -> None:
     with pytest.raises(InputError, match="lens of 10°"):
         FollowedPerson(lens=10)
@@ -80,11 +64,30 @@ def test_what_the_camera_cannot_be_is_refused_and_half_a_person_gets_a_hint() ->
     assert "Step back" in person.hint
 
 
-def test_the_filter_keeps_what_moves_fast_and_calms_what_rests() -> None:
-    noise = np.random.default_rng(0).normal(0, 0.02, (60, 1, 3))
-    rests, moves = OneEuro(1.0, 3.0), OneEuro(1.0, 3.0)
-    calm = np.stack([rests(value, 1 / 15) for value in noise])[20:]
-    assert calm.std() < 0.6 * noise.std()
-    way = np.arange(60)[:, None, None] * np.full((1, 1, 3), 2.0 / 15)
-    late = way[-1] - [moves(value, 1 / 15) for value in way][-1]
-    assert late.max() < 0.1, "two metres a second lag less than a twentieth of a second"
+def seen(face: float | None, *, tilt: float = 10.0, hidden: bool = False) -> Gaze | None:
+    """The gaze of somebody at the origin, whom the camera films from +Z."""
+    landmarks = film([stepping(1.0, heading=0.4)], tilt=tilt, face=face, noise=0.01)
+    if hidden:
+        landmarks = replace(landmarks, seen=landmarks.seen * (np.arange(33) != 0))
+    person = FollowedPerson(tilt=tilt)
+    assert person.gaze is None
+    poses = [person.add(landmarks, picture) for picture in range(MEASURED + 4)]
+    assert poses[-1] is not None
+    return person.gaze
+
+
+@pytest.mark.parametrize("face", [0.0, 0.9, -1.6, 2.8])
+@pytest.mark.parametrize("tilt", [0.0, 25.0])
+def test_a_face_points_where_its_nose_is(face: float, tilt: float) -> None:
+    found = seen(face, tilt=tilt)
+    assert found is not None
+    np.testing.assert_allclose(found.ahead, [np.sin(face), 0, np.cos(face)], atol=0.2)
+    assert found.camera == pytest.approx(np.cos(face), abs=0.2)
+    assert found.towards(np.array([2.0, -1.0, 0.0])) == pytest.approx(np.sin(face), abs=0.2)
+    assert found.towards(np.array([0.0, 1.0, 0.0])) == 0
+
+
+def test_a_face_that_is_not_seen_is_turned_away_and_one_without_depth_tells_nothing() -> None:
+    assert seen(0.0, hidden=True) is HIDDEN
+    assert HIDDEN.camera == -1 and HIDDEN.towards(np.array([0.0, 0.0, 1.0])) == 0
+    assert seen(None) is None

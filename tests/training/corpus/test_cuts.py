@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motion import Duet, InputError
-from motion.formats.glb import glb_bytes
+from motion.formats.glb_writer import glb_bytes
 from motion.kinematics import forward_kinematics
 from motion.retarget import retarget
 from motion.skeleton import SMPL22

@@ -12,8 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from motion.errors import InputError
 from motion.kinematics import forward_kinematics
-from motion.layouts import LAYOUTS
-from motion.skeleton import K3HI15, SBU15, SMPL22, Skeleton
+from motion.skeleton import K3HI15, LAYOUTS, SBU15, SMPL22, Skeleton
 from motion.transforms import heading_matrix
 from training.corpus.kinect import exchanged, unswap
 from training.corpus.kinect_files import KinectPair, read_release

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from motion.metrics.sentences import kept_out, load_sentences, without_sentences
-from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.joints import Motion, longest, stretches
 from motion.metrics.sentences.language import RuleError, check
-from motion.metrics.sentences.stretches import longest, stretches
 from training.corpus import telling
 
 from .fairness import CUES, Puppets, captions_of, phrases

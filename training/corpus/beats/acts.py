@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from motion.easing import smoothstep
 from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
+from motion.smoothing import smoothstep
 
 from ..compose import ARMS, Array, Motion, drift, layer, lean
 from ..contact import UP, axes, bend, envelope, nod, on_body, reach_arm

@@ -8,16 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22, Duet
-from motion.cleaning import foot_contacts, open_limb, plant_feet, solve_two_bones, steadied
-from motion.footsteps import stepping
-from motion.ground import above_floor
+from motion.cleaning import foot_contacts, plant_feet
+from motion.footsteps import pivoting, stepping
 from motion.kinematics import project_to_skeleton
+from motion.limbs import open_limb, solve_two_bones, steadied
 from motion.metrics import compare
-from motion.pivots import pivoting
 from motion.skeleton import ARMS, LEGS
 from motion.smoothing import least_jerk
-from motion.swings import lift_swinging_feet
-from motion.touch.clearance import out_of_the_way
+from motion.swings import above_floor, lift_swinging_feet
+from motion.touch.apart import out_of_the_way
 from motion.transforms import facing
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.actor import ROLES
@@ -72,7 +71,7 @@ def _calmed(positions: Array) -> Array:
 
 
 def standing_clear(result: Result, request: ReactRequest) -> Result:
-    """A reaction whose made person does not stand where the given one walks; see :mod:`motion.touch.clearance`.
+    """A reaction whose made person does not stand where the given one walks; see :mod:`motion.touch.apart`.
 
     Frame by frame, what comes is not known, and without clean-up nothing is moved.
     """

@@ -8,15 +8,12 @@ from numpy.typing import NDArray
 from acts.staging.score import Score
 from motion import FPS
 from motion.arm_swing import swinging
-from motion.easing import smoothstep
 from motion.idling import alive
-from motion.smoothing import eased_marks
+from motion.smoothing import eased_marks, smoothstep
 from motion.touch.apart import bodies_apart
 from motion.touch.arms import arms_apart
-from motion.touch.clasped import hands_clasped
 from motion.touch.embraces import embraced
-from motion.touch.palms import palms_met
-from motion.touch.upright import backs_straight
+from motion.touch.hands import backs_straight, hands_clasped, palms_met
 from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.plans import BeatFinish
 from webdemo.inference.story.request import SceneRequest

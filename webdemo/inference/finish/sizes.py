@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22, Clip, Duet, stacked_positions
-from motion.easing import smoothstep
 from motion.looks import UNSAID, grown_up, size_of
 from motion.sizes import at_sizes, bones_of, floor_scale, of_adults
+from motion.smoothing import smoothstep
 from webdemo.inference.requests.acting import plans_of
 from webdemo.inference.requests.paths import FloorPath
 from webdemo.inference.requests.predict import PredictRequest, PredictResult, compared

@@ -21,7 +21,7 @@ from motion import FPS
 from motion.steering import Goal
 from motion.things import Thing
 from motion.transforms import facing
-from motion.video.gaze import Gaze
+from motion.video.following import Gaze
 from webdemo.inference.pipelines.agent import BETWEEN, FIRST, Decision, Eye, Look
 
 from .partner import Belief

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.things import Thing
-from motion.video.gaze import Gaze
+from motion.video.following import Gaze
 
 Array = NDArray[np.floating]
 

@@ -24,7 +24,7 @@ from motion.steering import Goal, Steering
 from motion.things import Thing
 from motion.transforms import turn
 from motion.vectors import FLAT
-from motion.video.gaze import Gaze
+from motion.video.following import Gaze
 from webdemo.inference.finish.cleanup import FollowingCleanup
 from webdemo.inference.pipelines.given import settle
 from webdemo.inference.pipelines.regennet import ReGenNetPipeline

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from acts.things.furniture import BODIES, LEAVES, TAKES, placed_leaf
 from motion import FPS, SMPL22
-from motion.cleaning import solve_two_bones
-from motion.easing import smoothstep
+from motion.limbs import solve_two_bones
+from motion.smoothing import smoothstep
 from motion.steering import Goal
 from motion.things import Thing, shape
 from motion.transforms import facing

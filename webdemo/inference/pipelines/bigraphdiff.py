@@ -16,10 +16,9 @@ from models.diffusion.schedule import SamplerName, Scheduler
 from models.intergen.released import read_normaliser
 from models.text.clip import find_vocabulary
 from motion import FPS, Duet, InputError
-from motion.layouts import LAYOUTS
 from motion.metrics import compare
 from motion.retarget import to_smpl
-from motion.skeleton import NTU25
+from motion.skeleton import LAYOUTS, NTU25
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import GenerateRequest, ReactRequest

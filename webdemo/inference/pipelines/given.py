@@ -13,10 +13,10 @@ from acts.staging.window import KnownFrames, Part
 from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
 from motion import FPS, SMPL22, Clip, Duet, InputError
-from motion.easing import minimum_jerk, smoothstep
 from motion.kinematics import project_to_skeleton
 from motion.metrics import compare
 from motion.placement import Placement
+from motion.smoothing import minimum_jerk, smoothstep
 from webdemo.inference.finish.joining import PASSING, joined, passing
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.actor import ROLES

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import FPS, SMPL22, Clip, InputError
-from motion.formats import ImportChoices, read_everyone
-from motion.formats.crowd import clips_of
+from motion.formats import ImportChoices
+from motion.formats.importing import import_motion
 from motion.retarget import to_smpl
 from motion.transforms import resample
 from webdemo.inference.method import SECONDS
@@ -124,7 +124,7 @@ def read_actor(
         InputError: if the file or a choice is wrong, or the part longer than a network takes.
     """
     name = Path(path).name
-    people = clips_of(read_everyone(Path(path), name=name, choices=choices))
+    people = import_motion(Path(path), name=name, choices=choices).people
     clip = choose_actor(people, person=person, start=start, end=end, name=name)
     pose = other_pose(people, person=person, start=start, name=name) if keep_start else None
     check_length(clip, SECONDS)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22, InputError
 from motion.video import Landmarks
-from motion.video.packed import landmarks_of
+from motion.video.landmarks import landmarks_of
 
 Array = NDArray[np.floating]
 

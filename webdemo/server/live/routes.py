@@ -16,7 +16,7 @@ from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
 from motion import FPS, SMPL22, Clip, InputError
-from motion.video.packed import camera_number
+from motion.video.landmarks import camera_number
 from webdemo.ui.visitor import Visitor, visitor_of
 from webdemo.view.payload import player_payload
 

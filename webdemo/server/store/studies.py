@@ -20,7 +20,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from motion import Duet, InputError, formats
-from motion.formats.spreadsheet import safe_cell
+from motion.formats.files import safe_cell
 from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit
 from webdemo.study import FIRST, SECOND, TIE, Pair, StudyEntry, as_shown

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
+import uuid
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -15,8 +16,8 @@ from numpy.typing import NDArray
 
 from motion import Clip, Duet, InputError
 from motion.formats import RIGS, write
-from motion.formats.choices import ImportChoices
 from motion.formats.importing import import_motion
+from motion.formats.recording import ImportChoices
 from motion.retarget import to_smpl
 from webdemo.inference.method import SECONDS, Variant
 from webdemo.inference.methods import AUTOMATIC, automatic, installed, variants
@@ -81,6 +82,7 @@ class Source:
         read_with: what was known of the file: up axis, unit, rate, order of its joints, and its chosen animation.
         animations: labels of those in the file, where there is one to choose.
         asks: True if how it was read should be looked at: something was assumed.
+        key: differs between any two.
     """
 
     name: str
@@ -92,6 +94,7 @@ class Source:
     read_with: ReadWith = ("auto", "auto", None, "auto", None)
     animations: tuple[str, ...] = ()
     asks: bool = False
+    key: str = field(default_factory=lambda: uuid.uuid4().hex, compare=False)
     _fitted: dict[Any, tuple[Clip, ...]] = field(default_factory=dict, repr=False, compare=False)
     """What was fitted last, by what was asked."""
 
@@ -254,7 +257,7 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     source: Source | None = fields["source"]
     if source is None:
         raise InputError("There is no actor yet: drop a motion file, or pick an example or a result.")
-    own = ("source", "person", "start", "end", "method", "stream", "keep")
+    own = ("source", "given", "person", "start", "end", "method", "stream", "other", "keep")
     actor = source.actor(fields["person"], fields["start"], fields["end"])
     chosen = reactor(fields.get("method"), fields)
     kept = {name: value for name, value in fields.items() if name not in own}

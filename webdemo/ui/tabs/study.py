@@ -20,7 +20,7 @@ from webdemo.ui.text.texts import SAY, say
 from webdemo.ui.text.words import error_line, text
 from webdemo.ui.visitor import visitor
 
-from .results import QUIET
+from .job import QUIET
 
 QUESTION = "Which does what the sentence says?"
 Parts = dict[Any, Any]
