@@ -1,5 +1,5 @@
 // What the people of a player wear: the bodies that ship, as each motion says, lighter ones where people are many and
-// small, or an uploaded character. They stay skeletons where no body can be had, or plotly is too slow for them.
+// small, or an uploaded character. They stay skeletons where no body can be had.
 
 import { coarser, decodeBody } from "./body.js";
 import { loadBody } from "./loader.js";
@@ -32,17 +32,17 @@ export class Clothes {
     return this.phone || this.player.grid.cells.length > 0;
   }
 
-  /** Fetches what the people of the present motions wear, and dresses all panes anew. */
+  /** Fetches what the people of the present motions wear, and dresses everybody anew. */
   async change() {
     const { player } = this;
-    if (player.scene?.mode !== "fast") return;
+    if (!player.scene) return;
     const files = looksOf(player.data).map((look) => this.file(look));
     try {
       await Promise.all(files.map(async (name) => this.bodies.set(name, await loadBody(name))));
     } catch (error) {
       console.error(error);
     }
-    for (const pane of player.panes) pane.dress((look) => this.body(look));
+    player.pane.dress((look) => this.body(look));
     await this.dressFutures();
     player.wake();
   }
@@ -81,6 +81,6 @@ export class Clothes {
 
 /** The names of all looks in a decoded payload. */
 function looksOf(data) {
-  const samples = (data?.samples ?? []).flatMap((sample) => [sample, ...(sample.beside ? [sample.beside] : []), ...(sample.cells ?? [])]);
+  const samples = (data?.samples ?? []).flatMap((sample) => [sample, ...(sample.cells ?? [])]);
   return [...new Set(samples.flatMap((sample) => sample.looks))];
 }

@@ -55,7 +55,6 @@ const unpackSample = (sample) => ({
   motion: unpackPositions(sample.positions),
   things: new Things((sample.things ?? []).map(decodeThing)),
   ghostMotion: sample.ghost ? unpackPositions(sample.ghost) : null,
-  beside: sample.beside ? unpackSample(sample.beside) : null,
   cells: sample.cells?.map(unpackSample) ?? null,
 });
 

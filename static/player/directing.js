@@ -37,7 +37,7 @@ export class Directing {
   /** Whether one pair stands in the stage, whose motion is all there. */
   get alone() {
     const { player } = this;
-    return Boolean(player.data) && !player.grid.cells.length && !player.sample.beside && !player.sample.live;
+    return Boolean(player.data) && !player.grid.cells.length && !player.sample.live;
   }
 
   /** Stops at the frame that is shown and lays handles over the people, or takes them away. */

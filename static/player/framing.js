@@ -6,7 +6,7 @@ export class Framing {
   constructor(player) {
     this.player = player;
     this.preset = "threequarter"; // null once a hand has turned the view
-    this.boxes = [{ width: 960, height: 640, inset: { top: 44, right: 64, bottom: 22, left: 24 } }];
+    this.box = { width: 960, height: 640, inset: { top: 44, right: 64, bottom: 22, left: 24 } }; // the room for people in a view
   }
 
   /** Glides to a preset; at once where `now` is null. */
@@ -34,32 +34,30 @@ export class Framing {
     const { orbit, clock, futures, skeleton, shown } = this.player;
     const times = moments(clock.shown, clock);
     const ghosts = times.flatMap((frame) => futures.at(frame).flatMap(({ people }) => people));
-    const pairs = shown.map((pane, index) => ({
+    const pairs = shown.map((pane) => ({
       now: pane.poseAt(clock.shown),
       soon: [...times.flatMap((frame) => pane.poseAt(frame)), ...ghosts],
       used: times.flatMap((frame) => pane.sample.things.beside(pane.poseAt(frame), skeleton.pelvis)),
-      box: this.boxes[index] ?? this.boxes[0],
+      box: this.box,
     }));
     const { yaw, elevation } = view ?? orbit.glide?.to ?? orbit;
     return fit(pairs, skeleton, { yaw: yaw + orbit.drift.yaw, elevation });
   }
 
-  /** Measures the room for people in each view, in pixels: what names, captions and tools leave of it. */
+  /** Measures the room for people in a view, in pixels: what names, captions and tools leave of it. */
   measure() {
-    const { panes, grid, shown } = this.player;
-    const { clientWidth: width, clientHeight: height } = panes[0].host;
+    const { pane, grid } = this.player;
+    const { clientWidth: width, clientHeight: height } = pane.host;
     if (!width || !height) return; // in a closed tab there is no size yet
     if (grid.cells.length) {
-      this.boxes = [{ width, height, inset: { top: 12, right: 8, bottom: 24, left: 8 } }];
+      this.box = { width, height, inset: { top: 12, right: 8, bottom: 24, left: 8 } };
       return;
     }
     const tools = this.player.find(".pdd-tools").getBoundingClientRect();
-    this.boxes = shown.map(({ host, sample }, index) => {
-      const inset = { top: 44, right: 24, bottom: 22, left: 24 };
-      if (tools.width > tools.height) inset.bottom += tools.height; // on narrow stages they lie below
-      else if (index === shown.length - 1) inset.right += tools.width;
-      if (sample?.caption) inset.bottom = Math.max(inset.bottom, 48);
-      return { width: host.clientWidth, height: host.clientHeight, inset };
-    });
+    const inset = { top: 44, right: 24, bottom: 22, left: 24 };
+    if (tools.width > tools.height) inset.bottom += tools.height; // on narrow stages they lie below
+    else inset.right += tools.width;
+    if (pane.sample?.caption) inset.bottom = Math.max(inset.bottom, 48);
+    this.box = { width, height, inset };
   }
 }

@@ -77,7 +77,7 @@ export class Futures {
     this.spots = [];
     this.host.hidden = !samples.length || frame < this.from || Boolean(player.posing);
     if (this.host.hidden) return;
-    const { clientWidth: width, clientHeight: height } = player.panes[0].host;
+    const { clientWidth: width, clientHeight: height } = player.pane.host;
     const { head } = player.skeleton;
     const wanted = samples.map((sample, index) => {
       const people = poseAt(sample.motion, frame);

@@ -37,8 +37,9 @@ const hooks = {
   get positions() {
     return hooks.player?.pose?.map((points) => points.map(([z, x, y]) => [x, y, z])) ?? null;
   },
-  get mode() {
-    return hooks.player?.scene.mode ?? null;
+  /** Whether the 3D view is there. */
+  get open() {
+    return Boolean(hooks.player?.scene);
   },
 };
 

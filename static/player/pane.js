@@ -1,4 +1,4 @@
-// One view of one motion: its 3D scene and the names above heads. A player has one, or two side by side.
+// The view of a motion: its 3D scene and the names above heads.
 
 import { Figure } from "./body.js";
 import { poseAt } from "./decode.js";
@@ -49,7 +49,7 @@ export class Pane {
     return this;
   }
 
-  /** Another motion to show, or null; `caption` tells it from the one beside it. */
+  /** Another motion to show, or null; `caption` names a cell of a grid that is seen large. */
   load(sample, caption = "") {
     this.sample = sample;
     const text = this.find(".pdd-caption");
@@ -76,7 +76,7 @@ export class Pane {
     const { matrix } = view;
     const [width, height] = [this.host.clientWidth, this.host.clientHeight];
     const put = (name, layer) => scene.set(name, layer);
-    scene.setView(matrix, view.eye, view.center);
+    scene.setView(matrix);
     this.paintFloor(ground, theme, themeName);
     if (pose) {
       const lens = new figure.Lens(view, height);
@@ -129,7 +129,6 @@ export class Pane {
     if (painted.floor === key) return;
     painted.floor = key;
     scene.set("floor", figure.floor(target, 9, theme));
-    if (scene.mode !== "fast") return; // the lines alone
     ground.lay(target.map(Math.round), theme, scene.scale);
     ground.place(scene.scale);
     scene.setTriangles("ground", { positions: ground.positions, colors: ground.colors, places: ground.places });
@@ -137,7 +136,6 @@ export class Pane {
 
   paintShadow(pose, skeleton, bodies, things, theme) {
     const { scene, ground } = this;
-    if (scene.mode !== "fast") return;
     const { shadow } = ground;
     const before = `${shadow.origin} ${shadow.span}`;
     shadow.cast(pose, skeleton, bodies, theme.shade, things.shades);

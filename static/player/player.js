@@ -37,9 +37,9 @@ export class Player {
     this.clothes = new Clothes(this);
     this.framing = new Framing(this);
     this.filming = new Filming(this);
-    this.panes = [];
-    this.addPane();
-    this.grid = new Grid(this.find(".pdd-grid"), this.panes[0]);
+    this.pane = new Pane(this.find(".pdd-pane"));
+    this.pane.dress((look) => this.clothes.body(look));
+    this.grid = new Grid(this.find(".pdd-grid"), this.pane);
     this.focus = null; // the number of the cell of a grid that is seen large
     this.futures = new Futures(this);
     this.hover = new Hover(this);
@@ -55,23 +55,13 @@ export class Player {
   }
 
   async open(Plotly) {
-    this.Plotly = Plotly;
-    await this.panes[0].open(this.theme.background, Plotly);
-    this.scene = this.panes[0].scene;
+    await this.pane.open(this.theme.background, Plotly);
+    this.scene = this.pane.scene;
     if (!this.data) this.filming.load(true);
     this.listen();
     this.wake();
     this.clothes.change();
     return this;
-  }
-
-  addPane() {
-    const panes = this.find(".pdd-panes");
-    panes.append(panes.querySelector("template").content.cloneNode(true));
-    const pane = new Pane(panes.lastElementChild);
-    pane.dress((look) => this.clothes.body(look));
-    this.panes.push(pane);
-    return pane;
   }
 
   get theme() {
@@ -83,13 +73,12 @@ export class Player {
     return this.focus === null ? sample : sample?.cells?.[this.focus] ?? sample;
   }
 
-  /** The panes that show something, the first always: a second one while motions stand side by side. */
+  /** What shows motions: the cells of a grid, or the one pane. */
   get shown() {
-    if (this.grid.cells.length) return this.grid.cells;
-    return this.sample?.beside && this.panes[1]?.scene ? this.panes : this.panes.slice(0, 1);
+    return this.grid.cells.length ? this.grid.cells : [this.pane];
   }
 
-  /** Everybody in view, pane after pane: an array a person of [x, y, z] a joint. */
+  /** Everybody in view, one motion after another: an array a person of [x, y, z] a joint. */
   everybody(frame) {
     return this.shown.flatMap((pane) => pane.poseAt(frame));
   }
@@ -105,10 +94,9 @@ export class Player {
       this.clock.pause();
       this.root.dataset.state = "empty";
       this.strip.load(null);
-      this.split(false);
       this.focus = null;
       this.grid.load(null);
-      this.panes[0].load(null);
+      this.pane.load(null);
       this.filming.load(true);
       this.refresh();
       return;
@@ -149,33 +137,15 @@ export class Player {
     this.refresh();
   }
 
-  /** Makes room for a second view of equal size, or takes it away. */
-  async split(wanted) {
-    const second = this.panes[1];
-    if (wanted === Boolean(second && !second.host.hidden)) return;
-    if (second) second.host.hidden = !wanted;
-    else {
-      const pane = this.addPane();
-      this.resize();
-      await pane.open(this.theme.background, this.Plotly);
-      if (this.closed) return pane.close();
-      pane.load(this.sample?.beside ?? null, this.sample?.beside?.caption);
-    }
-    this.resize();
-    if (this.data) this.framing.reset();
-  }
-
   /** Another sample of the same payload, at the same moment and under the same camera. */
   select(index) {
     const count = this.data.samples.length;
     this.sampleIndex = ((index % count) + count) % count;
     const { sample } = this;
     this.clock.load(sample);
-    this.panes[0].load(sample, sample.caption);
+    this.pane.load(sample, sample.caption);
     const reshaped = this.grid.load(sample.cells ? sample : null);
     this.find(".pdd-back").hidden = this.focus === null;
-    this.panes[1]?.load(sample.beside ?? null, sample.beside?.caption);
-    this.split(Boolean(sample.beside));
     if (reshaped) {
       this.resize();
       this.clothes.change();
@@ -255,14 +225,14 @@ export class Player {
     this.themeName = name;
     this.root.dataset.theme = name;
     this.filming.dress();
-    for (const pane of this.panes) pane.scene?.setBackground(this.theme.background);
+    this.scene?.setBackground(this.theme.background);
     this.strip.load(this.sample, this.theme.curve);
     this.refresh();
   }
 
   resize() {
     this.grid.fit();
-    for (const pane of this.panes) pane.scene?.resize();
+    this.scene?.resize();
     this.framing.measure();
     this.strip.paint();
     this.refresh();
@@ -270,7 +240,7 @@ export class Player {
 
   /** Everything is drawn anew at the next frame. */
   refresh() {
-    for (const pane of this.panes) pane.refresh();
+    this.pane.refresh();
     this.wake();
   }
 
@@ -331,7 +301,7 @@ export class Player {
     const posed = this.posing?.pose;
     const pinned = pose && !posed && !clock.playing ? this.directing.posesAt(Math.round(clock.shown)) : [];
     const { drawing } = this.directing;
-    if (pose) drawing?.lay(this.panes[0].scene, theme);
+    if (pose) drawing?.lay(this.pane.scene, theme);
     this.shown.forEach((pane, index) => {
       const people = posed ?? (pose && pane.poseAt(clock.shown));
       const view = orbit.view(index);
@@ -339,8 +309,8 @@ export class Player {
       pane.paint(people, { view, ground, theme, themeName, clock, skeleton, show, pinned, futures });
     });
     futures.place(clock.shown, orbit.view().matrix);
-    this.posing?.place(this.panes[0].spots);
-    this.directing.touching?.place(this.panes[0].spots);
+    this.posing?.place(this.pane.spots);
+    this.directing.touching?.place(this.pane.spots);
     if (pose) drawing?.place(orbit.view());
     if (pose) this.hover.show();
     this.controls.show(this);
@@ -375,7 +345,7 @@ export class Player {
     this.abort?.abort();
     this.themeWatch?.disconnect();
     this.sizeWatch?.disconnect();
-    for (const pane of this.panes) pane.close();
+    this.pane.close();
     this.onclose?.();
   }
 }

@@ -26,7 +26,7 @@ export class Posing {
     this.opener = player.root.contains(document.activeElement) ? document.activeElement : player.root;
     this.listen();
     this.lay();
-    const { spots } = player.panes[0];
+    const { spots } = player.pane;
     if (spots) this.place(spots);
     this.focus(this.handles.find((handle) => handle.style.visibility !== "hidden"));
   }
@@ -113,7 +113,7 @@ export class Posing {
     handle.setPointerCapture(event.pointerId);
     const [person, joint] = [Number(handle.dataset.person), Number(handle.dataset.joint)];
     const depth = this.spots[person][joint][2];
-    const { clientHeight } = this.player.panes[0].host;
+    const { clientHeight } = this.player.pane.host;
     this.held = {
       handle, person, joint, id: event.pointerId, before: this.pose[person], from: [event.clientX, event.clientY],
       whole: event.shiftKey, metres: (2 * Math.tan(FIELD_OF_VIEW / 2) * depth) / clientHeight,

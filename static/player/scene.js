@@ -1,9 +1,8 @@
 // One plotly 3D scene, driven past plotly's own update path.
 //
-// Plotly.restyle rebuilds every trace and reaches about 16 frames a second. The fast way writes the
-// points into each trace's own line and point objects and asks the scene to redraw. These objects are
-// plotly's inside, so openFast() tests each of them; where one is missing, everything goes through
-// Plotly.restyle and Plotly.relayout instead, slower, and with skeletons on lines in place of bodies on a floor.
+// Plotly.restyle rebuilds every trace and reaches about 16 frames a second. Here the points are written into each
+// trace's own line, point and mesh objects, and the scene is asked to redraw. These objects are plotly's inside: they
+// are those of the copy in static/plotly, and take() says so where another one lacks them.
 //
 // Only ghosts of futures are translucent: one translucent object makes plotly draw the whole scene twice. Skeletons
 // beside bodies are drawn a little nearer to the eye instead, over bodies that stay solid.
@@ -29,8 +28,6 @@ export class Scene {
   constructor(host, Plotly) {
     this.host = host;
     this.Plotly = Plotly;
-    this.mode = "restyle";
-    this.pending = new Map();
     this.layers = new Map();
     this.names = Object.keys(KINDS);
     this.software = softwareGl();
@@ -66,7 +63,7 @@ export class Scene {
     } finally {
       restore?.();
     }
-    this.openFast();
+    this.take();
     for (const name of this.names) this.hide(name);
     return this;
   }
@@ -75,26 +72,20 @@ export class Scene {
     return this.host._fullLayout?.scene?._scene;
   }
 
-  /** Takes hold of plotly's objects, or leaves `mode` at "restyle". */
-  openFast() {
+  /** Takes hold of plotly's objects. */
+  take() {
     const scene = this.inside;
-    const gl = scene?.glplot;
-    this.mode = "restyle";
-    if (!gl?.redraw || !gl.camera?.tick || gl.camera.view?.computedMatrix?.length !== 16) return;
-    this.objects = {};
-    for (const [index, name] of this.names.entries()) {
-      const trace = scene.traces?.[this.host._fullData[index]?.uid];
-      const object = trace?.[HOLDERS[KINDS[name]]];
-      if (typeof object?.update !== "function" || !("dirty" in object)) return;
-      this.objects[name] = object;
-    }
-    if (!this.takesTriangles()) return;
+    const gl = scene.glplot;
+    this.objects = Object.fromEntries(this.names.map((name, index) => {
+      const object = scene.traces[this.host._fullData[index].uid]?.[HOLDERS[KINDS[name]]];
+      if (!object) throw new Error(`This plotly has no ${HOLDERS[KINDS[name]]}: use the copy in static/plotly.`);
+      return [name, object];
+    }));
     this.gl = gl;
     this.view ||= new Float64Array(16);
     this.size = [0, 0];
     gl.camera.tick = () => this.tick(gl.camera);
     this.skipPicking(gl);
-    this.mode = "fast";
     for (const name of this.names) if (KINDS[name] === "mesh") simplify(this.objects[name], gl.gl, name === "ground" ? "shaded" : "plain");
     rest(gl);
   }
@@ -114,28 +105,14 @@ export class Scene {
 
   /** Hover labels are our own; without pick slots plotly draws no hidden picture to find points in. */
   skipPicking(gl) {
-    if (!Array.isArray(gl.objects) || !gl.remove || !gl.add) return;
     for (const object of gl.objects) object.pickSlots = 0;
     const last = gl.objects[gl.objects.length - 1];
     gl.remove(last); // recounts the slots
     gl.add(last);
   }
 
-  /** Whether meshes are what setTriangles() and setShade() write into. */
-  takesTriangles() {
-    const buffers = ["trianglePositions", "triangleColors", "triangleNormals", "triangleUVs", "triangleIds"];
-    return this.names.filter((name) => KINDS[name] === "mesh").every((name) => {
-      const mesh = this.objects[name];
-      return buffers.every((key) => typeof mesh[key]?.update === "function") && mesh.texture?.handle && mesh.lineShader?.bind && "hasAlpha" in mesh;
-    });
-  }
-
-  setView(matrix, eye, center) {
-    if (this.mode === "fast") this.view.set(matrix);
-    else {
-      const point = ([x, y, z]) => ({ x, y, z });
-      this.pendingCamera = { eye: point(eye), center: point(center), up: { x: 0, y: 0, z: 1 } };
-    }
+  setView(matrix) {
+    this.view.set(matrix);
   }
 
   /**
@@ -146,10 +123,6 @@ export class Scene {
   set(name, layer) {
     const { points, colors = [0, 0, 0], sizes = 1 } = layer;
     this.layers.set(name, layer);
-    if (this.mode !== "fast") {
-      this.pending.set(name, { points, colors, sizes });
-      return;
-    }
     const scale = this.inside.dataScale;
     const position = points.map((p) => [p[0] * scale[0], p[1] * scale[1], p[2] * scale[2]]);
     const object = this.objects[name];
@@ -171,7 +144,6 @@ export class Scene {
     this.layers.set(name, layer);
     const { positions, colors, places, alpha = 1 } = layer;
     const corners = positions.length / 3;
-    if (this.mode !== "fast") return; // too much for restyle
     const mesh = this.objects[name];
     mesh.trianglePositions.update(positions);
     mesh.triangleColors.update(colors);
@@ -188,7 +160,6 @@ export class Scene {
 
   /** Multiplies a picture onto a mesh: `pixels` RGBA, `size` each way. */
   setShade(name, pixels, size) {
-    if (this.mode !== "fast") return;
     const { texture } = this.objects[name];
     const { gl } = this.gl;
     gl.bindTexture(gl.TEXTURE_2D, texture.handle);
@@ -209,55 +180,23 @@ export class Scene {
 
   hide(name) {
     this.set(name, { points: NOWHERE, hidden: true });
-    if (KINDS[name] === "mesh" && this.mode === "fast") Object.assign(this.objects[name], { triangleCount: 0, hasAlpha: false });
+    if (KINDS[name] === "mesh") Object.assign(this.objects[name], { triangleCount: 0, hasAlpha: false });
   }
 
   draw() {
-    if (this.mode === "fast" && this.inside?.glplot !== this.gl) this.openFast(); // plotly made a new one after a lost context
-    if (this.mode === "fast") {
-      this.inside.glplot.redraw();
-      return;
-    }
-    this.drawSlowly();
-  }
-
-  drawSlowly() {
-    const whole = (v) => (Number.isNaN(v) ? null : v);
-    const each = (colors, points) => (Array.isArray(colors[0]) ? colors.map(css) : points.map(() => css(colors)));
-    const mean = (sizes) => (Array.isArray(sizes) ? sizes.reduce((a, b) => a + b, 0) / sizes.length : sizes);
-    const keys = {
-      lines: ({ points, colors, sizes }) => ({ "line.color": each(colors, points), "line.width": 2 * mean(sizes) }),
-      points: ({ points, colors, sizes }) => ({ "marker.color": each(colors, points), "marker.size": sizes }),
-      mesh: ({ points, colors }) => ({ vertexcolor: each(colors, points) }),
-    };
-    for (const [kind, extra] of Object.entries(keys)) {
-      const update = {};
-      const indices = [];
-      for (const [name, layer] of this.pending) {
-        if (KINDS[name] !== kind) continue;
-        const values = { ...extra(layer) };
-        for (const [i, key] of ["x", "y", "z"].entries()) values[key] = layer.points.map((p) => whole(p[i]));
-        for (const [key, value] of Object.entries(values)) (update[key] ||= []).push(value);
-        indices.push(this.names.indexOf(name));
-      }
-      if (indices.length) this.Plotly.restyle(this.host, update, indices);
-    }
-    this.pending.clear();
-    if (this.pendingCamera) this.Plotly.relayout(this.host, { "scene.camera": this.pendingCamera });
-    this.pendingCamera = null;
+    if (this.inside.glplot !== this.gl) this.take(); // plotly made a new one after a lost context
+    this.inside.glplot.redraw();
   }
 
   setBackground(color) {
-    if (this.mode === "fast") {
-      this.inside.glplot.setClearColor([...color, 1]);
-      this.inside.fullSceneLayout.bgcolor = css(color);
-    } else this.Plotly.relayout(this.host, { "scene.bgcolor": css(color) });
+    this.inside.glplot.setClearColor([...color, 1]);
+    this.inside.fullSceneLayout.bgcolor = css(color);
   }
 
   /** After the box changed its size: plotly draws its own traces anew, so every layer is given again. */
   async resize() {
     await this.Plotly.Plots.resize(this.host);
-    if (this.mode !== "fast" || !this.objects) return;
+    if (!this.objects) return;
     for (const [name, layer] of this.layers) layer.positions ? this.setTriangles(name, layer) : this.set(name, layer);
     this.draw();
   }
@@ -269,7 +208,7 @@ export class Scene {
    */
   setStill(still, live = false) {
     const gl = this.inside?.glplot;
-    if (!this.software || this.mode !== "fast" || !gl) return false;
+    if (!this.software || !gl) return false;
     const moving = live ? LIVE_RATIO : MOVING_RATIO;
     const ratio = still ? STILL_RATIO : moving;
     if (gl.pixelRatio === ratio) return false;

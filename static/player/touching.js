@@ -33,7 +33,7 @@ export class Touching {
     this.host.addEventListener("click", (event) => this.press(event.target.closest(".pdd-handle")), { signal });
     player.root.addEventListener("keydown", (event) => this.key(event), { signal, capture: true });
     this.lay();
-    const { spots } = player.panes[0];
+    const { spots } = player.pane;
     if (spots) this.place(spots);
     this.handles.find((handle) => handle.style.visibility !== "hidden")?.focus({ preventScroll: true });
   }

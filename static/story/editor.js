@@ -1,9 +1,9 @@
-// The story under the player: beats as blocks in three lanes, a span, paths on the floor. Its value is a story.
+// The story under the player: beats as blocks in three lanes, a span, poses, and chips of the paths that are drawn on
+// the stage. Its value is a story.
 
 import { Draft } from "./draft.js";
 import { chips } from "../player/paths/walks.js";
 import * as edits from "./edits.js";
-import { Floor } from "./floor.js";
 import { block, drawRuler, drawTicks, node } from "./lanes.js";
 import { Pins } from "./pins.js";
 import { say } from "../texts.js";
@@ -26,7 +26,6 @@ export class Editor {
     this.past = new edits.Past();
     this.draft = new Draft();
     this.note = null; // stands in for the hint until the next change
-    this.floor = new Floor(root.querySelector(".pds-floor"), this);
     this.pins = new Pins(this);
     root.addEventListener("click", (event) => this.press(event));
     root.addEventListener("change", (event) => this.field(event));
@@ -177,8 +176,6 @@ export class Editor {
       this.write(this.selected, "words");
     } else if (act === "undo" || act === "redo") this.travel(act);
     else if (act === "no-span") this.edit({ ...story, span: null });
-    else if (act === "add-point") this.floor.addPoint();
-    else if (act === "clear-path") this.floor.clear();
     else if (story.beats.length) this.change(act);
   }
 
@@ -341,7 +338,6 @@ export class Editor {
     drawRuler(this.find(".pds-ruler"), total);
     drawTicks(this.find(".pds-ticks"), this.props.motion?.contacts ?? [], total);
     this.drawSpan(story.span);
-    this.floor.draw(story);
     chips(this.find(".pds-walks"), story.paths, (person) => this.keepPath(person, []));
     this.player?.refresh(); // it shows poses
     const beat = story.beats[this.selected];

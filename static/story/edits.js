@@ -134,8 +134,6 @@ export function spanAround(seconds, total) {
   return [Math.floor(10 * from) / 10, Math.min(Math.ceil(10 * to) / 10, total)];
 }
 
-export const pathOf = (story, person) => story.paths.find((found) => found.person === person)?.points ?? [];
-
 /** Keeps what a story was, so that it can be undone and redone. */
 export class Past {
   constructor() {

@@ -21,7 +21,6 @@ from motion.looks import size_of
 from motion.sizes import at_sizes
 from motion.things import Thing, shape
 from webdemo.ui.components.player import MotionPlayer, busy, player_payload, show
-from webdemo.view.payload import build_payload, sample_payload
 
 FPS = 30.0
 HOSTILE = ('<img src=x onerror="window.__hacked=1">', "${window.__hacked=2}{{value}}")
@@ -120,13 +119,6 @@ def apart_duet(seconds: float = 4.0) -> Duet:
     return Duet.from_positions(positions, fps=FPS)
 
 
-def side_by_side() -> dict[str, object]:
-    """Two motions in two views; the second's people stand elsewhere."""
-    first, second = (sample_payload(duet) for duet in (walking_duet(4.0), apart_duet(4.0)))
-    sample = {**first, "caption": "ReGenNet", "beside": {**second, "caption": "InterFormer"}}
-    return build_payload([sample], skeleton=SMPL22)
-
-
 def ask_nobody() -> dict[str, object]:
     """A short motion that plays twice and then rests, as the one that is there before anything is asked."""
     return {**player_payload(walking_duet(1.0)), "rounds": 2}
@@ -145,7 +137,6 @@ UPDATES: dict[str, Callable[[], dict[str, Any]]] = {
     "far": lambda: show(player_payload(apart_duet())),
     "things": lambda: show(player_payload(duet_with_things())),
     "child": lambda: show(player_payload(duet_with_a_child())),
-    "beside": lambda: show(side_by_side()),
     "arrival": lambda: show(ask_nobody()),
 }
 """What the harness' buttons do to the player, by their names."""

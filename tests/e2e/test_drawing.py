@@ -77,7 +77,7 @@ def test_a_drawn_path_is_sent_with_the_next_run(drawing: Page, server: Any) -> N
     expect(chips(page)).to_have_text(re.compile(r"A’s path 1\.\d m ✕"))
     length = chips(page).inner_text().removeprefix("A’s path ").split(" m")[0]
     expect(page.locator("#player .pdd-length")).to_have_text(f"{length} m")
-    assert page.evaluate("window.__pasdedeux.player.panes[0].scene.layers.get('paths').points.length") > 40
+    assert page.evaluate("window.__pasdedeux.player.pane.scene.layers.get('paths').points.length") > 40
     (sent,) = generated(page, server, "A waves to B.").paths
     assert sent.person == "a"
     assert [[point.x, point.z] for point in sent.points] == [point[1:] for point in path["points"]]
@@ -104,15 +104,6 @@ def test_a_person_is_put_where_they_are_at_a_moment(drawing: Page) -> None:
     assert 0.2 < ((x - place[0]) ** 2 + (z - place[1]) ** 2) ** 0.5 < 2
     expect(chips(page)).to_have_text("B is here at 2.0 s ✕")
     page.locator("#player [data-draw=undo]").click()
-    assert paths(page) == []
-
-
-def test_a_way_that_nobody_runs_is_refused(drawing: Page) -> None:
-    page = drawing
-    page.evaluate("window.__pasdedeux.player.seek(147)")
-    until(page, "window.__pasdedeux.frame === 147 && window.__pasdedeux.loops === 0")
-    drag(page, "path", "a", (-160, 0))
-    expect(page.locator(SAID)).to_contain_text("Nobody runs")
     assert paths(page) == []
 
 
@@ -160,3 +151,28 @@ def test_a_kept_run_brings_its_paths_back(drawing: Page, server: Any) -> None:
     page.click("#history-open")
     expect(chips(page)).to_have_count(1, timeout=SLOW)
     assert [point[1:3] for point in paths(page)[0]["points"]] == [point[1:3] for point in path["points"]]
+
+
+def test_a_part_that_is_pressed_is_touched_in_the_prompt(shared_page: Page) -> None:
+    page, prompt = shared_page, shared_page.locator("#prompt textarea")
+    tool, dots = "#player [data-act=touch]", "#player .pdd-handle-touch"
+    page.get_by_role("tab", name="Generate").click()
+    until(page, "window.__pasdedeux.player?.director?.say && window.__pasdedeux.frame !== null")
+    page.fill("#prompt textarea", "A bows")
+    page.evaluate("() => { const { player } = window.__pasdedeux; player.clock.seek(0); player.refresh(); }")
+    page.click(tool)
+    until(page, f"document.querySelector('{dots}')?.style.transform && window.__pasdedeux.loops === 0")
+    expect(page.locator(dots)).to_have_count(24)
+    dot = page.locator(f"{dots}[data-person='1'][data-part=head]")
+    expect(dot).to_have_attribute("title", "Person A touches person B's head.")
+    dot.evaluate("dot => dot.click()")  # a dot of the other person may lie over it
+    expect(prompt).to_have_value("A bows. Person A touches person B's head.")
+    expect(page.locator(dots)).to_have_count(0)
+    expect(page.locator("#reading .pdr-chip")).to_have_count(2, timeout=SLOW)
+    prompt.press("Control+z")
+    expect(prompt).to_have_value("A bows")
+    page.click(tool)  # the first dot has the focus
+    expect(page.locator(f"{dots}:focus")).to_have_count(1)
+    page.keyboard.press("Escape")
+    expect(page.locator(dots)).to_have_count(0)
+    expect(page.locator(tool)).to_have_attribute("aria-pressed", "false")

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from types import SimpleNamespace
 
 import pytest
-from playwright.sync_api import Page, Route, expect
+from playwright.sync_api import Page, expect
 
 from webdemo.ui.components.gallery import SCENES
 
@@ -51,48 +51,6 @@ def test_an_act_a_control_and_a_run_are_found_by_keyboard_alone(
     page.wait_for_url("**/?run=*")
     live(page)
     until(page, "window.__pasdedeux?.id")
-
-
-def test_the_dialog_closes_again_and_says_when_nothing_is_found(
-    server: SimpleNamespace, open_page: Callable[..., Page]
-) -> None:
-    page = live(open_page(server.url, width=1280, height=800))
-    page.locator("#finder button").click()
-    page.keyboard.type("qqqq")
-    expect(page.locator("#finder [role=listbox]")).to_have_text("Nothing has these words.")
-    page.keyboard.press("Escape")
-    expect(page.locator("#finder dialog")).to_be_hidden()
-    page.keyboard.press("Control+k")
-    expect(page.locator(FIELD)).to_have_value("")
-    until(page, PLAYING)
-    page.keyboard.type("film look")
-    expect(page.locator(FIRST)).to_contain_text("Film look (C)")
-    page.keyboard.press("Enter")
-    expect(page.locator("#player [data-act=film]")).to_be_focused()
-    page.keyboard.press("Control+k")
-    page.keyboard.type("hist")
-    expect(page.locator(FIRST)).to_contain_text("History")
-    page.keyboard.press("Enter")
-    expect(page.get_by_role("tab", name="History")).to_have_attribute("aria-selected", "true", timeout=SLOW)
-
-
-def test_the_switches_of_a_player_that_comes_late_are_found(
-    server: SimpleNamespace, open_page: Callable[..., Page]
-) -> None:
-    """Whoever opens the search as soon as there is a page has it open before the player has loaded."""
-    held: list[Route] = []
-    page = open_page(
-        server.url, before=lambda page: page.route("**/static/player/main.js", lambda route: held.append(route))
-    )
-    live(page)
-    page.locator("#finder button").click()
-    page.keyboard.type("film loo")
-    expect(page.locator("#finder [role=listbox]")).to_have_text("Nothing has these words.")
-    for route in held:
-        route.continue_()
-    until(page, PLAYING)
-    page.keyboard.type("k")
-    expect(page.locator(FIRST)).to_contain_text("Film look (C)")
 
 
 def test_a_scene_of_the_drawer_of_examples_is_made_by_one_press(

@@ -44,7 +44,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
     sweep(page, "across", "Seeds", "1-500")
     page.click("#grid-make")
     expect(page.locator("#status .pd-error")).to_contain_text("A grid has 1 to 9 cells", timeout=SLOW)
-    until(page, f"{PLAYER}.scene.mode === 'fast'")
+    until(page, "window.__pasdedeux.open")
     before = page.evaluate("window.contexts")
 
     sweep(page, "across", "Seeds", "1-3")
@@ -60,7 +60,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
     assert page.locator("#readouts .pd-better").count() > 0 and page.locator("#readouts .pd-worse").count() > 0
     page.evaluate(f"{PLAYER}.act('play')")
     page.wait_for_function("window.__pasdedeux?.loops === 0")
-    until(page, f"{PLAYER}.panes[0].figures.length === 2")
+    until(page, f"{PLAYER}.pane.figures.length === 2")
     pixels = stage_pixels(page)
     rows = np.array_split(pixels, 3)
     cells = [cell for row in rows for cell in np.array_split(row, 3, axis=1)]

@@ -16,30 +16,8 @@ pytestmark = pytest.mark.e2e
 
 
 @pytest.fixture
-def page(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
-    return live(open_page(server.url))
-
-
-@pytest.fixture
-def phone(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
-    return live(open_page(server.url, width=390, height=844))
-
-
-def test_the_phone_layout_has_the_player_high_and_no_sideways_scroll(phone: Page) -> None:
-    ask(phone, "two people walk")
-    status(phone, "done")
-    assert phone.evaluate("document.documentElement.scrollWidth") <= 390
-    top = {name: phone.locator(name).bounding_box()["y"] for name in ("#prompt", "#player", "#seconds")}
-    assert top["#prompt"] < top["#player"] < top["#seconds"]
-    expect(phone.locator("#guidance")).to_be_hidden()  # folded, as every setting is that can wait
-    assert top["#player"] < 400
-
-
-def test_a_finger_hits_the_switches(phone: Page) -> None:
-    unfold(phone, "#advanced")
-    for part in phone.locator("#planned label").all():
-        assert part.bounding_box()["height"] >= 44
-    phone.locator("#advanced button.label-wrap").first.click()  # the page remembers what is open
+def page(shared_page: Page) -> Page:
+    return shared_page
 
 
 def test_every_control_has_a_name_and_the_focus_is_visible(page: Page) -> None:
@@ -53,6 +31,33 @@ def test_every_control_has_a_name_and_the_focus_is_visible(page: Page) -> None:
     page.keyboard.press("Tab")
     page.keyboard.press("Shift+Tab")
     assert page.evaluate("getComputedStyle(document.activeElement).outlineStyle") != "none"
+
+
+def test_a_phone_has_the_player_high_and_no_sideways_scroll(server: SimpleNamespace, open_page: Callable) -> None:
+    phone = live(open_page(server.url, width=390, height=844))
+    ask(phone, "two people walk")
+    status(phone, "done")
+    assert phone.evaluate("document.documentElement.scrollWidth") <= 390
+    top = {name: phone.locator(name).bounding_box()["y"] for name in ("#prompt", "#player", "#seconds")}
+    assert top["#prompt"] < top["#player"] < top["#seconds"]
+    expect(phone.locator("#guidance")).to_be_hidden()  # folded, as every setting is that can wait
+    assert top["#player"] < 400
+    for tab, field in (("React", "#react-method"), ("Predict", "#predict-method")):
+        live(phone, tab)
+        phone.locator(f"{field} input").wait_for()
+        room = phone.evaluate(_ROOM, [field, "InterGen, person to person"])
+        assert room >= 0, f"{field} lacks {-room:g} pixels"
+        assert phone.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+_ROOM = """([field, text]) => {
+    const input = document.querySelector(`${field} input`);
+    const pen = document.createElement("canvas").getContext("2d");
+    pen.font = getComputedStyle(input).font;
+    const arrow = document.querySelector(`${field} .icon-wrap`).getBoundingClientRect();
+    return arrow.left - input.getBoundingClientRect().left - pen.measureText(text).width;
+}"""
+"""Pixels between a text in a list's field and the field's arrow."""
 
 
 def test_axe_finds_nothing_against_wcag_aa_and_reduced_motion_keeps_the_example_still(
@@ -86,54 +91,25 @@ def against_wcag(axe: Any, page: Page, where: str) -> list[str]:
     return found
 
 
-def test_nothing_but_buttons_takes_room_in_the_rows_of_files(page: Page) -> None:
-    ask(page, "Two people walk home.")
-    status(page, "done")
-    unfold(page, "#downloads", "#share")
-    wide = page.locator(".pd-menu .pd-downloads > *").evaluate_all(
-        "(all) => all.filter((each) => each.offsetWidth > 0).map((each) => each.tagName)"
-    )
-    assert len(wide) > 10 and set(wide) == {"BUTTON"}
+def test_the_button_and_the_whole_stage_are_in_view_together_on_a_small_laptop(page: Page) -> None:
+    page.set_viewport_size({"width": 1024, "height": 700})
+    for tab in ("Generate", "React", "Predict"):
+        page.get_by_role("tab", name=tab).click()
+        prefix = "" if tab == "Generate" else f"{tab.lower()}-"
+        page.locator(f"#{prefix}player .pdd-stage").wait_for()
+        for part in (f"button#{prefix}generate", f"#{prefix}player .pdd"):
+            box = page.locator(part).bounding_box()
+            assert box and box["y"] >= 0 and box["y"] + box["height"] <= 700, part
+        player = page.locator(f"#{prefix}player .pdd").bounding_box()
+        assert player and player["width"] > 600 and player["height"] > 600
 
 
-@pytest.mark.parametrize("tab", ["Generate", "React", "Predict"])
-def test_the_button_and_the_whole_stage_are_in_view_together_on_a_small_laptop(
-    server: SimpleNamespace, open_page: Callable[..., Page], tab: str
-) -> None:
-    page = live(open_page(server.url, width=1024, height=700), None if tab == "Generate" else tab)
-    prefix = "" if tab == "Generate" else f"{tab.lower()}-"
-    page.locator(f"#{prefix}player .pdd-stage").wait_for()
-    for part in (f"button#{prefix}generate", f"#{prefix}player .pdd"):
-        box = page.locator(part).bounding_box()
-        assert box and box["y"] >= 0 and box["y"] + box["height"] <= 700, part
-    player = page.locator(f"#{prefix}player .pdd").bounding_box()
-    assert player and player["width"] > 600 and player["height"] > 600
-    page.mouse.wheel(0, 2000)  # the stage stays while the panels scroll
-    page.wait_for_timeout(300)
-    box = page.locator(f"#{prefix}player .pdd").bounding_box()
-    assert box and box["y"] >= 0
-
-
-def test_no_example_is_cut_off_unseen(server: SimpleNamespace, open_page: Callable[..., Page]) -> None:
-    page = live(open_page(server.url, width=1440, height=900))
+def test_no_example_is_cut_off_unseen(page: Page) -> None:
+    page.get_by_role("tab", name="Generate").click()
+    page.set_viewport_size({"width": 1440, "height": 900})
     ends = "row => [row.scrollWidth - row.clientWidth, getComputedStyle(row).scrollbarWidth]"
     row = page.locator(".pd-ask .pd-chips").first
     assert row.evaluate(ends)[0] <= 1, "with room for all of them, they wrap"
     page.set_viewport_size({"width": 1024, "height": 700})
     hidden, scrollbar = row.evaluate(ends)
     assert hidden > 1 and scrollbar == "thin", "on a low screen a scroll bar says that there are more"
-
-
-def test_what_was_folded_or_opened_stays_so(page: Page) -> None:
-    page.evaluate("localStorage.removeItem('pas-de-deux-folds')")
-    page.reload()
-    live(page)
-    expect(page.locator("#guidance")).to_be_visible()
-    expect(page.locator("#seed")).to_be_hidden()
-    unfold(page, "#more")
-    page.locator("#advanced > button").click()
-    expect(page.locator("#guidance")).to_be_hidden()
-    page.reload()
-    live(page)
-    expect(page.locator("#seed")).to_be_visible(timeout=SLOW)
-    expect(page.locator("#guidance")).to_be_hidden()

@@ -10,6 +10,8 @@ from playwright.sync_api import Page, expect
 
 from motion.formats import write
 from tests.ui.stub_engine import walking
+from webdemo.ui.components.show import ROUNDS
+from webdemo.ui.text.examples import example_clips
 
 from .playing import choose, give_file, unfold
 from .serving import SLOW, live
@@ -48,23 +50,30 @@ def predict(page: Page) -> None:
 
 
 def damaged(kind: str) -> np.ndarray:
-    """(90, 22, 3) of a walker with NaN, with a wrist that jumps, or of half a second."""
-    positions = np.array(walking(0.5 if kind == "short" else 3.0).a.positions)
-    if kind != "short":
-        positions[20, 20] += np.nan if kind == "nan" else 3.0
+    """(90, 22, 3) of a walker with NaN, or with a wrist that jumps."""
+    positions = np.array(walking(3.0).a.positions)
+    positions[20, 20] += np.nan if kind == "nan" else 3.0
     return positions
 
 
-def test_what_cannot_be_predicted_is_a_sentence(page: Page, tmp_path: Path) -> None:
+def test_it_opens_with_the_first_example_which_plays(page: Page) -> None:
     """It comes first, on a page where nothing was chosen yet."""
+    (name, _), *_ = example_clips()
+    expect(page.locator("#predict-player .pdd-title")).to_have_text(name, timeout=SLOW)
+    expect(page.locator("#predict-status")).to_contain_text(f"{name}: two people", timeout=SLOW)
+    page.wait_for_function("window.__pasdedeux?.playing && window.__pasdedeux.frame > 5")
+    assert page.evaluate("window.__pasdedeux.player.data.rounds") == ROUNDS
+    predict(page)
+    page.wait_for_function(f"{SAMPLE}.past_until > 0")
+    page.get_by_role("tab", name="Generate").click()
+    live(page, "Predict")  # what is there stays
+    page.wait_for_timeout(500)
+    assert page.evaluate(f"{SAMPLE}.past_until") > 0
+
+
+def test_what_cannot_be_predicted_is_a_sentence(page: Page, tmp_path: Path) -> None:
     error = page.locator("#predict-status .pd-error")
-    page.click("button#predict-generate")
-    expect(error).to_contain_text("There is no motion yet", timeout=SLOW)
-    for kind, read, sentence in (
-        ("short", "Give 1 s or more", "1 s or more is needed: give a longer motion"),
-        ("jump", "one person, 3.0 s", "The left wrist jumps"),
-        ("nan", None, "nan.npy"),
-    ):
+    for kind, read, sentence in (("jump", "one person, 3.0 s", "The left wrist jumps"), ("nan", None, "nan.npy")):
         np.save(tmp_path / f"{kind}.npy", damaged(kind))
         upload(page, tmp_path / f"{kind}.npy")
         if read:
@@ -103,22 +112,6 @@ def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_pa
     expect(page.locator("#predict-curves")).to_contain_text("Nothing follows the marker", timeout=SLOW)
 
 
-def test_two_methods_go_on_side_by_side_on_one_clock(page: Page, tmp_path: Path) -> None:
-    upload(page, write(walking(3.0).a, tmp_path / "walker.npz")[0])
-    people(page, 1)
-    unfold(page, "#predict-grid")
-    choose(page, "#predict-other", "Zero velocity (the last pose, held)")
-    page.click("button#predict-generate")
-    expect(page.locator("#predict-status .pd-done")).to_contain_text("Both done", timeout=SLOW)
-    people(page, 2)
-    captions = page.locator("#predict-player .pdd-caption")
-    expect(captions).to_have_text(["Motion MLP", "Zero velocity (the last pose, held)"])
-    assert page.evaluate(f"[{SAMPLE}.ghost !== null, {SAMPLE}.beside.ghost !== null]") == [True, True]
-    assert page.evaluate(f"[{SAMPLE}.past_until, {SAMPLE}.beside.past_until]") == [45, 45]
-    expect(page.locator("#predict-curves .legendtext", has_text="Zero velocity")).to_be_visible(timeout=SLOW)
-    choose(page, "#predict-other", "nothing")
-
-
 def test_two_people_have_several_futures_by_a_seed(page: Page, tmp_path: Path) -> None:
     upload(page, write(walking(3.0), tmp_path / "walkers.npz")[0])
     people(page, 2)
@@ -150,12 +143,3 @@ def test_a_result_of_another_tab_goes_on(page: Page) -> None:
     page.click("button#predict-continue")  # and on from there
     page.wait_for_function("document.querySelector('#predict-marker input[type=number]').value === '7'")
     assert marker(page) == 7.0
-
-
-def test_on_a_phone_the_motion_comes_first_then_the_player_then_the_settings(page: Page) -> None:
-    page.set_viewport_size({"width": 390, "height": 844})
-    names = ("#predict-file", "#predict-player", "#predict-marker")
-    expect(page.locator(names[1])).to_be_visible(timeout=SLOW)
-    tops = [page.locator(name).bounding_box()["y"] for name in names]
-    assert tops == sorted(tops)
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390

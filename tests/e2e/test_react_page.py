@@ -13,6 +13,7 @@ from motion.formats import write
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_takes
 from tests.ui.stub_engine import walking
+from webdemo.inference.methods import method
 
 from .playing import choose, unfold
 from .serving import SLOW, live
@@ -65,11 +66,18 @@ def test_another_animation_of_a_character_is_chosen(page: Page, tmp_path: Path) 
     expect(page.locator("#react-animation input")).to_have_value("2 · glide")
 
 
-def test_a_result_of_the_other_tab_is_taken_and_bad_files_are_a_sentence(page: Page, tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_read_leaves_nothing_and_a_result_is_taken(page: Page, tmp_path: Path) -> None:
     broken = tmp_path / "broken.bvh"
     broken.write_text("HIERARCHY\nROOT hips\n{")
+    page.get_by_role("button", name="Wave", exact=True).last.click()
+    people(page, 1)
+    expect(page.locator("#react-import")).to_contain_text("How the file was read")
     page.set_input_files("#react-file input[type=file]", broken)
     expect(page.locator("#react-status .pd-error")).to_contain_text("broken.bvh", timeout=SLOW)
+    expect(page.locator("#react-player .pdd-empty")).to_be_visible()
+    expect(page.locator("#react-import")).to_be_hidden()
+    page.click("button#react-generate")
+    expect(page.locator("#react-status .pd-error")).to_contain_text("There is no actor yet", timeout=SLOW)
 
     page.get_by_role("tab", name="Generate").click()
     page.fill("#prompt textarea", "two people walk")
@@ -112,72 +120,41 @@ def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     people(page, 2)
 
 
-def test_two_methods_are_seen_side_by_side_on_one_clock(page: Page, tmp_path: Path) -> None:
-    (file, _) = write(walking(3.0), tmp_path / "walker.bvh")
-    page.set_input_files("#react-file input[type=file]", file)
+def test_automatic_chooses_by_the_words_and_a_method_greys_those_it_does_not_hear(
+    page: Page, server: SimpleNamespace, tmp_path: Path
+) -> None:
+    player = page.locator("#react-player")
+    expect(page.locator("#react-method input")).to_have_value("Automatic")
+    expect(page.locator("#react-live-method")).to_contain_text("Stream always uses ReGenNet, online")
+    page.set_input_files("#react-file input[type=file]", write(walking(3.0).a, tmp_path / "walker.npz")[0])
     people(page, 1)
-    choose(page, "#react-method", "InterGen, person to person")
-    unfold(page, "#react-grid")
-    choose(page, "#react-other", "ReGenNet, online")
-    page.click("button#react-generate")
-    expect(page.locator("#react-status .pd-done")).to_contain_text("Both done", timeout=SLOW)
-    people(page, 4)
-    captions = page.locator("#react-player .pdd-caption")
-    expect(captions).to_have_text(["InterGen, person to person", "ReGenNet, online"])
-    left, right = (captions.nth(i).locator("..").bounding_box() for i in (0, 1))
-    assert left and right and abs(left["width"] - right["width"]) < 2 and left["x"] < right["x"]
-    expect(page.locator("#react-readouts thead").first).to_contain_text("ReGenNet, online")
-    unfold(page, "#react-downloads")
-    with page.expect_download(timeout=SLOW) as download:
-        page.click("#react-download-npz")
-    assert download.value.suggested_filename.endswith(".zip")
+    assert player.locator(".pdd-label").all_text_contents() == ["A · given"]
+    for words, title, model in (
+        ("", "Reaction to walker.npz", "agent"),
+        ("They shake hands.", "They shake hands.", "intergen"),
+    ):
+        page.fill("#react-prompt textarea", words)
+        page.click("button#react-generate:enabled")
+        expect(player.locator(".pdd-title")).to_have_text(title, timeout=SLOW)
+        assert server.engine.requests[-1].model == model
+    assert player.locator(".pdd-label").all_text_contents() == ["A · given", "B · generated"]
+    expect(page.locator("button#react-generate")).to_be_enabled(timeout=SLOW)
+    choose(page, "#react-method", "Virtual agent")
+    expect(page.locator("#react-prompt textarea")).to_be_disabled()
+    expect(page.locator("#react-about")).to_contain_text(method("agent").summary)
 
+
+def test_methods_are_compared_side_by_side(page: Page, server: SimpleNamespace, tmp_path: Path) -> None:
+    page.set_input_files("#react-file input[type=file]", write(walking(2.0).a, tmp_path / "walker.npz")[0])
+    people(page, 1)
+    unfold(page, "#react-grid")
+    choose(page, "#react-grid-across", "Methods")
+    page.fill("#react-grid-across-values textarea", "InterGen, person to person; ReGenNet, online")
+    page.click("#react-grid-make")
+    expect(page.locator("#react-status .pd-done")).to_contain_text("2 results done", timeout=SLOW)
+    people(page, 4)
+    names = page.locator("#react-player .pdd-cell-text")
+    expect(names).to_have_text(["InterGen, person to person", "ReGenNet, online"])
     page.click("button#react-take-a")
     people(page, 1)
-    expect(captions).to_have_count(2)
-    expect(captions.nth(1)).to_be_hidden()
-
-
-def test_the_console_stays_quiet_while_runs_are_started(
-    server: SimpleNamespace, open_page: Callable[..., Page]
-) -> None:
-    said: list[str] = []
-    page = open_page(server.url, before=lambda tab: tab.on("console", lambda message: said.append(message.text)))
-    page.set_default_timeout(SLOW)
-    page.fill("#prompt textarea", "two people walk")
-    page.click("button#generate")
-    expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
-    assert not [line for line in said if "arguments" in line or "Uncaught" in line]
-
-
-def test_the_button_stays_in_view_once_a_person_is_chosen(
-    server: SimpleNamespace, open_page: Callable[..., Page]
-) -> None:
-    page = live(open_page(server.url, width=1024, height=700), "React")
-    page.locator("#react-file").locator("xpath=..").locator("button.pd-chip").first.click()
-    expect(page.locator("#react-status")).to_contain_text("0.0 to", timeout=SLOW)
-    for part in ("button#react-generate", "#react-player .pdd-stage"):
-        box = page.locator(part).bounding_box()
-        assert box and box["y"] >= 0 and box["y"] + box["height"] <= 700, part
-
-
-@pytest.mark.parametrize("width", [1280, 390])
-def test_the_names_of_the_methods_are_shown_whole(
-    server: SimpleNamespace, open_page: Callable[..., Page], width: int
-) -> None:
-    tab = live(open_page(server.url, width=width, height=844), "React")
-    unfold(tab, "#react-grid")
-    for field in ("#react-method", "#react-other"):
-        tab.locator(f"{field} input").wait_for()
-        room = tab.evaluate(_ROOM, [field, "InterGen, person to person"])
-        assert room >= 0, f"{field} lacks {-room:g} pixels"
-
-
-_ROOM = """([field, text]) => {
-    const input = document.querySelector(`${field} input`);
-    const pen = document.createElement("canvas").getContext("2d");
-    pen.font = getComputedStyle(input).font;
-    const arrow = document.querySelector(`${field} .icon-wrap`).getBoundingClientRect();
-    return arrow.left - input.getBoundingClientRect().left - pen.measureText(text).width;
-}"""
-"""Pixels between a text in a list's field and the field's arrow."""
+    expect(names).to_have_count(0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 
 import pytest
@@ -55,20 +54,6 @@ def test_words_are_underlined_and_chips_stand_on_two_lanes(page: Page) -> None:
     expect(reading).to_be_hidden()
 
 
-def test_the_length_follows_a_typed_sentence_until_it_is_set(page: Page) -> None:
-    prompt, seconds = page.locator("#prompt textarea"), page.locator("#seconds input[type=number]")
-    page.wait_for_function("document.querySelector('#reading .pdr')?.view")
-    prompt.fill("A bows to B. Then they hug.")
-    expect(seconds).to_have_value("7", timeout=SLOW)
-    prompt.fill("They hug.")
-    expect(seconds).to_have_value("5", timeout=SLOW)
-    seconds.fill("3")
-    seconds.blur()
-    prompt.fill("A bows to B. Then they hug.")
-    expect(page.locator("#reading .pdr-length")).to_contain_text("the motion lasts 3 s", timeout=SLOW)
-    expect(seconds).to_have_value("3")
-
-
 def test_a_motion_is_as_long_as_its_acts_where_enter_follows_the_last_letter(page: Page) -> None:
     prompt, seconds = page.locator("#prompt textarea"), page.locator("#seconds input[type=number]")
     page.wait_for_function("document.querySelector('#reading .pdr')?.view")
@@ -84,12 +69,6 @@ def test_a_motion_is_as_long_as_its_acts_where_enter_follows_the_last_letter(pag
         expect(page.locator("#changed")).to_be_empty()
         expect(page.locator("#generate")).to_be_enabled(timeout=SLOW)
     assert len(runs) == 2
-
-
-def test_a_story_is_read_as_well(page: Page) -> None:
-    page.get_by_role("tab", name="Scene").click()
-    page.fill("#scene-prompt textarea", "They wave. Then they hug.")
-    expect(page.locator("#scene-reading .pdr-chip")).to_have_count(2, timeout=SLOW)
 
 
 def test_a_plan_is_edited_and_made(lab: str, open_page: Callable[..., Page]) -> None:
@@ -147,15 +126,3 @@ def test_acts_are_added_and_words_are_read_again(lab: str, open_page: Callable[.
     reading.get_by_role("button", name="Read again").click()
     expect(chips).to_have_count(1, timeout=SLOW)
     expect(reading.locator(".pdr-badge")).to_be_hidden()
-
-
-def test_a_line_stands_for_the_reading_on_a_phone_once_it_is_made(page: Page) -> None:
-    reading, chips = page.locator("#reading .pdr"), page.locator("#reading .pdr-chip")
-    page.fill("#prompt textarea", "A waves to B.")
-    expect(chips).to_be_visible(timeout=SLOW)
-    page.click("button#generate")
-    expect(page.locator("#status .pd-done").first).to_be_visible(timeout=SLOW)
-    expect(chips).to_be_hidden()
-    expect(reading.locator(".pdr-fold")).to_have_text(re.compile(r"1 act is understood\. [01] of 1 done\."))
-    reading.locator(".pdr-fold").click()
-    expect(chips).to_be_visible()

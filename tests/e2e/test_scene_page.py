@@ -75,20 +75,6 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.locator('.pds-handle[data-beat="0"]').focus()
     page.keyboard.press("ArrowRight")
     assert page.evaluate("document.querySelector('.pds').editor.total") == before + 0.5
-    # A path is drawn on the floor and a point moved with the keys.
-    page.locator(".pds-floor summary").click()
-    page.locator(".pds-floor svg").scroll_into_view_if_needed()
-    box = page.locator(".pds-floor svg").bounding_box()
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    page.mouse.down()
-    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + box["height"] / 2, steps=5)
-    page.mouse.up()
-    (path,) = story(page)["paths"]
-    assert path["person"] == "a" and len(path["points"]) > 2 and path["points"][-1][1] > 1
-    page.locator('circle[data-point="1"]').focus()
-    page.keyboard.press("ArrowUp")
-    assert story(page)["paths"][0]["points"][1][2] == pytest.approx(path["points"][1][2] + 0.1)
-    page.get_by_role("button", name="Delete the path").click()
     # Words that do not become paths: on the line, in the story's text, undone.
     page.get_by_label("Plan from the words").and_(page.locator(".pds input")).uncheck()
     assert story(page)["planned"] is False
@@ -215,3 +201,21 @@ def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any)
     assert story(page)["poses"] == []
     undo.click()
     assert comes_back(2.0667)
+
+
+def test_words_and_beats_follow_each_other(page: Any) -> None:
+    words, cells = page.locator("#scene-prompt textarea"), page.locator(".pds-lane-words .pds-cell")
+    words.fill("They bow. Then they hug.")
+    page.locator("#scene-part-words textarea").focus()
+    page.wait_for_function("document.querySelectorAll('.pds-lane-words .pds-cell').length === 2")
+    cells.nth(1).click()
+    page.locator(".pds-words").fill("They wave.")
+    page.keyboard.press("Enter")
+    page.wait_for_function("document.querySelector('#scene-prompt textarea').value === 'They bow. They wave.'")
+    words.click()
+    page.keyboard.press("End")
+    page.keyboard.type(" They nod.")
+    page.wait_for_function("!document.querySelector('.pds').editor.story.ahead")
+    page.locator("#scene-part-words textarea").focus()
+    page.wait_for_function("document.querySelectorAll('.pds-lane-words .pds-cell').length === 3")
+    assert cells.all_inner_texts() == ["They bow.", "They wave.", "They nod."]

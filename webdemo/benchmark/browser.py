@@ -46,7 +46,7 @@ LONG_RUN = {"seconds": 10, "samples": 8}
 
 _STAGE_STYLE = """#player .pdd-stage {{ width: {0}px !important; min-width: {0}px !important;
 height: {1}px !important; min-height: {1}px !important; flex: none !important }}"""
-_PLAYED = "window.__pasdedeux && window.__pasdedeux.mode !== null && !window.__pasdedeux.playing"
+_PLAYED = "window.__pasdedeux?.open && !window.__pasdedeux.playing"
 _FIRST_VIEW = """() => new Promise((done) => {
   let shifted = 0;
   new PerformanceObserver((list) => {

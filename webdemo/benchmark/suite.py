@@ -142,7 +142,8 @@ def measure_prediction(repeats: int) -> dict[str, float]:
     import numpy as np
 
     from motion import FPS, SMPL22, Duet
-    from webdemo.inference import Engine, PredictRequest
+    from webdemo.inference import PredictRequest
+    from webdemo.inference.engine.engine import Engine
     from webdemo.inference.methods import methods
 
     sway = 0.05 * np.sin(np.arange(150) / 5)[:, None, None] * SMPL22.rest_positions()

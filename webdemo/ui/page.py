@@ -19,10 +19,10 @@ from motion.formats.files import MAX_BYTES
 from webdemo.study import StudiesLike
 from webdemo.ui.components.exports import Shelf
 from webdemo.ui.components.finder import Finder
-from webdemo.ui.components.folds import remember_folds
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.ui.tabs.history import LABEL as HISTORY
 from webdemo.ui.tabs.history import HistoryTab
+from webdemo.ui.tabs.job import JobTab
 from webdemo.ui.tabs.predict import PredictTab
 from webdemo.ui.tabs.react import ReactTab
 from webdemo.ui.tabs.results import QUIET
@@ -59,6 +59,11 @@ ENDPOINTS = (
 _HEADER = f'<div class="pd-brand"><h1>Pas de Deux</h1><p>{say("page.intro")}</p></div>'
 _CACHE = (1800, 7200)
 """Seconds: how often Gradio's copies of downloads are looked through, and how old they may get."""
+_FOLDED = """() => {
+  const narrow = matchMedia("(max-width: 960px)").matches;
+  return Array(%d).fill({ __type__: "update", ...(narrow ? { open: false } : {}) });
+}"""
+"""JavaScript that folds the settings at first where the screen is narrow; to be filled with the number of folds."""
 _LOOK = 0.02
 """Seconds between two looks at a queue of events in which nothing waits."""
 
@@ -161,18 +166,17 @@ def start_queue(page: gr.Blocks, make: Callable[..., Queue]) -> None:
 def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
     """A tab for every job, and the history where there is one."""
     record = gr.State(None, time_to_live=3600)
-    jobs: dict[str, GenerateTab | SceneTab | ReactTab | PredictTab] = {}
+    jobs: dict[str, JobTab] = {kind.label.lower(): kind(page) for kind in TABS}
     with gr.Tabs(elem_classes="pd-tabs") as tabs:
-        for tab in TABS:
-            with gr.Tab(say(tab.named), id=tab.label.lower()):
-                jobs[tab.label.lower()] = tab(page)
-                jobs[tab.label.lower()].build(demo, record)
-        for onwards in jobs.values():
-            if isinstance(onwards, PredictTab):
-                for job in jobs.values():
-                    onwards.continues(job.onward, tabs, onwards.label.lower())
-        folds = [fold for job in jobs.values() for fold in (job.folded, job.more) if fold is not None]
-        remember_folds(demo, {str(fold.elem_id): fold for fold in folds}, **QUIET)
+        shown: dict[str, gr.Tab] = {}
+        for name, job in jobs.items():
+            with gr.Tab(say(job.named), id=name) as shown[name]:
+                job.build(demo, record)
+        predict = jobs["predict"]
+        assert isinstance(predict, PredictTab)
+        predict.wire_page(shown["predict"], tabs, [job.results.onward for job in jobs.values()])
+        folds = [job.sampling.fold for job in jobs.values() if job.sampling is not None]
+        demo.load(None, outputs=folds, js=_FOLDED % len(folds), **QUIET)
         if page.history is not None:
             with gr.Tab(say("tabs.history"), id=HISTORY.lower()) as past:
                 HistoryTab(page, jobs, tabs).build(demo, past, record)

@@ -231,7 +231,7 @@ export class Drawing {
 
   /** Puts handles and lengths where they belong in the picture. */
   place({ matrix }) {
-    const { clientWidth: width, clientHeight: height } = this.player.panes[0].host;
+    const { clientWidth: width, clientHeight: height } = this.player.pane.host;
     const put = (element, place, lift) => {
       const [x, y, depth] = project(onFloor(place), matrix, width, height, FIELD_OF_VIEW);
       element.style.transform = `translate(${x.toFixed(1)}px, ${(y + lift).toFixed(1)}px) translate(-50%, -50%)`;

@@ -12,7 +12,7 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 from tests.ui.tab_events import changes
 from webdemo.ui.tabs.react import ReactTab
 
-LOADED = ("source", "given", "line", "player", "trim", "person", "start", "end", "found")
+LOADED = ("source", "line", "player", "trim", "person", "start", "end", "found")
 READ = (*LOADED, "up", "unit", "fps", "order", "animation")
 FIELDS = {
     "person": "a",
@@ -30,7 +30,7 @@ FIELDS = {
 
 def upload(tab: ReactTab, path: Path) -> list[dict[str, Any]]:
     """What each update of an upload changes, by the names of :data:`LOADED`."""
-    return [changes(LOADED, updates) for updates in tab.upload(str(path))]
+    return [changes(LOADED, updates) for updates in tab.actor.upload(str(path))]
 
 
 def run(tab: ReactTab, source: Any, **changed: Any) -> list[dict[str, Any]]:

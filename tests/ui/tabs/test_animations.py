@@ -15,17 +15,15 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 import gradio as gr
 
 from motion.formats import ImportChoices, read
-from motion.formats.recording import Animations
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_motion, glb_takes
 from tests.ui.tab_events import built, changes
-from webdemo.ui.components.actors import Source, offered_animations, rig_of
-from webdemo.ui.components.animations import MOST_OFFERED, animation_labels
+from webdemo.ui.components.actors import offered_animations, rig_of
 from webdemo.ui.history import Entry, Kept, Opened, Original
 from webdemo.ui.tabs.predict import PredictTab
 from webdemo.ui.tabs.react import ReactTab
 
-from .reacting import LOADED, READ, run, upload
+from .reacting import READ, run, upload
 
 POSITIONS, ROTATIONS = marching(90)
 LABELS = ("1 · <b>walk</b>", "2 · glide", "3")
@@ -65,16 +63,16 @@ def test_a_file_of_one_animation_offers_no_choice(tab: ReactTab, takes: Path, wa
 
 def test_another_is_read_when_it_is_chosen(tab: ReactTab, takes: Path) -> None:
     source = upload(tab, takes)[-1]["source"]
-    *_, again = [changes(READ, u) for u in tab.read_again(source, "auto", "auto", None, "auto", 2)]
+    *_, again = [changes(READ, u) for u in tab.actor.read_again(source, "auto", "auto", None, "auto", 2)]
     assert "2 (“glide”) was taken" in again["line"] and offered_animations(again["source"]) == shown(2)
     assert np.abs(again["source"].people[0].positions - source.people[0].positions).max() > 0.1
-    *_, wrong = [changes(READ, u) for u in tab.read_again(again["source"], "auto", "auto", None, "auto", 9)]
+    *_, wrong = [changes(READ, u) for u in tab.actor.read_again(again["source"], "auto", "auto", None, "auto", 9)]
     assert "takes.glb has no such animation" in wrong["line"] and wrong["animation"] == shown(2)
 
 
 def test_a_partner_is_taken_on_the_rig_as_the_chosen_animation_has_it(tab: ReactTab, takes: Path) -> None:
     source = upload(tab, takes)[-1]["source"]
-    *_, again = [changes(READ, u) for u in tab.read_again(source, "auto", "auto", None, "auto", 2)]
+    *_, again = [changes(READ, u) for u in tab.actor.read_again(source, "auto", "auto", None, "auto", 2)]
     assert rig_of(again["source"]) == takes
     *_, last = run(tab, again["source"], end=2.0)
     assert (last["record"].rig, last["record"].animation) == (takes, 2)
@@ -88,42 +86,23 @@ def test_an_opened_run_was_made_from_its_animation(tab: ReactTab, takes: Path) -
     controls = {"animation": 3.0, "up": "auto"}
     kept = Kept(controls=controls, people=source.people, original=Original(takes, "takes.glb"))
     found = tab.opened(Opened(entry=entry, result=result, kept=kept))
-    assert found[tab.animation] == shown(3) and found[tab.source].read_with[4] == 3
+    assert found[tab.actor.animation] == shown(3) and found[tab.actor.state].read_with[4] == 3
     gone = tab.opened(Opened(entry=entry, result=result, kept=replace(kept, original=None)))
-    assert gone[tab.animation] == HIDDEN
+    assert gone[tab.actor.animation] == HIDDEN
     by_hand = replace(kept, controls={"animation": "9" * 400})
-    assert tab.opened(Opened(entry=entry, result=result, kept=by_hand))[tab.animation] == shown(1)
+    assert tab.opened(Opened(entry=entry, result=result, kept=by_hand))[tab.actor.animation] == shown(1)
 
 
 def test_a_past_is_chosen_likewise(tmp_path: Path, takes: Path) -> None:
     tab = built(PredictTab, tmp_path / "files")
-    names = ("source", "given", "line", "player", "marker", "animation")
-    source = [changes(names[:-1], u) for u in tab.upload(str(takes))][-1]["source"]
+    names = ("source", "line", "player", "marker", "animation")
+    source = [changes(names[:-1], u) for u in tab.past.upload(str(takes))][-1]["source"]
     assert offered_animations(source) == shown(1)
-    *_, again = [changes(names, u) for u in tab.read_again(source, 2)]
+    *_, again = [changes(names, u) for u in tab.past.read_again(source, 2)]
     assert "2 (“glide”) was taken" in again["line"] and "animation" not in again
     np.testing.assert_array_equal(
         again["source"].people[0].positions, read(takes, choices=ImportChoices(animation=2)).positions
     )
-    *_, wrong = [changes(names, u) for u in tab.read_again(again["source"], 9)]
+    *_, wrong = [changes(names, u) for u in tab.past.read_again(again["source"], 9)]
     assert "no such animation" in wrong["line"] and wrong["animation"] == shown(2)
-    assert list(tab.read_again(None, 1)) == []
-
-
-def test_the_list_stays_short() -> None:
-    names = tuple(f"take {number}" for number in range(15_000))
-    labels = animation_labels(Animations("x.glb", names, (1,)))
-    assert len(labels) == MOST_OFFERED and labels[-1] == f"{MOST_OFFERED} · take {MOST_OFFERED - 1}"
-
-
-def test_the_lists_are_wired_to_their_sources(tab: ReactTab, tmp_path: Path) -> None:
-    assert len(LOADED) + 5 == len(READ)
-    for made in (tab, built(PredictTab, tmp_path / "files")):
-        blocks = made.animation.parent
-        while blocks.parent is not None:
-            blocks = blocks.parent
-        events = [fn for fn in blocks.fns.values() if (made.animation._id, "input") in fn.targets]
-        follow = [fn for fn in blocks.fns.values() if fn.outputs == [made.animation]]
-        assert len(events) == 1 and made.animation in events[0].inputs
-        assert [fn.targets for fn in follow] == [[(made.source._id, "change")]]
-    assert isinstance(Source.read_with, tuple)
+    assert list(tab.past.read_again(None, 1)) == []

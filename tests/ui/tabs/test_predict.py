@@ -17,7 +17,7 @@ import gradio as gr
 from motion.formats import read, write
 from tests.ui.stub_engine import drift, walking
 from tests.ui.tab_events import built, changes
-from webdemo.inference import Engine
+from webdemo.inference.engine.engine import Engine
 from webdemo.inference.methods import methods
 from webdemo.inference.requests.predict import PredictRequest, PredictResult
 from webdemo.ui.api import PredictEndpoint
@@ -26,7 +26,7 @@ from webdemo.ui.components.prediction_view import curves_figure, error_lines, pr
 from webdemo.ui.tabs.predict import PredictTab, predict_choices
 from webdemo.view.payload import unpack_positions
 
-LOADED = ("source", "given", "line", "player", "marker")
+LOADED = ("source", "line", "player", "marker")
 
 
 @pytest.fixture
@@ -40,7 +40,7 @@ def pair(tmp_path: Path) -> Path:
 
 
 def loaded(tab: PredictTab, path: Path) -> dict[str, Any]:
-    return [changes(LOADED, updates) for updates in tab.upload(str(path))][-1]
+    return [changes(LOADED, updates) for updates in tab.past.upload(str(path))][-1]
 
 
 def run(tab: PredictTab, fields: dict[str, Any]) -> dict[str, Any]:
@@ -55,7 +55,7 @@ def test_a_motion_is_shown_and_the_marker_leaves_two_seconds_behind_it(tab: Pred
 
 
 def test_on_the_first_example_the_default_method_beats_the_last_pose_held(tab: PredictTab) -> None:
-    found = loaded(tab, tab.examples[0][1])
+    found = loaded(tab, tab.past.examples[0][1])
     fields = {"source": found["source"], "marker": found["marker"]["value"], "seconds": PredictRequest.seconds}
     *_, result = Engine().run(tab.request({**fields, "model": PredictRequest.model}))
     assert isinstance(result, PredictResult)
@@ -81,13 +81,13 @@ def test_a_prediction_marks_the_past_and_shows_the_truth_as_a_ghost(tab: Predict
 def test_the_last_result_is_continued_from_its_end(tab: PredictTab, pair: Path) -> None:
     source = loaded(tab, pair)["source"]
     done = run(tab, {"source": source, "marker": 2.0, "seconds": 1.0, "model": "motion-mlp"})
-    taken = [changes(LOADED, updates) for updates in tab.take_result(done["record"])][-1]
+    taken = [changes(LOADED, updates) for updates in tab.past.take_result("a", done["record"])][-1]
     assert taken["marker"]["value"] == 3.0 and taken["source"].seconds == 3.0
     again = run(tab, {"source": taken["source"], "marker": 3.0, "seconds": 1.0, "model": "motion-mlp"})
     (sample,) = again["player"]["value"]["samples"]
     assert (sample["past_until"], sample["frames"], sample["ghost"]) == (90, 120, None)
     assert [curve["key"] for curve in sample["curves"]] == ["speed"]
-    (update,) = ([changes(LOADED, u) for u in tab.take_result(None)][-1],)
+    (update,) = ([changes(LOADED, u) for u in tab.past.take_result("a", None)][-1],)
     assert "There is no result yet" in update["line"]
 
 
@@ -139,32 +139,6 @@ def test_errors_are_described_in_words_beside_those_of_the_last_pose(monkeypatch
     assert "Holding the last pose would have been nearer: 60 mm." in far
     (alone,) = error_lines(drift(PredictRequest(motion=walking(4.0), seconds=1.0)))
     assert "Nothing follows" in alone
-
-
-def test_two_methods_stand_side_by_side(tab: PredictTab, pair: Path) -> None:
-    source = loaded(tab, pair)["source"]
-    asked = {"source": source, "marker": 3.0, "seconds": 1.0, "model": "motion-mlp", "other": "mawgan"}
-    done = run(tab, asked)
-    (sample,) = done["player"]["value"]["samples"]
-    other = sample["beside"]
-    assert (sample["caption"], other["caption"]) == ("Motion MLP", "PredictiveMA-WGAN")
-    assert sample["past_until"] == other["past_until"] == 90 and sample["frames"] == other["frames"] == 120
-    assert other["ghost"] == sample["ghost"] is not None
-    assert [curve["label"] for curve in sample["curves"]] == ["Error, left", "Error, right"]
-    assert [request.model for request in tab.page.engine.requests] == ["motion-mlp", "mawgan"]
-    names = [trace.name for trace in done["plot"].data]
-    assert names.count("Motion MLP") == names.count("PredictiveMA-WGAN") == 2
-    assert "PredictiveMA-WGAN" in done["readouts"] and "<table" not in done["readouts"]
-    assert "Both done" in done["line"] and set(done["record"].compared) == {"motion-mlp", "mawgan"}
-    assert "Both methods are the same" in run(tab, {**asked, "other": "motion-mlp"})["line"]
-
-
-def test_two_methods_of_one_person_stand_side_by_side(tab: PredictTab, tmp_path: Path) -> None:
-    """One person has no distance curve to compare."""
-    (alone,) = write(walking(4.0).a, tmp_path / "walker.npz")
-    asked = {"source": loaded(tab, alone)["source"], "marker": 3.0, "seconds": 1.0, "model": "motion-mlp"}
-    done = run(tab, {**asked, "other": "still"})
-    assert "Both done" in done["line"] and done["player"]["value"]["samples"][0]["beside"]
 
 
 def test_methods_without_weights_are_not_offered(tmp_path: Path) -> None:

@@ -13,16 +13,14 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
 import gradio as gr
 
-from motion.formats import write
 from motion.skeleton import LAYOUTS
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_character, glb_motion
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, changes
 from webdemo.ui.tabs.react import ReactTab
-from webdemo.ui.text.examples import example_clips
 
-from .reacting import FIELDS, LOADED, READ, run, upload
+from .reacting import LOADED, READ, run, upload
 
 BOTH = [("Person A", "a"), ("Person B", "b")]
 
@@ -60,17 +58,17 @@ def test_two_people_in_a_file_are_a_choice_and_a_long_file_is_cut(tab: ReactTab,
     assert last["end"] == gr.update(maximum=12.0, value=10.0)
     assert last["player"]["value"]["samples"][0]["frames"] == 300
     source = last["source"]
-    line, player = tab.preview(source, "b", 2.0, 5.0)
+    line, player = tab.actor.preview(source, "b", 2.0, 5.0)
     assert "2.0 to 5.0 s of 12.0 s" in line
     assert player["value"]["title"] == "walkers.npz, person B"
     assert player["value"]["samples"][0]["frames"] == 90
-    assert "1 s or more" in tab.preview(source, "a", 2.0, 2.5)[0]
+    assert "1 s or more" in tab.actor.preview(source, "a", 2.0, 2.5)[0]
     assert (
         "Choose InterFormer or Nearest recorded reaction, or take 10 s or less"
-        in tab.preview(source, "a", 0.0, 12.0)[0]
+        in tab.actor.preview(source, "a", 0.0, 12.0)[0]
     )
-    assert 'role="alert"' in tab.preview(source, "a", 5.0, 2.0)[0]
-    assert all(update == gr.skip() for update in tab.preview(None, "a", 0, 1))
+    assert 'role="alert"' in tab.actor.preview(source, "a", 5.0, 2.0)[0]
+    assert all(update == gr.skip() for update in tab.actor.preview(None, "a", 0, 1))
 
 
 @pytest.mark.parametrize("role", ["a", "b"])
@@ -90,44 +88,26 @@ def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(tab: ReactTab, 
 def test_words_may_be_left_out_and_name_nothing_then(tab: ReactTab, walker: Path) -> None:
     record = run(tab, upload(tab, walker)[-1]["source"], prompt="  ")[-1]["record"]
     assert record.prompt == "Reaction to walker_a.bvh"
-    _, *buttons = tab.export(record)
+    _, *buttons = tab.results.export(record)
     assert any(button["interactive"] for button in buttons)
-
-
-def test_an_empty_seed_is_drawn(tab: ReactTab, walker: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    seeds = {run(tab, source, seed=None)[-1]["record"].result.manifest["request"]["seed"] for _ in range(2)}
-    assert len(seeds) == 2
 
 
 @pytest.mark.parametrize("person", ["a", "b"])
 def test_a_person_of_the_last_result_is_taken(tab: ReactTab, walker: Path, person: str) -> None:
     record = run(tab, upload(tab, walker)[-1]["source"])[-1]["record"]
-    last = [changes(LOADED, updates) for updates in tab.take_result(person, record)][-1]
+    last = [changes(LOADED, updates) for updates in tab.actor.take_result(person, record)][-1]
     assert last["person"] == gr.update(choices=BOTH, visible=True, value=person)
     again = run(tab, last["source"], person=person)[-1]["record"].result.duets[0]
     given = record.result.duets[0].people["ab".index(person)]
     assert again.a.positions.tobytes() == given.positions.tobytes()
 
 
-def test_without_a_result_there_is_none_to_take(tab: ReactTab) -> None:
-    last = [changes(LOADED, updates) for updates in tab.take_result("a", None)][-1]
-    assert "There is no result yet" in last["line"]
-    assert set(last) == {"line", "player"}
-
-
 def test_a_cancelled_upload_changes_nothing_and_a_cleared_file_leaves_no_actor(tab: ReactTab) -> None:
-    assert list(tab.upload(None)) == []
-    left = changes(LOADED, tab.forget())
+    assert list(tab.actor.upload(None)) == []
+    left = changes(LOADED, tab.actor.forget())
     assert left["source"] is None
     assert left["player"]["value"] is None
     assert not left["trim"]["visible"]
-
-
-def test_a_result_of_a_result_keeps_the_name_of_the_file(tab: ReactTab, walker: Path) -> None:
-    record = run(tab, upload(tab, walker)[-1]["source"], prompt="")[-1]["record"]
-    source = list(tab.take_result("b", record))[-1][0]
-    assert run(tab, source, prompt="")[-1]["record"].prompt == "Reaction to walker_a.bvh"
 
 
 @pytest.mark.parametrize(
@@ -176,33 +156,6 @@ def test_errors_are_one_sentence_and_the_next_run_works(
     assert "record" in run(tab, source)[-1]
 
 
-def test_cancel_ends_within_one_step(tab: ReactTab, walker: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    tab.page.engine.pause = 0.1
-    updates = tab.run("me", {"source": source, **FIELDS, "steps": 50})
-    while tab.page.engine.steps_done < 2:  # updates come at a pace, not with every step
-        next(updates)
-    seen = tab.page.engine.steps_done
-    assert tab.page.runs.cancel("me")
-    last = [changes(tab.outputs, update) for update in updates][-1]
-    assert "Cancelled at step" in last["line"]
-    assert tab.page.engine.steps_done <= seen + 1
-
-
-def test_examples_are_the_files_of_a_folder(tab: ReactTab, tmp_path: Path) -> None:
-    assert example_clips(tmp_path / "none") == []
-    (path,) = write(walking(3.0), tmp_path / "reach-out.npz")
-    examples = example_clips(tmp_path)
-    assert examples == [("Reach out", path)]
-    page = ReactTab(tab.page, examples)
-    with gr.Blocks() as demo:
-        page.build(demo)
-    assert [chip.value for chip in page.chips] == ["Reach out"]
-    click = next(fn for fn in demo.fns.values() if (page.chips[0]._id, "click") in fn.targets)
-    last = changes(LOADED, list(click.fn())[-1])
-    assert last["source"].name == "Reach out"
-
-
 def test_the_second_person_can_begin_as_the_files_other_stands(tab: ReactTab, walkers: Path, walker: Path) -> None:
     source = upload(tab, walkers)[-1]["source"]
     run(tab, source, method="regennet", person="b", start=1.0, end=3.0, keep=True)
@@ -219,10 +172,10 @@ def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, walker: 
     last = upload(tab, walker)[-1]
     assert "22 joints matched, m, Y up, 30 frames a second" in last["found"]
     assert "left_wrist" in last["found"]
-    *_, again = [changes(READ, u) for u in tab.read_again(last["source"], "auto", "auto", 60)]
+    *_, again = [changes(READ, u) for u in tab.actor.read_again(last["source"], "auto", "auto", 60, "auto", None)]
     assert "60 frames a second" in again["found"]
     assert again["source"].seconds == pytest.approx(2.0, abs=0.1)
-    *_, wrong = [changes(READ, u) for u in tab.read_again(again["source"], "auto", "auto", 5000)]
+    *_, wrong = [changes(READ, u) for u in tab.actor.read_again(again["source"], "auto", "auto", 5000, "auto", None)]
     assert "not possible" in wrong["line"] and "source" not in wrong
     assert (wrong["up"], wrong["fps"]) == ("auto", 60), "the choices are again those that it was read with"
 
@@ -244,5 +197,5 @@ def test_the_order_of_fifteen_joints_is_found_and_can_be_set(tab: ReactTab, tmp_
     np.save(path, walking(3.0).a.positions[:, joints])
     last = upload(tab, path)[-1]
     assert "in the order of K3HI" in last["found"]
-    *_, again = [changes(READ, u) for u in tab.read_again(last["source"], "auto", "auto", None, "sbu15")]
+    *_, again = [changes(READ, u) for u in tab.actor.read_again(last["source"], "auto", "auto", None, "sbu15", None)]
     assert "in the order of SBU" in again["found"]

@@ -47,15 +47,15 @@ def test_an_opened_run_brings_back_its_file_its_person_and_its_part(tab: ReactTa
     entry = Entry(id="x", kind="react", title="t", state="done", request=request.to_dict())
     kept = Kept(controls={"person": "b", "start": 0.5, "end": 2.5}, people=pair.people)
     found = tab.opened(Opened(entry=entry, result=result, kept=kept))
-    assert found[tab.person] == gr.update(choices=BOTH, visible=True, value="b")
-    assert (found[tab.begin]["value"], found[tab.end]["value"]) == (0.5, 2.5)
-    assert Path(found[tab.file]).name == "ject-1.npz"
-    restored = read(found[tab.file])
+    assert found[tab.actor.person] == gr.update(choices=BOTH, visible=True, value="b")
+    assert (found[tab.actor.begin]["value"], found[tab.actor.end]["value"]) == (0.5, 2.5)
+    assert Path(found[tab.actor.file]).name == "ject-1.npz"
+    restored = read(found[tab.actor.file])
     np.testing.assert_allclose(restored.positions, pair.positions, atol=1e-6)
     by_link = tab.opened(Opened(entry=entry, result=result, kept=Kept(controls={"person": "x"})))
-    assert by_link[tab.file] is None and by_link[tab.begin]["value"] == 0.0
+    assert by_link[tab.actor.file] is None and by_link[tab.actor.begin]["value"] == 0.0
     wrong = tab.opened(Opened(entry=entry, result=result, kept=replace(kept, controls={"person": ["b"]})))
-    assert wrong[tab.person]["value"] == "a", "a workspace made by hand"
+    assert wrong[tab.actor.person]["value"] == "a", "a workspace made by hand"
 
 
 def test_an_opened_run_brings_back_the_very_file_that_was_uploaded(tab: ReactTab, walker: Path) -> None:
@@ -66,15 +66,17 @@ def test_an_opened_run_brings_back_the_very_file_that_was_uploaded(tab: ReactTab
     original = Original(walker, "my walk.bvh")
     kept = Kept(controls={"up": "y", "unit": "cm", "fps": 60.0}, people=source.people, original=original)
     found = tab.opened(Opened(entry=entry, result=result, kept=kept))
-    assert Path(found[tab.file]).name == "my walk.bvh"
-    assert Path(found[tab.file]).read_bytes() == walker.read_bytes()
-    assert [found[part] for part in (tab.up, tab.unit, tab.fps, tab.order)] == ["y", "cm", 60.0, "auto"]
-    assert "not kept" not in found[tab.line] and "read the file anew" in found[tab.found]
-    *_, again = [changes(READ, u) for u in tab.read_again(found[tab.source], "auto", "m", None)]
+    assert Path(found[tab.actor.file]).name == "my walk.bvh"
+    assert Path(found[tab.actor.file]).read_bytes() == walker.read_bytes()
+    assert [found[part] for part in tab.actor.known] == ["y", "cm", 60.0, "auto"]
+    assert "not kept" not in found[tab.line] and "read the file anew" in found[tab.actor.found]
+    *_, again = [
+        changes(READ, u) for u in tab.actor.read_again(found[tab.actor.state], "auto", "m", None, "auto", None)
+    ]
     assert again["source"].people[0].num_frames == source.people[0].num_frames
     for gone in (None, Original(walker.with_name("gone.bvh"), "my walk.bvh")):
         found = tab.opened(Opened(entry=entry, result=result, kept=replace(kept, original=gone)))
-        assert Path(found[tab.file]).suffix == ".npz"
+        assert Path(found[tab.actor.file]).suffix == ".npz"
         assert "was not kept with this run" in found[tab.line] and walker.name in found[tab.line]
 
 
@@ -91,7 +93,7 @@ def test_an_upload_is_kept_with_its_run_and_an_example_is_not(
     assert written[-1].original == Original(walker, walker.name)
     assert written[-1].controls["up"] == "auto"
     name, path = example_clips()[0]
-    *_, shown = [changes(LOADED, u) for u in tab.load(lambda: read_source(path, name))]
+    *_, shown = [changes(LOADED, u) for u in tab.actor.load(lambda: read_source(path, name))]
     tab._keep(replace(record, result=replace(record.result, run="x")), {"source": shown["source"]})
     assert clean_name(written[-1].original.name if written[-1].original else "") == ""
 
@@ -103,7 +105,7 @@ def test_a_partner_is_taken_on_the_rig_of_an_uploaded_bvh(tab: ReactTab, tmp_pat
     source = upload(tab, rig)[-1]["source"]
     *_, last = run(tab, source, end=2.0, samples=2)
     assert last["record"].rig == rig
-    _, *updates = tab.export(last["record"])
+    _, *updates = tab.results.export(last["record"])
     update = updates[[kind.key for kind in KINDS].index("rig")]
     assert update["interactive"] and update["visible"]
     with zipfile.ZipFile(update["value"]) as archive:
@@ -125,7 +127,7 @@ def test_a_partner_is_taken_on_the_skeleton_of_an_uploaded_glb(tab: ReactTab, tm
     positions, rotations = marching(90)
     rig.write_bytes(glb_motion(rotations, positions[:, 0], "unreal", unit=100.0))
     *_, last = run(tab, upload(tab, rig)[-1]["source"], end=2.0)
-    _, *updates = tab.export(last["record"])
+    _, *updates = tab.results.export(last["record"])
     update = updates[[kind.key for kind in KINDS].index("rig")]
     with zipfile.ZipFile(update["value"]) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
@@ -142,7 +144,7 @@ def test_only_a_rig_that_was_read_as_it_is_is_offered(tab: ReactTab, walker: Pat
     assert rig_of(None) is None and rig_of(replace(source, read_with=("z", "auto", None, "auto", None))) is None
     assert rig_of(upload(tab, walkers)[-1]["source"]) is None
     *_, last = run(tab, replace(source, path=None), end=2.0)
-    _, *updates = tab.export(last["record"])
+    _, *updates = tab.results.export(last["record"])
     update = updates[[kind.key for kind in KINDS].index("rig")]
     assert not update["visible"] and update["value"] is None
 
@@ -150,6 +152,6 @@ def test_only_a_rig_that_was_read_as_it_is_is_offered(tab: ReactTab, walker: Pat
 def test_a_rig_that_cannot_be_moved_is_a_sentence_and_the_other_files_are_there(tab: ReactTab, walker: Path) -> None:
     *_, last = run(tab, upload(tab, walker)[-1]["source"], end=2.0)
     last["record"].rig = walker.with_name("gone.bvh")
-    line, *updates = tab.export(last["record"])
+    line, *updates = tab.results.export(last["record"])
     assert "not on the rig of your file. gone.bvh cannot be read" in line
     assert updates[0]["interactive"]

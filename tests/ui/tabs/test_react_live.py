@@ -42,7 +42,7 @@ def test_a_stream_becomes_a_result_with_readouts_and_files(tmp_path: Path) -> No
     assert result.readouts[0]["after"]["foot_skate"] is not None
     assert "Kept: 2.0 s live." in last["line"] and last["record"].prompt == "Live with Virtual agent"
     assert "Foot skate" in last["readouts"]
-    tab.export(last["record"])
+    tab.results.export(last["record"])
     assert list((tmp_path / "files").rglob("*.npz"))
 
 
@@ -69,7 +69,7 @@ def test_an_opened_minute_is_trimmed_to_what_a_network_takes(tmp_path: Path) -> 
     result = list(tab.page.engine.run(take))[-1]
     entry = Entry(id="x" * 20, kind="react", title=take.title, state="done", request=take.to_dict())
     found = tab.opened(Opened(entry=entry, result=result))
-    assert (found[tab.end]["maximum"], found[tab.end]["value"]) == (60.0, 10.0)
+    assert (found[tab.actor.end]["maximum"], found[tab.actor.end]["value"]) == (60.0, 10.0)
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,9 @@
-"""The methods of the tab React: one, two side by side, and streamed."""
+"""The methods of the tab React: one after the other, and streamed."""
 
 from __future__ import annotations
 
 import os
-import re
 import time
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +19,6 @@ from tests.ui.tab_events import built, changes
 from webdemo.inference.methods import variants
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.live import LiveRequest
-from webdemo.ui.components.exports import KINDS
 from webdemo.ui.components.live import BATCH, REPEATED
 from webdemo.ui.tabs.react import ReactTab
 from webdemo.view.payload import unpack_positions
@@ -59,52 +56,7 @@ def test_the_steps_of_every_method_can_be_set(tab: ReactTab) -> None:
     """A value outside of the slider's range is refused by the page before the job begins."""
     for method in variants("react"):
         steps = tab.fit_method(method)[1]
-        assert tab.steps.minimum <= steps["value"] <= tab.steps.maximum, method
-
-
-def test_a_method_says_what_it_cannot_do(tab: ReactTab, walker: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    *_, last = run(tab, source, method="regennet", role="b")
-    assert "choose role a" in last["line"]
-
-
-def test_two_methods_stand_side_by_side(tab: ReactTab, walker: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    steps = run(tab, source, method="intergen", other="regennet-online", steps=20, samples=2, prompt="")
-    assert any("ReGenNet, online. Generating: frame" in step.get("line", "") for step in steps)
-    first, second = tab.page.engine.requests[-2:]
-    assert (first.model, first.steps, second.model, second.mode, second.steps) == (
-        "intergen",
-        20,
-        "regennet",
-        "online",
-        5,
-    )
-    assert first.seed == second.seed
-    assert first.actor.positions.tobytes() == second.actor.positions.tobytes()
-    last = steps[-1]
-    samples = last["player"]["value"]["samples"]
-    assert [(s["caption"], s["beside"]["caption"]) for s in samples] == [
-        ("InterGen, person to person", "ReGenNet, online")
-    ] * 2
-    assert [curve["label"] for curve in samples[0]["curves"]] == ["Apart, left", "Apart, right"]
-    for head in ("InterGen, person to person, 2", "ReGenNet, online, 1"):
-        assert head in last["readouts"]
-    _, *buttons = tab.export(last["record"])
-    with zipfile.ZipFile(buttons[[kind.key for kind in KINDS].index("npz")]["value"]) as archive:
-        assert [re.sub("-[0-9a-f]{4}-", "-", name) for name in sorted(archive.namelist())] == [
-            f"{method}-reaction-to-walker-a-bvh-seed3-{i}.npz"
-            for method in ("intergen", "regennet-online")
-            for i in (1, 2)
-        ]
-
-
-def test_a_method_is_not_compared_with_itself_and_roles_fit_both(tab: ReactTab, walker: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    last = run(tab, source, method="intergen", other="intergen")[-1]
-    assert "choose another one" in last["line"]
-    assert tab.fit_method("intergen", "regennet")[0]["interactive"] is False
-    assert tab.fit_method("intergen", "")[0]["interactive"] is True
+        assert tab.sampling.steps.minimum <= steps["value"] <= tab.sampling.steps.maximum, method
 
 
 def test_streamed_frames_come_in_small_messages_and_end_in_a_result(tab: ReactTab, walker: Path) -> None:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import time
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -22,7 +20,7 @@ from tests.motion.formats.characters import glb_character, unpacked
 from tests.motion.formats.rigs import RIGS
 from tests.ui.tab_events import built
 from tests.ui.tabs.generating import result_of
-from webdemo.ui.components.exports import KINDS, Record, Shelf, Worn, file_name, for_download, write_files
+from webdemo.ui.components.exports import KINDS, Record, Worn, file_name, for_download, write_files
 from webdemo.ui.components.film import make_film
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.view.stage import Style
@@ -45,28 +43,21 @@ def test_files_of_one_sample(tab: GenerateTab, tmp_path: Path) -> None:
     assert zipfile.ZipFile(found["bvh"]).namelist() == [path.name for path in files["bvh"]]
 
 
-def test_files_of_several_samples_are_zipped(tab: GenerateTab) -> None:
-    record = result_of(tab, samples=2)
-    found = for_download(write_files(record.result, tab.page.shelf.folder(), prompt=record.prompt))
-    assert len(zipfile.ZipFile(found["npz"]).namelist()) == 2
-    assert len(zipfile.ZipFile(found["bvh"]).namelist()) == 4
-
-
 def test_export_fills_the_buttons_once(tab: GenerateTab) -> None:
     record = result_of(tab)
-    first = tab.export(record)
+    first = tab.results.export(record)
     offered = {kind.key for kind in KINDS if kind.offered()}
     filled = {kind.key for kind, update in zip(KINDS, first[1:], strict=True) if update["interactive"]}
     assert filled == offered
-    assert all(update == gr.skip() for update in tab.export(record))
-    assert all(update == gr.skip() for update in tab.export(None))
+    assert all(update == gr.skip() for update in tab.results.export(record))
+    assert all(update == gr.skip() for update in tab.results.export(None))
 
 
 def test_new_files_are_withheld_until_they_are_written(tab: GenerateTab) -> None:
     record = result_of(tab)
-    assert all(update == gr.update(value=None, interactive=False) for update in tab.withhold(record))
-    tab.export(record)
-    assert all(update == gr.skip() for update in (*tab.withhold(record), *tab.withhold(None)))
+    assert all(update == gr.update(value=None, interactive=False) for update in tab.results.withhold(record))
+    tab.results.export(record)
+    assert all(update == gr.skip() for update in (*tab.results.withhold(record), *tab.results.withhold(None)))
 
 
 def test_a_full_disk_is_reported_and_leaves_nothing(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -74,7 +65,7 @@ def test_a_full_disk_is_reported_and_leaves_nothing(tab: GenerateTab, monkeypatc
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("webdemo.ui.components.exports.write_sheet", full)
-    line, *buttons = tab.export(result_of(tab))
+    line, *buttons = tab.results.export(result_of(tab))
     assert "The disk is full" in line
     assert not any(button["interactive"] for button in buttons)
     assert list(tab.page.shelf.root.glob("run-*")) == []
@@ -83,7 +74,7 @@ def test_a_full_disk_is_reported_and_leaves_nothing(tab: GenerateTab, monkeypatc
 @pytest.mark.parametrize("shown", ["{}", "no json", '{"yaw": 1e999, "look": "none", "sample": 9, "view": null}'])
 def test_a_film_shows_the_last_result(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch, shown: str) -> None:
     monkeypatch.setattr("webdemo.ui.components.film.film.SIZE", (96, 64))
-    (busy, _), (line, button) = tab.make_film(result_of(tab, seconds=1.0), shown)
+    (busy, _), (line, button) = tab.results.make_film(result_of(tab, seconds=1.0), shown)
     assert "Drawing" in busy and "The film is saved" in line
     with av.open(str(button["value"])) as opened:
         assert sum(1 for _ in opened.decode(video=0)) == 30
@@ -121,21 +112,6 @@ def test_a_film_wears_the_character_while_the_player_shows_it(
     assert asked["style"].body is (record.worn.body if shown is True else None)
 
 
-def test_a_film_of_nothing_is_one_sentence(tab: GenerateTab) -> None:
-    *_, (line, _) = tab.make_film(None, "{}")
-    assert "make one first" in line
-
-
-def test_old_folders_are_removed(tmp_path: Path) -> None:
-    shelf = Shelf(tmp_path / "runs", max_age=60)
-    old, new = shelf.folder(), shelf.folder()
-    (old / "motion.npz").write_bytes(b"0")
-    os.utime(old, (time.time() - 120,) * 2)
-    shelf.folder()
-    assert not old.exists()
-    assert new.exists()
-
-
 @pytest.mark.parametrize(
     ("prompt", "expected"),
     [
@@ -162,15 +138,15 @@ def test_runs_that_differ_have_files_that_differ_in_name() -> None:
 def test_both_wear_an_uploaded_character_in_this_result_and_the_next(tab: GenerateTab, tmp_path: Path) -> None:
     file = tmp_path / "robot.glb"
     file.write_bytes(glb_character("unreal"))
-    line, worn, player, *offered = tab.put_on(str(file), None)
+    line, worn, player, *offered = tab.results.put_on(str(file), None)
     assert "Both wear robot.glb" in line and worn.body.zones == ("character",) and offered == [gr.skip()] * 3
     assert player["character"]["zones"] == ["character"] and player["character"]["id"]
     record = result_of(tab)
-    _, *updates = tab.export(record, worn)
+    _, *updates = tab.results.export(record, worn)
     later = [updates[[kind.key for kind in KINDS].index(key)]["value"] for key in ("glb", "png")]
     plain = Record(record.result, "two people walk")
-    _, *bare = tab.export(Record(record.result, "two people walk"))
-    _, _, _, *offered = tab.put_on(str(file), plain)
+    _, *bare = tab.results.export(Record(record.result, "two people walk"))
+    _, _, _, *offered = tab.results.put_on(str(file), plain)
     assert all(each["interactive"] for each in offered) and plain.worn is not None
     sheets = [Path(path).read_bytes() for path in (later[1], offered[1]["value"])]
     with zipfile.ZipFile(offered[2]["value"]) as archive:
@@ -188,14 +164,14 @@ def test_both_wear_an_uploaded_character_in_this_result_and_the_next(tab: Genera
 @pytest.mark.parametrize("content", [b"no character", glb_character()[:3000], glb_character(skins=[])])
 def test_a_file_that_is_no_character_is_a_sentence(tab: GenerateTab, tmp_path: Path, content: bytes) -> None:
     (tmp_path / "x.glb").write_bytes(content)
-    line, *rest = tab.put_on(str(tmp_path / "x.glb"), None)
+    line, *rest = tab.results.put_on(str(tmp_path / "x.glb"), None)
     assert "pd-error" in line and "x.glb" in line and rest == [gr.skip()] * 5
 
 
 def test_an_uploaded_thing_is_in_the_player_and_in_the_files(tab: GenerateTab, tmp_path: Path) -> None:
     trimesh.creation.box((0.1, 0.2, 0.1)).export(tmp_path / "mine.stl")
     record = result_of(tab)
-    line, player, *offered = tab.bring(str(tmp_path / "mine.stl"), record, None)
+    line, player, *offered = tab.results.bring(str(tmp_path / "mine.stl"), record, None)
     assert "mine.stl is in the scene" in line
     (thing,) = player["value"]["samples"][0]["things"]
     assert thing["kind"] == "own"
@@ -209,9 +185,9 @@ def test_a_file_that_is_no_thing_is_a_sentence(tab: GenerateTab, tmp_path: Path,
     (tmp_path / name).write_bytes(b"nothing")
     record = result_of(tab)
     before = record.result
-    line, *rest = tab.bring(str(tmp_path / name), record, None)
+    line, *rest = tab.results.bring(str(tmp_path / name), record, None)
     assert "pd-error" in line and name in line and record.result is before
     assert rest == [gr.skip()] * (1 + len(KINDS))
-    assert "pd-error" in tab.bring(None, record, None)[0]
+    assert "pd-error" in tab.results.bring(None, record, None)[0]
     trimesh.creation.box((0.1, 0.2, 0.1)).export(tmp_path / "mine.stl")
-    assert "make a motion first" in tab.bring(str(tmp_path / "mine.stl"), None, None)[0]
+    assert "make a motion first" in tab.results.bring(str(tmp_path / "mine.stl"), None, None)[0]

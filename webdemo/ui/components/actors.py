@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import shutil
-import uuid
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -82,7 +81,6 @@ class Source:
         read_with: what was known of the file: up axis, unit, rate, order of its joints, and its chosen animation.
         animations: labels of those in the file, where there is one to choose.
         asks: True if how it was read should be looked at: something was assumed.
-        key: differs between any two.
     """
 
     name: str
@@ -94,7 +92,6 @@ class Source:
     read_with: ReadWith = ("auto", "auto", None, "auto", None)
     animations: tuple[str, ...] = ()
     asks: bool = False
-    key: str = field(default_factory=lambda: uuid.uuid4().hex, compare=False)
     _fitted: dict[Any, tuple[Clip, ...]] = field(default_factory=dict, repr=False, compare=False)
     """What was fitted last, by what was asked."""
 
@@ -257,7 +254,7 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     source: Source | None = fields["source"]
     if source is None:
         raise InputError("There is no actor yet: drop a motion file, or pick an example or a result.")
-    own = ("source", "given", "person", "start", "end", "method", "stream", "other", "keep")
+    own = ("source", "person", "start", "end", "method", "stream", "keep")
     actor = source.actor(fields["person"], fields["start"], fields["end"])
     chosen = reactor(fields.get("method"), fields)
     kept = {name: value for name, value in fields.items() if name not in own}

@@ -127,7 +127,7 @@ class Record:
         prompt: names the files.
         exported: whether its files were written.
         files: those that were written, by the key of their kind.
-        compared: the results that stand side by side, by method; ``result`` is the first of them.
+        compared: the results of a grid by the names of their cells; ``result`` is the first of them.
         grid: columns, rows, names and title of the grid that they stand in; empty for none.
         worn: an uploaded character whom both people wear in the files of :data:`WORN` and in films; None for the
             bodies that ship.
@@ -230,22 +230,21 @@ def write_character(record: Record, folder: Path) -> dict[str, list[Path]]:
 def write_record(record: Record, folder: Path, *, leave_out: Collection[str] = ()) -> dict[str, list[Path]]:
     """:func:`write_files` for all results of a record; names of compared ones begin with their method.
 
-    Compared results have one table of read-outs, and a grid one contact sheet.
+    The cells of a grid have one table of read-outs and one contact sheet.
     """
     if not record.compared:
         return write_files(record.result, folder, prompt=record.prompt, worn=record.worn, leave_out=leave_out)
     files: dict[str, list[Path]] = {}
-    joint = {"csv", "png"} if record.grid else {"csv"}
     for method, result in record.compared.items():
         prompt = f"{method} {record.prompt}"
-        written = write_files(result, folder, prompt=prompt, leave_out={*joint, *leave_out}, worn=record.worn)
+        written = write_files(result, folder, prompt=prompt, leave_out={"csv", "png", *leave_out}, worn=record.worn)
         for key, paths in written.items():
             files.setdefault(key, []).extend(paths)
     name = folder / file_name(record.prompt, record.result.manifest)
     with _writing(folder):
         if "csv" not in leave_out and any(result.readouts for result in record.compared.values()):
             files["csv"] = [_write_table(record.compared, name.with_suffix(".csv"))]
-        if record.grid and "png" not in leave_out:
+        if "png" not in leave_out:
             motions = {cell: result.duets[0] for cell, result in record.compared.items()}
             style, path = _sheet_style(record.worn), name.with_suffix(".png")
             files["png"] = [write_grid_sheet(motions, path, title=record.prompt, style=style)]

@@ -20,36 +20,22 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
 
 Array = NDArray[np.floating]
-_BLUE, _VIOLET, _GREY, _ORANGE = "#2468d8", "#8b3fc4", "#8e99aa", "#e07a10"
-_METHOD_COLOURS = (_BLUE, _VIOLET)
+_GREY, _ORANGE = "#8e99aa", "#e07a10"
+_METHOD_COLOURS = ("#2468d8", "#8b3fc4", "#1f9d72", "#c2410c", "#64748b")
 _NO_TRUTH = "Nothing follows the marker to compare with."
-_SIDES = ("left", "right")
 
 
-def prediction_payload(*results: PredictResult, title: str = "") -> Payload:
+def prediction_payload(result: PredictResult, *, title: str = "") -> Payload:
     """The player's value: the past marked as given, what really followed as a ghost, the error below.
 
-    Two results of one past, by different methods, stand side by side on one clock. The futures of a single result
-    are samples, of which the others show as ghosts.
+    The futures of a result are samples, of which the others show as ghosts.
     """
-    motion = without_name(results[0].duets[0])
-    if len(results) == 1 and len(results[0].duets) > 1:
-        made = [_sample(results[0], place) for place in range(len(results[0].duets))]
-        return {**build_payload(made, skeleton=motion.skeleton, title=title), "futures": results[0].past_frames}
-    samples = [_sample(result) for result in results]
-    first = samples[0]
-    if len(samples) > 1:
-        curves = [
-            {**sample["curves"][0], "label": f"{sample['curves'][0]['label']}, {side}"}
-            for side, sample in zip(_SIDES, samples, strict=True)
-        ]
-        names = [method_name(result) for result in results]
-        beside = {**samples[1], "caption": names[1]}
-        first = {**first, "curves": curves, "caption": names[0], "beside": beside}
-    return build_payload([first], skeleton=motion.skeleton, title=title)
+    made = [_sample(result, place) for place in range(len(result.duets))]
+    futures = {"futures": result.past_frames} if len(made) > 1 else {}
+    return {**build_payload(made, skeleton=without_name(result.duets[0]).skeleton, title=title), **futures}
 
 
-def _sample(result: PredictResult, place: int = 0) -> dict[str, Any]:
+def _sample(result: PredictResult, place: int) -> dict[str, Any]:
     motion = with_shown_roles(without_name(result.duets[place]), result.manifest)
     curves = [
         Curve("error", "Error", "m", _padded(result.error, motion.num_frames, result.past_frames)),

@@ -1,4 +1,4 @@
-"""The story under the player as a Gradio component: beats in lanes, a span, paths on the floor.
+"""The story under the player as a Gradio component: beats in lanes, a span, poses and paths.
 
 Its value is a story as JSON, see :func:`story_value`. Like the player it is a ``gr.HTML`` with modules of its own
 (``static/story``) and constant templates: what a user typed travels as data.
@@ -23,10 +23,6 @@ from .accepts import Finite, Flag, Sent, SentPaths, Text
 from .part import MOUNT, STATIC, Part, on_load, scoped
 
 STORY_FOLDER = STATIC / "story"
-
-
-TRACK_STEP = 0.1
-"""Seconds between two places of a track on the floor."""
 
 
 class SentBeat(Sent):
@@ -150,17 +146,10 @@ def span_of(value: Any) -> tuple[float, float] | None:
 
 
 def motion_marks(duet: Duet, readout: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """The marks of a motion on the line and on the floor.
-
-    Returns:
-        ``seconds``, its length; ``contacts``, in seconds; ``tracks``, the places [x, z] of each person's pelvis on
-        the floor in metres, one every ``step`` seconds.
-    """
+    """The marks of a motion on the line: ``seconds``, its length; ``contacts``, in seconds."""
     found = (readout or compare(None, duet)).get("contacts") or ()
     contacts = [
         {"start": c["start"] / duet.fps, "stop": c["stop"] / duet.fps, "kind": c["kind"], "label": c["label"]}
         for c in found
     ]
-    every = max(1, round(TRACK_STEP * duet.fps))
-    tracks = duet.positions[:, ::every, 0][..., [0, 2]].astype(float).round(2).tolist()
-    return {"seconds": duet.seconds, "contacts": contacts, "tracks": tracks, "step": every / duet.fps}
+    return {"seconds": duet.seconds, "contacts": contacts}

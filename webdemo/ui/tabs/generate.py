@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from functools import partial
 from typing import Any
 
 import gradio as gr
@@ -17,12 +16,13 @@ from webdemo.inference.requests.acting import acted, plans_of_result
 from webdemo.inference.requests.paths import path_of
 from webdemo.inference.run import Result
 from webdemo.ui.components.gallery import Gallery
-from webdemo.ui.components.pace import pace_of
 from webdemo.ui.components.reading import Reading, checked, drawn_paths, edited_plan, shown
-from webdemo.ui.components.settings import UNPLANNED, looked_up
+from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.show import arrival_payload
 from webdemo.ui.components.story import path_value
-from webdemo.ui.components.sweep import BETWEEN_SENTENCES, Kind
+from webdemo.ui.components.sweep import Kind
+from webdemo.ui.components.upload import chip
+from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.classes import installed_classes, takes_class
 from webdemo.ui.text.examples import CLIPS, EXAMPLES
@@ -30,8 +30,10 @@ from webdemo.ui.text.panels import method_line, model_card, status
 from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import error_line
 
-from .job import QUIET, Updates
-from .sweeps import SweepTab
+from .grids import SENTENCES, methods_kind
+from .job import JobTab
+from .results import QUIET, Updates
+from .sampling import Sampling, pace_of
 
 
 def generate_choices() -> list[tuple[str, str]]:
@@ -42,14 +44,6 @@ def generate_choices() -> list[tuple[str, str]]:
         kind = next((kind for kind in plain if kind in found.takes), "")
         choices.append((plain.pop(kind, found.label), found.name))
     return choices
-
-
-def named_method(known: Mapping[str, str], given: str) -> str:
-    """The name of a method from its name or label; raises InputError for another."""
-    found = known.get(given.lower(), given)
-    if found not in known.values():
-        raise InputError(f"There is no method {given[:40]!r}: choose from {', '.join(known.values())}.")
-    return found
 
 
 def _chosen_class(fields: Mapping[str, Any]) -> str:
@@ -80,18 +74,20 @@ def _marks(text: str, result: Result) -> dict[str, Any] | None:
         return None
 
 
-_PLANNED_INFO = say("generate.planned_info")
 _EDITED_UNPLANNED = "The plan was edited, but it is not followed: choose Plan from the words, or press Read again."
 ARRIVAL = "shake-hands.npz"
 """The example that plays before anything is asked for."""
 
 
-class GenerateTab(SweepTab):
+class GenerateTab(JobTab):
     """Text, or a class → two people."""
 
     label = "Generate"
     named = "tabs.generate"
-    restored = ("by_sentence", "class_name", "about", "folded")
+
+    def __init__(self, page: PageContext) -> None:
+        super().__init__(page)
+        self.sampling: Sampling = Sampling(self.prefix, sentences=True)
 
     def request(self, fields: Mapping[str, Any]) -> GenerateRequest:
         """See :meth:`JobTab.request`; raises InputError if no class is chosen, or the edited plan is none."""
@@ -109,86 +105,67 @@ class GenerateTab(SweepTab):
         """The sentence or class."""
         return request.prompt
 
-    def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
-        """Also what was asked by: a sentence or a class."""
-        asked = run.entry.request
-        model = asked.get("model", GenerateRequest.model)
-        sentence, label, _, about, plan, *_ = self.asked_by(model)
-        if takes_class(model):
-            label = gr.update(value=asked.get("prompt"), visible=True)
-        found = super().opened(run)
-        if not takes_class(model):
-            found[self.reading] = self._opened_reading(asked, run.result)
-        planned = bool(asked.get("planned", takes_class(model)))  # once, words did not become paths
-        if not planned and self.folded in found:
-            found[self.folded]["label"] += UNPLANNED
-        found[self.planned] = plan | {"value": planned}
-        return found | {self.by_sentence: sentence, self.class_name: label, self.about: about}
+    def kinds(self) -> Sequence[Kind]:
+        """Also sentences, and methods."""
+        methods = {name: method(name).label for _, name in generate_choices()}
+        return (*super().kinds(), SENTENCES, methods_kind("model", methods))
 
-    def _opened_reading(self, asked: Mapping[str, Any], result: Result) -> dict[str, Any]:
-        """The update that shows the plan of a kept run."""
-        text = str(asked.get("prompt") or "")
-        plan = plans_of_result(result.manifest)[0]
-        drawn = [path_value(path_of(path)) for path in asked.get("paths") or ()]
-        of_text = {"text": text, "number": None, "edited": plan.reader == "hand", "paths": drawn}
-        return gr.update(shown=of_text | shown(plan), checked=_marks(text, result))
+    def presets(self) -> Mapping[str, tuple[str, str]]:
+        """Also a sentence beside a class, where there are classes."""
+        labels = [method(name).label for _, name in generate_choices()]
+        beside = {"Sentence beside class": ("model", "; ".join(labels))} if len(labels) > 1 else {}
+        return {**super().presets(), **beside}
 
-    def more_outputs(self) -> dict[str, Any]:
-        """The reading, whose acts are marked as done or not."""
-        return {**super().more_outputs(), "reading": self.reading}
+    def cell_fields(self, fields: Mapping[str, Any], cell: Mapping[str, Any]) -> dict[str, Any]:
+        """A method of classes gets the guidance that suits it, and the class that the sentence names.
 
-    def _shown(self, result: Result, title: str) -> dict[str, Any]:
-        asked = result.manifest.get("request") or {}
-        marks = _marks(str(asked.get("prompt") or ""), result)
-        return {**super()._shown(result, title), "reading": gr.update(checked=marks)}
+        Where the tab asks for a class, the methods of sentences get one of that class.
+        """
+        asked = {**fields, **cell}
+        if "model" not in cell:
+            return asked
+        by_class = takes_class(asked["model"])
+        if by_class and "guidance" not in cell:
+            asked["guidance"] = method(asked["model"]).default("guidance", asked["guidance"])
+        if by_class and not takes_class(fields["model"]):
+            asked["class_name"] = _class_in(str(asked.get("prompt") or ""), label_of(asked["model"]))
+        elif not by_class and takes_class(fields["model"]):
+            asked["prompt"] = f"Two people {_chosen_class(fields)}."
+        return asked
+
+    # ---- layout ----------------------------------------------------------------------------------
 
     def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
-        """Lays out the tab inside ``demo`` and wires its events.
-
-        Args:
-            demo: the page.
-            record: keeps the session's last result.
-        """
+        """See :meth:`JobTab.build`."""
         with gr.Row(elem_classes="pd-lab", equal_height=False):
             with gr.Column(elem_classes="pd-controls", min_width=0):
                 self._ask()
-                self._handed_out()
+                self.results.build_panel()
                 self._settings()
                 with gr.Accordion(say("generate.about"), open=False, elem_classes="pd-panel pd-about"):
-                    self.card = gr.HTML(elem_id="model-card")
-            self._results(first=arrival_payload(CLIPS / ARRIVAL))
-        assert self.tries is not None  # as in every tab of sentences
+                    card = gr.HTML(elem_id="model-card")
+            self.results.build_stage(first=arrival_payload(CLIPS / ARRIVAL))
         self.controls = {
             "model": self.model,
             "prompt": self.prompt,
             "class_name": self.class_name,
             "seconds": self.seconds,
-            "seed": self.seed,
-            "samples": self.samples,
-            "guidance": self.guidance,
-            "steps": self.steps,
-            "damping": self.damping,
-            "tries": self.tries,
+            **self.sampling.controls,
             "planned": self.planned,
             "acts": self.reading,
         }
         self.first = self.reading.read_first(self.prompt, self.seconds, self.controls.values())
-        self._wire_run([self.go.click, self.prompt.submit], record)
-        self._wire_sweeps()
+        self.wire([self.go.click, self.prompt.submit], record)
         self.reading.follow(self.prompt, **QUIET)
-        for chip, (_, sentence) in zip(self.chips, EXAMPLES, strict=True):
+        for button, (_, sentence) in zip(self.chips, EXAMPLES, strict=True):
             focus = "document.querySelector('#prompt textarea').focus();"
-            chip.click(None, outputs=self.prompt, js=f"() => {{ {focus} return {json.dumps(sentence)}; }}", **QUIET)
-        self.gallery.fill(self.prompt, self.seconds, self.seed, self.go, **QUIET)
-        fitted = [self.by_sentence, self.class_name, self.guidance, self.about, self.planned, self.steps, self.pace]
-        self.model.input(
-            None,
-            inputs=self.model,
-            outputs=fitted,
-            js=looked_up({name: self.asked_by(name) for _, name in generate_choices()}),
-            **QUIET,
-        ).then(None, **self.tell_advanced)
-        demo.load(self.describe_model, outputs=self.card, queue=False, **QUIET)
+            button.click(None, outputs=self.prompt, js=f"() => {{ {focus} return {json.dumps(sentence)}; }}", **QUIET)
+        self.gallery.fill(self.prompt, self.seconds, self.sampling.seed, self.go, **QUIET)
+        asked_by = {name: self.asked_by(name) for _, name in generate_choices()}
+        form = self.sampling
+        fitted = [self.by_sentence, self.class_name, self.about, self.planned, form.guidance, form.steps, form.pace]
+        self.model.input(None, inputs=self.model, outputs=fitted, js=looked_up(asked_by), **QUIET)
+        demo.load(self.describe_model, outputs=card, queue=False, **QUIET)
 
     def _ask(self) -> None:
         classes, self.class_card = installed_classes()
@@ -215,11 +192,8 @@ class GenerateTab(SweepTab):
                 )
                 with gr.Row(elem_classes="pd-chips"):
                     self.gallery = Gallery(elem_id="gallery", elem_classes="pd-gallery", min_width=0)
-                    self.chips = [
-                        gr.Button(worded("examples", name), size="sm", elem_classes="pd-chip", min_width=0)
-                        for name, _ in EXAMPLES
-                    ]
-                self.reading = Reading(editable=True, elem_id=self._id("reading"), elem_classes="pd-reading")
+                    self.chips = [chip(worded("examples", name)) for name, _ in EXAMPLES]
+                self.reading = Reading(editable=True, elem_id="reading", elem_classes="pd-reading")
             self.class_name = gr.Dropdown(
                 classes,
                 value=None,
@@ -228,22 +202,7 @@ class GenerateTab(SweepTab):
                 visible=False,
                 elem_id="class",
             )
-            self._go(say("generate.go"))
-
-    @staticmethod
-    def asked_by(way: str) -> Updates:
-        """Shows the inputs that a method takes, sets its guidance and steps and describes it in a line."""
-        found, by_class = method(way), takes_class(way)
-        guidance = found.default("guidance", GenerateRequest.guidance)
-        return (
-            gr.update(visible=not by_class),
-            gr.update(visible=by_class),
-            gr.update(value=guidance),
-            method_line(found.summary),
-            gr.update(visible=not by_class),
-            gr.update(value=found.steps),
-            gr.update(value=pace_of(found.steps)),
-        )
+            self.build_go(say("generate.go"))
 
     def _settings(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
@@ -255,49 +214,33 @@ class GenerateTab(SweepTab):
                 info=say("generate.seconds_info"),
                 elem_id="seconds",
             )
-            self._sampling(self._plan, said=True)
-            self._sweeps()
+            self.sampling.build(self._plan)
+            self.grids.build()
 
-    def _plan(self) -> Sequence[gr.Radio]:
+    def _plan(self) -> None:
         """A switch: words become paths, or not."""
         self.planned = gr.Radio(
             [(say("generate.planned"), True), (say("generate.alone"), False)],
             value=GenerateRequest.planned,
             label=say("generate.who"),
-            info=_PLANNED_INFO,
-            elem_id=self._id("planned"),
+            info=say("generate.planned_info"),
+            elem_id="planned",
             elem_classes="pd-way",
         )
-        return [self.planned]
 
-    def kinds(self) -> Sequence[Kind]:
-        """Also sentences, and methods."""
-        known = {method(name).label.lower(): name for _, name in generate_choices()}
-        models = Kind("model", "Methods", read=partial(named_method, known), split=BETWEEN_SENTENCES, named=label_of)
-        return (*super().kinds(), Kind("prompt", "Sentences", split=BETWEEN_SENTENCES), models)
-
-    def presets(self) -> Mapping[str, tuple[str, str]]:
-        """Also a sentence beside a class, where there are classes."""
-        labels = [method(name).label for _, name in generate_choices()]
-        beside = {"Sentence beside class": ("model", "; ".join(labels))} if len(labels) > 1 else {}
-        return {**super().presets(), **beside}
-
-    def cell_fields(self, fields: Mapping[str, Any], cell: Mapping[str, Any]) -> dict[str, Any]:
-        """A method of classes gets the guidance that suits it, and the class that the sentence names.
-
-        Where the tab asks for a class, the methods of sentences get one of that class.
-        """
-        asked = {**fields, **cell}
-        if "model" not in cell:
-            return asked
-        by_class = takes_class(asked["model"])
-        if by_class and "guidance" not in cell:
-            asked["guidance"] = method(asked["model"]).default("guidance", asked["guidance"])
-        if by_class and not takes_class(fields["model"]):
-            asked["class_name"] = _class_in(str(asked.get("prompt") or ""), label_of(asked["model"]))
-        elif not by_class and takes_class(fields["model"]):
-            asked["prompt"] = f"Two people {_chosen_class(fields)}."
-        return asked
+    @staticmethod
+    def asked_by(way: str) -> Updates:
+        """Shows the inputs that a method takes, describes it in a line and sets its guidance and steps."""
+        found, by_class = method(way), takes_class(way)
+        return (
+            gr.update(visible=not by_class),
+            gr.update(visible=by_class),
+            method_line(found.summary),
+            gr.update(visible=not by_class),
+            gr.update(value=found.default("guidance", GenerateRequest.guidance)),
+            gr.update(value=found.steps),
+            gr.update(value=pace_of(found.steps)),
+        )
 
     def describe_model(self) -> str:
         """The cards of both models for the page."""
@@ -305,3 +248,41 @@ class GenerateTab(SweepTab):
             return model_card(self.page.engine.info()) + (model_card(self.class_card) if self.class_card else "")
         except Exception as error:
             return status(error_line(error), tone="error")
+
+    # ---- what is shown ---------------------------------------------------------------------------
+
+    def more_outputs(self) -> dict[str, Any]:
+        """The reading, whose acts are marked as done or not."""
+        return {"reading": self.reading}
+
+    def restored(self) -> Sequence[Any]:
+        """The inputs that the method takes, and its line."""
+        return [self.by_sentence, self.class_name, self.about]
+
+    def shown(self, result: Result, title: str) -> dict[str, Any]:
+        """Also the verdicts on the acts."""
+        asked = result.manifest.get("request") or {}
+        marks = _marks(str(asked.get("prompt") or ""), result)
+        return {**super().shown(result, title), "reading": gr.update(checked=marks)}
+
+    def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
+        """Also what was asked by: a sentence or a class."""
+        asked = run.entry.request
+        model = asked.get("model", GenerateRequest.model)
+        sentence, label, about, plan, *_ = self.asked_by(model)
+        found = super().opened(run)
+        if takes_class(model):
+            label = gr.update(value=asked.get("prompt"), visible=True)
+        else:
+            found[self.reading] = self._opened_reading(asked, run.result)
+        planned = bool(asked.get("planned", takes_class(model)))  # once, words did not become paths
+        found[self.planned] = plan | {"value": planned}
+        return found | {self.by_sentence: sentence, self.class_name: label, self.about: about}
+
+    def _opened_reading(self, asked: Mapping[str, Any], result: Result) -> dict[str, Any]:
+        """The update that shows the plan of a kept run."""
+        text = str(asked.get("prompt") or "")
+        plan = plans_of_result(result.manifest)[0]
+        drawn = [path_value(path_of(path)) for path in asked.get("paths") or ()]
+        of_text = {"text": text, "number": None, "edited": plan.reader == "hand", "paths": drawn}
+        return gr.update(shown=of_text | shown(plan), checked=_marks(text, result))

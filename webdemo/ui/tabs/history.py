@@ -13,7 +13,6 @@ from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.ui.again import request_of, request_of_unfinished, verdict
 from webdemo.ui.components.exports import KINDS, Record, Worn
 from webdemo.ui.components.notebook import Action, NotebookView, shown
-from webdemo.ui.components.settings import taken
 from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Found, HistoryLike, Opened, Search
@@ -22,17 +21,16 @@ from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import cancelled_line, error_line, link_line, progress_line, text
 from webdemo.ui.visitor import Visitor, visitor
 
+from .grids import grid_shown
 from .history_files import FilesPanel, room_html, runs_line
-from .job import QUIET, JobTab, Updates
+from .job import JobTab
+from .results import QUIET, Updates
 from .sharing import SharingPanel
 from .study import StudyPanel
-from .sweeps import grid_shown
 
 LABEL = "History"
 EMPTY, NOTHING_FOUND = "notebook.empty", "notebook.nothing_found"
 """Keys of what the notebook says where there is no run, or none that fits."""
-_CONTROLS = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role", "model", "mode")
-"""Fields of a request that a tab may have a control of the same name for."""
 _LAST = "last"
 _NAMED = f"""() => new URLSearchParams(window.location.search).get('run')
     || (sessionStorage.getItem('pas-de-deux-made') ? '{_LAST}' : '')"""
@@ -97,7 +95,7 @@ class HistoryTab:
             self.study.wire(tab, self.view.edit)
         if self.sharing is not None:
             self.sharing.wire(tab, self.view.apply)
-        parts = [self.tabs, record, self.line, *(c for job in self.jobs.values() for c in _parts(job))]
+        parts = [self.tabs, record, self.line, *(c for job in self.jobs.values() for c in job.parts())]
         self.opened = list({part._id: part for part in parts}.values())
         named = gr.Textbox(visible=False)
         chosen = self.view.submit(self.open, outputs=self.opened, **quick)
@@ -105,14 +103,9 @@ class HistoryTab:
         address = demo.load(self.open_address, inputs=named, outputs=self.opened, js=_NAMED, **quick)
         for chain in (chosen, compared, address):
             for kind, job in self.jobs.items():
-                knobs = job.knobs
+                handed = [job.line, *job.results.downloads]
                 chain = chain.then(
-                    None, inputs=[job.asked, *knobs.values()], outputs=job.asked, js=taken(list(knobs)), **QUIET
-                )
-                if job.folded is not None:
-                    chain = chain.then(None, **job.tell_advanced)
-                chain = chain.then(
-                    self._exporter(kind, job), inputs=[record, job.worn], outputs=[job.line, *job.downloads], **quick
+                    self._exporter(kind, job), inputs=[record, job.results.worn], outputs=handed, **quick
                 )
 
     def _exporter(self, kind: str, job: JobTab) -> Any:
@@ -120,7 +113,7 @@ class HistoryTab:
             """Writes the files of an opened run for the tab that shows it."""
             if record is None or record.result.manifest.get("request", {}).get("kind", "generate") != kind:
                 return (gr.skip(),) * (1 + len(KINDS))
-            return job.export(record, worn)
+            return job.results.export(record, worn)
 
         return export
 
@@ -244,9 +237,7 @@ class HistoryTab:
             self.tabs._id: gr.update(selected=runs[0].entry.kind),
             self.line._id: status(),
             job.line._id: status(f"{len(runs)} runs of the history side by side.", tone="done"),
-            job.under._id: gr.update(visible=True),
-            job.asked._id: "",
-            job.changed._id: "",
+            job.results.under._id: gr.update(visible=True),
             **{job.outputs[name]._id: update for name, update in shown.items()},
         }
         return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
@@ -279,21 +270,9 @@ class HistoryTab:
         changes: dict[int, Any] = {
             self.tabs._id: gr.update(selected=entry.kind),
             self.line._id: status(),
-            **{
-                getattr(job, name)._id: gr.update(value=entry.request[name])
-                for name in _CONTROLS
-                if name in entry.request and hasattr(job, name)
-            },
             **{part._id: update for part, update in job.opened(opened).items()},
         }
         return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
-
-
-def _parts(job: JobTab) -> Sequence[gr.components.Component]:
-    """Everything of a tab that an opened run may set."""
-    names = (*_CONTROLS, "source", "trim", "begin", "end", "marker", *job.restored)
-    parts = [*job.outputs.values(), *job.knobs.values()]
-    return parts + [getattr(job, name) for name in names if hasattr(job, name)]
 
 
 def compared(runs: Sequence[Opened]) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line, text
 from webdemo.ui.visitor import visitor
 
-from .job import QUIET, Updates
+from .results import QUIET, Updates
 
 AT_ONCE = 4
 """Imports and exports of everything at a time; the rest of the tab does not wait for them."""

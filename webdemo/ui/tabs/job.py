@@ -1,4 +1,8 @@
-"""The common part of the tabs that make motion: sliders, a player, a run that can be cancelled, files."""
+"""What the tabs that make motion have in common: a run that is started, watched, cancelled, kept and opened again.
+
+A tab is made of forms: :class:`~.sampling.Sampling` holds the settings, :class:`~.results.Results` shows and hands out
+the result, :class:`~.grids.Grids` sweeps settings, and :class:`~.source.SourcePanel` takes a given motion.
+"""
 
 from __future__ import annotations
 
@@ -13,30 +17,29 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from webdemo.inference.requests import MAX_SEED, SamplingRequest
+from webdemo.inference.requests import MAX_SEED
 from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.ui.components.actors import READ_WITH
-from webdemo.ui.components.compare import comparison_payload
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
-from webdemo.ui.components.settings import OPENED, differs, snapshot
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Kept, Opened, Original
-from webdemo.ui.text.panels import comparison_panel, notes_lines, plan_line, readout_panel, status
+from webdemo.ui.text.panels import notes_lines, plan_line, readout_panel, status
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line, seconds
 from webdemo.ui.visitor import visitor
 
-from .results import QUIET, Updates
-from .sampling import SamplingTab
+from .grids import BASIC, PRESETS, Grids, Kind
+from .results import QUIET, Results, Updates
+from .sampling import Sampling
 
 log = logging.getLogger(__name__)
-__all__ = ["QUIET", "JobTab", "Updates", "total"]
-
 
 PACE = 0.5
 """Seconds between two updates of the page while a run goes on; each costs a browser about ten milliseconds."""
+_ASKED = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role", "model")
+"""Fields of a request that a tab may have a control of the same name for."""
 Watch = Callable[[Progress], dict[str, Any] | None]
 
 
@@ -45,10 +48,8 @@ def total(result: Result) -> float:
     return result.timings.get("total", sum(result.timings.values()))
 
 
-class JobTab(SamplingTab, ABC):
+class JobTab(ABC):
     """A tab that turns its controls into a request, runs it and shows the result.
-
-    A subclass lays out its own controls between these parts and answers :meth:`request` and :meth:`title`.
 
     Args:
         page: what the tabs share.
@@ -57,30 +58,88 @@ class JobTab(SamplingTab, ABC):
     label: str
     named: str
     """Key of the tab's name as the page shows it."""
-    restored: tuple[str, ...] = ()
-    """Attributes that :meth:`opened` sets, besides the result and controls named as a request's fields."""
+    prefix = ""
+    """Before the ids of the tab's elements."""
+    sampling: Sampling | None = None
+    """The form of the settings, on a tab whose motion is sampled."""
     controls: Mapping[str, gr.components.Component]
-    """The inputs of a run, by the names of its fields; set by ``build``."""
+    """The inputs of a run, by the names of its fields; set by :meth:`build`."""
     first: str | None = None
     """JavaScript that the values of ``controls`` pass through before a run, in the order of the components' ids."""
 
+    def __init__(self, page: PageContext) -> None:
+        self.page = page
+        self.results = Results(page, self.prefix)
+        self.grids = Grids(self)
+        self._cancelled: set[str] = set()
+        """Sessions whose last run here was cancelled."""
+
+    # ---- what a tab says -------------------------------------------------------------------------
+
     @abstractmethod
-    def request(self, fields: Mapping[str, Any]) -> SamplingRequest:
+    def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
+        """Lays out the tab inside ``demo`` and wires its events.
+
+        Args:
+            demo: the page.
+            record: keeps the session's last result, of this tab or another; by default a state of the tab's own.
+        """
+
+    @abstractmethod
+    def request(self, fields: Mapping[str, Any]) -> Any:
         """The request that the controls' values ask for; raises InputError where they do not fit."""
 
     @abstractmethod
     def title(self, request: Any) -> str:
         """The title that the player shows over the result, and from which its files are named."""
 
-    def __init__(self, page: PageContext) -> None:
-        super().__init__(page)
-        self._cancelled: set[str] = set()
-        """Sessions whose last run here was cancelled."""
+    def kinds(self) -> Sequence[Kind]:
+        """The settings that a grid can sweep."""
+        return BASIC
+
+    def presets(self) -> Mapping[str, tuple[str, str]]:
+        """Grids that are one press away: label → (field, values)."""
+        return PRESETS
+
+    def cell_fields(self, fields: Mapping[str, Any], cell: Mapping[str, Any]) -> dict[str, Any]:
+        """The tab's fields for a cell of a grid."""
+        return {**fields, **cell}
+
+    def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
+        """Further updates of the tab when it shows a grid of these results, made from ``fields``; {} when opened."""
+        return {}
+
+    def more_outputs(self) -> dict[str, Any]:
+        """Further components that :meth:`run` updates, by the names that :meth:`shown` gives."""
+        return {}
+
+    def restored(self) -> Sequence[Any]:
+        """Components that :meth:`opened` sets, besides the outputs and the controls."""
+        return ()
+
+    def settled(self, fields: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The fields that are used and kept; raises InputError where two of them cannot be brought together."""
+        return fields
+
+    def complete(self, record: Record, fields: Mapping[str, Any]) -> Record:
+        """Adds to a record what its files need beside the result."""
+        return record
+
+    def kept_more(self, fields: Mapping[str, Any]) -> dict[str, Any]:
+        """Further entries of a run's record, beside the values of the controls."""
+        return {}
+
+    def starts(self) -> dict[str, gr.Button]:
+        """The buttons that start a run, by name: none of them can be pressed while one goes on."""
+        return {"go": self.go, "make_grid": self.grids.make}
 
     # ---- layout ----------------------------------------------------------------------------------
 
-    def _go(self, verb: str, beside: Callable[[], None] = lambda: None) -> None:
-        """The buttons that start a run and cancel it, with what ``beside`` lays out between them."""
+    def _id(self, name: str) -> str:
+        return self.prefix + name
+
+    def build_go(self, verb: str, beside: Callable[[], None] = lambda: None) -> None:
+        """The buttons that start a run and cancel it, with what ``beside`` lays out between them, and the line."""
         with gr.Row(elem_classes="pd-go"):
             self.go = gr.Button(
                 verb, variant="primary", elem_id=self._id("generate"), elem_classes="pd-run", min_width=0
@@ -90,56 +149,52 @@ class JobTab(SamplingTab, ABC):
                 say("job.cancel"), elem_id=self._id("cancel"), elem_classes="pd-stop", interactive=False, min_width=0
             )
         self.line = gr.HTML(status(), elem_id=self._id("status"), elem_classes="pd-line")
-        self.changed = gr.HTML("", elem_id=self._id("changed"), elem_classes="pd-line")
-        self.asked = gr.Textbox("", visible=False)
 
     # ---- events ----------------------------------------------------------------------------------
 
-    def _wire_run(self, triggers: Sequence[Any], record: gr.State | None) -> None:
-        """Runs :meth:`start` with the values of ``controls``.
-
-        ``record`` keeps the result, in a state of its own by default.
-        """
-        self.knobs = {name: part for name, part in self.controls.items() if not isinstance(part, gr.State | gr.HTML)}
+    def wire(self, triggers: Sequence[Any], record: gr.State | None) -> None:
+        """Wires what every tab has; ``triggers`` start a run with the values of ``controls``."""
         self.record = record or gr.State(None, time_to_live=3600)
         self.outputs = {
-            "player": self.player,
+            "player": self.results.player,
             "line": self.line,
             **self.starts(),
             "stop": self.stop,
-            "under": self.under,
-            "readouts": self.readouts,
+            "under": self.results.under,
+            "readouts": self.results.readouts,
             "record": self.record,
-            "asked": self.asked,
-            "changed": self.changed,
-            **({} if self.laid is None else {"laid": self.laid}),
+            **({"laid": self.sampling.laid} if self.sampling and self.sampling.laid else {}),
             **self.more_outputs(),
         }
-        self.compare: dict[str, Any] = {
-            "inputs": [self.asked, *self.knobs.values()],
-            "outputs": self.changed,
-            "js": differs(list(self.knobs)),
-            **QUIET,
-        }
-        changes: list[Any] = [getattr(part, "change") for part in self.knobs.values()]  # noqa: B009
-        gr.on(changes, None, **self.compare)
-        self._wire_sampling()
-        self._wire_start(self.start, triggers, first=self.first)
+        self.results.wire(self.record, self.line)
+        if self.sampling is not None:
+            self.sampling.wire(self.results.another, self.go)
+        self.wire_start(self.start, triggers, first=self.first)
         self.stop.click(self.cancel, queue=False, **QUIET)
-        self._wire_results()
+        self.grids.wire()
 
-    def _wire_start(
+    def wire_start(
         self,
         start: Callable[..., Iterator[Updates]],
         triggers: Sequence[Any] | Callable[..., Any],
         *,
         more: Sequence[gr.components.Component] = (),
         first: str | None = None,
+        inputs: Sequence[gr.components.Component] | None = None,
     ) -> None:
+        """Wires an event that runs something.
+
+        Args:
+            start: answers it, with the values of ``controls`` and ``more`` by component.
+            triggers: of the event, or what wires it.
+            more: further inputs.
+            first: JavaScript that the inputs pass through.
+            inputs: in this order, for a ``start`` that takes a value each.
+        """
         listen = triggers if callable(triggers) else partial(gr.on, list(triggers))
         run = listen(
             start,  # not called "generate": that name is the public endpoint's
-            inputs={*self.controls.values(), *more},
+            inputs=list(inputs) if inputs else {*self.controls.values(), *more},
             outputs=list(self.outputs.values()),
             concurrency_limit=None,  # runs wait in a line of their own, where they can be cancelled
             trigger_mode="once",
@@ -148,29 +203,15 @@ class JobTab(SamplingTab, ABC):
         )
         # Only now would a press be taken: while the event goes on, Gradio drops it.
         run.then(self.rest, outputs=[*self.starts().values(), self.stop], queue=False, **QUIET)
-        run.then(None, **self.compare)  # what was changed while it ran
-        run.then(self.withhold, inputs=self.record, outputs=self.handed_out, queue=False, **QUIET).then(
-            self.export,
-            inputs=[self.record, self.worn],
-            outputs=[self.line, *self.downloads],
-            concurrency_limit=2,
-            **QUIET,
-        )
+        self.results.hand_out(run)
 
     def start(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
         """Runs what the controls ask for; yields updates of the page."""
-        yield from self.run(str(request.session_hash), self._fields(values))
+        yield from self.run(str(request.session_hash), self.fields(values))
 
-    def _fields(self, values: Mapping[gr.components.Component, Any]) -> dict[str, Any]:
+    def fields(self, values: Mapping[gr.components.Component, Any]) -> dict[str, Any]:
+        """The values of ``controls`` by their names."""
         return {name: values[component] for name, component in self.controls.items()}
-
-    def starts(self) -> dict[str, gr.Button]:
-        """The buttons that start a run, by name: none of them can be pressed while one goes on."""
-        return {"go": self.go}
-
-    def more_outputs(self) -> dict[str, Any]:
-        """Further components that :meth:`run` updates, by the names that :meth:`_shown` gives."""
-        return {}
 
     def run(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """The page's updates while a request with these fields runs for a session.
@@ -190,97 +231,33 @@ class JobTab(SamplingTab, ABC):
         for updates in self._steps(session, fields):
             shown = dict(zip(self.outputs, updates, strict=True)) | lasting
             motion = {"value": shown["player"]["value"]} if "value" in shown["player"] else motion
-            yield self._updates(**shown | {"player": motion | shown["player"]})
+            yield self.updates(**shown | {"player": motion | shown["player"]})
 
     def _steps(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """The updates of a run, each with what it changes."""
         self._cancelled.discard(session)
-        yield self._updates(player=busy("Starting …"), line=status("Starting …", tone="busy"), changed="")
+        yield self.updates(player=busy("Starting …"), line=status("Starting …", tone="busy"))
         try:
             fields = self.settled(fields)
-            asked = snapshot(fields, self.knobs)
             if fields.get("seed", 0) is None:
                 fields = {**fields, "seed": secrets.randbelow(MAX_SEED + 1)}
-            for updates in self.answer(session, fields):
-                shown = dict(zip(self.outputs, updates, strict=True))
-                if not isinstance(record := shown["record"], Record):
-                    yield updates
-                    continue
-                self.complete(record, fields)
-                self._keep(record, fields)
-                yield self._updates(**shown | {"asked": asked})
+            answer = self.grids.answer if fields.get("grid") else self.answer
+            for updates in answer(session, fields):
+                record = dict(zip(self.outputs, updates, strict=True))["record"]
+                if isinstance(record, Record):
+                    self.complete(record, fields)
+                    self._keep(record, fields)
+                yield updates
         except Cancelled as stopped:
             yield self._stopped(str(stopped), "warning")
         except Exception as error:
             yield self._stopped(error_line(error), "error")
 
-    def settled(self, fields: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The fields that are used and kept; raises InputError where two of them cannot be brought together."""
-        return fields
-
-    def complete(self, record: Record, fields: Mapping[str, Any]) -> None:
-        """Adds to a record what its files need beside the result."""
-
-    def _keep(self, record: Record, fields: Mapping[str, Any]) -> None:
-        """Writes down how the tab was set, so that the run opens as it was."""
-        if self.page.history is None or not record.result.run:
-            return
-        source = fields.get("source")
-        controls = {name: fields.get(name) for name in self.knobs if name != "given"}
-        original = None
-        if source is not None:
-            controls |= dict(zip(READ_WITH, source.read_with, strict=True))
-            original = Original(source.path, source.name) if source.path is not None else None
-        kept = Kept(
-            controls=controls | self.kept_more(fields) | ({"grid": dict(record.grid)} if record.grid else {}),
-            people=source.people if source is not None else (),
-            compared=tuple(result.run for result in record.compared.values())[1:],
-            original=original,
-        )
-        try:
-            self.page.history.keep(record.result.run, visitor().owner, kept)
-            if record.grid:
-                self.page.history.describe(record.result.run, visitor().owner, title=record.prompt[:200])
-        except InputError as error:  # the motion itself is kept
-            log.warning("The settings of a run could not be kept: %s", error)
-
-    def kept_more(self, fields: Mapping[str, Any]) -> dict[str, Any]:
-        """Further entries of a run's record, beside the values of the controls."""
-        return {}
-
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs what the fields ask for and shows it."""
         wanted = self.request(fields)
         result = yield from self.made(session, wanted)
-        yield self._updates(**self._shown(result, self.title(wanted)))
-
-    def answer_beside(self, session: str, wanted: Mapping[str, Any], labels: Mapping[str, str]) -> Iterator[Updates]:
-        """Runs requests of one input one after another, and shows all on one clock.
-
-        Args:
-            session: whose runs they are.
-            wanted: the requests, by the names with which their files begin.
-            labels: of their methods, by the same names.
-        """
-        made: dict[str, Result] = {}
-        for name, request in wanted.items():
-            made[name] = yield from self.made(session, request, label=f"{labels[name]}. ")
-        title = self.title(next(iter(wanted.values())))
-        shown = self.shown_beside({labels[name]: result for name, result in made.items()}, title)
-        spent = " and ".join(seconds(total(result)) for result in made.values())
-        yield self._updates(
-            **shown | {"record": Record(next(iter(made.values())), title, compared=made)},
-            line=status(f"Both done, in {spent}.", tone="done") + "".join(map(notes_lines, made.values())),
-            under=gr.update(visible=True),
-        )
-
-    def shown_beside(self, named: Mapping[str, Result], title: str) -> dict[str, Any]:
-        """Updates that show results of one input beside each other, by the labels of their methods."""
-        return {
-            "player": show(comparison_payload(named, title=title)),
-            "readouts": comparison_panel(named),
-            "record": Record(next(iter(named.values())), title, compared=named),
-        }
+        yield self.updates(**self.shown(result, self.title(wanted)))
 
     def made(
         self, session: str, wanted: Any, *, label: str = "", watch: Watch | None = None
@@ -310,20 +287,38 @@ class JobTab(SamplingTab, ABC):
                 last = event
                 if watch is not None and (seen := watch(event)) is not None:
                     if seen:
-                        yield self._updates(**seen)
+                        yield self.updates(**seen)
                     continue
                 if new_stage or time.monotonic() - shown_at >= PACE:
                     shown_at = time.monotonic()
                     line = label + progress_line(event)
                     share = event.step / max(event.total, 1) if event.stage == "sample" else None
-                    yield self._updates(player=busy(line, progress=share), line=status(line, tone="busy"))
+                    yield self.updates(player=busy(line, progress=share), line=status(line, tone="busy"))
         except Cancelled:
             raise Cancelled(cancelled_line(last)) from None
         raise Cancelled(cancelled_line(last))
 
-    def _shown(self, result: Result, title: str) -> dict[str, Any]:
-        spent = total(result)
-        count = len(result.duets)
+    def _stopped(self, line: str, tone: str) -> Updates:
+        return self.updates(player=busy(""), line=status(line, tone=tone))
+
+    def rest(self) -> Updates:
+        """The buttons once a run is over, however it ended."""
+        return *(gr.update(interactive=True) for _ in self.starts()), gr.update(interactive=False)
+
+    def cancel(self, request: gr.Request) -> None:
+        """Stops the session's run within one denoising step, or as soon as what it needs was read."""
+        self._cancelled.add(str(request.session_hash))
+        self.page.runs.cancel(str(request.session_hash))
+
+    # ---- what is shown and kept ------------------------------------------------------------------
+
+    def updates(self, **changed: Any) -> Updates:
+        """Updates in the order of the outputs; what is not named stays as it is."""
+        return tuple(changed.get(name, gr.skip()) for name in self.outputs)
+
+    def shown(self, result: Result, title: str) -> dict[str, Any]:
+        """Updates that show a result, by the names of the outputs."""
+        spent, count = total(result), len(result.duets)
         time_spent = f" in {seconds(spent)}" if spent else ""
         made = f"Made{time_spent}." if count == 1 else f"{count} samples made{time_spent}."
         return {
@@ -337,32 +332,50 @@ class JobTab(SamplingTab, ABC):
 
     def laid_out(self, results: Iterable[Result]) -> dict[str, str]:
         """The update of the line on how much is planned, where the tab has it."""
-        return {} if self.laid is None else {"laid": plan_line(results)}
+        return {"laid": plan_line(results)} if "laid" in self.outputs else {}
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Updates that show a kept run here, by the components of this tab."""
+        asked = run.entry.request
         made = time.strftime("%Y-%m-%d %H:%M", time.gmtime(run.entry.created))
-        shown = self._shown(run.result, run.entry.title)
+        shown = self.shown(run.result, run.entry.title)
         shown["line"] = status(f"Made on {made} UTC.", tone="done") + notes_lines(run.result)
-        shown |= {"asked": OPENED, "changed": ""}
-        found = {self.outputs[name]: update for name, update in shown.items()}
-        for name, value in run.kept.controls.items():
-            if name in self.knobs:
-                found[self.knobs[name]] = gr.update(value=value)
-        return found | self._opened_sampling(run.entry.request)
+        kept = {name: value for name, value in run.kept.controls.items() if name in self._knobs()}
+        values = {name: asked[name] for name in _ASKED if name in asked and name in self.controls} | kept
+        return {
+            **{self.controls[name]: gr.update(value=value) for name, value in values.items()},
+            **(self.sampling.opened(asked) if self.sampling else {}),
+            **{self.outputs[name]: update for name, update in (shown | self.grids.opened(run)).items()},
+        }
 
-    def _stopped(self, line: str, tone: str) -> Updates:
-        return self._updates(player=busy(""), line=status(line, tone=tone), asked="", changed="")
+    def parts(self) -> list[gr.components.Component]:
+        """Everything of the tab that :meth:`opened` may set."""
+        sampling = [self.sampling.pace] if self.sampling and self.sampling.pace else []
+        return [*self.outputs.values(), *self.controls.values(), *sampling, *self.restored()]
 
-    def rest(self) -> Updates:
-        """The buttons once a run is over, however it ended."""
-        return *(gr.update(interactive=True) for _ in self.starts()), gr.update(interactive=False)
+    def _knobs(self) -> list[str]:
+        """The names of the controls whose values are kept with a run."""
+        return [name for name, part in self.controls.items() if not isinstance(part, gr.State | gr.HTML)]
 
-    def _updates(self, **changed: Any) -> Updates:
-        """Updates in the order of the outputs; what is not named stays as it is."""
-        return tuple(changed.get(name, gr.skip()) for name in self.outputs)
-
-    def cancel(self, request: gr.Request) -> None:
-        """Stops the session's run within one denoising step, or as soon as what it needs was read."""
-        self._cancelled.add(str(request.session_hash))
-        self.page.runs.cancel(str(request.session_hash))
+    def _keep(self, record: Record, fields: Mapping[str, Any]) -> None:
+        """Writes down how the tab was set, so that the run opens as it was."""
+        if self.page.history is None or not record.result.run:
+            return
+        source = fields.get("source")
+        controls = {name: fields.get(name) for name in self._knobs()}
+        original = None
+        if source is not None:
+            controls |= dict(zip(READ_WITH, source.read_with, strict=True))
+            original = Original(source.path, source.name) if source.path is not None else None
+        kept = Kept(
+            controls=controls | self.kept_more(fields) | ({"grid": dict(record.grid)} if record.grid else {}),
+            people=source.people if source is not None else (),
+            compared=tuple(result.run for result in record.compared.values())[1:],
+            original=original,
+        )
+        try:
+            self.page.history.keep(record.result.run, visitor().owner, kept)
+            if record.grid:
+                self.page.history.describe(record.result.run, visitor().owner, title=record.prompt[:200])
+        except InputError as error:  # the motion itself is kept
+            log.warning("The settings of a run could not be kept: %s", error)

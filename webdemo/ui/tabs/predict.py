@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -12,34 +12,28 @@ import gradio as gr
 import numpy as np
 
 from motion import FPS, Clip, Duet, InputError
-from webdemo.inference.methods import installed, label_of, method
+from webdemo.inference.methods import installed, method
 from webdemo.inference.requests.predict import LONGEST, PAST_SECONDS, PredictRequest, PredictResult
 from webdemo.inference.run import Result
-from webdemo.ui.components.actors import Source, given_again, offered_animations
-from webdemo.ui.components.animations import animation_field, kept_animation
-from webdemo.ui.components.camera import CameraPanel
+from webdemo.ui.components.actors import Source, given_again, offered_animations, read_source
+from webdemo.ui.components.animations import kept_animation
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import show
-from webdemo.ui.components.prediction_view import (
-    curves_figure,
-    error_lines,
-    method_name,
-    prediction_payload,
-    without_name,
-)
+from webdemo.ui.components.prediction_view import curves_figure, error_lines, prediction_payload, without_name
 from webdemo.ui.components.settings import looked_up
-from webdemo.ui.components.sweep import BETWEEN_SENTENCES, Kind, grid_table, real
-from webdemo.ui.components.upload import chip, example_chips, file_field
+from webdemo.ui.components.show import ROUNDS
+from webdemo.ui.components.sweep import Kind, grid_table, real
+from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
-from webdemo.ui.text.panels import comparison_panel, method_line, prediction_lines, status
+from webdemo.ui.text.panels import method_line, prediction_lines, status
 from webdemo.ui.text.texts import say
 from webdemo.view.payload import player_payload
 
-from .generate import named_method
-from .job import QUIET, Updates
-from .source import SourceTab
-
-EMPTY_TEXT = "player.empty_predict"
+from .grids import methods_kind
+from .job import JobTab
+from .results import QUIET, Updates
+from .sampling import seed_field
+from .source import SourcePanel
 
 
 def predict_choices(weights: Path | None = None) -> list[tuple[str, str]]:
@@ -57,13 +51,6 @@ def motion_of(source: Source) -> Clip | Duet:
     people = source.whole(LONGEST)
     first = replace(people[0], name=source.name)
     return Duet(first, people[1]) if len(people) > 1 else first
-
-
-def given_source(result: PredictResult, name: str) -> Source:
-    """The motion of a prediction's request, as a source again."""
-    given = result.given
-    named = result.manifest.get("request", {}).get("motion", {}).get("name")
-    return Source(named or name, given.people if isinstance(given, Duet) else (given,))
 
 
 def _liveliest(source: Source) -> float:
@@ -85,13 +72,60 @@ def _last_marker(source: Source) -> float:
     return max(int(source.seconds * 10 + 1e-6) / 10, PAST_SECONDS)
 
 
-class PredictTab(SourceTab):
-    """A past → its future; see :class:`SourceTab`."""
+class PastPanel(SourcePanel):
+    """The motion of one person or two that is to go on, and the marker where its past ends."""
+
+    named = "predict.file"
+    takes = (("predict.take", "", "a"),)
+    take_at_end = True
+    marker: gr.Slider
+
+    def build_marker(self) -> None:
+        """The slider of the marker."""
+        self.marker = gr.Slider(
+            0,
+            10,
+            value=PAST_SECONDS,
+            step=0.1,
+            label=say("predict.marker"),
+            info=say("predict.marker_info"),
+            elem_id="predict-marker",
+        )
+
+    def more(self) -> list[gr.components.Component]:
+        """The marker."""
+        return [self.marker]
+
+    def payload(self, source: Source) -> dict[str, Any]:
+        """All people of the motion."""
+        return player_payload(without_name(motion_of(source)), title=source.name)
+
+    def described(self, source: Source, *, at_end: bool) -> tuple[str, list[Any]]:
+        """The line on its people and its length; the marker."""
+        last = _last_marker(source)
+        return _found_line(source), [self.marked(source, last if at_end else min(_liveliest(source), last))]
+
+    @staticmethod
+    def marked(source: Source, value: float) -> Any:
+        """The marker's slider as long as a motion."""
+        return gr.update(minimum=PAST_SECONDS, maximum=max(_last_marker(source), PAST_SECONDS + 0.1), value=value)
+
+
+class PredictTab(JobTab):
+    """A past → its future.
+
+    Args:
+        page: what the tabs share.
+        examples: (name, file) of example motions; those that are shipped by default.
+    """
 
     label = "Predict"
     named = "tabs.predict"
     prefix = "predict-"
-    restored = ("file", "given", "about", "animation")
+
+    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
+        super().__init__(page)
+        self.past = PastPanel(self.results, self.prefix, examples)
 
     def request(self, fields: Mapping[str, Any]) -> Any:
         """A :class:`PredictRequest`; raises InputError where none can be made of the fields."""
@@ -113,11 +147,9 @@ class PredictTab(SourceTab):
 
     def kinds(self) -> Sequence[Kind]:
         """Methods, where the past ends, and the length."""
-        known = {label.lower(): name for label, name in predict_choices()}
-        models = Kind("model", "Methods", read=partial(named_method, known), split=BETWEEN_SENTENCES, named=label_of)
         marker = Kind("marker", "Past ends at (s)", "from", real, named=lambda value: f"{value:g} s")
         length = Kind("seconds", "Seconds to predict", read=real, named=lambda value: f"{value:g} s")
-        return (models, marker, length)
+        return (methods_kind("model", {name: label for label, name in predict_choices()}), marker, length)
 
     def presets(self) -> Mapping[str, tuple[str, str]]:
         """All methods beside each other."""
@@ -125,111 +157,40 @@ class PredictTab(SourceTab):
         return {"Method beside method": ("model", "; ".join(listed))}
 
     def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
-        """The errors of all cells over their read-outs; the curves of one prediction are hidden."""
+        """The errors of all cells over their read-outs; the curves of methods that predict one past share the axes."""
         results = [result for result in made.values() if isinstance(result, PredictResult)]
-        errors = dict(zip(made, error_lines(*results), strict=True)) if len(results) == len(made) else {}
-        return {"curves": gr.update(visible=False), "readouts": prediction_lines(errors) + grid_table(made)}
+        if len(results) < len(made):
+            return {"curves": gr.update(visible=False), "readouts": grid_table(made)}
+        lines = prediction_lines(dict(zip(made, error_lines(*results), strict=True)))
+        one_past = len({(result.past_frames, len(result.error)) for result in results}) == 1
+        curves = {"curves": gr.update(visible=True), "plot": curves_figure(*results)}
+        hidden = {"curves": gr.update(visible=False)}
+        return {"readouts": lines + grid_table(made), **(curves if one_past else hidden)}
 
     # ---- layout ----------------------------------------------------------------------------------
 
     def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
-        """Lays out the tab inside ``demo`` and wires its events.
-
-        Args:
-            demo: the page.
-            record: keeps the session's last result, of this tab or another.
-        """
+        """See :meth:`JobTab.build`."""
         with gr.Row(elem_classes="pd-lab", equal_height=False):
             with gr.Column(elem_classes="pd-controls", min_width=0):
-                self._ask()
-                self._handed_out(self._curves)
-                with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-                    self.marker = gr.Slider(
-                        0,
-                        10,
-                        value=PAST_SECONDS,
-                        step=0.1,
-                        label=say("predict.marker"),
-                        info=say("predict.marker_info"),
-                        elem_id="predict-marker",
-                    )
-                    self.seconds = gr.Slider(
-                        *method(PredictRequest.model).seconds,
-                        value=PredictRequest.seconds,
-                        step=0.5,
-                        label=say("predict.seconds"),
-                        elem_id="predict-seconds",
-                    )
-                    with gr.Row(elem_classes="pd-rows"):
-                        self.model = gr.Dropdown(
-                            predict_choices(),
-                            value=PredictRequest.model,
-                            label=say("react.method"),
-                            elem_id="predict-method",
-                            min_width=0,
-                            filterable=False,
-                        )
-                    self.about = gr.HTML(self.method_about(PredictRequest.model), elem_id="predict-about")
-                    self.seed = gr.Number(
-                        value=PredictRequest.seed,
-                        label=say("sampling.seed"),
-                        info=say("predict.seed_info"),
-                        elem_id="predict-seed",
-                        min_width=0,
-                        visible="hidden",
-                    )
-                    self._sweeps(self._beside)
-            self._results(EMPTY_TEXT)
-        self.source = gr.State(None, time_to_live=3600)
-        self.given = gr.Textbox("", visible=False)
+                with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
+                    self.past.build()
+                    self.past.build_animation()
+                    self.build_go(say("predict.go"))
+                self.results.build_panel(another=False)
+                with gr.Column(elem_classes="pd-panel pd-curves", min_width=0, visible=False) as self.curves:
+                    self.plot = gr.Plot(show_label=False, elem_id="predict-curves")
+                self._settings()
+            self.results.build_stage("player.empty_predict")
         self.controls = {
-            "source": self.source,
-            "given": self.given,
-            "marker": self.marker,
+            "source": self.past.state,
+            "marker": self.past.marker,
             "seconds": self.seconds,
             "model": self.model,
-            "other": self.other,
             "seed": self.seed,
         }
-        self._wire_run([self.go.click], record)
-        self._wire_sweeps()
-        self._wire_motion()
-
-    def _ask(self) -> None:
-        with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-            self.file = file_field("predict.file", elem_id="predict-file")
-            with gr.Row(elem_classes="pd-chips"):
-                self.chips = example_chips(self.examples)
-                self.take = chip(say("predict.take"), elem_id="predict-take")
-            self.camera = CameraPanel(elem_id="predict-camera")
-            self.animation = animation_field("predict-animation")
-            self._go(say("predict.go"))
-
-    def _beside(self) -> None:
-        """A second method, whose prediction is shown beside the first one's."""
-        with gr.Row(elem_classes="pd-rows"):
-            self.other = gr.Dropdown(
-                [(say("sweeps.nothing"), ""), *predict_choices()],
-                value="",
-                label=say("sweeps.compare_with"),
-                elem_id="predict-other",
-                min_width=0,
-                filterable=False,
-            )
-
-    def _curves(self) -> None:
-        with gr.Column(elem_classes="pd-panel pd-curves", min_width=0, visible=False) as self.curves:
-            self.plot = gr.Plot(show_label=False, elem_id="predict-curves")
-
-    def more_outputs(self) -> dict[str, gr.components.Component]:
-        """The curves under the player."""
-        return {"curves": self.curves, "plot": self.plot}
-
-    # ---- events ----------------------------------------------------------------------------------
-
-    def _wire_motion(self) -> None:
-        self.loaded = [self.source, self.given, self.line, self.player, self.marker]
-        load = self._wire_source(self.loaded, {self.take: self.take_result})
+        self.wire([self.go.click], record)
+        self.past.wire(self.record, self.line)
         self.model.input(
             None,
             inputs=self.model,
@@ -237,135 +198,94 @@ class PredictTab(SourceTab):
             js=looked_up({name: self._of_method(name) for _, name in predict_choices()}),
             **QUIET,
         )
-        self.animation.input(
-            self.read_again,
-            inputs=[self.source, self.animation],
-            trigger_mode="always_last",
-            **{**load, "outputs": [*self.loaded, self.animation]},
-        ).then(None, **self.compare)
 
-    def read_again(self, source: Source | None, animation: int | None) -> Iterator[Updates]:
-        """Reads another animation of the source's file, or takes that back where it cannot."""
-        if source is None or source.path is None:
-            return
-        yield from self.again(source, (*source.read_with[:4], animation), [offered_animations(source)])
+    def _settings(self) -> None:
+        with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
+            self.past.build_marker()
+            self.seconds = gr.Slider(
+                *method(PredictRequest.model).seconds,
+                value=PredictRequest.seconds,
+                step=0.5,
+                label=say("predict.seconds"),
+                elem_id="predict-seconds",
+            )
+            with gr.Row(elem_classes="pd-rows"):
+                self.model = gr.Dropdown(
+                    predict_choices(),
+                    value=PredictRequest.model,
+                    label=say("react.method"),
+                    elem_id="predict-method",
+                    min_width=0,
+                    filterable=False,
+                )
+            about, _ = self._of_method(PredictRequest.model)
+            self.about = gr.HTML(about, elem_id="predict-about")
+            self.seed = seed_field(self.prefix, "predict.seed_info", visible="hidden")
+            self.grids.build()
 
-    def take_result(self, record: Record | None) -> Iterator[Updates]:
-        """Makes the session's last result the past: the marker stands at its end."""
-        yield from self.of_result("a", record, at_end=True)
+    def more_outputs(self) -> dict[str, gr.components.Component]:
+        """The curves under the player."""
+        return {"curves": self.curves, "plot": self.plot}
 
-    def payload(self, source: Source) -> dict[str, Any]:
-        """All people of the motion."""
-        return player_payload(without_name(motion_of(source)), title=source.name)
+    def restored(self) -> Sequence[Any]:
+        """The file and its animation."""
+        return [self.past.file, self.past.animation]
 
-    def described(self, source: Source, *, at_end: bool) -> tuple[str, list[Any]]:
-        """The line on its people and its length; the marker."""
-        last = _last_marker(source)
-        marker = last if at_end else min(_liveliest(source), last)
-        return self._found_line(source), [self._marker(source, marker)]
+    # ---- events ----------------------------------------------------------------------------------
 
-    @staticmethod
-    def _marker(source: Source, value: float) -> Any:
-        """The marker's slider as long as a motion."""
-        last = _last_marker(source)
-        return gr.update(minimum=PAST_SECONDS, maximum=max(last, PAST_SECONDS + 0.1), value=value)
-
-    def continues(self, button: gr.Button, tabs: gr.Tabs, tab: str) -> None:
-        """Makes a button of any tab take the last result here, as a past that is to go on.
+    def wire_page(self, tab: gr.Tab, tabs: gr.Tabs, onwards: Sequence[gr.Button]) -> None:
+        """Wires what happens as the tab is opened.
 
         Args:
-            button: of the tab that shows the result.
+            tab: this one, among ``tabs``; where nothing is on it, it begins with the first example.
             tabs: of the page.
-            tab: this one's id among them.
+            onwards: buttons of any tab that take the last result here, as a past that is to go on.
         """
-        shown = button.click(lambda: gr.update(selected=tab), outputs=tabs, queue=False, **QUIET)
-        shown.then(
-            self.take_result,
-            inputs=self.record,
-            outputs=self.loaded,
-            concurrency_limit=2,
-            concurrency_id="predict-read",
-            **QUIET,
-        ).then(None, **self.compare)
-        shown.then(None, outputs=self.file, js="() => null", **QUIET)
+        load = self.past.load_options
+        tab.select(self.arrive, inputs=[self.past.state, self.record], **load)
+        for button in onwards:
+            taken = button.click(partial(self.past.take_result, "a"), inputs=self.record, **load)
+            taken.then(None, outputs=self.past.file, js="() => null", **QUIET)
+            # Only now is the tab opened, which finds the result on it.
+            taken.then(lambda: gr.update(selected=self.label.lower()), outputs=tabs, queue=False, **QUIET)
+
+    def arrive(self, source: Source | None, record: Record | None) -> Updates:
+        """Shows the first example where there is nothing else to show; it plays and then rests."""
+        predicted = record is not None and isinstance(record.result, PredictResult)
+        if source is not None or predicted or not self.past.examples:
+            return (gr.skip(),) * len(self.past.shown)
+        name, path = self.past.examples[0]
+        *_, updates = self.past.load(partial(read_source, path, name))
+        state, line, player, *more = updates
+        return state, line, {**player, "value": {**player["value"], "rounds": ROUNDS}}, *more
 
     @staticmethod
-    def _found_line(source: Source) -> str:
-        length = f"{source.seconds:.1f} s."
-        alone, two = f"{source.name}: one person, {length}", f"{source.name}: two people, {length}"
-        sentence = two if len(source.people) > 1 else alone
-        if source.seconds < PAST_SECONDS:
-            return status(f"{sentence} Give {PAST_SECONDS:g} s or more.", tone="warning")
-        if source.seconds > LONGEST:
-            return status(f"{sentence} Cut it to {LONGEST:g} s or less.", tone="warning")
-        return status(" ".join((sentence, *source.notes)), tone="warning" if source.notes else "quiet")
-
-    def forget(self) -> Updates:
-        """The tab without a motion."""
-        return None, "", status(), show(None), gr.skip()
-
-    @staticmethod
-    def method_about(model: str) -> str:
-        """One line on a method."""
-        return method_line(method(model).summary)
-
-    @classmethod
-    def _of_method(cls, model: str) -> list[Any]:
+    def _of_method(model: str) -> list[Any]:
         """The line on a method, and whether the seed is shown."""
-        return [cls.method_about(model), {"__type__": "update", "visible": _draws(model) or "hidden"}]
-
-    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
-        """Runs one method, or two side by side."""
-        if fields.get("other") and not fields.get("grid"):
-            yield from self._answer_both(session, fields)
-        else:
-            yield from super().answer(session, fields)
-
-    def _answer_both(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
-        """Continues the same past by two methods, one after the other, and shows both on one clock."""
-        models = (fields["model"], fields["other"])
-        if models[0] == models[1]:
-            raise InputError("Both methods are the same: choose another one to compare with.")
-        wanted = {model: self.request({**fields, "model": model}) for model in models}
-        yield from self.answer_beside(session, wanted, {model: label_of(model) for model in models})
-
-    def shown_beside(self, named: Mapping[str, Result], title: str) -> dict[str, Any]:
-        """Predictions of one past, with their errors and the curves of these."""
-        results = [result for result in named.values() if isinstance(result, PredictResult)]
-        lines = dict(zip(named, error_lines(*results), strict=True))
-        return {
-            "record": Record(results[0], title, compared=named),
-            "player": show(prediction_payload(*results, title=title)),
-            "readouts": prediction_lines(lines) + comparison_panel(named),
-            "curves": gr.update(visible=True),
-            "plot": curves_figure(*results),
-        }
+        summary = method_line(method(model).summary)
+        return [summary, {"__type__": "update", "visible": _draws(model) or "hidden"}]
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the motion that was asked about, so that the marker can be moved on it."""
-        found, result = super().opened(run), run.result
-        if isinstance(result, PredictResult):
-            source = given_source(result, run.entry.title)
-            source = replace(source, read_with=(*source.read_with[:4], kept_animation(run.kept.controls)))
-            source, found[self.file], note = given_again(source, run.kept.original, self.page.shelf.folder())
-            found[self.animation] = offered_animations(source)
-            found[self.source], found[self.given] = source, source.key
-            found[self.line] += status(note) if note else ""
-            found[self.marker] = self._marker(source, result.past_frames / result.duets[0].fps)
-        beside = () if "grid" in run.kept.controls else run.beside[:1]
-        others = [each.result for each in beside if isinstance(each.result, PredictResult)]
-        found[self.other] = gr.update(value=run.kept.controls.get("other") if others else "")
-        if others and isinstance(result, PredictResult):
-            found |= {
-                self.outputs[name]: update
-                for name, update in self.shown_beside(
-                    {method_name(each): each for each in (result, *others)}, run.entry.title
-                ).items()
-            }
-        return found
+        found, result, past = super().opened(run), run.result, self.past
+        if not isinstance(result, PredictResult):
+            return found
+        given = result.given
+        named = result.manifest.get("request", {}).get("motion", {}).get("name") or run.entry.title
+        source = Source(named, given.people if isinstance(given, Duet) else (given,))
+        source = replace(source, read_with=(*source.read_with[:4], kept_animation(run.kept.controls)))
+        source, file, note = given_again(source, run.kept.original, self.page.shelf.folder())
+        return found | {
+            past.file: file,
+            past.animation: offered_animations(source),
+            past.state: source,
+            past.marker: past.marked(source, result.past_frames / result.duets[0].fps),
+            self.line: found[self.line] + (status(note) if note else ""),
+        }
 
-    def _shown(self, result: Result, title: str) -> dict[str, Any]:
-        shown = super()._shown(result, title)
+    def shown(self, result: Result, title: str) -> dict[str, Any]:
+        """Also the curves of the error and the speed."""
+        shown = super().shown(result, title)
         if not isinstance(result, PredictResult):  # of a history that did not keep what followed
             return {**shown, "curves": gr.update(visible=False)}
         return {
@@ -375,3 +295,12 @@ class PredictTab(SourceTab):
             "curves": gr.update(visible=True),
             "plot": curves_figure(result),
         }
+
+
+def _found_line(source: Source) -> str:
+    sentence = f"{source.name}: {'two people' if len(source.people) > 1 else 'one person'}, {source.seconds:.1f} s."
+    if source.seconds < PAST_SECONDS:
+        return status(f"{sentence} Give {PAST_SECONDS:g} s or more.", tone="warning")
+    if source.seconds > LONGEST:
+        return status(f"{sentence} Cut it to {LONGEST:g} s or less.", tone="warning")
+    return status(" ".join((sentence, *source.notes)), tone="warning" if source.notes else "quiet")

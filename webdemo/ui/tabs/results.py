@@ -1,4 +1,4 @@
-"""The results of a tab: the player, and beside it files, a film, a link and read-outs."""
+"""A result as every tab shows it: the player, and beside it read-outs, a link, a film and files."""
 
 from __future__ import annotations
 
@@ -60,28 +60,27 @@ _CHANGED = (*WORN, ALL)
 Updates = tuple[Any, ...]
 
 
-class ResultsTab:
-    """The part of a tab that shows a result and hands it out.
+class Results:
+    """The player, and a panel with how a result came out, *Share* and *Export*.
 
     Args:
         page: what the tabs share.
+        prefix: before the ids of the elements.
     """
 
-    prefix = ""
-    """Before the ids of the tab's elements."""
     record: gr.State
     """Keeps the session's last result."""
     line: gr.HTML
-    """Says how a run went."""
+    """Says how a run went, or what was handed out."""
 
-    def __init__(self, page: PageContext) -> None:
-        self.page = page
+    def __init__(self, page: PageContext, prefix: str) -> None:
+        self.page, self.prefix = page, prefix
         self._buttons: dict[str, gr.DownloadButton] = {}
 
     def _id(self, name: str) -> str:
         return self.prefix + name
 
-    def _results(
+    def build_stage(
         self, empty_text: str = EMPTY_TEXT, below: Callable[[], None] = lambda: None, first: Payload | None = None
     ) -> None:
         """The player, and under it what ``below`` lays out. ``first`` is played before anything is asked for."""
@@ -90,43 +89,39 @@ class ResultsTab:
                 self.player = MotionPlayer(first, elem_id=self._id("player"), empty_text=empty_text)
             below()
 
-    def _handed_out(self, below: Callable[[], None] = lambda: None) -> None:
-        """The panel of a result: how it came out, *Share*, *Export* and what ``below`` lays out."""
+    def build_panel(self, *, another: bool = True) -> None:
+        """How a result came out, *Share* and *Export*; ``another`` offers one more take of it."""
         with gr.Column(elem_classes="pd-panel pd-under", min_width=0, visible=False) as self.under:
             self.readouts = gr.HTML(elem_id=self._id("readouts"))
             with gr.Column(elem_classes="pd-menus", min_width=0):
                 self._share()
                 self._export()
             with gr.Row(elem_classes="pd-chips"):
-                self.another = gr.Button(
-                    say("result.another"), size="sm", min_width=0, elem_id=self._id("another"), elem_classes="pd-onward"
-                )
-                self.onward = gr.Button(
-                    say("result.next"), size="sm", min_width=0, elem_id=self._id("continue"), elem_classes="pd-onward"
-                )
-        below()
+                self.another = self._button("result.another", "another", "pd-onward", visible=another)
+                self.onward = self._button("result.next", "continue", "pd-onward")
+
+    def _button(self, text: str, name: str, classes: str | None = None, **options: Any) -> gr.Button:
+        return gr.Button(say(text), size="sm", min_width=0, elem_id=self._id(name), elem_classes=classes, **options)
+
+    def _saved(self, label: str, name: str, **options: Any) -> gr.DownloadButton:
+        return gr.DownloadButton(
+            label, size="sm", interactive=False, min_width=0, elem_id=self._id(f"download-{name}"), **options
+        )
+
+    def _upload(self, text: str, name: str, suffixes: list[str]) -> gr.UploadButton:
+        return gr.UploadButton(
+            say(text), file_types=suffixes, size="sm", min_width=0, elem_id=self._id(name), elem_classes="pd-character"
+        )
 
     def _share(self) -> None:
         """Ways to show a result to somebody, the likeliest first."""
         with gr.Accordion(say("result.share"), open=False, elem_id=self._id("share"), elem_classes="pd-menu"):
             with gr.Row(elem_classes="pd-downloads"):
-                self.link = gr.Button(
-                    say("result.link_to_view"),
-                    size="sm",
-                    min_width=0,
-                    elem_id=self._id("link"),
-                    elem_classes="pd-onward",
-                    visible=self.page.history is not None,
-                )
-                self.film = gr.Button(say("result.make_film"), size="sm", min_width=0, elem_id=self._id("film"))
-                self.filmed = gr.DownloadButton(
-                    f"{say('files.film')} {film_suffix()}",
-                    size="sm",
-                    interactive=False,
-                    min_width=0,
-                    elem_id=self._id("download-film"),
-                )
-                self.picture = gr.Button(say("result.picture"), size="sm", min_width=0, elem_id=self._id("picture"))
+                kept = self.page.history is not None
+                self.link = self._button("result.link_to_view", "link", "pd-onward", visible=kept)
+                self.film = self._button("result.make_film", "film")
+                self.filmed = self._saved(f"{say('files.film')} {film_suffix()}", "film")
+                self.picture = self._button("result.picture", "picture")
                 self._download("png")
                 self.player_state = gr.Textbox(visible=False)
             self.address = gr.Textbox(
@@ -146,98 +141,46 @@ class ResultsTab:
                     for key in keys:
                         self._download(key)
                     if "npz" in keys:
-                        self._figure()
+                        self.figure = self._button("result.figure", "figure")
+                        self.figured = [self._saved(say("files.figure"), "html"), self._saved(say("files.mesh"), "ply")]
                     if RIG in keys:
-                        self.character = gr.UploadButton(
-                            say("result.character"),
-                            file_types=[".glb", ".vrm"],
-                            size="sm",
-                            min_width=0,
-                            elem_id=self._id("character"),
-                            elem_classes="pd-character",
-                        )
-                        self.thing = gr.UploadButton(
-                            say("result.thing"),
-                            file_types=FILE_TYPES,
-                            size="sm",
-                            min_width=0,
-                            elem_id=self._id("thing"),
-                            elem_classes="pd-character",
-                        )
+                        self.character = self._upload("result.character", "character", [".glb", ".vrm"])
+                        self.thing = self._upload("result.thing", "thing", FILE_TYPES)
             self.worn = gr.State(None, time_to_live=3600)
-
-    def _figure(self) -> None:
-        """The button that makes a figure and a mesh, and theirs."""
-        self.figure = gr.Button(say("result.figure"), size="sm", min_width=0, elem_id=self._id("figure"))
-        self.figured = [
-            gr.DownloadButton(label, size="sm", interactive=False, min_width=0, elem_id=self._id(name))
-            for label, name in ((say("files.figure"), "download-html"), (say("files.mesh"), "download-ply"))
-        ]
 
     def _download(self, key: str) -> None:
         """The button of one kind of file."""
         kind = next(kind for kind in KINDS if kind.key == key)
-        self._buttons[key] = gr.DownloadButton(
-            worded("files", kind.label),
-            size="sm",
-            interactive=False,
-            min_width=0,
-            visible=kind.offered(),
-            elem_id=self._id(f"download-{key.replace('.', '-')}"),
-        )
+        self._buttons[key] = self._saved(worded("files", kind.label), key.replace(".", "-"), visible=kind.offered())
 
     @property
     def downloads(self) -> list[gr.DownloadButton]:
         """The buttons of all kinds of files, in the order of :data:`KINDS`."""
         return [self._buttons[kind.key] for kind in KINDS]
 
-    def _wire_results(self) -> None:
-        self.film.click(
-            self.make_film,
-            inputs=[self.record, self.player_state],
-            outputs=[self.line, self.filmed],
-            js=READ_PLAYER,
-            concurrency_limit=1,
-            concurrency_id="film",
-            trigger_mode="once",
-            **QUIET,
-        ).then(None, js=_SAVE % json.dumps(self._id("download-film")), **QUIET)
-        self.figure.click(
-            self.make_figure,
-            inputs=[self.record, self.player_state],
-            outputs=[self.line, *self.figured],
-            js=READ_PLAYER,
-            concurrency_limit=1,
-            concurrency_id="film",
-            trigger_mode="once",
-            **QUIET,
-        )
+    def wire(self, record: gr.State, line: gr.HTML) -> None:
+        """Wires what hands the result in ``record`` out; ``line`` says how that went."""
+        self.record, self.line = record, line
+        drawn: dict[str, Any] = {"concurrency_limit": 1, "concurrency_id": "film", "trigger_mode": "once", **QUIET}
+        shown: dict[str, Any] = {"inputs": [record, self.player_state], "js": READ_PLAYER}
+        filmed = self.film.click(self.make_film, outputs=[line, self.filmed], **shown, **drawn)
+        filmed.then(None, js=_SAVE % json.dumps(self.filmed.elem_id), **QUIET)
+        self.figure.click(self.make_figure, outputs=[line, *self.figured], **shown, **drawn)
         self.picture.click(None, js=_TAKE_PICTURE, **QUIET)
-        self.link.click(
-            self.make_link,
-            inputs=[self.record, self.player_state],
-            outputs=[self.line, self.address],
-            js=READ_PLAYER,
-            **QUIET,
-        )
+        self.link.click(self.make_link, outputs=[line, self.address], **shown, **QUIET)
+        worn: dict[str, Any] = {**drawn, "concurrency_id": "character"}
+        changed = [line, self.worn, self.player, *(self._buttons[key] for key in _CHANGED)]
+        self.character.upload(self.put_on, inputs=[self.character, record], outputs=changed, **worn)
+        brought = [line, self.player, *self.downloads]
+        self.thing.upload(self.bring, inputs=[self.thing, record, self.worn], outputs=brought, **worn)
 
-        self.character.upload(
-            self.put_on,
-            inputs=[self.character, self.record],
-            outputs=[self.line, self.worn, self.player, *(self._buttons[key] for key in _CHANGED)],
-            concurrency_limit=1,
-            concurrency_id="character",
-            trigger_mode="once",
-            **QUIET,
-        )
-
-        self.thing.upload(
-            self.bring,
-            inputs=[self.thing, self.record, self.worn],
-            outputs=[self.line, self.player, *self.downloads],
-            concurrency_limit=1,
-            concurrency_id="character",
-            trigger_mode="once",
+    def hand_out(self, event: Any) -> None:
+        """Writes the files of a new result after an event, and until then gives none of the result before."""
+        event.then(self.withhold, inputs=self.record, outputs=self.handed_out, queue=False, **QUIET).then(
+            self.export,
+            inputs=[self.record, self.worn],
+            outputs=[self.line, *self.downloads],
+            concurrency_limit=2,
             **QUIET,
         )
 

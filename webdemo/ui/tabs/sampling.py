@@ -1,153 +1,120 @@
-"""The settings of a tab whose motion is sampled: seed, samples, guidance, steps and damping."""
+"""The form of the settings with which a motion is sampled: the same on every tab that samples one."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import gradio as gr
 
 from webdemo.inference.method import DEFAULT_STEPS
 from webdemo.inference.requests import DAMPING, GUIDANCE, MAX_SEED, SAMPLES, TRIES, SamplingRequest
-from webdemo.ui.components.pace import CHOSEN, FOLLOWED, pace_of, pace_switch
-from webdemo.ui.components.settings import ADVANCED, advanced_label, folded_at_first
 from webdemo.ui.text.texts import say
 
-from .results import QUIET, ResultsTab
+from .results import QUIET
 
 STEPS_SHOWN = (1, 100)
-"""What the slider offers; the API takes more."""
-_DAMPING_INFO = say("sampling.damping_info")
-_GUIDANCE_INFO = say("sampling.guidance_info")
-_STEPS_INFO = say("sampling.steps_info")
-_TRIES_INFO = say("sampling.tries_info")
-_SEED_INFO = say("sampling.seed_info")
-_SAMPLES_INFO = say("sampling.samples_info")
+"""Steps that the slider offers; the API takes more."""
+FAST, FAITHFUL = DEFAULT_STEPS, 50
+"""Steps of the two choices of the switch over the slider."""
+_FOLLOWED = f"(steps) => [{FAST}, {FAITHFUL}].includes(steps) ? steps : null"
+"""JavaScript that sets the switch as the slider says; other numbers are neither choice."""
 
 
-class SamplingTab(ResultsTab):
-    """The part of a tab that sets how its motion is sampled, for tabs that have such settings."""
+class Sampling:
+    """Guidance, steps and damping; in *More* samples, the seed and, for sentences, tries.
 
-    dice: gr.Button | None = None
-    """Draws a seed, where the tab's motion is random."""
-    folded: gr.Accordion | None = None
-    """Holds guidance, steps and damping, where the tab has them."""
-    more: gr.Accordion | None = None
-    """Holds the settings that are rarely needed, where the tab has them."""
-    laid: gr.HTML | None = None
-    """Says what share of the motion the plan lays out, where the tab takes sentences."""
+    Args:
+        prefix: before the ids of the elements.
+        sentences: puts the switch *Fast* or *Faithful* over the sliders, and under them how much of a motion the
+            plan lays out.
+    """
+
     pace: gr.Radio | None = None
-    """Switches between few steps and many, where the tab has it."""
+    laid: gr.HTML | None = None
     tries: gr.Slider | None = None
-    """Seeds to try until the motion shows all that is said, where the tab takes sentences."""
-    compare: dict[str, Any]
-    """The event that says what was changed since the result; set where runs are wired."""
 
-    def _sampling(self, beside: Callable[[], Sequence[gr.Radio]] = tuple, *, said: bool = False) -> None:
-        """Guidance, steps, damping and ``beside`` under a line with their values; in *More* samples and the seed.
+    def __init__(self, prefix: str, *, sentences: bool = False) -> None:
+        self.prefix, self.sentences = prefix, sentences
 
-        ``said``, in a tab of sentences, puts a switch over them, fast or faithful, a line under them, how much of
-        the motion is planned, and tries into *More*.
-        """
-        if said:
-            self.pace = pace_switch(self._id("pace"))
-        values = (SamplingRequest.guidance, DEFAULT_STEPS, SamplingRequest.damping)
-        with gr.Accordion(
-            folded_at_first(*values), open=True, elem_id=self._id("advanced"), elem_classes="pd-advanced"
-        ) as self.folded:
-            self.guidance = gr.Slider(
-                *GUIDANCE,
-                value=values[0],
-                step=0.1,
-                label=say("sampling.guidance"),
-                info=_GUIDANCE_INFO,
-                elem_id=self._id("guidance"),
+    def build(self, beside: Callable[[], None] = lambda: None) -> None:
+        """Lays out the form; ``beside`` lays out more under the sliders."""
+        if self.sentences:
+            self.pace = gr.Radio(
+                [(say("sampling.fast"), FAST), (say("sampling.faithful"), FAITHFUL)],
+                value=FAST,
+                label=say("sampling.pace", fast=FAST, faithful=FAITHFUL),
+                show_label=False,
+                container=False,
+                elem_id=f"{self.prefix}pace",
+                elem_classes="pd-way pd-pace",
             )
-            self.steps = gr.Slider(
-                *STEPS_SHOWN,
-                value=values[1],
-                step=1,
-                label=say("sampling.steps"),
-                info=_STEPS_INFO,
-                elem_id=self._id("steps"),
-            )
-            self.damping = gr.Slider(
-                *DAMPING,
-                value=values[2],
-                step=0.05,
-                label=say("sampling.damping"),
-                info=_DAMPING_INFO,
-                elem_id=self._id("damping"),
-            )
-            added = beside()
-            if said:
-                self.laid = gr.HTML(elem_id=self._id("laid"))
-        with gr.Accordion(
-            say("sampling.more"), open=False, elem_id=self._id("more"), elem_classes="pd-advanced"
-        ) as self.more:
-            self._more(said=said)
-        tries = [] if self.tries is None else [self.tries]
-        parts: list[Any] = [self.guidance, self.steps, self.damping, *tries, *added]
-        # A folded part tells nobody of its changes before it was seen, so others also use this.
-        self.tell_advanced = {"inputs": parts, "outputs": self.folded, "js": ADVANCED, **QUIET}
-        gr.on([part.change for part in parts], None, **self.tell_advanced)
+        usual = SamplingRequest
+        with self._fold("sampling.advanced", open=True) as self.fold:
+            self.guidance = self._slider("sampling.guidance", "sampling.guidance_info", GUIDANCE, usual.guidance, 0.1)
+            self.steps = self._slider("sampling.steps", "sampling.steps_info", STEPS_SHOWN, DEFAULT_STEPS)
+            self.damping = self._slider("sampling.damping", "sampling.damping_info", DAMPING, usual.damping, 0.05)
+            beside()
+            if self.sentences:
+                self.laid = gr.HTML(elem_id=f"{self.prefix}laid")
+        with self._fold("sampling.more", open=False) as self.more:
+            self.samples = self._slider("sampling.samples", "sampling.samples_info", SAMPLES, usual.samples)
+            self.seed = seed_field(self.prefix)
+            if self.sentences:
+                self.tries = self._slider("sampling.tries", "sampling.tries_info", TRIES, usual.tries)
+
+    def _fold(self, key: str, *, open: bool) -> gr.Accordion:
+        return gr.Accordion(say(key), open=open, elem_id=self._id(key), elem_classes="pd-advanced")
+
+    def _slider(self, key: str, info: str, bounds: tuple[float, float], value: float, step: float = 1) -> gr.Slider:
+        return gr.Slider(*bounds, value=value, step=step, label=say(key), info=say(info), elem_id=self._id(key))
+
+    def _id(self, key: str) -> str:
+        return self.prefix + key.split(".")[1]
+
+    @property
+    def controls(self) -> dict[str, gr.components.Component]:
+        """The controls by the names of a request's fields."""
+        tries = {} if self.tries is None else {"tries": self.tries}
+        return {
+            "seed": self.seed,
+            "samples": self.samples,
+            "guidance": self.guidance,
+            "steps": self.steps,
+            "damping": self.damping,
+            **tries,
+        }
+
+    def wire(self, another: gr.Button, go: gr.Button) -> None:
+        """Lets the switch and the slider follow each other, and ``another`` draw a seed and press ``go``."""
         if self.pace is not None:
-            self.steps.change(None, inputs=self.steps, outputs=self.pace, js=FOLLOWED, **QUIET)
+            self.pace.input(None, inputs=self.pace, outputs=self.steps, js="(steps) => steps", **QUIET)
+            self.steps.change(None, inputs=self.steps, outputs=self.pace, js=_FOLLOWED, **QUIET)
+        drawn = another.click(None, outputs=self.seed, js=f"() => Math.floor(Math.random() * {MAX_SEED + 1})", **QUIET)
+        drawn.then(None, js=f"() => document.getElementById({go.elem_id!r}).click()", **QUIET)
 
-    def _more(self, *, said: bool) -> None:
-        """The settings that are rarely needed."""
-        self.samples = gr.Slider(
-            *SAMPLES,
-            value=SamplingRequest.samples,
-            step=1,
-            label=say("sampling.samples"),
-            info=_SAMPLES_INFO,
-            elem_id=self._id("samples"),
-        )
-        with gr.Row(elem_classes="pd-seed"):
-            self.seed = gr.Number(
-                value=SamplingRequest.seed,
-                label=say("sampling.seed"),
-                info=_SEED_INFO,
-                elem_id=self._id("seed"),
-                elem_classes="pd-seed-field",
-                min_width=0,
-            )
-            self.dice = gr.Button(
-                say("sampling.random"), size="sm", elem_id=self._id("dice"), elem_classes="pd-dice", min_width=0
-            )
-        if said:
-            self.tries = gr.Slider(
-                *TRIES,
-                value=SamplingRequest.tries,
-                step=1,
-                label=say("sampling.tries"),
-                info=_TRIES_INFO,
-                elem_id=self._id("tries"),
-            )
-
-    def _wire_sampling(self) -> None:
-        """The switch of the pace and the button that draws a seed, where the tab has them."""
-        if self.pace is not None:
-            chosen = self.pace.input(None, inputs=self.pace, outputs=self.steps, js=CHOSEN, **QUIET)
-            chosen.then(None, **self.tell_advanced).then(None, **self.compare)
-        if self.dice is None:
-            self.another.visible = False
-            return
-        drawn = f"() => Math.floor(Math.random() * {MAX_SEED + 1})"
-        press = f"() => document.getElementById({self._id('generate')!r}).click()"
-        self.dice.click(None, outputs=self.seed, js=drawn, **QUIET)
-        self.another.click(None, outputs=self.seed, js=drawn, **QUIET).then(None, js=press, **QUIET)
-
-    def _opened_sampling(self, request: Mapping[str, Any]) -> dict[Any, Any]:
-        """Updates that show the settings of a kept request."""
+    def opened(self, request: Mapping[str, Any]) -> dict[Any, Any]:
+        """Updates that show the settings of a kept request; older ones have no tries."""
         found: dict[Any, Any] = {}
-        values: list[Any] = [request.get(name) for name in ("guidance", "steps", "damping")]
-        values.append(request.get("tries") or 1)
-        if self.folded is not None and None not in values:
-            found[self.folded] = gr.update(label=advanced_label(*values))
         if self.tries is not None:
-            found[self.tries] = gr.update(value=values[-1])
+            found[self.tries] = gr.update(value=request.get("tries") or 1)
         if self.pace is not None:
             found[self.pace] = gr.update(value=pace_of(request.get("steps")))
         return found
+
+
+def seed_field(prefix: str, info: str = "sampling.seed_info", **options: Any) -> gr.Number:
+    """The field of the seed; an empty one is drawn."""
+    return gr.Number(
+        value=SamplingRequest.seed,
+        label=say("sampling.seed"),
+        info=say(info),
+        elem_id=f"{prefix}seed",
+        min_width=0,
+        **options,
+    )
+
+
+def pace_of(steps: int | None) -> int | None:
+    """The choice of the switch for so many steps, None for neither."""
+    return steps if steps in (FAST, FAITHFUL) else None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
 
@@ -27,16 +27,17 @@ from webdemo.ui.components.scene_parts import (
 from webdemo.ui.components.story import StoryLine, motion_marks, story_fields, value_of
 from webdemo.ui.components.story_words import SETTINGS, edited, lay_out, said_of, settled, story_text, use_text, written
 from webdemo.ui.components.upload import chip
+from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import error_line, tries_line
 from webdemo.view.payload import player_payload
 
-from .job import QUIET, Updates
-from .sweeps import SweepTab
+from .job import JobTab
+from .results import QUIET, Updates
+from .sampling import Sampling
 
-EMPTY_TEXT = "player.empty_scene"
 EXAMPLES = (
     (
         "A greeting with a walk",
@@ -58,13 +59,16 @@ MOST_EARLIER = 10
 """Motions that can be gone back to."""
 
 
-class SceneTab(SweepTab):
+class SceneTab(JobTab):
     """A story → a scene."""
 
     label = "Scene"
     named = "tabs.scene"
     prefix = "scene-"
-    restored = ("line_up", "folded")
+
+    def __init__(self, page: PageContext) -> None:
+        super().__init__(page)
+        self.sampling: Sampling = Sampling(self.prefix, sentences=True)
 
     # ---- requests --------------------------------------------------------------------------------
 
@@ -93,36 +97,20 @@ class SceneTab(SweepTab):
     # ---- layout ----------------------------------------------------------------------------------
 
     def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
-        """Lays out the tab inside ``demo`` and wires its events.
-
-        Args:
-            demo: the page.
-            record: keeps the session's last result.
-        """
+        """See :meth:`JobTab.build`."""
         with gr.Row(elem_classes="pd-lab", equal_height=False):
             with gr.Column(elem_classes="pd-controls", min_width=0):
                 self._ask()
-                self._handed_out()
+                self.results.build_panel()
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-                    self._sampling(said=True)
-                    self._sweeps()
+                    self.sampling.build()
+                    self.grids.build()
                 with gr.Accordion(say("scene.text"), open=False, elem_classes="pd-panel pd-about"):
-                    self.text = gr.Textbox(label=say("scene.toml"), lines=8, max_lines=24, elem_id=self._id("text"))
-                    self.use = gr.Button(say("scene.use"), size="sm", elem_id=self._id("use-text"))
-            self._results(EMPTY_TEXT, self._story)
-        assert self.tries is not None  # as in every tab of sentences
-        self.controls = {
-            "prompt": self.prompt,
-            "story": self.line_up,
-            "seed": self.seed,
-            "samples": self.samples,
-            "guidance": self.guidance,
-            "steps": self.steps,
-            "damping": self.damping,
-            "tries": self.tries,
-        }
-        self._wire_run([self.go.click, self.prompt.submit], record)
-        self._wire_sweeps()
+                    self.text = gr.Textbox(label=say("scene.toml"), lines=8, max_lines=24, elem_id="scene-text")
+                    self.use = gr.Button(say("scene.use"), size="sm", elem_id="scene-use-text")
+            self.results.build_stage("player.empty_scene", self._story)
+        self.controls = {"prompt": self.prompt, "story": self.line_up, **self.sampling.controls}
+        self.wire([self.go.click, self.prompt.submit], record)
         self._wire_parts()
         self._wire_story()
         self.reading.follow(self.prompt, **QUIET)
@@ -139,7 +127,7 @@ class SceneTab(SweepTab):
                 ]
                 self.last = chip(say("scene.last"), elem_id=self._id("last"))
             self.reading = Reading(elem_id=self._id("reading"), elem_classes="pd-reading")
-            self._go(say("scene.go"))
+            self.build_go(say("scene.go"))
 
     def _story(self) -> None:
         self.line_up = StoryLine(elem_id=self._id("story"), elem_classes="pd-story")
@@ -164,7 +152,7 @@ class SceneTab(SweepTab):
         return {"story": self.line_up, "text": self.text, "prompt": self.prompt, "earlier": self.earlier}
 
     def starts(self) -> dict[str, gr.Button]:
-        """All buttons that start a run."""
+        """Also those of parts."""
         return {**super().starts(), "remake": self.remake, "futures": self.futures}
 
     # ---- events ----------------------------------------------------------------------------------
@@ -179,64 +167,29 @@ class SceneTab(SweepTab):
             )
         laid = [self.line_up, self.text, self.line, self.prompt]
         last: dict[str, Any] = {"outputs": laid, "trigger_mode": "always_last", **QUIET}
-        self.line_up.input(edited, inputs=[self.line_up, self.seed], **last)
+        self.line_up.input(edited, inputs=[self.line_up, self.sampling.seed], **last)
         self.prompt.input(None, inputs=self.line_up, outputs=self.line_up, js=_TYPED, **QUIET)
-        self.prompt.blur(written, inputs=[self.prompt, self.line_up, self.seed], **last)
+        self.prompt.blur(written, inputs=[self.prompt, self.line_up, self.sampling.seed], **last)
         knobs = [self.controls[name] for name in SETTINGS]
         self.use.click(use_text, inputs=self.text, outputs=[self.line_up, self.prompt, self.line, *knobs], **QUIET)
-        self.take.click(
-            self.take_shown,
-            inputs=[self.record, self.earlier, self.shown_at],
-            js=_READ_PLACE,
-            outputs=[self.player, self.line, self.record, self.line_up, self.earlier],
-            **QUIET,
-        )
-        self.last.click(
-            self.take_last,
-            inputs=self.record,
-            outputs=[self.player, self.line, self.under, self.readouts, self.line_up],
-            **QUIET,
-        )
-        self.back.click(
-            self.go_back,
-            inputs=self.earlier,
-            outputs=[self.player, self.line, self.record, self.line_up, self.earlier],
-            **QUIET,
-        )
+        player, under, readouts = self.results.player, self.results.under, self.results.readouts
+        changed = [player, self.line, self.record, self.line_up, self.earlier]
+        shown = [self.record, self.earlier, self.shown_at]
+        self.take.click(self.take_shown, inputs=shown, js=_READ_PLACE, outputs=changed, **QUIET)
+        last_shown = [player, self.line, under, readouts, self.line_up]
+        self.last.click(self.take_last, inputs=self.record, outputs=last_shown, **QUIET)
+        self.back.click(self.go_back, inputs=self.earlier, outputs=changed, **QUIET)
 
     def _wire_parts(self) -> None:
-        inputs = [
-            self.line_up,
-            self.words,
-            self.guidance,
-            self.steps,
-            self.damping,
-            self.record,
-            self.earlier,
-            self.shown_at,
-        ]
-        for button, job in ((self.remake, self.start_span), (self.futures, self.start_futures)):
-            run = button.click(
-                job,
-                inputs=inputs,
-                outputs=list(self.outputs.values()),
-                js=_READ_PLACE,
-                concurrency_limit=None,
-                trigger_mode="once",
-                **QUIET,
-            )
-            run.then(self.rest, outputs=[*self.starts().values(), self.stop], queue=False, **QUIET)
-            run.then(
-                self.export,
-                inputs=[self.record, self.worn],
-                outputs=[self.line, *self.downloads],
-                concurrency_limit=2,
-                **QUIET,
-            )
+        form = self.sampling
+        settings = [form.guidance, form.steps, form.damping]
+        inputs = [self.line_up, self.words, *settings, self.record, self.earlier, self.shown_at]
+        for button, part in ((self.remake, "span"), (self.futures, "futures")):
+            self.wire_start(self._starter(part), [button.click], inputs=inputs, first=_READ_PLACE)
 
-    def _shown(self, result: Result, title: str) -> dict[str, Any]:
+    def shown(self, result: Result, title: str) -> dict[str, Any]:
         """As every tab shows a result; several continuations also say from which moment they begin."""
-        shown = super()._shown(result, title)
+        shown = super().shown(result, title)
         asked = result.manifest.get("request", {})
         ahead = asked.get("kind") == "scene" and "motion" in asked and asked.get("end") is None
         if ahead and len(result.duets) > 1:
@@ -249,9 +202,6 @@ class SceneTab(SweepTab):
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs the story; parts appear as they are finished and stay if the run is cancelled."""
-        if fields.get("grid"):
-            yield from super().answer(session, fields)
-            return
         part = fields.get("part")
         if part is not None:
             wanted = part_request(fields)
@@ -260,10 +210,10 @@ class SceneTab(SweepTab):
             wanted, earlier = self.request(fields), []
             laid = {"text": write_story(wanted), "prompt": _changed(fields)}
             # Not the story itself: Gradio's page would change it in place into the update after it.
-            yield self._updates(**laid, story=gr.update(value=fields["story"]))
+            yield self.updates(**laid, story=gr.update(value=fields["story"]))
         title = fields["record"].prompt if part is not None else self.title(wanted)
         result = yield from self.made(session, wanted, watch=partial(self._watch, title))
-        shown = self._shown(result, title) | {"earlier": earlier}
+        shown = self.shown(result, title) | {"earlier": earlier}
         duet = result.duets[0]
         assert isinstance(duet, Duet)
         marks = motion_marks(duet, result.readouts[0])
@@ -275,39 +225,26 @@ class SceneTab(SweepTab):
         elif part is None:  # again, as a browser may show only the last of several updates
             line_up = gr.update(value=fields["story"], motion=marks)
             shown |= laid
-        yield self._updates(**shown | {"story": line_up})
+        yield self.updates(**shown | {"story": line_up})
 
-    def start_span(
-        self,
-        story: Any,
-        words: str,
-        guidance: float,
-        steps: float,
-        damping: float,
-        record: Record | None,
-        earlier: list[Record],
-        place: str,
-        request: gr.Request,
-    ) -> Iterator[Updates]:
-        """Makes the selected span again."""
-        fields = part_fields("span", story, words, guidance, steps, damping, record, earlier, place)
-        yield from self.run(str(request.session_hash), fields)
+    def _starter(self, part: str) -> Callable[..., Iterator[Updates]]:
+        """What makes a part of the motion: the selected "span" again, or "futures" from the player's frame on."""
 
-    def start_futures(
-        self,
-        story: Any,
-        words: str,
-        guidance: float,
-        steps: float,
-        damping: float,
-        record: Record | None,
-        earlier: list[Record],
-        place: str,
-        request: gr.Request,
-    ) -> Iterator[Updates]:
-        """Makes several continuations from the player's frame on."""
-        fields = part_fields("futures", story, words, guidance, steps, damping, record, earlier, place)
-        yield from self.run(str(request.session_hash), fields)
+        def start(
+            story: Any,
+            words: str,
+            guidance: float,
+            steps: float,
+            damping: float,
+            record: Record | None,
+            earlier: list[Record],
+            place: str,
+            request: gr.Request,
+        ) -> Iterator[Updates]:
+            fields = part_fields(part, story, words, guidance, steps, damping, record, earlier, place)
+            yield from self.run(str(request.session_hash), fields)
+
+        return start
 
     def _watch(self, title: str, event: Progress) -> dict[str, Any] | None:
         """Shows a finished window at once."""
@@ -323,7 +260,7 @@ class SceneTab(SweepTab):
         except Exception as error:
             return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip(), gr.skip()
         assert record is not None
-        shown = self._shown(record.result, record.prompt)
+        shown = self.shown(record.result, record.prompt)
         line = status("Select a span of it, or ask for continuations.")
         return shown["player"], line, shown["under"], shown["readouts"], gr.update(motion=motion_marks(duet))
 
@@ -340,7 +277,7 @@ class SceneTab(SweepTab):
         kept = Record(only_sample(record.result, sample), record.prompt)
         line = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
         return (
-            self._shown(kept.result, record.prompt)["player"],
+            self.shown(kept.result, record.prompt)["player"],
             line,
             kept,
             gr.update(motion=motion_marks(duet)),
@@ -355,7 +292,7 @@ class SceneTab(SweepTab):
         duet = record.result.duets[0]
         assert isinstance(duet, Duet)
         record = Record(record.result, record.prompt)
-        shown = self._shown(record.result, record.prompt)
+        shown = self.shown(record.result, record.prompt)
         line = status("This is the motion before.", tone="done")
         return shown["player"], line, record, gr.update(motion=motion_marks(duet)), left
 

@@ -17,7 +17,7 @@ from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line
 from webdemo.ui.visitor import visitor
 
-from .job import QUIET, Updates
+from .results import QUIET, Updates
 
 
 class SharingPanel:

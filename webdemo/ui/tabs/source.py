@@ -1,9 +1,9 @@
-"""The given motion of the tabs React and Predict: a file, an example, a film or a result, read and shown."""
+"""The form of a given motion, on the tabs React and Predict: a file, an example, a film or a result, read and shown."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,40 +12,42 @@ import gradio as gr
 
 from motion import InputError
 from webdemo.ui.components.actors import Source, offered_animations, read_source, result_source
+from webdemo.ui.components.animations import animation_field
 from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
-from webdemo.ui.context import PageContext
+from webdemo.ui.components.upload import chip, example_chips, file_field
 from webdemo.ui.text.examples import example_clips
 from webdemo.ui.text.panels import status
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line
 
-from .job import QUIET, Updates
-from .sweeps import SweepTab
+from .results import QUIET, Results, Updates
 
 
-class SourceTab(SweepTab):
-    """A tab that begins with somebody's motion.
+class SourcePanel(ABC):
+    """Takes somebody's motion and shows it; the tab uses what is in ``state``.
 
     Args:
-        page: what the tabs share.
+        results: where the motion is shown.
+        prefix: before the ids of the elements, such as "react-".
         examples: (name, file) of example motions; those that are shipped by default.
     """
 
-    source: gr.State
-    given: gr.Textbox
-    file: gr.File
-    camera: CameraPanel
-    chips: list[gr.Button]
-    animation: gr.Dropdown
+    named: str
+    """Key of the text of the field for a file."""
+    takes: Sequence[tuple[str, str, str]]
+    """Buttons that take the last result: the key of the text, the end of the id, and the person in front."""
+    take_at_end = False
+    """Whether a result is taken as a past, up to its end."""
+    known: Sequence[Any] = ()
+    """Controls of how a file is read: up axis, unit, frames a second and order of joints, where the panel has them."""
 
-    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
-        super().__init__(page)
+    def __init__(self, results: Results, prefix: str, examples: list[tuple[str, Path]] | None = None) -> None:
+        self.results, self.prefix = results, prefix
         self.examples = example_clips() if examples is None else examples
 
-    @abstractmethod
-    def forget(self) -> Updates:
-        """The tab without a motion: source, its key, line, player and what else depends on it."""
+    # ---- what a panel says -----------------------------------------------------------------------
 
     @abstractmethod
     def payload(self, source: Source) -> dict[str, Any]:
@@ -53,36 +55,65 @@ class SourceTab(SweepTab):
 
     @abstractmethod
     def described(self, source: Source, *, at_end: bool) -> tuple[str, list[Any]]:
-        """The line on a source, and the updates behind the player's."""
+        """The line on a source, and the updates of :meth:`more`."""
 
-    def _wire_source(self, shown: Sequence[Any], takes: Mapping[gr.Button, Callable[..., Any]]) -> dict[str, Any]:
-        """Wires what a motion can be taken from.
+    @abstractmethod
+    def more(self) -> list[gr.components.Component]:
+        """Further components that follow from the source."""
 
-        Args:
-            shown: the components that :meth:`load` updates.
-            takes: buttons that take the last result, and what each calls with it.
+    def gone(self) -> list[Any]:
+        """The updates of :meth:`more` where there is no source."""
+        return [gr.skip() for _ in self.more()]
 
-        Returns:
-            arguments of further events that read a motion.
-        """
-        load: dict[str, Any] = {
-            "outputs": shown,
+    # ---- layout ----------------------------------------------------------------------------------
+
+    def build(self, cameras: Callable[[], None] = lambda: None) -> None:
+        """Lays out the field and its chips; ``cameras`` lays out more beside the camera's panel."""
+        self.file = file_field(self.named, elem_id=f"{self.prefix}file")
+        with gr.Row(elem_classes="pd-chips"):
+            self.chips = example_chips(self.examples)
+            self.take = {person: chip(say(key), elem_id=f"{self.prefix}take{end}") for key, end, person in self.takes}
+        with gr.Row(elem_classes="pd-cameras"):
+            self.camera = CameraPanel(elem_id=f"{self.prefix}camera")
+            cameras()
+        self.state = gr.State(None, time_to_live=3600)
+
+    def build_animation(self) -> None:
+        """The list of a file's animations."""
+        self.animation = animation_field(f"{self.prefix}animation")
+
+    def wire(self, record: gr.State, line: gr.HTML) -> None:
+        """Wires what a motion can be taken from: also the result in ``record``; ``line`` says what was taken."""
+        self.shown = [self.state, line, self.results.player, *self.more()]
+        self.load_options: dict[str, Any] = {
+            "outputs": self.shown,
             "concurrency_limit": 2,
             "concurrency_id": f"{self.prefix}read",
             **QUIET,
         }
-        self.file.upload(self.upload, inputs=self.file, **load).then(None, **self.compare)
-        self.camera.submit(self.read_film, inputs=self.camera, **load).then(None, **self.compare)
+        load = self.load_options
+        self.file.upload(self.upload, inputs=self.file, **load)
+        self.camera.submit(self.read_film, inputs=self.camera, **load)
         for button, (name, path) in zip(self.chips, self.examples, strict=True):
-            read = partial(self.load, partial(read_source, path, name))
-            button.click(read, **load).then(None, **self.compare)
-        for button, take in takes.items():
-            button.click(take, inputs=self.record, **load).then(None, **self.compare)
-        others = [self.camera.submit, *(button.click for button in (*self.chips, *takes))]
+            button.click(partial(self.load, partial(read_source, path, name)), **load)
+        for person, button in self.take.items():
+            button.click(partial(self.take_result, person), inputs=record, **load)
+        others = [self.camera.submit, *(button.click for button in (*self.chips, *self.take.values()))]
         gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
-        self.source.change(offered_animations, inputs=self.source, outputs=self.animation, queue=False, **QUIET)
-        self.file.clear(self.forget, outputs=shown, queue=False, **QUIET)
-        return load
+        self.state.change(offered_animations, inputs=self.state, outputs=self.animation, queue=False, **QUIET)
+        self.file.clear(self.forget, outputs=self.shown, queue=False, **QUIET)
+        chosen = [*self.known, self.animation]
+        changed = [part.blur if isinstance(part, gr.Number) else part.input for part in chosen]
+        changed += [part.submit for part in self.known if isinstance(part, gr.Number)]
+        gr.on(
+            changed,
+            self.read_again,
+            inputs=[self.state, *chosen],
+            trigger_mode="always_last",
+            **{**load, "outputs": [*self.shown, *chosen]},
+        )
+
+    # ---- events ----------------------------------------------------------------------------------
 
     def upload(self, path: str | None) -> Iterator[Updates]:
         """Reads an uploaded file and shows its motion; one that cannot be read leaves no motion."""
@@ -93,7 +124,7 @@ class SourceTab(SweepTab):
         """Takes the people of a film."""
         yield from self.load(partial(film_source, landmarks))
 
-    def of_result(self, person: str, record: Record | None, *, at_end: bool = False) -> Iterator[Updates]:
+    def take_result(self, person: str, record: Record | None) -> Iterator[Updates]:
         """Takes the session's last result, with this person in front."""
 
         def read() -> Source:
@@ -101,29 +132,36 @@ class SourceTab(SweepTab):
                 raise InputError("There is no result yet: generate one first.")
             return result_source(record.result, record.prompt, person)
 
-        yield from self.load(read, at_end=at_end)
+        yield from self.load(read, at_end=self.take_at_end)
 
     def load(self, read: Callable[[], Source], *, at_end: bool = False, fresh: bool = False) -> Iterator[Updates]:
-        """Updates, as of :meth:`forget`, while a motion is read.
+        """Updates of the state, the line, the player and :meth:`more` while a motion is read.
 
         Where it is ``fresh`` and cannot be read, an earlier motion is forgotten.
         """
-        nobody = self.forget()
-        same, rest = (gr.skip(),) * 2, (gr.skip(),) * (len(nobody) - 4)
-        yield *same, status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *rest
+        rest = [gr.skip() for _ in self.more()]
+        yield gr.skip(), status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *rest
         try:
             source = read()
             payload = self.payload(source)
         except Exception as error:
             note = status(error_line(error), tone="error")
-            yield (*nobody[:2], note, *nobody[3:]) if fresh else (*same, note, busy(""), *rest)
+            yield (None, note, show(None), *self.gone()) if fresh else (gr.skip(), note, busy(""), *rest)
             return
         line, updates = self.described(source, at_end=at_end)
-        yield source, source.key, line, show(payload), *updates
+        yield source, line, show(payload), *updates
 
-    def again(self, source: Source, asked: Any, back: Sequence[Any]) -> Iterator[Updates]:
-        """Reads a source's file anew as ``asked``; ``back`` are updates that take that back where it cannot."""
-        assert source.path is not None
-        for updates in self.load(partial(read_source, source.path, source.name, asked)):
-            failed = updates[0] == gr.skip() and "pd-error" in updates[2]
-            yield *updates, *(back if failed else (gr.skip(),) * len(back))
+    def forget(self) -> Updates:
+        """The tab without a motion; a result stays in the downloads."""
+        return None, status(), show(None), *self.gone()
+
+    def read_again(self, source: Source | None, *chosen: Any) -> Iterator[Updates]:
+        """Reads the source's file anew as its settings and its animation are, or takes those back where it cannot."""
+        if source is None or source.path is None:
+            return
+        *known, animation = chosen
+        read_with: Any = (*(known or source.read_with[:4]), animation)
+        back = (*source.read_with[: len(known)], offered_animations(source))
+        for updates in self.load(partial(read_source, source.path, source.name, read_with)):
+            failed = updates[0] == gr.skip() and "pd-error" in updates[1]
+            yield *updates, *(back if failed else [gr.skip()] * len(back))

@@ -20,7 +20,7 @@ from webdemo.ui.text.texts import SAY, say
 from webdemo.ui.text.words import error_line, text
 from webdemo.ui.visitor import visitor
 
-from .job import QUIET
+from .results import QUIET
 
 QUESTION = "Which does what the sentence says?"
 Parts = dict[Any, Any]

@@ -9,7 +9,6 @@ from motion.metrics import MEASURES, Measure
 from webdemo.inference.methods import label_of
 from webdemo.inference.run import Result
 
-from .plain import legend, lines_in_words
 from .texts import say, worded
 from .words import number, seconds, text
 
@@ -20,8 +19,6 @@ RELATION = tuple(measure for measure in MEASURES if not measure.better)
 _NO_WARNINGS = ("This was made as ", "Read as ")
 """Beginnings of notes that say how a sentence was understood."""
 _SAME = '<td class="pd-same">same</td>'
-_MOST_IN_WORDS = 4
-"""Samples: more than these are not described in words."""
 
 
 def status(line: str = "", *, tone: str = "quiet") -> str:
@@ -84,40 +81,15 @@ def model_state(state: str, error: str | None = None) -> str:
 
 
 def readout_panel(result: Result) -> str:
-    """Everything under the player: how it came out, what was asked, measures, contacts, timings."""
+    """All figures of a result, behind a line: what was asked, measures, contacts, timings."""
     samples = [sides(readout) for readout in result.readouts]
-    parts = [_asked(result)]
+    tables = ""
     if samples:
-        parts += [_tables(_quality_table(samples), _relation_table(samples, result)), legend()]
-    parts.append(_timings(result.timings))
-    return _panel(_in_words(samples, _heads(len(samples))), parts)
-
-
-def comparison_panel(results: Mapping[str, Result]) -> str:
-    """The same for results of several methods, by what each is called: their measures next to each other."""
-    heads = [
-        f"{name}, {i + 1}" if len(result.duets) > 1 else name
-        for name, result in results.items()
-        for i in range(len(result.duets))
-    ]
-    joined = Result(
-        duets=tuple(duet for result in results.values() for duet in result.duets),
-        readouts=tuple(readout for result in results.values() for readout in result.readouts),
-        manifest={},
-    )
-    samples = [sides(readout) for readout in joined.readouts]
-    parts = [_asked(result, name) for name, result in results.items()]
-    if samples:
-        tables = _quality_table(samples, heads), _relation_table(samples, joined, heads)
-        parts += [_tables(*tables), legend()]
-    parts += [_timings(result.timings, name) for name, result in results.items()]
-    return _panel(_in_words(samples, heads), parts)
-
-
-def _panel(in_words: str, parts: Sequence[str]) -> str:
-    """Read-outs: the result in words, and behind a line all figures."""
-    figures = f'<details class="pd-figures"><summary>All figures</summary>{"".join(parts)}</details>'
-    return f'<div class="pd-readouts">{in_words}{figures}</div>'
+        both = _quality_table(samples) + _relation_table(samples, result)
+        tables = f'<div class="pd-tables">{both}</div>'
+    figures = f"{_asked(result)}{tables}{_timings(result.timings)}"
+    shown = f'<details class="pd-figures"><summary>All figures</summary>{figures}</details>'
+    return f'<div class="pd-readouts">{shown}</div>'
 
 
 def prediction_lines(lines: Mapping[str, str]) -> str:
@@ -126,17 +98,6 @@ def prediction_lines(lines: Mapping[str, str]) -> str:
         f'<p class="pd-in-words">{f"<b>{text(name)}</b> " if name else ""}{text(line)}</p>'
         for name, line in lines.items()
     )
-
-
-def _tables(*tables: str) -> str:
-    return f'<div class="pd-tables">{"".join(tables)}</div>'
-
-
-def _in_words(samples: Sequence[tuple[Summary | None, Summary]], heads: Sequence[str]) -> str:
-    """Describes each sample in words; empty for many samples, for which the tables say enough."""
-    if not 0 < len(samples) <= _MOST_IN_WORDS:  # a prediction has no read-outs
-        return ""
-    return lines_in_words({name: after for name, (_, after) in zip(heads, samples, strict=True)})
 
 
 def _heads(count: int) -> list[str]:
@@ -153,10 +114,10 @@ def _measured(values: Mapping[str, Any]) -> Summary:
     return {key: value for key, value in values.get("summary", values).items() if value is not None}
 
 
-def _asked(result: Result, name: str | None = None) -> str:
+def _asked(result: Result) -> str:
     request = result.manifest.get("request", result.manifest)
     shown = [
-        ("Method", name or _method(request)),
+        ("Method", _method(request)),
         ("Actor", request.get("actor", {}).get("name")),
         ("Seed", request.get("seed")),
         ("Length", f"{result.duets[0].seconds:.1f} s" if result.duets else None),
@@ -181,14 +142,14 @@ def _plain(value: Any) -> str | None:
     return None if value is None else f"{value:g}"
 
 
-def _quality_table(samples: Sequence[tuple[Summary | None, Summary]], heads: Sequence[str] | None = None) -> str:
+def _quality_table(samples: Sequence[tuple[Summary | None, Summary]]) -> str:
     head: Sequence[str]
     if len(samples) == 1 and samples[0][0] is not None:
         head = ("Before", "After", "Change")
     elif len(samples) == 1:
         head = ("Value",)
     else:
-        head = heads or _heads(len(samples))
+        head = _heads(len(samples))
     rows = "".join(_quality_row(measure, samples) for measure in QUALITY)
     compared = any(before is not None for before, _ in samples)
     return _table("Quality, before → after damping and clean-up" if compared else "Quality", head, rows)
@@ -224,10 +185,8 @@ def _change(measure: Measure, before: Summary, after: Summary) -> str:
     return f'<td class="{tone}">{percent} %</td>'
 
 
-def _relation_table(
-    samples: Sequence[tuple[Summary | None, Summary]], result: Result, heads: Sequence[str] | None = None
-) -> str:
-    head = ("Value",) if len(samples) == 1 else heads or _heads(len(samples))
+def _relation_table(samples: Sequence[tuple[Summary | None, Summary]], result: Result) -> str:
+    head = ("Value",) if len(samples) == 1 else _heads(len(samples))
     rows = "".join(
         _row(measure, "".join(f"<td><b>{_value(measure, after)}</b></td>" for _, after in samples))
         for measure in RELATION
@@ -257,12 +216,11 @@ def _span(start: float, stop: float) -> str:
     return first if first == last else f"{first}–{last}"
 
 
-def _timings(timings: Mapping[str, float], name: str | None = None) -> str:
+def _timings(timings: Mapping[str, float]) -> str:
     if not timings:
         return ""
-    whose = f"<b>{text(name)}</b> " if name else ""
     items = " · ".join(f"{text(stage)} {seconds(spent)}" for stage, spent in timings.items())
-    return f'<p class="pd-timings">{whose}{items}</p>'
+    return f'<p class="pd-timings">{items}</p>'
 
 
 def _value(measure: Measure, values: Summary) -> str:
