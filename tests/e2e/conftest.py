@@ -41,6 +41,16 @@ FLAGS = [
     "--disable-sync",
 ]
 
+CALM = """
+const ask = window.requestAnimationFrame.bind(window), drop = window.cancelAnimationFrame.bind(window);
+const asked = new Map();
+window.requestAnimationFrame = (draw) => {
+  const id = setTimeout(() => asked.set(id, ask((now) => { asked.delete(id); draw(now); })), 120);
+  return id;
+};
+window.cancelAnimationFrame = (id) => { clearTimeout(id); if (asked.has(id)) drop(asked.get(id)); };
+"""
+"""Lets a page draw a few pictures a second: otherwise a motion that plays takes the processor from everything else."""
 LONGEST = 900
 """Seconds that a test with a browser may take on a busy machine; a test without one has 300."""
 
@@ -98,13 +108,23 @@ class Tabs:
         self.errors: list[str] = []
         self.foreign: list[str] = []
 
-    def open(self, url: str, *, width: int = 1280, height: int = 800, before: Callable | None = None, **options):
+    def open(
+        self,
+        url: str,
+        *,
+        width: int = 1280,
+        height: int = 800,
+        before: Callable | None = None,
+        lively: bool = False,
+        **options,
+    ):
         """A tab at an address.
 
         Args:
             url: the address.
             width, height: of the window in pixels.
             before: is called with the tab before it loads.
+            lively: whether it draws as often as it can, for tests of what is drawn.
             options: make a browser profile of its own.
         """
         context = self.chromium.new_context(**options) if options else self.shared_context
@@ -112,6 +132,8 @@ class Tabs:
         page.set_viewport_size({"width": width, "height": height})
         self.opened.append(context if options else page)
         self.watch(page)
+        if not lively:
+            page.add_init_script(CALM)
         if before:
             before(page)
         page.goto(url)
@@ -301,7 +323,7 @@ def player(open_kept, kept_tabs: Tabs, plain_url):
 
     def open_(button: str | None = "load", *, theme: str = "light", width: int = 1280, height: int = 800):
         if not kept_tabs.opened:
-            open_kept(plain_url)
+            open_kept(plain_url, lively=True)
             _opened(kept_tabs.opened[0], None)
         (page,) = kept_tabs.opened
         page.set_viewport_size({"width": width, "height": height})
@@ -316,7 +338,7 @@ def player_in_page(open_page, player_url):
     """The same as ``player`` in a Gradio page of its own."""
 
     def open_(button: str | None = "load", *, theme: str = "light", **options):
-        return _opened(open_page(f"{player_url}?__theme={theme}", **options), button)
+        return _opened(open_page(f"{player_url}?__theme={theme}", lively=True, **options), button)
 
     return open_
 

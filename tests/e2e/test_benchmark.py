@@ -27,7 +27,8 @@ def test_page_and_player_are_measured(chromium: object, tmp_path: Path, monkeypa
     """``chromium`` says whether there is a browser; the benchmark starts one of its own."""
     (tmp_path / "app.py").write_text(STUB_APP)
     monkeypatch.setattr(benchmark_browser, "ROOT", tmp_path)
-    monkeypatch.setattr(benchmark_browser, "WATCHED", 1.0)
+    for name, seconds in (("WATCHED", 1.0), ("GIVE_BACK_EVERY", -2.0), ("LONGEST_SETTLING", 5.0)):
+        monkeypatch.setattr(benchmark_browser, name, seconds)
     with ThreadPoolExecutor(1) as thread:  # Playwright takes one browser a thread, and the fixture has one
         figures = thread.submit(benchmark_browser.measure_browser).result()
     print(f"\n{figures}")

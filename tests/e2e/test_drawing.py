@@ -92,21 +92,6 @@ def test_a_drawn_path_is_sent_with_the_next_run(drawing: Page, server: Any) -> N
     assert generated(page, server, "B waves to A.").paths == ()
 
 
-def test_a_person_is_put_where_they_are_at_a_moment(drawing: Page) -> None:
-    page = drawing
-    page.evaluate("window.__pasdedeux.player.seek(60)")
-    until(page, "window.__pasdedeux.frame === 60 && window.__pasdedeux.loops === 0")
-    place = page.evaluate("window.__pasdedeux.player.directing.drawing.places[1]")
-    drag(page, "here", "b", (90, 0))
-    (path,) = paths(page)
-    ((seconds, x, z),) = path["points"]
-    assert path["person"] == "b" and seconds == 2.0
-    assert 0.2 < ((x - place[0]) ** 2 + (z - place[1]) ** 2) ** 0.5 < 2
-    expect(chips(page)).to_have_text("B is here at 2.0 s ✕")
-    page.locator("#player [data-draw=undo]").click()
-    assert paths(page) == []
-
-
 def test_keys_draw_as_well(drawing: Page) -> None:
     page = drawing
     page.locator("#player .pdd-grip[data-person=a][data-kind=path]").focus()

@@ -18,11 +18,10 @@ from .serving import SLOW, live
 pytestmark = pytest.mark.e2e
 
 FIELD = "#finder dialog input"
-PLAYING = "document.querySelector('#player .pdd').dataset.state === 'ready'"
 FIRST = "#finder [aria-selected=true]"
 
 
-def test_an_act_a_control_and_a_run_are_found_by_keyboard_alone(
+def test_an_act_a_control_and_a_run_are_found_by_keyboard_and_an_example_by_one_press(
     server: SimpleNamespace, open_page: Callable[..., Page]
 ) -> None:
     page = live(open_page(server.url, width=1280, height=800))
@@ -52,11 +51,6 @@ def test_an_act_a_control_and_a_run_are_found_by_keyboard_alone(
     live(page)
     until(page, "window.__pasdedeux?.id")
 
-
-def test_a_scene_of_the_drawer_of_examples_is_made_by_one_press(
-    server: SimpleNamespace, open_page: Callable[..., Page]
-) -> None:
-    page = live(open_page(server.url, width=1280, height=800))
     page.get_by_role("button", name="All examples").click()
     scenes = page.locator("#gallery .pdx-scene")
     expect(scenes).to_have_count(24, timeout=SLOW)

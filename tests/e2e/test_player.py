@@ -131,13 +131,9 @@ def test_keyboard(player):
     assert page.locator(".pdd-help").is_hidden()
     page.keyboard.press("ArrowUp")
     assert page.locator(".pdd-speed select").input_value() == "1.5"
-
-
-def test_without_loop_it_stops_on_the_last_frame(player):
-    page = player()
-    page.locator(".pdd").focus()
-    page.keyboard.press("l")
+    assert page.locator("[data-act=loop]").get_attribute("aria-pressed") == "false"
     page.locator(".pdd-range").fill("135")
+    page.keyboard.press("Space")
     until(page, "!window.__pasdedeux.playing && window.__pasdedeux.frame === 149")
 
 

@@ -164,26 +164,6 @@ def test_a_hand_is_dragged_given_up_and_kept(still: Any) -> None:
     np.testing.assert_allclose(positions(still), before)
 
 
-def test_a_joint_is_moved_with_the_keys(still: Any) -> None:
-    before = positions(still, 1)
-    still.locator(".pdd").focus()
-    still.keyboard.press("e")
-    still.locator(f'.pdd-handle[data-person="1"][data-joint="{WRIST}"]').focus()
-    still.keyboard.press("ArrowUp")
-    still.keyboard.press("ArrowUp")
-    moved = positions(still, 1)
-    assert 0.02 < np.linalg.norm(moved[WRIST] - before[WRIST]) < 0.05
-    still.keyboard.press("Control+z")
-    still.keyboard.press("Control+z")
-    np.testing.assert_allclose(positions(still, 1), before)
-    still.keyboard.press("Shift+Alt+ArrowRight")
-    carried = positions(still, 1) - before
-    np.testing.assert_allclose(carried, carried[:1].repeat(22, axis=0), atol=1e-9)
-    still.keyboard.press("Escape")
-    np.testing.assert_allclose(positions(still, 1), before)
-    assert still.evaluate("window.kept") == []
-
-
 def focused(page: Any) -> str:
     return page.evaluate("document.activeElement.title || document.activeElement.className")
 

@@ -13,7 +13,7 @@ from motion.formats import write
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_takes
 from tests.ui.stub_engine import walking
-from webdemo.inference.methods import method
+from webdemo.inference.methods import automatic, method
 
 from .playing import choose, unfold
 from .serving import SLOW, live
@@ -130,7 +130,7 @@ def test_automatic_chooses_by_the_words_and_a_method_greys_those_it_does_not_hea
     people(page, 1)
     assert player.locator(".pdd-label").all_text_contents() == ["A · given"]
     for words, title, model in (
-        ("", "Reaction to walker.npz", "agent"),
+        ("", "Reaction to walker.npz", automatic("", "a").name),
         ("They shake hands.", "They shake hands.", "intergen"),
     ):
         page.fill("#react-prompt textarea", words)

@@ -109,20 +109,3 @@ def test_a_plan_is_edited_and_made(lab: str, open_page: Callable[..., Page]) -> 
     expect(reading.locator(".pdr-badge")).to_be_hidden(timeout=SLOW)
     expect(chips).to_have_count(4, timeout=SLOW)
     expect(reading.locator(".pdr-notes")).to_contain_text("Your edits were dropped")
-
-
-def test_acts_are_added_and_words_are_read_again(lab: str, open_page: Callable[..., Page]) -> None:
-    page = live(open_page(lab, width=390, height=844))
-    reading, chips = page.locator("#reading .pdr"), page.locator("#reading .pdr-chip")
-    page.fill("#prompt textarea", "A waves to B.")
-    expect(chips).to_have_count(1, timeout=SLOW)
-    reading.get_by_role("button", name="Add an act").click()
-    reading.get_by_label("B", exact=True).check()
-    reading.get_by_role("combobox").fill("bows")
-    reading.get_by_role("option").first.click(timeout=SLOW)
-    expect(chips).to_have_count(2, timeout=SLOW)
-    expect(chips.nth(1)).to_have_class("pdr-chip pdr-b")
-    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-    reading.get_by_role("button", name="Read again").click()
-    expect(chips).to_have_count(1, timeout=SLOW)
-    expect(reading.locator(".pdr-badge")).to_be_hidden()

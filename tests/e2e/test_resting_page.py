@@ -25,7 +25,11 @@ COUNT = """
 @pytest.fixture
 def rested(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
     """The page when its first motion is paused."""
-    page = live(open_page(server.url, before=lambda tab: tab.add_init_script(COUNT), reduced_motion="no-preference"))
+    page = live(
+        open_page(
+            server.url, lively=True, before=lambda tab: tab.add_init_script(COUNT), reduced_motion="no-preference"
+        )
+    )
     page.wait_for_function("window.__pasdedeux?.open", timeout=SLOW)
     page.evaluate("window.__pasdedeux.player.act('pause')")
     page.wait_for_function("window.__pasdedeux?.loops === 0", timeout=SLOW)
