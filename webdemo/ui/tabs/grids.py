@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import gradio as gr
 
@@ -33,9 +33,6 @@ from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import seconds
 
 from .results import QUIET, Updates
-
-if TYPE_CHECKING:
-    from .job import JobTab
 
 BASIC = (
     Kind("seed", "Seeds", "seed", whole),
@@ -68,10 +65,10 @@ class Grids:
     """The menu *Compare* of a tab, and the grids that it makes.
 
     Args:
-        tab: says what can be swept, and makes the requests of the cells.
+        tab: a ``JobTab``, which says what can be swept and makes the requests of the cells.
     """
 
-    def __init__(self, tab: JobTab) -> None:
+    def __init__(self, tab: Any) -> None:
         self.tab = tab
 
     def build(self) -> None:
