@@ -8,7 +8,7 @@ import pytest
 from webdemo.ui.components.camera import CameraPanel
 from webdemo.ui.components.finder import Finder
 from webdemo.ui.components.gallery import Gallery
-from webdemo.ui.components.live_panel import LivePanel
+from webdemo.ui.components.live import LivePanel
 from webdemo.ui.components.notebook import NotebookView
 from webdemo.ui.components.part import MOUNT, Part, on_load, scoped
 from webdemo.ui.components.player import MotionPlayer

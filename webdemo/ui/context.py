@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from webdemo.study import StudiesLike
 from webdemo.ui.components.exports import Shelf
 
-from .history import HistoryLike
+from .history import HistoryLike, SharingLike
 from .runs import EngineLike, Loader, RunsLike
-from .sharing import SharingLike
 
 
 @dataclass(frozen=True, kw_only=True)

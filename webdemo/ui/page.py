@@ -27,19 +27,17 @@ from webdemo.ui.tabs.predict import PredictTab
 from webdemo.ui.tabs.react import ReactTab
 from webdemo.ui.tabs.results import QUIET
 from webdemo.ui.tabs.scene import SceneTab
-from webdemo.ui.text.own_acts import own_acts
-from webdemo.ui.text.panels import model_state
+from webdemo.ui.text.panels import model_state, own_acts
 from webdemo.ui.text.texts import say, translations
 
 from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint
 from .context import PageContext
 from .frames import let_rest
-from .history import HistoryLike
+from .history import HistoryLike, SharingLike
 from .read_api import ReadEndpoint
 from .render_api import RenderEndpoint
 from .runs import EngineLike, Loader, Runs, RunsLike
 from .scene_api import SceneEndpoint
-from .sharing import SharingLike
 from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"

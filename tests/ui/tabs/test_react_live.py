@@ -16,7 +16,7 @@ from tests.ui.tab_events import built
 from webdemo.inference.requests.live import LONGEST, LiveTake
 from webdemo.server.store.recorder import title_of
 from webdemo.ui.again import actor_source, request_of
-from webdemo.ui.components.live_panel import FARTHEST, take_of
+from webdemo.ui.components.live import FARTHEST, take_of
 from webdemo.ui.history import Entry, Opened
 from webdemo.ui.tabs.react import ReactTab
 

@@ -11,7 +11,7 @@ from acts import config, lexicon
 from acts.config import look_again
 from acts.lexicon import Entry
 from webdemo.ui.page import _own_acts
-from webdemo.ui.text.own_acts import own_acts
+from webdemo.ui.text.panels import own_acts
 
 ENTRY = Entry(frames=("{a} ollie",), caption=("{a} [jump]",), reads=("She <b>ollies</b>.",), group="skate")
 

@@ -14,8 +14,7 @@ from sqlalchemy.orm import Session, selectinload
 
 from motion import InputError
 from webdemo.server.audit import audit, fingerprint
-from webdemo.ui.history import Entry, Opened
-from webdemo.ui.sharing import PublicPage
+from webdemo.ui.history import Entry, Opened, PublicPage
 
 from .database import Database, Note, Published, Run, sentences
 from .entries import entry_of, is_removed

@@ -26,8 +26,8 @@ from webdemo.ui.history import Original, clean_name
 from webdemo.ui.places import READING
 from webdemo.view.payload import Payload, player_payload
 
-from .animations import animation_labels, animation_list, labels_of_file
 from .show import GIVEN
+from .upload import animation_labels, animation_list, labels_of_file
 
 AUTO = "auto"
 ReadWith = tuple[str, str, float | None, str, int | None]

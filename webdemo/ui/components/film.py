@@ -1,4 +1,4 @@
-"""A film, a figure and a mesh of what the player shows, made when somebody asks for them."""
+"""What is made of a result as the player shows it: a film, a figure and a mesh, and the address of a link."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlencode
 
 import numpy as np
 
@@ -148,3 +149,29 @@ def number_of(state: Mapping[str, Any], key: str, low: float, high: float) -> fl
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not np.isfinite(value):
         return None
     return float(min(max(value, low), high))
+
+
+_LIMITS = {"yaw": (-1000.0, 1000.0), "elevation": (-0.05, 1.5), "distance": (0.8, 40.0)}
+_LONGEST = 100_000
+"""Frames."""
+
+
+def link_address(base: str, key: str, shown: str) -> str:
+    """The address of a run, with the frame and the camera of a player.
+
+    Args:
+        base: of the page.
+        key: of the link.
+        shown: what ``READ_PLAYER`` gave; whatever is unknown in it is left out.
+    """
+    state: Mapping[str, Any] = read_player(shown)
+    asked: dict[str, Any] = {"run": key}
+    for name in ("frame", "sample"):
+        value = state.get(name)
+        if type(value) is int and 0 <= value < _LONGEST:
+            asked[name] = value
+    for name, (low, high) in _LIMITS.items():
+        value = number_of(state, name, low, high)
+        if value is not None:
+            asked[name] = f"{value:.3f}"
+    return f"{base}?{urlencode(asked)}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
@@ -14,9 +13,7 @@ import numpy as np
 from motion import Clip, Duet
 from motion.formats import read
 from motion.metrics import Contact
-from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Result
-from webdemo.ui.text.classes import takes_class
 from webdemo.view.curves import Curve
 from webdemo.view.payload import Payload, build_payload, player_payload, sample_payload
 
@@ -24,55 +21,15 @@ ROUNDS = 3
 """Rounds that an example plays before it rests, so that a page left open costs nothing."""
 GIVEN, MADE = "given", "generated"
 """Labels of the two people of a reaction, beside their letters."""
-_ONE_OF_TWO = re.compile(
-    r"\b(one|first|second|the other|another|someone|somebody|person|man|woman|boy|girl|he|she|him|her)\b"
-)
-_MUTUAL_CLASSES = frozenset(
-    (
-        "arm around the shoulders",
-        "bow to each other",
-        "bump elbows",
-        "bump fists",
-        "cheer together",
-        "circle each other",
-        "dance mirrored",
-        "dance together",
-        "fight with swords",
-        "high five",
-        "high ten",
-        "hold hands",
-        "hug",
-        "low five",
-        "part from each other",
-        "raise a hand together",
-        "run together",
-        "shake hands",
-        "spar",
-        "talk",
-        "walk hand in hand",
-        "walk past each other",
-        "walk side by side",
-        "walk up to each other",
-        "wave goodbye",
-        "wave to each other",
-    )
-)
 _CURVES = (("pelvis_distance", "Apart", "m"), ("hand_distance", "Hands", "m"))
 
 
 def shown_roles(manifest: Mapping[str, Any]) -> tuple[str, str]:
-    """Labels beside "A" and "B" for a result of this manifest; "a" and "b" add nothing.
-
-    Of a reaction it is who was given; where both do the same, nobody acts first.
-    """
+    """Labels beside "A" and "B" for a result of this manifest: of a reaction who was given; "a" and "b" add nothing."""
     asked = manifest.get("request", {})
-    if asked.get("kind") == "react":
-        return (GIVEN, MADE) if asked.get("role", "a") == "a" else (MADE, GIVEN)
-    words = re.sub(r"\b(each other|one another)\b", "", str(asked.get("prompt", "")).lower())
-    directed = bool(_ONE_OF_TWO.search(words)) if words.strip() else False
-    if takes_class(str(asked.get("model") or GenerateRequest.model)):
-        directed = words not in _MUTUAL_CLASSES
-    return ("acts first", "answers") if directed else ("a", "b")
+    if asked.get("kind") != "react":
+        return "a", "b"
+    return (GIVEN, MADE) if asked.get("role", "a") == "a" else (MADE, GIVEN)
 
 
 def with_shown_roles(motion: Duet | Clip, manifest: Mapping[str, Any]) -> Duet | Clip:

@@ -1,12 +1,18 @@
-"""The input of tabs that begin with a motion: a field for a file, and chips for other sources."""
+"""The inputs of a motion file: the field, chips for other sources, and the choice among a file's animations."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import gradio as gr
 
+from motion import InputError
+from motion.formats import GLBS
+from motion.formats.recording import Animations
+from motion.formats.glb_motion import animations_in
 from webdemo.ui.text.texts import say, worded
 
 FILE_TYPES = [".bvh", ".glb", ".vrm", ".vrma", ".npz", ".npy", ".c3d", ".trc", ".zip", ".skeleton", ".txt"]
@@ -26,3 +32,44 @@ def chip(label: str, *, elem_id: str | None = None) -> gr.Button:
 def example_chips(examples: Sequence[tuple[str, Path]]) -> list[gr.Button]:
     """A chip for each (name, file)."""
     return [chip(worded("examples", name)) for name, _ in examples]
+
+
+MOST_OFFERED = 200
+"""Animations in the list; an endpoint takes the name or the number of any other."""
+
+
+def animation_field(elem_id: str) -> gr.Dropdown:
+    """The list, hidden until there is something to choose."""
+    return gr.Dropdown(
+        [], value=None, label=say("actor.animation"), elem_id=elem_id, visible=False, filterable=False, min_width=0
+    )
+
+
+def animation_labels(animations: Animations | None) -> tuple[str, ...]:
+    """A label for each animation, "1 · idle"; none where there is nothing to choose."""
+    if animations is None or not animations.note:
+        return ()
+    return tuple(
+        f"{number} · {name}" if name else str(number) for number, name in enumerate(animations.names[:MOST_OFFERED], 1)
+    )
+
+
+def labels_of_file(path: Path) -> tuple[str, ...]:
+    """The labels of the animations in a file; none for one that is no .glb or cannot be read."""
+    if path.suffix.lower() in GLBS:
+        with suppress(InputError):
+            return animation_labels(animations_in(path))
+    return ()
+
+
+def animation_list(labels: tuple[str, ...], chosen: int | None) -> Any:
+    """An update of the list: these labels, with the chosen number, which is the first by default."""
+    value = (chosen if chosen in range(1, len(labels) + 1) else 1) if labels else None
+    choices = [(label, number) for number, label in enumerate(labels, 1)]
+    return gr.update(choices=choices, value=value, visible=bool(labels))
+
+
+def kept_animation(controls: Mapping[str, Any]) -> int | None:
+    """The number of the animation that a kept run was made from; None for the first."""
+    number = controls.get("animation")
+    return int(number) if isinstance(number, (int, float)) and number >= 1 else None

@@ -13,8 +13,8 @@ from webdemo.inference.method import SECONDS
 from webdemo.inference.methods import methods
 from webdemo.ui.again import actor_source
 from webdemo.ui.components.actors import AUTO, ReadWith, Source, given_again, offered_animations
-from webdemo.ui.components.animations import kept_animation
 from webdemo.ui.components.player import busy, show
+from webdemo.ui.components.upload import kept_animation
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say

@@ -16,13 +16,13 @@ from webdemo.inference.methods import installed, method
 from webdemo.inference.requests.predict import LONGEST, PAST_SECONDS, PredictRequest, PredictResult
 from webdemo.inference.run import Result
 from webdemo.ui.components.actors import Source, given_again, offered_animations, read_source
-from webdemo.ui.components.animations import kept_animation
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import show
 from webdemo.ui.components.prediction_view import curves_figure, error_lines, prediction_payload, without_name
 from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.show import ROUNDS
 from webdemo.ui.components.sweep import Kind, grid_table, real
+from webdemo.ui.components.upload import kept_animation
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import method_line, prediction_lines, status

@@ -15,8 +15,7 @@ from webdemo.inference.requests.live import LiveRequest, LiveTake
 from webdemo.inference.run import Result
 from webdemo.ui.components.actors import Source, chosen_actor, live_variant, react_choices, reactor, rig_of, with_method
 from webdemo.ui.components.exports import Record
-from webdemo.ui.components.live import LiveView
-from webdemo.ui.components.live_panel import LivePanel, take_of
+from webdemo.ui.components.live import LivePanel, LiveView, take_of
 from webdemo.ui.components.player import show
 from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.show import result_payload

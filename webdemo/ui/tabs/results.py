@@ -11,7 +11,6 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from webdemo.ui.components.address import link_address
 from webdemo.ui.components.exports import (
     ALL,
     KINDS,
@@ -26,7 +25,7 @@ from webdemo.ui.components.exports import (
     write_on_rig,
     write_record,
 )
-from webdemo.ui.components.film import READ_PLAYER, make_figure, make_film
+from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film
 from webdemo.ui.components.film import suffix as film_suffix
 from webdemo.ui.components.own_thing import FILE_TYPES, bring
 from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer, show, wear

@@ -10,8 +10,8 @@ import gradio as gr
 from motion import InputError
 from webdemo.ui.components.notebook import Action
 from webdemo.ui.context import PageContext
+from webdemo.ui.history import PublicPage, SharingLike
 from webdemo.ui.public_html import frame_code
-from webdemo.ui.sharing import PublicPage, SharingLike
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line

@@ -12,11 +12,10 @@ import gradio as gr
 
 from motion import InputError
 from webdemo.ui.components.actors import Source, offered_animations, read_source, result_source
-from webdemo.ui.components.animations import animation_field
 from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
-from webdemo.ui.components.upload import chip, example_chips, file_field
+from webdemo.ui.components.upload import animation_field, chip, example_chips, file_field
 from webdemo.ui.text.examples import example_clips
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
