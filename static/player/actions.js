@@ -1,4 +1,4 @@
-// What buttons and keys ask for, by name: play, step, sample, camera, trails, picture, … (keys.js and player.html).
+// What buttons and keys ask for, by name: play, step, sample, camera, trails, picture, … (input.js and player.html).
 
 import { savePicture } from "./picture.js";
 

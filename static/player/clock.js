@@ -1,4 +1,4 @@
-// Time-based playback: what frame it is depends on the wall clock, never on how often we draw.
+// The time of a player: its clock, the pictures it draws a second, and the hurry of a stream that lags.
 
 const LONGEST_STEP = 0.5; // seconds; a stalled tab goes on from where it stood
 
@@ -56,5 +56,53 @@ export class Clock {
   /** The frame to show: the clock may stand between the last frame and the wrap to the first. */
   get shown() {
     return Math.min(this.frame, this.frames - 1);
+  }
+}
+
+const WINDOW = 1500; // milliseconds that are looked back on
+
+export class Rate {
+  constructor() {
+    this.times = []; // milliseconds
+  }
+
+  /** Takes a picture that was drawn at `now` milliseconds. */
+  count(now) {
+    this.times.push(now);
+    while (now - this.times[0] > WINDOW) this.times.shift();
+  }
+
+  /** Pictures a second over the last second and a half. */
+  get value() {
+    const span = this.times[this.times.length - 1] - this.times[0];
+    return span > 0 ? (1000 * (this.times.length - 1)) / span : 0;
+  }
+}
+
+const ARRIVALS = 1000; // milliseconds of arrivals that are looked at
+const SPARE = 0.75; // frames in hand that may be left when new ones come
+const CATCH_UP = 0.08; // of the speed, for every frame too many
+const FASTEST = 1.3;
+
+export class Pace {
+  constructor() {
+    this.arrivals = []; // [milliseconds, frames in hand just before]
+  }
+
+  /**
+   * Takes an arrival: at `now` milliseconds there were `inHand` frames that had not been shown yet. Returns by how much
+   * faster than their own speed frames are to be shown until the next one.
+   */
+  add(now, inHand) {
+    this.arrivals.push([now, inHand]);
+    while (this.arrivals[0][0] < now - ARRIVALS) this.arrivals.shift();
+    if (now - this.arrivals[0][0] < ARRIVALS / 2) return 1; // too few to tell
+    const spare = Math.min(...this.arrivals.map(([, left]) => left)) - SPARE;
+    return spare > 0 ? Math.min(FASTEST, 1 + CATCH_UP * (1 + spare)) : 1;
+  }
+
+  /** Forgets what was in hand, after a jump. */
+  begin() {
+    this.arrivals = [];
   }
 }

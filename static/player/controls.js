@@ -1,8 +1,7 @@
 // The buttons, sliders and words around the scene: what they say is brought to what is true, and what is pressed
 // is handed to the player.
 
-import { attach } from "./input.js";
-import { actionFor, belongsToControl } from "./keys.js";
+import { actionFor, attach, belongsToControl } from "./input.js";
 import { roleText } from "./overlay.js";
 import { say, translate } from "../texts.js";
 

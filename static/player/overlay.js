@@ -1,4 +1,4 @@
-// HTML over the scene: names above heads and the tip that tells about a joint. Text only, never markup.
+// Words over the picture: names above heads, and what the joint under the pointer does.
 
 import { say } from "../texts.js";
 
@@ -87,5 +87,33 @@ export class Tip {
 
   hide() {
     this.host.hidden = true;
+  }
+}
+
+export class Hover {
+  constructor(player) {
+    this.player = player;
+    this.tip = new Tip(player.find(".pdd-tip"));
+    this.pointer = null;
+  }
+
+  /** Where the pointer is over the scene, [x, y], or null. */
+  at(pointer) {
+    this.pointer = pointer;
+    this.show();
+  }
+
+  show() {
+    const { player, pointer } = this;
+    if (!pointer || !player.data || player.posing) return this.tip.hide();
+    const shifted = ({ host, spots }) => spots.map((points) => points.map(([x, y, depth]) => [x + host.offsetLeft, y, depth]));
+    this.tip.show(pointer, player.shown.flatMap(shifted), (person, joint) => {
+      const { clock, data } = player;
+      const [now, soon] = [clock.shown, Math.min(clock.shown + 1, clock.frames - 1)].map((f) => player.everybody(f)[person][joint]);
+      const speed = Math.hypot(...now.map((v, i) => soon[i] - v)) * clock.fps;
+      return say("player.joint", {
+        person: "AB"[person % 2], joint: data.names[joint].replaceAll("_", " "), height: now[2].toFixed(2), speed: speed.toFixed(1),
+      });
+    });
   }
 }

@@ -1,24 +1,21 @@
 // The player: one element, one scene, one clock. main.js makes these; everything else is a part of it.
 
 import { Actions } from "./actions.js";
-import { aim } from "./address.js";
-import { Clock } from "./clock.js";
+import { aim, figureAtFirst, remember } from "./remember.js";
+import { Clock, Rate } from "./clock.js";
 import { Clothes } from "./clothes.js";
 import { Controls } from "./controls.js";
-import { decode } from "./decode.js";
+import { decode, describe } from "./decode.js";
 import { Directing } from "./directing.js";
 import { Filming } from "./filming.js";
 import { Framing } from "./framing.js";
 import { Futures } from "./futures.js";
-import * as live from "./live.js";
+import * as live from "./stream.js";
 import { Grid } from "./grid.js";
-import { Hover } from "./hover.js";
+import { Hover } from "./overlay.js";
 import { Orbit, reducedMotion } from "./orbit.js";
 import { THEMES, themeName } from "./palette.js";
 import { Pane } from "./pane.js";
-import { Rate } from "./rate.js";
-import { figureAtFirst, remember } from "./remember.js";
-import { describe } from "./skeleton.js";
 import { Strip } from "./strip.js";
 
 const STILL_AFTER = 250; // ms
@@ -122,7 +119,7 @@ export class Player {
     this.refresh();
   }
 
-  /** A part of a motion that is still being made, see live.js. */
+  /** A part of a motion that is still being made, see stream.js. */
   arrive(message) {
     const { sample } = this;
     if (!sample?.live || message.id !== this.data.id) return;

@@ -1,4 +1,4 @@
-// What a browser tab keeps for a reload, and a browser for the next visit.
+// What outlasts a page: the figure that a visitor chose, and the moment and camera that a link names.
 
 /** Marks this tab as one that has made something, which a reload then brings back (ui/tabs/history.py). */
 export function remember() {
@@ -28,4 +28,25 @@ export function keepFigure({ bodies, skeletons }) {
   } catch {
     // a browser may keep nothing
   }
+}
+
+let used = false; // the first motion that is opened is the address' own
+
+/** Brings a player that has just loaded a motion to the moment and the view of the page's address, once. */
+export function aim(player) {
+  const asked = new URLSearchParams(window.location.search);
+  if (used || !asked.has("run") || !asked.has("frame")) return;
+  used = true;
+  const number = (name, low, high) => {
+    const value = Number(asked.get(name) ?? NaN);
+    return asked.get(name) && Number.isFinite(value) ? Math.min(Math.max(value, low), high) : undefined;
+  };
+  const sample = number("sample", 0, player.data.samples.length - 1);
+  if (sample) player.select(Math.round(sample));
+  player.clock.pause();
+  player.clock.seek(Math.round(number("frame", 0, player.clock.frames - 1) ?? 0));
+  player.orbit.jump(player.framing.wanted().targets);
+  player.orbit.goTo({ yaw: number("yaw", -1000, 1000), elevation: number("elevation", -0.05, 1.5), distance: number("distance", 0.8, 40) }, null);
+  player.orbit.framing = !asked.has("distance");
+  player.framing.preset = null;
 }

@@ -20,6 +20,7 @@ from webdemo.server.settings import Settings
 
 SLOW = 120_000
 """Milliseconds that a busy machine may take to draw."""
+expect.set_options(timeout=SLOW)
 OFTEN = 100_000
 """Requests a minute: tests press faster than people."""
 

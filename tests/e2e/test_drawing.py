@@ -62,7 +62,7 @@ def chips(page: Page) -> Any:
 def generated(page: Page, server: Any, prompt: str) -> GenerateRequest:
     """The request of a run of a sentence that was not asked for yet, once it is done."""
     ask(page, prompt)
-    expect(page.locator("#player .pdd-title")).to_have_text(prompt, timeout=SLOW)
+    expect(page.locator("#player .pdd-title")).to_have_text(prompt)
     status(page, "done")
     request = server.engine.requests[-1]
     assert isinstance(request, GenerateRequest)
@@ -110,7 +110,7 @@ def test_a_story_keeps_what_is_drawn(shared_page: Page) -> None:
     page.get_by_role("tab", name="Scene").click()
     page.fill("#scene-prompt textarea", "They wave. Then they hug.")
     page.click("button#scene-generate", timeout=SLOW)
-    expect(page.locator("#scene-status .pd-done")).to_be_visible(timeout=SLOW)
+    expect(page.locator("#scene-status .pd-done")).to_be_visible()
     player = "document.querySelector('.pds').editor.player"
     until(page, f"{player}.directing.drawing && {player}.frameShown !== null")
     page.evaluate(f"{player}.seek(0); {player}.clock.pause()")
@@ -132,9 +132,9 @@ def test_a_kept_run_brings_its_paths_back(drawing: Page, server: Any) -> None:
     (path,) = paths(page)
     page.evaluate("window.__pasdedeux.player.director.open([])")
     page.get_by_role("tab", name="History").click()
-    expect(page.locator(".pdn-card").first).to_contain_text("A bows to B.", timeout=SLOW)
+    expect(page.locator(".pdn-card").first).to_contain_text("A bows to B.")
     page.click("#history-open")
-    expect(chips(page)).to_have_count(1, timeout=SLOW)
+    expect(chips(page)).to_have_count(1)
     assert [point[1:3] for point in paths(page)[0]["points"]] == [point[1:3] for point in path["points"]]
 
 
@@ -153,7 +153,7 @@ def test_a_part_that_is_pressed_is_touched_in_the_prompt(shared_page: Page) -> N
     dot.evaluate("dot => dot.click()")  # a dot of the other person may lie over it
     expect(prompt).to_have_value("A bows. Person A touches person B's head.")
     expect(page.locator(dots)).to_have_count(0)
-    expect(page.locator("#reading .pdr-chip")).to_have_count(2, timeout=SLOW)
+    expect(page.locator("#reading .pdr-chip")).to_have_count(2)
     prompt.press("Control+z")
     expect(prompt).to_have_value("A bows")
     page.click(tool)  # the first dot has the focus

@@ -13,7 +13,7 @@ from playwright.sync_api import Page, expect
 from webdemo.ui.components.gallery import SCENES
 
 from .playing import until
-from .serving import SLOW, live
+from .serving import live
 
 pytestmark = pytest.mark.e2e
 
@@ -28,24 +28,24 @@ def test_an_act_a_control_and_a_run_are_found_by_keyboard_and_an_example_by_one_
     page.keyboard.press("Control+k")
     expect(page.locator(FIELD)).to_be_focused()
     page.keyboard.type("arm wrestl")
-    expect(page.locator(FIRST)).to_contain_text("Act", timeout=SLOW)
+    expect(page.locator(FIRST)).to_contain_text("Act")
     page.keyboard.press("Enter")
     expect(page.locator("#finder dialog")).to_be_hidden()
     expect(page.locator("#prompt textarea, #prompt input")).to_have_value(re.compile("wrestl"))
 
     page.locator("button#generate").click()
-    expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
+    expect(page.locator("#status .pd-done")).to_be_visible()
 
     page.keyboard.press("Control+k")
     page.keyboard.type("samples scene")
     expect(page.locator(FIRST)).to_contain_text("Samples")
     page.keyboard.press("Enter")
-    expect(page.get_by_role("tab", name="Scene")).to_have_attribute("aria-selected", "true", timeout=SLOW)
+    expect(page.get_by_role("tab", name="Scene")).to_have_attribute("aria-selected", "true")
     until(page, "document.activeElement.closest('#scene-samples') !== null")
 
     page.keyboard.press("Control+k")
     page.keyboard.type("run wrestl")
-    expect(page.locator(FIRST)).to_contain_text("Run", timeout=SLOW)
+    expect(page.locator(FIRST)).to_contain_text("Run")
     page.keyboard.press("Enter")
     page.wait_for_url("**/?run=*")
     live(page)
@@ -53,11 +53,11 @@ def test_an_act_a_control_and_a_run_are_found_by_keyboard_and_an_example_by_one_
 
     page.get_by_role("button", name="All examples").click()
     scenes = page.locator("#gallery .pdx-scene")
-    expect(scenes).to_have_count(24, timeout=SLOW)
+    expect(scenes).to_have_count(24)
     kept = json.loads(SCENES.read_text(encoding="utf-8"))["scenes"][5]
     scenes.nth(5).click()
-    expect(page.locator("#prompt textarea")).to_have_value(kept["prompt"], timeout=SLOW)
-    expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
+    expect(page.locator("#prompt textarea")).to_have_value(kept["prompt"])
+    expect(page.locator("#status .pd-done")).to_be_visible()
     asked = server.engine.requests[-1]
     assert (asked.prompt, asked.seconds, asked.seed) == (kept["prompt"], kept["seconds"], kept["seed"])
     expect(page.locator("#gallery dialog")).to_be_hidden()

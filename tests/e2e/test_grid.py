@@ -43,14 +43,14 @@ def test_nine_results_share_one_context_and_one_opens_large(
     unfold(page, "#grid")
     sweep(page, "across", "Seeds", "1-500")
     page.click("#grid-make")
-    expect(page.locator("#status .pd-error")).to_contain_text("A grid has 1 to 9 cells", timeout=SLOW)
+    expect(page.locator("#status .pd-error")).to_contain_text("A grid has 1 to 9 cells")
     until(page, "window.__pasdedeux.open")
     before = page.evaluate("window.contexts")
 
     sweep(page, "across", "Seeds", "1-3")
     sweep(page, "down", "Damping", "0, 0.4, 0.7")
     page.click("#grid-make")
-    expect(page.locator("#status .pd-done")).to_contain_text("9 results done", timeout=SLOW)
+    expect(page.locator("#status .pd-done")).to_contain_text("9 results done")
     until(page, f"{PLAYER}.grid.cells.length === 9 && window.__pasdedeux?.frame > 0")
     assert page.evaluate("window.contexts") == before, "a cell has a context of its own"
     expect(page.locator("#player .pdd-head:not(:empty)")).to_have_text(
@@ -78,7 +78,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
     page.click("#player .pdd-back")
     until(page, f"{PLAYER}.focus === null && {PLAYER}.grid.cells.length === 9")
     unfold(page, "#downloads")
-    expect(page.locator("#download-csv")).to_be_enabled(timeout=SLOW)
+    expect(page.locator("#download-csv")).to_be_enabled()
     with page.expect_download(timeout=SLOW) as download:
         page.click("#download-csv")
     download.value.save_as(tmp_path / "grid.csv")

@@ -42,7 +42,7 @@ LONG_STEP = 1.0
 @pytest.fixture
 def page(shared_page: Page) -> Page:
     """The tab Generate, as the test before left it."""
-    expect(shared_page.locator("button#generate")).to_be_enabled(timeout=SLOW)
+    expect(shared_page.locator("button#generate")).to_be_enabled()
     return shared_page
 
 
@@ -52,7 +52,7 @@ def phone(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
 
 
 def wait_for_line(page: Page, pattern: str) -> None:
-    expect(page.locator("#status")).to_contain_text(re.compile(pattern), timeout=SLOW)
+    expect(page.locator("#status")).to_contain_text(re.compile(pattern))
 
 
 def shown_id(page: Page) -> str | None:
@@ -62,7 +62,7 @@ def shown_id(page: Page) -> str | None:
 def made(page: Page, prompt: str) -> str:
     """Makes a motion of a sentence that was not asked for yet, and gives the line on it."""
     ask(page, prompt)
-    expect(page.locator("#player .pdd-title")).to_have_text(prompt, timeout=SLOW)
+    expect(page.locator("#player .pdd-title")).to_have_text(prompt)
     return status(page, "done")
 
 
@@ -74,16 +74,16 @@ def set_number(page: Page, selector: str, value: float | str) -> None:
 
 def test_a_motion_plays_first_and_then_that_of_a_sentence(page: Page, server: SimpleNamespace) -> None:
     title = page.locator("#player .pdd-title")
-    expect(title).to_have_text("Two people walk up to each other and shake hands.", timeout=SLOW)
+    expect(title).to_have_text("Two people walk up to each other and shake hands.")
     page.wait_for_function("window.__pasdedeux?.frame > 5", timeout=SLOW)
     expect(page.locator("#downloads")).to_be_hidden()
     page.click("button.pd-chip >> nth=0")
     expect(page.locator("#prompt textarea")).to_have_value("Two people walk up to each other and shake hands.")
     for keys in ("Enter", "Control+Enter"):
-        expect(page.locator("button#generate")).to_be_enabled(timeout=SLOW)
+        expect(page.locator("button#generate")).to_be_enabled()
         page.fill("#prompt textarea", f"two people walk, says {keys}")
         page.press("#prompt textarea", keys)
-        expect(title).to_have_text(f"two people walk, says {keys}", timeout=SLOW)
+        expect(title).to_have_text(f"two people walk, says {keys}")
         assert status(page, "done").startswith("Made in")
     first = page.evaluate("window.__pasdedeux.positions")
     moved = "(joint, j) => joint.some((v, i) => Math.abs(v - was[j][i]) > 0.05)"
@@ -108,7 +108,7 @@ def test_a_class_is_chosen_from_the_list(page: Page, server: SimpleNamespace) ->
     page.keyboard.press("Enter")
     expect(page.locator("#class input")).to_have_value("shake hands")
     page.click("button#generate:enabled")
-    expect(page.locator("#player .pdd-title")).to_have_text("shake hands", timeout=SLOW)
+    expect(page.locator("#player .pdd-title")).to_have_text("shake hands")
     asked = server.engine.requests[-1]
     assert (asked.model, asked.prompt) == ("bigraphdiff", "shake hands")
     page.locator("#way").get_by_text("A sentence").click()
@@ -159,7 +159,7 @@ def test_a_run_can_be_cancelled_whose_first_updates_arrive_together(
     monkeypatch.setattr(results, "write_record", slowly)  # so that the page goes on listening to the server
     try:
         made(page, "two people hug once more")
-        expect(page.locator("button#generate")).to_be_enabled(timeout=SLOW)
+        expect(page.locator("button#generate")).to_be_enabled()
         page.route("**/queue/join*", late)
         server.engine.pause = LONG_STEP
         ask(page, "two people dance for long")
@@ -177,7 +177,7 @@ def test_errors_are_sentences_and_hostile_prompts_are_shown_literally(page: Page
     page.locator("#pace label", has_text="Fast").click()
     for prompt, sentence in ERRORS.items():
         ask(page, prompt)
-        expect(page.locator("#status .pd-error")).to_contain_text(sentence, timeout=SLOW)
+        expect(page.locator("#status .pd-error")).to_contain_text(sentence)
         assert "Traceback" not in page.content()
     made(page, HOSTILE)
     expect(page.locator("#status .pd-warning").first).to_contain_text("<b>hello</b>")
@@ -190,13 +190,13 @@ def test_an_empty_seed_is_drawn_and_samples_become_tabs(page: Page, server: Simp
     set_number(page, "#seed", "")
     set_number(page, "#samples", 3)
     ask(page, "two people stroll")
-    expect(page.locator("#status .pd-done")).to_contain_text("3 samples", timeout=SLOW)
+    expect(page.locator("#status .pd-done")).to_contain_text("3 samples")
     expect(page.locator("#player .pdd-tabs button")).to_have_count(3)
     expect(page.locator("#readouts .pd-asked")).to_contain_text(str(server.engine.requests[-1].seed))
     set_number(page, "#samples", 1)
     seen = len(server.engine.requests)
     page.click("#another:enabled")
-    expect(page.locator("#player .pdd-tabs")).to_be_hidden(timeout=SLOW)
+    expect(page.locator("#player .pdd-tabs")).to_be_hidden()
     page.wait_for_function("document.querySelector('#seed input').value !== ''")
     assert server.engine.requests[seen].seed == int(page.input_value("#seed input"))
 
@@ -205,7 +205,7 @@ def test_downloads_are_files_and_never_those_of_the_run_before(page: Page, monke
     made(page, "two people walk home")
     unfold(page, "#downloads", "#share")
     button = page.locator("#download-json")
-    expect(button).to_be_enabled(timeout=SLOW)
+    expect(button).to_be_enabled()
     for kind in ("npz", "bvh", "png"):
         with page.expect_download() as waiting:
             page.locator(f"#download-{kind}").click()
@@ -215,11 +215,11 @@ def test_downloads_are_files_and_never_those_of_the_run_before(page: Page, monke
     monkeypatch.setattr(results, "write_record", lambda *given: written.wait(60) and write_record(*given))
     try:
         made(page, "two people hug at last")
-        expect(page.locator("button#generate")).to_be_enabled(timeout=SLOW)
+        expect(page.locator("button#generate")).to_be_enabled()
         expect(button).to_be_disabled()
     finally:
         written.set()
-    expect(button).to_be_enabled(timeout=SLOW)
+    expect(button).to_be_enabled()
     with page.expect_download() as waiting:
         button.click()
     assert waiting.value.suggested_filename.startswith("two-people-hug-at-last-seed")

@@ -46,7 +46,7 @@ def upload(page: Page, file: Path) -> None:
 
 def predict(page: Page) -> None:
     page.click("button#predict-generate")
-    expect(page.locator("#predict-status .pd-done")).to_contain_text("Made", timeout=SLOW)
+    expect(page.locator("#predict-status .pd-done")).to_contain_text("Made")
 
 
 def damaged(kind: str) -> np.ndarray:
@@ -59,8 +59,8 @@ def damaged(kind: str) -> np.ndarray:
 def test_it_opens_with_the_first_example_which_plays(page: Page) -> None:
     """It comes first, on a page where nothing was chosen yet."""
     (name, _), *_ = example_clips()
-    expect(page.locator("#predict-player .pdd-title")).to_have_text(name, timeout=SLOW)
-    expect(page.locator("#predict-status")).to_contain_text(f"{name}: two people", timeout=SLOW)
+    expect(page.locator("#predict-player .pdd-title")).to_have_text(name)
+    expect(page.locator("#predict-status")).to_contain_text(f"{name}: two people")
     page.wait_for_function("window.__pasdedeux?.playing && window.__pasdedeux.frame > 5")
     assert page.evaluate("window.__pasdedeux.player.data.rounds") == ROUNDS
     predict(page)
@@ -77,15 +77,15 @@ def test_what_cannot_be_predicted_is_a_sentence(page: Page, tmp_path: Path) -> N
         np.save(tmp_path / f"{kind}.npy", damaged(kind))
         upload(page, tmp_path / f"{kind}.npy")
         if read:
-            expect(page.locator("#predict-status")).to_contain_text(read, timeout=SLOW)
+            expect(page.locator("#predict-status")).to_contain_text(read)
             page.click("button#predict-generate")
-        expect(error).to_contain_text(sentence, timeout=SLOW)
+        expect(error).to_contain_text(sentence)
 
 
 def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_path: Path) -> None:
     upload(page, write(walking(4.0), tmp_path / "walkers.npz")[0])
     people(page, 2)
-    expect(page.locator("#predict-status")).to_contain_text("two people, 4.0 s", timeout=SLOW)
+    expect(page.locator("#predict-status")).to_contain_text("two people, 4.0 s")
     page.wait_for_function("Number(document.querySelector('#predict-marker input[type=number]').value) > 1")
     move_marker(page, 3.0)
     page.evaluate("(() => { const c = window.__pasdedeux.player.clock; c.pause(); c.play = () => {}; })()")
@@ -96,11 +96,11 @@ def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_pa
     page.evaluate("delete window.__pasdedeux.player.clock.play")
     assert page.locator("#predict-curves .modebar").evaluate_all("all => all.every(e => !e.offsetParent)")
     assert page.evaluate(f"{SAMPLE}.ghost !== null")
-    expect(page.locator("#predict-curves .main-svg").first).to_be_visible(timeout=SLOW)
+    expect(page.locator("#predict-curves .main-svg").first).to_be_visible()
     for name in ("Motion MLP", "Last pose held", "What really followed"):
-        expect(page.locator("#predict-curves .legendtext", has_text=name)).to_be_visible(timeout=SLOW)
+        expect(page.locator("#predict-curves .legendtext", has_text=name)).to_be_visible()
     unfold(page, "#predict-downloads")
-    expect(page.locator("#predict-download-npz")).to_be_enabled(timeout=SLOW)
+    expect(page.locator("#predict-download-npz")).to_be_enabled()
     with page.expect_download(timeout=SLOW) as download:
         page.click("#predict-download-npz")
     assert download.value.suggested_filename.startswith("after-3-0-s-of-walkers-npz-")
@@ -109,7 +109,7 @@ def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_pa
     move_marker(page, 4.0)
     page.click("button#predict-generate")
     page.wait_for_function(f"{SAMPLE}.frames === 180 && {SAMPLE}.ghost === null")
-    expect(page.locator("#predict-curves")).to_contain_text("Nothing follows the marker", timeout=SLOW)
+    expect(page.locator("#predict-curves")).to_contain_text("Nothing follows the marker")
 
 
 def test_two_people_have_several_futures_by_a_seed(page: Page, tmp_path: Path) -> None:
@@ -121,10 +121,10 @@ def test_two_people_have_several_futures_by_a_seed(page: Page, tmp_path: Path) -
     expect(seed).to_be_visible()
     seed.locator("input").fill("7")
     page.click("button#predict-generate")
-    expect(page.locator("#predict-status .pd-done")).to_contain_text("3 samples made", timeout=SLOW)
+    expect(page.locator("#predict-status .pd-done")).to_contain_text("3 samples made")
     page.wait_for_function("window.__pasdedeux.player.futures.samples.length === 3")
     assert page.evaluate("window.__pasdedeux.player.futures.from") == 45
-    expect(page.locator("#predict-curves .legendtext", has_text="InterGen")).to_be_visible(timeout=SLOW)
+    expect(page.locator("#predict-curves .legendtext", has_text="InterGen")).to_be_visible()
     choose(page, "#predict-method", "Motion MLP")
     expect(seed).to_be_hidden()
 
@@ -133,10 +133,10 @@ def test_a_result_of_another_tab_goes_on(page: Page) -> None:
     page.get_by_role("tab", name="Generate").click()
     page.fill("#prompt textarea", "two people walk")
     page.click("button#generate")
-    expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
+    expect(page.locator("#status .pd-done")).to_be_visible()
     page.click("button#continue")
-    expect(page.get_by_role("tab", name="Predict")).to_have_attribute("aria-selected", "true", timeout=SLOW)
-    expect(page.locator("#predict-status")).to_contain_text("two people walk: two people, 5.0 s", timeout=SLOW)
+    expect(page.get_by_role("tab", name="Predict")).to_have_attribute("aria-selected", "true")
+    expect(page.locator("#predict-status")).to_contain_text("two people walk: two people, 5.0 s")
     page.wait_for_function("document.querySelector('#predict-marker input[type=number]').value === '5'")
     predict(page)
     page.wait_for_function(f"{SAMPLE}.frames === 210 && {SAMPLE}.past_until === 150")

@@ -41,7 +41,7 @@ def test_a_result_is_published_framed_and_ended(server: SimpleNamespace, open_pa
         assert "complete" in client.get(f"gradio_api/call/generate/{called['event_id']}").text
     page = live(open_page(server.url))
     page.get_by_role("tab", name="History").click()
-    expect(page.locator("#history-notebook .pdn-card").first).to_contain_text("They bow.", timeout=SLOW)
+    expect(page.locator("#history-notebook .pdn-card").first).to_contain_text("They bow.")
     page.locator("#history-publish").click()
     expect(page.locator("#sharing-link textarea, #sharing-link input")).to_have_value(
         re.compile(r"/share/[0-9a-f]{32}$"), timeout=SLOW
@@ -63,5 +63,5 @@ def test_a_result_is_published_framed_and_ended(server: SimpleNamespace, open_pa
             frame.wait_for_function(READY, timeout=SLOW)
 
     page.locator("#sharing-end").click()
-    expect(page.locator("#sharing-status")).to_contain_text("has ended", timeout=SLOW)
+    expect(page.locator("#sharing-status")).to_contain_text("has ended")
     assert httpx.get(address).status_code == 404

@@ -16,7 +16,7 @@ from tests.ui.stub_engine import walking
 from webdemo.inference.methods import automatic, method
 
 from .playing import choose, unfold
-from .serving import SLOW, live
+from .serving import live
 
 pytestmark = pytest.mark.e2e
 
@@ -36,23 +36,23 @@ def test_an_uploaded_person_is_seen_trimmed_and_gets_a_partner(page: Page, tmp_p
     file = write(walking(12.0), tmp_path / "walkers.npz")[0]
     page.set_input_files("#react-file input[type=file]", file)
     people(page, 1)
-    expect(page.locator("#react-status")).to_contain_text("0.0 to 10.0 s of 12.0 s", timeout=SLOW)
+    expect(page.locator("#react-status")).to_contain_text("0.0 to 10.0 s of 12.0 s")
     page.fill("#react-end input[type=number]", "3")
     page.press("#react-end input[type=number]", "Tab")
-    expect(page.locator("#react-status")).to_contain_text("0.0 to 3.0 s", timeout=SLOW)
+    expect(page.locator("#react-status")).to_contain_text("0.0 to 3.0 s")
 
     page.click("button#react-generate")
-    expect(page.locator("#react-status .pd-done")).to_be_visible(timeout=SLOW)
+    expect(page.locator("#react-status .pd-done")).to_be_visible()
     people(page, 2)
     expect(page.locator("#react-readouts")).to_contain_text("walkers.npz")
     unfold(page, "#react-downloads")
     button = page.locator("#react-download-npz")
-    expect(button).to_be_enabled(timeout=SLOW)
+    expect(button).to_be_enabled()
 
     page.click("button#react-take-b")
     people(page, 1)
-    expect(page.locator("#react-status")).to_contain_text("0.0 to 3.0 s of 3.0 s", timeout=SLOW)
-    expect(page.locator("#react-person input[value=b]")).to_be_checked(timeout=SLOW)
+    expect(page.locator("#react-status")).to_contain_text("0.0 to 3.0 s of 3.0 s")
+    expect(page.locator("#react-person input[value=b]")).to_be_checked()
 
 
 def test_another_animation_of_a_character_is_chosen(page: Page, tmp_path: Path) -> None:
@@ -60,9 +60,9 @@ def test_another_animation_of_a_character_is_chosen(page: Page, tmp_path: Path) 
     file = tmp_path / "takes.glb"
     file.write_bytes(glb_takes(rotations, positions[:, 0], ["walk", "glide"]))
     page.set_input_files("#react-file input[type=file]", file)
-    expect(page.locator("#react-status")).to_contain_text("1 (“walk”) was taken", timeout=SLOW)
+    expect(page.locator("#react-status")).to_contain_text("1 (“walk”) was taken")
     choose(page, "#react-animation", "2 · glide")
-    expect(page.locator("#react-status")).to_contain_text("2 (“glide”) was taken", timeout=SLOW)
+    expect(page.locator("#react-status")).to_contain_text("2 (“glide”) was taken")
     expect(page.locator("#react-animation input")).to_have_value("2 · glide")
 
 
@@ -73,19 +73,19 @@ def test_a_file_that_cannot_be_read_leaves_nothing_and_a_result_is_taken(page: P
     people(page, 1)
     expect(page.locator("#react-import")).to_contain_text("How the file was read")
     page.set_input_files("#react-file input[type=file]", broken)
-    expect(page.locator("#react-status .pd-error")).to_contain_text("broken.bvh", timeout=SLOW)
+    expect(page.locator("#react-status .pd-error")).to_contain_text("broken.bvh")
     expect(page.locator("#react-player .pdd-empty")).to_be_visible()
     expect(page.locator("#react-import")).to_be_hidden()
     page.click("button#react-generate")
-    expect(page.locator("#react-status .pd-error")).to_contain_text("There is no actor yet", timeout=SLOW)
+    expect(page.locator("#react-status .pd-error")).to_contain_text("There is no actor yet")
 
     page.get_by_role("tab", name="Generate").click()
     page.fill("#prompt textarea", "two people walk")
     page.click("button#generate")
-    expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
+    expect(page.locator("#status .pd-done")).to_be_visible()
     page.get_by_role("tab", name="React").click()
     page.click("button#react-take-a")
-    expect(page.locator("#react-status")).to_contain_text("two people walk: 0.0 to 5.0 s", timeout=SLOW)
+    expect(page.locator("#react-status")).to_contain_text("two people walk: 0.0 to 5.0 s")
 
 
 def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
@@ -96,7 +96,7 @@ def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     page.set_input_files("#react-file input[type=file]", file)
     people(page, 1)
     page.click("button#react-stream")
-    expect(page.locator("#react-player .pdd-chip")).to_contain_text("streaming · delay", timeout=SLOW)
+    expect(page.locator("#react-player .pdd-chip")).to_contain_text("streaming · delay")
     people(page, 2)
     known = "(window.__pasdedeux.player.sample.live?.known ?? null)"
     page.wait_for_function(f"{known} === 72 && window.__pasdedeux?.frame > 20")
@@ -106,16 +106,16 @@ def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     assert abs(apart - 1.0) < 0.01, "the stub's reactor stands a metre aside"
     expect(page.locator("button#react-generate")).to_be_disabled()
     server.engine.live_waits_at = None
-    expect(page.locator("#react-status .pd-done")).to_contain_text("longest", timeout=SLOW)
+    expect(page.locator("#react-status .pd-done")).to_contain_text("longest")
     page.wait_for_function(f"{known} === null && window.__pasdedeux?.player?.sample.frames === 120")
     unfold(page, "#react-downloads")
-    expect(page.locator("#react-download-npz")).to_be_enabled(timeout=SLOW)
+    expect(page.locator("#react-download-npz")).to_be_enabled()
 
     server.engine.live_waits_at = 72
     page.click("button#react-stream")
     page.wait_for_function(f"{known} >= 18")
     page.click("button#react-cancel")
-    expect(page.locator("#react-status .pd-warning")).to_contain_text("Cancelled at frame", timeout=SLOW)
+    expect(page.locator("#react-status .pd-warning")).to_contain_text("Cancelled at frame")
     page.wait_for_function(f"{known} === null && window.__pasdedeux?.player?.sample.frames < 120")
     people(page, 2)
 
@@ -135,10 +135,10 @@ def test_automatic_chooses_by_the_words_and_a_method_greys_those_it_does_not_hea
     ):
         page.fill("#react-prompt textarea", words)
         page.click("button#react-generate:enabled")
-        expect(player.locator(".pdd-title")).to_have_text(title, timeout=SLOW)
+        expect(player.locator(".pdd-title")).to_have_text(title)
         assert server.engine.requests[-1].model == model
     assert player.locator(".pdd-label").all_text_contents() == ["A · given", "B · generated"]
-    expect(page.locator("button#react-generate")).to_be_enabled(timeout=SLOW)
+    expect(page.locator("button#react-generate")).to_be_enabled()
     choose(page, "#react-method", "Virtual agent")
     expect(page.locator("#react-prompt textarea")).to_be_disabled()
     expect(page.locator("#react-about")).to_contain_text(method("agent").summary)
@@ -151,7 +151,7 @@ def test_methods_are_compared_side_by_side(page: Page, server: SimpleNamespace, 
     choose(page, "#react-grid-across", "Methods")
     page.fill("#react-grid-across-values textarea", "InterGen, person to person; ReGenNet, online")
     page.click("#react-grid-make")
-    expect(page.locator("#react-status .pd-done")).to_contain_text("2 results done", timeout=SLOW)
+    expect(page.locator("#react-status .pd-done")).to_contain_text("2 results done")
     people(page, 4)
     names = page.locator("#react-player .pdd-cell-text")
     expect(names).to_have_text(["InterGen, person to person", "ReGenNet, online"])

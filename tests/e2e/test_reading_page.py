@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page, expect
 
-from .serving import SLOW, live
+from .serving import live
 
 pytestmark = pytest.mark.e2e
 
@@ -24,7 +24,7 @@ def test_words_are_underlined_and_chips_stand_on_two_lanes(page: Page) -> None:
     prompt, reading = page.locator("#prompt textarea"), page.locator("#reading .pdr")
     expect(reading).to_be_hidden()
     prompt.press_sequentially("A bows to B. Then they hug.", delay=20)
-    expect(reading.locator(".pdr-beat")).to_have_count(2, timeout=SLOW)
+    expect(reading.locator(".pdr-beat")).to_have_count(2)
     lanes = {
         chip.get_attribute("data-id"): chip.evaluate("chip => getComputedStyle(chip).gridColumnStart")
         for chip in reading.locator(".pdr-chip").all()
@@ -46,7 +46,7 @@ def test_words_are_underlined_and_chips_stand_on_two_lanes(page: Page) -> None:
     expect(length).to_be_hidden()
     expect(seconds).to_have_value("7")
     prompt.fill(HOSTILE)
-    expect(reading.locator(".pdr-chip.pdr-b")).to_contain_text("waves", timeout=SLOW)
+    expect(reading.locator(".pdr-chip.pdr-b")).to_contain_text("waves")
     expect(reading.locator(".pdr-said")).to_have_text(HOSTILE)
     assert reading.locator("img").count() == 0
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
@@ -63,11 +63,11 @@ def test_a_motion_is_as_long_as_its_acts_where_enter_follows_the_last_letter(pag
         prompt.fill(sentence)
         prompt.press("Enter")
         prompt.press("Enter")  # dropped, as one is while a run goes on
-        expect(page.locator("#status")).to_contain_text("Made", timeout=SLOW)
+        expect(page.locator("#status")).to_contain_text("Made")
         expect(seconds).to_have_value(str(length))
         expect(page.locator("#readouts")).to_contain_text(f"{length}.0 s")
         expect(page.locator("#changed")).to_be_empty()
-        expect(page.locator("#generate")).to_be_enabled(timeout=SLOW)
+        expect(page.locator("#generate")).to_be_enabled()
     assert len(runs) == 2
 
 
@@ -75,37 +75,37 @@ def test_a_plan_is_edited_and_made(lab: str, open_page: Callable[..., Page]) -> 
     page = live(open_page(lab, width=1200, height=1000))
     reading, chips = page.locator("#reading .pdr"), page.locator("#reading .pdr-chip")
     page.fill("#prompt textarea", "A waves to B. Then B bows. Then they hug.")
-    expect(chips).to_have_count(3, timeout=SLOW)
+    expect(chips).to_have_count(3)
     expect(reading.locator(".pdr-badge")).to_be_hidden()
     # Deleted with the keyboard, and the next chip is at hand.
     chips.nth(1).focus()
     page.keyboard.press("Delete")
-    expect(chips).to_have_count(2, timeout=SLOW)
+    expect(chips).to_have_count(2)
     expect(reading.locator(".pdr-badge")).to_be_visible()
     expect(chips.nth(1)).to_be_focused()
     # Another act, from the list of all.
     chips.nth(1).press("Enter")
     search = reading.get_by_role("combobox")
     search.fill("shake hand")
-    expect(reading.get_by_role("option").first).to_contain_text("shakes hands", timeout=SLOW)
+    expect(reading.get_by_role("option").first).to_contain_text("shakes hands")
     search.press("Enter")
-    expect(chips.nth(1)).to_contain_text("shake hands", timeout=SLOW)
+    expect(chips.nth(1)).to_contain_text("shake hands")
     # The other person's, and earlier.
     chips.nth(0).press("Enter")
     reading.get_by_role("button", name="Other person").click()
-    expect(chips.nth(0)).to_contain_text("B → A waves", timeout=SLOW)
+    expect(chips.nth(0)).to_contain_text("B → A waves")
     reading.get_by_role("button", name="Close").click()
     page.click("button#generate")
-    expect(page.locator("#status .pd-done").first).to_be_visible(timeout=SLOW)
+    expect(page.locator("#status .pd-done").first).to_be_visible()
     made = page.evaluate("document.querySelector('#reading .pdr').view.draft.plan.acts.map((act) => act.act)")
     assert made == ["wave", "shake-hands"]
-    expect(chips.nth(0).locator(".pdr-check")).to_be_visible(timeout=SLOW)
+    expect(chips.nth(0).locator(".pdr-check")).to_be_visible()
     assert page.locator("#reading .pdr-check").first.inner_text()[0] in "✓✗"
     # What happens is told under the stage, to screen readers as well.
     told = page.locator("#player .pdd-told[role=status]")
-    expect(told).to_have_text("B waves; A and B shake hands with each other.", timeout=SLOW)
+    expect(told).to_have_text("B waves; A and B shake hands with each other.")
     # Words that are typed are read anew, and the page says what that does.
     page.locator("#prompt textarea").press_sequentially(" B nods.")
-    expect(reading.locator(".pdr-badge")).to_be_hidden(timeout=SLOW)
-    expect(chips).to_have_count(4, timeout=SLOW)
+    expect(reading.locator(".pdr-badge")).to_be_hidden()
+    expect(chips).to_have_count(4)
     expect(reading.locator(".pdr-notes")).to_contain_text("Your edits were dropped")

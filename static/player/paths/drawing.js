@@ -3,8 +3,7 @@
 
 import { FIELD_OF_VIEW, axesOf } from "../orbit.js";
 import { project } from "../overlay.js";
-import { floorUnder, lines, onFloor } from "./floor.js";
-import { STEP, inside, lengthOf, named, passing, trouble } from "./walks.js";
+import { floorUnder, inside, lengthOf, lines, named, onFloor, passing, STEP, trouble } from "./walks.js";
 import { say } from "../../texts.js";
 
 const NEAR = 0.4; // metres from a person's place on the floor within which a drag begins their path

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { Clock } from "../../../static/player/clock.js";
-import { Pace } from "../../../static/player/pace.js";
+import { Pace } from "../../../static/player/clock.js";
 
 /** Mean frames in hand and the share of pictures with none, in the last six seconds of twelve. */
 function simulated({ late = 0, ahead, paced = true }) {

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { floorUnder, lines, onFloor } from "../../../static/player/paths/floor.js";
+import { floorUnder, lines, onFloor } from "../../../static/player/paths/walks.js";
 import { inside, lengthOf, named, passing, timed, trouble } from "../../../static/player/paths/walks.js";
 import { FIELD_OF_VIEW, Orbit } from "../../../static/player/orbit.js";
 import { project } from "../../../static/player/overlay.js";
