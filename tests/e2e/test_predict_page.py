@@ -114,7 +114,8 @@ def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_pa
 
 def test_two_people_have_several_futures_by_a_seed(page: Page, tmp_path: Path) -> None:
     upload(page, write(walking(3.0), tmp_path / "walkers.npz")[0])
-    people(page, 2)
+    expect(page.locator("#predict-status")).to_contain_text("two people, 3.0 s")
+    page.wait_for_function("document.querySelector('#predict-marker input[type=number]').value === '1.5'")
     seed = page.locator("#predict-seed")
     expect(seed).to_be_hidden()
     choose(page, "#predict-method", "InterGen, both together")

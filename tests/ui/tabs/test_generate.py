@@ -9,7 +9,6 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import gradio as gr
 import pytest
 
 from motion import InputError
@@ -25,7 +24,6 @@ from webdemo.ui.runs import Loader, Runs
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.ui.tabs.job import PACE
 from webdemo.ui.tabs.sampling import FAITHFUL, FAST
-from webdemo.ui.text.classes import installed_classes
 
 
 @pytest.fixture
@@ -59,15 +57,6 @@ def test_a_class_is_asked_for_in_place_of_a_sentence(tab: GenerateTab) -> None:
         assert guidance["value"] == GenerateRequest(prompt="x").guidance if sentence else guidance["value"] < 4
 
 
-def test_classes_are_those_of_the_weights(tmp_path: Path) -> None:
-    names, card = installed_classes()
-    assert "shake hands" in names and card["name"] == "bigraphdiff" and "summary" in card
-    assert installed_classes(tmp_path) == ([], {})
-    (tmp_path / "bigraphdiff").mkdir()
-    (tmp_path / "bigraphdiff" / "config.json").write_text('{"model": []}')
-    assert installed_classes(tmp_path) == ([], {})
-
-
 def test_progress_is_true_and_paced(tab: GenerateTab) -> None:
     tab.page.engine.pause = 0.03
     began = time.monotonic()
@@ -92,13 +81,6 @@ def test_cancel_ends_within_one_step_and_touches_no_result(tab: GenerateTab) -> 
     assert "readouts" not in rest[-1]
     assert "step" in seen[-1]["line"]
     assert not tab.page.runs.cancel("me"), "nothing is left to cancel"
-
-
-def test_every_update_of_a_run_says_what_lasts(tab: GenerateTab) -> None:
-    tab.page.engine.pause = 0.1
-    for step in run(tab):
-        assert step["stop"] == gr.update(interactive=True)
-        assert all(step[name] == gr.update(interactive=False) for name in tab.starts())
 
 
 def test_a_run_is_cancelled_before_its_request_was_read(tab: GenerateTab) -> None:

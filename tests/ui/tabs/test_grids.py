@@ -166,15 +166,6 @@ def test_a_story_under_several_settings_makes_a_grid(tmp_path: Path) -> None:
     assert [beat["words"] for beat in last["story"]["value"]["beats"]] == [b.words for b in asked[0].beats]
 
 
-def test_the_best_and_the_worst_are_marked() -> None:
-    def result(skate: float) -> Result:
-        return Result(duets=(), manifest={}, readouts=({"after": {"summary": {"foot_skate": skate}}},))
-
-    made = grid_table({"<one>": result(3.0), "two": result(1.0), "three": result(2.0)})
-    assert '<td class="pd-worse"><b>3.0</b>' in made and '<td class="pd-better"><b>1.0</b>' in made
-    assert '<td class=""><b>2.0</b>' in made and "&lt;one&gt;" in made
-
-
 def test_what_cannot_be_measured_is_a_dash_among_the_others() -> None:
     def result(delay: float | None) -> Result:
         after = {"foot_skate": 1.0, "response_delay": delay}

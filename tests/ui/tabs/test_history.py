@@ -17,8 +17,7 @@ from tests.ui.stub_engine import walking
 from webdemo.inference.run import Progress, Result
 from webdemo.ui.components.notebook import MOST_SHOWN, STEP, Action, facts, settings, shown
 from webdemo.ui.history import Entry, Found, Opened, Search, Usage
-from webdemo.ui.tabs.history import EMPTY, NOTHING_FOUND, HistoryTab, _signed_in, compared
-from webdemo.ui.visitor import Visitor
+from webdemo.ui.tabs.history import EMPTY, NOTHING_FOUND, HistoryTab, compared
 
 WHEN = time.strftime("%d %b %Y %H:%M", time.localtime(0))
 
@@ -159,11 +158,6 @@ def test_what_a_notebook_never_sends_is_refused(data: Any) -> None:
         Action(data)
 
 
-@pytest.mark.parametrize(("ids", "sentence"), [((), "Choose a run first"), (("a", "b"), "Choose one run only")])
-def test_what_takes_one_run_says_so(ids: tuple[str, ...], sentence: str) -> None:
-    assert sentence in press(tab(Book(entry("a"))), "favour", *ids).line
-
-
 def test_a_run_without_a_result_is_run_again() -> None:
     lost = replace(entry("lost"), state="interrupted", request={"prompt": "They hug.", "seconds": 2.0, "seed": 9})
     asked: list[Any] = []
@@ -195,12 +189,6 @@ def test_a_history_that_cannot_be_read_is_a_sentence() -> None:
     broken.search = search  # type: ignore[method-assign]
     assert tab(broken).refresh([])[0]["value"]["empty"].endswith("cannot be read or written.")
     assert "cannot be read or written" in press(tab(broken), "search", search={"words": "a"}).line
-
-
-def test_whose_history_it_is_is_said_where_there_are_accounts() -> None:
-    assert _signed_in(Visitor()) == ""
-    signed = _signed_in(Visitor(account="<ada>", base="http://lab/x/"))
-    assert "Signed in as &lt;ada&gt;" in signed and 'action="http://lab/x/logout"' in signed
 
 
 def test_chosen_runs_are_compared_in_a_grid() -> None:

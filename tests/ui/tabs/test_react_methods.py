@@ -13,12 +13,8 @@ import pytest
 os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
 
-from motion import InputError
-from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, changes
 from webdemo.inference.methods import variants
-from webdemo.inference.requests import ReactRequest
-from webdemo.inference.requests.live import LiveRequest
 from webdemo.ui.components.live import BATCH, REPEATED
 from webdemo.ui.tabs.react import ReactTab
 from webdemo.view.payload import unpack_positions
@@ -96,12 +92,3 @@ def test_a_streamed_reaction_that_is_cancelled_tells_the_player(tab: ReactTab, w
     assert seen[-2]["player"]["live"]["stop"]
     assert "Cancelled at frame" in seen[-1]["line"]
     assert "record" not in seen[-1]
-
-
-def test_a_live_request_is_online() -> None:
-    actor = walking(2.0).a
-    with pytest.raises(InputError, match="online"):
-        LiveRequest(actor=actor, model="regennet", mode="offline")
-    live = LiveRequest(actor=actor, model="regennet", steps=5)
-    plain = ReactRequest(actor=actor, model="regennet", steps=5, mode="online")
-    assert live.to_dict() == plain.to_dict(), "its manifest reproduces the same motion"

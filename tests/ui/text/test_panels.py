@@ -8,14 +8,13 @@ from dataclasses import replace
 
 import pytest
 
-from motion import InputError
 from motion.metrics import MEASURES
 from tests.ui.stub_engine import StubEngine, walking
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Progress, Result
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.text.panels import model_card, model_state, notes_lines, plan_line, readout_panel, status
-from webdemo.ui.text.words import cancelled_line, error_line, progress_line, text
+from webdemo.ui.text.words import cancelled_line, progress_line, text
 
 HOSTILE = "<img src=x onerror=alert(1)> ${alert(2)} {{value}} `x` \"quoted\" 'single'"
 
@@ -70,12 +69,6 @@ def test_measures_that_could_not_be_determined_are_dashes() -> None:
     assert "<td>30</td><td><b>–</b></td><td>–</td>" in made and "same" not in made
 
 
-def test_several_samples_are_columns() -> None:
-    made = readout_panel(result(samples=3))
-    assert "Sample 3" in made
-    assert " → " in made
-
-
 def test_the_player_gets_the_contacts_of_the_readouts() -> None:
     made = result()
     contact = {"start": 3, "stop": 9, "kind": "hands", "label": "hand on hand"}
@@ -103,20 +96,6 @@ def test_progress_and_cancellation_name_the_step() -> None:
     assert cancelled_line(event) == "Cancelled at step 12 of 50."
     assert cancelled_line(Progress(stage="text")) == "Cancelled before the first step."
     assert cancelled_line(None) == "Cancelled before the first step."
-
-
-@pytest.mark.parametrize(
-    ("error", "start"),
-    [
-        (InputError("Do this instead."), "Do this instead."),
-        (OSError(28, "No space left on device"), "The disk is full"),
-        (OSError(13, "Permission denied"), "A file could not be read or written (Permission denied)"),
-        (MemoryError(), "There is not enough memory"),
-        (KeyError("x"), "Something went wrong inside the program (KeyError)"),
-    ],
-)
-def test_errors_become_sentences(error: Exception, start: str) -> None:
-    assert error_line(error).startswith(start)
 
 
 def test_a_line_says_what_share_of_a_motion_is_planned() -> None:

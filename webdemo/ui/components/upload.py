@@ -11,8 +11,8 @@ import gradio as gr
 
 from motion import InputError
 from motion.formats import GLBS
-from motion.formats.recording import Animations
 from motion.formats.glb_motion import animations_in
+from motion.formats.recording import Animations
 from webdemo.ui.text.texts import say, worded
 
 FILE_TYPES = [".bvh", ".glb", ".vrm", ".vrma", ".npz", ".npy", ".c3d", ".trc", ".zip", ".skeleton", ".txt"]
