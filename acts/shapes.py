@@ -101,7 +101,11 @@ class Bow(_Shape):
 
 
 class Gesture(_Shape):
-    """A gesture of the hands, by its name in :data:`acts.staging.gestures.GESTURES`."""
+    """A gesture of the hands, by its name in :data:`acts.staging.gestures.GESTURES`.
+
+    Attributes:
+        times: how many strokes; 0 for as long as the beat lasts.
+    """
 
     do: Literal["gesture"] = "gesture"
     gesture: Literal[
@@ -155,6 +159,7 @@ class Gesture(_Shape):
         "carries",
     ]
     sides: Literal["left", "right", "both"] = "right"
+    times: Annotated[int, Field(ge=0, le=20)] = 0
 
 
 class Touch(_Shape):

@@ -72,17 +72,22 @@ def arm(gesture: Gesture, side: str, seconds: Array, length: float, towards: Arr
     seconds = np.asarray(seconds, dtype=float)
     out = 1.0 if side == "left" else -1.0
     stroke = GESTURES[gesture.gesture]
-    goal = wrist(gesture.gesture, side, seconds, towards)
-    goal += _wandering(seconds, out)
-    late = 0.0
-    if gesture.sides == "both":
-        late = _LAG if side == "left" else 0.0
-        goal[:, 1] -= out * _UNEVEN if stroke.uneven else 0.0
+    late = _LAG if gesture.sides == "both" and side == "left" else 0.0
     pace = float(np.clip(length / _UNHURRIED, 0.6, 1.0))
     up = minimum_jerk((seconds / pace - BEGINS - late) / RISES)
-    down = 0.0 * up
+    sinks, down = length - _RESTS - _FALLS, 0.0 * up
+    strokes = seconds
+    if gesture.times and stroke.rate:  # they are counted from when the hand is up, until it sinks
+        begins = pace * (BEGINS + RISES)
+        lasts = gesture.times / stroke.rate
+        share = max(lasts / max(sinks - begins, 0.5 * lasts), 1.0)
+        strokes = np.clip(share * (seconds - begins), 0.0, lasts)
+        sinks = begins + lasts / share
+    goal = wrist(gesture.gesture, side, strokes, towards) + _wandering(seconds, out)
+    if gesture.sides == "both" and stroke.uneven:
+        goal[:, 1] -= out * _UNEVEN
     if stroke.sinks and length > BEGINS + RISES + _SHOWS + _FALLS + _RESTS:
-        down = minimum_jerk((seconds - length + _RESTS + _FALLS - late) / _FALLS)
+        down = minimum_jerk((seconds - sinks - late) / _FALLS)
     return _turned(_directions(side, goal, stroke.pole), np.asarray(before), up, down, side)
 
 

@@ -89,6 +89,8 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
     for way in ("to", "behind"):
         if way in ways:
             gap = float(np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0))
+    if "ahead" in ways:
+        gap = max(gap, min(CLOSE + ways["ahead"].metres, 5.0))
     averted = ("averted",) if "around" in ways else ("averted", "face")
     turned = next((m.person for m in moves if m.way in averted), "")
     turned = turned or next((other_of(m.person) for m in moves if m.way == "behind"), "")

@@ -104,9 +104,10 @@ def _swing(since: Array, held: Array, times: int, period: float = SWING) -> Arra
 
 
 def _pulses(since: Array, held: Array, times: int, period: float = 1.0) -> Array:
-    """Rises from 0 to 1 and back, so many times or as long as it is held."""
-    ends = since <= times * period if times else np.ones_like(since, dtype=bool)
-    return np.sin(np.pi * since / period) ** 2 * held * ends
+    """Rises from 0 to 1 and back, so many times, the first of which is whole, or as long as it is held."""
+    if times:
+        held = np.where(since < period, 1.0, held) * (since <= times * period)
+    return np.sin(np.pi * since / period) ** 2 * held
 
 
 def _leg(limb: Limb, hip: Array, knee: Array, out: Array | float = 0.0) -> Turns:

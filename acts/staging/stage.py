@@ -222,7 +222,9 @@ class _Stage:
                 self.bows |= dict.fromkeys(people, shape.model_copy(update={"times": times, "deep": deep}))
             case shapes.Gesture():
                 sides = "both" if GESTURES[shape.gesture].both else act.side or shape.sides
-                self.gestures |= dict.fromkeys(people, shape.model_copy(update={"sides": sides}))
+                self.gestures |= dict.fromkeys(
+                    people, shape.model_copy(update={"sides": sides, "times": min(act.times or 0, 20)})
+                )
             case shapes.Touch():
                 self._touch(act, shape)
             case shapes.Hold(hold="twirl"):

@@ -81,6 +81,17 @@ def test_hands_sink_again_after_what_passes_and_stay_up_in_what_is_held() -> Non
         assert np.linalg.norm(course(hand)[-1, 1] - course(hand)[0, 1]) > 0.1
 
 
+@pytest.mark.parametrize("length", [3.0, 5.0, 8.0])
+@pytest.mark.parametrize("times", [1, 2, 5])
+def test_hands_clap_as_often_as_it_is_said(times: int, length: float) -> None:
+    seconds = np.arange(0, length, 1 / 60)
+    ahead = np.tile([0.0, 0.0, 1.0], (len(seconds), 1))
+    clapping = Gesture(gesture="claps", sides="both", times=times)
+    left, right = (arm(clapping, side, seconds, length, ahead, hanging(side))[:, 1] for side in ("left", "right"))
+    meet = np.linalg.norm(left - right, axis=1) < 0.22
+    assert np.count_nonzero(np.diff(meet.astype(int)) == 1) == times
+
+
 @pytest.mark.parametrize("hand", ["high", "up", "ahead", "spread", "claps", "crossed", "flaps"])
 def test_two_hands_are_no_mirror_images(hand: str) -> None:
     left, right = (course(hand, side, both=True)[:, 1] for side in ("left", "right"))

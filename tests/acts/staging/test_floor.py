@@ -226,7 +226,7 @@ def test_who_walks_to_and_fro_comes_back_across_the_line() -> None:
 
 @pytest.mark.parametrize(
     ("words", "standing", "ahead"),
-    [("two steps", BEHIND_B, 1.4), ("five steps", FACING, 1.2 - CLOSE), ("two steps", None, 0.5)],
+    [("two steps", BEHIND_B, 1.4), ("five steps", FACING, 1.2 - CLOSE), ("three steps", None, 2.1)],
 )
 def test_steps_forward_end_before_the_other(words: str, standing: Standing | None, ahead: float) -> None:
     _, found = ways(f"Person A takes {words} forward.", standing=standing)

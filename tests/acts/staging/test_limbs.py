@@ -83,6 +83,14 @@ def test_sides_directions_and_numbers_reach_the_limbs() -> None:
     assert rises == [1, 2]
 
 
+@pytest.mark.parametrize("times", [2, 3])
+def test_all_of_a_number_of_nods_are_as_deep(times: int) -> None:
+    found = motion("nods", times=times)
+    height = found[:, SMPL22.index("head"), 1] - found[:, SMPL22.index("neck"), 1]
+    drop = height[0] - height
+    assert np.count_nonzero(np.diff((drop > 0.8 * drop.max()).astype(int)) == 1) == times
+
+
 def test_a_lunge_is_a_long_step_over_a_bent_knee_as_often_as_it_is_told() -> None:
     found = motion("lunges", side="left", times=2)
     left, right = (found[:, SMPL22.index(f"{side}_ankle")] for side in ("left", "right"))
