@@ -7,6 +7,8 @@ each folder of a trained predictor that is named with ``--predictor``.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +19,69 @@ from motion import InputError
 from motion.formats.files import write_text
 from training.core.shell import add_options, exit_code
 from training.corpus import cmu
-from training.evaluate.prediction_scores import Predict, Scores, average, score, zero_velocity
+from training.corpus.cmu import Array
+from webdemo.inference.requests.predict import mean_steps
 
+Predict = Callable[[Array], Array]
+"""(N, past, J, 3) metres → (N, future, J, 3)."""
 ZERO = "zero velocity"
+
+
+@dataclass(frozen=True)
+class Scores:
+    """Of one method on the windows of one action.
+
+    Attributes:
+        windows: how many.
+        error: (future,) mean distance of joints from the truth at each predicted frame, in millimetres, as the
+            papers' tables have it.
+        rms: (future,) the thesis' eq. 2.12: root mean square of the distances over joints and all frames so
+            far, in millimetres.
+        speed: (future,) mean distance per joint and frame (MPJS, eq. 2.13), in millimetres.
+        true_speed: the same of the truth.
+        seam: share of windows whose first predicted step is at most the largest step of the past.
+    """
+
+    windows: int
+    error: Array
+    rms: Array
+    speed: Array
+    true_speed: Array
+    seam: float
+
+
+def score(predict: Predict, windows: Array, past: int, *, batch: int = 512) -> Scores:
+    """Scores a method on windows (N, past + future, J, 3) in metres."""
+    errors, squares, speeds, true_speeds, seams = [], [], [], [], []
+    for start in range(0, len(windows), batch):
+        part = windows[start : start + batch]
+        seen, truth = part[:, :past], part[:, past:]
+        made = predict(seen)
+        distances = np.linalg.norm(made - truth, axis=-1)
+        errors.append(distances.mean(-1))
+        so_far = np.arange(1, distances.shape[1] + 1)
+        squares.append(np.sqrt(np.square(distances).mean(-1).cumsum(-1) / so_far))
+        speeds.append(mean_steps(np.concatenate([seen[:, -1:], made], axis=1)))
+        true_speeds.append(mean_steps(part[:, past - 1 :]))
+        seams.append(speeds[-1][:, 0] <= mean_steps(seen).max(axis=1) + 1e-6)
+    means = (1000 * np.concatenate(x).mean(0) for x in (errors, squares, speeds, true_speeds))
+    return Scores(len(windows), *means, float(np.concatenate(seams).mean()))
+
+
+def zero_velocity(future: int) -> Predict:
+    """The last pose, held (Martinez et al.; thesis, section 2.5.3)."""
+    return lambda past: np.repeat(past[:, -1:], future, axis=1)
+
+
+def average(scores: list[Scores]) -> Scores:
+    """The mean over actions, each with the same weight, as in the papers' tables."""
+    return Scores(
+        sum(s.windows for s in scores),
+        *(np.mean([getattr(s, name) for s in scores], axis=0) for name in ("error", "rms", "speed", "true_speed")),
+        float(np.mean([s.seam for s in scores])),
+    )
+
+
 Table = dict[str, dict[str, Scores]]
 """Scores by method, then by action."""
 
@@ -27,7 +89,7 @@ Table = dict[str, dict[str, Scores]]
 def of_predictor(predictor: Predictor) -> Predict:
     """A predictor as a function of arrays; beyond its own length it goes on recursively."""
 
-    def predict(past: cmu.Array) -> cmu.Array:
+    def predict(past: Array) -> Array:
         tensor = torch.from_numpy(np.ascontiguousarray(past, dtype=np.float32))
         return predictor.recursive(tensor, cmu.FUTURE).numpy()
 
@@ -92,7 +154,7 @@ def markdown(found: Table) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _errors(errors: cmu.Array) -> str:
+def _errors(errors: Array) -> str:
     return " | ".join(f"{errors[h - 1]:.1f}" for h in cmu.HORIZONS)
 
 

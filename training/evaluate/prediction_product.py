@@ -8,18 +8,16 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from motion.cleaning import foot_contacts
 from training.core.shell import add_options, exit_code
-from training.evaluate.prediction import put_into
-from training.evaluate.prediction_scores import Array
+from training.corpus.cmu import Array
+from training.evaluate.prediction import Scores, put_into, score
 from training.trainers.prediction import CorpusWindows
 from webdemo.inference.pipelines.predictor import PredictorPipeline
-from webdemo.inference.requests.predict import mean_steps
 
 FPS = 30
 PAST, FUTURE = FPS, 4 * FPS
@@ -30,34 +28,11 @@ _FEET = (7, 10, 8, 11)
 """Ankle and toe of the left and the right foot, in the order of :func:`foot_contacts`."""
 
 
-@dataclass(frozen=True)
-class Quality:
-    """Of one method.
-
-    Attributes:
-        error: (FUTURE,) mean distance of joints from the truth in millimetres.
-        speed: (FUTURE,) mean distance per joint and frame (MPJS, eq. 2.13), over the truth's.
-        seam: share of windows whose first step is at most the largest of the past.
-        glide: mean speed of standing feet over the floor, in centimetres a second.
-    """
-
-    error: Array
-    speed: Array
-    seam: float
-    glide: float
-
-
-def measure(predict: Callable[[Array], Array], windows: Array) -> Quality:
-    """Scores a method on windows (N, PAST + FUTURE, 22, 3) in metres."""
-    past, truth = windows[:, :PAST], windows[:, PAST:]
-    made = predict(past)
-    own, real = (mean_steps(np.concatenate([past[:, -1:], x], axis=1)) for x in (made, truth))
-    return Quality(
-        1000 * np.linalg.norm(made - truth, axis=-1).mean((0, 2)),
-        own.mean(0) / real.mean(0),
-        float(np.mean(own[:, 0] <= mean_steps(past).max(axis=1) + 1e-6)),
-        float(np.mean([glide(motion) for motion in made])),
-    )
+def measure(predict: Callable[[Array], Array], windows: Array) -> tuple[Scores, float]:
+    """Of a method on windows (N, PAST + FUTURE, 22, 3) in metres: its scores, and how standing feet glide in cm/s."""
+    made = predict(windows[:, :PAST])
+    scores = score(lambda _: made, windows, PAST, batch=len(windows))
+    return scores, float(np.mean([glide(motion) for motion in made]))
 
 
 def glide(positions: Array) -> float:
@@ -72,23 +47,23 @@ def glide(positions: Array) -> float:
     return float(100 * FPS * moves[both].mean()) if both.any() else 0.0
 
 
-def markdown(found: dict[str, Quality], count: int) -> str:
+def markdown(found: dict[str, tuple[Scores, float]]) -> str:
     """The scores by method as a table."""
+    speeds = {name: scores.speed / scores.true_speed for name, (scores, _) in found.items()}
+    methods = [name for name in found if name != TRUTH]
     head = " | ".join(f"{frame / FPS:.2g} s" for frame in AHEAD)
-    lines = [f"| {count} windows | {head} |", "|---|" + "---:|" * len(AHEAD)]
-    methods = {name: quality for name, quality in found.items() if name != TRUTH}
-    for name, quality in methods.items():
-        lines.append(f"| {name}, mm | {' | '.join(f'{quality.error[f - 1]:.0f}' for f in AHEAD)} |")
-    for name, quality in methods.items():
-        if quality.speed.any():
-            speeds = " | ".join(f"{quality.speed[f - 1]:.2f}" for f in AHEAD)
-            lines.append(f"| {name}, speed over the truth's | {speeds} |")
+    lines = [f"| {found[TRUTH][0].windows} windows | {head} |", "|---|" + "---:|" * len(AHEAD)]
+    for name in methods:
+        lines.append(f"| {name}, mm | {' | '.join(f'{found[name][0].error[f - 1]:.0f}' for f in AHEAD)} |")
+    for name in methods:
+        if speeds[name].any():
+            ratios = " | ".join(f"{speeds[name][f - 1]:.2f}" for f in AHEAD)
+            lines.append(f"| {name}, speed over the truth's | {ratios} |")
     lines += ["", f"|  | {' | '.join(found)} |", "|---|" + "---:|" * len(found)]
-    ranges = " | ".join(f"{q.speed.min():.2f} to {q.speed.max():.2f}" for q in found.values())
-    lines.append(f"| slowest and fastest step over the truth's | {ranges} |")
     for label, values in (
-        ("first step within the past's largest", [f"{q.seam:.1%}" for q in found.values()]),
-        ("standing feet glide, cm/s", [f"{q.glide:.1f}" for q in found.values()]),
+        ("slowest and fastest step over the truth's", [f"{s.min():.2f} to {s.max():.2f}" for s in speeds.values()]),
+        ("first step within the past's largest", [f"{scores.seam:.1%}" for scores, _ in found.values()]),
+        ("standing feet glide, cm/s", [f"{glides:.1f}" for _, glides in found.values()]),
     ):
         lines.append(f"| {label} | {' | '.join(values)} |")
     return "\n".join(lines) + "\n"
@@ -112,7 +87,7 @@ def main(argv: list[str] | None = None) -> int:
         for name in ("still", *(options.model or ["motion-mlp"])):
             predictor = PredictorPipeline(None if name == "still" else options.weights / name)
             found[name] = measure(lambda past, own=predictor: own.predict(past, FUTURE), windows)
-        table = markdown(found, len(windows))
+        table = markdown(found)
         if options.table:
             put_into(options.table, table, name="product")
         print(table)

@@ -11,8 +11,7 @@ import pytest
 from models.predictors import load_predictor
 from motion import InputError
 from training.corpus import cmu
-from training.evaluate.prediction import evaluate, main, markdown, of_predictor, put_into
-from training.evaluate.prediction_scores import score, zero_velocity
+from training.evaluate.prediction import evaluate, main, markdown, of_predictor, put_into, score, zero_velocity
 from webdemo.inference.method import WEIGHTS
 
 REFERENCE = Path(__file__).parents[2] / "data" / "reference"

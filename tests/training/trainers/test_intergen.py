@@ -13,8 +13,6 @@ from safetensors import SafetensorError
 from safetensors.torch import load_file
 
 from models.intergen.compact import load_folder
-from models.intergen.words import WordDenoiser
-from models.motion_tokens import decode
 from motion import InputError
 from tests.training.trainers.runs import SETTINGS, begin, prepared, take, write_corpus
 from training import export, prepare
@@ -83,15 +81,6 @@ def test_init_begins_with_the_averaged_weights_of_another_run(scenes: Path, trai
         begin(scenes, tmp_path / "b", replace(SETTINGS, latent_dim=64), init=trained / "last.safetensors")
 
 
-def test_init_is_an_option_of_the_command(scenes: Path, trained: Path, tmp_path: Path) -> None:
-    words = ["--scenes", str(scenes), "--out", str(tmp_path), "--init", str(trained / "last.safetensors")]
-    assert intergen.main([*words, *SIZES, "--steps", "0"]) == 0
-    begun, other = load_file(tmp_path / "last.safetensors"), load_file(trained / "last.safetensors")
-    key = next(key for key in begun if key.startswith("model/denoiser"))
-    assert torch.equal(begun[key], other[key.replace("model/", "ema/")])
-    assert (tmp_path / "log.jsonl").exists()
-
-
 def test_export_ships_what_the_engine_runs(scenes: Path, trained: Path, tmp_path: Path) -> None:
     card = tmp_path / "card.json"
     card.write_text(json.dumps({"summary": "a test"}))
@@ -109,18 +98,6 @@ def test_export_ships_what_the_engine_runs(scenes: Path, trained: Path, tmp_path
     assert json.loads((out / "captions.json").read_text()) == ["One person waves the left hand.", "They shake hands."]
 
 
-def test_a_scene_comes_back_from_its_control_points(scenes: Path) -> None:
-    made, corpus = prepare.load(scenes), np.load(scenes.parent / "corpus" / "motions.npy")
-    positions, _ = decode(made.scene(made.rows[0]), made.layout)
-    error = np.abs(positions.numpy() - corpus[: positions.shape[1]].swapaxes(0, 1)).max()
-    assert error < 0.005, f"{1000 * error:.1f} mm"
-
-
-def corpus_without_scenes(folder: Path) -> None:
-    write_corpus(folder)
-    (folder / "index.json").write_text("[]")
-
-
 def corpus_cut_short(folder: Path) -> None:
     write_corpus(folder)
     motions = np.load(folder / "motions.npy")
@@ -133,19 +110,12 @@ def corpus_of_one_person(folder: Path) -> None:
     np.save(folder / "motions.npy", motions[:, 0])
 
 
-def corpus_with_a_broken_index(folder: Path) -> None:
-    write_corpus(folder)
-    (folder / "index.json").write_text('[{"start": 0,')
-
-
 @pytest.mark.parametrize(
     ("make", "says"),
     [
         (lambda folder: None, "holds no readable corpus"),
-        (corpus_without_scenes, "no scene of a second or more"),
         (corpus_cut_short, "more frames than there are"),
         (corpus_of_one_person, "another kind of data"),
-        (corpus_with_a_broken_index, "holds no readable corpus"),
     ],
 )
 def test_bad_corpus_is_refused_in_one_line(
@@ -243,38 +213,3 @@ def test_grown_from_a_shipped_network_the_first_loss_is_the_same(scenes: Path, t
         {k: v.item() for k, v in run.terms(batch, t, noise, run.hold(known)).items()} for run in (old_run, new_run)
     ]
     assert found[1] == pytest.approx(found[0], rel=0.02)  # in bfloat16
-
-
-def test_a_run_can_be_given_threads(scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = []
-    monkeypatch.setattr(torch, "set_num_threads", asked.append)
-    words = ["--scenes", str(scenes), "--out", str(tmp_path), *SIZES, "--steps", "0", "--threads", "1"]
-    assert intergen.main(words) == 0
-    assert asked == [1]
-
-
-def test_a_run_can_be_compiled(scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = []
-    monkeypatch.setattr(torch.nn.Module, "compile", lambda self, **options: asked.append((self, options)))
-    words = ["--scenes", str(scenes), "--out", str(tmp_path), *SIZES, "--steps", "0"]
-    assert intergen.main(words) == 0 and not asked
-    assert intergen.main([*words, "--compile"]) == 0
-    ((network, options),) = asked
-    assert isinstance(network, WordDenoiser) and options == {"dynamic": True}
-
-
-def test_export_without_a_run_is_refused_in_one_line(
-    scenes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out = tmp_path / "weights"
-    assert export.main(["--run", str(tmp_path), "--scenes", str(scenes), "--out", str(out)]) == 2
-    assert "missing or damaged" in capsys.readouterr().err
-    assert not out.exists()
-
-
-@pytest.mark.parametrize("main", [prepare.main, intergen.main, export.main])
-def test_help_is_printed(main: Callable[[list[str]], int], capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["--help"])
-    assert ended.value.code == 0
-    assert "--out" in capsys.readouterr().out

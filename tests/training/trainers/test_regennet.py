@@ -136,19 +136,6 @@ def test_the_interaction_loss_is_that_of_the_paper() -> None:
     assert interaction_loss(last, reactor, actor, mask) == 0, "the last frame is not real"
 
 
-@pytest.mark.parametrize(
-    ("wrong", "says"), [({"batch": 0}, "batch is 0"), ({"num_heads": 3}, "multiple"), ({"window": 0}, "window")]
-)
-def test_wrong_settings_are_refused_in_words(wrong: dict, says: str) -> None:
-    with pytest.raises(InputError, match=says):
-        replace(SETTINGS, **wrong)
-
-
-def test_too_few_scenes_are_refused(scenes: Scenes, words: Path, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="do not fill a batch"):
-        Trainer(scenes, replace(SETTINGS, batch=500), tmp_path, words=words)
-
-
 def test_init_begins_with_a_shipped_network(scenes: Scenes, words: Path, tmp_path: Path) -> None:
     trained = take(Trainer(scenes, SETTINGS, tmp_path / "a", words=words), 2)
     save_network(tmp_path / "shipped", trained.ema)
