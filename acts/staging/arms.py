@@ -21,7 +21,7 @@ from motion.vectors import unit
 
 from .gestures import GESTURES, hands_of, wrist
 from .places import Way2D
-from .poses import UPRIGHT, upright
+from .poses import JOINT, UPRIGHT, upright
 from .score import SIDES, Move, Score
 from .window import Frames, KnownFrames, Stretch, late_by
 
@@ -104,13 +104,13 @@ def raised(side: str) -> Array:
 
 def directions(poses: Array, side: str) -> Array:
     """(…, 2, 3) directions of the upper arm and the forearm in poses (…, 22, 3)."""
-    shoulder, elbow, hand = (poses[..., SMPL22.index(f"{side}_{j}"), :] for j in ("shoulder", "elbow", "wrist"))
+    shoulder, elbow, hand = (poses[..., JOINT[f"{side}_{j}"], :] for j in ("shoulder", "elbow", "wrist"))
     return np.stack([unit(elbow - shoulder), unit(hand - elbow)], axis=-2)
 
 
 def hangs(arm: Array) -> bool:
     """True for an arm that hangs, by the directions (2, 3) of its bones."""
-    lengths = [SMPL22.bone_lengths[SMPL22.index(f"left_{joint}")] for joint in ("elbow", "wrist")]
+    lengths = [SMPL22.bone_lengths[JOINT[f"left_{joint}"]] for joint in ("elbow", "wrist")]
     return float(np.dot(lengths, np.asarray(arm)[:, 1])) < -_HANGS
 
 
@@ -129,14 +129,14 @@ def _wandering(seconds: Array, out: float) -> Array:
 
 def _shoulder(side: str) -> Array:
     pose = upright(np.zeros(2), 0.0)
-    return np.asarray(pose[SMPL22.index(f"{side}_shoulder")] - pose[0])
+    return np.asarray(pose[JOINT[f"{side}_shoulder"]] - pose[0])
 
 
 def _directions(side: str, goal: Array, pole: tuple[float, float, float]) -> Array:
     """(N, 2, 3) directions of an arm's bones whose wrist is at its goal (N, 3) beside the pelvis."""
     out = 1.0 if side == "left" else -1.0
     shoulder = np.broadcast_to(_shoulder(side), goal.shape)
-    upper, lower = (SMPL22.bone_lengths[SMPL22.index(f"{side}_{joint}")] for joint in ("elbow", "wrist"))
+    upper, lower = (SMPL22.bone_lengths[JOINT[f"{side}_{joint}"]] for joint in ("elbow", "wrist"))
     along = unit(goal - shoulder)
     aside = np.broadcast_to(unit(np.array(pole) * [out, 1.0, 1.0]), goal.shape)
     elbow, end = solve_two_bones(
@@ -156,7 +156,7 @@ def _turned(goal: Array, before: Array, up: Array, down: Array, side: str) -> Ar
     turned = (1 - np.sum(rest * goal, axis=-1, keepdims=True)) / 2
     over = unit((rest + goal) / 2 + turned * _OVER)
     bones = _between(_between(rest, over, share), _between(over, goal, share), share)
-    upper, lower = (SMPL22.bone_lengths[SMPL22.index(f"{side}_{joint}")] for joint in ("elbow", "wrist"))
+    upper, lower = (SMPL22.bone_lengths[JOINT[f"{side}_{joint}"]] for joint in ("elbow", "wrist"))
     elbow = _shoulder(side) + upper * bones[:, 0]
     return np.stack([elbow, elbow + lower * bones[:, 1]], axis=1)
 
@@ -224,9 +224,9 @@ def outer_hand_parts(score: Score, moves: Sequence[Move], stretch: Stretch) -> I
         if who in score.gestures:
             continue
         person, outer = "ab".index(who), "right" if side == "left" else "left"
-        turns = np.stack([heading_matrix(angle) for angle in stretch.course(person).headings[at]])
+        turns = heading_matrix(stretch.course(person).headings[at])
         places = wrist("linked", outer, at / FPS, np.zeros((len(at), 3)))
-        joints = [SMPL22.index(f"{outer}_wrist")]
+        joints = [JOINT[f"{outer}_wrist"]]
         yield _known(person, joints, at, np.einsum("nij,nj->ni", turns, places)[:, None], stretch)
 
 
@@ -250,7 +250,7 @@ def _arms(
         late: seconds by which they are late.
     """
     own, other = stretch.course(person), stretch.course(1 - person)
-    turns = np.stack([heading_matrix(angle) for angle in own.headings[at]])
+    turns = heading_matrix(own.headings[at])
     line = np.insert(other.places[at] - own.places[at], 1, 0.0, axis=1)
     line /= np.linalg.norm(line, axis=1, keepdims=True).clip(min=1e-6)
     towards = np.einsum("nji,nj->ni", turns, line)
@@ -258,7 +258,7 @@ def _arms(
     start = max(int(at[0]) - FIRST, 0)
     seconds, length = (at - start) / FPS - late, (stretch.frames - start) / FPS - late
     for side in SIDES:
-        wrist_joint, elbow_joint = SMPL22.index(f"{side}_wrist"), SMPL22.index(f"{side}_elbow")
+        wrist_joint, elbow_joint = JOINT[f"{side}_wrist"], JOINT[f"{side}_elbow"]
         was = raised(side) if gesture.gesture == "lowers" else hanging(side)
         if before is not None:
             was = directions(before @ heading_matrix(float(heading(before[None])[0])), side)
@@ -282,7 +282,7 @@ def _there(places: Array, frames: Frames) -> Frames:
 
 def _known(person: int, joints: Sequence[int], frames: Frames, places: Array, stretch: Stretch) -> KnownFrames:
     """Joints (N, joints, 3) of a person at some frames of a beat."""
-    poses = np.zeros((len(frames), SMPL22.num_joints, 3))
+    poses = np.zeros((len(frames), len(JOINT), 3))
     poses[:, list(joints)] = places
     return stretch.known(person, frames, poses, joints)
 

@@ -12,18 +12,16 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from motion import FPS, SMPL22
-from motion.kinematics import forward_kinematics
+from motion import FPS
 from motion.limbs import solve_two_bones
 from motion.skeleton import ARMS, LEGS
 from motion.smoothing import minimum_jerk
 from motion.transforms import facing, heading_matrix
 
-from .poses import SOLE, STANCE, TOES, about
+from .poses import BOTH_SIDES, JOINT, SOLE, STANCE, TOES, Turns, about, poses_of
 
 Array = NDArray[np.floating]
 
-_SIDES = (("left", 1.0), ("right", -1.0))
 _CLEAR = {
     "foot": SOLE,
     "ankle": 0.07,
@@ -41,7 +39,7 @@ _CLEAR = {
     "head": 0.11,
 }
 """Metres from a joint to the skin below it, on which a body lies or stands."""
-_CLEARANCES = np.array([_CLEAR[name.split("_")[-1]] for name in SMPL22.joint_names])
+_CLEARANCES = np.array([_CLEAR[name.split("_")[-1]] for name in JOINT])
 _CROWN, _OVER_CROWN = 0.14, 0.02
 """Metres from the joint of the head to its top, and of hair over it."""
 _SHARED = 0.008
@@ -66,10 +64,10 @@ def grounded_poses(angles: Mapping[str, Array], place: Array, angle: float) -> A
     Returns:
         (N, 22, 3) metres, one pose a frame.
     """
-    poses = forward_kinematics(_rotations(angles, angle), np.zeros((len(angles["pitch"]), 3)))
+    poses = poses_of(_turns(angles, angle), len(angles["pitch"]))
     gaps = _gaps(poses)
-    for side, _ in _SIDES:
-        gaps[:, [SMPL22.index(f"{side}_{name}") for name in _LEG]] += angles[f"{side}_free"][:, None]
+    for side, _ in BOTH_SIDES:
+        gaps[:, [JOINT[f"{side}_{name}"] for name in _LEG]] += angles[f"{side}_free"][:, None]
     height = -gaps.min(axis=1)
     root = _rolled(poses, gaps + height[:, None])
     root[:, 1] = height
@@ -89,42 +87,29 @@ def _evened(values: Array) -> Array:
     return np.asarray(scipy.ndimage.gaussian_filter1d(values, _EVEN, axis=0, mode="nearest"))
 
 
-def _rotations(angles: Mapping[str, Array], angle: float) -> Array:
-    """Rotations (N, 22, 3, 3) of the joints against their parents."""
-    turns = np.tile(np.eye(3), (len(angles["pitch"]), SMPL22.num_joints, 1, 1))
-    turns[:, 0] = heading_matrix(angle) @ _yawed(angles["yaw"])
-    turns[:, 0] = turns[:, 0] @ about(2, -angles["roll"]) @ about(0, angles["pitch"])
-    trunk = about(2, -angles["lean"] / 3) @ about(0, angles["spine"] / 3) @ _yawed(angles["twist"] / 3)
-    for name in ("spine1", "spine2", "spine3"):
-        turns[:, SMPL22.index(name)] = trunk
-    head = about(0, angles["neck"] / 2) @ about(2, -angles["tilt"] / 2) @ _yawed(angles["look"] / 2)
-    for name in ("neck", "head"):
-        turns[:, SMPL22.index(name)] = head
-    for side, sign in _SIDES:
+def _turns(angles: Mapping[str, Array], angle: float) -> Turns:
+    """Rotations (N, 3, 3) of the joints against their parents."""
+    trunk = about(2, -angles["lean"] / 3) @ about(0, angles["spine"] / 3) @ heading_matrix(angles["twist"] / 3)
+    head = about(0, angles["neck"] / 2) @ about(2, -angles["tilt"] / 2) @ heading_matrix(angles["look"] / 2)
+    pelvis = heading_matrix(angle) @ heading_matrix(angles["yaw"])
+    turns: Turns = {"pelvis": pelvis @ about(2, -angles["roll"]) @ about(0, angles["pitch"])}
+    turns |= dict.fromkeys(("spine1", "spine2", "spine3"), trunk) | dict.fromkeys(("neck", "head"), head)
+    for side, sign in BOTH_SIDES:
         own = {name.removeprefix(f"{side}_"): value for name, value in angles.items() if side in name}
-        spread, turned = about(2, sign * own["out"]), _yawed(sign * own["turnout"])
+        spread, turned = about(2, sign * own["out"]), heading_matrix(sign * own["turnout"])
         hangs = about(2, -sign * (np.pi / 2 - own["side"]))
-        found = {
-            "hip": about(0, -own["hip"]) @ spread @ turned,
-            "knee": about(0, own["knee"]),
-            "ankle": about(0, own["ankle"]),
-            "collar": about(2, sign * own["shrug"]),
-            "shoulder": about(0, -own["arm"]) @ hangs @ about(0, own["rotate"]),
-            "elbow": _yawed(-sign * own["elbow"]),
-        }
-        for name, turn in found.items():
-            turns[:, SMPL22.index(f"{side}_{name}")] = turn
+        turns[f"{side}_hip"] = about(0, -own["hip"]) @ spread @ turned
+        turns[f"{side}_knee"] = about(0, own["knee"])
+        turns[f"{side}_ankle"] = about(0, own["ankle"])
+        turns[f"{side}_collar"] = about(2, sign * own["shrug"])
+        turns[f"{side}_shoulder"] = about(0, -own["arm"]) @ hangs @ about(0, own["rotate"])
+        turns[f"{side}_elbow"] = heading_matrix(-sign * own["elbow"])
     return turns
-
-
-def _yawed(values: Array) -> Array:
-    """(N, 3, 3) turns about the vertical axis."""
-    return np.stack([heading_matrix(float(value)) for value in values])
 
 
 def _gaps(poses: Array) -> Array:
     """(N, 23) metres of the skin at each joint, and of the top of the head, over the height of the pelvis."""
-    neck, head = (poses[:, SMPL22.index(name)] for name in ("neck", "head"))
+    neck, head = (poses[:, JOINT[name]] for name in ("neck", "head"))
     up = (head - neck)[:, 1] / np.linalg.norm(head - neck, axis=1).clip(min=1e-6)
     crown = head[:, 1] + _CROWN * up - _OVER_CROWN
     return np.concatenate([poses[..., 1] - _CLEARANCES, crown[:, None]], axis=1)
@@ -137,7 +122,7 @@ def _rolled(poses: Array, over: Array) -> Array:
         poses: (N, 22, 3) metres from the pelvis.
         over: (N, 23) metres of each joint, and the top of the head, over the lowest one.
     """
-    points = np.concatenate([poses, poses[:, SMPL22.index("head")][:, None]], axis=1)
+    points = np.concatenate([poses, poses[:, JOINT["head"]][:, None]], axis=1)
     weights = np.exp(-over / _SHARED)
     shared = weights[:-1] * weights[1:]
     steps = np.einsum("np,npc->nc", shared, np.diff(points, axis=0)) / shared.sum(axis=1, keepdims=True)

@@ -18,7 +18,7 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from acts.shapes import Figure
-from motion import FPS, SMPL22
+from motion import FPS
 from motion.smoothing import smoothstep
 
 from .figure_floor import grounded_poses
@@ -239,7 +239,7 @@ def _figure(score: Score, person: int, beat: Stretch, first: int, seed: int) -> 
     late = 0.0 if together else late_by(seed, person, beat.frames)
     count = beat.frames - first
     if count < SHORTEST:
-        return np.zeros(0, dtype=int), np.zeros((0, SMPL22.num_joints, 3))
+        return np.zeros(0, dtype=int), np.zeros((0, len(ALL), 3))
     figure = figure.model_copy(update={"late": figure.late + late})
     poses = figured(figure, beat.halt(person), angle, count, seed + person)
     frames = np.union1d(np.arange(0, count, OFTEN), [count - 1])

@@ -16,13 +16,12 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion import FPS, SMPL22
-from motion.kinematics import forward_kinematics
 from motion.limbs import solve_two_bones
 from motion.skeleton import LEGS
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading_matrix
 
-from .poses import HANDS, SOLE, STANDS, about, all_but
+from .poses import BOTH_SIDES, HANDS, JOINT, SOLE, STANDS, Turns, about, all_but, poses_of
 from .score import Score
 from .window import OFTEN, SETTLES, Part, Stretch
 
@@ -36,7 +35,6 @@ _SWING, _LIFT = 0.3, 0.12
 """Radians of a thigh or an arm to either side of the vertical, and by which a knee is bent more as it comes forward."""
 _LEVEL, _TALL = 1.35, 0.08
 """Radians by which the trunk of a person leans who crawls, and who walks on the knees."""
-_SIDES = (("left", 1.0), ("right", -1.0))
 
 
 def low_gait(gait: str, places: Array, headings: Array) -> Array:
@@ -52,7 +50,7 @@ def low_gait(gait: str, places: Array, headings: Array) -> Array:
     """
     steps = np.linalg.norm(np.diff(places, axis=0, prepend=places[:1]), axis=1)
     phase = 2 * math.pi * np.cumsum(steps) / CYCLE
-    poses = forward_kinematics(GAITS[gait](phase, headings), np.zeros((len(places), 3)))
+    poses = poses_of(GAITS[gait](phase, headings), len(places))
     poses += np.insert(places, 1, SOLE - poses[..., 1].min(axis=1), axis=1)[:, None]
     return poses
 
@@ -62,40 +60,38 @@ def on_all_fours(place: Array, angle: float) -> Array:
     return low_gait("crawls", np.asarray(place, dtype=float)[None], np.array([angle]))[0]
 
 
-def _crawls(phase: Array, headings: Array) -> Array:
-    """Rotations (N, 22, 3, 3) on hands and knees; a hand and the knee of the other side move together."""
-    turns = _on_knees(phase, headings, _LEVEL)
-    for side, sign in _SIDES:
+def _crawls(phase: Array, headings: Array) -> Turns:
+    """On hands and knees; a hand and the knee of the other side move together."""
+    turns: Turns = _on_knees(phase, headings, _LEVEL) | {"neck": about(0, -0.5)}
+    for side, sign in BOTH_SIDES:
         arm = about(0, math.pi / 2 - _LEVEL + _SWING * np.sin(phase + (math.pi if sign > 0 else 0.0)))
-        turns[:, SMPL22.index(f"{side}_shoulder")] = arm @ heading_matrix(-sign * 1.5)
-    turns[:, SMPL22.index("neck")] = about(0, -0.5)
+        turns[f"{side}_shoulder"] = arm @ heading_matrix(-sign * 1.5)
     return turns
 
 
-def _kneels(phase: Array, headings: Array) -> Array:
-    """Rotations (N, 22, 3, 3) on the knees, the trunk upright and the arms hanging."""
-    turns = _on_knees(phase, headings, _TALL)
-    for side, sign in _SIDES:
-        turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * 1.35)
-        turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * 0.4)
+def _kneels(phase: Array, headings: Array) -> Turns:
+    """On the knees, the trunk upright and the arms hanging."""
+    turns: Turns = _on_knees(phase, headings, _TALL)
+    for side, sign in BOTH_SIDES:
+        turns[f"{side}_shoulder"] = about(2, -sign * 1.35)
+        turns[f"{side}_elbow"] = heading_matrix(-sign * 0.4)
     return turns
 
 
-def _on_knees(phase: Array, headings: Array, lean: float) -> Array:
-    """Rotations (N, 22, 3, 3) of a person whose thighs swing about the vertical and whose shins lie on the floor."""
-    turns = np.tile(np.eye(3), (len(phase), SMPL22.num_joints, 1, 1))
-    turns[:, 0] = np.stack([heading_matrix(float(angle)) for angle in headings]) @ about(0, lean)
-    for side, sign in _SIDES:
+def _on_knees(phase: Array, headings: Array, lean: float) -> Turns:
+    """Thighs that swing about the vertical and shins that lie on the floor."""
+    turns: Turns = {"pelvis": heading_matrix(headings) @ about(0, lean)}
+    for side, sign in BOTH_SIDES:
         own = phase + (0.0 if sign > 0 else math.pi)
         swing, lift = _SWING * np.sin(own), _LIFT * np.maximum(-np.cos(own), 0.0)
-        turns[:, SMPL22.index(f"{side}_hip")] = about(0, swing - lift - lean)
-        turns[:, SMPL22.index(f"{side}_knee")] = about(0, math.pi / 2 - swing + lift)
-        turns[:, SMPL22.index(f"{side}_ankle")] = about(0, np.full(len(phase), 0.95))
+        turns[f"{side}_hip"] = about(0, swing - lift - lean)
+        turns[f"{side}_knee"] = about(0, math.pi / 2 - swing + lift)
+        turns[f"{side}_ankle"] = about(0, 0.95)
     return turns
 
 
-GAITS: Mapping[str, Callable[[Array, Array], Array]] = {"crawls": _crawls, "on the knees": _kneels}
-"""The gaits: rotations of the joints, of the phase (N,) in radians and of the heading (N,)."""
+GAITS: Mapping[str, Callable[[Array, Array], Turns]] = {"crawls": _crawls, "on the knees": _kneels}
+"""The gaits: rotations of joints, of the phase (N,) in radians and of the heading (N,)."""
 
 
 def low_gait_parts(gait: str, person: int, down: Collection[int], stretch: Stretch) -> list[Part]:
@@ -115,8 +111,6 @@ def low_gait_parts(gait: str, person: int, down: Collection[int], stretch: Stret
     return [stretch.known(person, frames, poses[frames])] if len(frames) else []
 
 
-_FEET = (("left", 1.0, 0.0), ("right", -1.0, 0.5))
-"""Sides with the sign of their x and the share of a cycle by which their foot is ahead."""
 _SWINGS = 0.43
 """Share of a cycle in which a foot swings."""
 _TURNED = 0.2
@@ -135,8 +129,8 @@ _ROUND = 5.0
 """Frames over which a way that is given now and then is rounded."""
 _EVEN = 4.0
 """Frames over which the height of the hips is evened out."""
-_TOE = SMPL22.offsets[SMPL22.index("left_foot")]
-_LEG = float(SMPL22.bone_lengths[SMPL22.index("left_knee")] + SMPL22.bone_lengths[SMPL22.index("left_ankle")])
+_TOE = SMPL22.offsets[JOINT["left_foot"]]
+_LEG = float(SMPL22.bone_lengths[JOINT["left_knee"]] + SMPL22.bone_lengths[JOINT["left_ankle"]])
 
 
 @dataclass(frozen=True)
@@ -192,8 +186,8 @@ def stepped(gait: str, places: Array, headings: Array) -> Array:
     cycles = max(round(float(gone[-1]) / steps.length), 1) / 2 if gone[-1] > steps.length / 2 else 0.0
     phase = cycles * gone / max(float(gone[-1]), 1e-6)
     feet = [_foot(steps, side, phase, cycles, places, headings) for side in range(2)]
-    poses = forward_kinematics(_trunk(steps, phase, headings), np.zeros((len(places), 3)))
-    ankles = [_ankle(steps, toe, sign, headings) for toe, (_, sign, _) in zip(feet, _FEET, strict=True)]
+    poses = poses_of(_trunk(steps, phase, headings), len(places))
+    ankles = [_ankle(steps, toe, sign, headings) for toe, (_, sign) in zip(feet, BOTH_SIDES, strict=True)]
     poses += np.insert(places, 1, _height(steps, poses, places, ankles), axis=1)[:, None]
     ahead = np.stack([np.sin(headings), np.zeros(len(headings)), np.cos(headings)], axis=1)
     for (hip, knee, ankle, toe), goal, foot in zip(LEGS, ankles, feet, strict=True):
@@ -207,7 +201,7 @@ def stepped(gait: str, places: Array, headings: Array) -> Array:
 
 def _foot(steps: Gait, side: int, phase: Array, cycles: float, places: Array, headings: Array) -> Array:
     """The way (N, 3) of a toe from footprint to footprint."""
-    _, sign, ahead = _FEET[side]
+    sign, ahead = BOTH_SIDES[side][1], side / 2  # the right foot is half a cycle ahead
     own = phase + ahead
     number, share = np.floor(own + 1e-9), own - np.floor(own + 1e-9)
     late = steps.short / (2 * steps.length) if sign > 0 else 0.0
@@ -236,7 +230,7 @@ def _foot(steps: Gait, side: int, phase: Array, cycles: float, places: Array, he
 def _ankle(steps: Gait, toe: Array, sign: float, headings: Array) -> Array:
     """(N, 3) the ankle over a toe whose heel is up."""
     sole = about(0, steps.heels) @ (_TOE * [sign, 1.0, 1.0])
-    return toe - np.stack([heading_matrix(float(angle)) @ sole for angle in headings])
+    return toe - heading_matrix(headings) @ sole
 
 
 def _height(steps: Gait, poses: Array, places: Array, ankles: list[Array]) -> Array:
@@ -251,23 +245,19 @@ def _height(steps: Gait, poses: Array, places: Array, ankles: list[Array]) -> Ar
     return np.asarray(scipy.ndimage.gaussian_filter1d(lowest, _EVEN, mode="nearest") - steps.sinks)
 
 
-def _trunk(steps: Gait, phase: Array, headings: Array) -> Array:
-    """Rotations (N, 22, 3, 3) of a trunk that leans over the leg that hurts, and of arms that swing a little."""
-    turns = np.tile(np.eye(3), (len(phase), SMPL22.num_joints, 1, 1))
+def _trunk(steps: Gait, phase: Array, headings: Array) -> Turns:
+    """A trunk that leans over the leg that hurts, and arms that swing a little."""
     cycle = 2 * np.pi * phase
     over = 0.5 + 0.5 * np.cos(cycle - np.pi * _SWINGS)  # 1 while the left foot swings
     over *= minimum_jerk(np.arange(len(phase)) / 12)
-    turns[:, 0] = np.stack([heading_matrix(float(angle)) for angle in headings])
-    lean = about(0, np.full(len(phase), steps.pitch / 2)) @ about(2, steps.lurch * over / 2)
-    for name in ("spine1", "spine2"):
-        turns[:, SMPL22.index(name)] = lean
-    turns[:, SMPL22.index("neck")] = about(2, -0.5 * steps.lurch * over)
-    for side, sign, _ in _FEET:
-        swing = 0.12 * sign * np.sin(cycle)
-        turns[:, SMPL22.index(f"{side}_shoulder")] = about(0, swing) @ about(2, -sign * STANDS["shoulder"])
-        turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * steps.arms)
-        turns[:, SMPL22.index(f"{side}_hip")] = about(0, np.full(len(phase), -0.2))
-        turns[:, SMPL22.index(f"{side}_knee")] = about(0, np.full(len(phase), 0.4))
+    lean = about(0, steps.pitch / 2) @ about(2, steps.lurch * over / 2)
+    neck = about(2, -0.5 * steps.lurch * over)
+    turns: Turns = {"pelvis": heading_matrix(headings), "spine1": lean, "spine2": lean, "neck": neck}
+    for side, sign in BOTH_SIDES:
+        turns[f"{side}_shoulder"] = about(0, 0.12 * sign * np.sin(cycle)) @ about(2, -sign * STANDS["shoulder"])
+        turns[f"{side}_elbow"] = heading_matrix(-sign * steps.arms)
+        turns[f"{side}_hip"] = about(0, -0.2)
+        turns[f"{side}_knee"] = about(0, 0.4)
     return turns
 
 

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acts.shapes import Gesture
-from motion import SMPL22
 
-from .poses import upright
+from .poses import JOINT, upright
 from .score import SIDES
 
 Array = NDArray[np.floating]
@@ -167,9 +166,9 @@ def wrist(name: str, side: str, seconds: Array, towards: Array) -> Array:
     """
     stands, stroke = upright(np.zeros(2), 0.0), GESTURES[name]
     if name == "lowers":
-        return np.tile(stands[SMPL22.index(f"{side}_wrist")] - stands[0], (len(seconds), 1))
+        return np.tile(stands[JOINT[f"{side}_wrist"]] - stands[0], (len(seconds), 1))
     way = stroke.way(1.0 if side == "left" else -1.0, seconds) + _TOWARDS.get(name, 0.0) * towards
     if name == "swings":
         angle = _SWUNG * np.sin(2 * np.pi * stroke.rate * np.asarray(seconds))
         way += _PENDULUM * np.stack([0.0 * angle, -np.cos(angle), np.sin(angle)], axis=1)
-    return way + (stands[SMPL22.index(f"{side}_shoulder")] - stands[0] if stroke.from_shoulder else 0.0)
+    return way + (stands[JOINT[f"{side}_shoulder"]] - stands[0] if stroke.from_shoulder else 0.0)

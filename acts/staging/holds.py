@@ -11,9 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22
-
-from .poses import TRUNK, UPRIGHT, Pose, bending, upright
+from .poses import JOINT, TRUNK, UPRIGHT, Pose, bending, upright
 from .window import KnownFrames, Stretch
 
 Array = NDArray[np.floating]
@@ -48,8 +46,8 @@ _NEARLY = 0.2
 """Metres more than in a hold at which two who begin in it stand."""
 _REACHES = 12
 """Frames in which a hand is brought to the hold."""
-_HIPS = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
-_WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
+_HIPS = [JOINT["left_hip"], JOINT["right_hip"]]
+_WRISTS = [JOINT["left_wrist"], JOINT["right_wrist"]]
 _OFTEN = 4
 """Frames between two given places of hands that pull."""
 _HELD = 45
@@ -62,8 +60,8 @@ _LEANS = np.linspace(0.1, 1.2, 12)
 """Radians by which somebody leans forward who pulls the other up: as little as gets the hands together."""
 _GAP = 0.03
 """Metres from where two hands meet to each wrist."""
-_SHOULDERS = {side: SMPL22.index(f"{side}_shoulder") for side in ("left", "right")}
-_WRIST = {side: SMPL22.index(f"{side}_wrist") for side in ("left", "right")}
+_SHOULDERS = {side: JOINT[f"{side}_shoulder"] for side in ("left", "right")}
+_WRIST = {side: JOINT[f"{side}_wrist"] for side in ("left", "right")}
 
 
 def raised(places: Array) -> Array:
@@ -137,7 +135,7 @@ def twirl_parts(stretch: Stretch) -> list[KnownFrames]:
     if not len(at):
         return []
     hands = raised(np.stack([course.places[at] for course in courses]))
-    wrist = SMPL22.index("right_wrist")
+    wrist = JOINT["right_wrist"]
     parts = []
     for person, course in enumerate(courses):
         poses = np.stack([upright(course.places[t], float(course.headings[t])) for t in at])

@@ -14,15 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acts.shapes import Gesture
-from motion import FPS, SMPL22
-from motion.kinematics import forward_kinematics
+from motion import FPS
 from motion.limbs import bent_towards
 from motion.steering import STRIDE, Steps
 from motion.transforms import heading_matrix
 
 from .gestures import hands_of, wrist
 from .places import Course, Way2D, eased
-from .poses import LOWER, TRUNK, about, bending, upright
+from .poses import BOTH_SIDES, JOINT, LOWER, TRUNK, Turns, about, all_but, bending, poses_of, upright
 from .score import Lift
 from .window import KnownFrames, Stretch
 
@@ -36,7 +35,6 @@ _LEGS = {"up": (-0.15, 0.0, 0.35), "arms": (-0.9, 0.0, 1.2), "back": (-1.25, 0.6
 """Radians of the thighs forward (negative) and out, about the upright, and of the knees, of the person carried."""
 _UNEVEN = 0.05
 """Metres by which the left of two hands before the carrier's chest is higher, and the right one lower."""
-_SIDES = (("left", 1.0), ("right", -1.0))
 OFTEN = 3
 """Frames between two given poses."""
 RISES = 16
@@ -56,10 +54,10 @@ _STAYS = 0.3
 """Metres within which a person keeps their place before they are picked up."""
 _STANDS = 0.003
 """Metres or radians a frame below which a body stands."""
-_ELBOWS = [SMPL22.index("left_elbow"), SMPL22.index("right_elbow")]
-_WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
+_ELBOWS = [JOINT["left_elbow"], JOINT["right_elbow"]]
+_WRISTS = [JOINT["left_wrist"], JOINT["right_wrist"]]
 _CARRIER = [*LOWER, *(joint for joint in TRUNK if joint not in LOWER), *_WRISTS]
-_BODY = [joint for joint in range(SMPL22.num_joints) if joint not in _ELBOWS]
+_BODY = all_but(_ELBOWS)
 
 
 def takes_hold(carry: str) -> float:
@@ -84,14 +82,14 @@ def carried(carry: str, place: Array, angle: float) -> tuple[Array, Array]:
     pose = _pose(carry) @ turn.T + carrier[0] + turn @ np.array(_BESIDE[carry])
 
     def own(name: str) -> Array:
-        return carrier[SMPL22.index(name)]
+        return carrier[JOINT[name]]
 
     def theirs(name: str) -> Array:
-        return pose[SMPL22.index(name)]
+        return pose[JOINT[name]]
 
     left, up, ahead = turn[:, 0], np.array([0.0, 1.0, 0.0]), turn[:, 2]
     if carry == "up":
-        hands = {s: theirs("spine2") + sign * 0.12 * left + 0.08 * ahead for s, sign in _SIDES}
+        hands = {s: theirs("spine2") + sign * 0.12 * left + 0.08 * ahead for s, sign in BOTH_SIDES}
         holds = {s: own(f"{o}_shoulder") + 0.1 * up for s, o in (("left", "right"), ("right", "left"))}
     elif carry == "arms":
         hands = {
@@ -104,16 +102,17 @@ def carried(carry: str, place: Array, angle: float) -> tuple[Array, Array]:
         }
     elif carry == "drags":
         hands = {s: theirs(f"{o}_ankle") for s, o in (("left", "right"), ("right", "left"))}
-        holds = {s: theirs(f"{s}_shoulder") + 0.45 * ahead - 0.04 * up for s, _ in _SIDES}
+        holds = {s: theirs(f"{s}_shoulder") + 0.45 * ahead - 0.04 * up for s, _ in BOTH_SIDES}
     else:
-        hands = {s: 0.7 * theirs(f"{s}_knee") + 0.3 * theirs(f"{s}_hip") - 0.1 * up for s, _ in _SIDES}
+        hands = {s: 0.7 * theirs(f"{s}_knee") + 0.3 * theirs(f"{s}_hip") - 0.1 * up for s, _ in BOTH_SIDES}
         holds = {
-            s: own("spine3") + 0.16 * ahead + sign * 0.02 * left + (sign * _UNEVEN - 0.02) * up for s, sign in _SIDES
+            s: own("spine3") + 0.16 * ahead + sign * 0.02 * left + (sign * _UNEVEN - 0.02) * up
+            for s, sign in BOTH_SIDES
         }
-    for side, _ in _SIDES:
+    for side, _ in BOTH_SIDES:
         _bend(carrier, side, hands[side])
         if carry == "drags":  # the arms trail on the floor
-            pose[SMPL22.index(f"{side}_wrist")] = holds[side]
+            pose[JOINT[f"{side}_wrist"]] = holds[side]
         else:
             _bend(pose, side, holds[side])
     return pose, carrier
@@ -121,7 +120,7 @@ def carried(carry: str, place: Array, angle: float) -> tuple[Array, Array]:
 
 def _bend(pose: Array, side: str, hand: Array) -> None:
     """Has an arm of a pose (22, 3) reach for a place, with the elbow below."""
-    arm = [SMPL22.index(f"{side}_{joint}") for joint in ("shoulder", "elbow", "wrist")]
+    arm = [JOINT[f"{side}_{joint}"] for joint in ("shoulder", "elbow", "wrist")]
     shoulder, elbow, wrist = pose[arm][:, None]
     elbow, _ = bent_towards(shoulder, elbow, wrist, hand[None], np.array([[0.0, -1.0, 0.0]]))
     pose[arm[1:]] = elbow[0], hand
@@ -130,21 +129,21 @@ def _bend(pose: Array, side: str, hand: Array) -> None:
 def _pose(carry: str) -> Array:
     """(22, 3) metres from the pelvis of a person whose carrier faces +Z."""
     hip, out, knee = _LEGS[carry]
-    turns = np.tile(np.eye(3), (1, SMPL22.num_joints, 1, 1))
+    turns: Turns = {}
+    for side, sign in BOTH_SIDES:
+        turns[f"{side}_hip"] = heading_matrix(sign * out) @ about(0, hip)
+        turns[f"{side}_knee"] = about(0, knee)
+        turns[f"{side}_shoulder"] = about(2, -sign * 1.2)
     if carry == "up":
-        turns[:, 0] = heading_matrix(np.pi)
+        turns["pelvis"] = heading_matrix(np.pi)
     elif carry == "back":
-        turns[:, 0] = about(0, 0.25)
+        turns["pelvis"] = about(0, 0.25)
     elif carry == "drags":  # on the back, the feet towards the carrier
-        turns[:, 0] = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
+        turns["pelvis"] = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
     else:  # the head on the carrier's left, the face up
-        turns[:, 0] = np.array([[0.0, 0.85, -0.53], [0.0, 0.53, 0.85], [1.0, 0.0, 0.0]])
-        turns[:, SMPL22.index("spine1")] = about(0, 0.2)
-    for side, sign in _SIDES:
-        turns[:, SMPL22.index(f"{side}_hip")] = heading_matrix(sign * out) @ about(0, hip)
-        turns[:, SMPL22.index(f"{side}_knee")] = about(0, knee)
-        turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * 1.2)
-    return forward_kinematics(turns, np.zeros((1, 3)))[0]
+        turns["pelvis"] = np.array([[0.0, 0.85, -0.53], [0.0, 0.53, 0.85], [1.0, 0.0, 0.0]])
+        turns["spine1"] = about(0, 0.2)
+    return poses_of(turns)[0]
 
 
 @dataclass(frozen=True)
@@ -249,11 +248,11 @@ class Carrying:
         """Has the hands of the person carried, whose poses (N, 22, 3) are theirs, make their gesture."""
         if self.gesture is None or self.lift.carry != "up":
             return
-        turns = np.stack([heading_matrix(angle + np.pi) for angle in course.headings[at]])
+        turns = heading_matrix(course.headings[at] + np.pi)
         ahead = np.tile([0.0, 0.0, 1.0], (len(at), 1))
         for side in hands_of(self.gesture):
             places = wrist(self.gesture.gesture, side, at / FPS, ahead)
-            theirs[:, SMPL22.index(f"{side}_wrist")] = theirs[:, 0] + np.einsum("nij,nj->ni", turns, places)
+            theirs[:, JOINT[f"{side}_wrist"]] = theirs[:, 0] + np.einsum("nij,nj->ni", turns, places)
 
     def _walking(self) -> Array:
         """(N, 22, 3) the carrier's poses while the other is off the floor, one foot after the other."""

@@ -11,18 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acts.shapes import Limb
-from motion import FPS, SMPL22
-from motion.kinematics import forward_kinematics
+from motion import FPS
 from motion.skeleton import ARMS
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading_matrix
 
-from .poses import HANDS, SOLE, STANDS, TOES, about, all_but, standing
+from .poses import BOTH_SIDES, HANDS, SOLE, STANDS, TOES, Turns, about, all_but, poses_of, standing
 from .score import Score
 from .window import OFTEN, SETTLES, Part, Stretch
 
 Array = NDArray[np.floating]
-Turns = dict[str, Array]
 
 RAMP = 0.7
 """Seconds in which a limb gets to its place, and back."""
@@ -72,18 +70,16 @@ def _standing_once(limbs: Sequence[Limb]) -> Sequence[Limb]:
 
 def _posed(angles: Mapping[str, Array], count: int, angle: float) -> Array:
     """Poses (N, 22, 3) around the origin of a standing person, with further rotations of joints."""
-    turns = np.tile(np.eye(3), (count, SMPL22.num_joints, 1, 1))
-    turns[:, 0] = heading_matrix(angle)
-    for side, sign in (("left", 1.0), ("right", -1.0)):
-        turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * STANDS["shoulder"])
-        turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * STANDS["elbow"])
-        turns[:, SMPL22.index(f"{side}_hip")] = about(2, -sign * 0.02) @ about(0, STANDS["hip"])
-        for joint in ("knee", "ankle"):
-            turns[:, SMPL22.index(f"{side}_{joint}")] = about(0, STANDS[joint])
+    turns: Turns = {"pelvis": heading_matrix(angle)}
+    for side, sign in BOTH_SIDES:
+        turns[f"{side}_shoulder"] = about(2, -sign * STANDS["shoulder"])
+        turns[f"{side}_elbow"] = heading_matrix(-sign * STANDS["elbow"])
+        turns[f"{side}_hip"] = about(2, -sign * 0.02) @ about(0, STANDS["hip"])
+        turns |= {f"{side}_{joint}": about(0, STANDS[joint]) for joint in ("knee", "ankle")}
     for joint, turn in angles.items():
-        i = SMPL22.index(joint)
-        turns[:, i] = turn @ turns[:, i] if "shoulder" in joint else turns[:, i] @ turn
-    return forward_kinematics(turns, np.zeros((count, 3)))
+        stands = turns.get(joint, np.eye(3))
+        turns[joint] = turn @ stands if "shoulder" in joint else stands @ turn
+    return poses_of(turns, count)
 
 
 def _stance(limbs: Sequence[Limb]) -> list[int]:

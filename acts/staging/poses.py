@@ -15,6 +15,8 @@ from motion.transforms import heading, heading_matrix
 
 Array = NDArray[np.floating]
 
+Turns = dict[str, Array]
+"""Rotations (3, 3) or (N, 3, 3) of joints by name."""
 Pose = tuple[int, Array]
 """A frame of the scene and a pose (22, 3) in metres of its world."""
 
@@ -26,49 +28,22 @@ SOLE = 0.02
 """Height in metres of the toe joint of a foot that stands."""
 LYING = 0.6
 """Metres from where somebody stood to the pelvis when they lie."""
-LOWER = tuple(
-    SMPL22.index(name)
-    for name in (
-        "pelvis",
-        "left_hip",
-        "right_hip",
-        "spine1",
-        "left_knee",
-        "right_knee",
-        "left_ankle",
-        "right_ankle",
-        "left_foot",
-        "right_foot",
-    )
-)
+JOINT: Mapping[str, int] = {name: i for i, name in enumerate(SMPL22.joint_names)}
+"""Indices of the joints."""
+ALL = tuple(JOINT.values())
+LOWER = tuple(i for name, i in JOINT.items() if name.endswith(("pelvis", "hip", "spine1", "knee", "ankle", "foot")))
 """Joints of the pelvis and the legs: with these known, the arms and the head are free for other acts."""
-ARMS = tuple(SMPL22.index(f"{side}_{name}") for side in ("left", "right") for name in ("shoulder", "elbow", "wrist"))
-HANDS = tuple(SMPL22.index(f"{side}_{name}") for side in ("left", "right") for name in ("elbow", "wrist"))
+HANDS = tuple(i for name, i in JOINT.items() if name.endswith(("elbow", "wrist")))
 """Joints that move where the shoulders are held."""
-FLAT = (
-    *LOWER,
-    *(
-        SMPL22.index(name)
-        for name in (
-            "spine2",
-            "spine3",
-            "neck",
-            "head",
-            "left_collar",
-            "right_collar",
-            "left_shoulder",
-            "right_shoulder",
-        )
-    ),
-)
-"""The same with the trunk, the head and the shoulders, for those who lie or bend down."""
-TRUNK = tuple(joint for joint in FLAT if joint not in LOWER or joint == SMPL22.index("spine1"))
+ARMS = tuple(i for name, i in JOINT.items() if name.endswith(("shoulder", "elbow", "wrist")))
+FLAT = tuple(joint for joint in ALL if joint not in HANDS)
+"""Pelvis and legs with the trunk, the head and the shoulders, for those who lie or bend down."""
+TRUNK = (JOINT["spine1"], *(joint for joint in FLAT if joint not in LOWER))
 """Joints of the trunk, the head and the shoulders."""
-ALL = tuple(range(SMPL22.num_joints))
-TOES = (SMPL22.index("left_foot"), SMPL22.index("right_foot"))
+TOES = (JOINT["left_foot"], JOINT["right_foot"])
 _UNALIKE = np.array([0.06, 0.1, 0.15])
 """Radians by which each arm of a person who stands hangs closer, further ahead and more bent, or less, than usual."""
-_SIDES = {"left": 1.0, "right": -1.0}
+BOTH_SIDES = (("left", 1.0), ("right", -1.0))
 """Sides of the body, with the sign of their x for a person who faces +Z."""
 
 
@@ -95,24 +70,19 @@ def standing(place: Array, angle: float, seconds: Array, *, seed: int = 0) -> Ar
         np.sin(2 * np.pi * np.asarray(seconds) / period + phase)
         for period, phase in zip((5.3, 3.9, 7.1, 4.4), phases, strict=True)
     ]
-    turns = np.tile(np.eye(3), (len(seconds), SMPL22.num_joints, 1, 1))
-    turns[:, 0] = heading_matrix(angle) @ about(2, 0.012 * sway[0])
-    turns[:, SMPL22.index("spine2")] = about(2, -0.02 * sway[0]) @ heading_matrix(0.03 * sway[1])
-    turns[:, SMPL22.index("neck")] = about(0, 0.05 + 0.02 * sway[1])
-    turns[:, SMPL22.index("head")] = heading_matrix(0.1 * sway[2])
-    sides = (("left", 1.0, sway[3], hangs[0]), ("right", -1.0, sway[1], hangs[1]))
-    for side, sign, arm, (close, ahead, bent) in sides:
-        turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * (1.4 + close + 0.015 * arm)) @ about(
-            0, 0.05 + ahead + 0.03 * arm
-        )
-        turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * (0.3 + bent + 0.06 * arm))
-        turns[:, SMPL22.index(f"{side}_hip")] = about(2, -sign * 0.02 - 0.012 * sway[0]) @ about(
-            0, np.full(len(seconds), -0.06)
-        )
-        turns[:, SMPL22.index(f"{side}_knee")] = about(0, np.full(len(seconds), 0.12))
-        turns[:, SMPL22.index(f"{side}_ankle")] = about(0, np.full(len(seconds), -0.06))
-    poses = forward_kinematics(turns, np.zeros((len(seconds), 3)))
-    return _on_floor(poses, place, angle)
+    turns: Turns = {
+        "pelvis": heading_matrix(angle) @ about(2, 0.012 * sway[0]),
+        "spine2": about(2, -0.02 * sway[0]) @ heading_matrix(0.03 * sway[1]),
+        "neck": about(0, 0.05 + 0.02 * sway[1]),
+        "head": heading_matrix(0.1 * sway[2]),
+    }
+    for (side, sign), arm, (close, ahead, bent) in zip(BOTH_SIDES, (sway[3], sway[1]), hangs, strict=True):
+        turns[f"{side}_shoulder"] = about(2, -sign * (1.4 + close + 0.015 * arm)) @ about(0, 0.05 + ahead + 0.03 * arm)
+        turns[f"{side}_elbow"] = heading_matrix(-sign * (0.3 + bent + 0.06 * arm))
+        turns[f"{side}_hip"] = about(2, -sign * 0.02 - 0.012 * sway[0]) @ about(0, STANDS["hip"])
+        turns[f"{side}_knee"] = about(0, STANDS["knee"])
+        turns[f"{side}_ankle"] = about(0, STANDS["ankle"])
+    return _on_floor(poses_of(turns, len(seconds)), place, angle)
 
 
 _SITS: Mapping[str, float] = {"hip": -1.45, "knee": 1.5, "ankle": -0.05, "shoulder": 1.2, "elbow": 0.6, "spine": 0.08}
@@ -141,17 +111,17 @@ _FLIES: Mapping[str, float] = {"hip": -0.2, "knee": 0.4, "ankle": 0.45, "shoulde
 
 def upright(place: Array, angle: float) -> Array:
     """A person standing still: (22, 3) metres."""
-    return _on_floor(_posed(angle, STANDS)[None], place, angle)[0]
+    return _on_floor(_pose_of(angle, STANDS)[None], place, angle)[0]
 
 
 def seated(place: Array, angle: float) -> Array:
     """A person sitting as on a chair, the feet where they stood: (22, 3) metres."""
-    return _on_floor(_posed(angle, _SITS)[None], place, angle)[0]
+    return _on_floor(_pose_of(angle, _SITS)[None], place, angle)[0]
 
 
 def grounded(place: Array, angle: float) -> Array:
     """A person sitting on the ground, the feet where they stood: (22, 3) metres."""
-    pose = _posed(angle, {"hip": -1.8, "knee": 0.35, "ankle": 0.0, "shoulder": 1.3, "elbow": 0.3, "spine": 0.1})
+    pose = _pose_of(angle, {"hip": -1.8, "knee": 0.35, "ankle": 0.0, "shoulder": 1.3, "elbow": 0.3, "spine": 0.1})
     pose[:, 1] += 0.08 - pose[:, 1].min()
     ahead = STANCE * np.array([np.sin(angle), 0.0, np.cos(angle)])
     return pose + (np.array([place[0], 0.0, place[1]]) + ahead - pose[list(TOES)].mean(axis=0)) * [1, 0, 1]
@@ -162,21 +132,25 @@ def bending(place: Array, angle: float, lean: float = _BENT) -> Array:
     return leaning(upright(place, angle), angle, lean)
 
 
-def leaning(pose: Array, angle: float, lean: float) -> Array:
-    """A pose (22, 3) with its trunk, head and arms turned forward about the pelvis by so many radians."""
-    upper = [j for j in range(SMPL22.num_joints) if j not in LOWER or j == SMPL22.index("spine1")]
-    turn = heading_matrix(angle) @ about(0, lean) @ heading_matrix(-angle)
-    moved = pose.copy()
-    moved[upper] = pose[0] + (pose[upper] - pose[0]) @ turn.T
+def leaning(poses: Array, angle: float, lean: Array | float) -> Array:
+    """Poses (…, 22, 3) with trunk, head and arms turned forward about the pelvis by so many radians (…)."""
+    upper = [j for j in ALL if j not in LOWER or j == JOINT["spine1"]]
+    moved, root = poses.copy(), poses[..., :1, :]
+    moved[..., upper, :] = root + (poses[..., upper, :] - root) @ _tilt(angle, lean)
     return moved
+
+
+def _tilt(angle: float, lean: Array | float) -> Array:
+    """(…, 3, 3) what points (N, 3) are multiplied by to turn forward, for a heading, by so many radians (…)."""
+    return np.swapaxes(heading_matrix(angle) @ about(0, lean) @ heading_matrix(-angle), -1, -2)
 
 
 def stooping(place: Array, angle: float, share: float = 1.0) -> Array:
     """A person bent down on soft knees, or by a share of that, whose arms hang to the floor: (22, 3) metres."""
     bent = {name: (1 - share) * up + share * _STOOPS[name] for name, up in STANDS.items()}
-    pose = leaning(_on_floor(_posed(angle, bent)[None], place, angle)[0], angle, share * _STOOPED)
-    for side in _SIDES:
-        shoulder, elbow, wrist = (SMPL22.index(f"{side}_{name}") for name in ("shoulder", "elbow", "wrist"))
+    pose = leaning(_on_floor(_pose_of(angle, bent)[None], place, angle)[0], angle, share * _STOOPED)
+    for side, _ in BOTH_SIDES:
+        shoulder, elbow, wrist = (JOINT[f"{side}_{name}"] for name in ("shoulder", "elbow", "wrist"))
         for joint, parent in ((elbow, shoulder), (wrist, elbow)):
             pose[joint] = pose[parent] - [0.0, float(SMPL22.bone_lengths[joint]), 0.0]
     return pose
@@ -184,12 +158,12 @@ def stooping(place: Array, angle: float, share: float = 1.0) -> Array:
 
 def crouching(place: Array, angle: float) -> Array:
     """A person crouching on their feet: (22, 3) metres."""
-    return _on_floor(_posed(angle, _CROUCHES)[None], place, angle)[0]
+    return _on_floor(_pose_of(angle, _CROUCHES)[None], place, angle)[0]
 
 
 def kneeling(place: Array, angle: float) -> Array:
     """Somebody on the right knee, the left foot in front: (22, 3) metres."""
-    pose = _posed(
+    pose = _pose_of(
         angle,
         {"hip": -1.75, "knee": 1.8, "ankle": -0.05, "shoulder": 1.3, "elbow": 0.4, "spine": 0.03},
         {"hip": 0.1, "knee": 1.4, "ankle": 0.9, "shoulder": 1.3, "elbow": 0.4, "spine": 0.03},
@@ -200,7 +174,7 @@ def kneeling(place: Array, angle: float) -> Array:
 
 def lying(place: Array, angle: float) -> Array:
     """A person lying on the back, the feet about where they stood: (22, 3) metres."""
-    pose = _posed(0.0, _LIES)
+    pose = _pose_of(0.0, _LIES)
     pose = (pose - pose[0]) @ (heading_matrix(angle) @ about(0, -np.pi / 2)).T
     pose[:, 1] += 0.08 - pose[:, 1].min()
     return pose + np.array([place[0], 0.0, place[1]]) - LYING * np.array([np.sin(angle), 0.0, np.cos(angle)])
@@ -209,7 +183,7 @@ def lying(place: Array, angle: float) -> Array:
 def at_rest(poses: Array) -> Array:
     """Poses (N, 22, 3) of a person lying on the back, with the right hand on the belly."""
     found = np.array(poses)
-    arm = [SMPL22.index(f"right_{joint}") for joint in ("shoulder", "elbow", "wrist")]
+    arm = [JOINT[f"right_{joint}"] for joint in ("shoulder", "elbow", "wrist")]
     turns = np.swapaxes(heading_matrix(heading(found)), -1, -2)
     goal, pole = (np.asarray(way) @ turns for way in (_BELLY, _ELBOW_LIES))
     shoulder, elbow, wrist = (found[:, joint] for joint in arm)
@@ -219,8 +193,8 @@ def at_rest(poses: Array) -> Array:
 
 def _reclining(place: Array, angle: float, share: float) -> Array:
     """A person between sitting with the feet under them and lying on the back, by a share from 0 to 1."""
-    ends = _on_floor(_posed(angle, _SITS_UP)[None], place, angle)[0], lying(place, angle)
-    pose = _posed(0.0, {name: (1 - share) * up + share * _LIES[name] for name, up in _SITS_UP.items()})
+    ends = _on_floor(_pose_of(angle, _SITS_UP)[None], place, angle)[0], lying(place, angle)
+    pose = _pose_of(0.0, {name: (1 - share) * up + share * _LIES[name] for name, up in _SITS_UP.items()})
     pose = (pose - pose[0]) @ (heading_matrix(angle) @ about(0, -share * np.pi / 2)).T
     lowest = [float(end[:, 1].min()) for end in ends]
     pose[:, 1] += (1 - share) * lowest[0] + share * lowest[1] - pose[:, 1].min()
@@ -254,8 +228,8 @@ def leaping(place: Array, angle: float, rise: float = 0.22) -> Sequence[tuple[fl
         rise: metres by which the feet leave the floor.
     """
     up = (2 * rise / 9.81) ** 0.5
-    bent = _on_floor(_posed(angle, _BENDS)[None], place, angle)[0]
-    high = _on_floor(_posed(angle, _FLIES)[None], place, angle)[0] + np.array([0.0, rise, 0.0])
+    bent = _on_floor(_pose_of(angle, _BENDS)[None], place, angle)[0]
+    high = _on_floor(_pose_of(angle, _FLIES)[None], place, angle)[0] + np.array([0.0, rise, 0.0])
     return ((-up - 0.23, bent), (0.0, high), (up + 0.2, bent), (up + 0.6, upright(place, angle)))
 
 
@@ -283,30 +257,36 @@ def bowed(poses: Array, angle: float, seconds: Array, length: float, times: int 
     since = np.asarray(seconds, dtype=float) - BOW_BEGINS
     phase = np.where((since >= 0) & (since < times * each), since % each, 0.0) / each
     down, up = minimum_jerk(phase / _BOW_DOWN), minimum_jerk((phase - _BOW_UP) / (1 - _BOW_UP))
-    found = []
-    for pose, bent in zip(np.asarray(poses, dtype=float), lean * (down - up), strict=True):
-        made = leaning(pose, angle, float(bent))
-        for side, share in _WITH_TRUNK.items():
-            shoulder, *arm = (SMPL22.index(f"{side}_{name}") for name in ("shoulder", "elbow", "wrist"))
-            turn = heading_matrix(angle) @ about(0, share * float(bent)) @ heading_matrix(-angle)
-            made[arm] = made[shoulder] + (pose[arm] - pose[shoulder]) @ turn.T
-        found.append(made)
-    return np.stack(found)
+    poses, bend = np.asarray(poses, dtype=float), lean * (down - up)
+    found = leaning(poses, angle, bend)
+    for side, share in _WITH_TRUNK.items():
+        shoulder, *arm = (JOINT[f"{side}_{name}"] for name in ("shoulder", "elbow", "wrist"))
+        hangs = poses[:, arm] - poses[:, [shoulder]]
+        found[:, arm] = found[:, [shoulder]] + hangs @ _tilt(angle, share * bend)
+    return found
 
 
-def _posed(angle: float, left: Mapping[str, float], right: Mapping[str, float] | None = None) -> Array:
+def _pose_of(angle: float, left: Mapping[str, float], right: Mapping[str, float] | None = None) -> Array:
     """A pose (22, 3) around the origin by angles in radians: flexed hips are negative, flexed knees positive."""
-    turns = np.tile(np.eye(3), (1, SMPL22.num_joints, 1, 1))
-    turns[:, 0] = heading_matrix(angle)
-    for spine in ("spine1", "spine2"):
-        turns[:, SMPL22.index(spine)] = about(0, left["spine"])
-    for (side, sign), angles in zip(_SIDES.items(), (left, right or left), strict=True):
-        turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * angles["shoulder"])
-        turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * angles["elbow"])
-        turns[:, SMPL22.index(f"{side}_hip")] = about(2, -sign * 0.02) @ about(0, angles["hip"])
-        for joint in ("knee", "ankle"):
-            turns[:, SMPL22.index(f"{side}_{joint}")] = about(0, angles[joint])
-    return forward_kinematics(turns, np.zeros((1, 3)))[0]
+    turns: Turns = {
+        "pelvis": heading_matrix(angle),
+        "spine1": about(0, left["spine"]),
+        "spine2": about(0, left["spine"]),
+    }
+    for (side, sign), angles in zip(BOTH_SIDES, (left, right or left), strict=True):
+        turns[f"{side}_shoulder"] = about(2, -sign * angles["shoulder"])
+        turns[f"{side}_elbow"] = heading_matrix(-sign * angles["elbow"])
+        turns[f"{side}_hip"] = about(2, -sign * 0.02) @ about(0, angles["hip"])
+        turns |= {f"{side}_{joint}": about(0, angles[joint]) for joint in ("knee", "ankle")}
+    return poses_of(turns)[0]
+
+
+def poses_of(turns: Turns, count: int = 1) -> Array:
+    """Poses (N, 22, 3) from the pelvis, by the rotations of joints; the others are in T-pose."""
+    rotations = np.tile(np.eye(3), (count, len(JOINT), 1, 1))
+    for joint, turn in turns.items():
+        rotations[:, JOINT[joint]] = turn
+    return forward_kinematics(rotations, np.zeros((count, 3)))
 
 
 def _on_floor(poses: Array, place: Array, angle: float) -> Array:

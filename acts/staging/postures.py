@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acts.shapes import Bow, Jump
-from motion import FPS, SMPL22
+from motion import FPS
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading
 
@@ -23,6 +23,7 @@ from .poses import (
     ALL,
     FLAT,
     HANDS,
+    JOINT,
     LOWER,
     LYING,
     STANCE,
@@ -68,7 +69,7 @@ FOLDS = 18
 """Frames after lying down in which a hand comes to lie on the belly."""
 _KNEELS = 0.3
 """Height in metres of the pelvis above which a bent person's arms reach down to the floor."""
-_HEAD = SMPL22.index("head")
+_HEAD = JOINT["head"]
 LEAP = 36
 """Frames from the highest moment of a jump to that of the next."""
 BOWED, DEEP = 0.9, 1.25

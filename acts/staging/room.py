@@ -13,7 +13,7 @@ from motion import FPS, SMPL22
 from motion.placement import Placement
 
 from .places import Standing, eased
-from .poses import Pose, upright
+from .poses import JOINT, Pose, upright
 from .window import Part, Window, known_paths
 
 Array = NDArray[np.floating]
@@ -118,7 +118,7 @@ def distance(a: Array, b: Array) -> float:
 
 def _points(poses: Array) -> Array:
     """Joints (N, 22, 3), the middles of their bones, and the tops of the heads."""
-    neck, head = (poses[:, SMPL22.index(name)] for name in ("neck", "head"))
+    neck, head = (poses[:, JOINT[name]] for name in ("neck", "head"))
     up = (head - neck) / np.linalg.norm(head - neck, axis=-1, keepdims=True).clip(min=1e-6)
     crowns = head[:, None] + _CROWN * np.array([[0.5], [1.0]]) * up[:, None]
     return np.concatenate([poses, 0.5 * (poses[:, _PARENTS] + poses[:, _CHILDREN]), crowns], axis=1)

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import FPS, SMPL22
+from motion import FPS
 from motion.transforms import heading_matrix
 
 from .places import Course
-from .poses import HANDS, TRUNK, bending, standing, upright
+from .poses import HANDS, JOINT, TRUNK, bending, standing, upright
 from .postures import DUCKING
 from .score import SIDES, Score, Strike
 from .window import KnownFrames, Stretch
@@ -131,17 +131,17 @@ def poses(bout: str, side: str, place: Array, other: Array) -> tuple[tuple[int, 
     """
     line = np.asarray(other) - place
     angle, sign = float(np.arctan2(line[0], line[1])), 1.0 if side == "left" else -1.0
-    wrist, turn = SMPL22.index(f"{side}_wrist"), heading_matrix(angle)
+    wrist, turn = JOINT[f"{side}_wrist"], heading_matrix(angle)
     back, ahead = BOUTS[bout].drawn, BOUTS[bout].landed
     drawn = bending(place, angle + sign * _TWIST / 2, _LEAN)
     drawn[wrist] = drawn[0] + turn @ (np.array(back) * [sign, 1.0, 1.0])
     landed = bending(place, angle - sign * _TWIST, _LEAN)
     if ahead is None:
         pose = bending(np.asarray(other), angle + np.pi, _LEAN)
-        head = pose[SMPL22.index("head")] + landed[0] - pose[0] + np.array([line[0], 0.0, line[1]])
+        head = pose[JOINT["head"]] + landed[0] - pose[0] + np.array([line[0], 0.0, line[1]])
         if bout == "slaps":
             head = head + turn @ (_CHEEK * [sign, 1.0, -1.0])
-        shoulder = landed[SMPL22.index(f"{side}_shoulder")]
+        shoulder = landed[JOINT[f"{side}_shoulder"]]
         length = float(np.linalg.norm(head - shoulder))
         near = 0.0 if bout == "slaps" else _FIST
         landed[wrist] = shoulder + (head - shoulder) * min(_ARM, length - near) / length
@@ -157,7 +157,7 @@ def ready(place: Array, other: Array, reach: Array = _READY) -> Array:
     angle = float(np.arctan2(line[0], line[1]))
     pose = bending(place, angle, _LEAN)
     for side, sign in (("left", 1.0), ("right", -1.0)):
-        pose[SMPL22.index(f"{side}_wrist")] = pose[0] + heading_matrix(angle) @ (reach * [sign, 1.0, 1.0])
+        pose[JOINT[f"{side}_wrist"]] = pose[0] + heading_matrix(angle) @ (reach * [sign, 1.0, 1.0])
     return pose - pose[0]
 
 
@@ -208,10 +208,7 @@ def strike_parts(struck: Strike, score: Score, stretch: Stretch) -> list[KnownFr
         )
     return [
         stretch.known(
-            person,
-            list(known),
-            np.stack(list(known.values())),
-            [*TRUNK, *(SMPL22.index(f"{side}_wrist") for side in sides)],
+            person, list(known), np.stack(list(known.values())), [*TRUNK, *(JOINT[f"{side}_wrist"] for side in sides)]
         )
         for (person, sides), known in given.items()
     ] + [*_rests(struck, after, courses, stretch), *_unwarned(struck, score, listed, stretch)]

@@ -13,13 +13,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import FPS, SMPL22
+from motion import FPS
 from motion.transforms import heading, heading_matrix
 from motion.vectors import unit
 
 from .floor import ABEAM
 from .places import Course, Standing, direction
-from .poses import LOWER, TRUNK, about, kneeling, leaning, upright
+from .poses import JOINT, LOWER, TRUNK, about, kneeling, leaning, upright
 from .score import SIDES, Move, Score, Touch, Way
 from .window import KnownFrames, Stretch
 
@@ -90,7 +90,7 @@ def kneels(touch: Touch, pose: Array) -> bool:
 
 def beside(pose: Array, place: Array) -> float | None:
     """The heading across a person's lying body (22, 3), from the side of a place (2,); None if they do not lie."""
-    body = np.asarray(pose)[SMPL22.index("head")] - pose[0]
+    body = np.asarray(pose)[JOINT["head"]] - pose[0]
     if abs(body[1]) > _FLAT or pose[0][1] > _KNEELING:
         return None
     across = np.array([body[2], -body[0]])
@@ -144,7 +144,7 @@ def middle(touch: Touch, pose: Array) -> Array:
 
 def _joints(part: str) -> list[int]:
     name = _JOINTS[part]
-    return [SMPL22.index(name.format(side=side)) for side in (SIDES if "{" in name else SIDES[:1])]
+    return [JOINT[name.format(side=side)] for side in (SIDES if "{" in name else SIDES[:1])]
 
 
 def touched(touch: Touch, other: Array, own: Array) -> Array:
@@ -159,14 +159,14 @@ def touched(touch: Touch, other: Array, own: Array) -> Array:
         (len(sides), 3) metres; (1, 3) for a kiss.
     """
     joints = _joints(touch.part)
-    back = other[SMPL22.index("spine3")]
+    back = other[JOINT["spine3"]]
     if touch.part == "back" and float((own[0] - other[0]) @ _facing(other)) > 0:
         joints = _joints("shoulder")  # as far as an arm gets round somebody from the front
     if not touch.sides:
-        return other[joints[0]] + _KISS * unit(own[SMPL22.index("head")] - other[joints[0]])[None]
+        return other[joints[0]] + _KISS * unit(own[JOINT["head"]] - other[joints[0]])[None]
     found = []
     for side in touch.sides:
-        shoulder = own[SMPL22.index(f"{side}_shoulder")]
+        shoulder = own[JOINT[f"{side}_shoulder"]]
         if touch.beside:
             found.append(_around(other, shoulder))
             continue
@@ -204,7 +204,7 @@ def _tilted(other: Array, own: Array, angle: float, *, whispers: bool = False) -
     side = inner_side(other, own[0][[0, 2]], angle)
     sign = -1.0 if side == SIDES[0] else 1.0
     found = own.copy()
-    neck, head = SMPL22.index("neck"), SMPL22.index("head")
+    neck, head = JOINT["neck"], JOINT["head"]
     for root, moved, tilt in zip((0, neck), (list(TRUNK), [head]), _WHISPERS if whispers else _RESTS, strict=True):
         turn = heading_matrix(angle) @ about(2, sign * tilt) @ heading_matrix(-angle)
         found[moved] = found[root] + (found[moved] - found[root]) @ turn.T
@@ -212,7 +212,7 @@ def _tilted(other: Array, own: Array, angle: float, *, whispers: bool = False) -
     hands = [(inner, 0, _OWN_HAND), *([(1 - inner, head, _AT_MOUTH)] if whispers else [])]
     for hand, root, at in hands:
         place = heading_matrix(angle) @ (at * [-sign, 1.0, 1.0])
-        found[SMPL22.index(f"{SIDES[hand]}_wrist")] = found[root] + place
+        found[JOINT[f"{SIDES[hand]}_wrist"]] = found[root] + place
     return found
 
 
@@ -220,8 +220,7 @@ def _around(other: Array, shoulder: Array) -> Array:
     """The place (3,) of a wrist on the other's (22, 3) far shoulder, behind them, of an arm from a shoulder (3,)."""
     behind, inside, under = _AROUND
     far, near = sorted(
-        (other[SMPL22.index(f"{side}_shoulder")] for side in SIDES),
-        key=lambda joint: -float(np.linalg.norm(joint - shoulder)),
+        (other[JOINT[f"{side}_shoulder"]] for side in SIDES), key=lambda joint: -float(np.linalg.norm(joint - shoulder))
     )
     return np.asarray(far + inside * unit(near - far) - behind * _facing(other) - [0.0, under, 0.0])
 
@@ -347,7 +346,7 @@ def touch_parts(touch: Touch, posed: Mapping[int, Array], stretch: Stretch) -> K
     if down and at:
         rest = TAKEN_BACK if touch.times else 0.0
         at += [(frame, rest) for frame in range(at[-1][0] + REACHES // 2, frames, REACHES // 2)]
-    wrists = [SMPL22.index(f"{side}_wrist") for side in arms]
+    wrists = [JOINT[f"{side}_wrist"] for side in arms]
     joints = [*(LOWER if down else ()), *(j for j in TRUNK if not down or j not in LOWER), *wrists]
     kept: list[int] = []
     poses: list[Array] = []
@@ -377,7 +376,7 @@ def _reaching(touch: Touch, target: Array, own: Course, frame: int, back: float)
     """The pose (22, 3) of a person who touches the other's ``target``, with the hands taken ``back`` by some metres."""
     pose = touching(touch, target, own.places[frame], float(own.headings[frame]))
     if touch.sides:
-        wrists = [SMPL22.index(f"{side}_wrist") for side in touch.sides]
+        wrists = [JOINT[f"{side}_wrist"] for side in touch.sides]
         places = touched(touch, target, pose)
         away = pose[wrists] - places
         away /= np.linalg.norm(away, axis=1, keepdims=True).clip(min=1e-6)
