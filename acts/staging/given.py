@@ -25,13 +25,14 @@ from .gaits import STEPS, low_gait_parts, step_parts
 from .holds import hold_parts, pull_parts, twirl_parts
 from .lifts import Carrying
 from .limbs import limb_parts
+from .moves import coming, meeting, towards_touched
 from .places import Standing, Way2D
 from .poses import ARMS, HANDS, UPRIGHT, Pose, all_but, standing, upright
 from .postures import bow_parts, posture_parts, postures
 from .room import Room, roomy
 from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
-from .touches import coming, meeting, touch_parts, towards_touched
+from .touches import touch_parts
 from .window import SETTLES, KnownFrames, Part, Stretch, Window
 
 Array = NDArray[np.floating]

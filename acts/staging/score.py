@@ -7,7 +7,8 @@ here adds that and nothing else. :mod:`.stage` makes scores of acts.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Literal
 
 from acts import shapes
@@ -232,6 +233,28 @@ class Score:
 def goes(moves: Sequence[Move]) -> bool:
     """True if any of the moves takes a person elsewhere or turns them."""
     return any(move.way != "stay" for move in moves)
+
+
+def as_story(scores: Sequence[Score]) -> tuple[Score, ...]:
+    """The scores of the beats of a story, which fit each other."""
+    scores = list(scores)
+    known: set[str] = set()
+    for i, score in enumerate(scores):  # an earlier beat has put them there already
+        again = {who for who, listed in score.changes.items() if who in known and listed[0].already and len(listed) > 1}
+        changes = {who: listed[1:] if who in again else listed for who, listed in score.changes.items()}
+        scores[i] = replace(score, changes=changes) if again else score
+        known |= set(score.changes) | score.going
+    for i, (score, then) in enumerate(pairwise(scores)):  # a person who turns round to the other is touched from behind
+        touch, turned = score.touch, {move.person for move in then.moves if move.way == "face"}
+        if touch is None or touch.part not in ("shoulder", "back") or touch.person in turned:
+            continue
+        if turned and not score.changes and not goes(score.moves):
+            scores[i] = replace(score, touch=touch.model_copy(update={"behind": True}))
+    for i, score in enumerate(scores):  # a person who is down does not stand by
+        down = {who for who, posture in at_start(scores, i).items() if posture != "stands"}
+        if score.idle & down:
+            scores[i] = replace(scores[i], idle=score.idle - down)
+    return tuple(scores)
 
 
 def at_start(scores: Sequence[Score], beat: int) -> dict[str, str]:

@@ -37,7 +37,7 @@ from .act_kinds import (
 )
 from .gestures import GESTURES
 from .moves import away, fastest, followed, held_moves, led_backwards, lifted_moves, struck_moves, twirled_moves
-from .score import LOW, LOWERED, Change, Lift, Move, Score, Strike, Touch, Way, at_start, goes
+from .score import LOW, LOWERED, Change, Lift, Move, Score, Strike, Touch, Way, as_story, goes
 
 PULLED = 0.8
 """Metres from where somebody stands up at which the one stands who pulls them up."""
@@ -57,24 +57,7 @@ _LEGS = frozenset(("dance", "fight", "ways", "play"))
 
 def scores_of(story: Sequence[Sequence[Act]]) -> tuple[Score, ...]:
     """The scores of a story, beat by beat, which fit each other."""
-    scores = [score_of(acts) for acts in story]
-    known: set[str] = set()
-    for i, score in enumerate(scores):  # an earlier beat has put them there already
-        again = {who for who, listed in score.changes.items() if who in known and listed[0].already and len(listed) > 1}
-        changes = {who: listed[1:] if who in again else listed for who, listed in score.changes.items()}
-        scores[i] = replace(score, changes=changes) if again else score
-        known |= set(score.changes) | score.going
-    for i, (score, then) in enumerate(pairwise(scores)):  # a person who turns round to the other is touched from behind
-        touch, turned = score.touch, {move.person for move in then.moves if move.way == "face"}
-        if touch is None or touch.part not in ("shoulder", "back") or touch.person in turned:
-            continue
-        if turned and not score.changes and not goes(score.moves):
-            scores[i] = replace(score, touch=touch.model_copy(update={"behind": True}))
-    for i, score in enumerate(scores):  # a person who is down does not stand by
-        down = {who for who, posture in at_start(scores, i).items() if posture != "stands"}
-        if score.idle & down:
-            scores[i] = replace(scores[i], idle=score.idle - down)
-    return tuple(scores)
+    return as_story([score_of(acts) for acts in story])
 
 
 def score_of(acts: Sequence[Act], known: Lexicon | None = None) -> Score:

@@ -7,8 +7,7 @@ who touches is led to where they reach the other, and the hand is given.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +16,9 @@ from motion import FPS
 from motion.transforms import heading, heading_matrix
 from motion.vectors import unit
 
-from .floor import ABEAM
-from .places import Course, Standing, direction
+from .places import Course
 from .poses import JOINT, LOWER, TRUNK, about, kneeling, leaning, upright
-from .score import SIDES, Move, Score, Touch, Way
+from .score import SIDES, Touch
 from .window import KnownFrames, Stretch
 
 Array = NDArray[np.floating]
@@ -65,8 +63,6 @@ _AROUND = (0.13, 0.06, 0.04)
 """Metres behind, inside of and under the other's far shoulder of a wrist whose arm is around them."""
 LOWEST = 0.55
 """Height in metres of the lowest place that somebody on their feet reaches."""
-FAR_APART = 1.8
-"""Metres between two people beyond which one comes up to do something within the other's reach."""
 REACHES = 12
 """Frames in which a hand is brought to the place that it touches."""
 HELD = 1.6
@@ -79,8 +75,6 @@ LOWERS = 24
 """Frames in which a hand that has patted somebody's back goes down."""
 KNEELS = 40
 """Frames in which somebody kneels down to touch what is low."""
-_COMES = ("to", "behind", "beside", "stay", "face")
-_WAITS = ("stay", "averted", "face", "turn")
 
 
 def kneels(touch: Touch, pose: Array) -> bool:
@@ -228,93 +222,6 @@ def _around(other: Array, shoulder: Array) -> Array:
 def _facing(pose: Array) -> Array:
     angle = float(heading(np.asarray(pose)[None])[0])
     return np.array([np.sin(angle), 0.0, np.cos(angle)])
-
-
-def meeting(
-    touch: Touch | None, found: Sequence[Move], posed: Mapping[int, Array], stand: Standing
-) -> tuple[Touch | None, tuple[Move, ...]]:
-    """The contact, if it can be planned, and the moves of the beat with those that it needs.
-
-    Args:
-        touch: as the words name it.
-        found: the beat's moves.
-        posed: a pose (22, 3) of those whose posture is given, by person.
-        stand: where the people are when the beat begins.
-    """
-    moves = tuple(found)
-    if touch is None:
-        return None, moves
-    giver = "ab".index(touch.person)
-    own = [move for move in moves if move.person == touch.person]
-    theirs = [move for move in moves if move.person != touch.person]
-    if touch.fells:
-        if 1 - giver not in posed:
-            return None, moves  # the network knows pushes
-        posed = {}
-        if middle(touch, upright(np.zeros(2), 0.0))[1] < LOWEST:
-            return None, moves
-    pose = posed.get(1 - giver, upright(np.zeros(2), 0.0))
-    down = kneels(touch, pose)
-    if (giver in posed and not down) or any(move.way not in _COMES for move in own):
-        return None, moves
-    if any(move.way not in (*_WAITS, "to") for move in theirs):
-        return None, moves
-    near = reach(touch, pose)
-    lies = 1 - giver in posed and beside(pose, stand.places[giver]) is not None
-    way: Way = "behind" if touch.behind or lies else "beside" if touch.beside else "to"
-    comes = [
-        Move(m.person, way if m.way == "to" else m.way, m.speed, late=m.late, near=near) if m.way in _COMES[:3] else m
-        for m in own
-    ]
-    if not any(move.near for move in comes):
-        speed = 1.2 if touch.beside else 0.8
-        comes = [*(m for m in comes if m.way == "face"), Move(touch.person, way, speed, near=near)]
-    other = "ab"[1 - giver]
-    waits = [Move(m.person, m.way, m.speed, near=near) if m.way == "to" else m for m in theirs]
-    if 1 - giver not in posed and not touch.fells and (not waits or waits[0].way in ("turn", "face")):
-        waits = [Move(other, "averted" if touch.behind else "stay"), *waits]
-    return touch, (*comes, *waits)
-
-
-def coming(score: Score, stand: Standing, down: Collection[int]) -> tuple[Move, ...]:
-    """The moves of a beat; who does something within the other's reach comes up to them first, if they are far apart.
-
-    The other turns to them, and both stay there. Their arms are left to the network.
-
-    Args:
-        told: of the beat.
-        stand: where the people are when it begins.
-        down: those who are not on their feet.
-    """
-    found = score.moves
-    if found or score.touch or score.has_places or score.strike or not score.reaching or stand.gap() < FAR_APART:
-        return found
-    comes = sorted(who for who in score.reaching if "ab".index(who) not in down)
-    turned = [
-        who
-        for i, who in enumerate("ab")
-        if i not in down and direction(float(stand.headings[i])) @ stand.towards(i) < ABEAM
-    ]
-    waits = [Move(who, "face") for who in turned if who not in comes]
-    return (*(Move(who, "to", until=True, near=score.reaching[who]) for who in comes), *waits)
-
-
-def towards_touched(touch: Touch | None, posed: Mapping[int, Array], stand: Standing, pulls: str = "") -> Standing:
-    """The places that a way to the other is planned from: of a person who is posed, the one that is touched.
-
-    A person who lies is taken to face away from the one who comes, so that they are touched from the side. A person
-    whom the other ``pulls`` up is where they will stand.
-    """
-    giver = touch.person if touch is not None and not touch.fells else pulls
-    other = 1 - "ab".index(giver) if giver else 0
-    if not giver or other not in posed:
-        return stand
-    places, headings = stand.places.copy(), stand.headings.copy()
-    pose = posed[other]
-    places[other] = (middle(touch, pose) if touch is not None else pose[0])[[0, 2]]
-    across = beside(pose, stand.places[1 - other])
-    headings[other] = headings[other] if across is None else across
-    return replace(stand, places=places, headings=headings)
 
 
 def touch_parts(touch: Touch, posed: Mapping[int, Array], stretch: Stretch) -> KnownFrames | None:

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from acts.staging.moves import coming, meeting
 from acts.staging.places import Standing
 from acts.staging.score import Move, Score, Touch
-from acts.staging.touches import coming, meeting
 from motion import FPS, SMPL22
 from motion.metrics.quality import jerk_percentile
 from motion.transforms import heading

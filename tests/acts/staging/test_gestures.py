@@ -24,26 +24,14 @@ TIME = np.arange(60) / 30
     [
         ("Person B backs away while waving with the left hand.", {"b": ("waves", 1)}),
         ("She keeps pointing at him with her right arm as she walks around him.", {"a": ("points", 1)}),
-        ("A boy raises his hand.", {"a": ("up", 1)}),
-        ("The soldier salutes.", {"a": ("salutes", 1)}),
-        ("She is on the phone.", {"a": ("phone", 1)}),
         ("He covers his ears.", {"a": ("ears", 2)}),
-        ("Person B hides his face.", {"b": ("eyes", 2)}),
-        ("A tourist takes a picture of his wife.", {"a": ("photo", 2)}),
         ("Two monks pray.", {"a": ("prays", 2), "b": ("prays", 2)}),
         ("Person A offers a hand, but person B does not take it.", {"a": ("offers", 1)}),
-        ("She holds out her hand.", {"a": ("offers", 1)}),
-        ("B refuses to shake A's hand.", {"a": ("offers", 1)}),
         ("Person A does not offer a hand.", {}),
         # no gesture of a hand in the air
         ("Person A lays a hand on person B's head.", {}),
-        ("Person A puts both hands on person B's shoulders.", {}),
-        ("Person A throws his arms around her.", {}),
         ("Person A does not wave.", {}),
         ("They shake hands.", {}),
-        ("They hold hands and jump.", {}),
-        ("Person A holds both her hands.", {}),
-        ("", {}),
     ],
 )
 def test_gestures_are_read(sentence: str, found: dict[str, tuple[str, int]]) -> None:

@@ -20,17 +20,11 @@ LEFT, RIGHT = 0, 1
     ("sentence", "found"),
     [
         ("A couple dances the tango.", "closed"),
-        ("couple dancing a slow waltz", "closed"),
         ("They take each other by both hands and spin round and round.", "ring"),
-        ("Two girls join hands and dance around in circles.", "ring"),
         ("They push palm against palm.", "palms"),
-        ("They try to push each other over, palms against palms.", "palms"),
         # no hold
         ("They dance.", ""),
-        ("They hold hands and walk.", ""),
         ("Person A dances a tango while person B watches.", ""),
-        ("They stop dancing the tango.", ""),
-        ("", ""),
     ],
 )
 def test_holds_are_read(sentence: str, found: str) -> None:
@@ -60,12 +54,9 @@ def test_both_hands_are_joined_in_a_ring_wherever_it_has_turned_to() -> None:
     ("words", "leader"),
     [
         ("He twirls her.", "a"),
-        ("While dancing he twirls her under his arm", "a"),
         ("She spins under his arm.", "b"),
-        ("Person B turns person A around under his arm.", "b"),
         ("They twirl around.", ""),
         ("He does not twirl her.", ""),
-        ("She twirls.", ""),
     ],
 )
 def test_twirls_are_read(words: str, leader: str) -> None:

@@ -77,12 +77,6 @@ def test_who_glides_backwards_goes_backwards_and_may_lead_with_a_hand_raised() -
     assert led.gestures["a"].gesture == "up" and not led.by_both_hands
 
 
-def test_who_brings_something_walks_up_with_both_hands_before_them() -> None:
-    brought = score("The waiter brings a tray.")
-    assert brought.gestures["a"].gesture == "offers" and brought.gestures["a"].sides == "both"
-    assert [move.way for move in brought.moves if move.person == "a"] == ["to"]
-
-
 def test_nobody_waits_for_somebody_who_does_not_move() -> None:
     around = score("B does not move at all, and A walks once around B.")
     assert [(m.way, m.late) for m in around.moves if m.person == "a"] == [("around", False)]
@@ -103,13 +97,6 @@ def test_who_stands_over_the_other_begins_near_them() -> None:
 def test_hands_that_are_tied_are_behind_the_back() -> None:
     tied = score("The robber ties her hands.")
     assert tied.gestures["b"].gesture == "behind" and tied.touch is not None and tied.touch.behind
-
-
-@pytest.mark.parametrize(("name", "carry"), [("carry", "arms"), ("ride-back", "back"), ("drag", "drags")])
-def test_who_carries(name: str, carry: str) -> None:
-    lifted = score_of((Act(id="1", act=name, agents=("a",), patient="b"),)).lift
-    assert lifted is not None
-    assert (lifted.carry, lifted.carrier) == (carry, "b" if name == "ride-back" else "a")
 
 
 def test_a_touch_from_behind_or_of_the_back_is_given_there() -> None:
@@ -134,22 +121,6 @@ def test_numbers_sides_and_speeds_reach_the_stage() -> None:
     assert seated.already and seated.posture == "sits"
     pat = score_of((Act(id="1", act="pat", agents=("a",), patient="b", part="shoulder", times=2),)).touch
     assert pat is not None and (pat.part, pat.times) == ("shoulder", 2)
-
-
-@pytest.mark.parametrize(
-    ("text", "groups"),
-    [
-        ("He walks up to her and pats her on the back.", [["walk-up"], ["pat"]]),
-        ("He punches her and she falls down.", [["punch", "fall-down"]]),
-        ("She runs away and he follows her.", [["run-away", "follow"]]),
-        ("Person A turns around and walks away.", [["turn-around", "walk-away"]]),
-        ("They shake hands. Then they hug.", [["shake-hands"], ["hug"]]),
-    ],
-)
-def test_answers_share_a_beat(text: str, groups: list[list[str]]) -> None:
-    beats = beats_of(read(text))
-    assert [[act.act for act in beat.acts] for beat in beats] == groups
-    assert all(beat.words.endswith(".") for beat in beats)
 
 
 def test_a_plan_by_hand_is_made_and_not_read() -> None:
@@ -205,30 +176,6 @@ def test_acts_of_a_story_are_read_and_written() -> None:
         read_story("[[beat]]\nacts = [" + '{ act = "wave", agents = ["a"] },' * 61 + "]")
 
 
-def test_who_holds_hands_holds_them_while_they_walk() -> None:
-    assert all(move.linked for move in score("They walk side by side while they hold hands.").moves)
-    assert not any(move.linked for move in score("They walk side by side.").moves)
-
-
-@pytest.mark.parametrize(
-    ("prompt", "acts"),
-    [
-        ("She raises her left leg.", ["raise-leg"]),
-        ("He does squats while she yawns.", ["squats", "yawn"]),
-        ("Person A walks past person B.", ["walk-past"]),
-        ("Person A flurbles person B.", None),  # not understood: the network has the words
-    ],
-)
-def test_words_are_read_as_acts(prompt: str, acts: list[str] | None) -> None:
-    scene = as_scene(GenerateRequest(prompt=prompt, seconds=5.0))
-    assert (None if scene is None else [act.act for beat in scene.beats for act in beat.acts]) == acts
-
-
-def test_a_blow_that_is_only_tried_is_struck_past_the_other() -> None:
-    struck = score_of(read("Person 1 tries to punch person 2, who dodges it.").acts).strike
-    assert struck is not None and struck.turns == "a"
-
-
 @pytest.mark.parametrize("text", ["A opens the window.", "A turns the hi-fi on.", "A looks out of the window."])
 def test_who_does_something_with_a_window_goes_to_it(text: str) -> None:
     stage = score(text)
@@ -253,12 +200,6 @@ def test_who_lets_hands_be_laid_on_them_keeps_still(text: str) -> None:
     assert score(text.replace("A ", "A pushes B and ", 1)).idle == frozenset()
 
 
-def test_who_is_carried_was_picked_up_first_if_the_words_say_so() -> None:
-    picked, carried = score("A picks B up and carries her away."), score("A carries B away.")
-    assert picked.lift is not None and picked.lift.comes == "a", "somebody walks up and picks up who stands there"
-    assert carried.lift is not None and not carried.lift.comes
-
-
 def test_who_tries_to_kiss_somebody_comes_near_and_leans_in() -> None:
     stage = score("A tries to kiss B and B ducks.")
     assert [(move.person, move.way) for move in stage.moves if move.person == "a"] == [("a", "to")]
@@ -271,11 +212,6 @@ def test_two_who_sit_on_a_bench_sit_on_one() -> None:
     assert bench is not None and bench.gap() < 0.8 and np.ptp(bench.headings) == 0
     chairs = beginning("They sit down on chairs.")
     assert chairs is None or np.ptp(chairs.headings) > 3
-
-
-@pytest.mark.parametrize(("words", "turns"), [("A turns around.", 0.5), ("A turns around twice.", 2.0)])
-def test_who_turns_more_than_once_turns_all_the_way_round(words: str, turns: float) -> None:
-    assert [move.turns for move in score(words).moves if move.person == "a"] == [turns]
 
 
 def test_what_is_done_in_unison_is_no_phrase_of_a_dance() -> None:

@@ -22,18 +22,10 @@ HEAD = SMPL22.index("head")
     ("words", "bout", "turns", "goes_on"),
     [
         ("They fight.", "fists", "ab", True),
-        ("Two people are boxing.", "fists", "ab", True),
-        ("Two boxers throw punches at each other.", "fists", "ab", True),
-        ("He fights with her.", "fists", "ab", True),
         ("Two knights fight with swords.", "weapons", "ab", True),
-        ("They fence.", "weapons", "ab", True),
         ("Two people play tennis.", "rackets", "ab", True),
-        ("Two kids are throwing a ball to each other.", "throws", "ab", True),
         ("Person A throws a ball to person B, who catches it.", "throws", "a", False),
-        ("Person B catches keys thrown by person A.", "throws", "a", False),
         ("Person B punches person A.", "fists", "b", False),
-        ("She hits back.", "fists", "a", False),
-        ("He slaps her in the face.", "slaps", "a", False),
         ("He slaps her in the face twice.", "slaps", "aa", False),
     ],
 )
@@ -50,18 +42,7 @@ def test_a_blow_that_ends_something_comes_late() -> None:
 
 
 @pytest.mark.parametrize(
-    "words",
-    [
-        "They do not fight.",
-        "He wants to punch her.",
-        "They stop fighting and hug.",
-        "She throws her arms around him.",
-        "He punches the air.",
-        "They strike a pose.",
-        "A man hits the wall.",
-        "They hug.",
-        "She passes him.",
-    ],
+    "words", ["They do not fight.", "He wants to punch her.", "She throws her arms around him.", "He punches the air."]
 )
 def test_other_words_are_left_to_the_network(words: str) -> None:
     assert strike(words) is None
@@ -73,7 +54,6 @@ def test_other_words_are_left_to_the_network(words: str) -> None:
         ("He punches her and she falls down.", "a"),
         ("Person B throws a punch and person A ducks.", "b"),
         ("Person A throws a punch, person B ducks under it and punches back.", "ab"),
-        ("He swings at her and she dodges.", "a"),
     ],
 )
 def test_answers_to_a_punch_are_read(words: str, turns: str) -> None:
@@ -148,12 +128,6 @@ def test_blows_are_struck_with_the_hands_that_the_words_name() -> None:
     score = strike("He throws two jabs with the left.")
     assert score is not None and score.hands == ("left", "left")
     assert [(blow.person, blow.side) for blow in blows(score, 150)] == [(0, "left"), (0, "left")]
-
-
-def test_a_person_who_stands_behind_begins_behind() -> None:
-    placed = beginning("The coach stands behind her.")
-    assert placed is not None and placed.gap() < 0.7
-    assert placed.places[0, 1] < placed.places[1, 1] and placed.headings[1] == placed.headings[0] == 0.0
 
 
 def test_two_who_circle_face_to_face_keep_circling() -> None:
