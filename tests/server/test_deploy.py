@@ -45,7 +45,7 @@ def test_the_image_runs_without_rights_and_has_what_it_needs() -> None:
     let_in = (ROOT / ".dockerignore").read_text().splitlines()
     assert all(f"!{name}" in let_in for name in [*copied, *LOCKS])
     index = re.search(r"--extra-index-url (\S+/cpu)\b", DOCKERFILE)
-    assert index is not None and f"--index-url {index[1]}" in (ROOT / "README.md").read_text()
+    assert index is not None and f"--index-url {index[1]}" in (ROOT / "docs" / "using.md").read_text()
 
 
 LOCKS = ("requirements.lock", "requirements-ray.lock")
