@@ -242,8 +242,6 @@ def test_benchmark_reports_figures(run: Run, weights: Path, tmp_path: Path, monk
         (tmp_path / folder.name).unlink(missing_ok=True)
         (tmp_path / folder.name).symlink_to(folder)
     monkeypatch.setattr(engine, "Engine", partial(engine.Engine.func, tmp_path))
-    monkeypatch.setattr("webdemo.benchmark.reactions.STREAMED", 210)  # two hundred are compared
-    monkeypatch.setattr("webdemo.benchmark.reactions.WHOLE", 30)
     code, said, _ = run("benchmark", "--seconds", 1, "--steps", 2, "--repeats", 1)
     assert code == 0
     printed = answer(said)
@@ -251,12 +249,10 @@ def test_benchmark_reports_figures(run: Run, weights: Path, tmp_path: Path, monk
     assert printed["request_seconds"] > 0
     assert printed["plain_over_request"] > 0
     for figure in (
-        "part_ms_network",
-        "network_share_of_gemm",
-        "busy_over_alone",
-        "predict_25_frames_ms",
+        "class_over_sentence",
+        "predict_ms_motion-mlp",
         "reaction_frame_ms",
-        "reaction_whole_seconds",
+        "shared_over_serial_throughput",
     ):
         assert printed[figure] > 0
 

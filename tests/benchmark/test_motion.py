@@ -2,16 +2,12 @@
 
 import json
 import math
-import shutil
-from pathlib import Path
 
 import pytest
 
 from motion import InputError
 from webdemo.benchmark import motion as bench
-from webdemo.benchmark.motion import COLUMNS, MEASURES, kinds, measured_folder, run_motion, table
-
-EXAMPLES = Path(__file__).resolve().parents[2] / "static" / "examples"
+from webdemo.benchmark.motion import COLUMNS, MEASURES, kinds, run_motion, table
 
 
 def test_every_kind_is_asked_for_in_several_ways_and_most_were_recorded() -> None:
@@ -19,20 +15,6 @@ def test_every_kind_is_asked_for_in_several_ways_and_most_were_recorded() -> Non
     assert all(len(sentences) >= 2 for sentences in listed.values())
     assert set(real) <= {*listed, "all"} and len(real) > 8
     assert all(set(MEASURES) >= set(row) - {"people"} for row in real.values())
-
-
-def test_recordings_are_measured_by_kind(tmp_path: Path) -> None:
-    (tmp_path / "gesture").mkdir()
-    shutil.copy(EXAMPLES / "wave.npz", tmp_path / "gesture")
-    (tmp_path / "gesture" / "notes.txt").write_text("no motion")
-    found = measured_folder(tmp_path, kinds())
-    assert set(found) == {"gesture", "all"} and found["gesture"]["people"] == 2
-    assert found["gesture"]["fastest"] > 0.5 and found["gesture"] == found["all"]
-
-
-def test_a_folder_without_recordings_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="a folder of motion files for each kind"):
-        measured_folder(tmp_path, kinds())
 
 
 def test_an_unknown_kind_is_an_error() -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from motion import InputError
 from webdemo.benchmark import browser as benchmark_browser
+from webdemo.benchmark import server
 
 pytestmark = pytest.mark.e2e
 
@@ -26,7 +27,7 @@ page.launch(server_name="127.0.0.1", server_port=int(os.environ["PASDEDEUX_PORT"
 def test_page_and_player_are_measured(chromium: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """``chromium`` says whether there is a browser; the benchmark starts one of its own."""
     (tmp_path / "app.py").write_text(STUB_APP)
-    monkeypatch.setattr(benchmark_browser, "ROOT", tmp_path)
+    monkeypatch.setattr(server, "ROOT", tmp_path)
     for name, seconds in (("WATCHED", 1.0), ("GIVE_BACK_EVERY", -2.0), ("LONGEST_SETTLING", 5.0)):
         monkeypatch.setattr(benchmark_browser, name, seconds)
     with ThreadPoolExecutor(1) as thread:  # Playwright takes one browser a thread, and the fixture has one
@@ -44,16 +45,9 @@ def test_page_and_player_are_measured(chromium: object, tmp_path: Path, monkeypa
     assert figures["player_fps_turning"] > 1
     assert figures["player_fps_bodies"] > 1
     assert figures["player_fps_skeletons"] > 1
-    for state in ("idle", "waiting", "paused"):
+    for state in ("idle", "paused"):
         assert 0 <= figures[f"browser_cores_{state}"] < 4, "cores, not seconds"
     assert figures["browser_cores_paused"] < 0.5
-
-
-def test_a_page_that_does_not_start_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "app.py").write_text("raise SystemExit(1)")
-    monkeypatch.setattr(benchmark_browser, "ROOT", tmp_path)
-    with pytest.raises(InputError, match="did not start"), benchmark_browser._served():
-        raise AssertionError("it answered")
 
 
 def test_no_chromium_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:

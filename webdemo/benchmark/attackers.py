@@ -17,7 +17,7 @@ import numpy as np
 from webdemo.inference.requests.actor import read_actor
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
 
-from .served import ROOT
+from .server import ROOT
 
 ATTACKERS = 6
 EVENTS = 200

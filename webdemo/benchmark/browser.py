@@ -6,22 +6,19 @@ Part of ``python -m webdemo benchmark --browser``; needs Playwright and a Chromi
 from __future__ import annotations
 
 import contextlib
-import os
 import shutil
-import socket
 import statistics
-import subprocess
-import sys
 import tempfile
 import time
-import urllib.request
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 from motion import InputError
 
-ROOT = Path(__file__).resolve().parents[2]
+from . import PROMPTS
+from .server import serving, wait_until
+
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SOFTWARE_GL = (
     "--no-sandbox",
@@ -32,7 +29,6 @@ SOFTWARE_GL = (
     "--disable-background-networking",
 )
 STAGE = (960, 640)
-PROMPT = "Two people walk up to each other and shake hands."
 LONGEST_START = 120.0
 LONGEST_RUN = 120.0
 WATCHED = 3.0
@@ -41,8 +37,6 @@ GIVE_BACK_EVERY = 5.0
 """Seconds after which a server at rest has given memory back, see :mod:`webdemo.server.app`."""
 LONGEST_SETTLING = 15.0
 """Seconds that a page gets to draw what it owes, such as the finer picture of a motion just paused."""
-LONG_RUN = {"seconds": 10, "samples": 8}
-"""A run that outlasts the measurement of the waiting page."""
 
 _STAGE_STYLE = """#player .pdd-stage {{ width: {0}px !important; min-width: {0}px !important;
 height: {1}px !important; min-height: {1}px !important; flex: none !important }}"""
@@ -92,9 +86,9 @@ def measure_browser() -> dict[str, Any]:
         run of 4 s of motion; ``page_result_to_body_seconds`` and ``page_result_to_motion_seconds``, from there to
         the first picture of bodies and to the first that moves; ``player_fps_still`` and
         ``player_fps_turning`` (the camera at rest, and dragged) while bodies with their skeletons play, as at first,
-        ``player_fps_bodies``, ``player_fps_skeletons`` and ``player_pixels``. ``browser_cores_idle``,
-        ``browser_cores_waiting`` and ``browser_cores_paused`` are what all of the browser's processes took of a core
-        while the page was left alone, in the middle of a run, and while a motion was paused. ``page_memory_mb`` is the
+        ``player_fps_bodies``, ``player_fps_skeletons`` and ``player_pixels``. ``browser_cores_idle`` and
+        ``browser_cores_paused`` are what all of the browser's processes took of a core while the page was left alone,
+        and while a motion was paused. ``page_memory_mb`` is the
         memory of the page's process at rest after these runs, ``page_memory_mb_own`` without libraries and mapped
         files, in megabytes (Linux).
 
@@ -104,7 +98,8 @@ def measure_browser() -> dict[str, Any]:
     with _chromium() as browser:
         page = browser.new_page(viewport={"width": 1440, "height": 1000})
         began = time.perf_counter()
-        with _served() as (url, server):
+        with tempfile.TemporaryDirectory(prefix="pas-de-deux-benchmark-") as data, serving(Path(data)) as (url, server):
+            wait_until(url, "", server, every=0.05)
             figures = {"page_first_answer_seconds": time.perf_counter() - began}
             page.goto(url)
             page.locator("#prompt textarea").wait_for(state="visible", timeout=1000 * LONGEST_START)
@@ -120,9 +115,8 @@ def measure_browser() -> dict[str, Any]:
                 page.locator("#player .pdd-play").click()
             _let_settle(page, browser)
             figures["browser_cores_paused"] = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
-            figures["browser_cores_waiting"] = _wait_for_a_long_run(page, browser)
             page.wait_for_timeout(1000 * (GIVE_BACK_EVERY + 2))
-            figures |= _memory(server)
+            figures |= _memory(server.pid)
             page.close()  # a server waits for pages that listen before it ends
             return figures
 
@@ -147,40 +141,6 @@ def _chromium() -> Iterator[Any]:
             browser.close()
 
 
-@contextlib.contextmanager
-def _served() -> Iterator[tuple[str, int]]:
-    """The address of ``app.py`` in a process of its own, once it answers, and that process' id; it ends afterwards."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    data = tempfile.TemporaryDirectory(prefix="pas-de-deux-benchmark-")
-    environment = {
-        **os.environ,
-        "PASDEDEUX_HOST": "127.0.0.1",
-        "PASDEDEUX_PORT": str(port),
-        "PASDEDEUX_DATA": data.name,
-    }
-    server = subprocess.Popen(
-        [sys.executable, "app.py"], cwd=ROOT, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
-    url = f"http://127.0.0.1:{port}/"
-    try:
-        until = time.monotonic() + LONGEST_START
-        while not _answers(url):
-            if server.poll() is not None or time.monotonic() > until:
-                raise InputError("The page did not start: run `python app.py` to see why.")
-            time.sleep(0.05)
-        yield url, server.pid
-    finally:
-        server.terminate()
-        try:
-            server.wait(timeout=20)
-        except subprocess.TimeoutExpired:
-            server.kill()
-            server.wait()
-        data.cleanup()
-
-
 def _memory(process: int) -> dict[str, float]:
     """Megabytes in memory of a process, and the part that is no file's; nothing where the system does not tell."""
     with contextlib.suppress(OSError):
@@ -188,14 +148,6 @@ def _memory(process: int) -> dict[str, float]:
         sizes = {name: int(rest.split()[0]) / 1024 for name, rest in (line.split(":") for line in lines)}
         return {"page_memory_mb": sizes["Rss"], "page_memory_mb_own": sizes["Anonymous"]}
     return {}
-
-
-def _answers(url: str) -> bool:
-    try:
-        with urllib.request.urlopen(url, timeout=5) as answer:
-            return answer.status == 200
-    except OSError:
-        return False
 
 
 def _wait_for_model(page: Any) -> None:
@@ -236,7 +188,7 @@ def _follow_a_run(page: Any) -> dict[str, float]:
     """Asks for motion as a visitor does; the page's own clock times what happens."""
     from playwright.sync_api import TimeoutError as TookTooLong
 
-    page.fill("#prompt textarea", PROMPT)
+    page.fill("#prompt textarea", PROMPTS[0])
     page.locator("button#generate:enabled").wait_for(timeout=1000 * LONGEST_RUN)
     page.evaluate(_FOLLOW_RUN)
     try:
@@ -250,28 +202,6 @@ def _follow_a_run(page: Any) -> dict[str, float]:
         "page_result_to_body_seconds": max(0.0, seen["body"] - seen["done"]) / 1000,
         "page_result_to_motion_seconds": max(0.0, seen["motion"] - seen["done"]) / 1000,
     }
-
-
-def _wait_for_a_long_run(page: Any, browser: Any) -> float:
-    """Cores that the browser takes in the middle of a run: what a click and a result cost is left out."""
-    if (folded := page.locator("#more > button.label-wrap:not(.open)")).count():
-        folded.click()  # what is folded is not on the page
-    for name, value in LONG_RUN.items():
-        field = page.locator(f"#{name} input[type=number]")
-        field.fill(str(value))
-        field.blur()
-    page.locator("#pace").get_by_text("Faithful").click()
-    page.locator("button#generate:enabled").wait_for(timeout=1000 * LONGEST_RUN)
-    page.locator("button#generate").click()
-    stop = page.locator("button#cancel:enabled")
-    stop.wait_for(timeout=1000 * LONGEST_RUN)
-    page.wait_for_timeout(1000)
-    share = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
-    if not stop.count():
-        raise InputError("The run ended before the waiting page was measured: this machine is too fast for it.")
-    stop.click()  # to its end it would take a minute or more on two cores
-    page.locator("button#generate:enabled").wait_for(timeout=1000 * LONGEST_RUN)
-    return share
 
 
 def _frame_rates(page: Any) -> dict[str, Any]:

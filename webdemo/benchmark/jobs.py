@@ -10,12 +10,8 @@ from typing import Any
 from webdemo.inference.requests import GenerateRequest
 from webdemo.server.queue.wait_estimate import units
 
-PROMPTS = (
-    "Two people walk up to each other and shake hands.",
-    "One person waves and the other waves back.",
-    "Two people dance together.",
-    "One person punches and the other steps back.",
-)
+from . import PROMPTS
+
 SHEET = "render"
 NOBODY = object()
 """Stands for no character, since None stands for the uploaded file."""
@@ -29,7 +25,7 @@ class Job:
         endpoint: name of the endpoint.
         data: its arguments; None stands for an uploaded :data:`CLIP`.
         asked: fields of the request that the result's manifest must hold.
-        work: units of work, see :mod:`webdemo.server.queue.wait_estimate`.
+        work: units of work, see :func:`webdemo.server.queue.turns.units`.
     """
 
     endpoint: str
@@ -52,28 +48,8 @@ def _generation(dice: random.Random, steps: int) -> Job:
 
 def _reaction(dice: random.Random, steps: int) -> Job:
     seed, seconds = dice.randrange(2**32), 2.0
-    data = (
-        None,
-        "",
-        "a",
-        0,
-        seconds,
-        "a",
-        seed,
-        1,
-        3.0,
-        steps,
-        0.7,
-        "ddim",
-        "intergen",
-        "offline",
-        False,
-        False,
-        "",
-        0,
-        "",
-        "",
-    )
+    chosen = (None, "", "a", 0, seconds, "a", seed, 1, 3.0, steps, 0.7, "ddim", "intergen", "offline")
+    data = (*chosen, False, False, "", 0, "", "")
     return Job("react", data, {"kind": "react", "seed": seed, "steps": steps}, seconds * steps + 10)
 
 
@@ -85,25 +61,8 @@ def _prediction(dice: random.Random, steps: int) -> Job:
 
 def _sheet(dice: random.Random, steps: int) -> Job:
     """A contact sheet, which waits in the queue of events."""
-    data = (
-        None,
-        "png",
-        "bodies",
-        "light",
-        "threequarter",
-        False,
-        24,
-        dice.choice((480, 640)),
-        360,
-        NOBODY,
-        "",
-        0,
-        0,
-        False,
-        "",
-        "",
-    )
-    return Job(SHEET, data, {}, 1.0)
+    look = ("png", "bodies", "light", "threequarter", False, 24, dice.choice((480, 640)), 360)
+    return Job(SHEET, (None, *look, NOBODY, "", 0, 0, False, "", ""), {}, 1.0)
 
 
 KINDS = (_generation, _generation, _generation, _generation, _reaction, _sheet, _prediction)

@@ -1,8 +1,8 @@
 """Measures of planned motion beside the network's own and recorded motion, by kind of act.
 
 ``python -m webdemo benchmark --motion`` makes the sentences of ``motion.toml`` with and without their plans and prints
-medians over people (:mod:`motion.metrics.quality`), so that walks are compared with walks. What was recorded is in
-``recorded.json``; ``--recorded FOLDER`` measures it anew.
+medians over people (:mod:`motion.metrics.quality`), so that walks are compared with walks. ``recorded.json`` has
+the same measures of recorded people, by kind.
 """
 
 from __future__ import annotations
@@ -17,9 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from motion import Clip, Duet, InputError
-from motion.formats.files import write_text
-from motion.metrics.quality import Naturalness, joint_speeds, naturalness
+from motion import Duet, InputError
+from motion.metrics.quality import Naturalness, naturalness
 
 HERE = Path(__file__).parent
 RECORDED = HERE / "recorded.json"
@@ -36,8 +35,6 @@ MEASURES: Mapping[str, tuple[str, str, float]] = {
 """Label, format and goal of each measure. That of the fastest joint is what was recorded."""
 _RARE = ("twisted", "deep")
 """Measures of what should hardly happen, of which means are taken."""
-_SHORTEST = 30
-"""Frames of a recording that is measured."""
 
 
 @dataclass(frozen=True)
@@ -55,26 +52,21 @@ def kinds() -> dict[str, tuple[Asked, ...]]:
     return {kind["name"]: tuple(Asked(**each) for each in kind["sentences"]) for kind in listed}
 
 
-def run_motion(
-    *, steps: int = 8, seeds: int = 2, recorded: Path | None = None, only: Sequence[str] = ()
-) -> dict[str, Any]:
+def run_motion(*, steps: int = 8, seeds: int = 2, only: Sequence[str] = ()) -> dict[str, Any]:
     """Prints the table and gives its figures: ``{kind: {measure: {column: value}}}`` and the kind ``all``.
 
     Args:
         steps: DDIM steps.
         seeds: motions of each sentence.
-        recorded: a folder with a folder of motion files for each kind; measured and written to ``recorded.json``.
         only: these kinds alone.
 
     Raises:
-        InputError: for an unknown kind, or a folder without recordings.
+        InputError: for an unknown kind.
     """
     listed = kinds()
     if unknown := [kind for kind in only if kind not in listed]:
         raise InputError(f"There is no kind of act {unknown[0]!r}: choose from {', '.join(listed)}.")
-    if recorded is not None:
-        write_text(RECORDED, json.dumps(measured_folder(recorded, listed), indent=1) + "\n")
-    real = json.loads(RECORDED.read_text(encoding="utf-8")) if RECORDED.is_file() else {}
+    real = json.loads(RECORDED.read_text(encoding="utf-8"))
     people: dict[str, tuple[list[Naturalness], list[Naturalness]]] = {}
     make = _maker(steps)
     for kind, sentences in listed.items():
@@ -134,55 +126,6 @@ def _median(measure: str, people: Iterable[Naturalness]) -> float:
     if not len(values):
         return math.nan
     return float(values.mean() if measure in _RARE else np.median(values))
-
-
-def measured_folder(folder: Path, listed: Iterable[str]) -> dict[str, dict[str, float]]:
-    """Medians over the people recorded in ``folder/KIND``, for each kind and for all of them.
-
-    Raises:
-        InputError: where none of the kinds has a recording that can be read.
-    """
-    found: dict[str, list[tuple[Naturalness, np.ndarray]]] = {}
-    for kind in listed:
-        people = [each for path in sorted((folder / kind).glob("*")) for each in _recorded(path)]
-        if people:
-            found[kind] = people
-    if not found:
-        raise InputError(
-            f"{folder} holds no recordings: give a folder with a folder of motion files for each kind of act, such as "
-            f"{folder / 'walk'}."
-        )
-    found["all"] = [each for people in found.values() for each in people]
-    return {kind: _real(people) for kind, people in found.items()}
-
-
-def _real(people: Sequence[tuple[Naturalness, np.ndarray]]) -> dict[str, float]:
-    figures = {measure: _median(measure, [one for one, _ in people]) for measure in MEASURES}
-    figures["fastest"] = float(np.percentile(np.concatenate([speeds.ravel() for _, speeds in people]), 99.9))
-    rounded = {measure: round(value, 4) for measure, value in figures.items() if math.isfinite(value)}
-    return {"people": len(people), **rounded}
-
-
-def _recorded(path: Path) -> list[tuple[Naturalness, np.ndarray]]:
-    """The people of a file with their joints' speeds; none where it cannot be read or is too short."""
-    from motion.formats import can_read, read, read_pair
-
-    partner = path.with_name(path.name.replace("_a.", "_b."))
-    paired = "_b." in path.name and path.with_name(path.name.replace("_b.", "_a.")).is_file()
-    if not path.is_file() or not can_read(path.suffix) or paired:  # b is read with a
-        return []
-    try:
-        motion = read_pair(path, partner) if partner != path and partner.is_file() else read(path)
-    except InputError as error:
-        print(f"{path.name} is left out: {error}")
-        return []
-    if motion.num_frames < _SHORTEST:
-        return []
-    if isinstance(motion, Clip):
-        positions = motion.positions.astype(np.float64)
-        return [(naturalness(positions, motion.fps), joint_speeds(positions, motion.fps))]
-    speeds = [joint_speeds(person, motion.fps) for person in motion.positions.astype(np.float64)]
-    return list(zip(_measured(motion), speeds, strict=True))
 
 
 def table(figures: Mapping[str, Mapping[str, Mapping[str, float]]]) -> str:

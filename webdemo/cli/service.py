@@ -20,23 +20,18 @@ def add_service(commands: Any) -> None:
     info_parser.set_defaults(job=info)
     bench = commands.add_parser("benchmark", help="measure the speed of this machine, as figures and ratios")
     bench.add_argument("--seconds", type=float, default=10.0, help="length of the motion")
-    bench.add_argument("--steps", type=int, help="denoising steps (50; with --motion 8)")
+    bench.add_argument("--steps", type=int, help="denoising steps (50; with --motion and --load 8)")
     bench.add_argument("--repeats", type=int, default=3)
     bench.add_argument("--browser", action="store_true", help="also the page and the player, in Chromium")
     bench.add_argument("--load", action="store_true", help="instead: load a server on loopback with many people")
-    bench.add_argument("--model", help="instead: a released InterGen of the settings beside a plain run of it")
-    bench.add_argument("--live", action="store_true", help="instead: many people with live partners")
     bench.add_argument(
         "--motion",
         action="store_true",
         help="instead: planned motion beside the network's own and recorded motion, by kind of act",
     )
-    bench.add_argument(
-        "--recorded", type=Path, metavar="FOLDER", help="with --motion: measure the recordings in FOLDER/KIND anew"
-    )
     bench.add_argument("--kinds", nargs="+", default=[], metavar="KIND", help="with --motion: only these kinds")
-    bench.add_argument("--people", type=int, default=20, help="with --load or --live")
-    bench.add_argument("--minutes", type=float, default=5.0, help="with --load or --live")
+    bench.add_argument("--people", type=int, default=20, help="with --load")
+    bench.add_argument("--minutes", type=float, default=2.0, help="with --load; half of them beside attackers")
     bench.set_defaults(job=benchmark)
     serve_parser = commands.add_parser("serve", help="serve the page, like `python app.py`")
     serve_parser.add_argument("--host", help="address to listen on (127.0.0.1: this machine alone)")
@@ -93,32 +88,27 @@ def info(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def benchmark(options: argparse.Namespace) -> dict[str, Any]:
-    """Speed figures of :mod:`webdemo.benchmark`, or how a server bears many people."""
-    from webdemo.benchmark.suite import run_benchmark
-
+    """Prints and returns figures of :mod:`webdemo.benchmark`."""
     if options.motion:
         from webdemo.benchmark.motion import run_motion
 
-        return run_motion(steps=options.steps or 8, recorded=options.recorded, only=options.kinds)
-    options.steps = 50 if options.steps is None else options.steps
-    if options.model:
-        from webdemo.benchmark.released import measure_released
-
-        return measure_released(options.model, seconds=options.seconds, steps=options.steps, repeats=options.repeats)
-    if options.live:
-        from webdemo.benchmark.live import run_live
-
-        return run_live(people=options.people, minutes=options.minutes)
+        return run_motion(steps=options.steps or 8, only=options.kinds)  # it prints a table
     if options.load:
-        from webdemo.benchmark.batching import measure_batching
-        from webdemo.benchmark.load import goals_missed, run_load
+        from webdemo.benchmark.load import run_load
 
-        figures = measure_batching(steps=options.steps)
-        for name, value in figures.items():
-            print(f"{name:40} {value:.3f}")
-        figures |= run_load(people=options.people, minutes=options.minutes, steps=options.steps)
-        return figures | {"goals_missed": goals_missed(figures)}
-    return run_benchmark(seconds=options.seconds, steps=options.steps, repeats=options.repeats, browser=options.browser)
+        figures = run_load(people=options.people, minutes=options.minutes, steps=options.steps or 8)
+    else:
+        from webdemo.benchmark.speed import run_speed
+
+        figures = run_speed(seconds=options.seconds, steps=options.steps or 50, repeats=options.repeats)
+        if options.browser:
+            from webdemo.benchmark.browser import measure_browser
+
+            figures |= measure_browser()
+    figures = {name: float(f"{v:.4g}") if isinstance(v, float) else v for name, v in figures.items()}
+    for name, value in figures.items():
+        print(f"{name:40} {value}")
+    return figures
 
 
 def serve(options: argparse.Namespace) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import os
 import signal
@@ -44,15 +43,11 @@ def serving(folder: Path, **settings: object) -> Iterator[tuple[str, subprocess.
                 server.wait(timeout=90)
             except subprocess.TimeoutExpired:
                 server.kill()
+                server.wait()
 
 
-def errors_logged(folder: Path) -> int:
-    """The number of errors in the log of a server whose folder this was."""
-    return (folder / "log").read_text(encoding="utf-8").count('"level": "error"')
-
-
-async def ready(client: httpx.AsyncClient, server: subprocess.Popen[bytes]) -> None:
-    """Waits until a server can generate.
+def wait_until(url: str, path: str, server: subprocess.Popen[bytes], *, every: float = 0.5) -> None:
+    """Waits until an address of a server answers 200.
 
     Raises:
         InputError: where it does not come up.
@@ -61,10 +56,8 @@ async def ready(client: httpx.AsyncClient, server: subprocess.Popen[bytes]) -> N
     while time.monotonic() < until:
         if server.poll() is not None:
             raise InputError("The server ended before it was ready: start `python app.py` to see why.")
-        try:
-            if (await client.get("healthz")).status_code == 200:
+        with contextlib.suppress(httpx.TransportError):  # it does not listen yet
+            if httpx.get(f"{url}{path}", timeout=30).status_code == 200:
                 return
-        except httpx.TransportError:  # it does not listen yet
-            pass
-        await asyncio.sleep(0.5)
+        time.sleep(every)
     raise InputError(f"The server was not ready within {START_SECONDS:g} s: see its /healthz.")
