@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import socket
 import threading
 import time
@@ -12,9 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import pytest
 from fastapi.testclient import TestClient
-from sqlalchemy import Engine, MetaData, event
+from sqlalchemy import event
 
 from webdemo.server.app import Lab, create_app
 from webdemo.server.serve import make_server
@@ -36,26 +34,6 @@ PREDICT = [0, 1, "still", "", 0, 0, "", ""]
 
 def settings_for(folder: Path, **fields: Any) -> Settings:
     return Settings(**({"data": folder / "data", "grace_seconds": 1, "free_megabytes": 0} | fields))
-
-
-DATABASES = ("sqlite", "named")
-"""SQLite, and the empty database whose URL PASDEDEUX_TEST_DATABASE gives."""
-
-
-def database_url(kind: str, folder: Path) -> str:
-    """The URL of one of :data:`DATABASES`; skips the test where there is none."""
-    if kind == "sqlite":
-        return f"sqlite:///{folder / 'h.db'}"
-    if not (url := os.environ.get("PASDEDEUX_TEST_DATABASE", "")):
-        pytest.skip("PASDEDEUX_TEST_DATABASE names no other database")
-    return url
-
-
-def drop_tables(engine: Engine) -> None:
-    """Removes all tables, the one of the migrations as well, so that the next test finds an empty database."""
-    tables = MetaData()
-    tables.reflect(engine)
-    tables.drop_all(engine)
 
 
 def client_of(settings: Settings, *, pause: float = 0.0, **options: Any) -> TestClient:
@@ -101,8 +79,6 @@ def answer_of(said: str) -> dict[str, Any]:
 def no_room(database: Database) -> Iterator[None]:
     """The database may not grow."""
     engine = database.engine
-    if engine.dialect.name != "sqlite":
-        pytest.skip("only SQLite has a limit that stands for a full disk")
 
     def limit(connection: Any, record: Any) -> None:
         connection.execute("PRAGMA max_page_count=1")

@@ -9,7 +9,6 @@ import pytest
 from fastapi.testclient import TestClient
 
 from tests.inference.conftest import weights
-from webdemo.server import app
 from webdemo.server.accounts import users as accounts
 
 from .clients import client_of, served_on_loopback, settings_for
@@ -38,22 +37,6 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
         settings = settings_for(folder, users=folder / "users", host="0.0.0.0", hosts=["127.0.0.1"], rate=OFTEN)
         with client_of(settings) as client:
             yield client
-
-
-@pytest.fixture(scope="package")
-def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient, TestClient]]:
-    """Two page processes' servers with one database and the accounts of ada and eve, of whom each may have
-    two runs; a step takes 0.1 s."""
-    folder = tmp_path_factory.mktemp("pair")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(accounts, "COST", 2**4)
-        patch.setattr(app, "SHARE_EVERY", 0.05)
-        add_accounts(folder / "users", "ada", "eve")
-        common = {"users": folder / "users", "host": "0.0.0.0", "hosts": ["127.0.0.1"]}
-        common |= {"running": 1, "waiting": 1}
-        one, two = (client_of(settings_for(folder, node=node, **common), pause=0.1) for node in ("one", "two"))
-        with one, two:
-            yield one, two
 
 
 @pytest.fixture(scope="package")

@@ -47,7 +47,6 @@ class Confined:
         given |= {
             "PASDEDEUX_PORT": str(port),
             "PASDEDEUX_FREE_MEGABYTES": "16",
-            "PASDEDEUX_NODE": "confined",
             "PASDEDEUX_HOSTS": '["lab.example"]',
             "PASDEDEUX_GRACE_SECONDS": "5",
             "OMP_NUM_THREADS": "1",

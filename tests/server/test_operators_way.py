@@ -29,10 +29,10 @@ class Way(Target):
         super().__init__(folder, accounts=False, stub_pause=0.1)
         self.data = folder / name
         self.settings = folder / f"{name}.toml"
-        users, backups = folder / f"users of {name}", folder / "backups"
+        users = folder / f"users of {name}"
         self.settings.write_text(
             f"users = {json.dumps(str(users))}\ndata = {json.dumps(str(self.data))}\nkeep_days = 60\n"
-            f'backup = {json.dumps(str(backups))}\nhost = "0.0.0.0"\nhosts = ["127.0.0.1"]\n'
+            f'host = "0.0.0.0"\nhosts = ["127.0.0.1"]\n'
             "free_megabytes = 0\ngrace_seconds = 1\n"
         )
         self.env = {"PASDEDEUX_SETTINGS": str(self.settings)}
@@ -76,18 +76,18 @@ def test_from_an_empty_folder_to_a_backup_that_serves_again(tmp_path: Path) -> N
         with lab.browser("guest", PASSWORD) as guest:
             assert "complete" in generate(guest) and "complete" in generate(guest)
             page = ended_by(ada, guest)
-        assert "<strong>guest</strong>" in page and " of 150.0 MB" in page
+        assert "<strong>guest</strong>" in page and " of 200.0 MB" in page
         runs = [run["id"] for run in lab.shell("share", "runs", "--user", "guest")["runs"]]
         made = lab.shell("share", "link", "--user", "guest", "--base", lab.url, "--", runs[0])
         assert lab.ask("stranger", "GET", f"/share/{made['key']}").status_code == 200
         acts = [(line["act"], line["person"]) for line in lab.audited()]
-        assert {("sign-in", "ada"), ("admin-end-run", "ada")} <= set(acts) and "page-opened" in dict(acts)
+        assert {("sign-in", "ada"), ("admin-end", "ada")} <= set(acts) and "page-opened" in dict(acts)
         assert PASSWORD not in lab.log() and made["key"] not in lab.log()
         backup = lab.shell("backup", str(tmp_path / "backups"), "--keep", "7")["backup"]
 
     again = Way(tmp_path, "again")
     assert again.shell("restore", str(tmp_path / "backups"))["backup"] == backup
-    assert "not empty" in again.shell("restore", str(tmp_path / "backups"), code=2)["error"]
+    assert "empty folder" in again.shell("restore", str(tmp_path / "backups"), code=2)["error"]
     with again, again.browser("guest", PASSWORD) as guest:
         assert "complete" in generate(guest)
         assert again.ask("stranger", "GET", f"/share/{made['key']}").status_code == 200
@@ -100,11 +100,11 @@ def ended_by(admin: httpx.Client, person: httpx.Client) -> str:
     thread = threading.Thread(target=lambda: said.append(generate(person, 400)))
     thread.start()
     until = time.monotonic() + 60
-    while "end-run" not in (page := admin.get("/admin").text):
+    while 'value="end"' not in (page := admin.get("/admin").text):
         assert time.monotonic() < until
         time.sleep(0.2)
-    key = page.split('value="end-run"')[1].split('name="id" value="')[1].split('"')[0]
-    assert admin.post("/admin", data={"act": "end-run", "id": key}).status_code == 303
+    key = page.split('value="end"')[1].split('name="id" value="')[1].split('"')[0]
+    assert admin.post("/admin", data={"act": "end", "id": key}).status_code == 303
     thread.join(timeout=60)
     assert "The person who runs this server ended this" in said[0]
     return page

@@ -8,7 +8,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,8 @@ import pytest
 
 from motion import InputError
 from webdemo.server.store.database import Database
-from webdemo.server.store.history import History
+from webdemo.server.store.notebook import Notebook
+from webdemo.ui.history import Entry, Search
 
 from .clients import answer_of
 from .lab import ROOT
@@ -49,7 +50,6 @@ class Process:
         self.url, self.data = f"http://127.0.0.1:{port}", data
         env = os.environ | {
             "STUB_PAUSE": str(pause),
-            "PASDEDEUX_NODE": "tested",
             "PASDEDEUX_GRACE_SECONDS": "120",
             "PASDEDEUX_FREE_MEGABYTES": "0",
             "PASDEDEUX_PORT": str(port),
@@ -83,10 +83,13 @@ class Process:
         return f"{self.url}{CALL}/{asked.json()['event_id']}"
 
     def states(self) -> list[str]:
-        return [entry.state for entry in self.history().entries("local")]
+        return [entry.state for entry in self.entries()]
 
-    def history(self) -> History:
-        return History(Database(f"sqlite:///{self.data / 'history.db'}"), self.data / "motions", node="tested")
+    def entries(self) -> Sequence[Entry]:
+        return self.history().search("local", Search()).entries
+
+    def history(self) -> Notebook:
+        return Notebook(Database(f"sqlite:///{self.data / 'history.db'}"), self.data / "motions")
 
 
 @pytest.fixture
@@ -109,7 +112,7 @@ def test_killed_while_it_works_started_again_and_stopped(start: Any) -> None:
     assert "event: complete" in httpx.get(killed.ask(1), timeout=60).text
     killed.ask(400)
     killed.wait_for(lambda: killed.states() == ["running", "done"])
-    half = killed.data / "motions" / f".{killed.history().entries('local')[0].id}"
+    half = killed.data / "motions" / f".{killed.entries()[0].id}"
     half.mkdir()  # as if it were about to be written
     killed.process.send_signal(signal.SIGKILL)
     killed.process.wait()
@@ -117,7 +120,7 @@ def test_killed_while_it_works_started_again_and_stopped(start: Any) -> None:
     server = start(real=True)
     assert server.states() == ["interrupted", "done"] and not half.exists()
     history = server.history()
-    lost, whole = history.entries("local")
+    lost, whole = server.entries()
     assert history.open(whole.id, "local").result.duets[0].num_frames == 30
     with pytest.raises(InputError, match="run it again"):
         history.open(lost.id, "local")

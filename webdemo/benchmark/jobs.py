@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from webdemo.inference.requests import GenerateRequest
-from webdemo.server.queue.wait_estimate import units
+from webdemo.server.queue.turns import units
 
 from . import PROMPTS
 

@@ -1,43 +1,23 @@
-"""The acts of administrators from a shell: ``admin``."""
+"""The commands that keep a lab: ``admin``, ``backup`` and ``restore``."""
 
 from __future__ import annotations
 
 import argparse
 from contextlib import closing
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 from motion import InputError
 
-if TYPE_CHECKING:
-    from webdemo.server.activity import Activity
+_ACTIONS = ("list", "make-admin", "end-admin", "room", "suspend", "let-in", "sign-out", "delete")
 
 
 def add_admin(commands: Any) -> None:
     """Adds ``admin`` to the shell's commands."""
-    parser = commands.add_parser(
-        "admin", help="people's use, rooms, roles, runs, health; suspend, sign out, delete, end, announce"
-    )
-    parser.add_argument(
-        "action",
-        choices=(
-            "list",
-            "make-admin",
-            "end-admin",
-            "room",
-            "suspend",
-            "let-in",
-            "sign-out",
-            "delete",
-            "announce",
-            "jobs",
-            "end",
-            "health",
-        ),
-    )
-    parser.add_argument(
-        "name", nargs="?", help="of the account; with announce: the line (empty: none); with end: the id"
-    )
+    parser = commands.add_parser("admin", help="people's use, rooms and roles; suspend, sign out, delete")
+    parser.add_argument("action", choices=_ACTIONS)
+    parser.add_argument("name", nargs="?", help="of the account; not for list")
     parser.add_argument("--megabytes", type=float, help="with room: the person's room; without it, everybody's")
     parser.set_defaults(job=admin)
 
@@ -45,7 +25,6 @@ def add_admin(commands: Any) -> None:
 def admin(options: argparse.Namespace) -> dict[str, Any]:
     """Does one act in the lab that the settings name; a running server heeds it at once."""
     from webdemo.server.accounts.users import Users
-    from webdemo.server.activity import Activity
     from webdemo.server.lab import administration_of
     from webdemo.server.settings import read_settings
     from webdemo.server.store.database import Database, sentences
@@ -53,16 +32,12 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
     settings, name, action = read_settings(), options.name or "", options.action
     if not settings.accounts:
         raise InputError("There are no accounts: set PASDEDEUX_USERS to their file.")
-    if action not in ("list", "announce", "jobs", "health") and not name:
-        raise InputError(
-            "Give the id: `admin end ID`." if action == "end" else f"Name the account: `admin {action} NAME`."
-        )
+    if action != "list" and not name:
+        raise InputError(f"Name the account: `admin {action} NAME`.")
     with closing(Database(settings.database_url)) as database, sentences():
-        if action in ("jobs", "end", "health"):
-            return _activity(Activity(database), action, name)
         acts = administration_of(settings, database, Users(settings.users) if settings.users else None)
         if action == "list":
-            return {"people": [asdict(row) for row in acts.rows()], "announced": acts.people.announced()}
+            return {"people": [asdict(row) for row in acts.rows()]}
         if action in ("make-admin", "end-admin"):
             acts.set_role(name, admin=action == "make-admin")
         elif action == "room":
@@ -71,19 +46,47 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
             acts.suspend(name, suspended=action == "suspend")
         elif action == "sign-out":
             acts.sign_out(name)
-        elif action == "delete":
-            acts.delete(name)
         else:
-            acts.announce(name)
+            acts.delete(name)
     return {"done": action, "name": name}
 
 
-def _activity(activity: Activity, action: str, key: str) -> dict[str, Any]:
-    """Reads what the processes of a running server do, or ends a run or a stream of one."""
-    if action == "end":
-        activity.end(key)
-        return {"done": action, "id": key}
-    if action == "jobs":
-        return {"jobs": [asdict(item) for item in activity.items()]}
-    states = activity.states()
-    return {"processes": {node: {k: v for k, v in state.items() if k != "work"} for node, state in states.items()}}
+def add_upkeep(commands: Any) -> None:
+    """Adds ``backup`` and ``restore`` to the shell's commands."""
+    backup_parser = commands.add_parser("backup", help="copy the lab's database and motions, while people work")
+    backup_parser.add_argument("folder", type=Path, help="holds all backups; each has a folder of its own in it")
+    backup_parser.add_argument("--keep", type=int, default=0, metavar="N", help="remove all but the newest N")
+    backup_parser.set_defaults(job=backup)
+    restore_parser = commands.add_parser("restore", help="put a backup into an empty data folder")
+    restore_parser.add_argument("backup", type=Path, help="a backup, or a folder of backups, whose newest is taken")
+    restore_parser.set_defaults(job=restore)
+
+
+def backup(options: argparse.Namespace) -> dict[str, Any]:
+    """Makes a backup of the lab that the settings name."""
+    from webdemo.server.settings import settings_of_history
+    from webdemo.server.store.backup import Lab, back_up
+
+    settings = settings_of_history()
+    if options.keep < 0:
+        raise InputError("Give --keep 1 or more, or leave it out to keep all.")
+    lab = Lab(settings.database_url, settings.data, settings.users)
+    made = back_up(lab, options.folder, keep=options.keep)
+    print(f"The backup is in {made}.")
+    return {"backup": str(made)}
+
+
+def restore(options: argparse.Namespace) -> dict[str, Any]:
+    """Restores a backup into the empty data folder that the settings name."""
+    from webdemo.server.settings import read_settings
+    from webdemo.server.store.backup import SUMS, Lab, backups, restore
+
+    chosen = options.backup
+    if not (chosen / SUMS).is_file():
+        if not (all_of_them := backups(chosen)):
+            raise InputError(f"There is no backup in {chosen}: name a folder that `backup` made.")
+        chosen = all_of_them[-1]
+    settings = read_settings()
+    files = restore(chosen, Lab(settings.database_url, settings.data, settings.users))
+    print(f"{chosen} was restored to {settings.data}.")
+    return {"backup": str(chosen), "files": files}

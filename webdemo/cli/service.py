@@ -1,4 +1,4 @@
-"""The commands about the machine and the lab: ``info``, ``benchmark``, ``serve``, ``clock`` and ``user``."""
+"""The commands about the machine and the lab: ``info``, ``benchmark``, ``serve`` and ``user``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from webdemo.inference.methods import failed, methods
 
 
 def add_service(commands: Any) -> None:
-    """Adds ``info``, ``benchmark``, ``serve``, ``clock`` and ``user`` to the shell's commands."""
+    """Adds ``info``, ``benchmark``, ``serve`` and ``user`` to the shell's commands."""
     info_parser = commands.add_parser("info", help="show what is installed and what the models can do")
     info_parser.set_defaults(job=info)
     bench = commands.add_parser("benchmark", help="measure the speed of this machine, as figures and ratios")
@@ -38,18 +38,6 @@ def add_service(commands: Any) -> None:
     serve_parser.add_argument("--port", type=int, help="port to listen on (7860)")
     serve_parser.add_argument("--print-settings", action="store_true", help="print all settings and exit")
     serve_parser.set_defaults(job=serve)
-    clock_parser = commands.add_parser(
-        "clock", help="show the machine's clock beside the lab's time, and confirm it after a jump"
-    )
-    clock_parser.add_argument(
-        "action",
-        nargs="?",
-        choices=("show", "passed", "corrected"),
-        default="show",
-        help="passed: the time of the jump has really passed, so runs are older by it; "
-        "corrected: the clock was wrong before, so runs are as old as they were",
-    )
-    clock_parser.set_defaults(job=clock)
     user_parser = commands.add_parser("user", help="accounts: add, remove, list")
     user_parser.add_argument("action", choices=("add", "remove", "list"))
     user_parser.add_argument("name", nargs="?", help="name of the account; not for list")
@@ -127,28 +115,6 @@ def serve(options: argparse.Namespace) -> dict[str, Any]:
 
     run(settings)
     return {"served": True}
-
-
-def clock(options: argparse.Namespace) -> dict[str, Any]:
-    """Shows how far the clock has jumped, or trusts it from now on, at all processes of the lab."""
-    from webdemo.server.settings import settings_of_history
-    from webdemo.server.store.database import Database, sentences
-    from webdemo.server.store.ledger import DAY, LabClock
-
-    settings = settings_of_history()
-    with closing(Database(settings.database_url)) as database, sentences():
-        lab = LabClock(database)
-        if options.action != "show":
-            lab.confirm(passed=options.action == "passed")
-        state = lab.state()
-    if state.jump:
-        print(
-            f"The clock has jumped by {state.jump / DAY:+.1f} days and was steady for {state.steady / 3600:.1f} hours "
-            "since: nothing is removed because of its age. Say `clock passed` or `clock corrected`."
-        )
-    else:
-        print("The clock is trusted.")
-    return {"trusted": not state.jump, "jump_days": state.jump / DAY, "steady_hours": state.steady / 3600}
 
 
 def user(options: argparse.Namespace) -> dict[str, Any]:

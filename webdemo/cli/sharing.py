@@ -47,7 +47,7 @@ def _publishing() -> Iterator[Any]:
 
     settings = settings_of_history()
     with closing(Database(settings.database_url)) as database:
-        history = history_of(settings, storage_of(settings, database), settings.node)
+        history = history_of(settings, storage_of(settings, database))
         yield Publishing(history, days=settings.publish_days)
 
 
@@ -61,6 +61,13 @@ def _owner(options: argparse.Namespace) -> str:
     return f"user {(Users(file).key(options.user) if file is not None else None) or options.user}"
 
 
+def _runs(publishing: Any, options: argparse.Namespace) -> Sequence[Any]:
+    """The newest runs of a person."""
+    from webdemo.ui.history import Search
+
+    return publishing.history.search(_owner(options), Search(limit=200)).entries
+
+
 def _only(begin: str, known: Sequence[str], what: str, see: str) -> str:
     found = [each for each in known if each.startswith(begin)]
     if len(found) != 1:
@@ -71,7 +78,7 @@ def _only(begin: str, known: Sequence[str], what: str, see: str) -> str:
 def runs(options: argparse.Namespace) -> dict[str, Any]:
     """The newest finished runs of a person."""
     with _publishing() as publishing:
-        entries = [entry for entry in publishing.history.entries(_owner(options)) if entry.state == "done"]
+        entries = [entry for entry in _runs(publishing, options) if entry.state == "done"]
     return {"runs": [{"id": e.id, "title": e.title, "created": _moment(e.created)} for e in entries]}
 
 
@@ -82,7 +89,7 @@ def link(options: argparse.Namespace) -> dict[str, Any]:
 
     base = (options.base or read_settings().url).rstrip("/")
     with _publishing() as publishing:
-        runs = [entry.id for entry in publishing.history.entries(_owner(options))]
+        runs = [entry.id for entry in _runs(publishing, options)]
         run = _only(options.run, runs, "runs", "share runs")
         page = publishing.publish(_owner(options), run, days=options.days)
     address = f"{base}/share/{page.key}"

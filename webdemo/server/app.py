@@ -21,11 +21,9 @@ from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Mount
 
 from acts.lexicon import look_at_own_acts
-from motion import InputError
 from webdemo.server.accounts.login import login_routes
 from webdemo.server.accounts.own_account import account_routes
 from webdemo.server.accounts.visitors import Visitors
-from webdemo.server.cluster.instance_lock import InstanceLock
 from webdemo.server.http.admin_pages import admin_routes
 from webdemo.server.http.guard import Guard, may_read_figures
 from webdemo.server.http.page_html import PageCache
@@ -35,21 +33,19 @@ from webdemo.server.http.public_pages import public_routes
 from webdemo.server.http.study_pages import study_routes
 from webdemo.server.lab import Lab, engine_of, make_lab
 from webdemo.server.live.routes import live_routes
-from webdemo.server.queue.events import EventLimits, FairEvents
-from webdemo.server.queue.places import SEEN_EVERY
-from webdemo.server.queue.shares import SHARE_EVERY
+from webdemo.server.queue.events import FairEvents
+from webdemo.server.queue.recorder import Recorder
 from webdemo.server.queue.turns import Batcher
-from webdemo.server.store import backup
 from webdemo.server.store.personal_files import keep_files_apart, visitors_folder
-from webdemo.server.store.recorder import Recorder
 from webdemo.server.store.scratch import Scratch
 from webdemo.ui.page import build_page, launch_options, start_queue
+from webdemo.ui.places import READING
 from webdemo.ui.runs import EngineLike, Loader
 from webdemo.ui.visitor import visitor
 
 from .memory import collect_again, give_back
 from .settings import Settings
-from .watchdog import Apart, watch
+from .watchdog import watch
 
 log = logging.getLogger(__name__)
 
@@ -57,8 +53,6 @@ CLEAN_EVERY = 900.0
 """Seconds between two cleanings of the history."""
 SWEEP_EVERY = 5.0
 """Seconds between two looks for idle live streams."""
-BACKUP_EVERY = 60.0
-"""Seconds between two looks whether a backup is due."""
 TIDY_EVERY = 60.0
 """Seconds between two cleanings of temporary files."""
 GIVE_BACK_EVERY = 5.0
@@ -76,7 +70,6 @@ def create_app(
     *,
     engine: EngineLike | None = None,
     batcher: Batcher | None = None,
-    node: InstanceLock | None = None,
     scratch: Scratch | None = None,
 ) -> FastAPI:
     """Builds the application.
@@ -85,7 +78,6 @@ def create_app(
         settings: all of them.
         engine: what generates; by default the shipped networks, which also share passes.
         batcher: runs several requests of ``engine`` at once.
-        node: this process's own name; without it the settings' is taken to be.
         scratch: for uploads and files that are made for download; Gradio's own folder by default.
 
     Raises:
@@ -94,18 +86,17 @@ def create_app(
     settings.check()
     if engine is None:
         engine, batcher = engine_of(settings)
-    lab = make_lab(settings, engine, batcher, node, scratch)
+    lab = make_lab(settings, engine, batcher, scratch)
     page = build_page(
         engine,
         loader=Loader(engine),
-        runs=Recorder(lab.queue, lab.history, lab.places),
+        runs=Recorder(lab.queue, lab.history),
         history=lab.history,
         studies=lab.studies,
         sharing=lab.publishing,
         files=Path(get_upload_folder()),
         owner=visitors_folder,
         admit=lambda size: lab.storage.admit(visitor(), size),
-        announced=lab.people.announced,
     )
     app = FastAPI(title="Pas de Deux", docs_url=None, redoc_url=None, openapi_url=None, lifespan=_lifespan)
     app.state.lab = lab
@@ -126,6 +117,7 @@ def create_app(
         Guard,
         settings=settings,
         visitors=visitors,
+        quotas=lab.quotas,
         figures=lab.figures,
         answers=lab.answers,
         payloads=Payloads(page),
@@ -139,10 +131,9 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
     """Mounts the page in the application and closes what Gradio leaves open when mounted."""
     settings = lab.settings
     page.state_session_capacity = PAGES
-    near = settings.events * settings.address_people
-    limits = EventLimits(person=settings.events, address=near, total=2 * max(near, settings.queue) + 64)
-    page.max_threads = limits.total  # each that waits for a run or a file holds a thread
-    start_queue(page, partial(FairEvents, limits=limits, figures=lab.figures))
+    page.max_threads = lab.quotas.events.everybody  # each that waits for a run or a file holds a thread
+    READING.at_once = lab.quotas.reading.everybody
+    start_queue(page, partial(FairEvents, quota=lab.quotas.events, figures=lab.figures))
     options = launch_options() | {
         "allowed_paths": [],
         "server_name": settings.host,
@@ -157,11 +148,9 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
 
 
 def _add_routes(app: FastAPI, lab: Lab) -> None:
-    health = Apart(lab.health.report)
-
     @app.get("/healthz")
     async def healthz() -> Response:
-        whole, report = await health()
+        whole, report = await lab.health.look()
         return JSONResponse(report, status_code=200 if whole else 503, headers={"Cache-Control": "no-store"})
 
     @app.get("/metrics")
@@ -175,8 +164,7 @@ def _add_routes(app: FastAPI, lab: Lab) -> None:
 @contextlib.asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     lab: Lab = app.state.lab
-    lost = await run_in_threadpool(lab.history.recover, lab.node.dead if lab.node else None)
-    await run_in_threadpool(lab.places.clear)
+    lost = await run_in_threadpool(lab.history.recover)
     if lost:
         log.warning("%d runs were interrupted when the server last stopped.", lost)
     tasks = [
@@ -188,12 +176,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         asyncio.create_task(_every(TIDY_EVERY, app.state.tidy)),
         asyncio.create_task(_every(GIVE_BACK_EVERY, lambda: give_back(resting=not lab.busy))),
         asyncio.create_task(_every(GIVE_BACK_EVERY, lab.history.settle)),
-        asyncio.create_task(_every(SEEN_EVERY, lab.places.refresh)),
-        asyncio.create_task(_every(SHARE_EVERY, lab.share)),
         asyncio.create_task(_every(SWEEP_EVERY, lab.streams.sweep)),
     ]
-    if lab.settings.backup is not None:
-        tasks.append(asyncio.create_task(_every(BACKUP_EVERY, partial(_back_up, lab, lab.settings.backup))))
     if lab.settings.exit_when_stuck:
         tasks.append(asyncio.create_task(watch(lab.health.stuck)))
     try:
@@ -205,17 +189,6 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         if close := getattr(lab.queue.engine, "close", None):
             await run_in_threadpool(close)
         lab.database.close()
-        if lab.node is not None:
-            lab.node.close()
-
-
-def _back_up(lab: Lab, folder: Path) -> None:
-    settings = lab.settings
-    parts = backup.Lab(lab.database.engine, settings.data, settings.users)
-    try:
-        backup.back_up_if_due(parts, folder, hours=settings.backup_hours, keep=settings.backup_keep)
-    except InputError as error:
-        log.error("No backup: %s", error)
 
 
 async def _later(seconds: float, job: Callable[[], Any]) -> None:

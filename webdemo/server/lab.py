@@ -9,25 +9,21 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from webdemo.server.accounts.administration import Administration
+from webdemo.server.accounts.people import People
+from webdemo.server.accounts.quotas import Quotas
 from webdemo.server.accounts.users import SignIns, Users
-from webdemo.server.activity import ENDED, Activity, work_of
-from webdemo.server.admin import Administration, versions
-from webdemo.server.cluster.instance_lock import InstanceLock
 from webdemo.server.http.guard import OpenAnswers
 from webdemo.server.http.health import Health, check_disk
 from webdemo.server.http.metrics import Figures
 from webdemo.server.live.streams import Streams
-from webdemo.server.logs import LAST_ERRORS
-from webdemo.server.queue.places import Places
 from webdemo.server.queue.queue import FairQueue
 from webdemo.server.queue.shared_engine import SharedEngine
-from webdemo.server.queue.shares import Shares
 from webdemo.server.queue.turns import Batcher, QueueLimits
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
-from webdemo.server.store.people import People
 from webdemo.server.store.publishing import Publishing
-from webdemo.server.store.scratch import ADDRESS_SHARE, Scratch
+from webdemo.server.store.scratch import Scratch
 from webdemo.server.store.storage import Storage
 from webdemo.server.store.studies import Studies
 from webdemo.ui.lazy import LazyEngine
@@ -37,8 +33,27 @@ from .settings import Settings
 
 log = logging.getLogger(__name__)
 
+ENDED = "The person who runs this server ended this."
 ANSWER_SECONDS = 5.0
 """Least seconds allowed for sending results of finished runs, even with a shorter grace period."""
+
+
+@dataclass(frozen=True)
+class Item:
+    """A run or a live stream.
+
+    Attributes:
+        person: its owner, as the queue identifies them.
+        what: "live stream", or the model of a run.
+        state: "runs", "waits" or "open".
+        since: when that state began, by :func:`time.monotonic`.
+    """
+
+    id: str
+    person: str
+    what: str
+    state: str
+    since: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,45 +67,30 @@ class Lab:
     publishing: Publishing
     storage: Storage
     queue: FairQueue
-    places: Places
-    shares: Shares
+    quotas: Quotas
     health: Health
     figures: Figures
     answers: OpenAnswers
     streams: Streams
     people: People
-    activity: Activity
     administration: Administration | None = None
     sign_ins: SignIns | None = None
-    node: InstanceLock | None = None
-
-    @property
-    def name(self) -> str:
-        """This process's name."""
-        return self.settings.node if self.node is None else self.node.name
 
     @property
     def busy(self) -> bool:
         """True while anything runs on the networks."""
         return bool(self.queue.running or self.streams.count)
 
-    def share(self) -> None:
-        """Exchanges the work done for people with the other processes."""
-        self.queue.charge_elsewhere(self.shares.exchange())
-        self.people.write()
-        self.activity.heed(self.end)
-        self.activity.publish(
-            self.name,
-            work_of(self.name, self.queue, self.streams),
-            health=self.health.lately(),
-            queue={"waiting": self.queue.waiting, "running": self.queue.running},
-            streams=self.streams.count,
-            versions=versions(),
-            errors=list(LAST_ERRORS.lines),
-        )
+    def work(self) -> list[Item]:
+        """Everything that runs, waits or is open."""
+        runs = [
+            Item(job.id, job.person, job.group, "runs" if begun else "waits", job.started if begun else job.came)
+            for job, begun in self.queue.jobs()
+        ]
+        return runs + [Item(s.id, s.person, "live stream", "open", s.began) for s in self.streams.opened()]
 
     def end(self, key: str) -> bool:
-        """Ends a run or a live stream of this process; its person is told so. False if it has none of that id."""
+        """Ends a run or a live stream; its person is told so. False if there is none of that id."""
         return self.queue.end(key, ENDED) or self.streams.end(key, ENDED)
 
     def stop(self) -> None:
@@ -104,32 +104,23 @@ class Lab:
             time.sleep(0.05)
         if left:
             log.warning("%d runs were stopped before their end.", left)
-        self.activity.leave(self.name)
 
 
-def make_lab(
-    settings: Settings,
-    engine: EngineLike,
-    batcher: Batcher | None,
-    node: InstanceLock | None,
-    scratch: Scratch | None = None,
-) -> Lab:
+def make_lab(settings: Settings, engine: EngineLike, batcher: Batcher | None, scratch: Scratch | None = None) -> Lab:
     """Puts the parts together.
 
     Args:
         settings: all of them.
         engine: what generates.
         batcher: runs several requests of ``engine`` at once.
-        node: this process's own name; without it the settings' is taken to be.
         scratch: uploads and files for download; without it they are not counted.
 
     Raises:
         InputError: if the accounts, the database or the data folder cannot be used.
     """
-    name = settings.node if node is None else node.name
     users = Users(settings.users) if settings.users is not None else None
     database = Database(settings.database_url)
-    figures = Figures()
+    figures, quotas = Figures(), Quotas.of(settings)
     wants: dict[str, Callable[[], Any]] = {
         "database": database.check,
         "disk": partial(check_disk, settings.data, settings.free_megabytes * 2**20),
@@ -139,17 +130,15 @@ def make_lab(
         wants["accounts"] = lambda: users.names
     works: dict[str, Callable[[], float]] = {"queue": lambda: queue.stuck, "live stream": lambda: streams.stuck}
     health = Health(engine, wants, works=works, stuck_seconds=settings.stuck_seconds)
-    shares, people = Shares(database, name), People(database)
-    queue = FairQueue(
-        engine,
-        _limits(settings, engine),
-        batcher=batcher,
-        figures=figures,
-        broken=health.broken,
-        served=shares.add,
-        computed=people.add,
+    limits = QueueLimits(
+        running=settings.running,
+        batch=settings.batch,
+        workers=getattr(engine, "parallel", 1),
+        seconds=settings.run_seconds,
     )
-    streams = _streams(settings, engine)
+    queue = FairQueue(engine, limits, quotas.waiting, batcher=batcher, figures=figures, broken=health.broken)
+    partners: Any = engine if hasattr(engine, "partner") else LazyEngine()  # with an engine elsewhere, they run here
+    streams = Streams(partners, quotas.live)
     figures.watch(
         waiting=lambda: queue.waiting,
         running=lambda: queue.running,
@@ -157,24 +146,21 @@ def make_lab(
         live=lambda: streams.count,
     )
     storage = storage_of(settings, database, scratch)
-    history = history_of(settings, storage, name)
+    history = history_of(settings, storage)
     return Lab(
         settings=settings,
         database=database,
         history=history,
         queue=queue,
+        quotas=quotas,
         publishing=Publishing(history, days=settings.publish_days),
-        studies=studies_of(settings, database, storage),
+        studies=Studies(database, settings.data / "studies", storage=storage),
         storage=storage,
-        places=Places(database, name, settings.running + settings.waiting),
-        shares=shares,
         health=health,
         figures=figures,
         answers=OpenAnswers(),
         streams=streams,
-        node=node,
-        people=people,
-        activity=Activity(database),
+        people=People(database),
         administration=administration_of(settings, database, users) if settings.accounts else None,
         sign_ins=SignIns(database, users, settings.session_hours) if users is not None else None,
     )
@@ -188,53 +174,20 @@ def administration_of(settings: Settings, database: Database, users: Users | Non
 
 def storage_of(settings: Settings, database: Database, scratch: Scratch | None = None) -> Storage:
     """The room that people have in a lab."""
-    total = settings.keep_megabytes * 2**20
-    address = min(settings.address_people * settings.person_bytes, ADDRESS_SHARE * total)
-    return Storage(
-        database,
-        settings.motions,
-        person_bytes=settings.person_bytes,
-        total_bytes=total,
-        address_bytes=address,
-        scratch=scratch,
-        bytes_of=People(database).bytes_of,
-    )
+    rooms, bytes_of = Quotas.of(settings).rooms, People(database).bytes_of
+    return Storage(database, settings.motions, rooms, scratch=scratch, bytes_of=bytes_of)
 
 
-def history_of(settings: Settings, storage: Storage, name: str) -> Notebook:
-    """The history of a lab, for the process of a name."""
+def history_of(settings: Settings, storage: Storage) -> Notebook:
+    """The history of a lab."""
     return Notebook(
         storage.database,
         settings.motions,
-        node=name,
         storage=storage,
         keep_days=settings.keep_days,
         keep_favourites=settings.keep_favourites,
         link_days=settings.link_days,
         free_bytes=settings.free_megabytes * 2**20,
-    )
-
-
-def _streams(settings: Settings, engine: EngineLike) -> Streams:
-    """The live streams; with an engine elsewhere, their networks run in this process."""
-    partners: Any = engine if hasattr(engine, "partner") else LazyEngine()
-    return Streams(partners, most=settings.live, address=max(1, settings.live // 2))
-
-
-def studies_of(settings: Settings, database: Database, storage: Storage | None = None) -> Studies:
-    """The blind studies of a lab."""
-    return Studies(database, settings.data / "studies", storage=storage or storage_of(settings, database))
-
-
-def _limits(settings: Settings, engine: EngineLike) -> QueueLimits:
-    return QueueLimits(
-        running=settings.running,
-        waiting=settings.waiting,
-        queue=settings.queue,
-        batch=settings.batch,
-        address=settings.waiting * settings.address_people,
-        workers=getattr(engine, "parallel", 1),
-        seconds=settings.run_seconds,
     )
 
 

@@ -7,7 +7,6 @@ import logging
 import sys
 import time
 import traceback
-from collections import deque
 from contextvars import ContextVar
 from typing import Any
 
@@ -60,28 +59,6 @@ def log_instead_of_printing(limit: Any = None, file: Any = None, chain: bool = T
         traceback.print_exception(*sys.exc_info(), limit=limit, file=file, chain=chain)
     else:
         logging.getLogger("webdemo.gradio").error("An event failed.", exc_info=True)
-
-
-class LastErrors(logging.Handler):
-    """Keeps the last errors of this process in memory, without what people wrote."""
-
-    def __init__(self) -> None:
-        super().__init__(logging.ERROR)
-        self.lines: deque[dict[str, Any]] = deque(maxlen=20)
-        self.setFormatter(JsonLines())
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Keeps a record."""
-        self.lines.append(json.loads(self.format(record)))
-
-
-LAST_ERRORS = LastErrors()
-
-
-def keep_last_errors() -> None:
-    """Keeps the errors of this process from now on in :data:`LAST_ERRORS`."""
-    if LAST_ERRORS not in logging.getLogger().handlers:
-        logging.getLogger().addHandler(LAST_ERRORS)
 
 
 def set_up_logs(level: str, *, content: bool) -> None:

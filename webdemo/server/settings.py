@@ -7,7 +7,6 @@ folder or what ``PASDEDEUX_SETTINGS`` names. ``python -m webdemo serve --print-s
 from __future__ import annotations
 
 import os
-import socket
 import tempfile
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -93,7 +92,6 @@ class Settings(BaseSettings):
     # ---- what is kept
     data: Path = Field(default_factory=_data_folder, description="folder that holds the history")
     database: str = Field("", description="SQLAlchemy URL; empty: SQLite in the data folder")
-    node: str = Field(default_factory=socket.gethostname, description="name of this process among several")
     keep_days: float = Field(30, gt=0, description="age in days at which a run is removed unless it is a favourite")
     keep_megabytes: float = Field(
         2000, gt=0, description="total size of all people's runs and studies; none is removed for another person's"
@@ -114,11 +112,6 @@ class Settings(BaseSettings):
     )
     free_megabytes: float = Field(100, ge=0, description="free disk space below which runs and uploads are refused")
     scratch_megabytes: float = Field(2000, gt=0, description="total size of all people's uploads and download files")
-
-    # ---- backups
-    backup: Path | None = Field(None, description="folder in which backups are made regularly; without one, none are")
-    backup_hours: float = Field(24, gt=0, le=8760, description="hours between two backups")
-    backup_keep: int = Field(7, ge=1, le=1000, description="newest backups that are kept")
 
     # ---- the queue
     running: int = Field(2, ge=1, description="runs of one person at the same time")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -77,7 +76,6 @@ def build_page(
     history: HistoryLike | None = None,
     studies: StudiesLike | None = None,
     sharing: SharingLike | None = None,
-    announced: Callable[[], str] | None = None,
 ) -> gr.Blocks:
     """Builds the page for an engine.
 
@@ -91,7 +89,6 @@ def build_page(
         history: runs that can be found again, in a tab of its own; none by default.
         studies: blind studies of those runs; none by default.
         sharing: public pages of those runs; none by default.
-        announced: the line that everybody is shown; none by default.
 
     Returns:
         the page; launch it with :func:`launch_options`.
@@ -117,7 +114,6 @@ def build_page(
         for endpoint in ENDPOINTS:
             endpoint(page).publish()
         mark = _build_header(history)
-        _build_announcement(announced, demo)
         _build_tabs(page, demo)
         _build_own_acts(demo)
         demo.load(loading, outputs=mark, concurrency_limit=None, **QUIET)
@@ -183,18 +179,6 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
 def _build_own_acts(demo: gr.Blocks) -> None:
     own = gr.HTML("", elem_id="own-acts", padding=False)
     demo.load(_own_acts, outputs=own, concurrency_limit=None, **QUIET)
-
-
-def _build_announcement(announced: Callable[[], str] | None, demo: gr.Blocks) -> None:
-    if announced is not None:
-        line = gr.HTML("", elem_id="announcement", padding=False, visible=False)  # an empty one takes a gap
-        demo.load(partial(_announcement, announced), outputs=line, concurrency_limit=None, **QUIET)
-
-
-def _announcement(announced: Callable[[], str]) -> gr.HTML:
-    text = announced()
-    style = "border:1px solid var(--border-color-primary);border-radius:10px;padding:.6em 1em"
-    return gr.HTML(f'<p role="status" style="{style}">{html.escape(text)}</p>' if text else "", visible=bool(text))
 
 
 def _own_acts() -> str:

@@ -17,7 +17,6 @@ from tests.server.clients import (
     FIELDS,
     HTML,
     JOIN,
-    answer_of,
     events_of,
     find_fn,
     lab_of,
@@ -27,7 +26,7 @@ from tests.server.clients import (
 )
 from webdemo.server.accounts.users import Users
 from webdemo.server.store.database import Link, SignIn
-from webdemo.ui.history import Entry
+from webdemo.ui.history import Entry, Search
 
 
 def test_nothing_without_signing_in(shared: TestClient) -> None:
@@ -106,8 +105,8 @@ def test_a_page_session_is_its_persons(shared: TestClient) -> None:
     text = shared.get("/gradio_api/queue/data?session_hash=adas", headers=ada).text
     assert "process_completed" in text and '"seed": 0' in text.replace('"seed":0', '"seed": 0')
     history = lab_of(shared).history
-    assert [entry.title for entry in history.entries("user ada")] == ["Two people walk."]
-    assert history.entries("user eve") == []
+    assert [entry.title for entry in history.search("user ada", Search()).entries] == ["Two people walk."]
+    assert history.search("user eve", Search()).total == 0
 
 
 def test_a_notebook_signs_in(shared: TestClient) -> None:
@@ -140,7 +139,7 @@ def test_a_browser_is_remembered_that_somebody_signed_in_with(shared: TestClient
 
 
 def newest(client: TestClient, owner: str) -> Entry:
-    return lab_of(client).history.entries(owner)[0]
+    return lab_of(client).history.search(owner, Search()).entries[0]
 
 
 def test_a_run_of_another_is_not_opened_by_its_id(shared: TestClient) -> None:
@@ -190,18 +189,6 @@ def test_an_address_opens_no_run_of_another(shared: TestClient) -> None:
     shared.post("/logout", headers=eve)
     signed_out = shared.get(f"/?run={entry.id}", headers={**eve, **HTML})
     assert signed_out.status_code == 303 and "SECRET" not in signed_out.text
-
-
-def test_two_page_processes_on_one_database(pair: tuple[TestClient, TestClient]) -> None:
-    """Either knows who signed in, and every run, at the other."""
-    one, two = pair
-    ada = sign_in(one, "ada")
-    assert find_fn(two, ada, "generate") == find_fn(one, ada, "generate")
-    manifest = answer_of(events_of(one, "generate", FIELDS, ada))["manifest"]
-    entry = newest(two, "user ada")
-    assert lab_of(two).history.open(entry.id, "user ada").result.manifest == manifest
-    key, _ = lab_of(one).history.link(entry.id, "user ada")
-    assert lab_of(two).history.open(key, "").entry.id == entry.id
 
 
 def test_behind_a_proxy_that_speaks_tls(tmp_path: Path) -> None:

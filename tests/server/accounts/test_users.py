@@ -22,9 +22,9 @@ from webdemo.cli import main
 from webdemo.inference.requests import GenerateRequest
 from webdemo.server.accounts import throttle
 from webdemo.server.accounts import users as accounts
+from webdemo.server.accounts.administration import Administration
 from webdemo.server.accounts.throttle import Throttle, TooManyTries
 from webdemo.server.accounts.users import SignIns, Users
-from webdemo.server.admin import Administration
 from webdemo.server.http.cookies import set_cookie
 from webdemo.server.settings import Settings, read_settings
 from webdemo.server.store.database import Database, SignIn

@@ -31,7 +31,7 @@ class Backend:
 
     def __init__(self, folder: Path) -> None:
         Users(folder / "users").add("ada", "password of ada")
-        settings = settings_for(folder, users=folder / "users", host="0.0.0.0", node="backend")
+        settings = settings_for(folder, users=folder / "users", host="0.0.0.0")
         app = create_app(settings, engine=stub_module().StubEngine())
         found = list(_routes(app.routes))
         self.routes = {f"{method} {route.path}" for route in found for method in route.methods}

@@ -82,7 +82,7 @@ PATHS = [
         f"{API}/file={{data}}/history.db",
         f"{API}/file={{folder}}/users",
         f"{API}/file={{canary}}",
-        f"{API}/file={{data}}/scratch/target/uploads/../../../../canary.txt",
+        f"{API}/file={{data}}/scratch/uploads/../../../../canary.txt",
         f"{API}/file//etc/passwd",
         f"{API}/proxy=https://example.invalid/",
         f"{API}/proxy=http://127.0.0.1:9/",

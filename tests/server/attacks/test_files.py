@@ -25,7 +25,7 @@ def places(target: Target) -> list[str]:
         "app.py",
         "../../etc/passwd",
         str(target.data / "history.db"),
-        f"{target.data}/scratch/target/uploads/../../../../canary.txt",
+        f"{target.data}/scratch/uploads/../../../../canary.txt",
         f"{target.url}/healthz",
         "http://127.0.0.1:9/x",
         "HTTP://127.0.0.1:9/x",

@@ -14,10 +14,10 @@ from fastapi.testclient import TestClient
 from starlette.concurrency import run_in_threadpool
 
 from tests.server.clients import HERE, HTML, JOIN, client_of, lab_of, settings_for
+from webdemo.server.accounts import quotas
+from webdemo.server.accounts.quotas import RateLimit
 from webdemo.server.app import PAGES
-from webdemo.server.http import guard
 from webdemo.server.http.page_html import PageCache
-from webdemo.server.http.rate_limit import RateLimit
 from webdemo.server.http.refused import Refused
 
 
@@ -213,7 +213,7 @@ def test_many_who_come_at_once_wait_for_one_page() -> None:
 
 
 def test_an_address_that_asks_for_page_after_page_waits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(guard, "_GETS", 200)
+    monkeypatch.setattr(quotas, "GETS", 200)
     with client_of(settings_for(tmp_path, rate=100)) as client:
         assert [client.get("/config").status_code for _ in range(22)].count(429) == 2
         assert client.get("/healthz").status_code in (200, 503), "those who watch the server are let through"

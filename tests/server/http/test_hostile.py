@@ -15,8 +15,8 @@ from fastapi.testclient import TestClient
 from motion import InputError
 from tests.server.clients import FIELDS, HERE, REACT, UPLOAD, client_of, events_of, lab_of, settings_for
 from tests.server.lab import stub_module
+from webdemo.server.accounts.quotas import Quota
 from webdemo.server.queue.queue import FairQueue
-from webdemo.server.queue.turns import QueueLimits
 from webdemo.ui.visitor import Visitor
 
 
@@ -131,12 +131,12 @@ def test_one_address_does_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> 
                 time.sleep(0.01)
             yield from ()
 
-    queue = FairQueue(Busy(), QueueLimits(address=3))  # type: ignore[arg-type]
+    queue = FairQueue(Busy(), None, Quota("runs waiting", 4, 3))  # type: ignore[arg-type]
     request = stub_module().GenerateRequest(prompt="x")
     jobs = [queue._enter("first", request, Visitor(person="first", address="a"))]
     assert started.wait(10)
     jobs += [queue._enter(f"s{i}", request, Visitor(person=f"p{i}", address="a")) for i in range(3)]
-    with pytest.raises(InputError, match="3 runs from your network are already waiting"):
+    with pytest.raises(InputError, match="your network have 3 runs waiting"):
         queue._enter("more", request, Visitor(person="more", address="a"))
     jobs.append(queue._enter("other", request, Visitor(person="other", address="b")))
     for job in jobs:

@@ -15,6 +15,7 @@ from motion import SMPL22, InputError
 from motion.things import Thing, shape
 from tests.motion.video.filming import film, packed, stepping
 from tests.server.lab import stub_module
+from webdemo.server.accounts.quotas import Quota
 from webdemo.server.live import stream as stream_module
 from webdemo.server.live import streams as streams_module
 from webdemo.server.live.messages import MOST_BYTES, MOST_PICTURES, Message, read_message
@@ -37,7 +38,8 @@ class Clock:
 
 
 def streams(most: int = 3, address: int = 2) -> Streams:
-    return Streams(STUB.StubEngine(), most=most, address=address, clock=Clock(), processor=Clock())
+    quota = Quota("live streams", 1, address, most)
+    return Streams(STUB.StubEngine(), quota, clock=Clock(), processor=Clock())
 
 
 def poses(times: list[float], metres: float = 0.0) -> bytes:
@@ -71,7 +73,7 @@ def test_a_person_has_one_stream_and_a_server_has_so_many() -> None:
     assert some.find(second.id, ADA) is second
     for name in "xy":
         some.open(Visitor(name, name), "regennet")
-    with pytest.raises(StreamRefused, match=r"as this server allows \(3\)"):
+    with pytest.raises(StreamRefused, match="There are 3 live streams here"):
         some.open(EVE, "agent")
     some.open(ADA, "agent")  # in place of their own
     some.close(some.find(some.open(Visitor("x", "x"), "agent").id, Visitor("x", "x")))
@@ -94,7 +96,7 @@ def test_one_address_cannot_take_all_places() -> None:
     some = streams()
     for name in ("a", "b"):
         some.open(Visitor(name, name, address="203.0.113.9"), "agent")
-    with pytest.raises(StreamRefused, match="2 people from your network"):
+    with pytest.raises(StreamRefused, match="your network have 2 live streams"):
         some.open(Visitor("c", "c", address="203.0.113.9"), "agent")
     assert some.open(Visitor("d", "d", address="203.0.113.10"), "agent")
 
@@ -172,7 +174,7 @@ def test_a_partner_that_cannot_be_made_takes_no_place() -> None:
         def partner(self, name: str, *, seed: int = 0) -> object:
             raise InputError("The weights are missing.")
 
-    some = Streams(Broken(), most=1, address=1, clock=Clock())  # type: ignore[arg-type]
+    some = Streams(Broken(), Quota("live streams", 1, 1, 1), clock=Clock())  # type: ignore[arg-type]
     for _ in range(3):
         with pytest.raises(InputError, match="weights are missing"):
             some.open(ADA, "agent")

@@ -16,9 +16,10 @@ from starlette.routing import Mount
 from tests.server.attacks.target import Target
 from tests.server.clients import FIELDS, settings_for
 from tests.server.lab import ROOT, stub_module
+from webdemo.server.accounts.quotas import Quota
 from webdemo.server.app import create_app
 from webdemo.server.http.metrics import Figures
-from webdemo.server.queue.events import AT_ONCE, EventLimits, FairEvents
+from webdemo.server.queue.events import AT_ONCE, FairEvents
 from webdemo.ui.page import build_page, start_queue
 from webdemo.ui.visitor import Visitor
 
@@ -27,12 +28,12 @@ OLD_LIMIT = 192
 """Events of everybody that the server once took at a time."""
 
 
-def made(limits: EventLimits | None = None) -> FairEvents:
+def made(quota: Quota | None = None) -> FairEvents:
     """A queue of a page with a film (one at a time), a list (four at a time) and a run (any number)."""
     with gr.Blocks(analytics_enabled=False) as page:
         for name, limit in (("film", 1), ("list", 4), ("read", 4), ("tidy", 4), ("run", None)):
             gr.Button().click(lambda: None, concurrency_limit=limit, concurrency_id=name, api_name=name)
-    start_queue(page, lambda **options: FairEvents(limits=limits or EventLimits(), figures=Figures(), **options))
+    start_queue(page, lambda **options: FairEvents(quota=quota or Quota("tasks", 16), figures=Figures(), **options))
     queue = page._queue
     assert isinstance(queue, FairEvents)
     queue.active_jobs = [None] * 40
@@ -125,16 +126,16 @@ def test_runs_begin_at_once_since_they_wait_elsewhere() -> None:
 
 
 def test_a_person_and_an_address_have_so_many_unfinished_events() -> None:
-    queue = made(EventLimits(person=3, address=5, total=9))
+    queue = made(Quota("tasks", 3, 5, 9))
     for _ in range(3):
         ask(queue, "greedy", "film")
     begin(queue)  # what is worked on counts as well
     with pytest.raises(HTTPException) as refused:
         ask(queue, "greedy", "list")
-    assert refused.value.status_code == 429 and refused.value.detail.startswith("3 things that you asked for")
+    assert refused.value.status_code == 429 and "You already have 3 tasks" in refused.value.detail
     for i in range(5):
         ask(queue, Visitor(f"visitor {i}", address="203.0.113.9"), "film")
-    with pytest.raises(HTTPException, match="5 things that your network"):
+    with pytest.raises(HTTPException, match="your network have 5 tasks"):
         ask(queue, Visitor("visitor 6", address="203.0.113.9"), "film")
     ask(queue, "other", "film")
     with pytest.raises(HTTPException) as refused:
@@ -146,7 +147,7 @@ def test_whoever_waits_takes_no_thread_from_others(tmp_path: Path) -> None:
     """One address took all 128 threads by as many files that waited to be read."""
     app = create_app(settings_for(tmp_path, open=True), engine=stub_module().StubEngine())
     (page,) = [r.app.get_blocks() for r in app.routes if isinstance(r, Mount) and isinstance(r.app, App)]
-    assert page.max_threads >= page._queue.limits.total > page._queue.limits.address
+    assert page.max_threads >= page._queue.quota.everybody > page._queue.quota.address
 
 
 def test_nothing_that_computes_goes_past_the_queue() -> None:
@@ -177,7 +178,7 @@ def test_one_person_cannot_stop_the_events_of_others(target: Target) -> None:
     asked = [target.ask("eve", "POST", "/gradio_api/call/render", json={"data": data}) for _ in range(OLD_LIMIT + 5)]
     refused = [answer for answer in asked if answer.status_code != 200]
     assert len(refused) > OLD_LIMIT / 2 and {answer.status_code for answer in refused} == {429}
-    assert "things that you asked for are not done yet" in refused[-1].json()["detail"]
+    assert "unfinished tasks" in refused[-1].json()["detail"]
     before = target.ask("ada", "GET", "/gradio_api/queue/status").json()["queue_size"]
     assert before >= 8  # or nothing is shown below
     assert "event: complete" in target.call("ada", "render", sheet(target, "ada"))

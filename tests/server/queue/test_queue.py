@@ -15,6 +15,7 @@ from motion import InputError
 from webdemo.inference import run
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Cancelled, Progress, Result
+from webdemo.server.accounts.quotas import Quota
 from webdemo.server.app import engine_of
 from webdemo.server.cluster import ray_engine
 from webdemo.server.queue import queue as line
@@ -104,9 +105,12 @@ class People:
             assert not thread.is_alive()
 
 
-def make(monkeypatch: pytest.MonkeyPatch, *, together: bool = False, **limits: int) -> tuple[Gate, People]:
-    gate = Gate()
-    queue = FairQueue(gate, QueueLimits(**limits), batcher=gate if together else None)  # type: ignore[arg-type]
+def make(
+    monkeypatch: pytest.MonkeyPatch, *, together: bool = False, waiting: int = 4, everybody: int = 64, **limits: int
+) -> tuple[Gate, People]:
+    gate: Any = Gate()
+    quota = Quota("runs waiting", person=waiting, everybody=everybody)
+    queue = FairQueue(gate, QueueLimits(**limits), quota, batcher=gate if together else None)
     return gate, People(queue, monkeypatch)
 
 
@@ -196,17 +200,17 @@ def test_a_person_may_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_a_full_line_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    gate, people = make(monkeypatch, queue=2)
+    gate, people = make(monkeypatch, everybody=2)
     for name in "abcd":
         people.ask(name, request(name))
     gate.open.release(3)
     people.end()
-    assert str(people.ends["d"]).startswith("The queue is full (2 runs wait)")
+    assert str(people.ends["d"]).startswith("There are 2 runs waiting here already")
 
 
 def test_places_and_estimates(monkeypatch: pytest.MonkeyPatch) -> None:
     gate, people = make(monkeypatch)
-    people.queue.pace.of("m").learn(120.0, 12.0)  # 0.1 s a unit; a request here has 60 units
+    people.queue.paces["m"].learn(120.0, 12.0)  # 0.1 s a unit; a request here has 60 units
     for name in "abc":
         people.ask(name, request(name))
     wait_for(lambda: people.waits.get("b") and people.waits.get("c"))
@@ -284,7 +288,7 @@ def test_what_may_share_a_pass() -> None:
 def test_several_workers_of_a_group(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where passes are shared elsewhere, several requests of a model are on their way at once."""
     gate, people = make(monkeypatch, workers=2)
-    people.queue.pace.of("m").learn(120.0, 12.0)
+    people.queue.paces["m"].learn(120.0, 12.0)
     for name in "abcd":
         people.ask(name, request(name))
     wait_for(lambda: people.queue.running == 2 and people.waits.get("c") and people.waits.get("d"))

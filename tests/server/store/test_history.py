@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import time
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,28 +14,30 @@ import pytest
 from sqlalchemy import update
 
 from motion import InputError, formats, stacked_positions
-from tests.server.clients import DATABASES, database_url, drop_tables, no_room
+from tests.server.clients import no_room
 from tests.server.lab import stub_module
 from webdemo.inference import Engine
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.predict import PredictRequest, PredictResult
 from webdemo.inference.run import CancelToken, Result
+from webdemo.server.queue.recorder import title_of
 from webdemo.server.queue.shared_engine import SharedEngine
-from webdemo.server.queue.wait_estimate import units
 from webdemo.server.store.database import Database, Link, Run
-from webdemo.server.store.history import DAY, History
-from webdemo.server.store.recorder import title_of
+from webdemo.server.store.history import DAY, Clock
+from webdemo.server.store.notebook import Notebook
 from webdemo.ui.again import request_of, verdict
+from webdemo.ui.history import Entry, Search
 
 ME, OTHER = "user ada", "user eve"
 
 
-@pytest.fixture(params=DATABASES)
-def history(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[History]:
-    database = Database(database_url(request.param, tmp_path))
-    yield History(database, tmp_path / "motions", node="n")
-    drop_tables(database.engine)
-    database.close()
+@pytest.fixture
+def history(notebook: Notebook) -> Notebook:
+    return notebook
+
+
+def entries(history: Notebook, owner: str = ME) -> Sequence[Entry]:
+    return history.search(owner, Search()).entries
 
 
 def made(request: Any) -> Result:
@@ -43,24 +45,24 @@ def made(request: Any) -> Result:
     return result
 
 
-def kept(history: History, prompt: str = "Two people walk.", *, owner: str = ME, **fields: Any) -> str:
+def kept(history: Notebook, prompt: str = "Two people walk.", *, owner: str = ME, **fields: Any) -> str:
     request = GenerateRequest(prompt=prompt, **({"seconds": 1.0, "steps": 1, "samples": 2} | fields))
     run = history.begin(owner, request, prompt)
     history.finish(run, made(request))
     return run
 
 
-def test_a_run_is_found_again_as_it_was(history: History) -> None:
+def test_a_run_is_found_again_as_it_was(history: Notebook) -> None:
     run = kept(history, seed=9)
     opened = history.open(run, ME)
     assert (opened.entry.title, opened.entry.state) == ("Two people walk.", "done")
     again = made(request_of(opened))
     assert verdict(opened.result, again) == "Run again: the same motion, bit for bit."
     assert opened.result.readouts[0]["after"] == again.readouts[0]["after"]
-    assert [entry.id for entry in history.entries(ME)] == [run]
+    assert [entry.id for entry in entries(history)] == [run]
 
 
-def test_a_reaction_is_run_again_from_its_result(history: History) -> None:
+def test_a_reaction_is_run_again_from_its_result(history: Notebook) -> None:
     actor = stub_module().walking(1.0).a
     request = ReactRequest(actor=actor, role="b", steps=1, seed=3)
     run = history.begin(ME, request, "Reaction")
@@ -71,7 +73,7 @@ def test_a_reaction_is_run_again_from_its_result(history: History) -> None:
 
 
 @pytest.mark.parametrize(("people", "marker"), [(2, 1.5), (1, 1.5), (2, 3.0)])
-def test_a_prediction_keeps_its_marker_and_what_really_followed(history: History, people: int, marker: float) -> None:
+def test_a_prediction_keeps_its_marker_and_what_really_followed(history: Notebook, people: int, marker: float) -> None:
     motion = stub_module().walking(3.0)
     engine = Engine(Path("no weights are needed"))
     request = PredictRequest(motion=motion if people == 2 else motion.a, marker=marker, seconds=1.0, model="still")
@@ -89,7 +91,7 @@ def test_a_prediction_keeps_its_marker_and_what_really_followed(history: History
     assert verdict(kept, again) == "Run again: the same motion, bit for bit."
 
 
-def test_the_verdict_names_what_differs(history: History) -> None:
+def test_the_verdict_names_what_differs(history: Notebook) -> None:
     old = history.open(kept(history), ME).result
     new = Result(
         duets=tuple(duet.with_positions(duet.positions + np.float32(0.002)) for duet in old.duets),
@@ -114,9 +116,9 @@ def test_a_result_says_how_many_shared_its_pass(weights: Path) -> None:
     assert shared[0].manifest["request"] == alone.manifest["request"]
 
 
-def test_others_see_nothing_but_by_a_link_that_lasts(history: History) -> None:
+def test_others_see_nothing_but_by_a_link_that_lasts(history: Notebook) -> None:
     run = kept(history)
-    assert history.entries(OTHER) == []
+    assert entries(history, OTHER) == []
     for act in (history.open, history.delete, history.link, history.revoke):
         with pytest.raises(InputError, match="There is no such run"):
             act(run, OTHER)
@@ -126,7 +128,7 @@ def test_others_see_nothing_but_by_a_link_that_lasts(history: History) -> None:
     assert until == pytest.approx(time.time() + 30 * DAY, abs=60)
     assert history.open(key, OTHER).entry.id == run
     assert history.open(key, "").entry.id == run
-    assert history.entries(ME)[0].links == 1
+    assert entries(history)[0].links == 1
     with pytest.raises(InputError):
         history.delete(key, OTHER)  # a link shows; it gives no power
     assert history.revoke(run, ME) == 1
@@ -134,7 +136,7 @@ def test_others_see_nothing_but_by_a_link_that_lasts(history: History) -> None:
         history.open(key, OTHER)
 
 
-def test_a_link_ends(history: History) -> None:
+def test_a_link_ends(history: Notebook) -> None:
     key, _ = history.link(kept(history), ME)
     with history.database.session.begin() as session:
         session.execute(update(Link).values(until=time.time() - 1))
@@ -145,7 +147,7 @@ def test_a_link_ends(history: History) -> None:
 @pytest.mark.parametrize(
     "key", ["", "x", "../../etc/passwd", "a" * 24, "' OR 1=1 --" + "a" * 20, "%00" * 10, "é" * 20, "a" * 5000]
 )
-def test_forged_keys_say_nothing(history: History, key: str) -> None:
+def test_forged_keys_say_nothing(history: Notebook, key: str) -> None:
     kept(history)
     with pytest.raises(InputError, match="There is no such run, or its link has expired"):
         history.open(key, ME)
@@ -153,70 +155,86 @@ def test_forged_keys_say_nothing(history: History, key: str) -> None:
         history.delete(key, ME)
 
 
-def test_keys_are_unguessable(history: History) -> None:
-    run = kept(history)
-    keys = {run, *(history.link(run, ME)[0] for _ in range(20))}
-    assert len(keys) == 21 and all(len(key) == 24 for key in keys)
-
-
-def test_age_removes_the_oldest_but_no_favourites(history: History) -> None:
+def test_age_removes_the_oldest_but_no_favourites(history: Notebook) -> None:
     runs = [kept(history, seed=i) for i in range(5)]
+    history.clock = steady()
     assert history.clean() == 0
     with history.database.session.begin() as session:
         for i, run in enumerate(runs):
             session.execute(update(Run).where(Run.id == run).values(stored=time.time() - (40 - 8 * i) * DAY))
     history.favour(runs[0], ME, favourite=True)
     assert history.clean() == 1  # 32 days old; the one of 40 days is a favourite
-    assert {entry.id for entry in history.entries(ME)} == {runs[0], *runs[2:]}
+    assert {entry.id for entry in entries(history)} == {runs[0], *runs[2:]}
     assert {path.name for path in history.folder.iterdir()} == {runs[0], *runs[2:]}
 
 
-def test_a_full_disk_in_the_middle_of_a_run_leaves_it_ended(history: History) -> None:
+def steady() -> Clock:
+    """A clock that has been steady for a day."""
+    clock = Clock(wall=time.time, uptime=time.monotonic)
+    clock._since -= DAY
+    return clock
+
+
+@pytest.mark.parametrize("days", [60, -60])
+def test_a_clock_that_jumps_removes_nothing_until_it_is_steady(history: Notebook, days: int) -> None:
+    run = kept(history)
+    hands = {"wall": time.time(), "up": 0.0}
+    history.clock = Clock(wall=lambda: hands["wall"], uptime=lambda: hands["up"])
+    hands["up"] += DAY
+    hands["wall"] += DAY + days * DAY
+    assert [history.clean(), history.clean()] == [0, 0]
+    hands["up"] += DAY
+    hands["wall"] += DAY
+    assert history.clean() == (days > 0)
+    assert [entry.id for entry in entries(history)] == ([] if days > 0 else [run])
+
+
+def test_a_full_disk_in_the_middle_of_a_run_leaves_it_ended(history: Notebook) -> None:
     """SQLite's own limit stands for the disk; what could not be written is written when there is room."""
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
     run = history.begin(ME, request, "x")
     with no_room(history.database):
         history.end(run, "failed", "y" * 100_000)
-        assert [entry.state for entry in history.entries(ME)] == ["running"]
+        assert [entry.state for entry in entries(history)] == ["running"]
     history.settle()
-    (entry,) = history.entries(ME)
+    (entry,) = entries(history)
     assert (entry.state, len(entry.message)) == ("failed", 100_000)
 
 
-def test_a_result_that_does_not_fit_is_a_sentence_and_leaves_no_files(history: History) -> None:
+def test_a_result_that_does_not_fit_is_a_sentence_and_leaves_no_files(history: Notebook) -> None:
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
     run = history.begin(ME, request, "x")
     with no_room(history.database), pytest.raises(InputError, match="disk is full"):
         history.finish(run, replace(made(request), notes=("y" * 100_000,)))
     history.settle()
-    assert [entry.state for entry in history.entries(ME)] == ["failed"]
+    assert [entry.state for entry in entries(history)] == ["failed"]
     assert not (history.folder / run).exists()
 
 
-def test_a_damaged_database_is_a_sentence_and_no_sql(history: History) -> None:
+def test_a_damaged_database_is_a_sentence_and_no_sql(history: Notebook) -> None:
     runs = [kept(history, seed=i) for i in range(3)]
     with history.database.engine.begin() as connection:
         connection.exec_driver_sql("UPDATE runs SET outcome = '{', request = '['")
-    assert len(history.entries(ME)) == 3
+    assert len(entries(history)) == 3
     with pytest.raises(InputError, match="gone or damaged"):
         history.open(runs[0], ME)
     with history.database.engine.begin() as connection:
         connection.exec_driver_sql("DROP TABLE links")
-    for act in (lambda: history.entries(ME), lambda: history.link(runs[0], ME)):
+    for act in (lambda: entries(history), lambda: history.link(runs[0], ME)):
         with pytest.raises(InputError) as error:
             act()
         assert "history cannot be read or written" in str(error.value) and "links" not in str(error.value)
 
 
-def test_a_run_that_is_removed_while_it_runs_leaves_no_files(history: History) -> None:
+def test_a_run_that_is_removed_while_it_runs_leaves_no_files(history: Notebook) -> None:
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
     run = history.begin(ME, request, "removed")
     history.delete(run, ME)
     history.finish(run, made(request))
-    assert history.entries(ME) == [] and not any(history.folder.iterdir())
+    assert entries(history) == [] and not any(history.folder.iterdir())
 
 
-def test_favourites_are_counted(history: History) -> None:
+def test_favourites_are_counted(history: Notebook) -> None:
     history.keep_favourites = 1
     first, second = kept(history), kept(history)
     history.favour(first, ME, favourite=True)
@@ -224,24 +242,23 @@ def test_favourites_are_counted(history: History) -> None:
         history.favour(second, ME, favourite=True)
 
 
-def test_what_a_killed_process_left_is_marked(history: History) -> None:
+def test_what_a_killed_process_left_is_marked(history: Notebook) -> None:
     whole = kept(history)
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0)
     lost = history.begin(ME, request, "lost")
     half = history.folder / f".{lost}"
     half.mkdir()
     (half / "1.npz").write_bytes(b"half")
-    elsewhere = History(history.database, history.folder, node="another").begin(ME, request, "elsewhere")
     assert history.recover() == 1
-    states = {entry.id: entry.state for entry in history.entries(ME)}
-    assert states == {whole: "done", lost: "interrupted", elsewhere: "running"}
+    states = {entry.id: entry.state for entry in entries(history)}
+    assert states == {whole: "done", lost: "interrupted"}
     assert not half.exists()
     with pytest.raises(InputError, match="run it again"):
         history.open(lost, ME)
     history.open(whole, ME)
 
 
-def test_a_full_disk_is_a_sentence_and_leaves_nothing(history: History, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_is_a_sentence_and_leaves_nothing(history: Notebook, monkeypatch: pytest.MonkeyPatch) -> None:
     before = kept(history)
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1, samples=2)
     run = history.begin(ME, request, "full")
@@ -255,14 +272,14 @@ def test_a_full_disk_is_a_sentence_and_leaves_nothing(history: History, monkeypa
         with pytest.raises(InputError, match="disk is full"):
             history.finish(run, made(request))
     assert {path.name for path in history.folder.iterdir()} == {before}
-    assert history.entries(ME)[0].state == "failed"
+    assert entries(history)[0].state == "failed"
     history.free_bytes = 1e18
     with pytest.raises(InputError, match="disk is nearly full"):
         history.begin(ME, request, "more")
     history.open(before, ME)
 
 
-def test_damaged_files_are_a_sentence(history: History) -> None:
+def test_damaged_files_are_a_sentence(history: Notebook) -> None:
     run = kept(history)
     (history.folder / run / "1.npz").write_bytes(b"PK\x03\x04 nothing")
     with pytest.raises(InputError, match="gone or damaged"):
@@ -283,15 +300,7 @@ def test_what_a_run_is_called() -> None:
     assert title_of(PredictRequest(motion=replace(actor, name="walk")).to_dict()) == "After walk"
 
 
-def test_every_kind_of_request_has_a_cost() -> None:
-    actor = stub_module().walking(3.0).a
-    one = units(GenerateRequest(prompt="x", seconds=2.0, steps=10))
-    assert units(GenerateRequest(prompt="x", seconds=2.0, steps=10, samples=3)) == pytest.approx(3 * one)
-    reaction = units(ReactRequest(actor=actor, model="intergen"))
-    assert 0 < units(PredictRequest(motion=actor, seconds=2.0)) < one < reaction
-
-
-def test_a_prediction_of_one_person_is_kept(history: History) -> None:
+def test_a_prediction_of_one_person_is_kept(history: Notebook) -> None:
     actor = replace(stub_module().walking(3.0).a, name="walk")
     run = history.begin(ME, PredictRequest(motion=actor), "After walk")
     history.finish(run, Result(duets=(actor,), manifest={"model": "m"}))

@@ -3,38 +3,28 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from sqlalchemy import update
 
 from motion import InputError
-from tests.server.clients import DATABASES, database_url, drop_tables
 from webdemo.server.store import publishing as module
-from webdemo.server.store.database import Database, Published
+from webdemo.server.store.database import Published
 from webdemo.server.store.notebook import Notebook
 from webdemo.server.store.publishing import Publishing
 
+from .test_history import steady
 from .test_notebook import ME, OTHER, kept
 
 
-@pytest.fixture(params=DATABASES)
-def publishing(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Publishing]:
-    database = Database(database_url(request.param, tmp_path))
-    yield Publishing(Notebook(database, tmp_path / "motions", node="n"), days=30)
-    drop_tables(database.engine)
-    database.close()
-
-
-def notebook(publishing: Publishing) -> Notebook:
-    assert isinstance(publishing.history, Notebook)
-    return publishing.history
+@pytest.fixture
+def publishing(notebook: Notebook) -> Publishing:
+    return Publishing(notebook, days=30)
 
 
 def test_a_page_shows_its_run_and_nothing_that_it_was_made_from(publishing: Publishing) -> None:
-    run = kept(notebook(publishing), "They hug.")
-    notebook(publishing).describe(run, ME, title="A hug", note="private", tags="secret")
+    run = kept(publishing.history, "They hug.")
+    publishing.history.describe(run, ME, title="A hug", note="private", tags="secret")
     page = publishing.publish(ME, run)
     assert page.title == "A hug" and page.until == pytest.approx(time.time() + 30 * 86_400, abs=60)
     assert publishing.shown(page.key).entry.title == "A hug"
@@ -44,7 +34,7 @@ def test_a_page_shows_its_run_and_nothing_that_it_was_made_from(publishing: Publ
 
 
 def test_nobody_publishes_or_ends_what_is_anothers(publishing: Publishing) -> None:
-    run = kept(notebook(publishing))
+    run = kept(publishing.history)
     for owner in (OTHER, ""):
         with pytest.raises(InputError, match="no such run in your history"):
             publishing.publish(owner, run)
@@ -55,7 +45,7 @@ def test_nobody_publishes_or_ends_what_is_anothers(publishing: Publishing) -> No
 
 
 def test_a_page_ends_when_it_is_revoked_or_its_time_is_over(publishing: Publishing) -> None:
-    run = kept(notebook(publishing))
+    run = kept(publishing.history)
     revoked, late = publishing.publish(ME, run), publishing.publish(ME, run, days=0.5)
     publishing.revoke(revoked.key, ME)
     with publishing.database.session.begin() as session:
@@ -66,22 +56,23 @@ def test_a_page_ends_when_it_is_revoked_or_its_time_is_over(publishing: Publishi
         with pytest.raises(InputError, match="or it has ended"):
             publishing.open(key)
     assert not publishing.pages(ME) and not publishing.everybodys()
+    publishing.history.clock = steady()
     publishing.clean()
     with publishing.database.session() as session:
         assert session.get(Published, late.key) is None
 
 
 def test_a_removed_run_leaves_its_page_and_comes_back_with_it(publishing: Publishing) -> None:
-    run = kept(notebook(publishing), "They bow.")
+    run = kept(publishing.history, "They bow.")
     page = publishing.publish(ME, run)
-    notebook(publishing).remove([run], ME)
+    publishing.history.remove([run], ME)
     for ask in (publishing.shown, publishing.open):
         with pytest.raises(InputError, match="or it has ended"):
             ask(page.key)
     assert not publishing.pages(ME)
-    notebook(publishing).restore([run], ME)
+    publishing.history.restore([run], ME)
     assert publishing.shown(page.key).entry.id == run
-    notebook(publishing).delete(run, ME)
+    publishing.history.delete(run, ME)
     with pytest.raises(InputError, match="or it has ended"):
         publishing.shown(page.key)
 
@@ -89,7 +80,7 @@ def test_a_removed_run_leaves_its_page_and_comes_back_with_it(publishing: Publis
 def test_what_cannot_be_a_page_is_refused_with_a_sentence(
     publishing: Publishing, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run = kept(notebook(publishing))
+    run = kept(publishing.history)
     for days in (31, 0, float("nan")):
         with pytest.raises(InputError, match="up to 30 days"):
             publishing.publish(ME, run, days=days)
@@ -100,7 +91,7 @@ def test_what_cannot_be_a_page_is_refused_with_a_sentence(
 
 
 def test_a_lab_without_public_pages_makes_none_and_shows_none(publishing: Publishing) -> None:
-    run = kept(notebook(publishing))
+    run = kept(publishing.history)
     page = publishing.publish(ME, run)
     publishing.days = 0
     with pytest.raises(InputError, match="makes no public pages"):

@@ -20,9 +20,8 @@ from tests.server.lab import stub_module
 from tests.server.queue.test_queue import wait_for
 from webdemo.server import app as app_module
 from webdemo.server.app import create_app
-from webdemo.server.http.rate_limit import RateLimit
-from webdemo.server.http.refused import Refused
 from webdemo.server.store.scratch import KEPT_SECONDS, Scratch
+from webdemo.ui.history import Search
 
 MB = 2**20
 SMALL = {"files": ("a.bvh", b"HIERARCHY")}
@@ -111,17 +110,6 @@ def test_a_server_keeps_its_files_there_and_tidies_them(tmp_path: Path, monkeypa
         assert client.get("/", headers={"accept": "text/html"}).status_code == 200
 
 
-def test_a_megabyte_counts_as_a_request() -> None:
-    rates = RateLimit(60)
-    rates.take("a", 51)
-    rates.take("a", 8)
-    with pytest.raises(Refused, match="Too many requests"):
-        rates.take("a", 2)
-    rates.take("b", 1000)  # one alone is never too heavy
-    with pytest.raises(Refused):
-        rates.take("b")
-
-
 def test_uploads_are_weighed(tmp_path: Path) -> None:
     def undeclared() -> Iterator[bytes]:
         yield b"--x\r\n"
@@ -138,7 +126,7 @@ def test_nothing_is_taken_where_the_disk_is_nearly_full(tmp_path: Path) -> None:
     with client_of(settings_for(tmp_path, free_megabytes=1e12)) as client:
         said = events_of(client, "generate", FIELDS)
         assert "event: error" in said and "disk is nearly full" in said
-        assert lab_of(client).history.entries("local") == []
+        assert lab_of(client).history.search("local", Search()).total == 0
         answer = client.post(UPLOAD, files=SMALL)
         assert answer.status_code == 507 and "disk is full" in answer.json()["detail"]
 
@@ -172,7 +160,7 @@ def test_a_database_that_is_full_is_a_sentence(tmp_path: Path) -> None:
 
 def _fill_the_database(local: TestClient) -> None:
     lab = lab_of(local)
-    before = [entry.id for entry in lab.history.entries("local")]
+    before = lab.history.search("local", Search()).total
 
     def limit(connection: Any, record: Any) -> None:
         connection.execute("PRAGMA max_page_count=1")  # no more than there are
@@ -186,7 +174,7 @@ def _fill_the_database(local: TestClient) -> None:
         lab.database.engine.dispose()
     assert "event: error" in said and "disk is full, so nothing new can be kept" in said
     assert "event: complete" in events_of(local, "generate", FIELDS)
-    assert {*before} <= {entry.id for entry in lab.history.entries("local")}
+    assert lab.history.search("local", Search()).total > before
 
 
 def test_an_error_does_not_say_where_the_files_are(local: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:

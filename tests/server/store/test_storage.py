@@ -1,10 +1,9 @@
-"""Room for each person: who pays for what is too much, what an import may take, and clocks that jump."""
+"""Room for each person: who pays for what is too much, and what an import may take."""
 
 from __future__ import annotations
 
 import random
 import shutil
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,8 +13,8 @@ from sqlalchemy import select
 from motion import InputError
 from tests.server.lab import stub_module
 from webdemo.inference.requests import GenerateRequest
+from webdemo.server.accounts.quotas import Rooms
 from webdemo.server.store.database import Database, Run
-from webdemo.server.store.ledger import DAY, LabClock
 from webdemo.server.store.notebook import Notebook
 from webdemo.server.store.scratch import Scratch
 from webdemo.server.store.storage import Storage
@@ -30,9 +29,9 @@ PEOPLE = ("user ada", "user eve", "user bob")
 @pytest.fixture
 def notebook(tmp_path: Path) -> Iterator[Notebook]:
     database = Database(f"sqlite:///{tmp_path / 'h.db'}")
-    scratch = Scratch(tmp_path / "s" / "n", 3e6)
-    storage = Storage(database, tmp_path / "motions", person_bytes=8e5, total_bytes=1.6e6, scratch=scratch)
-    yield Notebook(database, tmp_path / "motions", node="n", storage=storage)
+    scratch = Scratch(tmp_path / "s", 3e6)
+    storage = Storage(database, tmp_path / "motions", Rooms(person=8e5, everybody=1.6e6), scratch=scratch)
+    yield Notebook(database, tmp_path / "motions", storage=storage)
     database.close()
 
 
@@ -88,9 +87,10 @@ def test_nobody_s_deeds_remove_what_is_another_s(notebook: Notebook, tmp_path: P
 
 
 def test_the_total_is_reached_and_one_s_own_runs_make_way_or_the_run_is_refused(notebook: Notebook) -> None:
-    notebook.storage.person_bytes = 1e9
+    notebook.storage.rooms = Rooms(person=1e9)
     theirs = {kept(notebook, "user ada", seed) for seed in range(40)}
-    notebook.storage.total_bytes = notebook.usage(Visitor("user ada", "user ada")).used + 3e5
+    used = notebook.usage(Visitor("user ada", "user ada")).used
+    notebook.storage.rooms = Rooms(person=1e9, everybody=used + 3e5)
     with pytest.raises(InputError, match="nothing of others is removed for yours"):
         for seed in range(40):
             notebook.favour(kept(notebook, "user eve", seed), "user eve", favourite=True)
@@ -100,57 +100,9 @@ def test_the_total_is_reached_and_one_s_own_runs_make_way_or_the_run_is_refused(
 def test_an_import_that_does_not_fit_is_refused_and_removes_nothing(notebook: Notebook, tmp_path: Path) -> None:
     mine = {kept(notebook, "user ada", seed) for seed in range(5)}
     file = shutil.copy(notebook.folder / min(mine) / "1.npz", tmp_path)
-    notebook.storage.person_bytes = notebook.usage(Visitor("user ada", "user ada")).used / 0.75 + 1000
+    used = notebook.usage(Visitor("user ada", "user ada")).used
+    notebook.storage.rooms = Rooms(person=used / 0.75 + 1000)
     with pytest.raises(InputError, match="your room is used up"):
         notebook.take_in("user ada", [Path(file)])
     assert runs_of(notebook, "user ada") == mine
     assert {path.name for path in notebook.folder.iterdir()} == mine
-
-
-class Hands:
-    """A clock and an uptime that a test moves."""
-
-    def __init__(self) -> None:
-        self.wall, self.up = time.time(), 0.0
-
-
-@pytest.fixture
-def hands(notebook: Notebook) -> Hands:
-    found = Hands()
-    notebook.clock = LabClock(notebook.database, wall=lambda: found.wall, uptime=lambda: found.up)
-    return found
-
-
-@pytest.mark.parametrize("days", [60, -60])
-def test_a_clock_that_jumps_removes_nothing_even_after_a_run(notebook: Notebook, hands: Hands, days: int) -> None:
-    runs = {kept(notebook, "user ada")}
-    hands.wall += days * DAY
-    runs.add(kept(notebook, "user ada", 1))
-    assert [notebook.clean(), notebook.clean()] == [0, 0]
-    assert notebook.clock.state().jump == pytest.approx(days * DAY, abs=60)
-    again = LabClock(notebook.database, wall=lambda: hands.wall, uptime=lambda: 0.0)  # a restart
-    assert not again.look() and again.now() == pytest.approx(notebook.clock.now(), abs=60)
-    hands.wall -= days * DAY
-    assert notebook.clean() == 0 and notebook.clock.look()
-    assert runs_of(notebook, "user ada") == runs
-
-
-def test_cleaning_goes_on_after_a_steady_day_and_ages_are_those_of_the_record(notebook: Notebook, hands: Hands) -> None:
-    run = kept(notebook, "user ada")
-    hands.wall += 60 * DAY
-    assert not notebook.clock.look()
-    for _ in range(2):
-        hands.wall, hands.up = hands.wall + DAY / 2 + 1, hands.up + DAY / 2 + 1
-        notebook.clean()
-    assert notebook.clock.look() and runs_of(notebook, "user ada") == {run}
-    hands.wall, hands.up = hands.wall + 30 * DAY, hands.up + 30 * DAY
-    assert notebook.clean() == 1
-
-
-@pytest.mark.parametrize(("passed", "removed"), [(True, 1), (False, 0)])
-def test_an_operator_says_that_the_clock_is_right(notebook: Notebook, hands: Hands, passed: bool, removed: int) -> None:
-    kept(notebook, "user ada")
-    hands.wall += 60 * DAY
-    assert notebook.clean() == 0
-    notebook.clock.confirm(passed=passed)
-    assert notebook.clean() == removed

@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from motion import InputError
-from tests.server.clients import DATABASES, database_url, drop_tables, no_room
+from tests.server.clients import no_room
 from tests.server.lab import stub_module
+from webdemo.server.accounts.quotas import Rooms
 from webdemo.server.store.database import Database
 from webdemo.server.store.studies import Studies
 from webdemo.study import Pair, StudyEntry
@@ -21,11 +22,10 @@ RUNS = ("short", "=SUM(A1)")
 walking = stub_module().walking
 
 
-@pytest.fixture(params=DATABASES)
-def studies(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Studies]:
-    database = Database(database_url(request.param, tmp_path))
+@pytest.fixture
+def studies(tmp_path: Path) -> Iterator[Studies]:
+    database = Database(f"sqlite:///{tmp_path / 'h.db'}")
     yield Studies(database, tmp_path / "studies", clock=lambda: 1000.0)
-    drop_tables(database.engine)
     database.close()
 
 
@@ -140,7 +140,7 @@ def test_what_makes_no_study_is_a_sentence_and_leaves_nothing(studies: Studies) 
             new(studies, question=question)
     with pytest.raises(InputError, match="sign in or allow cookies"):
         new(studies, owner="")
-    studies.storage.total_bytes = 1
+    studies.storage.rooms = Rooms(everybody=1)
     with pytest.raises(InputError, match="nothing of others is removed for yours"):
         new(studies)
     assert studies.mine(ME) == [] and not studies.folder.exists()

@@ -14,7 +14,7 @@ from motion import InputError
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built
 from webdemo.inference.requests.live import LONGEST, LiveTake
-from webdemo.server.store.recorder import title_of
+from webdemo.server.queue.recorder import title_of
 from webdemo.ui.again import actor_source, request_of
 from webdemo.ui.components.live import FARTHEST, take_of
 from webdemo.ui.history import Entry, Opened

@@ -12,10 +12,10 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
 
 from motion import InputError
+from webdemo.server.accounts.quotas import network_of
 from webdemo.server.audit import audit
 from webdemo.server.http.cookies import set_cookie
 from webdemo.server.http.error_pages import never_kept, sign_in_card
-from webdemo.server.http.networks import network_of
 from webdemo.server.http.refused import Refused
 from webdemo.server.settings import Settings
 

@@ -7,7 +7,8 @@ import time
 from collections.abc import Callable
 
 from motion import InputError
-from webdemo.server.http.rate_limit import Buckets
+
+from .quotas import Buckets
 
 TRIES = 8
 """Wrong passwords at once for one name from one address, or from one browser that has signed in before."""

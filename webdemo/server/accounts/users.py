@@ -22,8 +22,8 @@ from sqlalchemy import delete
 from motion import InputError
 from motion.formats.files import write_text
 from webdemo.server.store.database import Database, SignIn
-from webdemo.server.store.people import People
 
+from .people import People
 from .throttle import Throttle
 
 NAME = re.compile(r"\A[a-z0-9][a-z0-9._-]{0,39}\Z")

@@ -11,12 +11,12 @@ from collections.abc import Mapping
 
 from acts.config import is_loopback
 from motion import InputError
-from webdemo.server.http.networks import network_of
+from webdemo.server.accounts.quotas import network_of
 from webdemo.server.http.refused import Refused
 from webdemo.server.settings import Settings
-from webdemo.server.store.people import People
 from webdemo.ui.visitor import Visitor
 
+from .people import People
 from .proxy import not_by_proxy
 from .users import SUSPENDED, SignIns
 

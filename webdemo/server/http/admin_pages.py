@@ -1,11 +1,10 @@
-"""``/admin``: the page of administrators. Plain HTML with forms, without scripts."""
+"""``/admin``: the small page of administrators. Plain HTML with forms, without scripts."""
 
 from __future__ import annotations
 
 import html
-import shutil
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from fastapi import APIRouter, Request
@@ -13,29 +12,44 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import RedirectResponse, Response
 
 from motion import InputError
-from webdemo.server.activity import Item, work_of
-from webdemo.server.admin import Administration, versions
+from webdemo.server.accounts.administration import Administration
+from webdemo.server.accounts.people import ADMIN
 from webdemo.server.audit import audit
-from webdemo.server.http.error_pages import never_kept
-from webdemo.server.logs import LAST_ERRORS
-from webdemo.server.store.people import ADMIN, MOST_ANNOUNCED
 from webdemo.ui.visitor import visitor_of
 
-from .admin_html import page, table
-from .body_limits import Refused
+from .error_pages import never_kept
+from .refused import Refused
 
 if TYPE_CHECKING:
     from webdemo.server.lab import Lab
 
+_PAGE = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<link rel="icon" href="data:,"><title>Administration · Pas de Deux</title><style>
+:root {{ color-scheme: light dark; font: 15px/1.5 system-ui, sans-serif; --line: #8886; }}
+body {{ margin: 0; padding: 1.2rem clamp(.8rem, 3vw, 2.5rem); }}
+h1 {{ font-size: 1.5rem; }} h2 {{ font-size: 1.1rem; }} section {{ overflow-x: auto; }}
+table {{ border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }}
+th, td {{ text-align: left; vertical-align: top; padding: .4rem .9rem .4rem 0; border-bottom: 1px solid var(--line); }}
+td:last-child {{ display: flex; flex-wrap: wrap; gap: .4rem .9rem; min-width: 9rem; }}
+form {{ display: inline-flex; gap: .4rem; }}
+input, button {{ font: inherit; font-size: .9rem; padding: .25rem .6rem; border: 1px solid var(--line);
+  border-radius: 8px; background: transparent; color: inherit; }}
+button {{ cursor: pointer; }}
+@media (max-width: 48rem) {{ /* a row becomes a card, each cell behind the name of its column */
+  thead {{ display: none; }} tr {{ display: block; padding: .5rem 0; border-bottom: 1px solid var(--line); }}
+  td {{ display: flex; gap: .8rem; padding: .15rem 0; border: 0; overflow-wrap: anywhere; }}
+  td::before {{ content: attr(data-head); flex: 0 0 7.5rem; font-size: .85rem; }}
+}}
+</style></head><body><h1>Administration</h1><p><a href="{home}">Open the lab</a></p>{done}<main>
+<section><h2>People</h2>{people}</section><section><h2>Runs and streams</h2>{work}</section></main></body></html>"""
 _DONE = {
-    "end-run": "The run was ended.",
-    "end-stream": "The stream was ended.",
+    "end": "It was ended.",
     "room": "The room was set.",
     "suspend": "The account was suspended and signed out.",
     "let-in": "The account can sign in again.",
     "sign-out": "The account was signed out everywhere.",
     "delete": "The account was deleted with all its data.",
-    "announce": "The announcement was changed.",
     "make-admin": "The account is an administrator.",
     "end-admin": "The account is no administrator any more.",
 }
@@ -49,62 +63,58 @@ def admin_routes(lab: Lab) -> APIRouter:
 
     @router.get("/admin")
     def show(request: Request, done: str = "") -> Response:
-        _check_admin(lab, request)
-        body = _page(lab, _DONE.get(done, ""))
-        return never_kept(body)
+        admin = _administration(lab, request)
+        said = f'<p role="status">{_DONE[done]}</p>' if done in _DONE else ""
+        people, work = _people(lab, admin, f"{root}/admin"), _work(lab, f"{root}/admin")
+        return never_kept(_PAGE.format(home=html.escape(f"{root}/"), done=said, people=people, work=work))
 
     @router.post("/admin")
     async def act(request: Request) -> Response:
-        _check_admin(lab, request)
+        admin = await run_in_threadpool(_administration, lab, request)
         if not request.headers.get("origin"):  # the guard has compared it with the host
             raise Refused(403, "Open the page /admin in a browser, or use `python -m webdemo admin`.", "admin")
         form = await request.form()
         given = {name: value for name, value in form.items() if isinstance(value, str)}
-        done = given.get("act", "")
         try:
-            await run_in_threadpool(_act, lab, done, given)
+            await run_in_threadpool(_act, lab, admin, given)
         except InputError as error:
             raise Refused(422, str(error), "admin") from None
-        return RedirectResponse(f"{root}/admin?done={done}", status_code=303)
+        return RedirectResponse(f"{root}/admin?done={given['act']}", status_code=303)
 
     return router
 
 
-def _check_admin(lab: Lab, request: Request) -> None:
-    """Raises Refused for everybody but administrators."""
+def _administration(lab: Lab, request: Request) -> Administration:
+    """The acts of administrators; raises Refused for everybody else."""
     who = visitor_of(request)
-    if not who.account or lab.people.of(who.owner.removeprefix("user ")).role != ADMIN:
+    admin = lab.administration
+    if admin is None or not who.account or admin.people.of(who.owner.removeprefix("user ")).role != ADMIN:
         audit("admin-page", ok=False)
         raise Refused(403, "This page is for administrators.", "admin")
+    return admin
 
 
-def _act(lab: Lab, act: str, given: Mapping[str, str]) -> None:
-    name, admin = given.get("name", ""), lab.administration
-    assert admin is not None  # the routes are only there with accounts
+def _act(lab: Lab, admin: Administration, given: Mapping[str, str]) -> None:
+    name = given.get("name", "")
     acts: dict[str, Callable[[], Any]] = {
-        "end-run": lambda: _end(lab, "admin-end-run", given.get("id", "")),
-        "end-stream": lambda: _end(lab, "admin-end-stream", given.get("id", "")),
+        "end": lambda: _end(lab, given.get("id", "")),
         "room": lambda: admin.set_room(name, _megabytes(given.get("megabytes", ""))),
         "suspend": lambda: admin.suspend(name, suspended=True),
         "let-in": lambda: admin.suspend(name, suspended=False),
         "sign-out": lambda: admin.sign_out(name),
         "delete": lambda: _delete(lab, admin, name, given.get("confirm", "")),
-        "announce": lambda: admin.announce(given.get("text", "")),
         "make-admin": lambda: admin.set_role(name, admin=True),
         "end-admin": lambda: admin.set_role(name, admin=False),
     }
-    if act not in acts:
+    if given.get("act") not in acts:
         raise InputError("There is no such act: use the buttons of the page.")
-    acts[act]()
+    acts[given["act"]]()
 
 
-def _end(lab: Lab, act: str, key: str) -> None:
-    if lab.end(key):
-        audit(act, id=key)
-    elif any(item.id == key for item in _elsewhere(lab)):
-        lab.activity.end(key)
-    else:
-        audit(act, ok=False, id=key)
+def _end(lab: Lab, key: str) -> None:
+    ended = lab.end(key)
+    audit("admin-end", ok=ended, id=key)
+    if not ended:
         raise InputError("It has ended already: go back and reload the page.")
 
 
@@ -118,27 +128,50 @@ def _megabytes(text: str) -> float | None:
 def _delete(lab: Lab, admin: Administration, name: str, confirm: str) -> None:
     if confirm != name:
         raise InputError(f"Type the name {name!r:.60} into the field beside Delete to confirm.")
-    for item in (*work_of(lab.name, lab.queue, lab.streams), *_elsewhere(lab)):
-        if item.person == f"user {admin.key(name)}" and not lab.end(item.id):
-            lab.activity.ask(item.id)
+    for item in lab.work():
+        if item.person == f"user {admin.key(name)}":
+            lab.end(item.id)
     admin.delete(name)
 
 
 # ---- the page --------------------------------------------------------------------------------------
 
 
-def _page(lab: Lab, done: str) -> str:
-    assert lab.administration is not None
-    lab.people.write()
-    action = f"{lab.settings.root_path}/admin"
-    parts = [
-        ("People", _people(lab, lab.administration, action)),
-        ("Runs and streams", _runs_and_streams(lab, action)),
-        ("Announcement", _announcement(lab, action)),
-        ("Health", _health(lab)),
-        ("Last errors", _errors()),
+def _people(lab: Lab, admin: Administration, action: str) -> str:
+    rows = []
+    for row in admin.rows():
+        name = html.escape(row.name, quote=True)
+        room = (
+            f'<input name="megabytes" inputmode="decimal" size="6" aria-label="Room of {name} in megabytes" '
+            f'placeholder="default" value="{f"{row.room:g}" if row.own_room else ""}">'
+        )
+        confirm = f'<input name="confirm" size="8" placeholder="{name}" aria-label="Type {name} to delete the account">'
+        state = " ".join(filter(None, (row.role, "suspended" if row.suspended else "")))
+        acts = [
+            _button(action, "room", "Set room", room, name=row.name),
+            _button(action, *(("let-in", "Let in") if row.suspended else ("suspend", "Suspend")), name=row.name),
+            _button(action, "sign-out", "Sign out everywhere", name=row.name),
+            _button(action, *(("end-admin", "No admin") if row.role else ("make-admin", "Make admin")), name=row.name),
+            _button(action, "delete", "Delete with all data", confirm, name=row.name),
+        ]
+        used = f"{row.megabytes:,.1f} of {row.room:,.1f} MB"
+        rows.append([f"<strong>{name}</strong> {state}", f"{row.runs:,}", used, "".join(acts)])
+    return table(("Account", "Runs kept", "Runs and studies", "Acts"), rows, "no accounts")
+
+
+def _work(lab: Lab, action: str) -> str:
+    now = time.monotonic()
+    rows = [
+        [
+            html.escape(item.person.removeprefix("user ").partition("#")[0]),  # as the table of people names them
+            html.escape(item.what),
+            item.state,
+            f"{now - item.since:.0f} s",
+            _button(action, "end", "End", id=item.id),
+        ]
+        for item in lab.work()
     ]
-    return page(parts, done=done, home=f"{lab.settings.root_path}/")
+    return table(("Person", "Model", "State", "For", "Act"), rows, "Nothing runs or waits.")
 
 
 def _button(action: str, act: str, label: str, fields: str = "", **hidden: str) -> str:
@@ -150,120 +183,13 @@ def _button(action: str, act: str, label: str, fields: str = "", **hidden: str) 
     return f'<form method="post" action="{target}">{inputs}{fields}<button>{label}</button></form>'
 
 
-def _people(lab: Lab, admin: Administration, action: str) -> str:
-    work = _work(lab)
-    waiting = [item.person for item in work if item.state == "waits"]
-    streams = [item.person for item in work if item.state == "open"]
-    rows = []
-    for row in admin.rows():
-        name, owner = html.escape(row.name), f"user {admin.key(row.name)}"
-        room = (
-            f'<input name="megabytes" inputmode="decimal" size="6" aria-label="Room of {name} in megabytes" '
-            f'placeholder="default" value="{f"{row.room:g}" if row.own_room else ""}">'
-        )
-        confirm = f'<input name="confirm" size="8" placeholder="{name}" aria-label="Type {name} to delete the account">'
-        state = " ".join(filter(None, (row.role, "suspended" if row.suspended else "")))
-        share = f"{row.megabytes:,.1f} of {row.kept:,.1f} MB" + (" <strong>full</strong>" if row.full else "")
-        acts = [
-            _button(action, "room", "Set room", room, name=row.name),
-            _button(action, *(("let-in", "Let in") if row.suspended else ("suspend", "Suspend")), name=row.name),
-            _button(action, "sign-out", "Sign out everywhere", name=row.name),
-            _button(action, *(("end-admin", "No admin") if row.role else ("make-admin", "Make admin")), name=row.name),
-            _button(action, "delete", "Delete with all data", confirm, name=row.name),
-        ]
-        rows.append(
-            [
-                f"<strong>{name}</strong> {state}",
-                f"{row.runs:,}",
-                f"{row.computed:,}",
-                f"{row.minutes:.1f}",
-                share,
-                str(waiting.count(owner)),
-                str(streams.count(owner)),
-                f'<div class="acts">{"".join(acts)}</div>',
-            ]
-        )
-    heads = (
-        "Account",
-        "Runs kept",
-        "Runs computed",
-        "Minutes computed",
-        "Runs and studies",
-        "Waiting",
-        "Streams",
-        "Acts",
-    )
-    return table(heads, rows, "no accounts")
-
-
-def _work(lab: Lab) -> list[Item]:
-    """Everything that runs, waits or is open: here as it is now, in other processes as they said last."""
-    return work_of(lab.name, lab.queue, lab.streams) + _elsewhere(lab)
-
-
-def _elsewhere(lab: Lab) -> list[Item]:
-    return [item for item in lab.activity.items() if item.node != lab.name]
-
-
-def _runs_and_streams(lab: Lab, action: str) -> str:
-    now, several = time.time(), len(lab.activity.states()) > 1
-    rows = [
-        [
-            _name(item.person),
-            html.escape(item.what),
-            item.state,
-            f"{now - item.since:.0f} s",
-            *([html.escape(item.node)] if several else []),
-            _button(action, "end-stream" if item.state == "open" else "end-run", "End", id=item.id),
-        ]
-        for item in _work(lab)
+def table(heads: Sequence[str], rows: Sequence[Sequence[str]], none: str) -> str:
+    """A table of HTML cells, or a sentence if it has no rows."""
+    if not rows:
+        return f"<p>{none}</p>"
+    head = "".join(f'<th scope="col">{name}</th>' for name in heads)
+    lines = [
+        "".join(f'<td data-head="{name}">{cell}</td>' for name, cell in zip(heads, row, strict=True)) for row in rows
     ]
-    heads = ("Person", "Model", "State", "For", *(["Process"] if several else []), "Act")
-    return table(heads, rows, "Nothing runs or waits.")
-
-
-def _name(person: str) -> str:
-    """A person as the table of people names them."""
-    return html.escape(person.removeprefix("user ").partition("#")[0])
-
-
-def _moment(line: Mapping[str, Any]) -> str:
-    """The time of a line to the second, for people; its date and time may break apart and nothing else."""
-    day, _, time_of_day = str(line.get("time", ""))[:19].partition("T")
-    return f"{html.escape(day).replace('-', '&#8209;')} {html.escape(time_of_day)}"
-
-
-def _announcement(lab: Lab, action: str) -> str:
-    text = html.escape(lab.people.announced(), quote=True)
-    field = (
-        f'<label>Everybody is shown this line on the page; empty: none <input name="text" maxlength="{MOST_ANNOUNCED}" '
-        f'value="{text}"></label>'
-    )
-    return _button(action, "announce", "Announce", field)
-
-
-def _health(lab: Lab) -> str:
-    _, report = lab.health.report()
-    disk = shutil.disk_usage(lab.settings.data)
-    rows = [["state", html.escape(str(report["status"]))]]
-    rows += [[html.escape(name), html.escape(state)] for name, state in report["checks"].items()]
-    rows += [
-        ["disk space", f"{disk.free / 2**30:,.1f} of {disk.total / 2**30:,.1f} GB free"],
-        ["queue", f"{lab.queue.waiting} wait, {lab.queue.running} run"],
-        ["live streams", str(lab.streams.count)],
-    ]
-    rows += [[html.escape(name), html.escape(version)] for name, version in versions().items()]
-    return table(("Part", "State"), rows, "")
-
-
-def _errors() -> str:
-    rows = [
-        [
-            _moment(line),
-            html.escape(str(line["message"])),
-            html.escape(str(line.get("error", ""))),
-            html.escape(str(line.get("request", ""))),
-        ]
-        for line in reversed(LAST_ERRORS.lines)
-    ]
-    return table(("Time (UTC)", "Message", "Error", "Request"), rows, "No errors since this process started.")
+    body = "".join(f"<tr>{line}</tr>" for line in lines)
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"

@@ -23,6 +23,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from acts.config import is_loopback
 from motion import InputError
 from webdemo.server.accounts.proxy import admin_by_proxy, person_by_proxy
+from webdemo.server.accounts.quotas import Quotas, RateLimit, network_of
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, Bindings, Visitors, new_token
 from webdemo.server.audit import SENDER
 from webdemo.server.logs import REFERENCE
@@ -35,9 +36,7 @@ from .body_limits import BoundedBody, declared_length, too_large
 from .cookies import read_cookies, set_cookie
 from .exchange import Exchange
 from .metrics import Figures
-from .networks import network_of
 from .payloads import Payloads
-from .rate_limit import RateLimit
 from .refused import Refused
 from .routes import API, LIVE, MESSAGE, is_public_page, is_upload, needs_no_sign_in, path_below, route_of
 from .upload_form import UploadForm
@@ -58,16 +57,12 @@ _WATCHED = ("/healthz", "/metrics")
 """Paths for those who watch the server, which have rules of their own and say what is wrong."""
 _LIVE_WEIGHT = 0.05
 """The number of requests that a message of a live stream counts as: some fifteen come in a second."""
-_GETS = 1500
-"""GETs of one person in a minute: the page with all of its files takes about 150."""
 _DEAR = frozenset(("/", "/config", f"{API}info", f"{API}startup-events"))
 _DEAR_WEIGHT = 10.0
 """The number of GETs that one of these counts as: they are long, or made anew for a name of the server's."""
 _HOST = re.compile(r"[a-z0-9._\[\]:-]*+")
 _MOST_FIELDS = 50
 """Parameters of an address."""
-
-
 _MOST_VALUES = 20_000
 """Of a call's body: the page's own have a few dozen."""
 
@@ -84,6 +79,7 @@ class Guard:
     Args:
         app: the guarded application.
         settings: limits and host names.
+        quotas: requests of a person and of an address.
         visitors: identifies visitors.
         figures: metrics to update.
         answers: counts the results being sent.
@@ -97,6 +93,7 @@ class Guard:
         *,
         settings: Settings,
         visitors: Visitors,
+        quotas: Quotas,
         figures: Figures,
         answers: OpenAnswers,
         payloads: Payloads,
@@ -105,10 +102,7 @@ class Guard:
         self.app, self.settings, self.visitors, self.figures = app, settings, visitors, figures
         self.answers, self.payloads, self.admit = answers, payloads, admit
         self.bindings = Bindings()
-        self.rate_limit = RateLimit(settings.rate)
-        self.address_rate_limit = RateLimit(settings.rate * settings.address_people)
-        gets = max(_GETS, settings.rate)
-        self.gets, self.address_gets = RateLimit(gets), RateLimit(gets * settings.address_people)
+        self.quotas = quotas
         self.hosts = {name.lower() for name in settings.hosts}
         if self.hosts or settings.local:  # its own health check, and tunnels to it, name the loopback
             self.hosts |= {"localhost", "127.0.0.1", "::1"}
@@ -251,10 +245,11 @@ class Guard:
         if visitor is None and needs_no_sign_in(path):
             visitor = nobody
         if scope["method"] in _CHANGING or is_public_page(path):  # a motion is read for each of these
-            self._take(visitor or nobody, self._weight(scope, headers), self.rate_limit, self.address_rate_limit)
+            weight = self._weight(scope, headers)
+            self._take(visitor or nobody, weight, self.quotas.requests, self.quotas.address_requests)
         else:
-            dear = _DEAR_WEIGHT if path in _DEAR else 1.0
-            self._take(visitor or nobody, dear, self.gets, self.address_gets)
+            weight = _DEAR_WEIGHT if path in _DEAR else 1.0
+            self._take(visitor or nobody, weight, self.quotas.gets, self.quotas.address_gets)
         return visitor
 
     @staticmethod

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import shutil
 import tempfile
 import threading
 import time
 from collections.abc import Callable
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +20,15 @@ from webdemo.ui.runs import EngineLike
 
 log = logging.getLogger(__name__)
 
+Report = tuple[bool, dict[str, Any]]
+"""Whether all is well, and the status with the state of each part."""
+
 PAUSE = 30.0
 """Seconds between two tries after one that failed."""
-LATELY = 10.0
-"""Seconds for which a report is good enough for administrators."""
+PATIENCE = 0.2
+"""Seconds after which the report of the last look is given while the next one goes on."""
+STALE = 30.0
+"""Seconds for which a report is good enough for that."""
 
 
 def check_disk(folder: Path, least: float) -> None:
@@ -64,7 +71,8 @@ class Health:
         self.error = ""
         self._works = False
         self._tried_at = -PAUSE
-        self._lately: tuple[float, dict[str, Any]] = (-LATELY, {})
+        self._looking: Future[Report] | None = None
+        self._last: tuple[float, Report] | None = None
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
 
@@ -88,12 +96,31 @@ class Health:
         self._works = False
         self.error = f"a run ended in {type(error).__name__}"
 
-    def report(self) -> tuple[bool, dict[str, Any]]:
-        """Returns whether all is well, and the state of each part; tries a generation where none has worked yet."""
-        self.probe()
-        return self._report()
+    async def look(self) -> Report:
+        """Whether all is well, and the state of each part.
 
-    def _report(self) -> tuple[bool, dict[str, Any]]:
+        A thread of its own looks, so that it waits for nothing that other threads wait for. Whoever asks meanwhile gets
+        the same answer, so there is one at most; and where it takes long, since other threads compute, they get the
+        last one.
+        """
+        if self._looking is None or self._looking.done():
+            self._looking = Future()
+            threading.Thread(target=self._look, args=(self._looking,), name="look", daemon=True).start()
+        last = self._last
+        recent = last is not None and time.monotonic() - last[0] < STALE
+        await asyncio.wait([asyncio.wrap_future(self._looking)], timeout=PATIENCE if recent else None)
+        return last[1] if last is not None and not self._looking.done() else self._looking.result()
+
+    def _look(self, looking: Future[Report]) -> None:
+        try:
+            self._last = (time.monotonic(), report := self.report())
+            looking.set_result(report)
+        except BaseException as error:
+            looking.set_exception(error)
+
+    def report(self) -> Report:
+        """Looks at each part, and tries a generation where none has worked yet."""
+        self.probe()
         checks: dict[str, str] = {}
         for name, check in self.wants.items():
             try:
@@ -109,12 +136,6 @@ class Health:
         failed = any(state.startswith("failed") for state in checks.values())
         status = "stopping" if self.stopping else "ready" if whole else "failed" if failed else "loading"
         return whole, {"status": status, "checks": checks}
-
-    def lately(self) -> dict[str, Any]:
-        """The state of each part, as it was a few seconds ago at most."""
-        if time.monotonic() - self._lately[0] >= LATELY:
-            self._lately = (time.monotonic(), self._report()[1])
-        return self._lately[1]
 
     def stuck(self) -> str:
         """A sentence about what has made no progress for too long; empty while everything goes on."""

@@ -14,6 +14,7 @@ from typing import Any, Protocol
 from motion import FPS, InputError
 from webdemo.inference.live.partner import LivePartner
 from webdemo.inference.requests.live import PARTNERS
+from webdemo.server.accounts.quotas import OverQuota, Quota
 from webdemo.ui.visitor import Visitor
 
 from .messages import read_message
@@ -63,8 +64,7 @@ class Streams:
 
     Args:
         engine: has the partners.
-        most: streams at the same time.
-        address: streams at the same time from one address, where people are known by a cookie alone.
+        quota: of streams.
         clock: gives the time; seconds.
         processor: gives the processor time of the thread that computes; seconds.
 
@@ -77,13 +77,12 @@ class Streams:
     def __init__(
         self,
         engine: Partners,
+        quota: Quota,
         *,
-        most: int,
-        address: int,
         clock: Callable[[], float] = time.monotonic,
         processor: Callable[[], float] = time.thread_time,
     ) -> None:
-        self.engine, self.most, self.address, self.clock = engine, most, address, clock
+        self.engine, self.quota, self.clock = engine, quota, clock
         self.processor = processor
         self.turns, self._doors = StepTurns("live"), StepTurns("live-open")
         self.pace = 0.0
@@ -134,20 +133,17 @@ class Streams:
         """Ends the person's other stream; raises StreamRefused if there is no room for a new one."""
         if self._stopping:
             raise StreamRefused(STOPPING)
-        if not self.most:
+        if not self.quota.everybody:
             raise StreamRefused("Live streams are switched off on this server: film a video and press React.")
         for stream in [stream for stream in self._open.values() if stream.person == visitor.person]:
             self._end(stream, OTHER_TAB)
-        near = sum(stream.address == visitor.address for stream in self._open.values())
-        if visitor.address and near >= self.address:
-            raise StreamRefused(
-                f"{near} people from your network are live already: try again when one of them has stopped."
-            )
-        count = len(self._open) + self._coming
-        if count >= self.most:
-            raise StreamRefused(
-                f"As many people are live as this server allows ({self.most}): try again in a few minutes."
-            )
+        held = [(stream.person, stream.address) for stream in self._open.values()]
+        held += [("", "")] * self._coming
+        try:
+            self.quota.check(visitor.person, visitor.address, held)
+        except OverQuota as over:
+            raise StreamRefused(str(over)) from None
+        count = len(held)
         if count and (count + 1) * FPS * self.pace > BUSIEST:
             raise StreamRefused(
                 f"The server is too busy for another live partner beside {count}: try again in a few minutes."

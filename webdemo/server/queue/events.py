@@ -9,12 +9,12 @@ from __future__ import annotations
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from fastapi import HTTPException, Request
 from gradio.queueing import Event, EventQueue, Queue
 
+from webdemo.server.accounts.quotas import OverQuota, Quota
 from webdemo.server.http.metrics import Figures
 from webdemo.ui.visitor import visitor_of
 
@@ -25,15 +25,6 @@ AT_ONCE = 4
 leave room for short ones."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class EventLimits:
-    """Limits of unfinished events per person, per address where people have no accounts, and in total."""
-
-    person: int = 16
-    address: int = 128
-    total: int = 256
-
-
 class FairEvents(Queue):
     """Gradio's queue with a cap for each person, and turns: the person served least goes first.
 
@@ -41,14 +32,14 @@ class FairEvents(Queue):
     most half of its places.
 
     Args:
-        limits: unfinished events.
+        quota: of unfinished events.
         figures: metrics to update.
         options: of Gradio's queue.
     """
 
-    def __init__(self, *, limits: EventLimits, figures: Figures, **options: Any) -> None:
+    def __init__(self, *, quota: Quota, figures: Figures, **options: Any) -> None:
         super().__init__(**options, max_size=None)
-        self.limits, self.figures = limits, figures
+        self.quota, self.figures = quota, figures
         self.accounts = Accounts()
         self._begun: dict[Event, float] = {}
 
@@ -61,19 +52,11 @@ class FairEvents(Queue):
         """
         who = visitor_of(request)
         known = [visitor_of(event.request) for event in self._unfinished()]
-        if len(known) >= self.limits.total:
-            self.figures.refused.labels("events of all").inc()
-            raise HTTPException(503, f"{len(known)} things are not done yet: try again in a minute.")
-        mine = sum(other.person == who.person for other in known)
-        near = sum(other.address == who.address for other in known) if who.address else 0
-        if mine >= self.limits.person:
-            self.figures.refused.labels("person's share of events").inc()
-            raise HTTPException(429, f"{mine} things that you asked for are not done yet: wait for one of them.")
-        if near >= self.limits.address:
-            self.figures.refused.labels("address's share of events").inc()
-            raise HTTPException(
-                429, f"{near} things that your network asked for are not done yet: try again in a minute."
-            )
+        try:
+            self.quota.check(who.person, who.address, ((other.person, other.address) for other in known))
+        except OverQuota as over:
+            self.figures.refused.labels(f"events of {over.whose}").inc()
+            raise HTTPException(503 if over.whose == "everybody" else 429, str(over)) from None
         self.accounts.meet(who.person, {other.person for other in known})
         return await super().push(body, request, username)
 

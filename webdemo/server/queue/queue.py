@@ -8,17 +8,18 @@ from __future__ import annotations
 import queue
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from motion import InputError
 from webdemo.inference.run import Cancelled, CancelToken, Progress, Result
+from webdemo.server.accounts.quotas import OverQuota, Quota
 from webdemo.server.http.metrics import Figures
 from webdemo.ui.runs import EngineLike, Waiting
 from webdemo.ui.visitor import Visitor, visitor
 
-from .turns import Batcher, Job, QueueLimits, Turns
-from .wait_estimate import Line, Pace, units
+from .turns import Batcher, Job, Line, Pace, QueueLimits, Turns, units
 
 TICK = 0.5
 """Seconds between two updates of the place in the queue."""
@@ -31,32 +32,29 @@ class FairQueue:
 
     Args:
         engine: runs the requests.
-        limits: upper limits.
+        limits: of what runs.
+        quota: of waiting runs.
         batcher: runs several requests at once; without it each runs alone.
         figures: metrics to update.
         broken: called with errors of the program, not those of the user.
-        served: called with a person and the units of work when a run starts.
-        computed: called with a person and the seconds of a worker when a run has ended; of a shared pass, its part.
     """
 
     def __init__(
         self,
         engine: EngineLike,
         limits: QueueLimits | None = None,
+        quota: Quota | None = None,
         *,
         batcher: Batcher | None = None,
         figures: Figures | None = None,
         broken: Callable[[BaseException], None] = lambda error: None,
-        served: Callable[[str, float], None] = lambda person, units: None,
-        computed: Callable[[str, float], None] = lambda person, seconds: None,
     ) -> None:
-        self.computed = computed
         self.engine = engine
-        self.limits = limits or QueueLimits()
+        self.limits, self.quota = limits or QueueLimits(), quota or Quota("runs waiting", person=4)
         self.batcher = batcher
         self.figures = figures or Figures()
-        self.broken, self.served = broken, served
-        self.pace = Pace()
+        self.broken = broken
+        self.paces: defaultdict[str, Pace] = defaultdict(Pace)
         self._change = threading.Condition()
         self._waiting: list[Job] = []
         self._running: list[Job] = []
@@ -113,11 +111,6 @@ class FairQueue:
                     self._change.notify_all()
                     return True
         return False
-
-    def charge_elsewhere(self, totals: Mapping[str, float]) -> None:
-        """Adds work done at other processes; see :meth:`Turns.charge_elsewhere`."""
-        with self._change:
-            self._turns.charge_elsewhere(totals)
 
     def run(self, session: str, request: Any, *, alone: bool = False) -> Iterator[Progress | Result]:
         """Runs a request; yields its place in the queue, its progress and its result.
@@ -186,17 +179,11 @@ class FairQueue:
             if (earlier := self._sessions.get(session)) is not None:
                 earlier.cancel()
             self._waiting = [other for other in self._waiting if not other.token.cancelled]
-            mine = sum(other.person == person for other in self._waiting)
-            if mine >= self.limits.waiting:
-                self.figures.refused.labels("person's share of the queue").inc()
-                raise InputError(f"You already have {mine} runs waiting: wait for one or cancel it, then try again.")
-            near = sum(other.address == who.address for other in self._waiting) if who.address else 0
-            if near >= self.limits.address:
-                self.figures.refused.labels("address's share of the queue").inc()
-                raise InputError(f"{near} runs from your network are already waiting: try again in a few minutes.")
-            if len(self._waiting) >= self.limits.queue:
-                self.figures.refused.labels("queue full").inc()
-                raise InputError(f"The queue is full ({len(self._waiting)} runs wait): try again in a few minutes.")
+            try:
+                self.quota.check(person, who.address, ((other.person, other.address) for other in self._waiting))
+            except OverQuota as over:
+                self.figures.refused.labels(f"queue of {over.whose}").inc()
+                raise
             job.group = self._group(request)
             running = [(job.person, job.cost) for job in self._running]
             self._turns.meet(person, {job.person for job in (*self._waiting, *self._running)}, running)
@@ -249,7 +236,7 @@ class FairQueue:
             running=[job for job in self._running if job.group == group],
             served=self._turns.served,
             pick=self._turns.pick,
-            pace=self.pace.of(group),
+            pace=self.paces[group],
             workers=self.limits.workers,
         )
 
@@ -266,7 +253,6 @@ class FairQueue:
                 for job in batch:
                     self._waiting.remove(job)
                     self._turns.charge(job.person, job.cost)
-                    self.served(job.person, job.cost)
                     job.batch = len(batch)
                     job.started = job.moved = began
                     job.token.start()
@@ -280,10 +266,8 @@ class FairQueue:
                     self._rested = time.monotonic()
                     self._change.notify_all()
             if whole:
-                self.pace.of(group).learn(sum(job.cost for job in batch), time.monotonic() - began)
+                self.paces[group].learn(sum(job.cost for job in batch), time.monotonic() - began)
             self._count(group, batch, began)
-            for job in batch:
-                self.computed(job.person, (time.monotonic() - began) / len(batch))
 
     def _next(self, group: str) -> list[Job]:
         self._waiting = [job for job in self._waiting if not job.token.cancelled]

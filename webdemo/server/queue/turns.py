@@ -1,7 +1,8 @@
-"""Fair scheduling: an account of the work done for each person, and the choice of the next batch.
+"""Fair scheduling: an account of the work done for each person, the choice of the next batch, and how long a run waits.
 
 The next run is that of the waiting person who has been served least (start-time fair queueing). Sending more
-requests brings no advantage, and a long run delays its owner's later ones.
+requests brings no advantage, and a long run delays its owner's later ones. A wait is estimated by a simulation of the
+queue at the pace of earlier runs.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import queue
 import secrets
 import time
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -36,13 +37,10 @@ class Batcher(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class QueueLimits:
-    """Limits of running and waiting runs per person, per address and in total, of motions per pass, of concurrent
-    batches per model, and of the seconds of one run (0: none)."""
+    """Limits of a person's running runs, of motions per pass, of concurrent batches per model, and of the seconds of
+    one run (0: none)."""
 
     running: int = 2
-    waiting: int = 4
-    address: int = 32
-    queue: int = 64
     batch: int = 8
     workers: int = 1
     seconds: float = 0.0
@@ -128,20 +126,6 @@ class Turns(Accounts):
     def __init__(self, limits: QueueLimits, batcher: Batcher | None) -> None:
         super().__init__()
         self.limits, self.batcher = limits, batcher
-        self._elsewhere: Mapping[str, float] | None = None
-
-    def charge_elsewhere(self, totals: Mapping[str, float]) -> None:
-        """Adds the work done at other processes since the last call.
-
-        Args:
-            totals: units by person, summed over all other processes since they started.
-        """
-        before, self._elsewhere = self._elsewhere, dict(totals)
-        if before is None:  # work done before this process started does not count
-            return
-        for person, total in totals.items():
-            if person in self.served:
-                self.served[person] += max(total - before.get(person, 0.0), 0.0)
 
     def pick(self, waiting: Sequence[Job], served: Mapping[str, float], running: Sequence[Job]) -> list[Job]:
         """The next batch: the first run of the least served person, and the runs that may share its pass."""
@@ -171,3 +155,82 @@ class Turns(Accounts):
             return False
         motions = sum(other.request.samples for other in batch) + job.request.samples
         return motions <= self.limits.batch and self.batcher.fits([o.request for o in batch], job.request)
+
+
+# ---- how long it will take ---------------------------------------------------------------------------
+
+
+def units(request: Any) -> float:
+    """The work of a request: samples × denoising steps × seconds of motion, plus a constant overhead.
+
+    Of further tries half are counted: the first that does all is the last. A factor that a kind of request lacks counts
+    as 1 (5 s for the length).
+    """
+    seconds = getattr(request, "seconds", None)
+    if seconds is None:
+        actor = getattr(request, "actor", None)
+        seconds = actor.seconds if actor is not None else 5.0
+    tries = (1 + float(getattr(request, "tries", 1))) / 2
+    return tries * float(getattr(request, "samples", 1)) * (float(seconds) * float(getattr(request, "steps", 1)) + 10.0)
+
+
+@dataclass
+class Pace:
+    """Seconds per unit of work of a model group, learned from finished runs; None before the first."""
+
+    seconds_a_unit: float | None = None
+
+    def learn(self, work: float, seconds: float) -> None:
+        """Updates the pace with a batch of ``work`` units; recent batches weigh more."""
+        new = seconds / max(work, 1e-9)
+        old = self.seconds_a_unit
+        self.seconds_a_unit = new if old is None else 0.7 * old + 0.3 * new
+
+
+@dataclass
+class Line:
+    """A snapshot of one group's queue.
+
+    Attributes:
+        waiting: jobs in order of arrival.
+        running: jobs that are running.
+        served: each person's account.
+        pick: chooses the next batch from (waiting, accounts, running).
+        pace: a worker's pace.
+        workers: number of batches that run at a time.
+    """
+
+    waiting: Sequence[Any]
+    running: Sequence[Any]
+    served: dict[str, float]
+    pick: Callable[[list[Any], dict[str, float], Sequence[Any]], list[Any]]
+    pace: Pace
+    workers: int = 1
+
+    def place(self, job: Any) -> tuple[int, float | None]:
+        """(place in the queue from 1, seconds until it starts, None while the pace is unknown)."""
+        waiting, served = list(self.waiting), dict(self.served)
+        ahead, work = 0, 0.0
+        while waiting:
+            batch = self.pick(waiting, served, ())
+            if job in batch:
+                place = ahead + batch.index(job) + 1
+                return place, self._seconds(work)
+            for other in batch:
+                waiting.remove(other)
+                served[other.person] = served.get(other.person, 0.0) + other.cost
+            ahead += len(batch)
+            work += sum(other.cost for other in batch)
+        return ahead + 1, self._seconds(work)
+
+    def _seconds(self, work: float) -> float | None:
+        if self.pace.seconds_a_unit is None:
+            return None
+        now = time.monotonic()
+        batches: dict[float, float] = {}
+        for job in self.running:  # the jobs of a batch started together
+            batches[job.started] = batches.get(job.started, 0.0) + job.cost * self.pace.seconds_a_unit
+        # A batch that is late is taken to need a tenth of its time yet.
+        left = [max(whole - (now - started), 0.1 * whole) for started, whole in batches.items()]
+        busy = sum(left) if len(left) >= self.workers else 0.0
+        return (busy + work * self.pace.seconds_a_unit) / self.workers

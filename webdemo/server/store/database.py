@@ -1,10 +1,11 @@
-"""The tables: runs, what is written on them, the links that open them for others, studies and sign-ins.
+"""The tables: runs, what is written on them, the links that open them for others, studies, people and sign-ins.
 
 A change of a table needs a file in ``migrations/versions`` as well.
 """
 
 from __future__ import annotations
 
+import json
 import logging
 import time
 from collections.abc import Iterator
@@ -12,11 +13,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Engine, ForeignKey, Text, create_engine, event, select
+from sqlalchemy import Engine, ForeignKey, Text, create_engine, event, select, text
 from sqlalchemy.exc import ArgumentError, DatabaseError, NoSuchModuleError, SQLAlchemyError
-from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship, sessionmaker
+from sqlalchemy.orm import DeclarativeBase, Mapped, Session, mapped_column, relationship, sessionmaker
 
 from motion import InputError
+from webdemo.ui.history import Entry
 
 from .migrations import upgrade
 
@@ -26,8 +28,6 @@ BUSY_SECONDS = 15
 """Time that SQLite waits for another writer."""
 SOUND_SECONDS = 30.0
 """Time for which a successful integrity check of SQLite's file is valid: checking a large file is slow."""
-CHECKED_ROWS = 200
-"""Rows of a table that are read to see whether that works: as many as a list of runs holds."""
 
 
 class Table(DeclarativeBase):
@@ -45,9 +45,8 @@ class Run(Table):
         outcome: manifest, timings and notes as JSON; empty until done.
         message: what went wrong, as one sentence.
         created: what the clock showed then.
-        stored: the lab's time (:mod:`.ledger`) when it came here, by which it grows old.
+        stored: when it came here, by which it grows old.
         size: bytes of its files and of what is written about it.
-        node: the process that runs it.
         address: a hash of the address that it came from; empty where people are known by more than a cookie.
     """
 
@@ -62,11 +61,10 @@ class Run(Table):
     outcome: Mapped[str] = mapped_column(Text, default="")
     message: Mapped[str] = mapped_column(Text, default="")
     created: Mapped[float] = mapped_column(default=time.time, index=True)
-    stored: Mapped[float] = mapped_column(default=0.0, index=True)
+    stored: Mapped[float] = mapped_column(default=time.time, index=True)
     size: Mapped[int] = mapped_column(default=0)
     address: Mapped[str] = mapped_column(default="", index=True)
     favourite: Mapped[bool] = mapped_column(default=False)
-    node: Mapped[str] = mapped_column(default="")
     links: Mapped[list[Link]] = relationship(back_populates="run", cascade="all, delete-orphan")
     note: Mapped[Note | None] = relationship(back_populates="run", cascade="all, delete-orphan")
 
@@ -143,6 +141,24 @@ class SignIn(Table):
     until: Mapped[float]
 
 
+class Person(Table):
+    """An account's role and limits; a person without a row has the ordinary ones.
+
+    Attributes:
+        key: of the account, or the name that a proxy gives.
+        role: "admin" or empty.
+        suspended: cannot sign in.
+        megabytes: room of their own; None: as everybody.
+    """
+
+    __tablename__ = "people"
+
+    key: Mapped[str] = mapped_column(primary_key=True)
+    role: Mapped[str] = mapped_column(default="")
+    suspended: Mapped[bool] = mapped_column(default=False)
+    megabytes: Mapped[float | None] = mapped_column(default=None)
+
+
 class Study(Table):
     """A blind study; its motions are in a folder of its name.
 
@@ -204,7 +220,7 @@ class Database:
     def __init__(self, url: str) -> None:
         with opening():
             self.engine = engine_of(url)
-            upgrade(self.engine)
+            upgrade(self.engine, Table.metadata)
             self.session = sessionmaker(self.engine, expire_on_commit=False)
             self._sound_until = 0.0
             self.check()  # rather than in the middle of a start
@@ -212,8 +228,8 @@ class Database:
     def check(self) -> None:
         """Raises SQLAlchemyError if the database does not answer, or what people need cannot be read."""
         with self.engine.connect() as connection:
-            for table in (Run, Note, Link, Published, SignIn, Study, Vote):
-                connection.execute(select(table).limit(CHECKED_ROWS)).all()
+            for table in Table.metadata.sorted_tables:
+                connection.execute(select(table).limit(1)).first()
             if self.engine.dialect.name == "sqlite" and time.monotonic() > self._sound_until:
                 (found,) = connection.exec_driver_sql("PRAGMA quick_check(1)").one()
                 if found != "ok":
@@ -223,6 +239,18 @@ class Database:
     def close(self) -> None:
         """Closes all connections."""
         self.engine.dispose()
+
+
+def locked(session: Session) -> None:
+    """Makes a session's transaction the only one that changes anything until it ends.
+
+    Args:
+        session: that has not read or written anything yet.
+    """
+    if session.get_bind().dialect.name == "sqlite":
+        session.connection().exec_driver_sql("BEGIN IMMEDIATE")
+    else:
+        session.execute(text("LOCK TABLE runs IN SHARE ROW EXCLUSIVE MODE"))
 
 
 def engine_of(url: str) -> Engine:
@@ -288,3 +316,49 @@ def _prepare_sqlite(engine: Engine) -> None:
         cursor.execute("PRAGMA journal_mode=WAL")
         cursor.execute("PRAGMA foreign_keys=ON")
         cursor.close()
+
+
+# ---- rows as the page takes them ---------------------------------------------------------------------
+
+
+def is_removed(run: Run) -> bool:
+    """True for a run that its owner has removed, and may still bring back."""
+    return run.note is not None and run.note.removed is not None
+
+
+def fields_of(text: str) -> dict[str, Any]:
+    """A column's JSON; empty if it is damaged."""
+    try:
+        found = json.loads(text or "{}")
+    except ValueError:
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def entry_of(run: Run) -> Entry:
+    """A row as the page takes it."""
+    now, note = time.time(), run.note or Note(title="", tags="", text="", frame=None, thumbnail="")
+    return Entry(
+        id=run.id,
+        kind=run.kind,
+        title=note.title or run.title,
+        state=run.state,
+        message=run.message,
+        created=run.created,
+        request=fields_of(run.request),
+        favourite=run.favourite,
+        links=sum(link.until > now for link in run.links),
+        tags=tuple(note.tags.split()),
+        note=note.text,
+        frame=note.frame,
+        thumbnail=note.thumbnail,
+    )
+
+
+def note_of(session: Session, run: str) -> Note:
+    """The note of a run, made where it has none."""
+    found = session.get(Note, run)
+    if found is None:
+        found = Note(run_id=run, title="", tags="", text="", thumbnail="", kept="", part_of="")
+        session.add(found)
+    return found

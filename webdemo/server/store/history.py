@@ -10,31 +10,43 @@ import re
 import secrets
 import shutil
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
-from sqlalchemy import CursorResult, delete, func, select, update
+from sqlalchemy import CursorResult, delete, select, update
 from sqlalchemy.exc import SQLAlchemyError
-from sqlalchemy.orm import Session, selectinload
+from sqlalchemy.orm import Session
 
 from motion import Duet, InputError, formats
 from webdemo.inference.requests.predict import PredictResult
 from webdemo.inference.run import Result
 from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit, fingerprint
-from webdemo.ui.history import Entry, Opened
+from webdemo.ui.history import Opened
+from webdemo.view.thumbnail import thumbnail
 
-from .database import Database, Link, Note, Run, sentence_of, sentences
-from .entries import entry_of, fields_of, is_removed
-from .ledger import DAY, LabClock, locked
+from .database import (
+    Database,
+    Link,
+    Note,
+    Run,
+    entry_of,
+    fields_of,
+    is_removed,
+    locked,
+    note_of,
+    sentence_of,
+    sentences,
+)
 from .storage import ROW_BYTES, RUN_BYTES, Storage, forget, weight_of
 
 log = logging.getLogger(__name__)
 
-SHOWN = 200
-"""Runs that a list holds at most."""
+DAY = 86_400.0
+STEADY_SECONDS = 3600.0
+"""A clock that has jumped is trusted after so much time without another jump."""
 UNDO_SECONDS = 600.0
 """For so long a removed run can be brought back."""
 _TRUTH = "truth.npz"
@@ -44,19 +56,44 @@ _KEY = re.compile(r"\A[A-Za-z0-9_-]{16,64}\Z")
 _MISSING = "There is no such run, or its link has expired: ask the person who sent it for a new one."
 
 
+def _uptime() -> float:
+    """Seconds that the machine has been up, asleep as well where the system counts them."""
+    return time.clock_gettime(time.CLOCK_BOOTTIME) if hasattr(time, "CLOCK_BOOTTIME") else time.monotonic()
+
+
+class Clock:
+    """The machine's clock, which anybody may set, beside its uptime, which always moves on at the same speed.
+
+    Args:
+        wall: gives the clock's time; seconds since 1970.
+        uptime: seconds.
+    """
+
+    def __init__(self, wall: Callable[[], float] = time.time, uptime: Callable[[], float] = _uptime) -> None:
+        self.wall, self.uptime = wall, uptime
+        self._began, self._since = wall() - uptime(), uptime()
+
+    def steady(self) -> bool:
+        """True if the clock has not jumped by more than a day for :data:`STEADY_SECONDS`."""
+        now, began = self.uptime(), self.wall() - self.uptime()
+        if abs(began - self._began) > DAY:
+            log.warning("The clock has jumped: nothing is removed because of its age until it has been steady.")
+            self._began, self._since = began, now
+        return now - self._since >= STEADY_SECONDS
+
+
 class History:
     """Keeps runs.
 
     Args:
         database: where their rows are.
         folder: holds a folder a run.
-        node: this process's name; its unfinished runs of an earlier life are marked as interrupted.
         storage: counts what people store, and makes room; by default with no limit for one person.
         keep_days: age in days at which a run is removed unless it is a favourite.
         keep_favourites: favourites that one owner may have.
         link_days: how long a link lasts.
         free_bytes: free disk space below which nothing is begun.
-        clock: tells the lab's time, by which runs grow old; by default one of its own.
+        clock: says whether runs may be removed because of their age.
     """
 
     def __init__(
@@ -64,17 +101,16 @@ class History:
         database: Database,
         folder: Path,
         *,
-        node: str = "",
         storage: Storage | None = None,
-        clock: LabClock | None = None,
+        clock: Clock | None = None,
         keep_days: float = 30,
         keep_favourites: int = 200,
         link_days: float = 30,
         free_bytes: float = 0,
     ) -> None:
-        self.database, self.folder, self.node = database, folder, node
+        self.database, self.folder = database, folder
         self.storage = storage or Storage(database, folder)
-        self.clock = clock or LabClock(database)
+        self.clock = clock or Clock()
         self.keep_days, self.keep_favourites = keep_days, keep_favourites
         self.link_days, self.free_bytes = link_days, free_bytes
         self._owed: dict[str, tuple[str, str]] = {}
@@ -109,8 +145,7 @@ class History:
             kind=asked.get("kind", "generate"),
             title=title,
             request=text,
-            node=self.node,
-            stored=self.clock.now(),
+            stored=self.clock.wall(),
             address=digest(address) if address else "",
             size=ROW_BYTES + len(text),
         )
@@ -148,7 +183,7 @@ class History:
         if isinstance(result, PredictResult):
             outcome["prediction"] = {name: getattr(result, name) for name in _PREDICTION}
         try:
-            there, gone = self._enter(run, json.dumps(outcome))
+            there, gone = self._enter(run, json.dumps(outcome), thumbnail(result.duets[0]))
         except (SQLAlchemyError, InputError) as error:
             reason = sentence_of(error) if isinstance(error, SQLAlchemyError) else error
             self.storage.drop([run])
@@ -156,7 +191,7 @@ class History:
             raise InputError(f"{reason} Download the result's files now.") from None
         self.storage.drop(gone if there else [run])  # its owner removed it while it ran
 
-    def _enter(self, run: str, outcome: str) -> tuple[bool, list[str]]:
+    def _enter(self, run: str, outcome: str, picture: str) -> tuple[bool, list[str]]:
         """Writes a result into its row; returns whether that is still there, and the runs that made way."""
         with self.database.session.begin() as session:
             locked(session)
@@ -166,6 +201,7 @@ class History:
             weight = weight_of(row, self.folder / run) + len(outcome)
             gone = self.storage.make_room(session, row.owner, row.address, weight - row.size, spare=[run])
             row.state, row.outcome, row.size = "done", outcome, weight
+            note_of(session, run).thumbnail = picture
         return True, gone
 
     def end(self, run: str, state: str, message: str = "") -> None:
@@ -185,60 +221,28 @@ class History:
                 return
             self._owed.pop(run, None)
 
-    def recover(self, dead: Callable[[Sequence[str]], Sequence[str]] | None = None) -> int:
-        """Marks the unfinished runs of processes that have ended; returns their number.
+    def recover(self) -> int:
+        """Marks the runs that an earlier process left unfinished, and removes its half-written files.
 
-        Half-written files of a killed process are removed.
-
-        Args:
-            dead: selects the names of processes that have ended; by default only an earlier process of this name.
+        Returns:
+            the number of those runs.
         """
-        with self.database.session() as session:
-            nodes = list(session.scalars(select(Run.node).where(Run.state == "running").distinct()))
-        gone = dead(nodes) if dead is not None else [self.node]
-        unfinished = (Run.state == "running", Run.node.in_(gone))
+        lost = update(Run).where(Run.state == "running")
+        lost = lost.values(state="interrupted", message="The server stopped while this ran: run it again.")
         with self.database.session.begin() as session:
-            lost = list(session.scalars(select(Run.id).where(*unfinished)))
-            session.execute(
-                update(Run)
-                .where(*unfinished)
-                .values(state="interrupted", message="The server stopped while this ran: run it again.")
-            )
-        for run in lost:
-            shutil.rmtree(self.folder / run, ignore_errors=True)
+            count = cast(CursorResult[Any], session.execute(lost)).rowcount
         self._sweep()
-        return len(lost)
+        return count
 
     def _sweep(self) -> None:
-        """Removes files that belong to no run, such as those of runs that a killed process was removing.
-
-        A run has its row before it has files.
-        """
-        there = [path for path in self.folder.iterdir() if path.is_dir()]
+        """Removes files that belong to no run, such as those of runs that a killed process was removing."""
         with self.database.session() as session:
-            rows = session.execute(select(Run.id, Run.state)).tuples().all()
-        known = {run for run, _ in rows} | {f".{run}" for run, state in rows if state == "running"}
-        for path in there:
-            if path.name not in known:
+            known = set(session.scalars(select(Run.id)))
+        for path in self.folder.iterdir():
+            if path.is_dir() and path.name not in known:
                 shutil.rmtree(path, ignore_errors=True)
 
-    # ---- finding them again ----------------------------------------------------------------------
-
-    @sentences()
-    def entries(self, owner: str) -> Sequence[Entry]:
-        """The owner's runs, newest first."""
-        if not owner:
-            return []
-        query = (
-            select(Run)
-            .outerjoin(Note)
-            .where(Run.owner == owner, Note.removed.is_(None))
-            .options(selectinload(Run.links), selectinload(Run.note))
-            .order_by(Run.created.desc())
-            .limit(SHOWN)
-        )
-        with self.database.session() as session:
-            return [entry_of(run) for run in session.scalars(query)]
+    # ---- for those who know an id or a link ------------------------------------------------------
 
     @sentences()
     def open(self, key: str, owner: str) -> Opened:
@@ -263,17 +267,6 @@ class History:
         if entry.state != "done":
             raise InputError(entry.message or f"This run has no result: it is {entry.state}.")
         return Opened(entry=entry, result=replace(self._read(entry.id, outcome), run=entry.id))
-
-    @sentences()
-    def favour(self, run: str, owner: str, *, favourite: bool) -> None:
-        """Marks a run as one to keep, or no longer; raises InputError if there are too many."""
-        with self.database.session.begin() as session:
-            found = self._own(session, run, owner)
-            if favourite and not found.favourite:
-                count = session.scalar(select(func.count()).select_from(Run).where(Run.owner == owner, Run.favourite))
-                if (count or 0) >= self.keep_favourites:
-                    raise InputError(f"You already keep {count} favourites: stop keeping one first.")
-            found.favourite = favourite
 
     @sentences()
     def delete(self, run: str, owner: str) -> None:
@@ -308,15 +301,14 @@ class History:
     def clean(self) -> int:
         """Removes runs by age; favourites stay. Returns how many.
 
-        Ages are in the lab's time. While the clock cannot be trusted, nothing is removed because of its age.
+        While the clock cannot be trusted, nothing is removed because of its age.
         """
-        trusted = self.clock.look()
-        now = self.clock.now()
+        trusted, now = self.clock.steady(), self.clock.wall()
         with self.database.session.begin() as session:
             locked(session)
             gone = list(session.scalars(select(Note.run_id).where(Note.removed < now - UNDO_SECONDS)))
             if trusted:
-                session.execute(delete(Link).where(Link.until < time.time()))
+                session.execute(delete(Link).where(Link.until < now))
                 old = Run.stored < now - self.keep_days * DAY
                 gone += session.scalars(select(Run.id).where(old, ~Run.favourite, Run.state != "running"))
             gone = [run for run in dict.fromkeys(gone) if forget(session, run)]

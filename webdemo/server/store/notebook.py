@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-import logging
+import os
 import re
+import shutil
 import zipfile
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -13,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from sqlalchemy import ColumnElement, func, or_, select, update
-from sqlalchemy.exc import SQLAlchemyError
-from sqlalchemy.orm import Session, selectinload
+from sqlalchemy.orm import selectinload
 
 from motion import Clip, Duet, InputError, formats
 from motion.metrics import compare
@@ -22,18 +22,12 @@ from webdemo.inference.run import Result
 from webdemo.inference.story import SceneRequest
 from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit
-from webdemo.ui.history import Entry, Found, Kept, Opened, Search, Usage
+from webdemo.ui.history import Entry, Found, Kept, Opened, Original, Search, Usage, clean_name
 from webdemo.ui.visitor import Visitor
-from webdemo.view.thumbnail import thumbnail
 
-from .database import Note, Run, sentences
-from .entries import entry_of, fields_of
+from .database import Note, Run, entry_of, fields_of, locked, note_of, sentences
 from .history import History
-from .ledger import locked
-from .originals import LARGEST_SHARE, ORIGINAL, keep_original, kept_original
 from .storage import weight_of
-
-log = logging.getLogger(__name__)
 
 LONGEST_TITLE, LONGEST_NOTE, LONGEST_TAGS = 200, 4000, 300
 LONGEST_PERSON = 60.0
@@ -46,6 +40,12 @@ MOST_TAKEN = 100
 _KINDS = ("generate", "scene", "react", "predict")
 LARGEST_KEPT = 20_000
 """Characters of the settings of a tab."""
+ORIGINAL = "original"
+"""Name of the file in the folder of its run."""
+LARGEST_ORIGINAL = 20 * 2**20
+"""Bytes of a file that is kept with a run."""
+LARGEST_SHARE = 0.5
+"""Share of a person's room for runs and studies up to which it may grow by such files."""
 
 
 class Notebook(History):
@@ -103,21 +103,11 @@ class Notebook(History):
             controls=kept.get("controls", {}),
             people=tuple(people),
             compared=tuple(kept.get("compared", ())),
-            original=kept_original(kept.get("file"), self.folder / opened.entry.id) if mine else None,
+            original=_kept_original(kept.get("file"), self.folder / opened.entry.id) if mine else None,
         )
         return replace(opened, kept=found, beside=tuple(beside))
 
     # ---- writing ---------------------------------------------------------------------------------
-
-    def finish(self, run: str, result: Result) -> None:
-        """See :meth:`History.finish`; also draws the thumbnail."""
-        super().finish(run, result)
-        try:
-            with self.database.session.begin() as session:
-                if session.get(Run, run) is not None:
-                    _note(session, run).thumbnail = thumbnail(result.duets[0])
-        except SQLAlchemyError as error:  # the motion is kept all the same
-            log.warning("A thumbnail could not be kept (%s).", type(error).__name__)
 
     @sentences()
     def keep(self, run: str, owner: str, kept: Kept) -> None:
@@ -133,7 +123,7 @@ class Notebook(History):
         folder = self.folder / run
         if kept.original is not None:
             room = self.storage.spare(owner, LARGEST_SHARE)
-            record["file"] = keep_original(kept.original, folder, room)
+            record["file"] = _keep_original(kept.original, folder, room)
         added = [folder / ORIGINAL, *self._keep_people(kept, folder)]
         try:
             gone = self._note_kept(run, owner, record, kept.compared[:MOST_BESIDE])
@@ -151,10 +141,10 @@ class Notebook(History):
             weight = weight_of(mine, self.folder / run)
             gone = self.storage.make_room(session, owner, mine.address, weight - mine.size, spare=[run, *beside])
             mine.size = weight
-            _note(session, run).kept = json.dumps(record)
+            note_of(session, run).kept = json.dumps(record)
             for other in beside:
                 self._own(session, other, owner)
-                _note(session, other).part_of = run
+                note_of(session, other).part_of = run
         return gone
 
     @staticmethod
@@ -187,7 +177,7 @@ class Notebook(History):
                 raise InputError(f"The {name} has {len(value):,} characters: shorten it to {most:,} or fewer.")
         with self.database.session.begin() as session:
             self._own(session, run, owner)
-            row = _note(session, run)
+            row = note_of(session, run)
             if title is not None:
                 row.title = " ".join(title.split())
             if tags is not None:
@@ -200,22 +190,27 @@ class Notebook(History):
     @sentences()
     def remove(self, runs: Sequence[str], owner: str) -> int:
         """Takes runs out of the history, with their links; :meth:`restore` brings them back for a while."""
-        now = self.clock.now()
+        now = self.clock.wall()
         with self.database.session.begin() as session:
             for run in runs:
                 found = self._own(session, run, owner)
                 if found.state == "running":
                     raise InputError("A run that goes on cannot be removed: cancel it first.")
-                _note(session, found.id).removed = now
+                note_of(session, found.id).removed = now
                 session.execute(update(Note).where(Note.part_of == found.id).values(removed=now))
         audit("runs-removed", runs=" ".join(runs), count=len(runs))
         return len(runs)
 
     @sentences()
     def favour(self, run: str, owner: str, *, favourite: bool) -> None:
-        """See :meth:`History.favour`; the parts of a grid are kept with it."""
-        super().favour(run, owner, favourite=favourite)
+        """Marks a run as one to keep, or no longer, with the parts of its grid; InputError if there are too many."""
         with self.database.session.begin() as session:
+            found = self._own(session, run, owner)
+            if favourite and not found.favourite:
+                count = session.scalar(select(func.count()).select_from(Run).where(Run.owner == owner, Run.favourite))
+                if (count or 0) >= self.keep_favourites:
+                    raise InputError(f"You already keep {count} favourites: stop keeping one first.")
+            found.favourite = favourite
             parts = select(Note.run_id).where(Note.part_of == run)
             session.execute(update(Run).where(Run.id.in_(parts), Run.owner == owner).values(favourite=favourite))
 
@@ -355,9 +350,32 @@ def _tags(text: str) -> list[str]:
     return [tag.strip("#") for tag in text.replace(",", " ").split() if tag.strip("#")]
 
 
-def _note(session: Session, run: str) -> Note:
-    found = session.get(Note, run)
-    if found is None:
-        found = Note(run_id=run)
-        session.add(found)
-    return found
+def _keep_original(original: Original, folder: Path, room: float) -> str:
+    """Copies an uploaded file into the folder of its run.
+
+    Args:
+        original: the file.
+        folder: of the run.
+        room: bytes that it may have.
+
+    Returns:
+        the name to keep; "" where the file is gone or too large.
+    """
+    name = clean_name(original.name)
+    half = folder / f".{ORIGINAL}"
+    try:
+        if not name or original.path.is_symlink() or original.path.stat().st_size > min(room, LARGEST_ORIGINAL):
+            return ""
+        shutil.copyfile(original.path, half)
+        os.replace(half, folder / ORIGINAL)
+    except OSError:
+        half.unlink(missing_ok=True)
+        return ""
+    return name
+
+
+def _kept_original(name: object, folder: Path) -> Original | None:
+    """The file of a run, where one was kept."""
+    plain = clean_name(name) if isinstance(name, str) else ""
+    path = folder / ORIGINAL
+    return Original(path, plain) if plain and path.is_file() else None

@@ -16,10 +16,8 @@ from motion import InputError
 from webdemo.server.audit import audit, fingerprint
 from webdemo.ui.history import Entry, Opened, PublicPage
 
-from .database import Database, Note, Published, Run, sentences
-from .entries import entry_of, is_removed
-from .history import History
-from .ledger import DAY
+from .database import Database, Note, Published, Run, entry_of, is_removed, sentences
+from .history import DAY, History
 
 MOST_PAGES = 200
 """Pages of one person at a time."""
@@ -157,7 +155,7 @@ class Publishing:
 
     def clean(self) -> None:
         """Deletes pages that have ended, where the clock can be trusted."""
-        if self.history.clock.look():
+        if self.history.clock.steady():
             with self.database.session.begin() as session:
                 session.execute(delete(Published).where(Published.until < time.time()))
 

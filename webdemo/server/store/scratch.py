@@ -10,22 +10,21 @@ from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
 from motion import InputError
+from webdemo.server.accounts.quotas import ADDRESS_SHARE
 
 KEPT_SECONDS = 7200.0
 """Seconds after which a file is removed; the history keeps what is needed to make it again."""
 IN_USE_SECONDS = 60.0
 """Files younger than this are kept in any case, since they may be in use."""
-ADDRESS_SHARE = 0.5
-"""Share of the room for all that people from one address may have, where strangers are known by their cookies."""
 _File = tuple[float, int, str]
 """When it was made, its bytes and its path."""
 
 
 class Scratch:
-    """A folder of one process, emptied at its start of what a killed process left.
+    """A folder, emptied at the start of what a killed process left.
 
     Args:
-        folder: is emptied and made. Those of other processes lie beside it.
+        folder: is emptied and made.
         most_bytes: size of all its files beyond which nobody's share grows any more.
 
     Raises:
@@ -53,9 +52,8 @@ class Scratch:
         os.environ["GRADIO_TEMP_DIR"] = str(self.uploads)
 
     def used(self, person: str) -> int:
-        """Bytes of the files in the folder of this name, at all processes."""
-        folders = self.folder.parent.glob(f"*/{self.uploads.name}/{person}")
-        return sum(size for folder in folders for _, size, _ in _files(folder))
+        """Bytes of the files in the folder of this name."""
+        return sum(size for _, size, _ in _files(self.uploads / person))
 
     def admit(self, person: str, address: str, size: float, allowed: float) -> None:
         """Makes room for a file of a person, for which their own oldest ones make way.

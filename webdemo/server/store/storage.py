@@ -17,12 +17,12 @@ from sqlalchemy import CursorResult, delete, func, select
 from sqlalchemy.orm import Session
 
 from motion import InputError
+from webdemo.server.accounts.quotas import Rooms
 from webdemo.server.accounts.visitors import digest
 from webdemo.ui.history import Usage
 from webdemo.ui.visitor import Visitor
 
-from .database import Database, Link, Note, Run, Study, sentences
-from .originals import bytes_of
+from .database import Database, Note, Run, Study, sentences
 from .scratch import Scratch
 
 SET_ASIDE = 0.25
@@ -40,9 +40,7 @@ class Storage:
     Args:
         database: knows whose everything is.
         motions: folder of the runs' files.
-        person_bytes: room of one person.
-        total_bytes: room for all people's runs and studies together.
-        address_bytes: room for runs and studies of all who come from one address, where anybody may come.
+        rooms: how much may be stored.
         scratch: uploads and files for download; None where they are not counted.
         bytes_of: a person's own room, where it is not everybody's.
     """
@@ -51,21 +49,19 @@ class Storage:
         self,
         database: Database,
         motions: Path,
+        rooms: Rooms | None = None,
         *,
-        person_bytes: float = math.inf,
-        total_bytes: float = 2e9,
-        address_bytes: float = math.inf,
         scratch: Scratch | None = None,
         bytes_of: Callable[[str], float | None] = lambda owner: None,
     ) -> None:
         self.bytes_of = bytes_of
         self.database, self.motions, self.scratch = database, motions, scratch
-        self.person_bytes, self.total_bytes, self.address_bytes = person_bytes, total_bytes, address_bytes
+        self.rooms = rooms or Rooms()
 
     def room(self, owner: str) -> float:
         """A person's room altogether."""
         own = self.bytes_of(owner)
-        return self.person_bytes if own is None else own
+        return self.rooms.person if own is None else own
 
     def kept_bytes(self, owner: str) -> float:
         """A person's room for runs and studies."""
@@ -87,15 +83,15 @@ class Storage:
             favourites=sizes.get(True, 0),
             studies=studies,
             temporary=self.scratch.used(digest(who.person)) if self.scratch else 0,
-            allowed=room if math.isfinite(room := self.room(who.owner)) else self.total_bytes,
-            kept=min(self.kept_bytes(who.owner), self.total_bytes),
+            allowed=room if math.isfinite(room := self.room(who.owner)) else self.rooms.everybody,
+            kept=min(self.kept_bytes(who.owner), self.rooms.everybody),
         )
 
     def spare(self, owner: str, share: float) -> float:
         """Bytes that are left of a share of a person's room for runs and studies."""
         with self.database.session() as session:
             own = _sum(session, Run, Run.owner == owner) + _sum(session, Study, Study.owner == owner)
-        return share * min(self.kept_bytes(owner), self.total_bytes) - own
+        return share * min(self.kept_bytes(owner), self.rooms.everybody) - own
 
     def importable(self, owner: str, address: str) -> float:
         """Bytes that a person may import: what is free, and what they have removed themselves."""
@@ -117,7 +113,7 @@ class Storage:
         total = _sum(session, Run) + _sum(session, Study)
         left.append(
             (
-                self.total_bytes - total,
+                self.rooms.everybody - total,
                 "The room for everybody's runs on this server is used up, and nothing of others is removed for yours: "
                 "remove runs of your own, or tell the person who runs the server.",
             )
@@ -126,7 +122,7 @@ class Storage:
             theirs = _sum(session, Run, Run.address == address) + _sum(session, Study, Study.address == address)
             left.append(
                 (
-                    self.address_bytes - theirs,
+                    self.rooms.address - theirs,
                     "The room for runs of people from your network is used up: remove runs of your own.",
                 )
             )
@@ -140,14 +136,7 @@ class Storage:
         self._needed(session, owner, address, size, sum(weight for _, weight, _ in rows))
 
     def make_room(
-        self,
-        session: Session,
-        owner: str,
-        address: str,
-        size: float,
-        *,
-        spare: Collection[str] = (),
-        only_removed: bool = False,
+        self, session: Session, owner: str, address: str, size: float, *, spare: Collection[str] = ()
     ) -> list[str]:
         """Deletes a person's own runs until so much more can be stored: removed ones first, then the oldest.
 
@@ -155,12 +144,11 @@ class Storage:
         it was lowered, no more makes way than what comes.
 
         Args:
-            session: in a transaction that has called :func:`.ledger.locked`.
+            session: in a transaction that has called :func:`.database.locked`.
             owner: whose runs.
             address: from which they come, as a run has it.
             size: bytes that come.
             spare: runs that stay.
-            only_removed: only runs that their owner has removed already make way.
 
         Returns:
             the deleted runs, whose files :meth:`drop` removes when the transaction is over.
@@ -168,7 +156,7 @@ class Storage:
         Raises:
             InputError: if that is not enough; nothing is deleted.
         """
-        rows = [row for row in _evictable(session, owner, spare) if row[2] or not only_removed]
+        rows = _evictable(session, owner, spare)
         needed = self._needed(session, owner, address, size, sum(weight for _, weight, _ in rows))
         gone, freed = [], 0.0
         for run, weight, _ in rows:
@@ -222,7 +210,7 @@ class Storage:
                 for owner, size in session.execute(sizes):
                     kept[digest(owner)] = kept.get(digest(owner), 0.0) + (size or 0)
                     rooms[digest(owner)] = self.room(owner)
-        self.scratch.clean(keep, lambda p: self._aside(kept.get(p, 0.0), rooms.get(p, self.person_bytes)))
+        self.scratch.clean(keep, lambda p: self._aside(kept.get(p, 0.0), rooms.get(p, self.rooms.person)))
 
     @staticmethod
     def _aside(kept: float, room: float) -> float:
@@ -231,7 +219,8 @@ class Storage:
 
 def weight_of(run: Run, folder: Path) -> int:
     """Bytes of a run: its files, its request and its outcome, and what is written about it."""
-    return ROW_BYTES + bytes_of(folder) + len(run.request) + len(run.outcome or "")
+    files = sum(path.stat().st_size for path in folder.iterdir())
+    return ROW_BYTES + files + len(run.request) + len(run.outcome or "")
 
 
 def _sum(session: Session, table: type[Run] | type[Study], *conditions: Any) -> int:
@@ -255,7 +244,5 @@ def _evictable(session: Session, owner: str, spare: Collection[str]) -> list[tup
 
 
 def forget(session: Session, run: str) -> bool:
-    """Deletes a run with its note and its links; False if another process has done so already."""
-    session.execute(delete(Note).where(Note.run_id == run))
-    session.execute(delete(Link).where(Link.run_id == run))
+    """Deletes a run with its note and its links; False if that was done already."""
     return bool(cast(CursorResult[Any], session.execute(delete(Run).where(Run.id == run))).rowcount)

@@ -25,8 +25,7 @@ from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit
 from webdemo.study import FIRST, SECOND, TIE, Pair, StudyEntry, as_shown
 
-from .database import Database, Study, Vote, sentences
-from .ledger import locked
+from .database import Database, Study, Vote, locked, sentences
 from .storage import Storage
 
 LONGEST_QUESTION, LONGEST_NAME = 300, 100

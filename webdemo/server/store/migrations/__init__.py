@@ -1,7 +1,7 @@
 """Brings a database's tables to the schema of this version, by Alembic.
 
-``versions`` holds one file for each change, ``rNUMBER_NAME.py``. The revision of a database is in its table
-``alembic_version``.
+An empty database gets the tables of the classes at once. ``versions`` holds one file for each change of older ones,
+``rNUMBER_NAME.py``. The revision of a database is in its table ``alembic_version``.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from sqlalchemy import Connection, Engine, inspect, text
+from sqlalchemy import Connection, Engine, MetaData, inspect, text
 
 from motion import InputError
 
@@ -30,14 +30,18 @@ def revision_of(engine: Engine) -> str:
         return connection.scalar(text("SELECT version_num FROM alembic_version")) or ""
 
 
-def upgrade(engine: Engine, to: str = NEWEST) -> None:
-    """Brings a database to a revision in one transaction; several processes may do so at once.
+def upgrade(engine: Engine, tables: MetaData) -> None:
+    """Brings a database to the newest revision in one transaction; several processes may do so at once.
+
+    Args:
+        engine: connects to the database.
+        tables: those of the newest revision.
 
     Raises:
         InputError: if a newer version of the program has made it.
     """
     revision = revision_of(engine)
-    if revision == to:
+    if revision == NEWEST:
         return
     if revision and revision not in REVISIONS:
         raise InputError(
@@ -51,7 +55,11 @@ def upgrade(engine: Engine, to: str = NEWEST) -> None:
     config.set_main_option("script_location", str(FOLDER).replace("%", "%%"))
     with _alone(engine) as connection:
         config.attributes["connection"] = connection
-        command.upgrade(config, to)
+        if inspect(connection).get_table_names():
+            command.upgrade(config, NEWEST)
+        else:
+            tables.create_all(connection)
+            command.stamp(config, NEWEST)
 
 
 @contextmanager

@@ -8,19 +8,15 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from sqlalchemy.exc import SQLAlchemyError
-
 from motion import InputError
 from webdemo.inference.methods import methods
 from webdemo.inference.requests.live import live_title
 from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.inference.story.beats import story_title
-from webdemo.server.queue.places import Places
-from webdemo.server.queue.queue import FairQueue
+from webdemo.server.store.history import History
 from webdemo.ui.visitor import visitor
 
-from .database import sentence_of
-from .history import History
+from .queue import FairQueue
 
 log = logging.getLogger(__name__)
 
@@ -31,11 +27,10 @@ class Recorder:
     Args:
         queue: runs them.
         history: keeps them.
-        places: counts a person's, at other processes as well.
     """
 
-    def __init__(self, queue: FairQueue, history: History, places: Places) -> None:
-        self.queue, self.history, self.places = queue, history, places
+    def __init__(self, queue: FairQueue, history: History) -> None:
+        self.queue, self.history = queue, history
 
     def cancel(self, session: str) -> bool:
         """Stops the session's run, waiting or running; False if it has none."""
@@ -45,15 +40,8 @@ class Recorder:
         """As :meth:`FairQueue.run`; the result comes when it is kept, or with a note that it could not be.
 
         Raises:
-            InputError: as well where the person has too many runs, or nothing can be written down.
+            InputError: as well where nothing can be written down.
         """
-        try:
-            with self.places.held(visitor().person):
-                yield from self._run(session, request, alone)
-        except SQLAlchemyError as error:
-            raise sentence_of(error) from None
-
-    def _run(self, session: str, request: Any, alone: bool) -> Iterator[Progress | Result]:
         who = visitor()
         title = title_of(request.to_dict())
         run = self.history.begin(who.owner, request, title, address=who.address) if who.owner else ""

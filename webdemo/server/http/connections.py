@@ -1,0 +1,122 @@
+"""Connections: how many there may be, and when one is ended."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import struct
+from collections import Counter
+from typing import Any, cast
+
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from webdemo.server.accounts.quotas import Quota, network_of
+from webdemo.server.settings import Settings
+
+
+def bounded_protocol(settings: Settings, quota: Quota) -> type[H11Protocol]:
+    """HTTP that closes connections which are too many, whose head does not come, or whose answers are not read.
+
+    Each counts for the address that it comes from. One of a trusted proxy's counts for the address whose request it
+    carries, as soon as there is one.
+
+    Args:
+        settings: the times, and the trusted proxies.
+        quota: of connections.
+    """
+    counts: Counter[str] = Counter()
+    trusted = cast(Any, ProxyHeadersMiddleware)(None, trusted_hosts=settings.proxies).trusted_hosts
+
+    class Bounded(H11Protocol):
+        address: str | None = None
+        waiting: asyncio.TimerHandle | None = None
+        looking: asyncio.TimerHandle | None = None
+        moved = 0.0
+
+        def connection_made(self, transport: Any) -> None:
+            super().connection_made(transport)
+            if len(self.connections) > quota.everybody:
+                self._send_away()
+            elif self._counts_for(self.client[0] if self.client else ""):
+                self._expect_head()
+                self._look()
+
+        def connection_lost(self, exc: Exception | None) -> None:
+            super().connection_lost(exc)
+            self._stop_expecting()
+            if self.looking is not None:
+                self.looking.cancel()
+            self._count(None)
+
+        def _count(self, address: str | None) -> None:
+            if self.address is not None:
+                counts[self.address] -= 1
+                if not counts[self.address]:
+                    del counts[self.address]
+            self.address = address
+            if address is not None:
+                counts[address] += 1
+
+        def _counts_for(self, host: str) -> bool:
+            """Counts for an address from now on, or closes where that has too many; returns whether it goes on."""
+            address = network_of(host)
+            if address != self.address:
+                self._count(None)
+                if counts[address] >= quota.address:
+                    self._send_away()
+                    return False
+                self._count(address)
+            return True
+
+        def _send_away(self) -> None:
+            self.connections.discard(self)  # it takes no place of those who are let in
+            self.transport.close()
+
+        def _look(self) -> None:
+            """Ends the connection where an answer has waited to be read for too long."""
+            now = self.loop.time()
+            if not self.transport.get_write_buffer_size():
+                self.moved = now
+            elif now - self.moved > settings.answer_seconds:
+                now_and_nothing_more = struct.pack("ii", 1, 0)  # the system would go on sending what it holds
+                wire = self.transport.get_extra_info("socket")
+                wire.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, now_and_nothing_more)
+                self.transport.abort()
+                return
+            self.looking = self.loop.call_later(settings.answer_seconds / 4, self._look)
+
+        def resume_writing(self) -> None:
+            super().resume_writing()
+            self.moved = self.loop.time()
+
+        def data_received(self, data: bytes) -> None:
+            before = self.cycle
+            super().data_received(data)
+            if self.cycle is not before:
+                self._stop_expecting()
+                if self.client and self.client[0] in trusted:
+                    named = b", ".join(value for name, value in self.headers if name == b"x-forwarded-for")
+                    host = trusted.get_trusted_client_address(named.decode("latin-1"))[0]
+                    self._counts_for(host or self.client[0])
+            elif self._between and self.waiting is None:  # the head of a further request has begun
+                self._expect_head()
+
+        @property
+        def _between(self) -> bool:
+            return self.cycle is None or self.cycle.response_complete
+
+        def _expect_head(self) -> None:
+            self.waiting = self.loop.call_later(settings.header_seconds, self._head_is_late)
+
+        def _stop_expecting(self) -> None:
+            if self.waiting is not None:
+                self.waiting.cancel()
+                self.waiting = None
+
+        def _head_is_late(self) -> None:
+            self.waiting = None
+            if self._between:
+                self.transport.close()
+
+    return Bounded
