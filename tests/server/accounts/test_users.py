@@ -28,7 +28,8 @@ from webdemo.server.accounts.users import SignIns, Users
 from webdemo.server.http.cookies import set_cookie
 from webdemo.server.settings import Settings, read_settings
 from webdemo.server.store.database import Database, SignIn
-from webdemo.server.store.history import History
+from webdemo.server.store.notebook import Notebook
+from webdemo.ui.history import Search
 
 
 class Clock:
@@ -321,19 +322,19 @@ def test_nobody_inherits_from_an_earlier_account_of_the_same_name(
     admin = Administration(database, users, tmp_path, 1e6)
     first, owner = users.key("ada"), f"user {users.key('ada')}"
     admin.set_role("ada", admin=True)
-    history = History(database, tmp_path / "motions")
+    history = Notebook(database, tmp_path / "motions")
     run = history.begin(owner, GenerateRequest(prompt="They bow."), "They bow.")
     assert not users.add("ada", "another password") and users.key("ada") == first, "the same person"
     users.remove("ada")
     users.add("ada", "battery staple")
-    assert users.key("ada") != first and not history.entries(f"user {users.key('ada')}")
-    assert admin.people.of(admin.key("ada")).role == "" and history.entries(owner)[0].id == run
+    assert users.key("ada") != first and not history.search(f"user {users.key('ada')}", Search()).total
+    assert admin.people.of(admin.key("ada")).role == "" and history.search(owner, Search()).entries[0].id == run
     admin.set_role("ada", admin=True)
     mine = f"user {users.key('ada')}"
     history.begin(mine, GenerateRequest(prompt="They hug."), "They hug.")
     monkeypatch.setenv("PASDEDEUX_USERS", str(users.path))
     monkeypatch.setenv("PASDEDEUX_DATA", str(tmp_path))
     assert main(["user", "remove", "ada"]) == 0
-    assert not history.entries(mine) and not Users(users.path).names
+    assert not history.search(mine, Search()).total and not Users(users.path).names
     assert admin.people.of(mine.removeprefix("user ")).role == ""
     database.close()
