@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from webdemo.server import memory
+from webdemo.server import process as memory
 from webdemo.server.http import page_sessions as sessions
 from webdemo.server.http.page_sessions import LeanStates
 
@@ -69,7 +69,7 @@ def test_calls_leave_nothing_and_pages_stay(client: TestClient, monkeypatch: pyt
 
 GAPS = """
 import os, pathlib
-from webdemo.server.memory import give_back
+from webdemo.server.process import give_back
 def resident():
     pages = int(pathlib.Path("/proc/self/statm").read_text().split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE") / 2**20

@@ -13,11 +13,11 @@ from tests.server.clients import FIELDS, client_of, lab_of, settings_for
 from tests.server.lab import ROOT, stub_module
 from tests.server.queue.test_queue import make, request, wait_for
 from webdemo.server.http.health import Health
-from webdemo.server.watchdog import STUCK
+from webdemo.server.process import STUCK
 
 WATCHED = """
 import asyncio, re, sys, threading
-from webdemo.server.watchdog import watch
+from webdemo.server.process import watch
 
 async def main(freezes):
     looks = []

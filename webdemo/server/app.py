@@ -21,8 +21,7 @@ from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Mount
 
 from acts.lexicon import look_at_own_acts
-from webdemo.server.accounts.login import login_routes
-from webdemo.server.accounts.own_account import account_routes
+from webdemo.server.accounts.login import account_routes, login_routes
 from webdemo.server.accounts.visitors import Visitors
 from webdemo.server.http.admin_pages import admin_routes
 from webdemo.server.http.guard import Guard, may_read_figures
@@ -36,16 +35,14 @@ from webdemo.server.live.routes import live_routes
 from webdemo.server.queue.events import FairEvents
 from webdemo.server.queue.recorder import Recorder
 from webdemo.server.queue.turns import Batcher
-from webdemo.server.store.personal_files import keep_files_apart, visitors_folder
-from webdemo.server.store.scratch import Scratch
+from webdemo.server.store.scratch import Scratch, keep_files_apart, visitors_folder
 from webdemo.ui.page import build_page, launch_options, start_queue
 from webdemo.ui.places import READING
 from webdemo.ui.runs import EngineLike, Loader
 from webdemo.ui.visitor import visitor
 
-from .memory import collect_again, give_back
+from .process import collect_again, give_back, watch
 from .settings import Settings
-from .watchdog import watch
 
 log = logging.getLogger(__name__)
 

@@ -21,9 +21,8 @@ from webdemo.server.store.scratch import Scratch
 
 from .app import Lab, create_app
 from .logs import set_up_logs
-from .memory import share_heaps
+from .process import share_heaps, tell_systemd
 from .settings import Settings
-from .watchdog import tell_systemd
 
 log = logging.getLogger(__name__)
 

@@ -16,7 +16,6 @@ from starlette.concurrency import run_in_threadpool
 from tests.server.clients import HERE, HTML, JOIN, client_of, lab_of, settings_for
 from webdemo.server.accounts import quotas
 from webdemo.server.accounts.quotas import RateLimit
-from webdemo.server.app import PAGES
 from webdemo.server.http.page_html import PageCache
 from webdemo.server.http.refused import Refused
 
@@ -104,13 +103,6 @@ def test_gradios_own_check_of_files_is_on(local: TestClient) -> None:
     assert mounted.get_blocks().has_launched
 
 
-def test_an_idle_queue_is_looked_into_seldom(local: TestClient) -> None:
-    """Gradio's own looks every millisecond, which takes a tenth of a core."""
-    (mounted,) = [r.app for r in local.app.routes if hasattr(getattr(r, "app", None), "state_holder")]
-    queue = mounted.get_blocks()._queue
-    assert queue.sleep_when_free >= 0.01 and queue.progress_update_sleep_when_free >= 0.05
-
-
 def test_behind_an_unsaid_proxy_nobody_gets_in(local: TestClient) -> None:
     other = TestClient(local.app, base_url=HERE, client=("203.0.113.9", 5))
     answer = other.get("/config")
@@ -167,26 +159,6 @@ def test_the_page_is_made_once_for_everybody(local: TestClient) -> None:
     assert local.get("/?run=abc", headers=html).text == first.text
     elsewhere = local.get("/", headers={**html, "host": "localhost:99"}).text
     assert "http://localhost:99" in elsewhere and "http://localhost:99" not in local.get("/").text
-
-
-def test_a_kept_page_is_not_made_again() -> None:
-    made: list[str] = []
-
-    async def page(scope: Any, receive: Any, send: Any) -> None:
-        made.append(scope["path"])
-        await send({"type": "http.response.start", "status": 200, "headers": []})
-        await send({"type": "http.response.body", "body": b"page"})
-
-    client = TestClient(PageCache(page))
-    for path in ("/", "/", "/?run=1", *(f"/?x={i}" for i in range(20))):
-        for encoding in ("gzip", "gzip;q=0.9, br", "deflate, gzip"):
-            assert client.get(path, headers={"accept-encoding": encoding}).text == "page"
-    assert made == ["/"]
-    for port in range(1000, 1040):
-        assert client.get("/", headers={"host": f"127.0.0.1:{port}"}).text == "page"
-    for path in ("/other", "/config", "/config?x=1"):
-        client.get(path)
-    assert made == ["/", "/other", "/config"]
 
 
 def test_many_who_come_at_once_wait_for_one_page() -> None:
@@ -251,11 +223,6 @@ def test_nobody_says_where_the_page_is(local: TestClient) -> None:
     for name in ("x-forwarded-host", "x-gradio-server"):
         for path in ("/", "/config"):
             assert "evil.example" not in local.get(path, headers={name: "http://evil.example"}).text
-
-
-def test_what_pages_leave_behind_is_bounded(local: TestClient) -> None:
-    mounted = next(route.app for route in local.app.routes if hasattr(getattr(route, "app", None), "state_holder"))
-    assert mounted.state_holder.capacity == PAGES
 
 
 def test_a_browser_gets_an_error_page_of_the_lab(local: TestClient) -> None:

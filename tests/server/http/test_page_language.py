@@ -13,14 +13,11 @@ from webdemo.server.http.page_html import PageCache
 PAGE = b"<!doctype html><html><head><script type='module' src='gradio.js'></script></head>" + b" " * 2000
 
 
-def _answer(body: bytes, query: bytes = b"", pieces: int = 1) -> tuple[Mapping[bytes, bytes], bytes]:
+def _answer(body: bytes, query: bytes = b"") -> tuple[Mapping[bytes, bytes], bytes]:
     async def app(scope, receive, send):
         headers = [(b"content-type", b"text/html"), (b"content-length", str(len(body)).encode())]
         await send({"type": "http.response.start", "status": 200, "headers": headers})
-        step = -(-len(body) // pieces)
-        for i in range(pieces):
-            part = body[i * step : (i + 1) * step]
-            await send({"type": "http.response.body", "body": part, "more_body": i < pieces - 1})
+        await send({"type": "http.response.body", "body": body})
 
     sent = []
 
@@ -51,9 +48,3 @@ def test_the_page_reads_the_language_of_its_address_before_gradio_does(query: by
     assert body.index(b'"language"') < body.index(b"gradio.js")
     assert body.replace(body[body.index(b"<script>{") : body.index(b"}</script>") + 10], b"") == PAGE
     assert int(headers[b"content-length"]) < len(PAGE), "the length is that of what is sent"
-
-
-def test_a_page_in_pieces_is_one_and_what_is_none_stays_as_it_is() -> None:
-    assert _answer(PAGE, pieces=3)[1] == _answer(PAGE)[1]
-    other = b"No page: nothing to read a language." * 40
-    assert _answer(other)[1] == other

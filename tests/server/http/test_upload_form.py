@@ -2,8 +2,8 @@
 
 import pytest
 
+from webdemo.server.http.bodies import MOST_FILES, UploadForm
 from webdemo.server.http.refused import Refused
-from webdemo.server.http.upload_form import MOST_FILES, UploadForm
 
 TYPE = b"multipart/form-data; boundary=xyz"
 

@@ -122,22 +122,6 @@ def test_a_busy_server_takes_nobody_else_in(pictures: int) -> None:
     assert some.open(EVE, "agent"), "one is always let in"
 
 
-def test_runs_beside_a_stream_keep_nobody_out() -> None:
-    some = streams()
-
-    class Delayed(STUB.Mirror):
-        def step(self, pose: np.ndarray) -> np.ndarray:
-            some.processor.now += 0.008
-            some.clock.now += 0.03  # other threads have the processor most of the time
-            return super().step(pose)
-
-    some.engine.partner = lambda name, seed=0: Delayed()
-    stream = some.open(ADA, "agent")
-    for frame in range(60):
-        some.answer(stream.id, ADA, poses([frame / 30])).result(20)
-    assert some.open(EVE, "agent")
-
-
 def test_idle_and_old_streams_are_closed() -> None:
     some = streams()
     clock = some.clock
@@ -167,17 +151,6 @@ def test_a_server_that_stops_ends_its_streams() -> None:
         some.opening("ada", dict)
     with pytest.raises(StreamRefused, match="switched off"):
         streams(most=0).open(ADA, "agent")
-
-
-def test_a_partner_that_cannot_be_made_takes_no_place() -> None:
-    class Broken:
-        def partner(self, name: str, *, seed: int = 0) -> object:
-            raise InputError("The weights are missing.")
-
-    some = Streams(Broken(), Quota("live streams", 1, 1, 1), clock=Clock())  # type: ignore[arg-type]
-    for _ in range(3):
-        with pytest.raises(InputError, match="weights are missing"):
-            some.open(ADA, "agent")
 
 
 def test_poses_at_any_pace_become_thirty_a_second() -> None:

@@ -298,13 +298,3 @@ def test_what_a_run_is_called() -> None:
     assert title_of(GenerateRequest(prompt=" They hug. ").to_dict()) == "They hug."
     assert title_of(ReactRequest(actor=replace(actor, name="wave.bvh")).to_dict()) == "Reaction to wave.bvh"
     assert title_of(PredictRequest(motion=replace(actor, name="walk")).to_dict()) == "After walk"
-
-
-def test_a_prediction_of_one_person_is_kept(history: Notebook) -> None:
-    actor = replace(stub_module().walking(3.0).a, name="walk")
-    run = history.begin(ME, PredictRequest(motion=actor), "After walk")
-    history.finish(run, Result(duets=(actor,), manifest={"model": "m"}))
-    opened = history.open(run, ME)
-    np.testing.assert_array_equal(opened.result.duets[0].positions, actor.positions)
-    with pytest.raises(InputError, match="use its tab"):
-        request_of(opened)

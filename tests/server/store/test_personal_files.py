@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from webdemo.server.store import personal_files
-from webdemo.server.store.personal_files import folder_of, owns
+from webdemo.server.store.scratch import folder_of, owns
 
 
 @pytest.fixture(autouse=True)

@@ -12,7 +12,6 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
-from sqlalchemy import event
 
 from motion import InputError, formats
 from tests.server.clients import FIELDS, HERE, UPLOAD, client_of, events_of, lab_of, settings_for
@@ -150,31 +149,6 @@ def test_a_disk_that_fills_and_a_program_that_breaks(local: TestClient, monkeypa
     reference = answer.headers["x-request-id"]
     assert answer.status_code == 500 and answer.json()["request"] == reference
     assert f"its log says more under {reference}" in answer.text and "secret" not in answer.text
-
-
-def test_a_database_that_is_full_is_a_sentence(tmp_path: Path) -> None:
-    """SQLite's own limit stands for a disk that is full: its error is the same."""
-    with client_of(settings_for(tmp_path)) as own:
-        _fill_the_database(own)
-
-
-def _fill_the_database(local: TestClient) -> None:
-    lab = lab_of(local)
-    before = lab.history.search("local", Search()).total
-
-    def limit(connection: Any, record: Any) -> None:
-        connection.execute("PRAGMA max_page_count=1")  # no more than there are
-
-    event.listen(lab.database.engine, "connect", limit)
-    lab.database.engine.dispose()
-    try:
-        said = [events_of(local, "generate", ["x" * 500, *FIELDS[1:]]) for _ in range(12)][-1]
-    finally:
-        event.remove(lab.database.engine, "connect", limit)
-        lab.database.engine.dispose()
-    assert "event: error" in said and "disk is full, so nothing new can be kept" in said
-    assert "event: complete" in events_of(local, "generate", FIELDS)
-    assert lab.history.search("local", Search()).total > before
 
 
 def test_an_error_does_not_say_where_the_files_are(local: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:

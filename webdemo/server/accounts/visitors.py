@@ -9,11 +9,14 @@ import time
 from collections import OrderedDict
 from collections.abc import Mapping
 
+from starlette.requests import cookie_parser
+from starlette.responses import Response
+
 from acts.config import is_loopback
 from motion import InputError
 from webdemo.server.accounts.quotas import network_of
 from webdemo.server.http.refused import Refused
-from webdemo.server.settings import Settings
+from webdemo.server.settings import Settings, on_a_space
 from webdemo.ui.visitor import Visitor
 
 from .people import People
@@ -191,3 +194,34 @@ def digest(token: str) -> str:
 def new_token() -> str:
     """An unguessable name for a browser."""
     return secrets.token_urlsafe(24)
+
+
+# ---- cookies ----------------------------------------------------------------------------------------
+
+
+def set_cookie(response: Response, name: str, value: str, *, seconds: float, root: str, secure: bool) -> None:
+    """Sets a cookie that scripts cannot read and other sites' forms do not send.
+
+    Args:
+        response: carries it.
+        name: of the cookie.
+        value: of the cookie.
+        seconds: how long the browser keeps it.
+        root: path below which it is sent; empty for all.
+        secure: whether it is sent over TLS only.
+    """
+    space = on_a_space()  # there the page is in a frame of another site's
+    response.set_cookie(
+        name,
+        value,
+        max_age=int(seconds),
+        path=root or "/",
+        httponly=True,
+        secure=secure or space,
+        samesite="none" if space else "lax",
+    )
+
+
+def read_cookies(headers: dict[bytes, bytes]) -> dict[str, str]:
+    """The cookies of a request, by their names."""
+    return cookie_parser(headers.get(b"cookie", b"").decode("latin-1"))

@@ -13,7 +13,7 @@ from starlette.types import Message, Scope, Send
 
 from webdemo.server.settings import on_a_space
 
-from .body_limits import BoundedBody
+from .bodies import BoundedBody
 from .error_pages import message_card
 from .refused import Refused
 from .routes import is_embed, is_public_page

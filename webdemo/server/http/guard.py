@@ -24,22 +24,20 @@ from acts.config import is_loopback
 from motion import InputError
 from webdemo.server.accounts.proxy import admin_by_proxy, person_by_proxy
 from webdemo.server.accounts.quotas import Quotas, RateLimit, network_of
-from webdemo.server.accounts.visitors import VISITOR_COOKIE, Bindings, Visitors, new_token
+from webdemo.server.accounts.visitors import VISITOR_COOKIE, Bindings, Visitors, new_token, read_cookies, set_cookie
 from webdemo.server.audit import SENDER
 from webdemo.server.logs import REFERENCE
 from webdemo.server.settings import Settings, on_a_space
 from webdemo.server.store.database import is_full
-from webdemo.server.store.personal_files import PERSON
+from webdemo.server.store.scratch import PERSON
 from webdemo.ui.visitor import Visitor
 
-from .body_limits import BoundedBody, declared_length, too_large
-from .cookies import read_cookies, set_cookie
+from .bodies import BoundedBody, UploadForm, declared_length, too_large
 from .exchange import Exchange
 from .metrics import Figures
 from .payloads import Payloads
 from .refused import Refused
 from .routes import API, LIVE, MESSAGE, is_public_page, is_upload, needs_no_sign_in, path_below, route_of
-from .upload_form import UploadForm
 
 log = logging.getLogger(__name__)
 

@@ -14,7 +14,7 @@ import gradio as gr
 from gradio.blocks import Blocks
 from pydantic import TypeAdapter, ValidationError
 
-from webdemo.server.store.personal_files import owns
+from webdemo.server.store.scratch import owns
 from webdemo.ui.components.accepts import Upload, accepts, accepts_event
 
 from .refused import Refused

@@ -7,10 +7,16 @@ import os
 import shutil
 import time
 from collections.abc import Callable, Collection, Iterator
+from contextvars import ContextVar
 from pathlib import Path
+
+from gradio.routes import App
+from gradio.utils import get_upload_folder
 
 from motion import InputError
 from webdemo.server.accounts.quotas import ADDRESS_SHARE
+from webdemo.server.accounts.visitors import digest
+from webdemo.ui.visitor import visitor
 
 KEPT_SECONDS = 7200.0
 """Seconds after which a file is removed; the history keeps what is needed to make it again."""
@@ -142,3 +148,42 @@ def _remove(path: str) -> bool:
     except OSError:
         return False
     return True
+
+
+# ---- a folder a person ------------------------------------------------------------------------------
+
+
+PERSON: ContextVar[str] = ContextVar("person", default="")
+"""The person whose request is being handled."""
+
+
+class PersonalApp(App):
+    """Gradio's application with a folder of uploads for every person; :func:`keep_files_apart` makes one."""
+
+    @property
+    def uploaded_file_dir(self) -> str:  # type: ignore[override]  # Gradio sets it once, for all
+        """Folder of uploads, and of served files."""
+        return str(folder_of(PERSON.get()))
+
+
+def keep_files_apart(app: App) -> None:
+    """Makes a mounted Gradio application a :class:`PersonalApp`; it is made deep inside of Gradio."""
+    del app.uploaded_file_dir
+    app.__class__ = PersonalApp
+
+
+def folder_of(person: str) -> Path:
+    """The folder of a person's files."""
+    return Path(get_upload_folder()) / digest(person)
+
+
+def visitors_folder() -> str:
+    """The folder name of the person whose event this thread handles."""
+    return digest(visitor().person)
+
+
+def owns(person: str, path: str) -> bool:
+    """True if a path is below a person's folder, with all links on its way followed."""
+    if "\0" in path or not os.path.isabs(path):
+        return False
+    return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder_of(person)))
