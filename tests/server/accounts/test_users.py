@@ -20,7 +20,6 @@ from starlette.responses import Response
 from motion import InputError
 from webdemo.cli import main
 from webdemo.inference.requests import GenerateRequest
-from webdemo.server.accounts import throttle
 from webdemo.server.accounts import users as accounts
 from webdemo.server.accounts.administration import Administration
 from webdemo.server.accounts.users import SignIns, Throttle, TooManyTries, Users
@@ -146,7 +145,7 @@ def refused_for(sign_ins: SignIns, password: str, address: str, known: str = "")
 
 
 def test_guesses_from_an_address_are_slowed_down(sign_ins: SignIns, clock: Clock) -> None:
-    for _ in range(throttle.TRIES):
+    for _ in range(accounts.TRIES):
         assert not refused_for(sign_ins, "wrong horse", "6.6.6.6")
     wait = refused_for(sign_ins, "correct horse", "6.6.6.6")
     assert 0 < wait <= 60
@@ -156,14 +155,14 @@ def test_guesses_from_an_address_are_slowed_down(sign_ins: SignIns, clock: Clock
 
 
 def test_right_passwords_cost_no_tries(sign_ins: SignIns, clock: Clock) -> None:
-    for _ in range(3 * throttle.TRIES):
+    for _ in range(3 * accounts.TRIES):
         assert sign_ins.begin("ada", "correct horse", "1.2.3.4")
 
 
 def test_a_name_is_slowed_down_for_all_addresses_together(sign_ins: SignIns, clock: Clock) -> None:
     known = sign_ins.known_browser("ada")
-    guesses = [refused_for(sign_ins, "wrong horse", f"6.6.6.{i}") for i in range(throttle.NAME_TRIES + 20)]
-    assert guesses.count(0) == throttle.NAME_TRIES
+    guesses = [refused_for(sign_ins, "wrong horse", f"6.6.6.{i}") for i in range(accounts.NAME_TRIES + 20)]
+    assert guesses.count(0) == accounts.NAME_TRIES
     assert 0 < refused_for(sign_ins, "correct horse", "1.2.3.4") <= 10
     assert sign_ins.begin("ada", "correct horse", "1.2.3.4", known), "where she has signed in before, she still can"
     clock.now += 10
@@ -187,7 +186,7 @@ def test_a_browser_is_known_for_its_own_name_and_password(sign_ins: SignIns, clo
         ("ada", ""),
     ):
         assert not sign_ins._browser(name, forged), forged
-    for _ in range(throttle.TRIES):
+    for _ in range(accounts.TRIES):
         assert not refused_for(sign_ins, "wrong horse", "1.2.3.4", known)
     assert refused_for(sign_ins, "wrong horse", "1.2.3.4", known), "it may not guess without end either"
     sign_ins.users.add("ada", "another password")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from webdemo.server.store import personal_files
+from webdemo.server.store import scratch as personal_files
 from webdemo.server.store.scratch import folder_of, owns
 
 

@@ -17,7 +17,6 @@ import signal
 import threading
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,6 +26,8 @@ from motion.cores import usable_cores
 from webdemo.inference.methods import methods
 from webdemo.inference.requests import SamplingRequest
 from webdemo.inference.run import CancelToken, Progress, Result
+
+from .ray_messages import Began
 
 if TYPE_CHECKING:  # imported when first needed, so that the page is up before Ray is
     from ray.serve.handle import DeploymentHandle
@@ -299,17 +300,3 @@ class RayEngine:
 
     def _cores(self, model: str) -> float:
         return self.cores if model == SamplingRequest.model else self.cores / 2
-
-
-# ---- messages of a replica --------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Began:
-    """The first message of a replica about a request: the id of its process."""
-
-    pid: int
-
-
-class ReplicaError(Exception):
-    """A run ended with an internal error; the message names its type and the process whose log has it."""

@@ -19,7 +19,7 @@ from webdemo.inference.run import Cancelled, CancelToken, Progress, Result
 from webdemo.server.logs import set_up_logs
 from webdemo.server.queue.shared_engine import SharedEngine
 
-from .ray_engine import Began, ReplicaError
+from .ray_messages import Began, ReplicaError
 
 log = logging.getLogger(__name__)
 Event = Progress | Result | Exception
