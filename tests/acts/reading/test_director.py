@@ -93,7 +93,7 @@ def test_what_the_lexicon_reads_is_not_sent(fake: Fake, monkeypatch: pytest.Monk
     assert directed("Two people hug.").acts[0].act == "wave"
 
 
-@pytest.mark.parametrize("state", [400, 422, 500])
+@pytest.mark.parametrize("state", [400, 500])
 def test_a_server_that_refuses_a_schema_is_asked_in_another_form(fake: Fake, state: int) -> None:
     plain = chat(f"Here it is:\n```json\n{json.dumps({'acts': [HUG]})}\n```")
     fake.answers = [(state, b"{}")] * 3 + [plain]
@@ -104,24 +104,6 @@ def test_a_server_that_refuses_a_schema_is_asked_in_another_form(fake: Fake, sta
     assert forms[1]["schema"] == forms[0]["json_schema"]["schema"]
     director._kept.clear()
     assert directed(GERMAN).acts and "response_format" not in fake.seen[4], "what it takes is remembered"
-
-
-TOO_LONG = (
-    {"code": "context_length_exceeded", "message": "This model's maximum context length is 2048 tokens."},
-    {"code": 400, "type": "exceed_context_size_error", "message": "the request exceeds the available size"},
-)
-
-
-@pytest.mark.parametrize("error", TOO_LONG)
-def test_a_server_with_a_small_context_gets_the_names_alone(fake: Fake, error: dict[str, Any]) -> None:
-    refused = (400, json.dumps({"error": error}).encode())
-    fake.answers = [refused, chat({"acts": [HUG]})]
-    assert directed(GERMAN).acts[0].act == "hug"
-    long, short = (sent["messages"][0]["content"] for sent in fake.seen)
-    assert "arch-back: lean back" in long and "arch-back\n" in short and len(short) < 0.7 * len(long)
-    director._kept.clear()
-    fake.answers = [refused]
-    assert "too small a context" in directed(GERMAN).notes[-1]
 
 
 def test_the_list_of_acts_is_short() -> None:
@@ -136,10 +118,8 @@ def test_the_list_of_acts_is_short() -> None:
         ("no JSON at all", "no JSON object"),
         ({"acts": [HUG | {"act": "teleport"}]}, "there is no act “teleport”"),
         ({"acts": [HUG | {"patient": "a"}]}, "The patient must not be an agent"),
-        ({"acts": [HUG | {"agents": ["c"]}]}, "agents"),
         ({"acts": [HUG, HUG]}, "id is taken"),
         ({"acts": [HUG | {"id": str(i)} for i in range(70)]}, "more than 60 acts"),
-        ({"acts": ["hug"]}, "no object"),
     ],
 )
 def test_a_wrong_answer_may_be_corrected_once(fake: Fake, wrong: Any, said: str) -> None:
@@ -177,13 +157,10 @@ def _drips(handler: Any) -> tuple[int, bytes]:
 
 
 FAILURES: dict[str, tuple[Any, str]] = {
-    "HTTP 500": ((500, b"no " + KEY.encode()), "answered with HTTP 500"),
     "redirect": ((302, b""), "answered with HTTP 302"),
     "huge": ((200, b"x" * 1_000_000), "answered with too much"),
     "no chat": ((200, b'{"error": "' + KEY.encode() + b'"}'), "gave no answer of the kind"),
-    "broken JSON": (chat('{"acts": ['), "gave no act that can be used"),
     "deep": (chat('{"acts":' + "[" * 50_000 + "]" * 50_000 + "}"), "gave no act that can be used"),
-    "nothing": (chat({"acts": []}), "gave no act that can be used"),
     "slow": (_slow, "took longer than 0.5 s"),
     "dripping": (_drips, "took longer than 0.5 s|could not be asked"),
 }
@@ -231,12 +208,9 @@ def test_a_hostile_answer_stays_data(fake: Fake) -> None:
     ("fields", "said"),
     [
         ({"URL": "http://lab.example/v1"}, "http:// to another machine"),
-        ({"URL": "ftp://127.0.0.1/v1"}, "director.url must be"),
         ({"URL": f"https://me:{KEY}@lab.example/v1"}, "director.url must be"),
-        ({"URL": f"https://lab.example/v1?key={KEY}"}, "director.url must be"),
         ({"URL": "http://127.0.0.1:99999/v1"}, "director.url must be"),
         ({"KEY": f"{KEY}\nX: y"}, "key of plain characters"),
-        ({"SECONDS": "900"}, "at most 60 seconds"),
         ({"WHEN": "often"}, "director.when"),
     ],
 )

@@ -43,6 +43,45 @@ from tests.acts.reading.reading import told
         ("tickel him", [("tickle", "a", "b")]),
         ("An elderly lady pats an old man on the back.", [("pat", "a", "b")]),
         ("She crawls on hands and knees around him.", [("crawl-under", "a", "b")]),
+        # an adverb that the parser takes for a verb, and a safe verb that it takes for an auxiliary
+        ("The waiter bows stiffly and pours wine for the lady.", [("bow", "a", None), ("pour-for", "a", "b")]),
+        ("These two shake hands.", [("shake-hands", "ab", None)]),
+        ("They both reply with a nod.", [("nod", "ab", None)]),
+        # "who" that hangs on something else than its person
+        ("The girl skips beside her grandfather, who shuffles along.", [("skip", "a", "b"), ("strut", "b", None)]),
+        ("She takes a picture of the model, who bows.", [("photo", "a", "b"), ("bow", "b", None)]),
+        # a part of the body as the subject
+        (
+            "The guard frisks the prisoner, whose hands are clasped behind his head.",
+            [("search-person", "a", "b"), ("hands-behind-head", "b", None)],
+        ),
+        # a participle of what was done to the subject
+        ("Shoved hard in the chest, the drunk topples backward.", [("push", "b", "a"), ("fall-down", "a", None)]),
+        ("Seated on the floor, she claps.", [("sit-on-floor", "a", None), ("clap", "a", "b")]),
+        ("It is a tango where he dips her.", [("dip", "a", "b")]),
+        ("The lead bows and the follow curtsies.", [("bow", "a", None), ("curtsy", "b", None)]),
+        ("Lead dips the follow.", [("dip", "a", "b")]),
+        (
+            "He walks up to her, hands over a parcel and leaves.",
+            [("walk-up", "a", "b"), ("hand-over", "a", "b"), ("walk-away", "a", "b")],
+        ),
+        (
+            "hold hands, swing arms, walk",
+            [("hold-hands", "ab", None), ("swing-arms", "ab", None), ("walk-together", "ab", None)],
+        ),
+        ("couple slow dancing", [("waltz", "ab", None)]),
+        ("Spin her out, and dip her low.", [("twirl", "a", "b"), ("dip", "a", "b")]),
+        (
+            "One grabs the other by the wrist and drags her a few steps to the left.",
+            [("hold-hands", "a", "b"), ("drag", "a", "b")],
+        ),
+        ("person 2 tails person 1 down the street", [("follow", "b", "a")]),
+        ("ninjas circling one another", [("circle-together", "ab", None)]),
+        ("they bump heads picking up the same pencil", [("headbutt", "ab", None), ("pick-up-thing", "ab", None)]),
+        ("Tom helps Jerry up off the ground.", [("help-up", "a", "b")]),
+        ("A shuffles stage right.", [("step-aside", "a", None)]),
+        ("two dudes leaning on eachother lol", [("head-on-shoulder", "ab", None)]),
+        ("The one on the left waves, and the one on the right bows.", [("wave", "a", "b"), ("bow", "b", None)]),
     ],
 )
 def test_a_sentence_is_read(text: str, acts: list[tuple[str, str, str | None]]) -> None:
@@ -91,3 +130,114 @@ def test_a_repeated_act_is_done_with_the_same_side_or_the_one_that_is_named() ->
 def test_from_behind_is_a_manner() -> None:
     (tap,) = read("A taps B on the shoulder from behind.").acts
     assert FROM_BEHIND in tap.manner
+
+
+def test_what_was_done_first_comes_first() -> None:
+    plan = read("Shoved in the chest, he falls down.")
+    assert [sorted(act.act for act in beat) for beat in plan.beats()] == [["push"], ["fall-down"]]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Waltz three bars counter-clockwise, then separate to arm's length and salute.",
+        "Counter-punch, block-and-push, hug.",
+    ],
+)
+def test_a_verb_within_a_word_is_no_verb_of_its_own(text: str) -> None:
+    plan = read(text)
+    assert plan.acts
+
+
+def test_verbs_of_distant_meaning_are_left_alone() -> None:
+    """Two steps through WordNet lead anywhere: "tucks" to opening something, "lands" to following."""
+    assert read("He tucks the letter into his pocket.").acts == ()
+
+
+@pytest.mark.parametrize("joined", ["{}, and {}", "{} and {}"])
+@pytest.mark.parametrize("start", ["Two people walk up to each other", "They walk up"])
+@pytest.mark.parametrize(
+    ("said", "act"), [*((verb, verb) for verb in ("hug", "kiss", "dance", "fight", "talk")), ("high five", "high-five")]
+)
+def test_a_list_keeps_its_middle(start: str, said: str, act: str, joined: str) -> None:
+    acts = [name for name, _, _ in told(joined.format(f"{start}, {said}", "walk away."))]
+    assert acts == ["walk-up", act, "walk-away"]
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [
+        # the last of a list, behind "each other"
+        ("They walk up to each other and hug.", [("walk-up", "ab", None), ("hug", "ab", None)]),
+        # both do what two people do
+        ("Two people do jumping jacks.", [("jumping-jacks", "ab", None)]),
+        ("Two women do squats.", [("squats", "ab", None)]),
+        # an object that the parser hangs on the verb before
+        ("B stands behind A and massages A's shoulders.", [("stand-behind", "b", "a"), ("massage", "b", "a")]),
+        ("B stands behind A and rubs A's back.", [("stand-behind", "b", "a"), ("touch", "b", "a")]),
+        # a noun that stands for what is done
+        ("B returns the salute.", [("salute", "b", "a")]),
+        ("She returns the wave.", [("wave", "a", "b")]),
+        ("A throws a ball to B and B hits it back.", [("throw-ball", "a", "b"), ("rackets", "b", None)]),
+        ("Both lean back.", [("lean", "ab", None)]),
+        ("She screams.", [("startle", "a", None)]),
+        ("B raises his arm to shoulder height.", [("raise-arm", "b", None)]),
+        ("A throws a ball underarm to B.", [("throw-ball", "a", "b")]),
+        # neither of the two
+        ("A dragon eats the moon.", []),
+        ("A bear eats the honey.", []),
+        ("He walks a dog.", [("walk-ahead", "a", None)]),
+        ("He hugs a dog.", [("feed-animal", "a", None)]),
+        ("A person shakes his head left and right.", [("shake-head", "a", None)]),
+        # with a part of the body
+        ("A person kicks using the right leg.", [("kick", "a", None)]),
+        ("His right hand picks up something.", [("pick-up-thing", "a", None)]),
+        ("A person drags right leg and waves.", [("swing-leg", "a", None), ("wave", "a", "b")]),
+        ("A man nods and moves his hands in front of him.", [("nod", "a", None), ("swing-arms", "a", None)]),
+        ("A person holds out both arms and lowers them.", [("extend-arm", "a", None), ("lower-arm", "a", None)]),
+        ("A person lifts her left arm and right knee.", [("raise-arm", "a", None), ("raise-knee", "a", None)]),
+        ("A boy kicks with his left foot, then the right foot.", [("kick", "a", None)] * 2),
+        ("She turns left, then right.", [("turn-around", "a", None)] * 2),
+        ("A person makes a bowing motion.", [("bow", "a", None)]),
+        ("A man does the motion of digging.", [("dig", "a", None)]),
+        ("A woman jogs forward.", [("run-ahead", "a", None)]),
+        ("A man walks back and returns to the original position.", [("return", "a", "b"), ("go-back", "a", None)]),
+        (
+            "A offers a handshake, but B declines, turning away.",
+            [("shake-hands", "a", "b"), ("shake-hands", "b", "a"), ("turn-away", "b", "a")],
+        ),
+        ("B takes both of A's hands and pulls A up.", [("hold-hands", "b", "a"), ("help-up", "b", "a")]),
+        ("They hold hands and spin around each other.", [("hold-hands", "ab", None), ("ring", "ab", None)]),
+        ("A calls out and B comes running.", [("beckon", "a", "b"), ("run-up", "b", None)]),
+        ("The man appears to be dancing.", [("dance", "a", None)]),
+        ("A person who is standing takes two steps.", [("stand-still", "a", None), ("step-forward", "a", None)]),
+        ("The person raises its arms.", [("raise-arm", "a", None)]),
+    ],
+)
+def test_no_act_is_lost_and_none_gained(text: str, acts: list[tuple[str, str, str | None]]) -> None:
+    assert told(text) == acts
+
+
+def test_who_goes_around_somebody_does_so_while_they_turn() -> None:
+    around, turns = read("A walks around B, who waves.").acts[:2]
+    assert [(each.kind, each.act) for each in turns.order] == [("while", around.id)]
+
+
+def test_a_circle_goes_one_way_round() -> None:
+    for said in ("a clockwise circle", "a circle clockwise", "a circle, clockwise"):
+        assert read(f"A man walks in {said}.").acts[0].direction == "clockwise", said
+
+
+def test_the_foot_with_which_one_steps_to_a_side() -> None:
+    (step,) = read("He steps to the left using his right foot.").acts
+    assert (step.act, step.side, step.direction) == ("step-aside", "right", "left")
+
+
+def test_words_in_no_act_are_said() -> None:
+    plan = read("A picks up a cup and a plate.")
+    assert [plan.text(part.words) for part in plan.unread] == ["plate"]
+
+
+def test_another_parse_that_explains_as_much_is_a_doubt() -> None:
+    plans = [read(text) for text in ("They hug.", "A man fishes and cries.")]
+    assert [bool(plan.doubts) for plan in plans] == [False, True]
