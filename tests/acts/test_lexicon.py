@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from acts.checks import check_entry, check_folder
+from acts.__main__ import check_entry, check_folder
 from acts.lexicon import OURS, lexicon
 from acts.reading import wordnet
 from motion import InputError

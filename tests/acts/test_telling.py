@@ -7,14 +7,13 @@ from collections.abc import Collection
 import pytest
 
 from acts import read
-from acts.checking import Verdict
-from acts.telling import told
+from acts.checking import Verdict, describe
 
 
 def tell(sentence: str, missed: Collection[str] = ()) -> str:
     """The words for a sentence whose acts are done, except those named."""
     plan = read(sentence)
-    return told(plan, [Verdict(act.id, act.act, "", act.act not in missed) for act in plan.acts])
+    return describe(plan, [Verdict(act.id, act.act, "", act.act not in missed) for act in plan.acts])
 
 
 @pytest.mark.parametrize(

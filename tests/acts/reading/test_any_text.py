@@ -46,8 +46,48 @@ def test_reading_grows_with_the_text_and_not_faster(kind: str) -> None:
 
 
 _WORDS = st.sampled_from(
-    "A B he she they hugs pats the a man woman boy and then while before without not hand left back on to his her "
-    "each other one two people tries , . ; ' gives kid walks up down".split()
+    [
+        "A",
+        "B",
+        "he",
+        "she",
+        "they",
+        "hugs",
+        "pats",
+        "the",
+        "a",
+        "man",
+        "woman",
+        "boy",
+        "and",
+        "then",
+        "while",
+        "before",
+        "without",
+        "not",
+        "hand",
+        "left",
+        "back",
+        "on",
+        "to",
+        "his",
+        "her",
+        "each",
+        "other",
+        "one",
+        "two",
+        "people",
+        "tries",
+        ",",
+        ".",
+        ";",
+        "'",
+        "gives",
+        "kid",
+        "walks",
+        "up",
+        "down",
+    ]
 )
 
 

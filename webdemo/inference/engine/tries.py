@@ -8,8 +8,7 @@ from typing import Any
 
 from acts import Plan
 from acts.accounting import unread_words
-from acts.checking import NO_RULE, checked
-from acts.telling import told
+from acts.checking import NO_RULE, checked, describe
 from acts.things.judging import judge_things
 from motion import SMPL22, Clip, Duet
 from motion.metrics.sentences.joints import Motion
@@ -141,7 +140,7 @@ def _judged_sample(
         end = duet.num_frames if stop is None else stop
         verdicts = judge_things(verdicts, plan, duet, start, end, split)
         rows += [each.to_dict() | ({} if beat is None else {"beat": beat}) for each in verdicts]
-        words.append(told(plan, verdicts))
+        words.append(describe(plan, verdicts))
     return {"checked": rows, "told": " ".join(filter(None, words))}
 
 
