@@ -45,7 +45,6 @@ class Event:
         particles: those of ``words`` that belong to the verb, as "up" in "picks up".
         prepositions: (preposition, argument).
         denied, modality: of the clause.
-        countered: a clause with "but" follows.
         ongoing: it goes on when the clause begins, as in "is sitting" and "keeps walking".
         state: a phrase says it that hangs on a noun, as in "the lady on the bench".
         joint: how it is joined to event ``beside``, as in :class:`acts.plan.Relation`.
@@ -65,7 +64,6 @@ class Event:
     ongoing: bool = False
     state: bool = False
     modality: str = "told"
-    countered: bool = False
     joint: str = ""
     beside: int | None = None
     first: int = 0

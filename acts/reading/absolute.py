@@ -6,10 +6,9 @@ They have no verb with a tense, and the parser hangs them on whatever is near, s
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from acts.events import Event, Ref
 from acts.frames import PREPOSITIONS
 
 from .vocabulary import vocabulary
@@ -95,8 +94,6 @@ def _behind(preposition: Token) -> Absolute | None:
 
 def _acts_alone(preposition: Token) -> bool:
     """True if the verb has no object: what touches somebody "with a hand on the back" touches the back."""
-    if preposition.is_sent_start:  # "With one hand on the hip, he shakes a finger at her"
-        return any(token.text == "," for token in preposition.doc[preposition.i : preposition.i + 8])
     verb = next((t for t in preposition.ancestors if t.pos_ in ("VERB", "AUX")), None)
     return verb is None or all(child.dep_ not in ("dobj", "nsubjpass") for child in verb.children)
 
@@ -130,11 +127,3 @@ def stands_absolutely(lower: Callable[[int], str], has_verb: Callable[[int], boo
     if placed and at == i and lower(i).endswith("s"):  # "hands over a parcel" is an act
         placed = any(words.part(lower(k).removesuffix("s")) for k in range(at + 2, at + 5))
     return held or ((after in words.directions or after in _STATES) and ends) or (placed and not has_verb(at + 1))
-
-
-def own_part(preposition: str, target: Ref, event: Event) -> Ref:
-    """A part of the body that nobody is said to own, or behind which hands are, as that of the hands' owner."""
-    if event.subject is None or target.kind != "part" or target.family == "shoulder":
-        return target
-    own = target.bare or preposition == "behind"
-    return replace(target, who=event.subject.who) if own else target

@@ -24,7 +24,6 @@ _PATHS = frozenset(_PATH_NOUNS.split())
 _TURNS = frozenset(("clockwise", "counterclockwise"))
 _SIDES = frozenset(("behind", "below", "above"))
 _WAYS = frozenset(("way", "manner", "fashion", "mood", "style"))
-_RECEIVES = frozenset(("get", "receive", "take", "have"))
 _MODIFIERS = frozenset(("prt", "advmod", "acomp", "attr", "oprd", "npadvmod", "amod", "neg", "intj", "compound"))
 
 
@@ -51,9 +50,6 @@ class Arguments:
         who = subject.who if subject is not None and subject.kind == "person" else ""
         agent: Ref | None = None
         for child in (*token.children, *taken_away(token)):
-            before = child.left_edge.i - 1
-            if before > token.i and child.head == token and child in taken_away(token.doc[before]):
-                continue
             if subject is not None and self.cast.seen.get(child.i) is subject:  # "…, said the witch"
                 continue
             bare = all(c.dep_ not in ("poss", "det") for c in child.children)
@@ -67,17 +63,12 @@ class Arguments:
                 event.prepositions.append(("in", self._argument(child, who, event)))
                 for phrase in (c for c in child.children if c.dep_ == "prep"):
                     self._preposition(phrase, who, event)
-            elif child.dep_ in ("dobj", "obj") or (
-                child.dep_ == "appos" and child.pos_ == "NOUN" and token.pos_ == "VERB"
-            ):
+            elif child.dep_ in ("dobj", "obj"):
                 self._object(child, who, event)
             elif child.dep_ in ("dative", "iobj") and child.pos_ != "ADP":
                 event.dative = self._argument(child, who, event)
             elif child.dep_ == "agent":
                 agent = next((self._argument(n, who, event) for n in child.children if n.dep_ == "pobj"), None)
-                if agent is not None and agent.kind == "part":  # "is dragged off by the feet"
-                    event.prepositions.append((child.lower_, replace(agent, who=agent.who or who)))
-                    agent = None
             elif child.dep_ in ("prep", "dative") or (
                 child.dep_ == "prt" and any(c.dep_ == "pobj" for c in child.children)
             ):
@@ -99,7 +90,6 @@ class Arguments:
             else:
                 continue
             self.seen.add(child.i)
-        self._their_back(token, event)
         return agent
 
     def _measured(self, noun: Token, who: str, event: Event) -> None:
@@ -112,16 +102,6 @@ class Arguments:
             self._direction(child.lower_, event)
             if child.dep_ == "prep":
                 self._preposition(child, who, event)
-
-    @staticmethod
-    def _their_back(token: Token, event: Event) -> None:
-        """Keeps a second meaning of "touches her back", where the parser takes "back" for a direction."""
-        for her in (c for c in token.children if c.lower_ == "her" and c.dep_ == "dobj"):
-            back, ref = her.nbor(1) if her.i + 1 < len(her.doc) else her, event.object
-            if back.lower_ == "back" and ref is not None and ref.kind == "person":
-                part = Ref("part", ref.who, "back", "back", first=back.idx, last=back.idx + len(back))
-                words = [word for word in event.words if word != "back"]
-                event.noun = replace(event, object=part, words=words, direction=None)
 
     def _is_measure(self, noun: Token, event: Event) -> bool:
         lemma = noun.lemma_.lower()
@@ -154,8 +134,6 @@ class Arguments:
                 event.words.append(child.lemma_.lower())
                 if self._words.directions.get(child.lower_) in _TURNS:
                     self._direction(child.lower_, event)
-                if child.lower_ in self._words.verbs["imagined"]:
-                    event.modality = "pretended"
                 if child.lower_ in ("left", "right") and is_act(token.lemma_.lower()):  # "a left hook"
                     event.side = event.side or child.lower_
             owner = child.lower_ == "of" and self._words.part(token.lemma_.lower())  # "the arms of the other"
@@ -168,12 +146,6 @@ class Arguments:
             elif child.dep_ == "prt" or (child.dep_ in ("appos", "advmod") and child.lower_ in self._words.directions):
                 # "helps him up off the floor", "in a circle, clockwise"
                 self._modifier(child, event)
-            elif child.lower_ == "no" and child.dep_ == "det":
-                event.denied = not event.denied
-        if token.tag_ in ("WDT", "WP"):  # "the letter, which he reads"
-            clause = next((t for t in token.ancestors if t.dep_ == "relcl"), None)
-            if clause is not None:
-                return reference(clause.head, self.cast, who)
         return reference(token, self.cast, who)
 
     def place(self, token: Token, who: str, event: Event) -> None:
@@ -201,7 +173,7 @@ class Arguments:
                 self._likeness(child, token, event)
                 if self._measure(child, token, event):
                     continue
-                event.prepositions.append(self._between(token, self._instrument(child, who, event), who))
+                event.prepositions.append((token.lower_, self._instrument(child, who, event)))
                 if child.lower_ == "air" and event.direction is None:
                     event.direction = "up"  # "into the air"
                 for more in child.conjuncts:
@@ -220,12 +192,6 @@ class Arguments:
             event.particles.append(token.lower_)
             self._direction(token.lower_, event)
 
-    @staticmethod
-    def _between(token: Token, ref: Ref, who: str) -> tuple[str, Ref]:
-        """The preposition and its argument; what two people do "between them" they do to each other."""
-        each = token.lower_ == "between" and ref.kind == "person" and ref.who == who == "ab"
-        return ("to", replace(ref, kind="each")) if each else (token.lower_, ref)
-
     def _instrument(self, noun: Token, who: str, event: Event) -> Ref:
         """The argument of a preposition; what is done "with his hand" is done with one's own, if that may be."""
         ref = self._argument(noun, who, event)
@@ -233,7 +199,7 @@ class Arguments:
         return replace(ref, who="") if own and not self.cast.sex(who) else ref
 
     def _measure(self, noun: Token, preposition: Token, event: Event) -> bool:
-        """Takes up "for five seconds", "to the left", "at arm's length"; False for other phrases."""
+        """Takes up "for five seconds" and "to the left"; False for other phrases."""
         lemma = noun.lemma_.lower()
         if preposition.lower_ in ("for", "within", "after", "over") and lemma in self._words.seconds:
             event.seconds = self._amount(noun) * self._words.seconds[lemma]
@@ -242,15 +208,6 @@ class Arguments:
             event.side = lemma  # "mirrors her with the right" leaves the hand out
             event.direction = event.direction if preposition.lower_ == "with" else lemma
             event.words.append(lemma)
-            return True
-        if lemma == "distance" and preposition.lower_ in ("at", "from"):
-            of = (measure for child in noun.children if child.lower_ == "of" for measure in child.children)
-            measure = next((m for m in of if m.lemma_.lower() in self._words.metres), None)
-            event.distance = self._amount(measure) * self._words.metres[measure.lemma_.lower()] if measure else None
-            event.words.append("apart")
-            return True
-        if lemma in ("length", "metre", "meter") and preposition.lower_ in ("at", "within", "by"):
-            event.distance = 0.7 if lemma == "length" else self._amount(noun)
             return True
         return False
 
@@ -358,9 +315,3 @@ class Arguments:
         if wordnet.usual_kind(noun.lemma) == "consumption" and noun.lemma not in self._words.verbs["nouns"]:
             return  # "offers her a drink" hands something over
         event.noun = replace(event, lemma=noun.lemma, object=event.dative, dative=None)
-        giver = next((i for i, (p, ref) in enumerate(event.prepositions) if p == "from" and ref.kind == "person"), -1)
-        if event.lemma in _RECEIVES and giver >= 0:  # "gets a massage from her": she massages him
-            rest = [each for i, each in enumerate(event.prepositions) if i != giver]
-            event.noun = replace(
-                event.noun, subject=event.prepositions[giver][1], object=event.subject, prepositions=rest
-            )

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from acts.events import Event, Ref
-from acts.lexicon import Entry, Lexicon
+from acts.lexicon import Lexicon
 
 from .ellipsis import PERFORM
 from .matching import Found
@@ -98,13 +98,7 @@ def held(event: Event, found: Found, find: Find) -> Iterator[tuple[Event, Found]
     """The postures that phrases beside an act name: "begs on his knees", "with folded arms"."""
     agents = found[2].agents
     rest = [event.prepositions[i] for i in found[2].rest]
-    theirs = [each for each in event.prepositions if each[1].kind == "part" and _is_other(each[1], agents)]
     for preposition, ref in rest:
-        if preposition == "with" and ref.family == "hand" and not ref.who and theirs and len(rest) > 1:
-            put = Event("put", event.subject, ref, prepositions=theirs[:1], first=event.first, last=event.last)
-            if (laid := find(put)) is not None and laid[0] != found[0]:  # "stops him with a hand on his back"
-                yield put, laid
-            return
         open_ = not ref.who and (preposition == "with" or (_carries(ref) and ref.family != "knee"))
         if ref.kind != "part" or not (open_ or ref.who == agents) or (preposition == "on" and not _carries(ref)):
             continue
@@ -134,26 +128,6 @@ def held(event: Event, found: Found, find: Find) -> Iterator[tuple[Event, Found]
 def _carries(part: Ref) -> bool:
     """True for what one kneels or stands on: "on his knees", "on one leg"."""
     return part.family == "knee" or (part.family in ("leg", "foot") and part.side != "both")
-
-
-def _is_other(part: Ref, agents: str) -> bool:
-    return len(part.who) == 1 and part.who not in agents
-
-
-def is_given(event: Event, entry: Entry) -> bool:
-    """True for a touch or blow that a noun says without anybody's name: "a slap, and he does not move"."""
-    nobody = event.subject is not None and event.subject.first == event.subject.last
-    done_to = any(shape.do in ("touch", "strike") for shape in entry.stage) and not entry.mutual
-    return event.lemma == PERFORM and event.noun is not None and nobody and done_to
-
-
-def given(event: Event, later: Iterable[Event]) -> Event:
-    """Such an event, as done by one person to the other: to the one of whom the text goes on, else to b."""
-    subjects = (other.subject for other in later if other.subject is not None)
-    whom = next((ref.who for ref in subjects if ref.kind == "person" and ref.lemma and len(ref.who) == 1), "b")
-    giver = Ref("person", "a" if whom == "b" else "b")
-    noun = replace(event.noun or event, subject=giver, object=Ref("person", whom))
-    return replace(event, subject=giver, noun=noun)
 
 
 def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tuple[str, Event]]:
@@ -191,8 +165,6 @@ def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tup
             noun=None,
             direction=None,
         )
-        if preposition == "for" and event.countered:  # "goes in for a kiss, but she turns away"
-            done.modality = "tried"
         words = [word for word in event.words if word not in event.particles]
         performed = replace(done, lemma=PERFORM, object=ref, dative=done.object, words=words, noun=done)
         yield preposition, done if ref.lemma in known.frames and not own else performed

@@ -123,9 +123,6 @@ class ClauseTree:
         if token.dep_ == "pobj" and token.pos_ == "NOUN" and token.head.lower_ in NOUNMARKS:
             known = self.lemma(token) in self._verbs and token.tag_ == "NN"  # "after a quick hug"
             known = known and not self._words.part(token.lemma_.lower())
-            bare = not any(c.dep_ in ("det", "poss", "amod", "nummod") for c in token.children)
-            if bare and token.lemma_.lower() in self._words.verbs["no_nouns"]:
-                return False  # "after work"
             return known and token.head.head.pos_ in ("VERB", "AUX") and not self._words.is_person(token.lemma_.lower())
         if token.dep_ == "ROOT" and token.pos_ in ("NOUN", "PROPN", "ADJ", "INTJ", "ADV", "ADP", "X"):
             return self.lemma(token) in self._verbs or token.i in self._lemmas
@@ -147,20 +144,7 @@ class ClauseTree:
         if any(child.dep_ in ("nsubj", "nsubjpass") for child in token.children):
             return head
         later = [self.doc[i] for i in self.mains if head.i < i < token.i and self.doc[i].sent == token.sent]
-        if (beside := self._within(token, head)) is not None:
-            return beside
         return next((t for t in reversed(later) if any(c.dep_ == "nsubj" for c in t.children)), head)
-
-    def _within(self, token: Token, head: Token) -> Token | None:
-        """The verb of a clause beside ``head`` that goes on: "he steps back as she points at him and comes closer"."""
-        stop = next((c for c in head.children if c.dep_ == "cc" and c.i < token.i), token)
-        for at in range(stop.i - 1, head.i, -1):
-            verb = self.doc[at]
-            if verb.text in (",", ";"):
-                return None
-            if is_finite(verb) and verb.dep_ == "advcl" and any(c.dep_ == "nsubj" for c in verb.children):
-                return verb if verb.tag_ == token.tag_ else None
-        return None
 
     def is_main(self, token: Token) -> bool:
         """True for a clause that stands by itself in the order of the text."""

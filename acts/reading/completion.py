@@ -77,8 +77,6 @@ def of_the_last(event: Event, acts: Sequence[Act]) -> Event | None:
 def _meant(event: Event, acts: Sequence[Act], known: Lexicon) -> str | None:
     """The other person, where a verb without an object follows what was done to them."""
     last, subject = next(reversed(acts), None), event.subject
-    if event.lemma in vocabulary().verbs["sees"] and subject is not None:
-        return other_of(subject.who) or None
     if last is None or subject is None or subject.who != "".join(last.agents):
         return None
     bare = not event.particles and not event.prepositions and event.lemma in known.frames
@@ -92,8 +90,6 @@ def _is_implied(subject: Ref | None) -> bool:
 
 # ---- repeats -------------------------------------------------------------------------------------------
 _SAME = frozenset(("same", "it", "that", "this", "likewise", "so"))
-_EXCHANGES = frozenset(("switch", "swap", "change", "exchange", "trade", "reverse"))
-_OTHER = {"a": "b", "b": "a"}
 _MIRRORED = {"left": "right", "right": "left"}
 _MOVEMENTS = frozenset(("movement", "move", "gesture", "motion", "pose", "step", "action"))
 
@@ -136,19 +132,3 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
         "part_of": agents[0] if last.part_of in last.agents else last.part_of,
         "side": event.side or (_MIRRORED.get(last.side or "", last.side) if event.lemma == "mirror" else last.side),
     }
-
-
-def exchanged(event: Event, acts: Sequence[Act]) -> list[Act]:
-    """The last acts of one person each, done by the other, where an event says that roles are exchanged; or none."""
-    ref = event.object
-    if event.lemma not in _EXCHANGES or ref is None or ref.lemma != "role" or event.denied:
-        return []
-    first = len(acts)
-    while first and len(acts[first - 1].agents) == 1:
-        first -= 1
-    return [_exchanged(act) for act in acts[first:]]
-
-
-def _exchanged(act: Act) -> Act:
-    people = {"agents": tuple(_OTHER[who] for who in act.agents), "patient": _OTHER.get(act.patient or "")}
-    return act.model_copy(update={**people, "part_of": _OTHER.get(act.part_of or ""), "order": ()})

@@ -1,7 +1,7 @@
-"""Verbs that a text leaves out, supplied before it is parsed: "(do) two lunges forward", "the coach (is) behind".
+"""Verbs that a text leaves out, supplied before it is parsed: "(do) two lunges forward", "left, (throws) right".
 
-Stage directions and training plans name what is done by a noun and how somebody stands by a place. The parser finds no
-clause in them, so each such stretch between two marks gets the verb that it lacks.
+Stage directions and training plans name what is done by a noun. The parser finds no clause in them, so each such
+stretch between two marks gets the verb that it lacks.
 """
 
 from __future__ import annotations
@@ -21,16 +21,11 @@ _JOINS = frozenset((",", "and", "then"))
 _BEFORE_SIDES = frozenset(("to", "with", "on", "towards", "toward", "over", "by"))
 """Prepositions before a side, or a part of the body that has one."""
 _ARTICLES = frozenset(("a", "an", "another", "one"))
-_OF = frozenset(("of", "you", "us", "them", "the", "two"))
 _OTHERS = frozenset(("both", "one", "other", "first", "second", "each"))
 _OWNERS = frozenset(("his", "her", "their", "my", "your", "its", "the", "this", "that", "each", "no", "some"))
 _CLAUSES = frozenset(
     ("i", "you", "he", "she", "they", "we", "who", "is", "are", "was", "were", "as", "while", "until", "to")
 )
-_NOT_PLACES = frozenset(("with", "without", "of", "from", "like", "for", "by", "after", "before", "to", "past", "off"))
-_OBJECTS = _OWNERS | _ARTICLES | {"it", "him", "them", "me", "you", "us"}
-_HALVES = frozenset((("a", "half"), ("a", "full")))
-"""How a turn begins that stands for the adverb "around"."""
 PERFORM = "perform"
 """The verb of a noun that has none, which the parser takes for nothing else."""
 _LONGEST = 5
@@ -50,16 +45,13 @@ class Ellipsis:
         self._words = vocabulary()
         self._last = ""
         """The last verb of the sentence, also one that was supplied."""
-        self._stands: dict[int, str] = {}
 
     def before(self, i: int) -> str:
         """The verb to supply before the word ``i``; "" for none. Asked for each word in order."""
         word = self._lower(i)
         if self._lower(i - 1) in ("", ".", "!", "?", ";"):
             self._last = ""
-        verb = self._stands.pop(i, "") or self._listed_side(i) or self._deed(i)
-        if not verb:
-            self._stand(i)
+        verb = self._listed_side(i) or self._deed(i)
         if verb or self._acts(i):
             self._last = verb.partition(" ")[0] or word
         return verb
@@ -68,30 +60,8 @@ class Ellipsis:
         """True if the sentence has a verb before the word that was asked for last."""
         return bool(self._last)
 
-    def _stand(self, i: int) -> None:
-        """Notes the verb "be" behind a person who is said to be somewhere: "therapist behind", "both in a squat"."""
-        if self._lower(i - 1) not in _ENDS:
-            return
-        at, many = i, False
-        while self._lower(at) in _OWNERS or self._count(at):
-            many, at = many or self._count(at) > 1, at + 1
-        if other := self._lower(at) in _OTHERS:
-            many, at = many or self._lower(at) == "both", at + 1
-        while other and self._lower(at) in _OF:
-            at += 1
-        word = self._lower(at)
-        if self._words.is_usual_person(word.removesuffix("s")) and not self._words.part(word):
-            many, at = many or word.endswith("s") or word in self._words.both, at + 1
-        elif not other:
-            return
-        going = other and self._ending(self._lower(at)) == "ing" and not self.has_verb(at + 1)
-        if going:  # "one leading and the other following"
-            self._stands[at] = "are" if many else "is"
-        if self._lower(at) in PREPOSITIONS - _NOT_PLACES and not self.has_verb(at):
-            self._stands[at] = "are" if many else "is"
-
     def _deed(self, i: int) -> str:
-        """The verb that a noun of a deed lacks: "(do) two hops, (turn) a half turn, then (do) a bow"."""
+        """The verb that a noun of a deed lacks: "(do) two hops, then (do) a bow"."""
         count, listed = self._count(i), self._lower(i - 1) in _ENDS
         if self._lower(i - 1) == "and":  # "throws a jab and a hook" has its verb
             listed = self._last.startswith(PERFORM)
@@ -111,12 +81,8 @@ class Ellipsis:
         plural = any(word.endswith("s") or word in self._words.both for word in before)
         if plural or any(map(self._words.is_person, (*before, one))):
             return ""  # "two boxers throw punches", "two people do jumping jacks"
-        if one in self._words.seconds and self._lower(at) in self._words.directions and self._last:
-            return f"{self._last} for"  # "march, (march for) eight counts forward"
         if (count > 1) == (one == noun) or not (self._is_deed(one) or self._is_deed(one.removesuffix("e"))):
             return ""
-        if one == "turn" and (self._lower(i), self._lower(i + 1)) in _HALVES:
-            return self._form("turn")
         return self._form("take" if one in ("step", "pace") else PERFORM)
 
     def _is_headline(self, i: int) -> bool:
@@ -165,18 +131,11 @@ class Ellipsis:
         ending = self._ending(word)
         if ending is None or self._words.part(word) or self._words.part(word.removesuffix("s")):
             return False
-        if before == "her" and self.is_object(i - 1):
-            return True
         if before in _OWNERS | _ARTICLES | PREPOSITIONS or before in self._words.numbers:
             return False
         if ending in ("s", "ed", "ing"):
             return True
         return before in _ENDS | _CLAUSES
-
-    def is_object(self, i: int) -> bool:
-        """True for the "her" of "the friend behind her catches it", which owns no catches."""
-        verb = self._lower(i - 1) in PREPOSITIONS and self._ending(self._lower(i + 1)) == "s"
-        return self._lower(i) == "her" and verb and self._lower(i + 2) in _OBJECTS
 
     def has_verb(self, i: int) -> bool:
         """True if a verb, or another clause, stands between a word and the next mark."""

@@ -67,11 +67,10 @@ def parses(written: Text, speller: Speller) -> Iterator[Parse]:
     """The parses of a text, the likeliest first."""
     whole = written.ended()
     left = max(min(_MOST, _MOST_CHARACTERS // max(len(written.original), 1)) - 1, 0)
-    first, *others = _stopped(whole or written, speller)
+    first = _stopped(whole or written, speller)
     yield first
-    yield from others[:left]
     if whole is not None and left > 0:
-        yield _stopped(written, speller)[0]
+        yield _stopped(written, speller)
         left -= 1
     for at, change in list(speller.suspects(first.doc).items())[:left]:
         base = not change[0].endswith(("s", "ed"))  # is a noun more often
@@ -80,14 +79,11 @@ def parses(written: Text, speller: Speller) -> Iterator[Parse]:
             yield other
 
 
-def _stopped(text: Text, speller: Speller) -> list[Parse]:
-    """The parses of a text with the stops that it lacks; one if there is no doubt where they stand."""
+def _stopped(text: Text, speller: Speller) -> Parse:
+    """The parse of a text with the stops that it lacks."""
     found = _with_verbs(text, speller)
-    missing = [
-        frozenset(found.text.number(token.idx) for token in breaks(found.doc, found.lemmas, within))
-        for within in (False, True)
-    ]
-    return [_with_verbs(text.broken(at), speller) if at else found for at in dict.fromkeys(missing)]
+    missing = frozenset(found.text.number(token.idx) for token in breaks(found.doc, found.lemmas))
+    return _with_verbs(text.broken(missing), speller) if missing else found
 
 
 def _with_verbs(text: Text, speller: Speller) -> Parse:
@@ -109,20 +105,16 @@ _PEOPLE = frozenset(("other", "one", "first", "second"))
 """Words that stand for a person behind an article."""
 
 
-def breaks(doc: Doc, lemmas: Mapping[int, str], within: bool = False) -> Iterator[Token]:
+def breaks(doc: Doc, lemmas: Mapping[int, str]) -> Iterator[Token]:
     """The words before which a stop is missing, each the first of the next clause's subject.
 
     Args:
         doc: a parsed text.
         lemmas: true lemmas, by token, of verbs that others stand for.
-        within: whether a noun before a person is the object of the clause before, as in "brings a tray guest says", and
-            no part of the subject, as in "waves a tennis player says".
     """
     before: Token | None = None
     below = False
     for token in doc:
-        if before is not None and token.lower_ == "and" and _joins_person(token):
-            yield token
         if token.is_sent_start or token.pos_ in ("PUNCT", "CCONJ"):
             before, below = None, False
         elif token.pos_ == "SCONJ" or token.tag_ in ("WRB", "WP", "WDT") or token.dep_ == "mark":
@@ -134,22 +126,8 @@ def breaks(doc: Doc, lemmas: Mapping[int, str], within: bool = False) -> Iterato
                 and not below
                 and (noun := _subject_behind(token, before, lemmas)) is not None
             ):
-                yield _person_in(noun) if within else _first(noun)
+                yield _first(noun)
             before = token
-
-
-def _joins_person(conjunction: Token) -> bool:
-    """True where a thing is joined to a person who acts: "A holds the ladder and B climbs it"."""
-    thing, doc = conjunction.head, conjunction.doc
-    if thing.pos_ != "NOUN" or thing.i > conjunction.i or _is_person(thing):
-        return False
-    person = next((c for c in thing.children if c.dep_ == "conj" and c.i > conjunction.i), None)
-    if person is None or not _is_person(person):
-        return False
-    behind = doc[person.right_edge.i + 1] if person.right_edge.i + 1 < len(doc) else person
-    return (behind.tag_ in _FINITE and behind.pos_ == "VERB") or any(
-        t.tag_ in _FINITE and t.dep_ != "relcl" for t in doc[person.i + 1 : person.right_edge.i + 1]
-    )
 
 
 def _is_person(noun: Token) -> bool:
@@ -202,9 +180,3 @@ def _first(noun: Token) -> Token:
     while at > 0 and noun.doc[at - 1].dep_ in _WITHIN and noun.doc[at - 1].head in (noun, noun.doc[at]):
         at -= 1
     return noun.doc[at]
-
-
-def _person_in(noun: Token) -> Token:
-    """The person behind a thing in a compound, or the first word of any other noun phrase."""
-    things = [c for c in noun.children if c.dep_ == "compound"]
-    return noun if things and not vocabulary().is_person(things[-1].lemma_.lower()) else _first(noun)

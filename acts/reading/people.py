@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 
 from acts.events import Ref
 from acts.plan import Person, other_of
-from acts.things import kind_of
 
 from . import wordnet
-from .syntax import IN_PLACE, is_likeness
+from .syntax import is_likeness
 from .vocabulary import Vocabulary, vocabulary
 
 if TYPE_CHECKING:
@@ -49,8 +48,6 @@ class Cast:
         self._known: dict[str, _Known] = {}
         self._pair = _Known()
         """What words for both say about each: "two men"."""
-        self._lettered = False
-        """Somebody is called A or B, so that there is another for "they" to mean, too."""
         self.last = ""
         self.focus = ""
         """The subject of what the two did together, of whom a pronoun goes on: "A hugs B. He waves."."""
@@ -117,11 +114,7 @@ class Cast:
         if text in ("another", "else", "someone", "somebody"):
             return self._new(lemma, token)
         if text in (A_NAME.lower(), B_NAME.lower()) and token.text in (A_NAME, B_NAME):
-            self._lettered = True
             return self._as("a" if token.text == A_NAME else "b", "person")
-        if self._is_unlike_pair(token):
-            self.third.append(token)
-            return None
         acts = token.dep_ in ("nsubj", "nsubjpass", "poss")
         # "her teddy bear"
         small = token.text.islower() and not self._words.is_usual_person(lemma) and not acts
@@ -136,15 +129,6 @@ class Cast:
             self._describe(token, self._known[who])
         return who
 
-    def _is_unlike_pair(self, token: Token) -> bool:
-        """True for a person who is neither of the two that were named together: "two kids fight, mom comes"."""
-        if self._known or token.tag_ not in ("NN", "NNP"):
-            return False
-        lemma = token.lemma_.lower()
-        sex, age = self._words.sex(lemma), self._words.age(lemma)
-        grown = self._pair.age == "child" and bool(sex) and age != "child"
-        return grown or (bool(sex) and bool(self._pair.sex) and sex != self._pair.sex)
-
     def _noun(self, token: Token, lemma: str, children: set[str], subject: str) -> str | None:
         if "one" in children:
             return self._as("a" if "a" not in self._known or self.last == "b" else "b", lemma)
@@ -152,13 +136,9 @@ class Cast:
             return self._new(lemma, token)
         if "other" in children:
             return self._other(subject)
-        if lemma == "partner" and not self._known:  # of the person addressed
-            self.address("a")
         own = self._has(lemma)
         if own and not (own == subject and len(subject) == 1):
             return self._as(own, lemma)
-        if own and "'s" not in children:
-            return self._as(own, lemma) if not subject else self._new(lemma, token)
         return self._new(lemma, token)
 
     def _is_somebody(self, token: Token, lemma: str, children: set[str]) -> bool:
@@ -185,17 +165,7 @@ class Cast:
         """True for a noun that is a person where it acts: "the model poses", "the base lies on her back"."""
         if len(self._known) == 2 or self._words.part(token.lemma_.lower()):
             return False
-        own = (t for t in token.head.subtree if t.tag_ == "PRP$" and t.lower_ in PRONOUN_SEX and t.i > token.i)
-        bodily = any(self._words.part(t.head.lemma_.lower()) for t in own)
-        named = wordnet.may_be_person(token.lemma_.lower()) and not self._is_of_fable(token)
-        return named or (bodily and not self._known)
-
-    def _is_of_fable(self, token: Token) -> bool:
-        """True for the subject of "a dragon eats the moon": neither of two people does so to a thing."""
-        nouns = [c.lemma_.lower() for c in token.head.children if c.dep_ == "dobj" and c.pos_ == "NOUN"]
-        new = any(c.lower_ in ("a", "an") for c in token.children)
-        things = (noun for noun in nouns if not (self._words.part(noun) or self._words.is_person(noun)))
-        return any((new or not kind_of(noun)) and not wordnet.is_animal(noun) for noun in things)
+        return wordnet.may_be_person(token.lemma_.lower())
 
     def _is_acting_animal(self, token: Token, lemma: str) -> bool:
         """True for the animals of a fable, which act as people do where nobody else is there to act."""
@@ -203,7 +173,6 @@ class Cast:
         if not free or not wordnet.is_animal(lemma) or self._words.part(lemma):
             return False
         acts = token.dep_ in ("nsubj", "nsubjpass") or any(wordnet.is_animal(w) for w in self.animals)
-        acts = acts and not self._is_of_fable(token)
         if acts:
             self.animals.add(lemma)
         return acts
@@ -276,9 +245,6 @@ class Cast:
             likely = self.focus or self.last
             who = likely if likely in known else (known or open_)[0]
             self._known.setdefault(who, _Known()).sex = sex
-        elif len(subject) == 1 and not self._known.get(subject, _Known()).sex:
-            who = subject  # "she draws him after her"
-            self._known.setdefault(who, _Known()).sex = sex
         else:
             who = (other_of(subject) or "a") if subject else self.last or "a"
         self.last = who
@@ -287,15 +253,7 @@ class Cast:
     def _they(self, text: str, subject: str) -> str:
         if len(subject) == 1 and text in ("them", "us"):
             return self._other(subject)
-        alone = set(self._known) == {"a"} and not self._lettered
-        if text == "they" and alone and self._is_anyone("a"):
-            return self._as("a", "they")
         return "ab"
-
-    def _is_anyone(self, who: str) -> bool:
-        """True for somebody of whom no more is known than that they are a person."""
-        known = self._known[who]
-        return not known.sex and bool(known.words) and set(known.words) <= ANYONE
 
     def address(self, who: str) -> None:
         """Says that an order is given to this person."""
@@ -321,9 +279,6 @@ class Cast:
                     return "ab" if len(subject) == 2 else ""
                 if text == "your" and not self._has("you"):  # of an order: whoever is addressed
                     return "ab" if len(subject) == 2 else subject
-                if text == "whose":
-                    clause = next((t for t in token.ancestors if t.dep_ == "relcl"), None)
-                    return (self.person(clause.head, "") or "") if clause is not None else ""
                 if text in ("my", "your"):
                     return self._named("i" if text == "my" else "you") or ""
                 if child.lower_ == "other" and any(c.lower_ in ("each", "one") for c in child.children):
@@ -352,8 +307,6 @@ class Cast:
                 return subject
             if own and own != sex:
                 return other
-            if not own and others == sex:
-                return other
             return ""
         owner = next((who for who in "ab" if who in self._known and self._known[who].sex == sex), "")
         told = any(known.sex for known in self._known.values())
@@ -375,8 +328,6 @@ def begins_clause(pronoun: Token) -> bool:
 def states_of(noun: Token) -> Iterator[tuple[Token, str]]:
     """The phrases of place or posture that hang on a noun or on its adjective, with their verbs: "a man in a chair"."""
     words = vocabulary()
-    if (verb := noun.lemma_.lower().removesuffix("er")) in IN_PLACE:
-        yield noun, verb  # "the sleeper"
     within = [noun, *(c for c in noun.children if c.dep_ in ("amod", "acl", "appos") and c.pos_ == "ADJ")]
     for phrase in (c for token in within for c in token.children if c.dep_ == "prep"):
         for place in phrase.children:

@@ -16,7 +16,7 @@ from motion import InputError
 
 from . import beside
 from .clauses import spans
-from .completion import completed, exchanged, of_the_last, repeated
+from .completion import completed, of_the_last, repeated
 from .matching import Found, matcher
 from .parses import parses
 from .reader import Reader
@@ -152,16 +152,11 @@ class _Planner:
         if self._in_turn(number, event) or self._repeated(number, event, bool(inner)):
             return
         found = self._matcher.find(event)
-        if found is not None and beside.is_given(event, self._known.entries[found[0]]):
-            event = beside.given(event, self._events[number + 1 :])
-            found = self._matcher.find(event)
         if (theirs := of_the_last(event, self._acts)) is not None and (other := self._matcher.find(theirs)) is not None:
             touches = self._known.entries[other[0]].group in ("touch", "care") and other[2].patient
             held = theirs.object is not None and theirs.object.definite  # "takes his ankle and bends the knee"
             if touches and (held or found is None or other[2].score >= found[2].score):
                 event, found = theirs, other
-        if event.noun is not None and found is not None and found[2].part is event.noun.object is not None:
-            event = event.noun  # "touches her back"
         if self._about_another(event) and inner and (found is None or found[2].score < 2.4):
             return
         if found is None and event.lemma == "be":
@@ -180,8 +175,6 @@ class _Planner:
         if vague and not (found is not None and inner) and (noun := self._noun(event, found)) is not None:
             event, found = noun
         elif formed and (vague or event.lemma in _STATES | _STANDS or formed[0][0].lemma == event.lemma):
-            if event.lemma == "be" and event.joint == "conj":  # "two lunges, both in unison"
-                event.joint = "with"
             (event, found), *formed = formed
         if found is not None and not self._known.entries[found[0]].shown:
             self._unread.append(Unread(words=self._span(number), why="This is nothing that bodies show."))
@@ -220,12 +213,7 @@ class _Planner:
             for other, line in self._found(beside.formations(event, ["form line"])):
                 self._add(number, other, *line, beside=at_once)
         for other, posture in beside.held(event, found, self._matcher.find):
-            laid = posture[2].part
-            if laid is not None and posture[2].patient and "touch" in shown and found[2].part is None:
-                where = {"part": laid.lemma, "part_of": posture[2].patient}
-                self._acts.append(self._acts.pop().model_copy(update=where))  # "stops him with a hand on his back"
-            else:
-                self._add(number, other, *posture, beside=at_once)
+            self._add(number, other, *posture, beside=at_once)
         if (sits := beside.seated(event, found, self._known, told)) is not None:
             for other, sat in self._found([sits]):
                 self._add(number, other, *sat, beside=at_once)
@@ -255,14 +243,7 @@ class _Planner:
         return [*self._prepared.formations(span.start, span.stop), *([_CANON] if number in self._in_turns else ())]
 
     def _repeated(self, number: int, event: Event, has_inner: bool) -> bool:
-        """Adds the last act once more where the words say so, or the last few with the roles exchanged."""
-        for act in exchanged(event, self._acts):
-            own, after = str(len(self._acts) + 1), Relation(kind="after", act=self._acts[-1].id)
-            self._acts.append(act.model_copy(update={"id": own, "words": self._span(number)}))
-            self._beside[own] = after
-            self._of[number] = own
-        if number in self._of:
-            return True
+        """Adds the last act once more where the words say so."""
         last = next(reversed(self._acts), None)
         told = None if last is None else repeated(event, last, has_inner, self._known)
         if last is None or told is None:

@@ -11,13 +11,13 @@ from acts.frames import best
 from acts.lexicon import Lexicon
 
 from . import wordnet
-from .absolute import Absolute, absolutes, own_part
+from .absolute import Absolute, absolutes
 from .arguments import Arguments
 from .clauses import MARKS, NOUNMARKS, ClauseTree, tells_on
 from .people import A_NAME, B_NAME, Cast
 from .references import names_one, reference
-from .subjects import Subjects, ends_before, give_roles, goes_on, is_passive, is_suffered, other_person, state_of
-from .syntax import conjunction, is_ongoing, seems
+from .subjects import Subjects, give_roles, goes_on, is_passive, state_of
+from .syntax import is_ongoing, seems
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -119,7 +119,6 @@ class Reader:
             )
             if found.verb == "put":
                 self._arguments.place(found.state, who, event)
-                event.prepositions = [(word, own_part(word, target, event)) for word, target in event.prepositions]
             elif found.verb == "hold" or found.state.lower_ in self._words.directions:
                 event.words.append(found.state.lower_)
                 event.direction = self._words.directions.get(found.state.lower_)
@@ -136,12 +135,8 @@ class Reader:
             held = self.cast.seen.get(before.i) or reference(before, self.cast, "")
             return held if held.kind == "person" else Ref("person", "ab")
         subject = self.events[self._of[clause.i]].subject
-        if any(t.text == ":" for t in self.doc[found.preposition.i : clause.i]):
-            return Ref("person", "ab")  # said of both, before anybody is named
         if before.pos_ in ("NOUN", "PROPN") and found.state.lower_ == "behind":
             return self.cast.seen.get(before.i, subject)  # "cuffs the thief, hands behind his back"
-        if subject is not None and subject.lemma == "partner" and found.part.idx < subject.first:
-            return other_person(subject)  # "left knee up, partner mirrors it"
         return subject
 
     def _clause_of(self, found: Absolute) -> Token | None:
@@ -185,11 +180,9 @@ class Reader:
         self._polarity(token, head, event)
         agent = self._arguments.fill(token, event)
         above = self._event_of(token.head) if goes_on(token) else None
-        suffered = is_suffered(token, event, self._known)
-        kind = "main-after" if suffered and kind == "while" else kind
         state = None if agent is not None else state_of(token, event, self._known)
         event = state or event
-        if state is None and (above is not None or suffered or is_passive(token)):
+        if state is None and (above is not None or is_passive(token)):
             agent = agent or (above.subject if above is not None else None)  # "is dipped by him and then spun out"
             give_roles(token, event, agent)
         if event.object is None and event.dative is not None:
@@ -207,9 +200,6 @@ class Reader:
                 above.object = subject  # "helps him stand": in the syntax, he is only the second verb's
         self._joints.append((event, token, kind, beside))
         self.events.append(event)
-        countered = self._event_of(token.head) if token.dep_ == "conj" else None
-        if countered is not None and conjunction(token) == "but":
-            countered.countered = True
 
     def _is_mutual(self, event: Event) -> bool:
         """True for what the two do together even where one is named first."""
@@ -228,9 +218,6 @@ class Reader:
         if ref.kind != "person" or all(child.dep_ not in ("prep", "dobj") for child in token.children):
             self.cast.seen.pop(token.i, None)
             return
-        behind = self.doc[token.right_edge.i + 1] if token.right_edge.i + 1 < len(self.doc) else None
-        if behind is not None and behind.tag_ in ("VBZ", "VBD") and ends_before(token, behind):
-            return  # it is that verb's subject
         before = self.events[self._of[token.head.i]]
         event = Event(
             before.lemma,
@@ -294,21 +281,14 @@ class Reader:
         self._inherited(token, head, event)
 
     def _inherited(self, token: Token, head: Token | None, event: Event) -> None:
-        """Takes over what the verb above says of a clause: that it is denied, tried, wished or prevented."""
-        marks = {child.lower_ for child in token.children if child.dep_ == "mark"}
-        if head is not None and token.dep_ == "advcl" and "before" in marks:
-            stops = self._event_of(head)
-            if stops is not None and stops.lemma in self._words.verbs["prevents"]:
-                event.modality = "wished"  # "catches him before he falls"
+        """Takes over what the verb above says of a clause: that it is denied, tried or wished."""
         asked = token.dep_ == "acl" and token.tag_ == "VB"  # "asks the princess to dance"
         if head is None or not (asked or token.dep_ in ("xcomp", "ccomp", "pcomp", "advcl")):
             if head is not None and token.dep_ == "conj":
                 above = self._event_of(head)
-                if above is not None and not any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children):
-                    if above.denied and token.head.i == head.i and conjunction(token) == "or":
-                        event.denied = True
-                    if above.modality != "told" and head.dep_ in ("xcomp", "ccomp"):
-                        event.modality, event.denied = above.modality, event.denied or above.denied
+                own = any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)
+                if above is not None and not own and above.modality != "told" and head.dep_ in ("xcomp", "ccomp"):
+                    event.modality, event.denied = above.modality, event.denied or above.denied
             return
         above = self._event_of(head)
         if above is None or token.dep_ == "advcl":
@@ -325,8 +305,6 @@ class Reader:
             event.modality = above.modality if event.modality == "told" else event.modality
         elif above.lemma in verbs["ends"]:
             event.denied = True
-        elif above.lemma == "be" and "about" in above.words:
-            event.modality = "wished"
 
     def _event_of(self, head: Token) -> Event | None:
         number = self._of.get(head.i)

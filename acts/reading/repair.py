@@ -26,7 +26,6 @@ _SAFE_WITH_VERB = {"s": "starts", "ing": "starting", "ed": "started", "": "start
 _SUBJECTS = frozenset(("i", "you", "he", "she", "they", "we", "who", "someone", "somebody", "nobody", "everyone"))
 _DO = {"does": "makes", "do": "make", "did": "made"}
 """Forms of "do", and of a verb in the same form that is no part of another."""
-_CROWDS = frozenset(("audience", "crowd", "public", "class", "team", "band", "orchestra", "jury", "family"))
 _JOINS = frozenset(("and", "then", "but", ",", ";", "or"))
 _TAKEN_FOR = frozenset(("NOUN", "PROPN", "ADJ", "INTJ", "X"))
 """Parts of speech for which the parser takes a verb of a list."""
@@ -54,8 +53,8 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
         last = "" if token.is_sent_start else last
         form = forms.get(token.lower_)
         if form is not None and (
-            (_is_other(token) and (_after_person(token, form[1]) or _opens(token, form[1])))
-            or _coordinated(token, form[1], last, found)
+            (_is_other(token) and _after_person(token, form[1]))
+            or _coordinated(token, form[1], last)
             or _is_ordered(token, form[1])
             or _is_kept(token, form[1])
         ):
@@ -120,10 +119,7 @@ def _verbless(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> Iterator[Token]
 
 
 def _is_told(token: Token, ending: str) -> bool:
-    """True for a form of a verb behind its subject: "the man in the hat waves", "couple slow dancing"."""
-    if ending == "ing":
-        people = (t.lemma_.lower() for t in token.sent if t.i < token.i)
-        return token.tag_ == "NN" and any(vocabulary().is_person(noun) or noun in vocabulary().both for noun in people)
+    """True for a form of a verb behind its subject: "the man in the hat waves"."""
     return ending in ("s", "ed") and token.nbor(-1).pos_ in ("NOUN", "PROPN", "PRON")
 
 
@@ -188,10 +184,10 @@ def _ends_phrase(token: Token) -> bool:
     )
 
 
-def _coordinated(token: Token, ending: str, last: str, found: Mapping[int, object]) -> bool:
+def _coordinated(token: Token, ending: str, last: str) -> bool:
     """True for a bare noun behind "and" or a comma that has the form of the sentence's last finite verb.
 
-    "He yawns and stretches", "they clink glasses and drink" and "grab her and twirl her", beside "bread and drink".
+    "He yawns and stretches", "they clink glasses and drink" and "grab her and twirl her".
     """
     if token.pos_ not in _TAKEN_FOR or ending != last or not token.i or not _ends_phrase(token):
         return False
@@ -209,9 +205,6 @@ def _coordinated(token: Token, ending: str, last: str, found: Mapping[int, objec
     listed = listed or (earlier.pos_ == "VERB" and earlier.tag_ in _TAGS)  # "they meet, hug and part"
     if before.text == "," and ending == "" and not listed:
         return False
-    bare_noun = earlier.tag_ == "NN" and all(c.dep_ not in ("det", "poss") for c in earlier.children)
-    if ending == "" and bare_noun and earlier.idx not in found:
-        return False  # "they have bread and drink"
     following = _next(token)
     plural_list = earlier.tag_ == "NNS" and token.dep_ == "conj" and token.head == earlier
     return not plural_list or following is None or following.lower_ not in ("of", "for")
@@ -227,28 +220,6 @@ def _is_absolute(token: Token) -> bool:
     """True for "hands flying to his face" and "hand in hand", which stand beside a clause."""
     following = _next(token)
     return following is not None and (following.tag_ in ("VBG", "VBN") or following.lower_ == "in")
-
-
-def _opens(token: Token, ending: str) -> bool:
-    """True for "Kneeling, …" and "Mirror each …" at the beginning of a sentence, and for "…, kneeling, …" within it."""
-    following = _next(token)
-    if following is not None and token.i and token.nbor(-1).text == following.text == ",":
-        return ending == "ing"  # "The mother, kneeling, ties his shoes"
-    if not token.is_sent_start or following is None:
-        return False
-    if ending == "ing":
-        return following.text == ","
-    name = token.tag_ == "NNP" and token.dep_ not in ("nsubj", "nsubjpass", "compound", "poss")
-    if ending == "" and name and following.pos_ in ("ADV", "ADP"):
-        return not vocabulary().is_person(token.lower_)  # "march forward", which is no month
-    if ending == "" and following.text == "," and following.i + 1 < len(token.doc):
-        return not vocabulary().is_person(token.lower_) and following.nbor(1).lower_ in ("then", "and")
-    return (
-        ending == ""
-        and not vocabulary().is_person(token.lower_)
-        and (following.pos_ in ("DET", "PRON") or following.lower_ in ("each", "one", "your", "both"))
-        and not any(child.dep_ in ("det", "poss") for child in token.children if child.i < token.i)
-    )
 
 
 def _after_person(token: Token, ending: str) -> bool:
@@ -268,7 +239,6 @@ def _after_person(token: Token, ending: str) -> bool:
         before.i > 0 and before.nbor(-1).lower_ in ("two", "both", "2")
     )
     many = before.tag_ in ("NNS", "NNPS") or before.lower_ in ("both", "people") or the_two or counted
-    many = many or (ending == "" and _is_paired(before))
     if ending != "s" and not many and not one:
         return False
     if ending == "s" and many and before.lower_ not in ("second", "first"):
@@ -276,17 +246,8 @@ def _after_person(token: Token, ending: str) -> bool:
     return (
         one
         or the_two
-        or before.lower_ in _CROWDS
         or before.lower_ == "both"
         or vocabulary().is_person(before.lemma_.lower())
         or wordnet.is_animal(before.lemma_.lower())
         or (many and before.lemma_ in vocabulary().both)
     )
-
-
-def _is_paired(noun: Token) -> bool:
-    """True for the second of two people: "a father and his little daughter dance"."""
-    at = noun.i - 1
-    while at > noun.sent.start and noun.doc[at].pos_ in ("DET", "ADJ", "PRON"):
-        at -= 1
-    return noun.doc[at].lower_ == "and" and vocabulary().is_person(noun.doc[at - 1].lemma_.lower())

@@ -12,7 +12,7 @@ from acts.lexicon import Lexicon
 from acts.plan import other_of
 
 from .clauses import ClauseTree, is_finite
-from .people import A_NAME, B_NAME, Cast, begins_clause
+from .people import Cast
 from .references import reference
 from .vocabulary import vocabulary
 
@@ -23,16 +23,7 @@ _PROMISES = frozenset(("promise", "threaten"))
 """Verbs whose subject does what follows, where others' objects do."""
 ORDINALS = frozenset(("other", "first", "second", "former", "latter"))
 """Words that stand for one of the two behind "the"."""
-_OPENS = frozenset((".", ";", ":", "!", "?", ",", "and", "then"))
-"""What stands before a clause."""
 _SOMEBODY = frozenset(("him", "her", "his", "me", "my"))
-
-
-def ends_before(noun: Token, verb: Token) -> bool:
-    """True for a noun that the parser joined to what stands before, and whose phrase ends where a verb begins."""
-    joined = noun.dep_ == "conj" and noun.tag_ == "NN" and noun.right_edge.i == verb.i - 1
-    own = any(child.dep_ in ("nsubj", "nsubjpass") for child in verb.children)
-    return joined and not own and any(child.dep_ == "det" for child in noun.children)
 
 
 class Subjects:
@@ -77,10 +68,8 @@ class Subjects:
         return bare and token.dep_ in ("ccomp", "advcl", "dep") and any(token.i < c.i for c in behind)
 
     def _subject_of(self, token: Token, head: Token | None) -> Ref | None:
-        if (told := self._told(token, head) or self._called(token)) is not None:
+        if (told := self._told(token, head)) is not None:
             return told
-        if (named := self._named_before(token)) is not None:
-            return named
         if token.dep_ in ("relcl", "acl", "amod") and token.head != head:
             found = self._antecedent(token)
             handles = token.tag_ == "VBG" and any(c.dep_ == "dobj" for c in token.children)
@@ -105,8 +94,6 @@ class Subjects:
         main = self._tree.main_before(token)
         if main is not None and main < token.i:  # "creeps up, covers her eyes", where the second became the main one
             return self._found.get(main)
-        if token.tag_ in ("VBD", "VBZ") and (behind := self._behind(token)) is not None:
-            return behind
         if token.dep_ == "ROOT" or head is None:
             # "grab her by the wrist" is said to one
             alone = self._cast.alone or any(t.lower_ in _SOMEBODY or self._is_someone(t) for t in token.subtree)
@@ -114,16 +101,6 @@ class Subjects:
                 self._cast.address("a")
             return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)
         return None
-
-    def _called(self, token: Token) -> Ref | None:
-        """The person to whom a clause is said that begins with their name: "A, run at B"."""
-        if token.i < 2 or token.nbor(-1).text != "," or token.tag_ not in ("VB", "VBP"):
-            return None
-        name = token.nbor(-2)
-        before = name.nbor(-1).lower_ if name.i else "."
-        if before not in _OPENS or not (name.text in (A_NAME, B_NAME) or self._words.is_person(name.lower_)):
-            return None
-        return reference(name, self._cast, "")
 
     def _told(self, token: Token, head: Token | None) -> Ref | None:
         """The subject that stands beside a verb."""
@@ -137,10 +114,6 @@ class Subjects:
             if child.dep_ in ("nsubj", "nsubjpass", "csubj", "expl"):
                 if child.tag_ in ("WP", "WDT") and (token.dep_ == "relcl" or child.lower_ == "who"):
                     found = self._antecedent(token) if token.dep_ == "relcl" else None
-                    if child.lower_ == "who" and (found is None or found.kind == "thing"):
-                        found = self._person_before(child) or found
-                    if child.lower_ == "who" and found is not None and found.kind == "part" and found.who:
-                        return Ref("person", found.who)  # "holds the ankle of the patient, who lies"
                     return found
                 if child.tag_ in ("VBZ", "VBD") and (known := self._found.get(child.i)) is not None:
                     return known  # "she leans back, then kicks"
@@ -148,8 +121,6 @@ class Subjects:
                 if child.lower_ in ("nobody", "neither", "none") or (
                     child.lower_ == "one" and "no" in {c.lower_ for c in child.children}
                 ):
-                    return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
-                if child.lower_ in ("both", "each", "all") and ref.kind != "person":
                     return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
                 return ref
             if child.dep_ == "poss" and token.dep_ == "ccomp" and head is not None:  # "helps her walk"
@@ -164,37 +135,11 @@ class Subjects:
                 return Ref("person", "ab", child.lower_, first=child.idx, last=child.idx + len(child.text))
         return None
 
-    def _person_before(self, who: Token) -> Ref | None:
-        """The person named last before "who", where the clause hangs on something else."""
-        refs = (self._cast.seen.get(i) for i in range(who.i - 1, who.sent.start - 1, -1))
-        return next((ref for ref in refs if ref is not None and ref.kind == "person"), None)
-
     def _is_someone(self, noun: Token) -> bool:
         """True for one person to whom something is done, but not for "your partner", whom both have."""
         lemma = noun.lemma_.lower()
         done_to = noun.dep_ in ("dobj", "dative", "poss") and noun.tag_ == "NN" and lemma != "partner"
         return done_to and self._words.is_person(lemma)
-
-    def _behind(self, token: Token) -> Ref | None:
-        """The person behind a verb that nobody stands before: "…, said the witch"."""
-        objects = (child for child in token.children if child.dep_ in ("dobj", "dative") and child.i > token.i)
-        noun = next((child for child in objects if child.pos_ in ("NOUN", "PROPN")), None)
-        ref = reference(noun, self._cast, "") if noun is not None else None
-        return ref if ref is not None and ref.kind == "person" else None
-
-    def _named_before(self, token: Token) -> Ref | None:
-        """The person named right before a verb whom the parser took for a part of it, or for another's object.
-
-        As in "while Beth crouches", "he runs to Beth and Beth lifts him", "he hugs Beth and she waves" and "he holds
-        out his hand and the girl shakes it".
-        """
-        before = token.nbor(-1) if token.i and token.tag_ in ("VBZ", "VBD") else None
-        if before is None:
-            return None
-        if not begins_clause(before) and (before.tag_ != "NNP" or before.dep_ not in ("conj", "compound")):
-            before = next((noun for noun in (before, *before.ancestors) if ends_before(noun, token)), None)
-        ref = reference(before, self._cast, "") if before is not None else None
-        return ref if ref is not None and ref.kind == "person" else None
 
     def _antecedent(self, token: Token) -> Ref | None:
         noun = token.head
@@ -228,15 +173,6 @@ def goes_on(token: Token) -> bool:
     return being is not None and (token.tag_ == "VBN" or (present and token.tag_ == "VBD"))
 
 
-def is_suffered(token: Token, event: Event, known: Lexicon) -> bool:
-    """True for a participle of what was done to the subject: "shoved in the chest, he falls"."""
-    alone = token.tag_ == "VBN" and token.dep_ == "advcl" and event.object is None
-    own = any(c.dep_ in ("aux", "auxpass", "agent", "mark", "nsubj") for c in token.children)
-    if not alone or own or token.lower_ == "seated":
-        return False
-    return event.lemma in known.frames and best(known.frames, event) is None
-
-
 def state_of(token: Token, event: Event, known: Lexicon) -> Event | None:
     """A passive that only says how somebody is, as an event of "be": "they are seated"; None for other verbs."""
     if not is_passive(token) or any(child.dep_ == "agent" for child in token.children):
@@ -250,8 +186,6 @@ def state_of(token: Token, event: Event, known: Lexicon) -> Event | None:
 def give_roles(token: Token, event: Event, agent: Ref | None) -> None:
     """Makes the subject of a passive the one to whom it is done, and the agent, said or not, its subject."""
     subject = event.subject
-    if subject is not None and subject.kind == "part" and subject.who and _is_own(token):
-        agent = agent or Ref("person", subject.who)  # "whose hands are clasped behind his head"
     agent = agent or (other_person(subject) if subject is not None else None)
     if agent is None and subject is not None and subject.kind in ("thing", "part"):  # "is held out to her"
         of = [*(ref for _, ref in event.prepositions if ref.kind == "person"), Ref("person", subject.who)]
@@ -260,8 +194,3 @@ def give_roles(token: Token, event: Event, agent: Ref | None) -> None:
         event.dative, event.subject = subject, agent
     else:
         event.object, event.subject = subject, agent
-
-
-def _is_own(token: Token) -> bool:
-    """True for a participle of how a part of one's own body is: "crossed", "raised"."""
-    return token.lower_ in vocabulary().verbs["held"]

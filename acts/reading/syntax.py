@@ -162,8 +162,3 @@ def adverb_of(adjective: str) -> str:
     if adjective.endswith("ly"):
         return adjective
     return f"{adjective[:-1]}ily" if adjective.endswith("y") else f"{adjective}ly"
-
-
-def conjunction(token: Token) -> str:
-    """The word that joins what hangs on the same head: "and", "but", …; "" for none."""
-    return next((child.lower_ for child in token.head.children if child.dep_ == "cc"), "")

@@ -6,16 +6,13 @@ Each change keeps the offsets, so that what was understood can be shown in the t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import TYPE_CHECKING
-
-from acts.frames import PREPOSITIONS
 
 from .absolute import stands_absolutely
 from .ellipsis import Ellipsis
 from .people import A_NAME, B_NAME
 from .text import Text, names, tokens, without_request, without_speech
-from .vocabulary import FORMATION, vocabulary
+from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
     from .spelling import Speller
@@ -33,9 +30,6 @@ _SUBJECTS = frozenset(
 )
 _TOWARDS = frozenset(("at", "to", "with", "by", "from", "behind", "past", "towards", "toward", "around"))
 """Prepositions of people, after which a noun without an article lacks one."""
-_STOPS = frozenset((".", ";", ":", "!", "?"))
-_HEADING = 4
-"""Words before a colon that say how what follows is done, at most."""
 _INTENSIFIEDS = "up past round around behind through into across by over down out back there here beside"
 _INTENSIFIED = frozenset(_INTENSIFIEDS.split())
 """Words before which "right" and "way" only make more of a direction."""
@@ -78,16 +72,6 @@ class _Preparation:
         self._letters = names([word for word, _, _ in self._tokens], self._is_verb)
         self._ellipsis = Ellipsis(lambda i: self._letters.get(i, self._lower(i)).lower(), speller)
         self._pieces: list[tuple[str, int, int]] = []
-        self._leads = ("the", "follow") in pairwise(word.lower() for word, _, _ in self._tokens)
-
-    def _is_noun(self, i: int) -> bool:
-        """True for a word that another may stand before as an adjective: "her high heels"."""
-        word = self._lower(i)
-        return word.isalpha() and word not in PREPOSITIONS and word not in ("and", "then", "while", "as", "until")
-
-    def _names_dancer(self, i: int) -> bool:
-        """True for "lead" and "follow" as people: "the follow", "Lead dips the follow"."""
-        return self._lower(i - 1) in ("the", "a") or self._lower(i + 1).endswith("s")
 
     def text(self) -> Text:
         """The prepared text."""
@@ -134,9 +118,6 @@ class _Preparation:
         if self._stand_at(i, ("both", "of")):  # "takes both of her hands"
             self._pieces.append(("both", self._tokens[i][1], self._tokens[i + 1][2]))
             return 2
-        if (later := self._later(i)) > 0:
-            self._pieces.append(("later", self._tokens[i][1], self._tokens[i + later - 1][2]))
-            return later
         if self._lower(i) == "in" and self._lower(i + 1) == "front" and self._lower(i + 2) != "of":
             self._pieces.append(("ahead", self._tokens[i][1], self._tokens[i + 1][2]))
             return 2
@@ -180,14 +161,6 @@ class _Preparation:
     def _stand_at(self, i: int, words: Sequence[str]) -> bool:
         return all(self._lower(i + k) == word for k, word in enumerate(words))
 
-    def _later(self, i: int) -> int:
-        """The words of "two counts later" and "half a second later", which the parser takes for a clause; or 0."""
-        at = i
-        while self._lower(at) in ("half", "a") or self._lower(at) in self._words.numbers:
-            at += 1
-        unit = self._lower(at).removesuffix("s")
-        return at + 2 - i if at > i and unit in self._words.seconds and self._lower(at + 1) == "later" else 0
-
     def _pair(self, i: int) -> int:
         """Two tokens that are one word, as "person A" and "high five"; 2 if they were, else 0."""
         lower, following = self._lower(i), self._lower(i + 1)
@@ -223,16 +196,10 @@ class _Preparation:
     def _single(self, i: int) -> int:
         """One token; always 1."""
         word, start, stop = self._tokens[i]
-        if word == ":" and (mark := self._behind_label(i)) is not None:
-            self._pieces += [(mark, start, stop)] if mark else []
+        if word == ":" and i - 1 in self._letters:  # "A: waves"
             return 1
         if word == "," and self._words.directions.get(self._lower(i + 1), "").endswith("clockwise"):
             return 1  # "in a circle, clockwise"
-        if word.lower().startswith("mid-") and self._is_verb(self._lower(i - 1)):  # "freezes mid-step"
-            return 1
-        own = self._lower(i + 1) in ("his", "her", "their") and self._words.part(self._lower(i + 2)[:-1])
-        if word == "with" and own and self._words.part(self._lower(i - 1)):
-            self._pieces.append((",", start, start))  # "on his back with his knees bent"
         if stands_absolutely(self._lower, self._ellipsis.has_verb, i):
             self._pieces.append(("with", start, start))
         if self._pieces and self._pieces[-1][2] == start and word.istitle() and i not in self._letters:
@@ -240,18 +207,6 @@ class _Preparation:
         self._pieces += self._supplied(i)
         self._pieces.append((self._letters.get(i) or self._worded(i, word), start, stop))
         return 1
-
-    def _behind_label(self, i: int) -> str | None:
-        """The mark that stands for a colon behind a label: none behind a name, as "A: waves"; None for other colons."""
-        first = i
-        while first and self._tokens[first - 1][0] not in _STOPS:
-            first -= 1
-        if i - first == 1 and first in self._letters:
-            return ""
-        told = i == first or self._ellipsis.has_verb(first) or any(k in self._letters for k in range(first, i))
-        if told or i - first > _HEADING:
-            return None
-        return "," if self._pieces[-1][0] == FORMATION else "."
 
     def _supplied(self, i: int) -> list[tuple[str, int, int]]:
         """The article that a bare noun of a person lacks."""
@@ -296,16 +251,10 @@ class _Preparation:
 
     def _worded(self, i: int, word: str) -> str:
         lower, following = word.lower(), self._lower(i + 1)
-        if self._ellipsis.is_object(i):
-            return "them"  # which owns nothing
         if lower in self._words.shorthand:
             return self._words.shorthand[lower]
         if lower == "using" and self._ellipsis.has_acted() and self._lower(i - 1) not in _GOING:
             return "with"  # "kicks using the left leg"
-        if lower in ("low", "high") and self._lower(i - 1) == "her" and not self._is_noun(i + 1):
-            return self._words.directions[lower]  # "dips her low", who owns no lows
-        if self._leads and lower in ("lead", "follow") and self._names_dancer(i):
-            return f"{lower}er"
         if lower.endswith("s") and following.isalpha() and self._owns(i, lower[:-1]):
             return f"{self._words.shorthand.get(lower[:-1], word[:-1])}'s"  # "her brothers back"
         if (
@@ -316,9 +265,6 @@ class _Preparation:
             return f"to the {lower}"  # "turn left": no past of "leave"
         if word.islower() and word.isalpha() and len(word) > 3 and (right := self._mended(lower)) is not None:
             return right
-        verbal = any(self._is_verb(self._lower(i - k)) for k in (1, 2))
-        if lower == "round" and verbal and following in _DETERMINERS:
-            return "around"  # the parser takes it for a verb
         if lower == "goodbye" and self._lower(i - 1).startswith(("hug", "kiss", "embrac")):
             return "fondly"  # the parser takes the two for a compound
         joined = lower.replace("-", "")

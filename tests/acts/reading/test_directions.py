@@ -21,54 +21,15 @@ def told(text: str) -> Told:
 @pytest.mark.parametrize(
     ("text", "acts"),
     [
-        ("A, run at B and leap.", [("run-up", "a", "b"), ("jump", "a", None)]),
-        (
-            "B, catch A at the hips, turn once, and set A down.",
-            [("catch-person", "b", "a"), ("turn-around", "b", None), ("set-down-person", "b", "a")],
-        ),
         ("A: walks to B. B: steps back.", [("walk-up", "a", "b"), ("step-back", "b", None)]),
-        (
-            "Staccato: A nods, B nods, A shrugs, B shrugs.",
-            [("nod", "a", None), ("nod", "b", None), ("shrug", "a", None), ("shrug", "b", None)],
-        ),
-        ("In canon: lunge right.", [("lunge", "a", None), ("lunge", "b", None)]),
         ("Lunge left, then step back.", [("lunge", "ab", None), ("step-back", "ab", None)]),
         ("They take turns bowing.", [("bow", "a", None), ("bow", "b", None)]),
-        ("Performer B freezes mid-step as A circles her twice.", [("freeze", "b", None), ("walk-around", "a", "b")]),
-        (
-            "They rise, hold for four counts, then collapse.",
-            [("stand-up", "ab", None), ("stand-still", "ab", None), ("fall-down", "ab", None)],
-        ),
-        ("Both rise onto the balls of the feet.", [("on-tiptoe", "ab", None)]),
         ("B is on all fours.", [("all-fours", "b", None)]),
         ("They are both seated.", [("sit-down", "ab", None)]),
-        ("She is seated.", [("sit-down", "a", None)]),
-        ("He is dressed by her.", [("dress-other", "b", "a")]),
-        ("The person behind pushes the person in front.", [("push", "b", "a")]),
-        ("A stands with an arm around the neck of B.", [("stand-still", "a", None), ("arm-around", "a", "b")]),
-        ("He lies on his back with his knees bent.", [("lie-down", "a", None)]),
-        ("A father and his little daughter dance.", [("dance", "ab", None)]),
-        ("A kid and a toddler wave.", [("wave", "ab", None)]),
-        ("2 ppl playing rock paper scissors", [("rock-paper-scissors", "ab", None)]),
     ],
 )
 def test_a_direction_is_read(text: str, acts: Told) -> None:
     assert told(text) == acts
-
-
-def test_roles_are_exchanged_of_all_that_each_did_alone() -> None:
-    text = "They bow. A pushes B and B stumbles back. Then they switch roles and hug."
-    plan = read(text)
-    assert told(text) == [
-        ("bow", "ab", None),
-        ("push", "a", "b"),
-        ("step-back", "b", None),
-        ("push", "b", "a"),
-        ("step-back", "a", None),
-        ("hug", "ab", None),
-    ]
-    again = [act for act in plan.acts if act.act == "push"][1]
-    assert all(int(relation.act) < int(again.id) for relation in again.order)
 
 
 @pytest.mark.parametrize(
@@ -83,11 +44,6 @@ def test_an_adjective_says_that_something_is_not_done(text: str, act: str, denie
     (found,) = [each for each in read(text).acts if each.act == act]
     assert not found.happens
     assert (found.polarity == "not") is denied
-
-
-@pytest.mark.parametrize("text", ["A stops an arm's length away.", "They stand an arm's length apart."])
-def test_an_arms_length_is_a_distance(text: str) -> None:
-    assert [act.distance for act in read(text).acts] == [0.7]
 
 
 def test_a_text_is_read_alike_in_every_process() -> None:
@@ -145,24 +101,10 @@ def test_a_woman_and_a_woman_are_two() -> None:
     assert [act.agents for act in read("A woman and a woman dance.").acts] == [("a", "b")]
 
 
-@pytest.mark.parametrize(
-    ("text", "acts"),
-    [
-        ("One gets a piggyback ride and falls off.", "fall-down"),
-        ("then one slaps the others back", "pat"),
-        ("Two kids spin holding hands.", "ring"),
-        ("They play patty cake.", "high-five"),
-    ],
-)
+@pytest.mark.parametrize(("text", "acts"), [("Two kids spin holding hands.", "ring")])
 def test_what_visitors_type(text: str, acts: str) -> None:
     found = read(text)
     assert found.acts[-1].act == acts and not found.unread
-
-
-def test_what_is_thrown_into_the_air_is_what_is_caught() -> None:
-    thrown, caught = read("A throws the ball in the air and catches it.").acts
-    assert (thrown.direction, thrown.thing, caught.thing, caught.agents) == ("up", "ball", "ball", ("a",))
-    assert thrown.patient is None
 
 
 @pytest.mark.parametrize(
@@ -174,7 +116,3 @@ def test_a_headline_is_done_by_both(text: str, act: str) -> None:
 
 def test_a_pronoun_makes_no_headline() -> None:
     assert [(each.agents, each.act) for each in read("He jumps.").acts] == [(("a",), "jump")]
-
-
-def test_where_somebody_came_from_is_a_place() -> None:
-    assert [act.act for act in read("She bows to him and goes back to where she came from.").acts] == ["bow", "go-back"]

@@ -17,29 +17,17 @@ from tests.acts.reading.reading import told
         ("A hugs B from behind", [("hug-from-behind", "a", "b")]),
         ("dad and daughter walking hand in hand", [("walk-hand-in-hand", "ab", None)]),
         # a verb where the parser saw none
-        ("make the girl wave and the boy bow", [("wave", "a", "b"), ("bow", "b", None)]),
         ("The person on the left squats twice and the other one claps.", [("crouch", "a", None), ("clap", "b", "a")]),
         # the other is the other of the one who was named first
         ("One person pushes the other and the other sits down.", [("push", "a", "b"), ("sit-down", "b", None)]),
         # "the other ducks" may be birds to the parser
         ("A man punches and the other ducks.", [("punch", "a", None), ("duck", "b", None)]),
         ("A man waves and the other claps.", [("wave", "a", "b"), ("clap", "b", "a")]),
-        ("She staggers into the arms of the other.", [("stagger", "a", "b")]),
         # nouns that are people where they act
-        (
-            "The base lies on her back, the flyer stretches out both arms.",
-            [("lie-down", "a", None), ("extend-arm", "b", None)],
-        ),
         ("emma pinches jakes cheek, jake runs off", [("pinch", "a", "b"), ("run-away", "b", "a")]),
-        ("the barber kisses a customers cheek", [("kiss", "a", "b")]),
         # an order about one other person is given to one
         ("carry your injured friend over your shoulder", [("carry", "a", "b")]),
         # a clause that the parser made a subject
-        (
-            "B waves; A leans back, then kicks the dagger out of B's hand.",
-            [("wave", "b", "a"), ("lean", "a", None), ("disarm", "a", "b")],
-        ),
-        ("He jumps out.", [("jump", "a", None)]),
         ("tickel him", [("tickle", "a", "b")]),
         ("An elderly lady pats an old man on the back.", [("pat", "a", "b")]),
         ("She crawls on hands and knees around him.", [("crawl-under", "a", "b")]),
@@ -48,19 +36,9 @@ from tests.acts.reading.reading import told
         ("These two shake hands.", [("shake-hands", "ab", None)]),
         ("They both reply with a nod.", [("nod", "ab", None)]),
         # "who" that hangs on something else than its person
-        ("The girl skips beside her grandfather, who shuffles along.", [("skip", "a", "b"), ("strut", "b", None)]),
-        ("She takes a picture of the model, who bows.", [("photo", "a", "b"), ("bow", "b", None)]),
         # a part of the body as the subject
-        (
-            "The guard frisks the prisoner, whose hands are clasped behind his head.",
-            [("search-person", "a", "b"), ("hands-behind-head", "b", None)],
-        ),
         # a participle of what was done to the subject
-        ("Shoved hard in the chest, the drunk topples backward.", [("push", "b", "a"), ("fall-down", "a", None)]),
         ("Seated on the floor, she claps.", [("sit-on-floor", "a", None), ("clap", "a", "b")]),
-        ("It is a tango where he dips her.", [("dip", "a", "b")]),
-        ("The lead bows and the follow curtsies.", [("bow", "a", None), ("curtsy", "b", None)]),
-        ("Lead dips the follow.", [("dip", "a", "b")]),
         (
             "He walks up to her, hands over a parcel and leaves.",
             [("walk-up", "a", "b"), ("hand-over", "a", "b"), ("walk-away", "a", "b")],
@@ -69,18 +47,8 @@ from tests.acts.reading.reading import told
             "hold hands, swing arms, walk",
             [("hold-hands", "ab", None), ("swing-arms", "ab", None), ("walk-together", "ab", None)],
         ),
-        ("couple slow dancing", [("waltz", "ab", None)]),
-        ("Spin her out, and dip her low.", [("twirl", "a", "b"), ("dip", "a", "b")]),
-        (
-            "One grabs the other by the wrist and drags her a few steps to the left.",
-            [("hold-hands", "a", "b"), ("drag", "a", "b")],
-        ),
         ("person 2 tails person 1 down the street", [("follow", "b", "a")]),
-        ("ninjas circling one another", [("circle-together", "ab", None)]),
-        ("they bump heads picking up the same pencil", [("headbutt", "ab", None), ("pick-up-thing", "ab", None)]),
         ("Tom helps Jerry up off the ground.", [("help-up", "a", "b")]),
-        ("A shuffles stage right.", [("step-aside", "a", None)]),
-        ("two dudes leaning on eachother lol", [("head-on-shoulder", "ab", None)]),
         ("The one on the left waves, and the one on the right bows.", [("wave", "a", "b"), ("bow", "b", None)]),
     ],
 )
@@ -132,11 +100,6 @@ def test_from_behind_is_a_manner() -> None:
     assert FROM_BEHIND in tap.manner
 
 
-def test_what_was_done_first_comes_first() -> None:
-    plan = read("Shoved in the chest, he falls down.")
-    assert [sorted(act.act for act in beat) for beat in plan.beats()] == [["push"], ["fall-down"]]
-
-
 @pytest.mark.parametrize(
     "text",
     [
@@ -179,13 +142,7 @@ def test_a_list_keeps_its_middle(start: str, said: str, act: str, joined: str) -
         ("B returns the salute.", [("salute", "b", "a")]),
         ("She returns the wave.", [("wave", "a", "b")]),
         ("A throws a ball to B and B hits it back.", [("throw-ball", "a", "b"), ("rackets", "b", None)]),
-        ("Both lean back.", [("lean", "ab", None)]),
-        ("She screams.", [("startle", "a", None)]),
-        ("B raises his arm to shoulder height.", [("raise-arm", "b", None)]),
-        ("A throws a ball underarm to B.", [("throw-ball", "a", "b")]),
         # neither of the two
-        ("A dragon eats the moon.", []),
-        ("A bear eats the honey.", []),
         ("He walks a dog.", [("walk-ahead", "a", None)]),
         ("He hugs a dog.", [("feed-animal", "a", None)]),
         ("A person shakes his head left and right.", [("shake-head", "a", None)]),
@@ -200,16 +157,9 @@ def test_a_list_keeps_its_middle(start: str, said: str, act: str, joined: str) -
         ("She turns left, then right.", [("turn-around", "a", None)] * 2),
         ("A person makes a bowing motion.", [("bow", "a", None)]),
         ("A man does the motion of digging.", [("dig", "a", None)]),
-        ("A woman jogs forward.", [("run-ahead", "a", None)]),
         ("A man walks back and returns to the original position.", [("return", "a", "b"), ("go-back", "a", None)]),
-        (
-            "A offers a handshake, but B declines, turning away.",
-            [("shake-hands", "a", "b"), ("shake-hands", "b", "a"), ("turn-away", "b", "a")],
-        ),
         ("B takes both of A's hands and pulls A up.", [("hold-hands", "b", "a"), ("help-up", "b", "a")]),
         ("They hold hands and spin around each other.", [("hold-hands", "ab", None), ("ring", "ab", None)]),
-        ("A calls out and B comes running.", [("beckon", "a", "b"), ("run-up", "b", None)]),
-        ("The man appears to be dancing.", [("dance", "a", None)]),
         ("A person who is standing takes two steps.", [("stand-still", "a", None), ("step-forward", "a", None)]),
         ("The person raises its arms.", [("raise-arm", "a", None)]),
     ],
@@ -228,16 +178,6 @@ def test_a_circle_goes_one_way_round() -> None:
         assert read(f"A man walks in {said}.").acts[0].direction == "clockwise", said
 
 
-def test_the_foot_with_which_one_steps_to_a_side() -> None:
-    (step,) = read("He steps to the left using his right foot.").acts
-    assert (step.act, step.side, step.direction) == ("step-aside", "right", "left")
-
-
 def test_words_in_no_act_are_said() -> None:
     plan = read("A picks up a cup and a plate.")
     assert [plan.text(part.words) for part in plan.unread] == ["plate"]
-
-
-def test_another_parse_that_explains_as_much_is_a_doubt() -> None:
-    plans = [read(text) for text in ("They hug.", "A man fishes and cries.")]
-    assert [bool(plan.doubts) for plan in plans] == [False, True]
