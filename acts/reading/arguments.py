@@ -50,6 +50,9 @@ class Arguments:
         who = subject.who if subject is not None and subject.kind == "person" else ""
         agent: Ref | None = None
         for child in (*token.children, *taken_away(token)):
+            before = child.left_edge.i - 1
+            if before > token.i and child.head == token and child in taken_away(token.doc[before]):
+                continue
             if subject is not None and self.cast.seen.get(child.i) is subject:  # "…, said the witch"
                 continue
             bare = all(c.dep_ not in ("poss", "det") for c in child.children)

@@ -115,6 +115,8 @@ def breaks(doc: Doc, lemmas: Mapping[int, str]) -> Iterator[Token]:
     before: Token | None = None
     below = False
     for token in doc:
+        if before is not None and token.lower_ == "and" and _joins_person(token):
+            yield token
         if token.is_sent_start or token.pos_ in ("PUNCT", "CCONJ"):
             before, below = None, False
         elif token.pos_ == "SCONJ" or token.tag_ in ("WRB", "WP", "WDT") or token.dep_ == "mark":
@@ -128,6 +130,20 @@ def breaks(doc: Doc, lemmas: Mapping[int, str]) -> Iterator[Token]:
             ):
                 yield _first(noun)
             before = token
+
+
+def _joins_person(conjunction: Token) -> bool:
+    """True where a thing is joined to a person who acts: "A holds the ladder and B climbs it"."""
+    thing, doc = conjunction.head, conjunction.doc
+    if thing.pos_ != "NOUN" or thing.i > conjunction.i or _is_person(thing):
+        return False
+    person = next((c for c in thing.children if c.dep_ == "conj" and c.i > conjunction.i), None)
+    if person is None or not _is_person(person):
+        return False
+    behind = doc[person.right_edge.i + 1] if person.right_edge.i + 1 < len(doc) else person
+    return (behind.tag_ in _FINITE and behind.pos_ == "VERB") or any(
+        t.tag_ in _FINITE and t.dep_ != "relcl" for t in doc[person.i + 1 : person.right_edge.i + 1]
+    )
 
 
 def _is_person(noun: Token) -> bool:

@@ -239,6 +239,7 @@ def _after_person(token: Token, ending: str) -> bool:
         before.i > 0 and before.nbor(-1).lower_ in ("two", "both", "2")
     )
     many = before.tag_ in ("NNS", "NNPS") or before.lower_ in ("both", "people") or the_two or counted
+    many = many or (ending == "" and _is_paired(before))
     if ending != "s" and not many and not one:
         return False
     if ending == "s" and many and before.lower_ not in ("second", "first"):
@@ -251,3 +252,11 @@ def _after_person(token: Token, ending: str) -> bool:
         or wordnet.is_animal(before.lemma_.lower())
         or (many and before.lemma_ in vocabulary().both)
     )
+
+
+def _is_paired(noun: Token) -> bool:
+    """True for the second of two people: "a father and his little daughter dance"."""
+    at = noun.i - 1
+    while at > noun.sent.start and noun.doc[at].pos_ in ("DET", "ADJ", "PRON"):
+        at -= 1
+    return noun.doc[at].lower_ == "and" and vocabulary().is_person(noun.doc[at - 1].lemma_.lower())

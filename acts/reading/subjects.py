@@ -12,7 +12,7 @@ from acts.lexicon import Lexicon
 from acts.plan import other_of
 
 from .clauses import ClauseTree, is_finite
-from .people import Cast
+from .people import Cast, begins_clause
 from .references import reference
 from .vocabulary import vocabulary
 
@@ -24,6 +24,13 @@ _PROMISES = frozenset(("promise", "threaten"))
 ORDINALS = frozenset(("other", "first", "second", "former", "latter"))
 """Words that stand for one of the two behind "the"."""
 _SOMEBODY = frozenset(("him", "her", "his", "me", "my"))
+
+
+def ends_before(noun: Token, verb: Token) -> bool:
+    """True for a noun that the parser joined to what stands before, and whose phrase ends where a verb begins."""
+    joined = noun.dep_ == "conj" and noun.tag_ == "NN" and noun.right_edge.i == verb.i - 1
+    own = any(child.dep_ in ("nsubj", "nsubjpass") for child in verb.children)
+    return joined and not own and any(child.dep_ == "det" for child in noun.children)
 
 
 class Subjects:
@@ -68,7 +75,7 @@ class Subjects:
         return bare and token.dep_ in ("ccomp", "advcl", "dep") and any(token.i < c.i for c in behind)
 
     def _subject_of(self, token: Token, head: Token | None) -> Ref | None:
-        if (told := self._told(token, head)) is not None:
+        if (told := self._told(token, head) or self._named_before(token)) is not None:
             return told
         if token.dep_ in ("relcl", "acl", "amod") and token.head != head:
             found = self._antecedent(token)
@@ -140,6 +147,20 @@ class Subjects:
         lemma = noun.lemma_.lower()
         done_to = noun.dep_ in ("dobj", "dative", "poss") and noun.tag_ == "NN" and lemma != "partner"
         return done_to and self._words.is_person(lemma)
+
+    def _named_before(self, token: Token) -> Ref | None:
+        """The person named right before a verb whom the parser took for a part of it, or for another's object.
+
+        As in "while Beth crouches", "he runs to Beth and Beth lifts him", "he hugs Beth and she waves" and "he holds
+        out his hand and the girl shakes it".
+        """
+        before = token.nbor(-1) if token.i and token.tag_ in ("VBZ", "VBD") else None
+        if before is None:
+            return None
+        if not begins_clause(before) and (before.tag_ != "NNP" or before.dep_ not in ("conj", "compound")):
+            before = next((noun for noun in (before, *before.ancestors) if ends_before(noun, token)), None)
+        ref = reference(before, self._cast, "") if before is not None else None
+        return ref if ref is not None and ref.kind == "person" else None
 
     def _antecedent(self, token: Token) -> Ref | None:
         noun = token.head

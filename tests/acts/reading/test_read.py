@@ -211,10 +211,7 @@ def test_an_act_that_the_parser_takes_for_a_noun_behind_to_is_read() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "acts"),
-    [
-        ("Two friends run up to each other, hug and then high-five.", ["run-up", "hug", "high-five"]),
-    ],
+    ("text", "acts"), [("Two friends run up to each other, hug and then high-five.", ["run-up", "hug", "high-five"])]
 )
 def test_a_verb_that_is_listed_before_another_is_no_noun(text: str, acts: list[str]) -> None:
     assert [act.act for act in read(text).acts] == acts
