@@ -76,13 +76,21 @@ class Place(_Shape):
 
 
 class Posture(_Shape):
-    """A way to hold oneself from then on; ``already`` from the start, ``passing`` only for a moment, ``times`` over."""
+    """A way to hold oneself from then on.
+
+    Attributes:
+        posture: which.
+        already: from the start.
+        passing: only for a moment, ``times`` over.
+        gently: somebody lets themselves down on the floor, and does not fall.
+    """
 
     do: Literal["posture"] = "posture"
     posture: Literal["stands", "sits", "kneels", "sits on the ground", "crouches", "bends down", "lies", "on all fours"]
     already: bool = False
     passing: bool = False
     times: Annotated[int, Field(ge=1, le=5)] = 1
+    gently: bool = False
 
 
 class Jump(_Shape):

@@ -23,8 +23,6 @@ _BODILY = frozenset(("body", "ways", "moves", "stage"))
 """Groups of acts of the whole body."""
 _OWN_ARMS = frozenset(("creep-up", "sneak", "sneak-away", "stagger", "skip", "moonwalk", "strut", "stumble", "dive"))
 """Acts of which arms of their own are part."""
-_LAYS = frozenset(("lie-down", "sit-ups", "sit-on-floor"))
-"""Acts of people who let themselves down on the floor."""
 _HANDS_FREE = frozenset(("go", "turn", "stay", "place", "posture", "jump", "bow"))
 """Shapes that need no hands."""
 _JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
@@ -68,11 +66,6 @@ def only_stays(entry: Entry) -> bool:
     """True for an act of a bystander."""
     shown = {shape.do for shape in entry.stage}
     return "stay" in shown and shown <= {"stay", "place"}
-
-
-def is_gentle(act: Act) -> bool:
-    """True for an act that takes a person down to the floor on purpose: no fall."""
-    return act.act in _LAYS
 
 
 def leaves_hands(act: Act, entry: Entry) -> bool:

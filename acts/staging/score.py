@@ -91,11 +91,9 @@ class Change(shapes.Posture):
 
     Attributes:
         after: share of the beat that comes before, from 0 to 1.
-        gently: they let themselves down and do not fall.
     """
 
     after: float = 0.0
-    gently: bool = False
 
 
 class Touch(shapes.Touch):

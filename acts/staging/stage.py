@@ -25,7 +25,6 @@ from .act_kinds import (
     is_after,
     is_attempt,
     is_deep,
-    is_gentle,
     is_manner,
     is_near,
     loose,
@@ -269,7 +268,7 @@ class _Stage:
                 already=already,
                 after=0.0 if already else after + (1 - after) * i / times,
                 passing=shape.passing,
-                gently=is_gentle(act) and not already,
+                gently=shape.gently and not already,
             )
             for i in range(times)
         ]
