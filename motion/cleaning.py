@@ -6,9 +6,9 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .limbs import heel_raised, solve_two_bones, steadied
+from .limbs import heel_raised, limb_length, sink, solve_two_bones, steadied
 from .skeleton import FEET, LEGS
-from .smoothing import REACH, frames_from, led, smoothstep
+from .smoothing import REACH, begun_before, frames_from, led, smoothstep
 from .transforms import facing
 from .vectors import runs
 
@@ -22,6 +22,8 @@ _LOOSE = 1.5
 _MAX_DRIFT = 0.25
 # What a correction may move a joint from frame to frame (metres).
 _MAX_STEP = 0.03
+_SINKS = 0.12
+"""Metres by which a body goes down at most for its legs to reach."""
 _REST_ANKLE = (0.03, 0.09)
 _SOFT = 0.01
 """Share of a leg's length by which it is never straight: its knee would tremble."""
@@ -81,12 +83,11 @@ def plant_feet(
     # A leg is kept from being straight where its foot stands or is led to where it stands, and free frames stay free.
     near = smoothstep(1 - frames_from(np.asarray(contacts.any(axis=1))) / (REACH + 1))[:, None]
     soft = _SOFT * near * (1 - _fade(stays, blend))
-    reaches = _reaches(result, soft)
-    ankles = [
-        heel_raised(hip, ankle, toe, reach) for (hip, reach), ankle, toe in zip(reaches, ankles, toes, strict=True)
-    ]
-    sink = _needed_sink(reaches, ankles) * (1 - _fade(stays, blend)[:, 0])
-    result[..., 1] -= sink[:, None]
+    hips = [result[:, leg[0]] for leg in LEGS]
+    reaches = [(1 - soft) * limb_length(result, leg)[:, None] - 1e-3 for leg in LEGS]
+    ankles = [heel_raised(*leg) for leg in zip(hips, ankles, toes, reaches, strict=True)]
+    need = begun_before(sink(hips, ankles, reaches, _SINKS), 2, 1.5)
+    result[..., 1] -= need[:, None] * (1 - _fade(stays, blend))
     forward = facing(result)
     for (hip, knee, ankle, toe), ankle_goal, toe_goal in zip(LEGS, ankles, toes, strict=True):
         new_knee, new_ankle = solve_two_bones(
@@ -138,7 +139,7 @@ def _foot_goals(
     new_ankle = led(np.where(ankle_fixed[:, None], ankle_goal, ankle + moved), ankle_fixed)
     for place, floor in ((new_toe, 0.0), (new_ankle, _REST_ANKLE[0])):
         lift = np.maximum(floor - place[:, 1], 0.0)
-        place[:, 1] += _smooth(lift, blend) * (1 - _fade(held, blend)[:, 0]) if held.any() else lift
+        place[:, 1] += begun_before(lift, blend, 0.75 * blend) * (1 - _fade(held, blend)[:, 0]) if held.any() else lift
     bone = new_ankle - new_toe
     bone *= foot_length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
     # The toe's place wins where both stand: a heel may lift, a toe must not glide.
@@ -213,32 +214,3 @@ def _split(joint: Array, start: int, stop: int, blend: int) -> list[tuple[int, i
 def _fade(stands: NDArray[np.bool_], blend: int) -> Array:
     """(T, 1) 1 through contacts, easing to 0 over ``blend`` frames outside."""
     return stands.any() * smoothstep(1 - frames_from(stands) / (blend + 1))[:, None]
-
-
-def _reaches(positions: Array, soft: Array) -> list[tuple[Array, Array]]:
-    """The hip (T, 3) and the metres (T, 1) that a leg reaches, of each side."""
-    found = []
-    for leg in LEGS:
-        hip, knee, ankle = (positions[:, joint] for joint in leg[:3])
-        leg = np.linalg.norm(knee - hip, axis=-1) + np.linalg.norm(ankle - knee, axis=-1)
-        found.append((hip, (1 - soft) * leg[:, None] - 1e-3))
-    return found
-
-
-def _needed_sink(reaches: list[tuple[Array, Array]], ankles: list[Array]) -> Array:
-    """(T,) metres the body must go down for both legs to reach their goals, at most 0.12, smooth."""
-    need = np.zeros(len(ankles[0]))
-    for (hip, leg), goal in zip(reaches, ankles, strict=True):
-        aside = hip - goal
-        height = np.sqrt(np.maximum(leg[:, 0] ** 2 - aside[:, 0] ** 2 - aside[:, 2] ** 2, 0.0))
-        need = np.maximum(need, aside[:, 1] - height)
-    need = np.clip(need, 0.0, 0.12)
-    if len(need) < 3 or not need.any():
-        return need
-    return _smooth(need, 2)
-
-
-def _smooth(need: Array, reach: int) -> Array:
-    """(T,) at least about ``need`` (T,), without kinks; it begins some 3 * ``reach`` frames earlier."""
-    widened = scipy.ndimage.maximum_filter1d(need, 2 * reach + 1, mode="nearest")
-    return scipy.ndimage.gaussian_filter1d(widened, 0.75 * reach, mode="nearest")

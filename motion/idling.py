@@ -17,9 +17,9 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .limbs import HIPS, UPPER, over_planted_feet, solve_two_bones
+from .limbs import HIPS, UPPER, limb_length, over_planted_feet, solve_two_bones
 from .skeleton import LEGS, SMPL22
-from .smoothing import least_jerk, minimum_jerk, smoothstep
+from .smoothing import begun_before, least_jerk, minimum_jerk, smoothstep
 from .touch.arms import ARMS
 from .transforms import facing
 from .vectors import rotations_by, unit
@@ -227,9 +227,7 @@ def _with_arms(own: Array, moved: Array, fps: float, rest: Array, stands: Array,
         lifted = unit(bone + rise) * np.linalg.norm(bone, axis=-1, keepdims=True) - bone
         result[:, [shoulder, elbow, wrist]] += lifted[:, None]
         arm = own[:, wrist] - own[:, shoulder]
-        length = np.linalg.norm(own[:, elbow] - own[:, shoulder], axis=-1)
-        length += np.linalg.norm(own[:, wrist] - own[:, elbow], axis=-1)
-        low = smoothstep(-arm[:, 1] / length, *(2 * np.array(_HANGS)))
+        low = smoothstep(-arm[:, 1] / limb_length(own, (shoulder, elbow, wrist)), *(2 * np.array(_HANGS)))
         hangs = stands * low * _calm(_speed(arm, fps), _HAND_WAITS)
         ahead, out, bend = (manner.arms[:, side, i] for i in range(3))
         swing = -(hangs * SWING * ahead)[:, None] * left + (hangs * SPREAD * out * sign)[:, None] * forward
@@ -296,8 +294,7 @@ def _calm(speed: Array, span: tuple[float, float]) -> Array:
 
 def _lasting(share: Array) -> Array:
     """A share (T,) that is as low as nearby, and smooth."""
-    least = scipy.ndimage.minimum_filter1d(share, 2 * _SETTLES + 1, mode="nearest")
-    return np.asarray(scipy.ndimage.gaussian_filter1d(least, _SETTLES / 2, mode="nearest"))
+    return 1 - begun_before(1 - share, _SETTLES, _SETTLES / 2)
 
 
 def _about(centre: Array, turns: Array, places: Array) -> Array:

@@ -136,7 +136,7 @@ class _Problem:
         return (1 / (0.02 + 0.5 * lift)) ** 2
 
     def evaluate(self, rotations: Array, root: Array) -> _State:
-        world = global_rotations(rotations, self.body)
+        world = global_rotations(rotations, self.body.bones)
         positions = forward_kinematics(rotations, root, self.body)
         state = _State(rotations, root, world, positions, 0.0)
         return state._replace(cost=self._cost(state))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,18 +33,18 @@ def forward_kinematics(rotations: Array, root: Array, skeleton: Skeleton = SMPL2
     return _by_frame(positions, 2)
 
 
-def global_rotations(rotations: Array, skeleton: Skeleton = SMPL22) -> Array:
-    """(…, J, 3, 3) rotations of each joint against the world from local ones."""
+def global_rotations(rotations: Array, bones: Sequence[tuple[int, int]] = SMPL22.bones) -> Array:
+    """(…, J, 3, 3) rotations of each joint against the world from local ones; ``bones`` as :attr:`Skeleton.bones`."""
     world = _by_joint(rotations, 3)
-    for parent, joint in skeleton.bones:
+    for parent, joint in bones:
         world[joint] = world[parent] @ world[joint]
     return _by_frame(world, 3)
 
 
-def local_rotations(world: Array, skeleton: Skeleton = SMPL22) -> Array:
+def local_rotations(world: Array, bones: Sequence[tuple[int, int]] = SMPL22.bones) -> Array:
     """(…, J, 3, 3) rotations against the parent from rotations against the world."""
     local = _by_joint(world, 3)
-    for parent, joint in reversed(skeleton.bones):  # parents stay as they were until their children are done
+    for parent, joint in reversed(bones):  # parents stay as they were until their children are done
         local[joint] = np.swapaxes(local[parent], -1, -2) @ local[joint]
     return _by_frame(local, 3)
 
@@ -85,7 +87,7 @@ def fit_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
             world[joint] = _kabsch(rest, np.moveaxis(bones, 0, -2))
         else:
             world[joint] = swing(inherited @ rest[0], bones[0]) @ inherited
-    return local_rotations(np.moveaxis(world, 0, -3), skeleton)
+    return local_rotations(np.moveaxis(world, 0, -3), skeleton.bones)
 
 
 def followed_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:

@@ -6,6 +6,8 @@ swings would pull the body down into a lunge.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
@@ -183,15 +185,12 @@ def over_planted_feet(own: Array, moved: Array) -> Array:
         was moved is lowered, smoothly.
     """
     result = np.array(moved)
-    reaches = [
-        _MOST * sum(np.linalg.norm(own[:, end] - own[:, start], axis=-1, keepdims=True) for start, end in bones)
-        for bones in ((leg[:2], leg[1:3]) for leg in LEGS)
-    ]
+    reaches = [_MOST * limb_length(own, leg)[:, None] for leg in LEGS]
     ankles = [
         heel_raised(moved[:, leg[0]], own[:, leg[2]], own[:, leg[3]], reach)
         for leg, reach in zip(LEGS, reaches, strict=True)
     ]
-    sunk = scipy.ndimage.gaussian_filter1d(_sunk(moved, ankles, reaches), 2.0)
+    sunk = scipy.ndimage.gaussian_filter1d(sink([moved[:, leg[0]] for leg in LEGS], ankles, reaches, _SINKS), 2.0)
     result[:, [*UPPER, *HIPS], 1] -= sunk[:, None]
     forward = facing(own)
     for (hip, knee, ankle, toe), goal in zip(LEGS, ankles, strict=True):
@@ -202,12 +201,29 @@ def over_planted_feet(own: Array, moved: Array) -> Array:
     return result
 
 
-def _sunk(moved: Array, ankles: list[Array], reaches: list[Array]) -> Array:
-    """(T,) metres by which hips that are ``moved`` (T, 22, 3) go down, so that no leg is too short."""
-    sunk = np.zeros(len(moved))
-    for leg, ankle, most in zip(LEGS, ankles, reaches, strict=True):
-        hip = moved[:, leg[0]]
+def sink(hips: Sequence[Array], ankles: Sequence[Array], reaches: Sequence[Array], most: float) -> Array:
+    """(T,) metres, up to ``most``, by which a body goes down so that its legs reach.
+
+    Args:
+        hips, ankles: (T, 3) places of each leg's.
+        reaches: (T, 1) metres that each leg reaches.
+    """
+    need = np.zeros(len(hips[0]))
+    for hip, ankle, reach in zip(hips, ankles, reaches, strict=True):
         aside = np.linalg.norm((hip - ankle) * FLAT, axis=-1)
-        reach = np.sqrt(np.maximum(most[:, 0] ** 2 - aside**2, 0.0))
-        sunk = np.maximum(sunk, np.minimum(hip[:, 1] - ankle[:, 1] - reach, _SINKS))
-    return sunk
+        height = np.sqrt(np.maximum(reach[:, 0] ** 2 - aside**2, 0.0))
+        need = np.maximum(need, hip[:, 1] - ankle[:, 1] - height)
+    return np.minimum(need, most)
+
+
+def limb_length(person: Array, limb: Sequence[int]) -> Array:
+    """(…,) metres of the two bones of a limb of a person (…, J, 3)."""
+    root, middle, end = (person[..., joint, :] for joint in limb[:3])
+    return np.asarray(np.linalg.norm(middle - root, axis=-1) + np.linalg.norm(end - middle, axis=-1))
+
+
+def drawn_in(place: Array, root: Array, reach: Array) -> Array:
+    """Places (T, 3), drawn in along the line to a limb's root (T, 3) to where the limb reaches, (T,) metres."""
+    line = place - root
+    far = np.maximum(np.linalg.norm(line, axis=-1), 1e-9)
+    return np.asarray(root + line * np.minimum(1.0, reach / far)[:, None])

@@ -14,9 +14,9 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .limbs import HIPS, UPPER, over_planted_feet, solve_two_bones
+from .limbs import HIPS, UPPER, drawn_in, limb_length, over_planted_feet, solve_two_bones
 from .skeleton import ARMS, SMPL22
-from .smoothing import smoothstep
+from .smoothing import begun_before, smoothstep
 from .touch.arms import arms_apart
 from .transforms import facing
 from .vectors import FLAT, rotations_by, unit
@@ -152,7 +152,7 @@ class _Touches:
                 for _ in range(_SHARES):
                     for (own, arm), side in zip(arms, (0.5, -0.5), strict=True):
                         wrist = place + side * self.apart[:, mine, theirs]
-                        place = place + _drawn_in(wrist, own, arm) - wrist
+                        place = place + _reached(wrist, own, arm) - wrist
             found[mine, theirs] = place
         return found
 
@@ -199,14 +199,9 @@ class _Touch:
         return np.asarray(np.einsum("tb,tbi->ti", weight, places))
 
 
-def _drawn_in(wrist: Array, own: Array, arm: tuple[int, ...]) -> Array:
+def _reached(wrist: Array, own: Array, arm: tuple[int, ...]) -> Array:
     """(T, 3) a place for a wrist, drawn in to where the arm reaches."""
-    shoulder, elbow, end = arm
-    length = np.linalg.norm(own[:, elbow] - own[:, shoulder], axis=-1)
-    length = _REACH * (length + np.linalg.norm(own[:, end] - own[:, elbow], axis=-1))[:, None]
-    way = wrist - own[:, shoulder]
-    far = np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-9)
-    return np.asarray(own[:, shoulder] + way * np.minimum(1.0, length / far))
+    return drawn_in(wrist, own[:, arm[0]], _REACH * limb_length(own, arm))
 
 
 def _reaching(pair: Array, goals: list[list[tuple[Array, Array]]]) -> Array:
@@ -218,7 +213,7 @@ def _reaching(pair: Array, goals: list[list[tuple[Array, Array]]]) -> Array:
             if not weight.any():
                 continue
             root, middle, end = (result[person, :, joint] for joint in arm)
-            to = end + weight * (_drawn_in(goal, result[person], arm) - end)
+            to = end + weight * (_reached(goal, result[person], arm) - end)
             pole = unit(middle - 0.5 * (root + end) + _HANGS * (np.array([0.0, -1.0, 0.0]) - forward))
             bent, met = solve_two_bones(root, middle, end, to, pole)
             result[person, :, arm[1]], result[person, :, arm[2]] = bent, met
@@ -230,7 +225,7 @@ def _too_short(pair: Array, touch: _Touches) -> Array:
     need = np.zeros(pair.shape[1])
     for person, hands in enumerate(touch.goals(pair)):
         for arm, (goal, weight) in zip(ARMS, hands, strict=True):
-            missed = np.linalg.norm(goal - _drawn_in(goal, pair[person], arm), axis=-1)
+            missed = np.linalg.norm(goal - _reached(goal, pair[person], arm), axis=-1)
             certain = smoothstep(weight[:, 0], *_CERTAIN)
             need = np.maximum(need, certain * np.maximum(missed - _SPARED, 0.0))
     kiss = 1 - smoothstep(np.linalg.norm(touch.heads, axis=-1), 0.8 * _HEADS, 1.2 * _HEADS)
@@ -240,8 +235,7 @@ def _too_short(pair: Array, touch: _Touches) -> Array:
     need = np.maximum(need, kiss * np.maximum(now - apart, 0.0))
     if need.max() < 0.005:
         return 0 * need
-    widened = scipy.ndimage.maximum_filter1d(need, 2 * _LATE + 1, mode="nearest")
-    return np.asarray(scipy.ndimage.gaussian_filter1d(widened, _EASED, mode="nearest"))
+    return begun_before(need, _LATE, _EASED)
 
 
 def _stooped(own: Array, other: Array, lean: Array, short: Array) -> Array:

@@ -211,9 +211,8 @@ def _bodies(positions: Array, rig: RigMotion, parts: BodyParts, upright: Array) 
 
 def _rest_positions(rig: RigMotion) -> Array:
     positions = np.array(rig.offsets, dtype=np.float64)
-    for joint, parent in enumerate(rig.parents):
-        if parent >= 0:
-            positions[joint] += positions[parent]
+    for parent, joint in rig.bones:
+        positions[joint] += positions[parent]
     return positions
 
 

@@ -65,6 +65,11 @@ class RigMotion:
         return len(self.positions)
 
     @cached_property
+    def bones(self) -> tuple[tuple[int, int], ...]:
+        """(parent, child) pairs, one for every joint but the roots."""
+        return tuple((parent, joint) for joint, parent in enumerate(self.parents) if parent >= 0)
+
+    @cached_property
     def bone_lengths(self) -> Array:
         """(J,) median length of the bone that ends in each joint in metres, 0 for roots."""
         return np.array(

@@ -10,13 +10,12 @@ that stands is one point of a way, it stands afterwards too. What then no longer
 from __future__ import annotations
 
 import numpy as np
-import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .limbs import solve_two_bones
+from .limbs import limb_length, sink, solve_two_bones
 from .meeting import met_again
 from .skeleton import LEGS, SMPL22
-from .smoothing import eased_marks, smoothstep, without_flicker
+from .smoothing import begun_before, eased_marks, smoothstep, without_flicker
 from .transforms import facing
 from .vectors import FLAT
 
@@ -102,25 +101,10 @@ def _stepping(own: Array, size: float, way: float, free: Array, now: float = 1.0
         aside = (own[:, toe] - pelvis[:, 0]) * FLAT
         stood = small[:, toe] + (way - size) * steps * aside
         goals.append(stood + small[:, ankle] - small[:, toe])
-    small[..., 1] -= (upright * _sunk(small, goals, _SINKS * size * now))[:, None]
+    reaches = [_STRAIGHT * limb_length(small, leg)[:, None] for leg in LEGS]
+    need = sink([small[:, leg[0]] for leg in LEGS], goals, reaches, _SINKS * size * now)
+    small[..., 1] -= (upright * begun_before(need, _STRIDE, _EASED))[:, None]
     return on_legs(small, goals, facing(own))
-
-
-def _sunk(person: Array, ankles: list[Array], most: float) -> Array:
-    """(T,) metres by which a body goes down so that its legs reach, smooth over a stride."""
-    need = np.zeros(len(person))
-    for (hip, knee, ankle, _), goal in zip(LEGS, ankles, strict=True):
-        leg = sum(
-            np.linalg.norm(person[:, end] - person[:, start], axis=-1) for start, end in ((hip, knee), (knee, ankle))
-        )
-        aside = np.linalg.norm((person[:, hip] - goal) * FLAT, axis=-1)
-        reach = np.sqrt(np.maximum((_STRAIGHT * leg) ** 2 - aside**2, 0.0))
-        need = np.maximum(need, person[:, hip, 1] - goal[:, 1] - reach)
-    need = np.clip(need, 0.0, most)
-    if not need.any():
-        return need
-    widened = scipy.ndimage.maximum_filter1d(need, 2 * _STRIDE + 1, mode="nearest")
-    return np.asarray(scipy.ndimage.gaussian_filter1d(widened, _EASED, mode="nearest"))
 
 
 def on_legs(person: Array, ankles: list[Array], forward: Array) -> Array:

@@ -78,6 +78,15 @@ def without_flicker(marked: NDArray[np.bool_], shortest: int) -> NDArray[np.bool
     return np.asarray(scipy.ndimage.binary_opening(closed, np.ones(shortest))[shortest:-shortest])
 
 
+def begun_before(need: Array, frames: int, eased: float) -> Array:
+    """(T,) at least about ``need`` (T,), without kinks: it begins ``frames`` earlier and ends as much later.
+
+    ``eased`` is the width, in frames, of the Gaussian that rounds it.
+    """
+    widened = scipy.ndimage.maximum_filter1d(need, 2 * frames + 1, mode="nearest")
+    return np.asarray(scipy.ndimage.gaussian_filter1d(widened, eased, mode="nearest"))
+
+
 def eased_marks(marked: NDArray[np.bool_], frames: int) -> Array:
     """(T,) 1 at marked frames, and along a minimum-jerk course to 0 within so many frames beside them."""
     if not marked.any():

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from .limbs import solve_two_bones
 from .skeleton import LEGS, SMPL22
-from .smoothing import least_jerk
+from .smoothing import begun_before, least_jerk
 from .transforms import facing
 from .vectors import floor_speed, runs, unit
 
@@ -156,8 +156,7 @@ def above_floor(positions: Array) -> Array:
     trunk = [SMPL22.index(name) for name in _DEEP]
     need = np.max(np.array(list(_DEEP.values())) - result[:, trunk, 1], axis=1).clip(min=0.0)
     if need.any():
-        widened = scipy.ndimage.maximum_filter1d(need, 2 * _REACH + 1, mode="nearest")
-        result[..., 1] += scipy.ndimage.gaussian_filter1d(widened, 0.5 * _REACH, mode="nearest")[:, None]
+        result[..., 1] += begun_before(need, _REACH, 0.5 * _REACH)[:, None]
     for parts in _LIMBS:
         for side in ("left", "right"):
             root, middle, end = (SMPL22.index(f"{side}_{part}") for part in parts)

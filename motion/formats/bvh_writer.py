@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from motion.body import bone_rotations
 from motion.clip import Clip, Duet
+from motion.kinematics import global_rotations, local_rotations
 from motion.retarget import floor_on_smpl, retarget, up_rotation
 from motion.rigs import RigMotion, matched_names
 from motion.skeleton import SMPL22
@@ -25,7 +26,7 @@ from motion.skeleton import SMPL22
 from .bvh import read_bvh, read_rotations
 from .bvh_numbers import Joint
 from .files import ascii_bytes, check_smpl, read_bytes, write_files
-from .rig_pose import local_of, posed, root_path
+from .rig_pose import posed, root_path
 from .skinned import rigged
 
 Array = NDArray[np.floating]
@@ -123,7 +124,7 @@ def bvh_on_rig(clip: Clip, reference: str | Path | bytes, *, name: str | None = 
     joints, turned, values = read_rotations(reference, name=name, most=_ENOUGH)
     frames = len(turned)
     rig = replace(rig, positions=rig.positions[:frames], rotations=None)
-    rig = replace(rig, offsets=_bones(rig, _world(turned, rig.parents)))
+    rig = replace(rig, offsets=_bones(rig, global_rotations(turned, rig.bones)))
     upright = up_rotation(rig)
     pairs = {rig.joint_names.index(theirs): SMPL22.index(ours) for theirs, ours in matched_names(rig)}
     constants = _learned(rig, turned, upright, pairs)
@@ -131,7 +132,7 @@ def bvh_on_rig(clip: Clip, reference: str | Path | bytes, *, name: str | None = 
     usual = np.stack([_mean_rotation(turned[:, joint]) for joint in range(len(joints))])
     usual[[joint for joint, parent in enumerate(rig.parents) if parent < 0]] = np.eye(3)
     world = posed(rig, rig.offsets, clip, pairs, constants, usual)
-    local = local_of(world, rig.parents)
+    local = local_rotations(world, rig.bones)
     local[:, 0] = upright.T @ world[:, 0]
     path = root_path(rig, rig.offsets, clip, world, floor_on_smpl(rig))
     root = path @ upright / rig.metres_per_unit
@@ -151,7 +152,7 @@ def _bones(rig: RigMotion, world: Array) -> Array:
 def _learned(rig: RigMotion, turned: Array, upright: Array, pairs: dict[int, int]) -> dict[int, Array]:
     """The constant rotation of each matched joint beside the body's, from the file's own motion."""
     own = bone_rotations(retarget(rig, fps=rig.fps, plant=False).positions)
-    world = _world(turned, rig.parents)
+    world = global_rotations(turned, rig.bones)
     return {
         joint: _mean_rotation(np.swapaxes(own[:, ours], -1, -2) @ (upright @ world[:, joint]))
         for joint, ours in pairs.items()
@@ -192,14 +193,6 @@ def _angles(rotations: Array, axes: str) -> Array:
     if len(axes) == 3:
         return np.unwrap(found.as_euler(axes, degrees=True), axis=0, period=360.0)
     return np.degrees(found.as_rotvec())[:, ["XYZ".index(axis) for axis in axes]]
-
-
-def _world(local: Array, parents: tuple[int, ...]) -> Array:
-    world = np.array(local, dtype=np.float64)
-    for joint, parent in enumerate(parents):
-        if parent >= 0:
-            world[:, joint] = world[:, parent] @ world[:, joint]
-    return world
 
 
 def _mean_rotation(rotations: Array) -> Array:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from motion.body import bone_rotations
 from motion.clip import Clip
 from motion.kinematics import swing
+from motion.limbs import solve_two_bones
 from motion.retarget import leg_scale
 from motion.rigs import RigMotion, match_joints
 from motion.skeleton import SMPL22
@@ -56,15 +57,6 @@ def posed(
     return world
 
 
-def local_of(world: Array, parents: tuple[int, ...]) -> Array:
-    """(T, J, 3, 3) rotations against the parent's; a root's as they are."""
-    local = np.array(world)
-    for joint, parent in enumerate(parents):
-        if parent >= 0:
-            local[:, joint] = np.swapaxes(world[:, parent], -1, -2) @ world[:, joint]
-    return local
-
-
 def reached(
     rig: RigMotion,
     bones: Array,
@@ -94,7 +86,8 @@ def reached(
         shoulder, elbow, wrist = (places[:, joint] for joint in chain)
         goal = clip.positions[:, SMPL22.index(f"{side}_wrist")] + np.array([0.0, lift, 0.0])
         share = near[side][:, None]
-        bent, end = _bent(shoulder, elbow, wrist, wrist + share * (goal / leg_scale(rig) - wrist))
+        goal = wrist + share * (goal / leg_scale(rig) - wrist)
+        bent, end = solve_two_bones(shoulder, elbow, wrist, goal, np.array([0.0, -1.0, 0.0]))
         upper = swing(unit(elbow - shoulder), unit(bent - shoulder))
         forearm = np.einsum("tij,tj->ti", upper, wrist - elbow)
         lower = swing(unit(forearm), unit(end - bent)) @ upper
@@ -104,21 +97,6 @@ def reached(
         if joint not in pairs and parent >= 0:
             world[:, joint] = world[:, parent] @ usual[joint]
     return world
-
-
-def _bent(shoulder: Array, elbow: Array, wrist: Array, goal: Array) -> tuple[Array, Array]:
-    """(T, 3) elbows and wrists of arms of the same length that reach for a goal in the plane in which they bend."""
-    upper, lower = (np.linalg.norm(bone, axis=-1, keepdims=True) for bone in (elbow - shoulder, wrist - elbow))
-    away = np.linalg.norm(goal - shoulder, axis=-1, keepdims=True)
-    far = np.clip(away, np.abs(upper - lower) + 1e-4, 0.9999 * (upper + lower))
-    along = unit(goal - shoulder)
-    out: Array = elbow - shoulder
-    out = out - np.sum(out * along, axis=-1, keepdims=True) * along
-    # A straight arm bends down.
-    down = np.array([0.0, -1.0, 0.0]) + along * along[:, 1:2]
-    out = unit(np.where(np.linalg.norm(out, axis=-1, keepdims=True) > 1e-3 * upper, out, down))
-    cosine = np.clip((upper**2 + far**2 - lower**2) / np.maximum(2 * upper * far, 1e-9), -1.0, 1.0)
-    return shoulder + upper * (cosine * along + np.sqrt(1 - cosine**2) * out), shoulder + far * along
 
 
 def _placed(rig: RigMotion, bones: Array, world: Array) -> Array:

@@ -20,7 +20,7 @@ from motion.cleaning import foot_contacts
 from motion.limbs import HIPS, UPPER, over_planted_feet, solve_two_bones
 from motion.metrics.bodies import Capsules, capsules, closest_points, sideless
 from motion.skeleton import LEGS, SMPL22
-from motion.smoothing import eased_marks, minimum_jerk
+from motion.smoothing import begun_before, eased_marks, minimum_jerk
 from motion.transforms import facing
 from motion.vectors import FLAT, runs, unit
 
@@ -37,15 +37,15 @@ _EASE = 6
 _ROUNDS = 4
 _MOST = 0.12
 """Metres by which a person is moved at most."""
-_WIDE, _SMOOTH = 11, 5.0
-"""Frames over which the largest push counts, and over which pushes are spread (standard deviation)."""
+_WIDE, _SMOOTH = 5, 5.0
+"""Frames by which a push begins before it is needed, and over which pushes are spread (standard deviation)."""
 _LEVEL = 0.4
 """Share of a push that goes over the floor, at least: bodies that lie over each other would go far."""
 _ROOT = 0.4
 """Share of the upper arm that belongs to the body; the rest bends out of the way."""
 _LEG_PARTS = ("ankle", "foot")
-_RAISED, _SHORT = 0.2, 2.0
-"""Height in metres of a toe from which a leg is raised, and frames over which it is stopped."""
+_RAISED = 0.2
+"""Height in metres of a toe from which a leg is raised."""
 
 
 def bodies_apart(pair: Array, fps: float, free: Array | None = None) -> Array:
@@ -71,8 +71,8 @@ def bodies_apart(pair: Array, fps: float, free: Array | None = None) -> Array:
         pushes = _pushes(result, way, near)
         if not any(push.any() for push in pushes):
             break
-        bodies = np.minimum(bodies + share * _spread(pushes[0]), _MOST)
-        feet = np.minimum(feet + share * _spread(pushes[1]), _MOST)
+        bodies = np.minimum(bodies + share * begun_before(pushes[0], _WIDE, _SMOOTH), _MOST)
+        feet = np.minimum(feet + share * begun_before(pushes[1], _WIDE, _SMOOTH), _MOST)
         result = np.stack(
             [
                 _moved(pair[p], sign * bodies[:, None] * way, sign * feet[:, None] * way, stands[p])
@@ -92,8 +92,7 @@ def _kicks_stopped(pair: Array, way: Array, near: NDArray[np.bool_], share: Arra
                 raised = near & (before[person, :, leg[-1], 1] > _RAISED)
                 depth = _leg_depth(before, person, leg, way, raised)
                 if depth.any():
-                    spread = scipy.ndimage.maximum_filter1d(depth, 2 * round(_SHORT) + 1)
-                    spread = share * scipy.ndimage.gaussian_filter1d(spread, _SHORT, mode="nearest")
+                    spread = share * begun_before(depth, 2, 2.0)
                     result[person] = _foot_moved(result[person], leg, sign * spread[:, None] * way)
     return result
 
@@ -144,13 +143,6 @@ def _way(pair: Array) -> Array:
     """(T, 3) the level way from one pelvis to the other."""
     line = scipy.ndimage.gaussian_filter1d((pair[1, :, 0] - pair[0, :, 0]) * FLAT, _SMOOTH, axis=0)
     return np.asarray(unit(line))
-
-
-def _spread(push: Array) -> Array:
-    """A push (T,) that begins before it is needed and ends after."""
-    return np.asarray(
-        scipy.ndimage.gaussian_filter1d(scipy.ndimage.maximum_filter1d(push, _WIDE), _SMOOTH, mode="nearest")
-    )
 
 
 def _pushes(pair: Array, way: Array, near: NDArray[np.bool_]) -> tuple[Array, Array]:

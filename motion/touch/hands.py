@@ -21,7 +21,7 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from motion.limbs import HIPS, UPPER, across, bent_towards, over_planted_feet, solve_two_bones
+from motion.limbs import HIPS, UPPER, across, bent_towards, drawn_in, limb_length, over_planted_feet, solve_two_bones
 from motion.skeleton import ARMS, SMPL22
 from motion.smoothing import eased_marks, without_flicker
 from motion.transforms import facing
@@ -65,7 +65,9 @@ def hands_clasped(pair: Array, held: Array) -> Array:
         return result
     middle: Array = 0.5 * (pair[0, :, mine[-1]] + pair[1, :, theirs[-1]])
     middle = scipy.ndimage.gaussian_filter1d(middle, _SMOOTH, axis=0, mode="nearest")[at]
-    middle = _within_reach(middle, [(pair[p, at], arm) for p, arm in enumerate((mine, theirs))])
+    for person, arm in 2 * list(enumerate((mine, theirs))):
+        reach = _REACH * limb_length(pair[person, at], arm) - 0.5 * APART
+        middle = drawn_in(middle, pair[person, at, arm[0]], reach)
     ahead = 0.5 * FLAT * (facing(pair[0]) + facing(pair[1]))
     way = unit((pair[1, at, _SPINE] - pair[0, at, _SPINE]) * FLAT)
     for person, arm, side in ((0, mine, -1.0), (1, theirs, 1.0)):
@@ -81,19 +83,6 @@ def hands_clasped(pair: Array, held: Array) -> Array:
 def _gap(pair: Array, arms: tuple[tuple[int, ...], tuple[int, ...]]) -> Array:
     """(T,) metres between the wrists of an arm of each."""
     return np.asarray(np.linalg.norm(pair[0, :, arms[0][-1]] - pair[1, :, arms[1][-1]], axis=-1))
-
-
-def _within_reach(place: Array, people: list[tuple[Array, tuple[int, ...]]]) -> Array:
-    """Places (N, 3) drawn in to where two arms both reach them."""
-    found = np.array(place)
-    for person, (shoulder, elbow, wrist) in (*people, *people):
-        length = np.linalg.norm(person[:, elbow] - person[:, shoulder], axis=-1)
-        length += np.linalg.norm(person[:, wrist] - person[:, elbow], axis=-1)
-        line = found - person[:, shoulder]
-        far = np.linalg.norm(line, axis=-1)
-        most = _REACH * length - 0.5 * APART
-        found = person[:, shoulder] + line * np.minimum(1.0, most / np.maximum(far, 1e-6))[:, None]
-    return found
 
 
 # ---- Palms that meet -----------------------------------------------------------------

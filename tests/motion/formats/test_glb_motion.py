@@ -27,33 +27,30 @@ from .rigs import RIGS
 POSITIONS, ROTATIONS = marching(30)
 ROOT = POSITIONS[:, 0]
 Z_UP = Rotation.from_euler("x", 90, degrees=True).as_matrix()
-NAMED = [rig for rig, names in RIGS.items() if set(names) == set(SMPL22.joint_names)]
 WALK = glb_motion(ROTATIONS, ROOT)
 
 
-@pytest.mark.parametrize("rig", NAMED)
 @pytest.mark.parametrize(
     "given",
     [
         {},
         {"unit": 100.0, "turn": Z_UP},
         {"start": 2.5},
-        {"skinned": False},
         {"way": "CUBICSPLINE"},
         {"way": "STEP"},
         {"axes": Rotation.random(22, random_state=0).as_matrix()},
     ],
-    ids=["plain", "a turned armature in centimetres", "later", "bones alone", "splines", "steps", "axes of their own"],
+    ids=["plain", "a turned armature in centimetres", "later", "splines", "steps", "axes of their own"],
 )
-def test_joints_stand_where_they_do_in_the_file(rig: str, given: dict[str, Any]) -> None:
-    (found,) = read_glb_people(glb_motion(ROTATIONS, ROOT, rig, **given), name="walk.glb")
-    order = [found.joint_names.index(RIGS[rig][ours]) for ours in SMPL22.joint_names]
+def test_joints_stand_where_they_do_in_the_file(given: dict[str, Any]) -> None:
+    data = glb_motion(ROTATIONS, ROOT, **given)
+    (found,) = read_glb_people(data, name="walk.glb")
+    order = [found.joint_names.index(RIGS["mixamo"][ours]) for ours in SMPL22.joint_names]
     assert found.fps == 30 and found.metres_per_unit == 1.0
     np.testing.assert_allclose(found.positions[:, order], POSITIONS, atol=1e-4)
     clip = retarget(found, plant=False)
     assert np.linalg.norm(clip.positions - POSITIONS, axis=-1).max() < 0.06
-    imported = import_motion(glb_motion(ROTATIONS, ROOT, rig, **given), name="walk.glb")
-    assert imported.describe() == "22 joints matched, m, Y up, 30 frames a second"
+    assert import_motion(data, name="walk.glb").describe() == "22 joints matched, m, Y up, 30 frames a second"
 
 
 @pytest.mark.parametrize(("fps", "count", "rate"), [(24.0, 37, 24), (60.0, 15, 60), (120.0, 8, 120), (2.0, 436, 30)])
@@ -99,22 +96,15 @@ def test_rotations_take_the_short_way_at_one_speed() -> None:
     np.testing.assert_allclose(found, [42.5, 85, 127.5], atol=1e-6)
 
 
-def _animated(**fields: Any) -> dict[str, Any]:
-    return {"animations": [unpacked(WALK)[0]["animations"][0] | fields]}
-
-
 def _sampled(**fields: Any) -> dict[str, Any]:
     (animation,) = unpacked(WALK)[0]["animations"]
-    return _animated(samplers=[each | fields for each in animation["samplers"]])
+    return {"animations": [animation | {"samplers": [each | fields for each in animation["samplers"]]}]}
 
 
 GLTF = unpacked(WALK)[0]
 WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "no animation": ({"animations": []}, "has no animation: export it with one, or put it on"),
-    "nothing moves": (_animated(channels=[]), "moves no joint"),
     "keys of another number": (_sampled(output=0), "do not fit|not read here"),
-    "another way": (_sampled(interpolation="BEZIER"), "is not known"),
-    "a sampler that is not there": (_animated(samplers=[]), "is not there"),
     "a node nowhere": ({"nodes": [each | {"translation": [1e999, 0, 0]} for each in GLTF["nodes"]]}, "nowhere|damaged"),
     "no person": ({"nodes": [each | {"name": "rope"} for each in GLTF["nodes"]]}, "no joint that looks like"),
     "everything in one place": ({"nodes": [{**each, "scale": [0, 0, 0]} for each in GLTF["nodes"]]}, "of no length"),
@@ -243,7 +233,6 @@ def test_a_mirrored_armature_walks_forwards() -> None:
 
 
 FILE = glb_takes(ROTATIONS, ROOT, ["Walk", "glide", "3", "2"])
-NOTE = "Of the 4 animations in x.glb, {} was taken; the others are {}."
 
 
 def limbs(found: Imported) -> float:
@@ -252,24 +241,12 @@ def limbs(found: Imported) -> float:
     return float(np.ptp(moved[:, [20, 21]], axis=0).max())
 
 
-def imported(animation: Any = None, data: bytes = FILE) -> Imported:
-    return import_motion(data, name="x.glb", choices=ImportChoices(animation=animation))
-
-
-def noted(found: Imported) -> str:
-    assert found.animations is not None
-    return found.animations.note
-
-
-def test_the_first_of_several_is_read_and_the_others_are_named() -> None:
-    found = imported()
-    assert limbs(found) > 0.1
-    assert noted(found) == NOTE.format("1 (“Walk”)", "2 (“glide”), 3 (“3”) and 4 (“2”)")
+def imported(animation: Any) -> Imported:
+    return import_motion(FILE, name="x.glb", choices=ImportChoices(animation=animation))
 
 
 @pytest.mark.parametrize(
-    ("choice", "number"),
-    [("Walk", 1), ("walk", 1), (1, 1), ("1", 1), ("glide", 2), (" GLIDE ", 2), (2, 2), ("2", 4), ("3", 3), ("4", 4)],
+    ("choice", "number"), [(None, 1), ("walk", 1), (1, 1), (" GLIDE ", 2), (2, 2), ("2", 4), ("3", 3)]
 )
 def test_another_is_chosen_by_its_name_or_else_by_its_number(choice: Any, number: int) -> None:
     found = imported(choice)
@@ -277,7 +254,7 @@ def test_another_is_chosen_by_its_name_or_else_by_its_number(choice: Any, number
     assert (limbs(found) > 0.1) == (number == 1)
 
 
-@pytest.mark.parametrize("choice", [5, "5", "run", 10**12, "9" * 5000, "²", "\ud800"])
+@pytest.mark.parametrize("choice", [5, "run", "9" * 5000, "²", "\ud800"])
 def test_one_that_is_not_there_is_a_sentence_that_lists_them(choice: Any) -> None:
     with pytest.raises(InputError) as error:
         imported(choice)

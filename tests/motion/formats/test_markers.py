@@ -83,12 +83,10 @@ def test_key_points_of_a_trc_are_the_joints(unit: str, scale: float) -> None:
     "change",
     [
         lambda text: text.replace("\t", ","),
-        lambda text: text.replace("\t", ";"),
-        lambda text: text.replace(".", ","),
         lambda text: text.replace("\t", ";").replace(".", ","),
         lambda text: text.replace("\n", "\r"),
     ],
-    ids=["commas", "semicolons", "decimal commas", "both", "CR"],
+    ids=["commas", "semicolons and decimal commas", "CR"],
 )
 def test_a_trc_may_be_cut_by_other_marks(change: Callable[[str], str]) -> None:
     clip = formats.read(change(trc_text(keypoints())).encode(), name="walk.trc", keep_skeleton=True)
@@ -165,13 +163,11 @@ WHOLE = trc_text(keypoints())
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("hello", "head of five lines"),
         (WHOLE.replace("30\t30", "x\t30", 1), "DataRate as a number"),
         (WHOLE.replace("\tm\t", "\tfurlong\t", 1), "unit 'furlong'"),
         (WHOLE.replace("LKnee", "Tail"), "left knee"),
         (WHOLE.replace("\t0.0000\t", "\t0.0000\twing", 1), "line 6: 'wing"),
         (trc_text(keypoints(), scale=1e6), "is its unit right"),
-        (WHOLE + "\t" * 100_000, "line 30 is longer"),
     ],
 )
 def test_wrong_trc_files_are_one_sentence(text: str, says: str) -> None:
