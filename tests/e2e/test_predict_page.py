@@ -115,7 +115,7 @@ def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_pa
 def test_two_people_have_several_futures_by_a_seed(page: Page, tmp_path: Path) -> None:
     upload(page, write(walking(3.0), tmp_path / "walkers.npz")[0])
     expect(page.locator("#predict-status")).to_contain_text("two people, 3.0 s")
-    page.wait_for_function("document.querySelector('#predict-marker input[type=number]').value === '1.5'")
+    page.wait_for_function("document.querySelector('#predict-marker input[type=number]').value === '1'")
     seed = page.locator("#predict-seed")
     expect(seed).to_be_hidden()
     choose(page, "#predict-method", "InterGen, both together")
@@ -124,7 +124,7 @@ def test_two_people_have_several_futures_by_a_seed(page: Page, tmp_path: Path) -
     page.click("button#predict-generate")
     expect(page.locator("#predict-status .pd-done")).to_contain_text("3 samples made")
     page.wait_for_function("window.__pasdedeux.player.futures.samples.length === 3")
-    assert page.evaluate("window.__pasdedeux.player.futures.from") == 45
+    assert page.evaluate("window.__pasdedeux.player.futures.from") == 30
     expect(page.locator("#predict-curves .legendtext", has_text="InterGen")).to_be_visible()
     choose(page, "#predict-method", "Motion MLP")
     expect(seed).to_be_hidden()

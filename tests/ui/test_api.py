@@ -23,7 +23,6 @@ from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_character, glb_motion, glb_takes
 from webdemo.inference.methods import method
 from webdemo.ui.page import build_page, launch_options
-from webdemo.ui.places import READING
 
 from .stub_engine import StubEngine, walking
 
@@ -54,13 +53,6 @@ def test_generate_gives_a_manifest_and_files_that_can_be_read(client: Client) ->
         assert saved["positions"].shape == (2, 60, 22, 3)
     assert json.loads(by_name[f"{plain}.json"].read_text())["request"]["steps"] == 3
     assert by_name[f"{plain}-1_a.bvh"].read_text().startswith("HIERARCHY")
-
-
-def test_words_wait_for_nobody_who_has_a_file_read(client: Client) -> None:
-    """A small run waited four minutes for eight large recordings of other people's."""
-    with READING.place():
-        answer, _ = client.submit("two people walk", api_name="/generate").result(timeout=60)
-    assert answer["manifest"]
 
 
 def test_a_class_is_enough_too(client: Client) -> None:

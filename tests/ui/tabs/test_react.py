@@ -14,8 +14,7 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 import gradio as gr
 
 from motion.skeleton import LAYOUTS
-from tests.motion.bodies import marching
-from tests.motion.formats.characters import glb_character, glb_motion
+from tests.motion.formats.characters import glb_character
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, changes
 from webdemo.ui.tabs.react import ReactTab
@@ -40,16 +39,6 @@ def test_an_upload_is_shown_at_once(tab: ReactTab, walker: Path) -> None:
     assert sample["roles"] == ["given"]
     assert sample["frames"] == 120
     assert last["player"]["value"]["title"] == "walker_a.bvh"
-
-
-def test_an_animated_character_is_an_actor(tab: ReactTab, tmp_path: Path) -> None:
-    positions, rotations = marching(60)
-    (tmp_path / "walk.glb").write_bytes(glb_motion(rotations, positions[:, 0], unit=100.0))
-    last = upload(tab, tmp_path / "walk.glb")[-1]
-    assert "22 joints matched, m, Y up, 30 frames a second" in last["found"]
-    answered = run(tab, last["source"], prompt="")[-1]["record"]
-    given = answered.result.duets[0].a
-    assert np.linalg.norm(given.positions - positions, axis=-1).max() < 0.06, "as they are in the file"
 
 
 def test_two_people_in_a_file_are_a_choice_and_a_long_file_is_cut(tab: ReactTab, walkers: Path) -> None:
@@ -83,13 +72,6 @@ def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(tab: ReactTab, 
     duet = last["record"].result.duets[0]
     given = walking(12.0).b.positions[30:90]
     assert duet.people[0 if role == "a" else 1].positions.tobytes() == given.tobytes()
-
-
-def test_words_may_be_left_out_and_name_nothing_then(tab: ReactTab, walker: Path) -> None:
-    record = run(tab, upload(tab, walker)[-1]["source"], prompt="  ")[-1]["record"]
-    assert record.prompt == "Reaction to walker_a.bvh"
-    _, *buttons = tab.results.export(record)
-    assert any(button["interactive"] for button in buttons)
 
 
 @pytest.mark.parametrize("person", ["a", "b"])

@@ -14,13 +14,11 @@ import pytest
 import trimesh
 
 from motion import Duet, formats
-from motion.character import character_body
-from motion.formats.glb_reader import read_character
 from tests.motion.formats.characters import glb_character, unpacked
 from tests.motion.formats.rigs import RIGS
 from tests.ui.tab_events import built
 from tests.ui.tabs.generating import result_of
-from webdemo.ui.components.exports import KINDS, Record, Worn, file_name, for_download, write_files
+from webdemo.ui.components.exports import KINDS, Record, file_name, for_download, write_files
 from webdemo.ui.components.film import make_film
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.view.stage import Style
@@ -51,13 +49,6 @@ def test_export_fills_the_buttons_once(tab: GenerateTab) -> None:
     assert filled == offered
     assert all(update == gr.skip() for update in tab.results.export(record))
     assert all(update == gr.skip() for update in tab.results.export(None))
-
-
-def test_new_files_are_withheld_until_they_are_written(tab: GenerateTab) -> None:
-    record = result_of(tab)
-    assert all(update == gr.update(value=None, interactive=False) for update in tab.results.withhold(record))
-    tab.results.export(record)
-    assert all(update == gr.skip() for update in (*tab.results.withhold(record), *tab.results.withhold(None)))
 
 
 def test_a_full_disk_is_reported_and_leaves_nothing(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -98,18 +89,6 @@ def test_a_film_is_what_the_player_shows(tab: GenerateTab, monkeypatch: pytest.M
     assert (asked["yaw"], asked["elevation"], asked["view"], asked["follow"]) == (1.5, 1.5, "top", False)
     assert asked["style"] == Style(look="both", trails=True, theme="dark", film=True)
     assert asked["title"] == "two people walk"
-
-
-@pytest.mark.parametrize("shown", [True, False, None, "yes"])
-def test_a_film_wears_the_character_while_the_player_shows_it(
-    tab: GenerateTab, monkeypatch: pytest.MonkeyPatch, shown: Any
-) -> None:
-    asked: dict[str, Any] = {}
-    monkeypatch.setattr("webdemo.ui.components.film.film.write_film", lambda *_, **options: asked.update(options))
-    record = result_of(tab)
-    record.worn = Worn(character_body(read_character(glb_character(), name="x.glb")), Path("x.glb"))
-    make_film(record, json.dumps({"character": shown}), tab.page.shelf.folder())
-    assert asked["style"].body is (record.worn.body if shown is True else None)
 
 
 @pytest.mark.parametrize(

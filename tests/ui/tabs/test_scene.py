@@ -297,17 +297,6 @@ def test_a_span_keeps_the_poses_and_the_way_that_fall_into_it(tab: SceneTab) -> 
     assert part(tab, "futures", record, late, "They bow.")["story"]["value"]["poses"] == []
 
 
-def test_a_pose_off_the_path_is_one_sentence(tab: SceneTab) -> None:
-    record = generate(tab)[-1]["record"]
-    place = record.result.duets[0].a.positions[60]
-    way = FloorPath("a", (FloorPoint(3.0, 3.0, 1.0), FloorPoint(3.0, 3.5, 3.0)))
-    beats = (Beat("They meet."), Beat("They hug."))
-    line = edited(story_value(beats, (way,), (Pose("a", 2.0, place),)), 1)[2]
-    assert "off their path" in line
-    line = edited(story_value(beats, (), (Pose("a", 2.0, place), Pose("a", 2.01, place))), 1)[2]
-    assert "keep one" in line
-
-
 def test_paths_from_the_words_are_switched_on_the_line(tab: SceneTab) -> None:
     line = {"beats": [], "planned": False}  # ticked off before there is a story
     last = generate(tab, story=line)[-1]

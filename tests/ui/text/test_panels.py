@@ -54,14 +54,6 @@ def test_readouts_show_before_after_and_change() -> None:
     assert "nearest that it knows" in notes_lines(result())
 
 
-def test_readouts_without_a_before_show_values_alone() -> None:
-    plain = result()
-    readouts = tuple({**readout, "before": None} for readout in plain.readouts)
-    made = readout_panel(Result(duets=plain.duets, manifest=plain.manifest, readouts=readouts))
-    assert "Before" not in made and "before" not in made
-    assert "<caption>Quality</caption>" in made and "Value" in made
-
-
 def test_measures_that_could_not_be_determined_are_dashes() -> None:
     nothing = dict.fromkeys(measure.key for measure in MEASURES)
     readout = {"before": {"jerk": 30.0}, "after": nothing}
