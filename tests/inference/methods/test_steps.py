@@ -16,9 +16,9 @@ from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.story.beats import Beat
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.toml import read_story, write_story
-from webdemo.ui.components.pace import FAST
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.ui.tabs.react import ReactTab
+from webdemo.ui.tabs.sampling import FAST
 
 STORY = '[[beat]]\nwords = "They wave."\n'
 BEATS = (Beat("They wave."),)
