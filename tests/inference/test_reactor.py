@@ -14,7 +14,7 @@ from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, load
 from models.weights_io import save_network
 from motion import SMPL22, InputError
 from motion.transforms import heading_matrix
-from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference import GenerateRequest, ReactRequest, Result
 from webdemo.inference.engine import Engine
 from webdemo.inference.pipelines import regennet as reactor
 from webdemo.view.payload import player_payload
@@ -57,8 +57,8 @@ def react(engine: Engine, **changed: object) -> Result:
     return next(e for e in engine.run(replace(REQUEST, **changed)) if isinstance(e, Result))
 
 
-@pytest.mark.parametrize("changed", [{}, {"prompt": "Two people wave.", "guidance": 2.0}, {"samples": 2}])
-@pytest.mark.parametrize("until", [1, 30, 43])
+@pytest.mark.parametrize("changed", [{}, {"prompt": "Two people wave.", "guidance": 2.0, "samples": 2}])
+@pytest.mark.parametrize("until", [1, 43])
 def test_online_the_future_changes_no_frame_by_a_bit(engine: Engine, until: int, changed: dict) -> None:
     """From the clip to the picture: what the player is sent of the reaction is the same up to that frame."""
     positions = waver(2.5).positions.copy()
@@ -151,7 +151,7 @@ def test_offline_denoises_at_the_timesteps_of_the_stream(
 
 
 @pytest.mark.parametrize("mode", ["online", "offline"])
-@pytest.mark.parametrize("frames", [30, 31, 32, 33, 34])
+@pytest.mark.parametrize("frames", [30, 33])
 def test_any_number_of_frames_is_answered(engine: Engine, mode: str, frames: int) -> None:
     assert react(engine, mode=mode, actor=waver(frames / 30), steps=1).duets[0].num_frames == frames
 
@@ -188,45 +188,18 @@ def test_a_moved_actor_moves_the_reaction(engine: Engine, mode: str) -> None:
     np.testing.assert_allclose(here.astype(np.float64) @ turn.T + shift, there, atol=2e-3)
 
 
-@pytest.mark.parametrize("mode", ["online", "offline"])
-def test_bones_are_constant_and_feet_above_the_floor(engine: Engine, mode: str) -> None:
-    made = react(engine, mode=mode).duets[0].b
-    parents, children = (list(side) for side in zip(*SMPL22.bones, strict=True))
-    lengths = np.linalg.norm(made.positions[:, children] - made.positions[:, parents], axis=-1)
-    np.testing.assert_allclose(lengths, np.tile(SMPL22.bone_lengths[children], (75, 1)), atol=2e-3)
-
-
-@pytest.mark.parametrize("mode", ["online", "offline"])
-def test_a_run_can_be_cancelled(engine: Engine, mode: str) -> None:
-    cancel, seen = CancelToken(), 0
-    with pytest.raises(Cancelled):
-        for event in engine.run(replace(REQUEST, mode=mode), cancel):
-            seen += isinstance(event, Progress) and event.stage == "sample"
-            if seen == 2:
-                cancel.cancel()
-    assert seen == 2
-
-
 @pytest.mark.parametrize(
     ("changed", "says"),
     [
         ({"role": "b"}, "makes the person who reacts"),
         ({"sampler": "dpm++"}, "does not sample with dpm"),
         ({"mode": "backwards"}, "choose offline or online"),
-        ({"model": "intergen"}, "choose offline"),
-        ({"model": "nobody"}, "There is no model"),
-        ({"damping": 3.0}, "Damping"),
     ],
 )
 def test_what_regennet_cannot_do_is_said_in_one_sentence(changed: dict, says: str) -> None:
     with pytest.raises(InputError, match=says) as error:
         replace(REQUEST, **changed)
     assert "\n" not in str(error.value)
-
-
-def test_the_manifest_has_the_damping_that_was_used(engine: Engine) -> None:
-    assert react(engine, damping=0.5).manifest["request"]["damping"] == 0.0
-    assert react(engine, damping=0.5, mode="offline").manifest["request"]["damping"] == 0.5
 
 
 def test_offline_damping_moves_the_reactor_alone(engine: Engine) -> None:

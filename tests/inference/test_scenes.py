@@ -133,14 +133,6 @@ def test_paths_and_poses_are_met_in_every_window(engine: Engine, story: Result) 
     np.testing.assert_allclose(found[1, 165], pose.positions, atol=1e-4)
 
 
-def test_a_heading_is_held(engine: Engine) -> None:
-    from motion.transforms import heading
-
-    path = FloorPath("b", (FloorPoint(1.0, 1.0, 1.0, heading=-120.0),))
-    found = positions(run(engine, SceneRequest(beats=BEATS[:1], paths=(path,), **QUICK)))
-    assert np.degrees(heading(found[1, 30:31])[0]) == pytest.approx(-120, abs=10)
-
-
 @pytest.mark.parametrize("beats", [BEATS, BEATS[:1]])
 def test_a_loop_meets_its_beginning(engine: Engine, beats: tuple[Beat, ...]) -> None:
     found = positions(run(engine, SceneRequest(beats=beats, loop=True, **QUICK)))
@@ -169,15 +161,6 @@ def test_what_was_finished_before_a_cancellation_stays(engine: Engine) -> None:
     assert min(steps) == QUICK["steps"] + 1
 
 
-def test_crossing_paths_are_noted(engine: Engine) -> None:
-    paths = (
-        FloorPath("a", (FloorPoint(-1, 0, 0.0), FloorPoint(1, 0, 1.9))),
-        FloorPath("b", (FloorPoint(1, 0, 0.0), FloorPoint(-1, 0, 1.9))),
-    )
-    result = run(engine, SceneRequest(beats=BEATS[:1], paths=paths, **QUICK))
-    assert any("The two paths come within" in note for note in result.notes)
-
-
 def test_a_sentence_of_several_beats_is_split_by_plain_generation_too(engine: Engine) -> None:
     prompt = "First they wave, then they bow."
     made = run(engine, GenerateRequest(prompt=prompt, seconds=4.0, **QUICK))
@@ -188,19 +171,6 @@ def test_a_sentence_of_several_beats_is_split_by_plain_generation_too(engine: En
     np.testing.assert_array_equal(positions(made), positions(run(engine, split)))
     whole = run(engine, GenerateRequest(prompt=prompt, seconds=4.0, split=False, **QUICK))
     assert np.abs(positions(whole) - positions(made)).max() > 0.01 and not any("beats" in n for n in whole.notes)
-
-
-@pytest.mark.parametrize(
-    ("prompt", "fields"),
-    [
-        ("They wave.", {}),
-        ("They wave, then they nod.", {"seconds": 2.0}),
-        ("shake hands. then bow.", {"model": "bigraphdiff"}),
-    ],
-)
-def test_what_has_one_beat_or_no_time_is_not_split(prompt: str, fields: dict[str, Any]) -> None:
-    scene = as_scene(GenerateRequest(prompt=prompt, **fields))
-    assert scene is None or [beat.sentence for beat in scene.beats] == [prompt]
 
 
 def test_a_scene_shares_its_passes_with_other_requests(engine: Engine) -> None:
@@ -266,29 +236,12 @@ def test_a_result_says_what_share_of_it_the_plan_lays_out(engine: Engine) -> Non
     assert share(free, free, planned=False) == 0.0, "what a window sees of the one before is not planned"
 
 
-def test_a_path_that_is_given_takes_the_place_of_the_words(engine: Engine) -> None:
-    beats = (Beat("They bow.", seconds=2.0), Beat("Person A walks away.", seconds=3.0))
-    path = FloorPath("a", (FloorPoint(1.5, 0.0, 2.5), FloorPoint(1.5, 1.0, 4.9)))
-    made = positions(run(engine, SceneRequest(beats=beats, paths=(path,), **QUICK)))
-    assert np.linalg.norm(made[0, 147, 0, [0, 2]] - [1.5, 1.0]) < 0.15
-
-
 def test_a_bystander_stands_while_the_other_acts(engine: Engine) -> None:
     request = GenerateRequest(prompt="Person A kneels down.", seconds=3.0, seed=1, **QUICK)
     made, free = (positions(run(engine, r)) for r in (request, replace(request, planned=False)))
     assert made[1, :, 0, 1].min() > 0.85, "b stands"
     assert np.ptp(made[1, ::15, 0], axis=0).max() < 0.05 < np.ptp(free[1, ::15, 0], axis=0).max()
     assert (made[1, ::15, 20:22, 1] < made[1, ::15, :1, 1] + 0.1).all(), "with hanging arms"
-
-
-def test_those_who_meet_later_begin_apart(engine: Engine) -> None:
-    beats = (Beat("They wait.", seconds=1.5), Beat("They walk up to each other.", seconds=3.0))
-    assert apart(run(engine, SceneRequest(beats=beats, **QUICK)))[0] > 1.7
-
-
-def test_who_kneels_down_begins_on_their_feet(engine: Engine) -> None:
-    made = positions(run(engine, GenerateRequest(prompt="They kneel down.", seconds=3.0, **QUICK)))
-    assert made[:, 0, 0, 1].min() > 0.9
 
 
 def test_a_span_and_a_loop_are_left_to_the_network(engine: Engine, story: Result) -> None:

@@ -8,7 +8,6 @@ import pytest
 from motion import Duet, InputError
 from motion.formats import read
 from webdemo.inference import Engine, PredictRequest, PredictResult
-from webdemo.ui.components.prediction_view import prediction_payload
 from webdemo.ui.text.examples import example_clips
 
 MODEL = "intergen-together"
@@ -64,8 +63,3 @@ def test_each_knows_of_the_other(engine: Engine, pair: Duet) -> None:
 def test_one_person_is_refused(pair: Duet) -> None:
     with pytest.raises(InputError, match="continues two people"):
         PredictRequest(motion=pair.a, model=MODEL)
-
-
-def test_the_player_gets_futures(engine: Engine, pair: Duet) -> None:
-    payload = prediction_payload(futures(engine, pair))
-    assert payload["futures"] == 45 and len(payload["samples"]) == 3

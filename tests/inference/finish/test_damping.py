@@ -164,39 +164,17 @@ def gap(model: CompactInterGen, x: torch.Tensor) -> float:
     return float((a - b).norm(dim=-1).min())
 
 
-@pytest.mark.parametrize("apart", [0.15, 0.4, 0.7])
-def test_an_asked_touch_brings_the_hands_together(model, apart):
+def test_an_asked_touch_brings_the_hands_together(model):
+    apart = 0.4
     x = standing(model, apart)
     assert gap(model, x) == pytest.approx(apart, abs=0.02)
     met = settled(model, x, [HANDS])
     assert gap(model, met) < 0.12
 
 
-def test_hands_that_are_not_asked_for_stay_apart(model):
-    x = standing(model, 0.4)
-    for touches in ((), [()]):
-        assert gap(model, Damping(model, 1.0, frames=61, timesteps=[0], touches=touches)(x, 0)) > 0.35
-
-
 def test_a_touch_out_of_reach_is_left_alone(model):
     positions = model.positions(standing(model, 2.0))[0]
     assert asked_energy(positions, [HANDS]).tolist() == [0.0]
-
-
-def test_a_hand_inside_the_other_comes_out(model):
-    """A wrist that is 28 cm into the other's chest: bodies part until they no longer overlap."""
-    x = standing(model, 0.08)
-    chest = SMPL22.index("spine3")
-    positions = model.positions(x)[0][0, :, :61].clone()
-    positions[1] += positions[0, :1, SMPL22.index("right_wrist")][:, None] - positions[1, :, chest][:, None]
-    x = pack(encode(positions, torch.ones(2, 61, 4), model.layout)[None], model.layout)
-
-    def depth(x: torch.Tensor) -> float:
-        return penetration(Duet.from_positions(model.positions(x)[0][0, :, :61].numpy(), fps=30.0)).mean
-
-    met = settled(model, x)
-    assert depth(x) > 10  # cm
-    assert depth(met) < 0.3 * depth(x)
 
 
 def test_without_damping_nothing_is_corrected(model):
@@ -207,7 +185,7 @@ def test_without_damping_nothing_is_corrected(model):
     assert Damping(model, 0.5, **asked)(x, 999) is x
 
 
-@pytest.mark.parametrize("steps", [50, 250, 1000])
+@pytest.mark.parametrize("steps", [50, 1000])
 def test_with_many_steps_the_threshold_is_that_of_the_paper(steps):
     """Eq. 15: all where t ≤ t̄·T, nothing above, and a share at the one step that reaches below it."""
     timesteps = top_timesteps(steps).tolist()
@@ -254,7 +232,7 @@ def test_a_reader_answers_only_where_it_is_sure():
     assert reader.read(logits, sure=0.9) == [(), HANDS, ()]
 
 
-@pytest.mark.parametrize("apart", [0.0, 0.2, 0.5, 1.7])
+@pytest.mark.parametrize("apart", [0.2, 1.7])
 def test_the_pairs_that_touch_are_all_that_overlap(apart):
     """The sum over all pairs of spheres at all moments, and its gradient, from those alone that touch."""
     dice = torch.Generator().manual_seed(3)
@@ -294,7 +272,7 @@ def request(model: str, steps: int, threshold: float) -> GenerateRequest | React
     return GenerateRequest(prompt=words, seconds=1.0, cleanup=False, split=False, planned=False, **asked)
 
 
-@pytest.mark.parametrize("steps", [1, 2, 5, 8, 20, 50])
+@pytest.mark.parametrize("steps", [1, 8, 50])
 @pytest.mark.parametrize("model", ["intergen", "regennet"])
 def test_the_threshold_sets_how_much_is_corrected_at_any_number_of_steps(shipped, model, steps):
     """Every larger t̄ takes the shipped networks' motions farther from those of the plain sampler."""
@@ -304,7 +282,7 @@ def test_the_threshold_sets_how_much_is_corrected_at_any_number_of_steps(shipped
         return np.stack([duet.positions[-1] for duet in result.duets])
 
     plain = made(0.0)
-    apart = [float(np.linalg.norm(made(t) - plain, axis=-1).mean()) for t in (0.05, 0.2, 0.4, 0.7)]
+    apart = [float(np.linalg.norm(made(t) - plain, axis=-1).mean()) for t in (0.05, 0.4, 0.7)]
     assert apart[0] > 1e-3
     assert all(after > 1.01 * before for before, after in pairwise(apart))
 

@@ -42,12 +42,6 @@ def test_a_girl_of_the_words_is_made_at_her_size(engine: Engine) -> None:
     np.testing.assert_array_equal(again.duets[0].positions, duet.positions)
 
 
-def test_words_of_adults_change_nothing(engine: Engine) -> None:
-    said = GenerateRequest(prompt="A man waves at a woman.", seconds=3.0, **QUICK)
-    assert enlarged(said) is said
-    np.testing.assert_allclose(bones(run(engine, said).duets[0]), (1.0, 1.0), atol=0.01)
-
-
 def test_a_path_on_the_floor_is_where_it_was_drawn(engine: Engine) -> None:
     path = FloorPath("a", (FloorPoint(0.0, 0.0, 0.0), FloorPoint(1.2, 0.9, 3.0)))
     request = GenerateRequest(prompt="A man walks. A girl waves.", seconds=4.0, paths=(path,), **QUICK)

@@ -98,14 +98,6 @@ def test_nobody_is_walked_through(engine: Engine, monkeypatch: pytest.MonkeyPatc
     assert np.abs(np.diff(made, axis=0)).max() < 0.06
 
 
-def test_somebody_who_has_gone_far_is_answered_near_them(engine: Engine) -> None:
-    person = waver(1.0).positions
-    far = person + np.array([9.0, 0, 0])
-    made = answers(engine, np.concatenate([person, far]))
-    assert np.linalg.norm(made[30:, 0] - far[:, 0], axis=-1).max() < 4.0
-    assert np.array_equal(made[:30], answers(engine, person))
-
-
 def test_who_is_not_known_cannot_answer(engine: Engine) -> None:
     with pytest.raises(InputError, match="no live partner 'intergen': choose regennet or agent"):
         engine.partner("intergen")
@@ -173,12 +165,6 @@ def test_a_second_gesture_interrupts_the_first() -> None:
     assert [words for _, words in partner.words] == [SENTENCES[0], SENTENCES[1], SENTENCES[2]]
     frames = [frame for frame, _ in partner.words]
     assert frames[2] - frames[1] == 2 * BETWEEN
-
-
-def test_a_gesture_that_goes_on_is_not_answered_anew() -> None:
-    _, partner, states = watched(WAVE, frames=FIRST + 30 * BETWEEN)
-    assert [words for _, words in partner.words] == [SENTENCES[0], SENTENCES[1]]
-    assert states[-1] == "answers"
 
 
 def test_the_answer_ends_when_nothing_more_is_done() -> None:

@@ -13,7 +13,7 @@ import torch
 
 from motion import InputError
 from motion.formats import read
-from tests.inference.own.released_files import normaliser, write_intergen
+from tests.inference.own.released_files import write_intergen
 from webdemo import cli
 from webdemo.inference import Engine, GenerateRequest, ReactRequest, Result
 from webdemo.inference.methods import failed, method, register_settings
@@ -99,9 +99,7 @@ def test_released_files_become_a_motion_in_the_shell(
         ('method = "nothing"\nfiles = ["intergen.ckpt"]', "there is no method 'nothing': choose one of"),
         ('method = "intergen"', "`files` names no checkpoint file"),
         ('method = "intergen"\nfiles = ["gone.ckpt", "a_mean.npy", "a_std.npy"]', "There is no file"),
-        ('method = "intergen"\nfiles = ["a.docx"]', "not clear what the file a.docx is"),
         ('method = "intergen"\nfiles = ["a.ckpt", "b.ckpt"]', "two files of one role"),
-        ('method = "intergen"\nfiles = 3', "must be a list of paths"),
         ('method = "intergen"\nweights = "a"', "unknown key 'weights'"),
         ("", "give it either `method` with `files`, or `pipeline`"),
         ('method = "intergen"\nprecision = "int3"', "choose one of auto, float32, bfloat16, int8"),
@@ -182,15 +180,6 @@ def test_wrong_normalisers_get_one_sentence(
     (tmp_path / name).unlink()
     np.save(tmp_path / name, value)
     with pytest.raises(InputError, match=sentence):
-        result_of(Engine(), GenerateRequest(prompt="Two people wave.", model="my-run"))
-
-
-def test_swapped_normalisers_are_noticed(settings: Path, files: Path, tmp_path: Path) -> None:
-    use(settings, TABLE, files)
-    for name, value in zip(("global_std.npy", "global_mean.npy"), normaliser(), strict=True):
-        (tmp_path / name).unlink()
-        np.save(tmp_path / name, value)
-    with pytest.raises(InputError, match="swapped"):
         result_of(Engine(), GenerateRequest(prompt="Two people wave.", model="my-run"))
 
 
