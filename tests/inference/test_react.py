@@ -91,12 +91,11 @@ def test_placement_puts_a_person_where_the_network_expects_one(role: str) -> Non
 def test_the_network_sees_the_given_person_clean_at_every_step(engine: Engine) -> None:
     """Sampling by hand: the given half is set before each network call, and its prediction overwritten."""
     from models.diffusion import make_scheduler, sample_noise
-    from webdemo.inference.pipelines.given import scene_of
 
     request = replace(REQUEST, damping=0.0, cleanup=False)
     generator = engine.pipeline("intergen")
     model, layout = generator.model, generator.model.layout
-    scene = scene_of(request, model)
+    scene = generator.scene(request)
     half = layout.token_features
     empty = torch.zeros(1, layout.num_tokens(60), 2 * half)
     clean = scene.given(empty)[..., :half]
@@ -136,10 +135,9 @@ def test_a_network_that_sees_what_is_known_sees_the_given_person(reading_engine:
 
 def test_damping_moves_no_given_number(engine: Engine) -> None:
     from webdemo.inference.finish.damping import Damping
-    from webdemo.inference.pipelines.given import scene_of
 
-    model = engine.pipeline("intergen").model
-    given = scene_of(REQUEST, model).given
+    pipeline = engine.pipeline("intergen")
+    model, given = pipeline.model, pipeline.scene(REQUEST).given
     frozen = given.frozen[0]
     x0 = given(torch.randn(2, *frozen.shape, generator=torch.Generator().manual_seed(1)))
     corrected = Damping(model, 1.0, frames=60, timesteps=[0], frozen=frozen)(x0, 0)

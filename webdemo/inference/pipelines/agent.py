@@ -20,10 +20,9 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from acts.staging.parts import KnownFrames
 from models.agent.recogniser import OBSERVED, PREDICTED, load_folder, sampled
-from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
-from models.motion_tokens import TokenLayout
 from motion import FPS, SMPL22, Clip, Duet
 from motion.placement import MEDIAN_START_DISTANCE, Placement
 from webdemo.inference.finish.joining import joined
@@ -32,7 +31,7 @@ from webdemo.inference.requests.plans import KeptPlan
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story.beats import plan_of_words
 
-from .given import NAMES, Finish, Reaction, settle
+from .given import NAMES, Finish, Reaction, hold_of, settle
 from .intergen import InterGenPipeline
 from .predictor import PredictorPipeline, to_last_pose
 
@@ -228,7 +227,8 @@ class AgentPipeline:
         """
         clip, model = request.actor, self.answers.model
         placement = Placement.of(clip.cut(0, 1), "a")
-        known = Known.nothing(_padded(model.layout, clip.num_frames))
+        layout = model.layout
+        known = Known.nothing(layout.num_frames(layout.num_tokens(clip.num_frames)))
         known.add_person(0, torch.tensor(placement.to_network(clip.positions[:1]), dtype=torch.float32))
         frames = range(clip.num_frames)
         places = torch.tensor([[0.0, MEDIAN_START_DISTANCE]]).expand(len(frames), -1)
@@ -237,22 +237,14 @@ class AgentPipeline:
             for axis, number in ((0, -float(SMPL22.offsets[hip, 0])), (2, 0.0)):
                 known.rows[:, 1, : len(frames), 3 * hip + axis] = number
                 known.mask[:, 1, : len(frames), 3 * hip + axis] = True
-        return Reaction(clip.num_frames, _held(model, known), clip=clip, place=0, placement=placement)
+        given = Hold(known, layout, model.mean, model.std)
+        return Reaction(clip.num_frames, given, clip=clip, place=0, placement=placement)
 
     def _answering(self, request: ReactRequest, past: Array) -> Answering:
         """A response to what the person did while the agent waited."""
         clip, model, seen = request.actor, self.answers.model, len(past)
         placement = Placement.of(clip.cut(0, seen), "a", request.prompt)
-        known = Known.nothing(_padded(model.layout, clip.num_frames))
-        for person, positions in enumerate((clip.positions[:seen], past)):
-            known.add_person(person, torch.tensor(placement.to_network(positions), dtype=torch.float32))
-        return Answering(clip.num_frames, _held(model, known), clip=clip, place=0, placement=placement, past=past)
-
-
-def _padded(layout: TokenLayout, frames: int) -> int:
-    """The number of frames, rounded up to whole tokens."""
-    return layout.num_frames(layout.num_tokens(frames))
-
-
-def _held(model: DuetSpace, known: Known) -> Hold:
-    return Hold(known, model.layout, model.mean, model.std)
+        both = (clip.positions[:seen], past)
+        parts = [KnownFrames(i, range(seen), placement.to_network(person)) for i, person in enumerate(both)]
+        given = hold_of(model, clip.num_frames, parts)
+        return Answering(clip.num_frames, given, clip=clip, place=0, placement=placement, past=past)

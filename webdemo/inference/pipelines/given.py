@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from torch import Tensor
 
 from acts.staging.window import KnownFrames, Part
 from models.intergen.compact import DuetSpace
@@ -32,6 +34,28 @@ FADE = 12
 _HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
 
 
+class Given(Protocol):
+    """Writes the known part of a motion into samples (B, tokens, features)."""
+
+    @property
+    def features(self) -> Tensor | None:
+        """The known part as a network sees it that reads it, see :attr:`models.known.Hold.features`."""
+        ...
+
+    @property
+    def frozen(self) -> Tensor:
+        """(1, tokens, features) true where a number is given."""
+        ...
+
+    def __call__(self, x: Tensor) -> Tensor:
+        """A sample with the known part in its place."""
+        ...
+
+    def bend(self, x: Tensor) -> Tensor:
+        """A prediction that leads up to the known part."""
+        ...
+
+
 @dataclass(frozen=True)
 class Scene:
     """A scene in which both people are generated.
@@ -42,7 +66,7 @@ class Scene:
     """
 
     frames: int
-    given: Hold | None = None
+    given: Given | None = None
 
     def duet(self, pair: Array, finish: Finish) -> Duet:
         """The duet of one sample (2, T, 22, 3) in metres; ``finish`` cleans up a generated person."""
@@ -71,25 +95,27 @@ class Reaction(Scene):
         return Duet(people[0], people[1], NAMES)
 
 
-def scene_of(request: GenerateRequest | ReactRequest, model: DuetSpace) -> Scene:
-    """The scene that a request asks a model for."""
+def scene_of(request: GenerateRequest | ReactRequest, given: Callable[[Array, int], Given]) -> Scene:
+    """The scene that a request asks for.
+
+    Args:
+        request: what is asked for.
+        given: a person's positions (T, 22, 3) in the network's frame, and 0 for a or 1 for b → the known part.
+    """
     if isinstance(request, GenerateRequest):
         return Scene(round(request.seconds * FPS))
     placement = Placement.of(request.actor, request.role, request.prompt)
     place = ROLES.index(request.role)
-    given = _given_person(model, placement.to_network(request.actor.positions), place)
-    return Reaction(request.actor.num_frames, given, clip=request.actor, place=place, placement=placement)
+    known = given(placement.to_network(request.actor.positions), place)
+    return Reaction(request.actor.num_frames, known, clip=request.actor, place=place, placement=placement)
 
 
-def _given_person(model: DuetSpace, positions: Array, place: int) -> Hold:
+def given_person(model: DuetSpace, positions: Array, place: int) -> Hold:
     """The known part for a person (T, 22, 3) in the network's frame, given at every frame."""
-    layout = model.layout
-    frames = layout.num_frames(layout.num_tokens(len(positions)))
+    frames = model.layout.num_frames(model.layout.num_tokens(len(positions)))
     # The last token extends up to seven frames beyond the motion; there the last pose is held.
     whole = np.pad(positions, ((0, frames - len(positions)), (0, 0), (0, 0)), mode="edge")
-    known = Known.nothing(frames)
-    known.add_person(place, torch.from_numpy(whole).float())
-    return Hold(known, layout, model.mean, model.std)
+    return hold_of(model, frames, [KnownFrames(place, range(frames), whole)])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,7 +204,12 @@ def _every_frame(frames: Array, poses: Array) -> tuple[Array, Array]:
 
 
 def directed(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Directed:
-    """A scene of so many frames with what is given of it.
+    """A scene of so many frames with what is given of it, see :func:`hold_of`."""
+    return Directed(frames, hold_of(model, frames, parts) if parts else None, parts=parts)
+
+
+def hold_of(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Hold:
+    """The known part of a scene.
 
     Args:
         model: the network's space.
@@ -206,8 +237,7 @@ def directed(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Directed:
             known.add_path(part.person, at, torch.from_numpy(np.asarray(part.places)).float(), headings)
             if part.turned and headings is not None:
                 _hold_hips(known, part.person, at, headings)
-    hold = Hold(known, model.layout, model.mean, model.std) if parts else None
-    return Directed(frames, hold, parts=parts)
+    return Hold(known, model.layout, model.mean, model.std)
 
 
 def _hold_hips(known: Known, person: int, at: list[int], headings: torch.Tensor) -> None:

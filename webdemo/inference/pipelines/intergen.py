@@ -20,21 +20,19 @@ from models.intergen.compact import CaptionBank, CompactInterGen, load_captions,
 from models.intergen.released import ReleasedInterGen, load_released
 from models.text import MiniLM
 from models.text.clip import find_vocabulary
-from motion import FPS, Clip, Duet
-from motion.placement import Placement
+from motion import Clip, Duet
 from motion.representation import NUM_FEATURES
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.scene import finish_of, in_touch
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.acting import with_plan
-from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.plans import BeatFinish, KeptPlan
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story.prompts import as_scene
 from webdemo.inference.story.request import SceneRequest
 
-from .given import Finish, Reaction, Scene
+from .given import Finish, Scene, scene_of
 from .scene import SceneMaker
 from .two_person import Conditioning, Passes, TwoPersonPipeline
 
@@ -211,19 +209,7 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
 
     def scene(self, request: GenerateRequest | ReactRequest) -> Scene:
         """As :meth:`TwoPersonPipeline.scene`, in the paper's representation."""
-        if isinstance(request, GenerateRequest):
-            return Scene(round(request.seconds * FPS))
-        placement = Placement.of(request.actor, request.role, request.prompt)
-        place = ROLES.index(request.role)
-        numbers = self.model.encode(placement.to_network(request.actor.positions))
-        given = GivenPerson(numbers, place)
-        return Reaction(
-            request.actor.num_frames,
-            given,  # type: ignore[arg-type]
-            clip=request.actor,
-            place=place,
-            placement=placement,
-        )
+        return scene_of(request, lambda positions, place: GivenPerson(self.model.encode(positions), place))
 
 
 class GivenPerson:
@@ -234,7 +220,7 @@ class GivenPerson:
         place: 0 if they are person a, 1 if b.
     """
 
-    features = None
+    features: Tensor | None = None
 
     def __init__(self, numbers: Tensor, place: int) -> None:
         self.numbers = numbers

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar, cast
 
@@ -25,7 +25,7 @@ from webdemo.inference.finish.damping import Damping
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
-from .given import Finish, Scene, scene_of
+from .given import Finish, Scene, given_person, scene_of
 
 Network = TypeVar("Network", CompactInterGen, CompactBiGraphDiff, ReleasedInterGen)
 
@@ -83,59 +83,6 @@ class OwnPasses:
         return damping(x0, timestep)
 
 
-class Given(Protocol):
-    """Writes the known part of a motion into samples (B, tokens, features)."""
-
-    def __call__(self, x: Tensor) -> Tensor:
-        """A sample with the known part in its place."""
-        ...
-
-    def bend(self, x: Tensor) -> Tensor:
-        """A prediction that leads up to the known part."""
-        ...
-
-
-class _Steps:
-    """The functions that the sampling loop calls at every step: the guided prediction, then its correction.
-
-    Args:
-        passes: make both.
-        damping: the correction.
-        condition: (samples, …) as the denoiser takes it.
-        guidance: scale of classifier-free guidance.
-        given: the part of the motion that is known; it is clean at every timestep, as in training (InterGen,
-            section 5.4).
-        seen: what else the network is shown at every step, by the names of its arguments.
-    """
-
-    uncorrected: Tensor
-    """The last prediction before its correction."""
-
-    def __init__(
-        self,
-        passes: Passes,
-        damping: Damping,
-        condition: Tensor,
-        guidance: float,
-        given: Given | None,
-        seen: Mapping[str, Any],
-    ) -> None:
-        self.passes, self.damping = passes, damping
-        self.condition, self.guidance = condition, guidance
-        self.given = given or _as_is
-        self.bend = given.bend if given else _as_is
-        self.seen = seen
-
-    def predict(self, x: Tensor, t: Tensor) -> Tensor:
-        """The guided prediction of x0 from xt (samples, tokens, features)."""
-        return self.passes.guided(self.given(x), t, self.condition, scale=self.guidance, **self.seen)
-
-    def correct(self, x0: Tensor, timestep: int) -> Tensor:
-        """The prediction, bent onto what is given and corrected by the damping."""
-        self.uncorrected = self.bend(x0)
-        return self.given(self.passes.correct(self.damping, self.uncorrected, timestep))
-
-
 class TwoPersonPipeline(ABC, Generic[Network]):
     """Denoises two people by the network of a weights folder; a subclass says what it conditions on.
 
@@ -154,7 +101,8 @@ class TwoPersonPipeline(ABC, Generic[Network]):
 
     def scene(self, request: GenerateRequest | ReactRequest) -> Scene:
         """The known part of the motion that a request asks for, and how samples become duets."""
-        return scene_of(request, cast(DuetSpace, self.model))
+        model = cast(DuetSpace, self.model)
+        return scene_of(request, lambda positions, place: given_person(model, positions, place))
 
     @abstractmethod
     def conditioning(self, request: GenerateRequest | ReactRequest) -> Conditioning:
@@ -221,17 +169,27 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         condition = conditioning.condition.expand(len(x), *conditioning.condition.shape[1:])
         # what is known is shown to a network that reads it
         seen = {"known": given.features} if given is not None and self.model.reads_known else {}
-        steps = _Steps(passes, damping, condition, conditioning.guidance, given, seen)
+        # it is clean at every timestep, as in training (InterGen, section 5.4)
+        with_given, bent = (given, given.bend) if given else (_as_is, _as_is)
+        uncorrected = x
+
+        def predict(x: Tensor, t: Tensor) -> Tensor:
+            return passes.guided(with_given(x), t, condition, scale=conditioning.guidance, **seen)
+
+        def correct(x0: Tensor, timestep: int) -> Tensor:
+            nonlocal uncorrected
+            uncorrected = bent(x0)
+            return with_given(passes.correct(damping, uncorrected, timestep))
+
         cancel.raise_if_cancelled()
-        steps.uncorrected = x
-        for step in sample_steps(steps.predict, x, scheduler, correct=steps.correct):
+        for step in sample_steps(predict, x, scheduler, correct=correct):
             x = step.sample
             yield timer.progress("sample", step.step, step.total)
             cancel.raise_if_cancelled()
         timer.lap("sample")
         yield timer.progress("finish")
         duets = self._duets(x, scene, clean_person if settings.cleanup else _as_is)
-        before = self._duets(steps.uncorrected, scene, _as_is) if measured else ()
+        before = self._duets(uncorrected, scene, _as_is) if measured else ()
         readouts = tuple(compare(raw, duet) for raw, duet in zip(before, duets, strict=measured))
         timer.lap("finish")
         yield Result(duets=duets, readouts=readouts, notes=conditioning.notes)

@@ -23,7 +23,7 @@ from webdemo.inference.requests.paths import MOST_SPEED, FloorPath
 from webdemo.inference.requests.plans import WindowPlan
 from webdemo.inference.story.request import SceneRequest
 
-from .given import Directed, directed
+from .given import Directed, directed, hold_of
 from .two_person import TwoPersonPipeline
 
 Array = NDArray[np.floating]
@@ -93,8 +93,9 @@ class Setting:
 
     def share(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> float:
         """The share of the new frames that the plan lays out, see :attr:`models.known.Hold.shares`."""
-        planned = directed(pipeline.model, self.frames, self.plan.parts).given
-        return 0.0 if planned is None else float(planned.shares[self._own].mean())
+        if not self.plan.parts:
+            return 0.0
+        return float(hold_of(pipeline.model, self.frames, self.plan.parts).shares[self._own].mean())
 
     def made(self, positions: Array) -> Array:
         """The new frames (2, T, 22, 3) in the scene's world, of the whole window's."""
