@@ -75,18 +75,18 @@ def fit_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
     """
     places = _by_joint(positions, 2)
     world = np.empty((*places.shape, 3))
+    bones = places - places[[max(parent, 0) for parent in skeleton.parents]]  # each to its joint; the root has none
+    ways, rest_ways = unit(bones), unit(skeleton.offsets)
     for joint, children in enumerate(skeleton.children):
         parent = skeleton.parents[joint]
         inherited = np.broadcast_to(np.eye(3), world.shape[1:]) if parent < 0 else world[parent]
         if not children:
             world[joint] = inherited
-            continue
-        bones = places[list(children)] - places[joint]
-        rest = skeleton.offsets[list(children)]
-        if len(children) > 1:
-            world[joint] = _kabsch(rest, np.moveaxis(bones, 0, -2))
+        elif len(children) > 1:
+            world[joint] = _kabsch(skeleton.offsets[list(children)], np.moveaxis(bones[list(children)], 0, -2))
         else:
-            world[joint] = swing(inherited @ rest[0], bones[0]) @ inherited
+            (child,) = children
+            world[joint] = _swing(inherited @ rest_ways[child], ways[child]) @ inherited
     return local_rotations(np.moveaxis(world, 0, -3), skeleton.bones)
 
 
@@ -165,8 +165,11 @@ def _kabsch(rest: Array, observed: Array) -> Array:
 
 def swing(source: Array, target: Array) -> Array:
     """(…, 3, 3) the smallest rotation that turns ``source`` onto the direction of ``target`` (…, 3)."""
-    source = unit(source)
-    target = unit(target)
+    return _swing(unit(source), unit(target))
+
+
+def _swing(source: Array, target: Array) -> Array:
+    """As :func:`swing`, of unit vectors."""
     x, y, z = _cross(source, target)
     cos = np.sum(source * target, axis=-1)[..., None, None]
     # Opposite directions have no smallest rotation; any axis square to the source serves.
