@@ -8,7 +8,7 @@ network works on, carries the proportions of an average adult.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -18,6 +18,13 @@ from numpy.typing import NDArray
 from .errors import InputError
 
 Array = NDArray[np.floating]
+
+
+class _Indices(dict[str, int]):
+    """Joints by name."""
+
+    def __missing__(self, name: str) -> int:
+        raise KeyError(f"There is no joint {name!r} among {', '.join(self)}.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +52,7 @@ class Skeleton:
         if any(parent >= joint for joint, parent in enumerate(self.parents)):
             raise ValueError(f"{self.name}: a parent must come before its children.")
 
-    @property
+    @cached_property
     def num_joints(self) -> int:
         """Number of joints."""
         return len(self.parents)
@@ -74,12 +81,10 @@ class Skeleton:
         index = {name: joint for joint, name in enumerate(self.joint_names)}
         return tuple(index.get(_other_side(name), joint) for joint, name in enumerate(self.joint_names))
 
-    def index(self, joint_name: str) -> int:
+    @cached_property
+    def index(self) -> Callable[[str], int]:
         """The index of a joint by name; raises ``KeyError`` with the names that exist."""
-        try:
-            return self.joint_names.index(joint_name)
-        except ValueError:
-            raise KeyError(f"{self.name} has no joint {joint_name!r}; it has {self.joint_names}.") from None
+        return _Indices({name: joint for joint, name in enumerate(self.joint_names)}).__getitem__
 
     def rest_positions(self) -> Array:
         """(J, 3) the T-pose, root at the origin."""
