@@ -11,9 +11,9 @@ from motion import Duet, InputError
 from motion.looks import UNSAID
 from motion.skeleton import SBU15
 from tests.acts.things.furnishing import FPS, palms, sitting, standing
+from webdemo.inference.finish.looks import furnished, with_own_thing
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Result
-from webdemo.inference.things import furnished, with_own_thing
 
 
 def owned(people: np.ndarray, prompt: str, tmp_path) -> Result:

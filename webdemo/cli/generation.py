@@ -68,7 +68,7 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
     if options.thing is None:
         return write_result(run(request), options.out)
     from motion.formats.thing_files import read_thing
-    from webdemo.inference.things import with_own_thing
+    from webdemo.inference.finish.looks import with_own_thing
 
     read_thing(options.thing)  # what is wrong with it is said before the run
     return write_result(with_own_thing(run(request), request, options.thing), options.out)

@@ -21,7 +21,7 @@ from typing import Any, cast
 from motion import Duet, InputError
 from webdemo.inference import methods
 from webdemo.inference.finish.cleanup import standing_clear
-from webdemo.inference.finish.sizes import as_given, enlarged
+from webdemo.inference.finish.looks import as_given, enlarged, furnished
 from webdemo.inference.live.partner import LivePartner
 from webdemo.inference.method import Pipeline
 from webdemo.inference.methods import WEIGHTS
@@ -32,7 +32,6 @@ from webdemo.inference.requests.live import PARTNERS, LiveFrame, LiveTake
 from webdemo.inference.requests.predict import PredictRequest
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.things import furnished
 
 from .tries import kept_rows, run_tries
 

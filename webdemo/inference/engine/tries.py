@@ -12,10 +12,10 @@ from acts.checking import NO_RULE, checked, describe
 from acts.things.judging import judge_things
 from motion import SMPL22, Clip, Duet
 from motion.metrics.sentences.joints import Motion
+from webdemo.inference.finish.looks import lengths_of
 from webdemo.inference.requests.acting import plans_of
 from webdemo.inference.requests.limits import MAX_SEED
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
-from webdemo.inference.things import lengths_of
 
 
 def run_tries(

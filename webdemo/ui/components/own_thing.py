@@ -9,11 +9,11 @@ from typing import Any
 
 from motion import InputError
 from motion.formats.thing_files import SUFFIXES
+from webdemo.inference.finish.looks import with_own_thing
 from webdemo.inference.requests import GenerateRequest, replayed
 from webdemo.inference.requests.plans import kept_plan
 from webdemo.inference.run import Result
 from webdemo.inference.story import SceneRequest
-from webdemo.inference.things import with_own_thing
 from webdemo.ui.places import READING
 
 from .exports import Record

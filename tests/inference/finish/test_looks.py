@@ -13,12 +13,11 @@ from motion.looks import SIZES, UNSAID
 from motion.sizes import floor_scale
 from tests.inference.test_scenes import run
 from webdemo.inference import Engine, GenerateRequest, Result, SceneRequest
-from webdemo.inference.finish.sizes import enlarged
+from webdemo.inference.finish.looks import enlarged, furnished
 from webdemo.inference.requests.paths import FloorPath, FloorPoint
 from webdemo.inference.requests.predict import PredictRequest, PredictResult
 from webdemo.inference.story import Beat
 from webdemo.inference.story.poses import Pose
-from webdemo.inference.things import furnished
 
 QUICK: dict[str, Any] = {"steps": 3, "seed": 1}
 CHILD = SIZES["girl"]
