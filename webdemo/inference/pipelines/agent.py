@@ -20,7 +20,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from acts.staging.parts import KnownFrames
+from acts.staging.window import KnownFrames
 from models.agent.recogniser import OBSERVED, PREDICTED, load_folder, sampled
 from models.known import Hold, Known
 from motion import FPS, SMPL22, Clip, Duet
