@@ -57,7 +57,8 @@ def test_an_act_a_control_and_a_run_are_found_by_keyboard_and_an_example_by_one_
     kept = json.loads(SCENES.read_text(encoding="utf-8"))["scenes"][5]
     scenes.nth(5).click()
     expect(page.locator("#prompt textarea")).to_have_value(kept["prompt"])
-    expect(page.locator("#status .pd-done")).to_be_visible()
+    expect(page.locator("#player .pdd-title")).to_have_text(kept["prompt"])
+    expect(page.locator("#status .pd-done")).to_contain_text("Made in")
     asked = server.engine.requests[-1]
     assert (asked.prompt, asked.seconds, asked.seed) == (kept["prompt"], kept["seconds"], kept["seed"])
     expect(page.locator("#gallery dialog")).to_be_hidden()
