@@ -14,9 +14,8 @@ from acts.shapes import Go
 from acts.things import SEATS, is_fixture, kind_of
 from motion import InputError
 
-from . import beside
 from .clauses import spans
-from .completion import completed, of_the_last, repeated
+from .completion import completed, formations, held, is_next_to, noun_acts, of_the_last, repeated, seated
 from .matching import Found, matcher
 from .parses import parses
 from .reader import Reader
@@ -154,8 +153,8 @@ class _Planner:
         found = self._matcher.find(event)
         if (theirs := of_the_last(event, self._acts)) is not None and (other := self._matcher.find(theirs)) is not None:
             touches = self._known.entries[other[0]].group in ("touch", "care") and other[2].patient
-            held = theirs.object is not None and theirs.object.definite  # "takes his ankle and bends the knee"
-            if touches and (held or found is None or other[2].score >= found[2].score):
+            definite = theirs.object is not None and theirs.object.definite  # "takes his ankle and bends the knee"
+            if touches and (definite or found is None or other[2].score >= found[2].score):
                 event, found = theirs, other
         if self._about_another(event) and inner and (found is None or found[2].score < 2.4):
             return
@@ -170,7 +169,7 @@ class _Planner:
                 if (found := self._matcher.find(whole)) is not None:
                     event = whole
                     break
-        formed = self._found(beside.formations(event, self._formations(number)))
+        formed = self._found(formations(event, self._formations(number)))
         vague = found is None or event.lemma in vocabulary().verbs["vague"] | vocabulary().verbs["begins"]
         if vague and not (found is not None and inner) and (noun := self._noun(event, found)) is not None:
             event, found = noun
@@ -194,7 +193,7 @@ class _Planner:
     def _noun(self, event: Event, found: Found | None) -> tuple[Event, Found] | None:
         """The act that a noun beside a verb stands for, where the verb itself says little: "answers with a bow"."""
         rest = range(len(event.prepositions)) if found is None else found[2].rest
-        nouns = self._found(other for _, other in beside.noun_acts(event, self._known, rest))
+        nouns = self._found(other for _, other in noun_acts(event, self._known, rest))
         return nouns[0] if nouns else None
 
     def _companions(self, number: int, event: Event, found: Found, formed: Sequence[tuple[Event, Found]]) -> None:
@@ -209,15 +208,15 @@ class _Planner:
                 self._in_canon()
             elif formation[0] != found[0] and not (shown & {"go", "place"} and formation[0] == "form-line"):
                 self._add(number, other, *formation, beside=at_once)
-        if beside.is_next_to(event, found, self._known):
-            for other, line in self._found(beside.formations(event, ["form line"])):
+        if is_next_to(event, found, self._known):
+            for other, line in self._found(formations(event, ["form line"])):
                 self._add(number, other, *line, beside=at_once)
-        for other, posture in beside.held(event, found, self._matcher.find):
+        for other, posture in held(event, found, self._matcher.find):
             self._add(number, other, *posture, beside=at_once)
-        if (sits := beside.seated(event, found, self._known, told)) is not None:
+        if (sits := seated(event, found, self._known, told)) is not None:
             for other, sat in self._found([sits]):
                 self._add(number, other, *sat, beside=at_once)
-        for preposition, noun in beside.noun_acts(event, self._known, found[2].rest):
+        for preposition, noun in noun_acts(event, self._known, found[2].rest):
             kind = "after" if preposition == "into" else "with"
             for other, done in self._found([noun])[: self._acts[-1].id == of]:
                 self._add(number, other, *done, beside=Relation(kind=kind, act=of))  # type: ignore[arg-type]

@@ -11,9 +11,9 @@ from acts.frames import best
 from acts.lexicon import Lexicon
 
 from . import wordnet
-from .absolute import Absolute, absolutes
 from .arguments import Arguments
 from .clauses import MARKS, NOUNMARKS, ClauseTree, tells_on
+from .ellipsis import Absolute, absolutes
 from .people import A_NAME, B_NAME, Cast
 from .references import names_one, reference
 from .subjects import Subjects, give_roles, goes_on, is_passive, state_of

@@ -8,8 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .absolute import stands_absolutely
-from .ellipsis import Ellipsis
+from .ellipsis import Ellipsis, stands_absolutely
 from .people import A_NAME, B_NAME
 from .text import Text, names, tokens, without_request, without_speech
 from .vocabulary import vocabulary
