@@ -10,6 +10,7 @@ from fastapi.testclient import TestClient
 
 from tests.inference.conftest import weights
 from webdemo.server.accounts import users as accounts
+from webdemo.server.http import health
 
 from .clients import client_of, served_on_loopback, settings_for
 from .lab import add_accounts
@@ -17,6 +18,14 @@ from .lab import add_accounts
 __all__ = ["weights"]
 OFTEN = 100_000
 """Requests a minute: nothing that these servers are asked is too often."""
+
+
+@pytest.fixture(scope="package", autouse=True)
+def patient() -> Iterator[None]:
+    """A busy machine is no reason to be told how the server was: tests wait for each look."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(health, "PATIENCE", 60.0)
+        yield
 
 
 @pytest.fixture(scope="package")

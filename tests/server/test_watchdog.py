@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,7 @@ from tests.server.attacks.target import Target
 from tests.server.clients import FIELDS, client_of, lab_of, settings_for
 from tests.server.lab import ROOT, stub_module
 from tests.server.queue.test_queue import make, request, wait_for
+from webdemo.server.http import health as health_module
 from webdemo.server.http.health import Health
 from webdemo.server.process import STUCK
 
@@ -85,6 +88,21 @@ def test_health_says_what_is_stuck() -> None:
     well, report = health.report()
     assert not well and report["status"] == "failed"
     assert report["checks"]["progress"] == "failed: The live stream has made no progress for 11 s."
+
+
+def test_where_a_look_takes_long_the_last_one_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(health_module, "PATIENCE", 0.01)
+    slow = threading.Event()
+    slow.set()
+    health = Health(stub_module().StubEngine(), {"disk": lambda: slow.wait(20)})
+    health.probe()
+    wait_for(lambda: health.ready)
+    first = asyncio.run(health.look())
+    slow.clear()
+    assert asyncio.run(health.look()) is first
+    health.broken(RuntimeError())
+    threading.Timer(0.1, slow.set).start()
+    assert "failed" in asyncio.run(health.look())[1]["checks"]["generation"], "what broke is told at once"
 
 
 def test_a_health_check_that_never_ends_is_stuck() -> None:

@@ -93,7 +93,7 @@ class Health:
 
     def broken(self, error: BaseException) -> None:
         """A run ended in an error that was not its user's."""
-        self._works = False
+        self._works, self._last = False, None  # the next look is waited for
         self.error = f"a run ended in {type(error).__name__}"
 
     async def look(self) -> Report:
