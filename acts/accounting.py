@@ -184,7 +184,9 @@ def _counts(token: Token, parsed: Parse) -> bool:
         return True
     if token.pos_ not in _CONTENT or not token.text[0].isalnum() or (len(token.text) < 2 and not token.text.isdigit()):
         return False
-    if {lemma, token.lower_} & (FILLERS | _SCENERY) or token.text in (A_NAME, B_NAME):
+    if token.text in (A_NAME, B_NAME) or lemma == "let":
+        return False
+    if token.pos_ != "VERB" and {lemma, token.lower_} & (FILLERS | _SCENERY):
         return False
     if token.pos_ in ("VERB", "AUX") and (lemma in _STATES or any(lemma in words.verbs[kind] for kind in _KINDS)):
         return False

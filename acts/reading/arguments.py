@@ -24,6 +24,7 @@ _PATHS = frozenset(_PATH_NOUNS.split())
 _TURNS = frozenset(("clockwise", "counterclockwise"))
 _SIDES = frozenset(("behind", "below", "above"))
 _WAYS = frozenset(("way", "manner", "fashion", "mood", "style"))
+_RECEIVES = frozenset(("get", "receive", "take", "have"))
 _MODIFIERS = frozenset(("prt", "advmod", "acomp", "attr", "oprd", "npadvmod", "amod", "neg", "intj", "compound"))
 
 
@@ -149,6 +150,8 @@ class Arguments:
             elif child.dep_ == "prt" or (child.dep_ in ("appos", "advmod") and child.lower_ in self._words.directions):
                 # "helps him up off the floor", "in a circle, clockwise"
                 self._modifier(child, event)
+            elif child.lower_ == "no" and child.dep_ == "det":
+                event.denied = not event.denied
         return reference(token, self.cast, who)
 
     def place(self, token: Token, who: str, event: Event) -> None:
@@ -318,3 +321,9 @@ class Arguments:
         if wordnet.usual_kind(noun.lemma) == "consumption" and noun.lemma not in self._words.verbs["nouns"]:
             return  # "offers her a drink" hands something over
         event.noun = replace(event, lemma=noun.lemma, object=event.dative, dative=None)
+        giver = next((i for i, (p, ref) in enumerate(event.prepositions) if p == "from" and ref.kind == "person"), -1)
+        if event.lemma in _RECEIVES and giver >= 0:  # "gets a massage from her": she massages him
+            rest = [each for i, each in enumerate(event.prepositions) if i != giver]
+            event.noun = replace(
+                event.noun, subject=event.prepositions[giver][1], object=event.subject, prepositions=rest
+            )

@@ -81,6 +81,8 @@ def of_the_last(event: Event, acts: Sequence[Act]) -> Event | None:
 def _meant(event: Event, acts: Sequence[Act], known: Lexicon) -> str | None:
     """The other person, where a verb without an object follows what was done to them."""
     last, subject = next(reversed(acts), None), event.subject
+    if event.lemma in vocabulary().verbs["sees"] and subject is not None:
+        return other_of(subject.who) or None
     if last is None or subject is None or subject.who != "".join(last.agents):
         return None
     bare = not event.particles and not event.prepositions and event.lemma in known.frames

@@ -281,12 +281,19 @@ class Reader:
         self._inherited(token, head, event)
 
     def _inherited(self, token: Token, head: Token | None, event: Event) -> None:
-        """Takes over what the verb above says of a clause: that it is denied, tried or wished."""
+        """Takes over what the verb above says of a clause: that it is denied, tried, wished or prevented."""
+        marks = {child.lower_ for child in token.children if child.dep_ == "mark"}
+        if head is not None and token.dep_ == "advcl" and "before" in marks:
+            stops = self._event_of(head)
+            if stops is not None and stops.lemma in self._words.verbs["prevents"]:
+                event.modality = "wished"  # "catches him before he falls"
         asked = token.dep_ == "acl" and token.tag_ == "VB"  # "asks the princess to dance"
         if head is None or not (asked or token.dep_ in ("xcomp", "ccomp", "pcomp", "advcl")):
             if head is not None and token.dep_ == "conj":
                 above = self._event_of(head)
                 own = any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)
+                if above is not None and not own and above.denied and token.head.i == head.i:
+                    event.denied = event.denied or any(c.lower_ == "or" for c in head.children)
                 if above is not None and not own and above.modality != "told" and head.dep_ in ("xcomp", "ccomp"):
                     event.modality, event.denied = above.modality, event.denied or above.denied
             return

@@ -53,7 +53,7 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
         last = "" if token.is_sent_start else last
         form = forms.get(token.lower_)
         if form is not None and (
-            (_is_other(token) and _after_person(token, form[1]))
+            (_is_other(token) and (_after_person(token, form[1]) or _opens(token, form[1])))
             or _coordinated(token, form[1], last)
             or _is_ordered(token, form[1])
             or _is_kept(token, form[1])
@@ -220,6 +220,18 @@ def _is_absolute(token: Token) -> bool:
     """True for "hands flying to his face" and "hand in hand", which stand beside a clause."""
     following = _next(token)
     return following is not None and (following.tag_ in ("VBG", "VBN") or following.lower_ == "in")
+
+
+def _opens(token: Token, ending: str) -> bool:
+    """True for "Kneeling, …" and "March forward" at the beginning of a sentence, and for "…, kneeling, …" within it."""
+    following = _next(token)
+    if following is None:
+        return False
+    if ending == "ing":
+        return following.text == "," and (token.is_sent_start or token.nbor(-1).text == ",")
+    name = token.tag_ == "NNP" and token.dep_ not in ("nsubj", "nsubjpass", "compound", "poss")
+    told = bool(token.is_sent_start) and ending == "" and name and following.pos_ in ("ADV", "ADP")
+    return told and not vocabulary().is_person(token.lower_)  # "march forward", which is no month
 
 
 def _after_person(token: Token, ending: str) -> bool:

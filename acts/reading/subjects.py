@@ -12,7 +12,7 @@ from acts.lexicon import Lexicon
 from acts.plan import other_of
 
 from .clauses import ClauseTree, is_finite
-from .people import Cast, begins_clause
+from .people import A_NAME, B_NAME, Cast, begins_clause
 from .references import reference
 from .vocabulary import vocabulary
 
@@ -23,6 +23,8 @@ _PROMISES = frozenset(("promise", "threaten"))
 """Verbs whose subject does what follows, where others' objects do."""
 ORDINALS = frozenset(("other", "first", "second", "former", "latter"))
 """Words that stand for one of the two behind "the"."""
+_OPENS = frozenset((".", ";", ":", "!", "?", ",", "and", "then"))
+"""What stands before a clause."""
 _SOMEBODY = frozenset(("him", "her", "his", "me", "my"))
 
 
@@ -75,7 +77,7 @@ class Subjects:
         return bare and token.dep_ in ("ccomp", "advcl", "dep") and any(token.i < c.i for c in behind)
 
     def _subject_of(self, token: Token, head: Token | None) -> Ref | None:
-        if (told := self._told(token, head) or self._named_before(token)) is not None:
+        if (told := self._told(token, head) or self._called(token) or self._named_before(token)) is not None:
             return told
         if token.dep_ in ("relcl", "acl", "amod") and token.head != head:
             found = self._antecedent(token)
@@ -108,6 +110,16 @@ class Subjects:
                 self._cast.address("a")
             return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)
         return None
+
+    def _called(self, token: Token) -> Ref | None:
+        """The person to whom a clause is said that begins with their name: "A, run at B"."""
+        if token.i < 2 or token.nbor(-1).text != "," or token.tag_ not in ("VB", "VBP"):
+            return None
+        name = token.nbor(-2)
+        before = name.nbor(-1).lower_ if name.i else "."
+        if before not in _OPENS or not (name.text in (A_NAME, B_NAME) or self._words.is_person(name.lower_)):
+            return None
+        return reference(name, self._cast, "")
 
     def _told(self, token: Token, head: Token | None) -> Ref | None:
         """The subject that stands beside a verb."""

@@ -39,7 +39,6 @@ def test_a_verb_is_supplied_where_one_is_left_out(text: str, parsed: str) -> Non
         ("The athlete throws left, right, left.", ["punch a left", "punch a right", "punch a left"]),
         # parts of the body, and whose they are
         ("Left arm overhead, right hand on the hip.", ["raise-arm ab left", "hands-on-hips ab right"]),
-        # where somebody is
     ],
 )
 def test_a_sentence_without_a_verb_has_its_acts(text: str, acts: list[str]) -> None:

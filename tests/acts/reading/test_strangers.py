@@ -35,9 +35,7 @@ from tests.acts.reading.reading import told
         ("The waiter bows stiffly and pours wine for the lady.", [("bow", "a", None), ("pour-for", "a", "b")]),
         ("These two shake hands.", [("shake-hands", "ab", None)]),
         ("They both reply with a nod.", [("nod", "ab", None)]),
-        # "who" that hangs on something else than its person
-        # a part of the body as the subject
-        # a participle of what was done to the subject
+        # a participle that says how somebody is
         ("Seated on the floor, she claps.", [("sit-on-floor", "a", None), ("clap", "a", "b")]),
         (
             "He walks up to her, hands over a parcel and leaves.",
@@ -180,3 +178,23 @@ def test_a_circle_goes_one_way_round() -> None:
 def test_words_in_no_act_are_said() -> None:
     plan = read("A picks up a cup and a plate.")
     assert [plan.text(part.words) for part in plan.unread] == ["plate"]
+
+
+@pytest.mark.parametrize(
+    ("sentence", "acts"),
+    [
+        ("B dances while A turns to watch.", [("dance", "b", "done"), ("turn-to", "a", "done")]),
+        ("Kneeling, A holds out a hand to B.", [("kneel", "a", "done"), ("offer-thing", "a", "done")]),
+        ("The mother, kneeling, ties his shoes.", [("kneel", "a", "done"), ("tie-other-shoes", "a", "done")]),
+        ("A, run at B.", [("run-up", "a", "done")]),
+        ("A gets a hug from B.", [("hug", "b", "done")]),
+        ("A does not wave or bow.", [("wave", "a", "not"), ("bow", "a", "not")]),
+        ("A gives B no hug.", [("hug", "a", "not")]),
+    ],
+)
+def test_clauses_of_few_words_keep_who_does_what_and_whether(sentence: str, acts: list[tuple[str, str, str]]) -> None:
+    assert [(act.act, "".join(act.agents), act.polarity) for act in read(sentence).acts] == acts
+
+
+def test_what_is_prevented_is_not_asked_for() -> None:
+    assert [act.modality for act in read("A catches B before he falls.").acts] == ["told", "wished"]
