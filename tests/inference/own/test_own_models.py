@@ -193,17 +193,6 @@ def test_a_model_that_does_not_fit_is_refused(settings: Path, files: Path, monke
     assert "choose a smaller model" in why("my-run")
 
 
-def test_the_benchmark_times_it_beside_a_plain_run(
-    settings: Path, files: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    use(settings, TABLE.replace("label", 'precision = "int8"\nlabel'), files)
-    assert cli.main(["benchmark", "--model", "my-run", "--seconds", "1", "--steps", "2", "--repeats", "1"]) == 0
-    figures = json.loads(capsys.readouterr().out.splitlines()[-1])
-    assert figures["released_plain_over_ours"] > 0 and figures["released_plain_over_ours_goal"] == 3
-    assert cli.main(["benchmark", "--model", "intergen"]) == 2
-    assert "no released InterGen" in capsys.readouterr().err
-
-
 def test_numbers_that_are_too_coarse_give_way_to_float32(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
 
