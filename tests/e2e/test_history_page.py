@@ -108,7 +108,7 @@ def test_a_class_a_reaction_and_a_prediction_open_as_they_were(lab: str, open_pa
     opened("high five", "")
     expect(page.locator("#class input")).to_have_value("high five", timeout=SLOW)
     expect(page.locator("#prompt")).to_be_hidden()
-    opened("After 1.5 s", "predict-")
+    opened("After my walk", "predict-")
     sample = "window.__pasdedeux.player.sample"
     page.wait_for_function(f"{sample}?.past_until === 45 && {sample}.frames === 75 && {sample}.ghost !== null")
     page.wait_for_selector("#predict-curves .legendtext:has-text('What really followed')")
