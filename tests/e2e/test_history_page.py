@@ -22,6 +22,7 @@ SLOW = 120_000
 def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open_page: Callable) -> None:
     page = open_page(lab)
     page.set_default_timeout(SLOW)
+    page.wait_for_selector("#generate:enabled")
     page.fill("#prompt textarea", "Two people walk up to each other.")
     unfold(page, "#more")
     for control, value in (("seed", "77"), ("steps", "12"), ("guidance", "4.5"), ("seconds", "2.5")):

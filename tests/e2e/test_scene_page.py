@@ -11,7 +11,7 @@ import pytest
 from .playing import settled_box
 
 pytestmark = pytest.mark.slow
-TIMEOUT = 120_000
+TIMEOUT = 30_000
 
 
 @pytest.fixture(scope="module")
@@ -96,6 +96,8 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.locator("#scene-remake").click()
     page.wait_for_function(f"window.__pasdedeux?.id !== {whole!r}")
     rest(page)
+    page.evaluate("window.__pasdedeux.player.act('pause'); window.__pasdedeux.player.seek(60)")
+    page.wait_for_function("window.__pasdedeux?.frame === 60")  # they begin at what is shown
     page.locator("#scene-futures").click()
     page.wait_for_function("window.__pasdedeux?.player?.data?.samples.length === 3")
     rest(page)
@@ -123,6 +125,7 @@ def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any)
     page.mouse.down()
     page.mouse.move(box["x"] + 40, box["y"] - 60, steps=6)
     page.mouse.up()
+    page.wait_for_timeout(500)  # until what was dragged is drawn
     wanted = np.array(page.evaluate("window.__pasdedeux.positions[0]"))
     page.keyboard.press("Enter")
     (pose,) = story(page)["poses"]

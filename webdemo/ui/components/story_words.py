@@ -78,7 +78,7 @@ def _kept(words: Sequence[Sequence[str]], new: Sequence[str]) -> int:
 def _along(poses: tuple[Pose, ...], old: Sequence[Beat], new: Sequence[Beat], head: int, tail: int) -> tuple[Pose, ...]:
     """Poses in the first ``head`` beats, and those in or behind the last ``tail``, which move with them."""
     starts = np.cumsum([0.0, *(beat.length for beat in old)])
-    by = sum(beat.length for beat in new) - starts[-1]
+    by = sum(beat.length for beat in new) - float(starts[-1])
     found = []
     for pose in poses:
         beat = int(np.searchsorted(starts, pose.seconds + 1e-4, side="right")) - 1
