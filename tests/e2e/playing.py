@@ -26,6 +26,18 @@ def unfold(page, *folds: str) -> None:
             button.click()
 
 
+def set_number(page, box: str, value: float | str) -> None:
+    """Types a number into a field; Gradio puts the first value back over what is typed as a fold opens."""
+    field = page.locator(f"{box} input[type=number]").first
+    for _ in range(20):
+        field.fill(str(value))
+        field.press("Tab")
+        page.wait_for_timeout(500)
+        if field.input_value() == str(value):
+            return
+    raise AssertionError(f"{box} does not take {value}.")
+
+
 def choose(page, box: str, option: str) -> None:
     """Chooses in a dropdown of the page; another one's list may still be fading out beside it."""
     page.click(f"{box} input")

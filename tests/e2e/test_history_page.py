@@ -13,7 +13,7 @@ from playwright.sync_api import expect
 from motion.formats import write
 from tests.ui.stub_engine import walking
 
-from .playing import choose, unfold
+from .playing import choose, set_number, unfold
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 SLOW = 120_000
@@ -26,8 +26,7 @@ def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open
     page.fill("#prompt textarea", "Two people walk up to each other.")
     unfold(page, "#more")
     for control, value in (("seed", "77"), ("steps", "12"), ("guidance", "4.5"), ("seconds", "2.5")):
-        page.locator(f"#{control} input[type=number]").first.fill(value)
-        page.locator(f"#{control} input[type=number]").first.press("Tab")
+        set_number(page, f"#{control}", value)
     page.click("#generate")
     page.wait_for_selector("#status .pd-done")
     page.click("button[role=tab]:has-text('History')")
@@ -78,8 +77,7 @@ def test_a_class_a_reaction_and_a_prediction_open_as_they_were(lab: str, open_pa
     page.set_input_files("#react-file input[type=file]", str(file))
     page.wait_for_selector("#react-status :text('0.0 to')")
     choose(page, "#react-method", "ReGenNet, offline")
-    page.locator("#react-steps input[type=number]").fill("7")
-    page.locator("#react-steps input[type=number]").press("Tab")
+    set_number(page, "#react-steps", "7")
     page.click("button#react-generate")
     page.wait_for_selector("#react-status .pd-done:has-text('Made')")
     choose(page, "#react-method", "Automatic")
@@ -89,8 +87,7 @@ def test_a_class_a_reaction_and_a_prediction_open_as_they_were(lab: str, open_pa
     page.set_input_files("#predict-file input[type=file]", str(file))
     page.wait_for_selector("#predict-status :text('one person, 2.0 s')")
     for control, value in (("marker", "1.5"), ("seconds", "1")):
-        page.locator(f"#predict-{control} input[type=number]").fill(value)
-        page.locator(f"#predict-{control} input[type=number]").press("Tab")
+        set_number(page, f"#predict-{control}", value)
     page.click("button#predict-generate")
     page.wait_for_selector("#predict-status .pd-done:has-text('Made')")
 

@@ -19,7 +19,7 @@ from playwright.sync_api import Page, Route, expect
 
 from webdemo.ui.tabs import results
 
-from .playing import unfold
+from .playing import set_number, unfold
 from .serving import SLOW, ask, live, status
 
 pytestmark = pytest.mark.e2e
@@ -64,12 +64,6 @@ def made(page: Page, prompt: str) -> str:
     ask(page, prompt)
     expect(page.locator("#player .pdd-title")).to_have_text(prompt)
     return status(page, "done")
-
-
-def set_number(page: Page, selector: str, value: float | str) -> None:
-    field = page.locator(f"{selector} input[type=number]")
-    field.fill(str(value))
-    field.press("Tab")
 
 
 def test_a_motion_plays_first_and_then_that_of_a_sentence(page: Page, server: SimpleNamespace) -> None:

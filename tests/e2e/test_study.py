@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from .playing import unfold
+from .playing import set_number, unfold
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 SLOW = 120_000
@@ -28,8 +28,7 @@ def test_a_grid_is_linked_compared_and_voted_on(lab: str, open_page: Callable, t
     owner = open_page(lab, **small)
     owner.set_default_timeout(SLOW)
     owner.fill("#prompt textarea", "Two people shake hands.")
-    owner.locator("#seconds input[type=number]").fill("1.5")  # files of short motions are written sooner
-    owner.locator("#seconds input[type=number]").press("Tab")
+    set_number(owner, "#seconds", "1.5")  # files of short motions are written sooner
     unfold(owner, "#grid")
     owner.get_by_role("button", name="Plain beside damped").first.click()
     expect(owner.locator("#status .pd-done")).to_contain_text("2 results done", timeout=SLOW)

@@ -40,6 +40,18 @@ _HANDS = ROOT / "static" / "examples" / "shake-hands.npz"
 _WAVE = ROOT / "static" / "examples" / "wave.npz"
 
 
+class _Refusing(httpx.AsyncHTTPTransport):
+    """Takes a connection that the server cuts, in the middle of a request or of an answer, for a refusal (503)."""
+
+    async def handle_async_request(self, request: httpx.Request) -> httpx.Response:
+        try:
+            answer = await super().handle_async_request(request)
+            await answer.aread()
+        except httpx.TransportError:
+            return httpx.Response(503)
+        return answer
+
+
 async def attack(url: str) -> dict[str, Any]:
     """Attacks a server until this is cancelled; returns what was sent and what became of it."""
     counts: Counter[str] = Counter()
@@ -48,7 +60,7 @@ async def attack(url: str) -> dict[str, Any]:
         going = []
         for way in (_fill, _flood, _ask_for_pages, _ask_for_readings, _read_nothing, _send_large):
             cookie = {"cookie": f"{VISITOR_COOKIE}={new_token()}"}
-            client = httpx.AsyncClient(base_url=url, timeout=120, limits=limits, headers=cookie)
+            client = httpx.AsyncClient(base_url=url, timeout=120, transport=_Refusing(limits=limits), headers=cookie)
             going.append(way(await people.enter_async_context(client), counts))
         with contextlib.suppress(asyncio.CancelledError):
             await asyncio.gather(*going)
@@ -157,11 +169,8 @@ async def _send_large(client: httpx.AsyncClient, counts: Counter[str]) -> None:
 
     async def one() -> None:
         while True:
-            try:
-                sent = await client.post("gradio_api/upload", files={"files": ("large.trc", data)})
-            except httpx.TransportError:  # the server ended the upload before all of it was sent
-                sent = None
-            if sent is not None and sent.status_code == 200:
+            sent = await client.post("gradio_api/upload", files={"files": ("large.trc", data)})
+            if sent.status_code == 200:
                 file = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}
                 usual = [1, 3, 5, 0.7, "ddim", "intergen", "offline", False, False, "", 0, "", ""]
                 react = [file, "", "", 0, 2, "b", 0, *usual]
