@@ -60,6 +60,7 @@ def worded(act: Act, caption: str) -> str:
     """An act in the words of a caption, without a full stop: "person A pats person B on the back twice"."""
     both = len(act.agents) == 2
     other = act.patient or ("b" if act.agents[0] == "a" else "a")
+    caption = caption.replace("{a+b}", "{a}")
     caption = caption if act.part else caption.replace(" on the {part}", "")
     text = _VERB.sub(lambda m: ("are" if m[1] == "be" else m[1]) if both else singular(m[1]), caption)
     values = {
@@ -107,8 +108,10 @@ def with_thing(act: Act, caption: str) -> tuple[Act, str]:
 
 
 def naming(act: Act, entry: Entry, other: str) -> str:
-    """The caption of an entry that has a place for the act's thing, where it names one; else another caption."""
-    return next((text for text in entry.caption if act.thing and "{thing}" in text), other)
+    """The caption of an entry that has a place for the act's thing or speaks of two at once; else another caption."""
+    both = len(act.agents) == 2 and "{b}" in other
+    fits = (text for text in entry.caption if (act.thing and "{thing}" in text) or (both and "{a+b}" in text))
+    return next(fits, other)
 
 
 def caption_of(act: Act, entry: Entry) -> str:

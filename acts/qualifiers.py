@@ -103,4 +103,4 @@ def _at_speed(factor: float, goes: Go, who: str) -> str:
     between = goes.speed * (1.0 + factor) / 2.0
     if factor > 1.0:
         return f"happens(walks({who}, 0.4, {between:.2f}))"
-    return f"never(walks({who}, 0.4, {max(between, 0.6):.2f}))"
+    return f"never(walks({who}, 0.7, {max(between, 0.6):.2f}))"  # a single stride may be as fast

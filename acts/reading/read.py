@@ -313,6 +313,9 @@ class _Planner:
         shared = entry.mutual and event.modality == "offered"
         if (entry.to == "other" or shared) and len(match.agents) == 1 and not upwards:
             patient = patient or other_of(match.agents)
+        goes = any(isinstance(shape, Go) for shape in entry.stage)
+        given = event.object is None or entry.thing == "throws"
+        answers = event.direction == "back" and patient and given and not goes  # "waves back", "throws it back"
         owner = None
         if part is not None:
             whose = match.agents if frame.of_agent() else patient or match.agents
@@ -333,7 +336,7 @@ class _Planner:
             times=event.times,
             manner=tuple(event.adverbs[:8]),
             speed=min(max(speed, 0.2), 3.0),
-            direction=event.direction,
+            direction=None if answers else event.direction,
             distance=event.distance,
             words=self._span(number),
         )

@@ -92,11 +92,13 @@ class Subjects:
             kept = token.dep_ == "pcomp" and token.head.lower_ == "from"  # "stops him from falling"
             if kept or token.dep_ in ("xcomp", "ccomp"):  # "makes her laugh", "asks him to sit"
                 above = self._event_of(head)
+                shown = any(child.lower_ == "how" for child in token.children)  # "teaches him how to bow"
                 if (
                     above is not None
                     and above.object is not None
                     and above.object.kind == "person"
                     and above.lemma not in _PROMISES
+                    and not shown
                 ):
                     return above.object
             return own

@@ -219,3 +219,17 @@ def test_a_verdict_names_the_thing_of_the_words(sentence: str, words: str) -> No
     """And not the caption's example of one."""
     (found,) = checked(read(sentence), duet())
     assert found.words == words
+
+
+def test_strides_of_somebody_who_sneaks_are_not_fast() -> None:
+    """The pelvis goes with each step; what counts is how far it gets."""
+
+    def step(both: np.ndarray) -> None:
+        t = np.arange(both.shape[1]) / 30
+        both[0, ..., 2] += (0.6 * t - 0.14 * np.sin(4.3 * t))[:, None]  # 0 to 1.2 m/s, a step in 1.5 s
+
+    def run(both: np.ndarray) -> None:
+        both[0, ..., 2] += 1.3 * np.arange(both.shape[1])[:, None] / 30
+
+    slow, fast = (checked(read("A walks up to B slowly."), duet(way, gap=5.0))[0] for way in (step, run))
+    assert slow.done and not fast.done

@@ -102,7 +102,7 @@ def test_a_plan_is_edited_and_made(lab: str, open_page: Callable[..., Page]) -> 
     assert page.locator("#reading .pdr-check").first.inner_text()[0] in "✓✗"
     # What happens is told under the stage, to screen readers as well.
     told = page.locator("#player .pdd-told[role=status]")
-    expect(told).to_have_text("B waves; A and B shake hands with each other.")
+    expect(told).to_have_text("B waves; A and B shake hands.")
     # Words that are typed are read anew, and the page says what that does.
     page.locator("#prompt textarea").press_sequentially(" B nods.")
     expect(reading.locator(".pdr-badge")).to_be_hidden()

@@ -26,6 +26,8 @@ def told(text: str) -> Told:
         ("They take turns bowing.", [("bow", "a", None), ("bow", "b", None)]),
         ("B is on all fours.", [("all-fours", "b", None)]),
         ("They are both seated.", [("sit-down", "ab", None)]),
+        ("They stretch before a run.", [("stretch", "ab", None), ("run-together", "ab", None)]),
+        ("A shows B how to bow.", [("bow", "a", None)]),
     ],
 )
 def test_a_direction_is_read(text: str, acts: Told) -> None:
