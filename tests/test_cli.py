@@ -17,7 +17,6 @@ from PIL import Image
 import app
 from motion.formats import read, read_pair
 from tests.inference import conftest as tiny
-from tests.motion.formats.characters import glb_character
 from webdemo import cli
 from webdemo.cli import service
 from webdemo.inference import engine, methods
@@ -97,23 +96,6 @@ def test_generate_tries_further_seeds(run: Run, tmp_path: Path) -> None:
     refused(run("generate", "--prompt", PROMPT, "--tries", 5, "--out", tmp_path / "y.npz"))
 
 
-def test_a_plan_is_made_without_words(run: Run, tmp_path: Path) -> None:
-    plan, out = tmp_path / "plan.json", tmp_path / "x.npz"
-    acts = [{"id": "1", "act": "walk-up", "agents": ["b"], "patient": "a"}]
-    plan.write_text(json.dumps({"plan": {"acts": acts}}))
-    code, said, _ = run("generate", "--plan", plan, "--seconds", 2, "--steps", 2, "--out", out)
-    assert code == 0
-    printed = answer(said)
-    assert printed["manifest"]["request"]["acts"]["acts"][0]["act"] == "walk-up"
-    assert printed["manifest"]["request"]["prompt"] == "Person B walks up to person A."
-    assert [row["act"] for row in printed["manifest"]["checked"]] == ["walk-up"]
-    out.unlink()
-    for wrong in ("{", "[]", '{"acts": 3}', '{"acts": [{"act": "hug"}]}'):
-        plan.write_text(wrong)
-        refused(run("generate", "--plan", plan, "--out", out))
-        assert not out.exists()
-
-
 def test_the_same_command_gives_the_same_bytes(run: Run, tmp_path: Path) -> None:
     for name in ("x.npz", "y.npz"):
         assert generate(run, tmp_path / name)[0] == 0
@@ -149,11 +131,6 @@ def test_bad_values_are_one_line_and_leave_no_file(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("words", [[], ["dance"], ["generate"], ["render"], ["react", "--out", "x.npz"]])
-def test_an_incomplete_command_is_one_line(run: Run, words: list[str]) -> None:
-    assert "--help" in refused(run(*words))
-
-
 @pytest.mark.parametrize("suffix", [".npz", ".bvh", ".glb"])
 def test_a_full_disk_is_one_line_and_leaves_no_file(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str
@@ -165,18 +142,6 @@ def test_a_full_disk_is_one_line_and_leaves_no_file(
     monkeypatch.setattr(Path, "write_bytes", full)
     assert "the disk is full" in refused(generate(run, tmp_path / f"duet{suffix}"))
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_place_that_cannot_be_written_is_one_line(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "file").write_text("in the way")
-    assert "could not be written" in refused(generate(run, tmp_path / "file" / "duet.npz"))
-
-    def denied(*_: Any) -> None:
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
-
-    monkeypatch.setattr(os, "replace", denied)
-    assert "choose another folder" in refused(generate(run, tmp_path / "duet.npz"))
-    assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
 @pytest.mark.parametrize("suffix", [".npz", ".bvh"])
@@ -192,18 +157,6 @@ def test_render_draws_what_generate_wrote(run: Run, tmp_path: Path, suffix: str)
         assert picture.format == "PNG"
         assert picture.width == 1600
         assert len(picture.getcolors(1 << 20)) > 10
-
-
-def test_render_puts_a_character_on_everybody(run: Run, tmp_path: Path) -> None:
-    motion = answer(generate(run, tmp_path / "duet.npz")[1])["files"][0]
-    (tmp_path / "robot.glb").write_bytes(glb_character())
-    drawn = []
-    for name, worn in (("plain.png", ()), ("worn.png", ("--character", tmp_path / "robot.glb"))):
-        code, *_ = run("render", motion, "--out", tmp_path / name, "--frames", 1, *worn)
-        assert code == 0
-        drawn.append(np.asarray(Image.open(tmp_path / name)).astype(int))
-    assert (np.abs(drawn[0] - drawn[1]) > 60).any(axis=-1).mean() > 0.005
-    assert "no glTF binary file" in refused(run("render", motion, "--character", motion))
 
 
 def test_render_refuses_in_one_line(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -255,12 +208,6 @@ def test_benchmark_reports_figures(run: Run, weights: Path, tmp_path: Path, monk
         "shared_over_serial_throughput",
     ):
         assert printed[figure] > 0
-
-
-def test_missing_weights_are_one_line(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(engine, "Engine", partial(engine.Engine.func, tmp_path / "nowhere"))
-    assert "restore" in refused(generate(run, tmp_path / "duet.npz"))
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_app_takes_the_options_of_serve(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

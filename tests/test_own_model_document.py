@@ -18,7 +18,6 @@ from pathlib import Path
 import pytest
 
 from motion import InputError
-from motion.metrics.sentences import read_sentences
 from webdemo import cli
 from webdemo.inference import Engine, GenerateRequest
 from webdemo.inference.methods import failed, method, methods, register_settings
@@ -165,26 +164,3 @@ def test_a_broken_class_fails_alone(folder: Path) -> None:
     *_, result = engine.run(GenerateRequest(prompt="Sway.", model="toy", seconds=1.0))
     assert result.duets[0].num_frames == 30  # type: ignore[union-attr]
     assert method("intergen").name == "intergen"
-
-
-def test_wrong_sentences_get_one_sentence(tmp_path: Path, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    wrong = {
-        "a.json": ("{", "is not JSON"),
-        "b.json": ("[{}]", "objects that have `words`"),
-        "c.json": ('[{"words": "x", "rule": ["os.system(1)"]}]', "must begin with one of"),
-        "d.json": ('[{"words": "x", "weather": 1}]', "cannot be used"),
-        "e.txt": ("\n", "holds no sentences"),
-    }
-    for name, (text, sentence) in wrong.items():
-        (tmp_path / name).write_text(text)
-        with pytest.raises(InputError, match=re.escape(sentence)):
-            read_sentences(tmp_path / name)
-    assert cli.main(["score", "--model", "toy", "--sentences", "nowhere.txt"]) == 2
-    assert "cannot be read" in capsys.readouterr().err
-    assert cli.main(["score", "--model", "bigraphdiff"]) == 2
-    assert "takes the name of a class" in capsys.readouterr().err
-    (tmp_path / "known.txt").write_text(
-        "Person A bows to person B and then walks straight past person B.\nThey rest.\n"
-    )
-    known, free = read_sentences(tmp_path / "known.txt")
-    assert known.id == "bow-past" and known.rule and not free.rule

@@ -12,7 +12,6 @@ from motion.formats import ImportChoices, read, write
 from motion.kinematics import forward_kinematics
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_takes
-from tests.motion.formats.rigs import RIGS, bvh_text
 from webdemo import cli
 from webdemo.cli import generation
 from webdemo.inference.requests import ReactRequest
@@ -114,18 +113,6 @@ def test_one_person_of_a_file_is_trimmed_and_answered(
     np.testing.assert_array_equal(duet.a.positions, standing(120, x=2.0).positions[30:90])
 
 
-def test_bvh_goes_in_and_comes_out(
-    tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
-) -> None:
-    actor = write(Duet(standing(60), standing(60)), tmp_path / "one.bvh")[0]
-    code, said, _ = react(capsys, "--actor", actor, "--samples", 2, "--out", tmp_path / "two.bvh")
-    assert code == 0
-    names = [Path(path).name for path in json.loads(said.splitlines()[-1])["files"]]
-    assert names == ["two_1_a.bvh", "two_1_b.bvh", "two_2_a.bvh", "two_2_b.bvh"]
-    assert asked[0].prompt == ""
-    assert asked[0].actor.num_frames == 60
-
-
 def test_a_model_comes_with_its_own_number_of_steps(
     pair: Path, tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -155,37 +142,6 @@ def test_the_other_person_of_a_file_says_where_to_begin(
     one = write(standing(120), tmp_path / "one.npz")[0]
     code, _, said = react(capsys, "--actor", one, "--keep-start", "--model", "regennet", "--out", words[-1])
     assert code == 2 and "does not hold two people" in said
-
-
-def test_any_of_six_people_can_be_chosen(
-    tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
-) -> None:
-    crowd = tmp_path / "crowd.npz"
-    np.savez(crowd, positions=np.stack([standing(60, x=2.0 * i).positions for i in range(6)]), fps=30.0)
-    words = ["--actor", crowd, "--out", tmp_path / "x.npz"]
-    assert react(capsys, *words, "--person", "e")[0] == 0
-    np.testing.assert_array_equal(asked[0].actor.positions, standing(60, x=8.0).positions)
-    code, _, said = react(capsys, *words)
-    assert code == 2 and "crowd.npz holds six people: choose person a, b, c, d, e or f" in said
-    code, _, said = react(capsys, *words, "--person", "b", "--keep-start", "--model", "regennet")
-    assert code == 2 and "crowd.npz does not hold two people" in said
-
-
-def test_of_a_long_kinect_recording_only_the_part_is_fitted(
-    tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from webdemo.inference.requests import actor
-
-    bodies = standing(3000).positions[:, [15, 12, 6, 16, 18, 20, 17, 19, 21, 1, 4, 7, 2, 5, 8]]
-    np.save(tmp_path / "kinect.npy", bodies)
-    fitted = []
-    fit = actor.to_smpl
-    monkeypatch.setattr(actor, "to_smpl", lambda clip: fitted.append(clip.num_frames) or fit(clip))
-    words = ["--actor", tmp_path / "kinect.npy", "--out", tmp_path / "x.npz"]
-    assert react(capsys, *words, "--start", 1, "--end", 2)[0] == 0
-    code, _, said = react(capsys, *words)
-    assert code == 2 and "trim it to 10 s" in said
-    assert fitted == [30]
 
 
 def test_a_stream_prints_every_frame_before_the_answer(
@@ -246,44 +202,6 @@ def test_errors_are_one_line_and_write_nothing(
     assert error.count("\n") == 1
     assert set(tmp_path.iterdir()) == before
     assert asked == []
-
-
-def test_the_partner_comes_on_the_rig_of_the_file_too(
-    capsys: pytest.CaptureFixture[str], asked: list[ReactRequest], tmp_path: Path
-) -> None:
-    rotations = np.tile(np.eye(3), (60, 22, 1, 1))
-    rig = tmp_path / "rig.bvh"
-    rig.write_text(bvh_text(rotations, np.tile([0.0, 0.9562, 0.0], (60, 1)), RIGS["mixamo"]))
-    code, said, _ = react(capsys, "--actor", rig, "--own-rig", "--out", tmp_path / "made.npz")
-    assert code == 0
-    files = [Path(file) for file in json.loads(said.splitlines()[-1])["files"]]
-    assert [file.name for file in files] == ["made.npz", "made_rig.bvh"]
-    assert files[1].read_text().split("MOTION")[0] == rig.read_text().split("MOTION")[0]
-    partner = read(files[1])
-    np.testing.assert_allclose(partner.positions[:, 0, 2] - asked[0].actor.positions[:, 0, 2], 1.5, atol=0.03)
-    code, _, said = react(capsys, "--actor", write(standing(60), tmp_path / "x.npz")[0], "--own-rig", "--out", rig)
-    assert code == 2 and "rig of a BVH or .glb file, and x.npz is none" in said
-
-
-def test_one_animation_of_several_is_chosen_and_noted(
-    tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
-) -> None:
-    positions, rotations = marching(60)
-    actor = tmp_path / "takes.glb"
-    actor.write_bytes(glb_takes(rotations, positions[:, 0], ["walk", "glide"]))
-    words = ["--actor", actor, "--own-rig", "--out", tmp_path / "x.npz"]
-    for more, note in (
-        ([], "Of the 2 animations in takes.glb, 1 (“walk”) was taken; the other is 2 (“glide”)."),
-        (["--animation", "glide"], "Of the 2 animations in takes.glb, 2 (“glide”) was taken; the other is 1 (“walk”)."),
-        (["--animation", "2"], "Of the 2 animations in takes.glb, 2 (“glide”) was taken; the other is 1 (“walk”)."),
-    ):
-        code, said, told = react(capsys, *words, *more)
-        assert code == 0 and note in told.splitlines()
-        assert json.loads(said.splitlines()[-1])["notes"] == [note]
-    np.testing.assert_array_equal(asked[1].actor.positions, asked[2].actor.positions)
-    assert np.abs(asked[0].actor.positions - asked[1].actor.positions).max() > 0.1
-    code, _, told = react(capsys, *words, "--animation", "run")
-    assert code == 2 and "has no such animation: choose 1 (“walk”) or 2 (“glide”)" in told
 
 
 def test_other_commands_choose_an_animation_too(

@@ -41,17 +41,6 @@ def test_a_span_and_a_pose_are_held_exactly(either_engine: Engine) -> None:
     assert np.abs(free.b.positions[45] - pose[0]).max() > 0.1
 
 
-@pytest.mark.parametrize("frames", [range(FRAMES), [0, 30, 59]])
-def test_a_path_is_followed(either_engine: Engine, frames: Sequence[int]) -> None:
-    way = walker(angle=-0.6)[list(frames)][:, 0][:, [0, 2]] + np.array([0.5, 0.0])
-    parts = [KnownPath(1, frames, way, np.full(len(way), -0.6))]
-    for damping in (0.0, 0.7):
-        duet = make(either_engine, parts, damping=damping)
-        found = duet.b.positions[list(frames)][:, 0][:, [0, 2]]
-        assert np.linalg.norm(found - way, axis=-1).max() < 0.01
-    assert np.linalg.norm(make(either_engine, []).b.positions[list(frames)][:, 0][:, [0, 2]] - way, axis=-1).max() > 0.2
-
-
 def test_a_given_heading_is_shown_to_a_network_that_sees_it(reading_engine: Engine) -> None:
     way = walker()[:, 0][:, [0, 2]]
     turned = [make(reading_engine, [KnownPath(0, range(FRAMES), way, np.full(FRAMES, h))]) for h in (0.0, 2.0)]
@@ -78,28 +67,6 @@ def test_a_single_pose_moves_only_what_is_near_it() -> None:
     np.testing.assert_allclose(found[0, 30], pose[0], atol=1e-6)
     away = np.abs(np.arange(frames) - 30) > FADE
     np.testing.assert_allclose(found[0, away], made[0, away], atol=1e-6)
-
-
-def test_poses_in_a_row_are_led_through_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A bystander's poses, one every half second, leave nothing to smooth; a pose by itself does."""
-    smoothed: list[list[int]] = []
-    monkeypatch.setattr(
-        "webdemo.inference.pipelines.given.passing", lambda made, at, *_: smoothed.append(at.tolist()) or made
-    )
-    made = np.stack([walker(), walker(speed=0.8)]).astype(np.float32)
-    row = [KnownFrames(0, [20, 35, 50], made[0, [20, 35, 50]]), KnownFrames(1, [30], made[1, 30:31])]
-    Directed(FRAMES, None, parts=row).duet(made, lambda person: person)
-    assert smoothed == [[30]]
-
-
-def test_a_difference_in_speed_fades_without_a_jolt() -> None:
-    """A past that moves on leads into what was made with no jump of speed."""
-    made = np.zeros((60, 22, 3))
-    past = 0.02 * np.ones((20, 22, 3)) * np.arange(20)[:, None, None]
-    moved = with_given(made, np.arange(20), past)[:, 0, 0]
-    steps = np.diff(moved)
-    assert abs(steps[19] - steps[18]) < 0.25 * 0.02
-    assert moved[20 + FADE :].max() == 0
 
 
 @pytest.mark.parametrize(

@@ -71,28 +71,6 @@ def test_a_path_that_begins_where_its_person_is_is_met_exactly_and_without_a_wor
     assert len(follower.settings[0].plan.parts[0].frames) == 4, "its points and the end of the window"
 
 
-def test_a_later_path_with_time_to_stroll_there_leaves_the_way_free(follower: Follower) -> None:
-    drawn = path("a", (4.0, 1.4, 0.0), (5.5, 1.4, 1.0))
-    found = follower.scene(SceneRequest(beats=WAVES, motion=standing(), paths=(drawn,), planned=False))
-    assert not found.notes and min(follower.settings[0].plan.parts[0].frames) >= 48 + 60
-
-
-def test_a_path_in_a_span_comes_back_to_where_the_motion_goes_on(follower: Follower) -> None:
-    drawn = path("b", (1.2, 1.5, 1.5), (3.9, 3.0, 3.0))
-    motion = standing(5.0)
-    request = SceneRequest(beats=(Beat("They wave."),), motion=motion, start=1.0, end=4.0, paths=(drawn,))
-    made = follower.scene(request).duets[0].positions
-    assert speeds(made).max() < 4.1
-    assert np.abs(made[1, :, 0] - motion.positions[1, :, 0]).max() > 1.5, "they were away"
-
-
-def test_both_people_begin_on_their_own_paths(follower: Follower) -> None:
-    drawn = (path("a", (0.0, 0.0, 0.0), (3.0, 0.0, 2.0)), path("b", (0.5, 5.0, -3.0), (3.0, 5.0, -1.0)))
-    made = follower.scene(SceneRequest(beats=WAVES, paths=drawn)).duets[0].positions
-    assert speeds(made).max() < 3.1
-    np.testing.assert_allclose(place(made, 1, 0.5), [5.0, -3.0], atol=0.01)
-
-
 @pytest.mark.parametrize("degrees", [0.0, 90.0, -135.0])
 def test_one_whose_partner_has_a_path_begins_before_them_and_faces_them(follower: Follower, degrees: float) -> None:
     angle = np.radians(degrees)

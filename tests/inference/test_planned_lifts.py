@@ -9,7 +9,6 @@ from motion import FPS, SMPL22
 from motion.metrics.quality import standing_foot
 from webdemo.inference import Engine, SceneRequest
 from webdemo.inference.story import Beat, FloorPath, FloorPoint
-from webdemo.inference.story.sentences import split_sentence
 
 from .followed import Follower, speeds
 from .test_planned_scenes import QUICK, made
@@ -77,17 +76,6 @@ def test_who_carries_walks_one_foot_after_the_other(engine: Engine, words: str, 
     assert np.median(speeds.min(axis=1)) < 0.3 and np.median(speeds.max(axis=1)) > 0.8
 
 
-def test_who_is_dragged_lies_and_is_pulled_along_by_the_feet(engine: Engine) -> None:
-    found = made(engine, "Person A drags person B across the floor.")
-    pelvis = found[:, :, 0]
-    assert pelvis[1, 10:, 1].max() < 0.35 and pelvis[0, :, 1].min() > 0.6
-    gone = pelvis[:, -1] - pelvis[:, 0]
-    assert np.linalg.norm(gone, axis=-1).min() > 1.0 and np.linalg.norm(gone[0] - gone[1]) < 0.3
-    wrists, ankles = ([SMPL22.index(f"{side}_{part}") for side in ("left", "right")] for part in ("wrist", "ankle"))
-    apart = found[0][20:-20, wrists][:, :, None] - found[1][20:-20, ankles][:, None]
-    assert np.median(np.linalg.norm(apart, axis=-1).min(axis=(1, 2))) < 0.25
-
-
 def test_nobody_is_carried_by_somebody_who_is_sent_elsewhere(engine: Engine) -> None:
     beats = (Beat("A couple dances a waltz.", seconds=2.0), Beat("Person A carries person B away.", seconds=3.0))
     away = FloorPath("a", (FloorPoint(2.0, 0.0, 3.5), FloorPoint(3.0, 0.0, 4.9)))
@@ -107,13 +95,3 @@ def test_who_runs_up_first_begins_apart_and_is_lifted_after_the_run(
     assert speeds(found)[0].max() > 1.8, "at a run"
     assert speeds(found)[1].max() < 0.3, "the other waits"
     assert (feet[gaps > 1.0] < 0.1).all() and feet[-9:].max() > 0.15, "lifted after the run"
-
-
-def test_who_is_lifted_can_spread_the_arms(monkeypatch: pytest.MonkeyPatch) -> None:
-    words = "The father lifts his daughter up and she spreads her arms."
-    ((beat,),) = (split_sentence(words),)
-    result = Follower(monkeypatch).scene(SceneRequest(beats=(Beat(words, acts=beat.acts, seconds=4.0),)))
-    found = positions(result)
-    up = low(found, 1) > 0.3
-    wrists = found[1, :, SMPL22.index("left_wrist")] - found[1, :, SMPL22.index("right_wrist")]
-    assert up.sum() > FPS and np.linalg.norm(wrists[up], axis=-1).min() > 0.9

@@ -37,16 +37,6 @@ def test_what_runs_is_counted(running: int, free: int, tmp_path: Path, monkeypat
     assert threads.free_cores(load) == free
 
 
-@pytest.mark.parametrize("text", [None, "", "nonsense"])
-def test_where_the_system_does_not_tell_all_cores_count(
-    text: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(threads, "CORES", 4)
-    if text is not None:
-        (tmp_path / "loadavg").write_text(text)
-    assert threads.free_cores(tmp_path / "loadavg") == 4
-
-
 @pytest.mark.parametrize(("compiled", "expected"), [(True, 1), (False, 3)])
 def test_a_run_takes_more_than_one_thread_only_for_a_plain_network(
     compiled: bool, expected: int, engine: Engine, monkeypatch: pytest.MonkeyPatch

@@ -105,16 +105,6 @@ def test_each_motion_of_a_batch_has_its_own_known_part():
     assert not torch.allclose(found[2], x[2], atol=0.1)
 
 
-def test_gradients_reach_only_what_is_not_known():
-    motion, x = people(), made_by_a_network().requires_grad_()
-    known = Known.nothing(FRAMES)
-    known.add_person(0, motion[0])
-    held(known, x).sum().backward()
-    gradient = unpack(x.grad, LAYOUT)
-    assert torch.equal(gradient[:, 0], torch.zeros_like(gradient[:, 0]))
-    assert torch.equal(gradient[:, 1], torch.ones_like(gradient[:, 1]))
-
-
 def test_features_say_what_is_known_and_when():
     motion = people()
     known = Known.nothing(FRAMES)
@@ -130,18 +120,6 @@ def test_features_say_what_is_known_and_when():
     assert torch.allclose(turned[at], torch.tensor([np.sin(0.5), np.cos(0.5)]).float())
     expected = (motion[0, 16, 0] - MEAN[:3]) / STD[:3]
     assert torch.allclose(values[at, [0, 2]], expected[[0, 2]])
-
-
-def test_packed_features_lie_beside_the_tokens_they_are_of():
-    """The last frames of a person must be seen at that person's last tokens."""
-    known = Known.nothing(FRAMES)
-    known.mask[0, 1, -4:, 5] = True
-    features = Hold(known, LAYOUT, MEAN, STD).features
-    seen = pack(torch.zeros(1, 2, TOKENS * 2, KNOWN_FEATURES), LAYOUT)
-    assert features.shape == seen.shape
-    a, b = features[0].chunk(2, -1)
-    assert a.abs().max() == 0
-    assert b.abs().sum(-1).nonzero().flatten().tolist() == [TOKENS - 2, TOKENS - 1]
 
 
 def test_a_bend_meets_the_past_with_less_of_a_jolt_than_the_least_move():
@@ -176,9 +154,3 @@ def test_the_share_that_is_laid_out_is_that_which_a_network_no_longer_moves():
     both = Known.nothing(FRAMES, batch=2)
     both.add_joints(1, motion[1], range(FRAMES), range(11))
     assert shares(both) == pytest.approx(0.25, abs=1e-3), "half of the joints of one of two people"
-
-
-def test_a_single_pose_says_nothing_of_planted_feet() -> None:
-    known = Known.nothing(8)
-    known.add_person(0, torch.zeros(1, 22, 3), [3])
-    assert known.mask[0, 0, 3, :-4].all() and not known.mask[..., -4:].any()

@@ -73,22 +73,3 @@ def test_a_turn_dies_out_and_the_other_person_stays() -> None:
     found = Hold(known, LAYOUT, MEAN, STD).bend(x)
     assert np.abs(angles(found, SHOULDERS)[:20]).max() < 1
     assert torch.allclose(unpack(found, LAYOUT)[:, 1], unpack(x, LAYOUT)[:, 1], atol=1e-5)
-
-
-def test_a_turn_goes_on_past_half_a_turn() -> None:
-    known = Known.nothing(FRAMES)
-    for frame, angle in ((40, 2.6), (55, 3.3), (70, 4.0)):
-        facing(known, angle, [frame])
-    found = np.unwrap(np.radians(angles(Hold(known, LAYOUT, MEAN, STD).bend(predicted()), SHOULDERS)))
-    assert np.abs(found[[40, 55, 70]] - [2.6, 3.3, 4.0]).max() < 0.2
-    assert (np.diff(found[42:66]) > 0).all()
-
-
-def test_each_motion_of_a_batch_is_turned_by_its_own() -> None:
-    known = Known.nothing(FRAMES, batch=2)
-    one = Known.nothing(FRAMES)
-    facing(one, 1.0, [60])
-    known.rows[1], known.mask[1] = one.rows[0], one.mask[0]
-    found = Hold(known, LAYOUT, MEAN, STD).bend(predicted().repeat(2, 1, 1))
-    assert torch.allclose(found[:1], predicted(), atol=1e-4)
-    assert angles(found[1:], SHOULDERS)[60] == pytest.approx(np.degrees(1.0), abs=4)

@@ -42,16 +42,6 @@ def test_a_body_that_glides_walks(speed: float) -> None:
     np.testing.assert_array_equal(after[:, others], before[:, others])
 
 
-def test_others_stay_as_they_are() -> None:
-    still, running = gliding(0.0), gliding(3.0)
-    lying = gliding(0.5) * [1, 0.3, 1]
-    flying = gliding(1.0) + np.array([0, 0.4, 0])
-    stepper = gliding(0.0)
-    stepper[:, FEET[:2], 2] += 0.5 * np.clip((np.arange(120) - 30) / 12, 0, 1)[:, None]
-    for motion in (still, running, lying, flying, stepper, gliding(1.0)[:3]):
-        np.testing.assert_array_equal(stepping(motion, FPS), motion)
-
-
 def test_a_body_that_glides_from_the_first_frame_on_kicks_no_foot_ahead() -> None:
     """One foot is far behind then, and the step that takes it ahead began before anybody looked."""
     motion, along, frame = gliding(0.0), np.array([0.6, 0, 0.8]), np.arange(120)
@@ -112,14 +102,3 @@ def test_feet_that_a_turn_leaves_crossed_are_set_down_under_the_hips_until_they_
     before = turned(np.pi, later=60)
     found = pivoting(before, FPS)
     assert (apart(before)[60:110] < 0).all() and (apart(found)[60:110] > 0.1).all()
-
-
-def test_a_body_that_surges_ahead_takes_no_giant_stride() -> None:
-    frames, way = 60, 1.3
-    rest = np.repeat((SMPL22.rest_positions() + np.array([0, 0.92, 0]))[None], frames, axis=0)
-    rest = plant_feet(rest, np.ones((frames, 4), dtype=bool))
-    share = np.clip((np.arange(frames) - 18) / 24, 0, 1)
-    before = rest + way * (share * share * (3 - 2 * share))[:, None, None] * np.array([0, 0, 1.0])
-    after = stepping(before, FPS)
-    apart = np.linalg.norm((after[:, FEET[0]] - after[:, FEET[2]])[:, [0, 2]], axis=-1)
-    assert 0.35 < apart.max() < 0.85

@@ -71,21 +71,6 @@ def test_clean_joints_are_recovered(seed: int) -> None:
         assert fit.error < 1e-3
 
 
-def fitted_to_noise(seed: int) -> tuple[np.ndarray, float]:
-    """Positions fitted to sparse joints with 3 cm of noise, and the share of the noise that is left."""
-    truth = forward_kinematics(*plausible_motion(seed))
-    columns = [SMPL22.index(name) for name in SPARSE]
-    noisy = truth[:, columns] + np.random.default_rng(seed).normal(0, 0.03, (len(truth), len(columns), 3))
-    found = fit_skeleton(noisy, SPARSE).positions
-    left, raw = (np.linalg.norm(x - truth[:, columns], axis=-1).mean() for x in (found[:, columns], noisy))
-    return found, left / raw
-
-
-def test_noise_gets_smaller() -> None:
-    """Of the noise, 44 % is left for the median of 41 seeds."""
-    assert np.median([fitted_to_noise(seed)[1] for seed in range(5)]) < 0.6
-
-
 @pytest.mark.parametrize("name", ["sbu15", "k3hi15", "ntu25", "cmu17"])
 def test_other_layouts_give_the_same_pose(name: str) -> None:
     rotations, root = plausible_motion(3)
@@ -111,15 +96,6 @@ def test_flipped_and_missing_joints_are_outvoted() -> None:
     weights[20:23, wrist] = 0
     weighted = fit_skeleton(spoilt, SMPL22.joint_names, weights=weights)
     assert np.linalg.norm(weighted.positions - truth, axis=-1)[:, wrist].max() < 0.03
-
-
-def test_a_knee_that_bends_backwards_is_straightened() -> None:
-    rotations = np.tile(np.eye(3), (20, 22, 1, 1))
-    rotations[:, SMPL22.index("left_knee")] = Rotation.from_rotvec([-0.5, 0, 0]).as_matrix()
-    positions = forward_kinematics(rotations, np.tile([0.0, 0.95, 0.0], (20, 1)))
-    fit = fit_skeleton(positions, SMPL22.joint_names, noise=0.03)
-    bend = Rotation.from_matrix(fit.rotations[:, SMPL22.index("left_knee")]).as_rotvec()[:, 0]
-    assert bend.min() > -0.2
 
 
 def test_large_people_shrink_to_the_skeleton_and_keep_their_path() -> None:

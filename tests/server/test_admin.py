@@ -18,7 +18,6 @@ from .clients import FIELDS
 from .lab import ROOT
 from .live.test_streams import poses
 
-MANY = [FIELDS[0], 10, FIELDS[2], 8, *FIELDS[4:]]
 """Eight motions of ten seconds: a quarter of a megabyte."""
 
 
@@ -75,29 +74,6 @@ def test_a_run_is_ended_and_its_person_told(lab: Target) -> None:
     assert "The person who runs this server ended this" in said[0]
     line = next(line for line in lab.audited() if line["act"] == "admin-end")
     assert (line["person"], line["ok"], line["id"]) == ("eve", True, key)
-
-
-def test_a_person_at_their_quota_is_shown_and_refused(lab: Target) -> None:
-    assert act(lab, act="room", name="ada", megabytes="1").status_code == 303
-    assert shell(lab, "list")["people"][0]["room"] == 1.0
-    assert 'value="1"' in lab.ask("eve", "GET", "/admin").text
-    assert act(lab, act="room", name="ada", megabytes="much").status_code == 422
-    shell(lab, "room", "ada")
-    assert shell(lab, "list")["people"][0]["own_room"] is False
-
-
-def test_whoever_has_filled_their_room_makes_way_for_themselves(lab: Target) -> None:
-    """Four runs of eight motions, and then a room of 1 MB, of which runs may fill 0.75."""
-    for _ in range(4):
-        assert "complete" in lab.call("ada", "generate", MANY)
-    assert act(lab, act="room", name="ada", megabytes="1").status_code == 303
-    assert shell(lab, "list")["people"][0]["megabytes"] > 0.75
-    oldest = min((lab.data / "motions").iterdir(), key=lambda folder: folder.stat().st_mtime)
-    lab.call("ada", "generate", MANY)
-    assert not oldest.exists() and len(list((lab.data / "motions").iterdir())) == 4
-    refused = lab.ask("ada", "POST", "/gradio_api/upload", files={"files": ("a.bvh", b"x" * 2**20)})
-    assert refused.status_code == 507 and "There is no room for 1.1 MB more" in refused.text
-    assert act(lab, act="room", name="ada").status_code == 303
 
 
 def test_a_stream_is_ended_and_its_person_told(lab: Target) -> None:

@@ -40,11 +40,6 @@ def test_a_film_shows_things_with_every_look(look):
     assert red(drawn(WITH_BALL, look=look)) > 100 > red(drawn(PEOPLE, look=look))
 
 
-def test_things_throw_a_shadow_on_the_floor():
-    low = replace(PEOPLE, things=(replace(BALL, mesh=shape("table", width=1.2), places=BALL.places * [1, 0, 1]),))
-    assert drawn(low)[..., :3].astype(int).sum() < drawn(PEOPLE)[..., :3].astype(int).sum()
-
-
 @pytest.mark.parametrize("suffix", [".png", ".svg"])
 def test_sheets_show_things(suffix, tmp_path):
     paths = [write_sheet(d, tmp_path / f"{i}{suffix}", frames=1, width=400) for i, d in enumerate((PEOPLE, WITH_BALL))]
@@ -87,13 +82,6 @@ def test_quaternions_do_not_jump_between_frames():
     packed = thing_payload(Thing("ball", shape("ball"), np.zeros((40, 3)), turns))
     sent = np.frombuffer(base64.b64decode(packed["turns"]), "<i2").reshape(-1, 4) / 32767
     assert np.abs(np.diff(sent, axis=0)).max() < 0.4
-
-
-def test_a_thing_of_many_colours_is_sent_with_few():
-    mesh = shape("ball")
-    many = replace(mesh, colours=np.random.default_rng(0).integers(0, 256, mesh.faces.shape).astype(np.uint8))
-    packed = thing_payload(Thing.at_rest("own", many, np.zeros(3), 0.0, 4))
-    assert len(packed["palette"]) <= 255
 
 
 def test_a_window_is_in_view_while_somebody_is_at_it_and_only_then():

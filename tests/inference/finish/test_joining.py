@@ -86,11 +86,6 @@ def test_a_loop_closes_in_place_and_speed_and_keeps_what_is_fixed() -> None:
     np.testing.assert_allclose(lengths(found), lengths(open_ended), atol=1e-6)
 
 
-def test_the_shortest_loop_closes() -> None:
-    short = closed(mover(speed=0.1)[:15], np.zeros(0, dtype=int))
-    assert short.shape == (15, 22, 3) and np.isfinite(short).all()
-
-
 def dancer(seconds: float = 3.0, turn: float = 1.2) -> np.ndarray:
     """(T, 22, 3) a person who turns around on bent knees, ``turn`` times a second, and lets an arm circle."""
     time = np.arange(round(30 * seconds)) / 30
@@ -122,9 +117,3 @@ def test_a_dance_that_turns_closes_without_a_jolt_and_only_there() -> None:
     assert np.linalg.norm(closing.sum(0), axis=-1).max() < 0.01
     np.testing.assert_array_equal(found[REACH:-REACH], made[REACH:-REACH])
     np.testing.assert_allclose(lengths(found), lengths(made), atol=1e-6)
-
-
-def test_a_loop_of_an_odd_number_of_frames_stays_in_step() -> None:
-    made = mover(speed=0.1)[:-1]
-    found = closed(made, np.zeros(0, dtype=int))
-    np.testing.assert_allclose(found[REACH:-REACH], made[REACH:-REACH], atol=1e-9)

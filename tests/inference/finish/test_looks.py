@@ -53,27 +53,6 @@ def test_a_path_on_the_floor_is_where_it_was_drawn(engine: Engine) -> None:
         np.testing.assert_allclose(at[[0, 2]], [point.x, point.z], atol=0.12)
 
 
-def test_a_scene_goes_on_from_a_girl_as_she_was(engine: Engine) -> None:
-    first = run(engine, GenerateRequest(prompt="A man waves at a girl.", seconds=3.0, **QUICK)).duets[0]
-    request = SceneRequest(beats=(Beat("They bow.", seconds=2.0),), motion=first, **QUICK)
-    (duet,) = run(engine, request).duets
-    assert duet.looks == ("man", "girl")
-    np.testing.assert_array_equal(duet.positions[:, : first.num_frames], first.positions)
-    np.testing.assert_allclose(bones(duet.cut(first.num_frames)), (1.0, CHILD), atol=0.01)
-    steps = np.linalg.norm(np.diff(duet.positions, axis=1), axis=-1).max(axis=(0, 2))
-    assert steps[first.num_frames - 1] < 0.1, "metres from the last frame that is kept to the first that is made"
-
-
-def test_people_of_a_given_motion_stay_who_they_are(engine: Engine) -> None:
-    """Words about a child do not shrink a person who has been an adult so far."""
-    first = run(engine, GenerateRequest(prompt="Two people wave.", seconds=3.0, **QUICK)).duets[0]
-    assert first.looks == UNSAID
-    request = SceneRequest(beats=(Beat("A man hugs a girl.", seconds=2.0),), motion=first, **QUICK)
-    (duet,) = run(engine, request).duets
-    assert duet.looks == ("man", "woman")
-    np.testing.assert_array_equal(duet.positions[:, : first.num_frames], first.positions)
-
-
 def test_a_childs_pose_is_asked_for_as_an_adults() -> None:
     rest = SMPL22.rest_positions()
     rest = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0])

@@ -84,38 +84,11 @@ def test_the_text_side_reads_the_end_of_text(whole):
     assert_equal(vector, torch.stack([x[0, 6], x[1, 3]]))
 
 
-def random_network() -> BiGraphDiff:
-    torch.manual_seed(0)
-    network = BiGraphDiff(SMALL).eval().requires_grad_(False)
-    for parameter in network.parameters():
-        torch.nn.init.normal_(parameter, std=0.2)
-    return network
-
-
 def inputs(batch: int = 2, length: int = 9):
     generator = torch.Generator().manual_seed(1)
     x = torch.randn(batch, length, 12, generator=generator)
     text = torch.randn(batch, 5, 8, generator=generator)
     return x, torch.tensor([3, 800])[:batch], text, text.mean(1)
-
-
-def test_padding_does_not_reach_real_frames():
-    network, (x, t, text, vector) = random_network(), inputs()
-    mask = torch.ones(2, 9)
-    mask[:, 6:] = 0
-    padded = x.clone()
-    padded[:, 6:] = 100
-    assert_equal(network(padded, t, text, vector, mask)[:, :6], network(x[:, :6], t, text, vector))
-
-
-def test_people_feel_each_other_and_the_text():
-    network, (x, t, text, vector) = random_network(), inputs()
-    out = network(x, t, text, vector)
-    moved = x.clone()
-    moved[..., 6:] += 1
-    assert (network(moved, t, text, vector) - out)[..., :6].abs().max() > 1e-3
-    assert (network(x, t, -text, vector) - out).abs().max() > 1e-3
-    assert (network(x, t, text, -vector) - out).abs().max() > 1e-3
 
 
 def test_other_weights_are_refused():

@@ -82,20 +82,6 @@ def test_attention_equals_torch_multihead_attention_with_zero_attention():
     assert_equal(attention(query, source, keep), expected, 1e-5)
 
 
-def test_padding_does_not_reach_real_tokens():
-    network, (x, t, cond) = random_network(), random_inputs()
-    mask = torch.ones(3, 7, 2)
-    mask[:, 5:, 0] = mask[:, 5:, 1] = 0
-    padded = x.clone()
-    padded[:, 5:] = 1e3
-    assert_equal(network(padded, t, cond, mask)[:, :5], network(x[:, :5], t, cond), 1e-4)
-
-
-def test_swapping_the_people_swaps_the_outputs():
-    network, (x, t, cond) = random_network(), random_inputs()
-    assert_equal(network(swapped(x), t, cond), swapped(network(x, t, cond)), 1e-5)
-
-
 def test_roles_break_the_symmetry_and_survive_saving():
     network = random_network(InterGenConfig(**{**vars(SMALL), "role_embedding": True}))
     x, t, cond = random_inputs()
@@ -115,23 +101,6 @@ def test_text_of_a_role_tells_the_people_apart_by_words_alone():
     assert_equal(network(swapped(x), t, without), swapped(network(x, t, without)), 1e-5)
     again = from_released(network.state_dict(), num_heads=2)
     assert again.config.role_text and torch.equal(again(x, t, cond), out)
-
-
-def test_a_new_network_starts_at_zero_and_learns():
-    torch.manual_seed(0)
-    network = InterGenDenoiser(SMALL)
-    x, t, cond = random_inputs()
-    assert network(x, t, cond).abs().max() == 0
-    optimizer = torch.optim.AdamW(network.parameters(), lr=3e-3)
-    losses = []
-    for _ in range(60):
-        loss = (network(x, t, cond) - x).square().mean()
-        optimizer.zero_grad()
-        loss.backward()
-        optimizer.step()
-        losses.append(loss.item())
-    assert losses[-1] < 0.7 * losses[0]
-    assert all(p.grad is not None and p.grad.abs().sum() > 0 for p in network.parameters())
 
 
 def test_attention_is_in_float32_under_autocast():

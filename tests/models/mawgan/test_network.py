@@ -75,37 +75,6 @@ def test_the_true_point_of_the_sphere_gives_the_true_future_back(past: int, futu
     assert torch.allclose(ratio, torch.tensor(0.3).exp().expand_as(ratio), atol=1e-4)
 
 
-def test_a_predicted_length_is_the_part_along_the_mean() -> None:
-    torch.manual_seed(0)
-    network = PredictiveMAWGAN(replace(SMALL, length=True, linear=True)).eval()
-    assert network.generator.linear is not None
-    with torch.no_grad():
-        network.generator.linear.bias.copy_(0.5 * network.future_mean.flatten())
-    plain = PredictiveMAWGAN(replace(SMALL, linear=True)).eval()
-    plain.load_state_dict(network.state_dict())
-    curves = to_curves(motion(1))
-    (s, longer), (same, none) = network.generate(curves), plain.generate(curves)
-    assert torch.allclose(s, same) and torch.equal(none, torch.zeros(3))
-    untouched = PredictiveMAWGAN(replace(SMALL, length=True)).eval()
-    untouched.generator.load_state_dict(network.generator.state_dict(), strict=False)
-    assert torch.allclose(longer, untouched.generate(curves)[1] + 0.5, atol=1e-5)
-
-
-def test_the_first_layer_reaches_the_future_past_the_convolutions_too() -> None:
-    torch.manual_seed(0)
-    generator = PredictiveMAWGAN(replace(SMALL, linear=True, coefficients=4, shortcut=True)).generator.eval()
-    assert generator.linear is not None and generator.linear.in_features == 4 * 15 + generator.fc.out_features
-    s, beside = poses(5, 40, 8, 15), torch.zeros(40, 0)
-    with torch.no_grad():
-        generator.fit_linear(s, beside, poses(7, 40, 13, 15), ridge=0.1)
-        begun = generator(s, beside)
-        column = 4 * 15
-        generator.linear.weight[:, column] = 1.0
-        first = torch.relu(generator.fc(s.flatten(1)))[:, 0]
-        added = generator.synthesis @ (first[:, None, None] * torch.ones(1, 4, 15))
-        assert torch.allclose(generator(s, beside), begun + added, atol=1e-5)
-
-
 def test_a_linear_map_is_found_in_closed_form() -> None:
     torch.manual_seed(0)
     generator = PredictiveMAWGAN(replace(SMALL, linear=True, pose=True, coefficients=4)).generator.eval()

@@ -69,12 +69,3 @@ def test_karcher_mean_is_least(seed: int) -> None:
     assert float(norm(log_map(mean, q).mean(0))) < 1e-6
     for other in tangents:
         assert spread(exp_map(mean, 0.05 * to_tangent(mean, other))) > spread(mean)
-
-
-def test_a_curve_that_stands_still_has_no_direction() -> None:
-    still = torch.ones(2, 10, 6)
-    q, length = to_srvf(still)
-    assert float(q.abs().max()) == 0 and float(length.max()) == 0
-    assert torch.equal(to_curve(q, length, still[:, 0]), still)
-    with pytest.raises(ValueError, match="two points"):
-        to_curve(q[:, :1], length, still[:, 0])

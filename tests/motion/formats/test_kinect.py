@@ -56,15 +56,6 @@ def test_a_body_that_is_found_again_is_the_same_one_and_a_gap_is_said() -> None:
     assert isinstance(end, Duet) and "from 1.2 to 2.0 s and is held still" in end.b.notes[0]
 
 
-def test_a_joint_that_is_nan_for_a_frame_is_interpolated(bodies: np.ndarray) -> None:
-    broken = bodies.copy()
-    broken[0, 4, 7, 1] = np.nan
-    duet = read(skeleton_text(broken).encode(), name="x.skeleton", keep_skeleton=True)
-    expected = bodies.copy()
-    expected[0, 4, 7] = (bodies[0, 3, 7] + bodies[0, 5, 7]) / 2
-    np.testing.assert_allclose(duet.positions, expected, atol=1e-5)
-
-
 def test_sbu_numbers_become_metres() -> None:
     raw = np.random.default_rng(1).uniform(0.1, 0.9, size=(9, 90)).round(6)
     duet = read(sbu_text(raw).encode(), name="skeleton_pos.txt", keep_skeleton=True)

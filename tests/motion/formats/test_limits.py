@@ -19,7 +19,6 @@ from motion.formats.recording import ImportChoices
 from tests.motion.bodies import marching
 
 from .characters import packed
-from .rigs import RIGS, bvh_text
 from .test_markers import c3d_bytes, keypoints, trc_text
 
 MEGABYTE = 2**20
@@ -85,29 +84,6 @@ def test_large_wrong_files_are_refused_soon_and_within_twice_the_limit(name: str
     finally:
         tracemalloc.stop()
     assert len(data) + peak < 2 * MAX_BYTES + 8 * MEGABYTE
-
-
-@pytest.mark.slow
-def test_ten_minutes_at_120_a_second_are_read_soon_and_within_twice_the_limit() -> None:
-    positions, rotations = marching(400)
-    head, rows = bvh_text(rotations, positions[:, 0], RIGS["mixamo"], unit=100, frame_time=1 / 120).split(
-        "Frames: 400\n"
-    )
-    time_line, *rows = rows.splitlines()
-    rows = [" ".join(f"{float(word):.3g}" for word in row.split()) for row in rows]
-    data = "\n".join([f"{head}Frames: 72000", time_line, *(rows * 180)]).encode()
-    import_motion(data[: len(data) // 2].replace(b"Frames: 72000", b"Frames: 100"), name="warm.bvh")
-    began = time.process_time()
-    found = import_motion(data, name="long.bvh")
-    assert time.process_time() - began < 2.0
-    assert found.fps == 120 and found.people[0].num_frames == 18_000
-    tracemalloc.start()
-    try:
-        import_motion(data, name="long.bvh")
-        peak = tracemalloc.get_traced_memory()[1]
-    finally:
-        tracemalloc.stop()
-    assert len(data) + peak < 2 * MAX_BYTES
 
 
 def _markers(count: int, frames: int) -> bytes:

@@ -12,15 +12,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motion import SKELETONS, SMPL22, Clip, Duet, InputError, formats
-from motion.formats.bvh import read_bvh
-from motion.formats.npz import _SOMA
 from motion.formats.smpl import PELVIS
 from motion.kinematics import forward_kinematics
 from motion.representation import decode_positions, encode_pair
 from motion.transforms import turn
 from tests.motion.bodies import marching
-
-from .rigs import RIGS, bvh_text
 
 A, ROTATIONS = marching(20)
 B = turn(marching(20, seed=1)[0], np.pi) + np.array([0, 0, 2.0])
@@ -137,21 +133,6 @@ def test_wrong_files_are_refused_in_one_sentence(data, name, message):
     with pytest.raises(InputError, match=message) as error:
         formats.read(data, name=name)
     assert "\n" not in str(error.value) and len(str(error.value)) < 300
-
-
-@pytest.mark.parametrize("joints", [30, 77])
-def test_kimodos_posed_joints_are_put_on_smpl(joints):
-    positions = np.zeros((20, joints, 3), np.float32)
-    positions[:, _SOMA[joints]] = A
-    clip = formats.read(_npz(posed_joints=positions, fps=np.float64(30)), name="kimodo.npz")
-    assert clip.skeleton is SMPL22 and np.linalg.norm(clip.positions - A, axis=-1).mean() < 0.05
-
-
-def test_positions_with_names_and_parents_of_any_rig_are_read():
-    rig = read_bvh(bvh_text(ROTATIONS, A[:, 0], RIGS["rokoko"]).encode())
-    named = {"joint_names": np.array(rig.joint_names), "parents": np.array(rig.parents)}
-    clip = formats.read(_npz(positions=rig.positions, fps=np.float64(30), **named), name="x.npz")
-    assert np.linalg.norm(clip.positions - A, axis=-1).mean() < 0.05
 
 
 def test_mdms_results_are_read_turned_and_never_unpickled():

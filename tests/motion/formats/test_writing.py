@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-from dataclasses import replace
 from pathlib import Path
 
 import bvhio
@@ -17,7 +16,6 @@ from motion.formats import on_rig
 from motion.formats.bvh import read_bvh
 from motion.formats.bvh_writer import bvh_on_rig
 from motion.formats.skinned import FINGER_JOINTS
-from motion.hands import Grip, angles
 from motion.retarget import retarget
 from motion.skeleton import SBU15
 from motion.transforms import turn
@@ -65,26 +63,6 @@ def test_a_glb_shows_the_body_of_the_player(tmp_path):
     found = Skinned(formats.write(DUET, tmp_path / "x.glb")[0])
     for person, (name, clip) in enumerate(zip(DUET.looks, DUET.people, strict=True)):
         np.testing.assert_allclose(found.surface(person)[0], skin(load_body(name), clip), atol=1e-3)
-
-
-def test_hands_of_a_glb_take_their_shapes(tmp_path):
-    grips = (Grip(0, "left", "fist", 6, 20), Grip(1, "right", "point", 0, 24))
-    found = Skinned(formats.write(replace(DUET, grips=grips), tmp_path / "x.glb")[0])
-    for person, (name, clip) in enumerate(zip(DUET.looks, DUET.people, strict=True)):
-        shapes = angles(grips, person, np.arange(24.0), 30)
-        surface = skin(load_body(name), clip, shapes)
-        np.testing.assert_allclose(found.surface(person)[0], surface, atol=1e-3)
-        assert np.abs(surface - skin(load_body(name), clip)).max() > 0.03
-    names = [found.gltf.nodes[c.target.node].name for c in found.animation.channels]
-    assert "a_left_index1" in names and "a_right_index1" not in names, "still fingers have no key frames"
-
-
-def test_nothing_but_smpl_is_posed(tmp_path):
-    duet = Duet.from_positions(np.zeros((2, 3, 15, 3)), fps=15, skeleton=SBU15)
-    for suffix in (".bvh", ".glb"):
-        with pytest.raises(InputError, match="retarget"):
-            formats.write(duet, tmp_path / f"x{suffix}")
-    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("suffix", [".npz", ".bvh", ".npy", ".glb"])

@@ -12,7 +12,6 @@ import pytest
 import trimesh
 
 from motion import Duet, InputError, formats
-from motion.formats.glb_writer import glb_bytes
 from motion.formats.usd import usd_text
 from motion.looks import hex_of, linear
 from motion.things import FURNITURE, KINDS, Mesh, Thing, shape
@@ -64,13 +63,6 @@ def test_tracks_that_are_none_are_refused():
         Mesh(mesh.vertices, mesh.faces + 10_000, mesh.colours)
     with pytest.raises(InputError, match="as many"):
         Duet(PEOPLE.a, PEOPLE.b, things=(thrown().cut(2),))
-
-
-def test_cutting_cuts_things_and_other_positions_drop_them():
-    duet = Duet(PEOPLE.a, PEOPLE.b, things=(thrown(),))
-    assert duet.cut(3, 9).things[0].num_frames == 6
-    np.testing.assert_array_equal(duet.cut(3, 9).things[0].places, duet.things[0].places[3:9])
-    assert duet.with_positions(duet.positions).things == ()
 
 
 def test_things_come_back_from_our_file(tmp_path):
@@ -139,12 +131,6 @@ def test_a_glb_holds_things_at_their_first_frame_in_their_colours(tmp_path):
     for thing in DUET.things:
         for colour in thing.mesh.by_colour()[0].tolist():
             assert tuple(np.round(linear(hex_of(colour)), 4)) in light
-
-
-def test_only_what_moves_is_animated_in_a_glb():
-    gltf = pygltflib.GLTF2.load_from_bytes(glb_bytes(DUET))
-    names = [gltf.nodes[channel.target.node].name for channel in gltf.animations[0].channels]
-    assert names.count("ball") == 2 and "chair" not in names
 
 
 def test_a_usd_stage_holds_things_beside_people():

@@ -49,26 +49,6 @@ def test_a_person_with_the_link_votes_once_and_sees_no_names(local: TestClient) 
     assert lab_of(local).studies.mine("local")[0].voters == 1
 
 
-def test_programs_strangers_and_nonsense_get_a_sentence(local: TestClient) -> None:
-    made = study(local, "local")
-    me = browser(local, made.key)
-    cases = [
-        ({"cookie": me["cookie"]}, "0/1", 403, "on the study's own page"),
-        (ORIGIN, "0/1", 403, "Allow this page to keep a cookie"),
-        ({"origin": "http://elsewhere", "cookie": me["cookie"]}, "0/1", 403, "Another site's page"),
-        (me, "0/3", 422, "An answer is 1, 2 or ="),
-        (me, "9/1", 422, "An answer is 1, 2 or ="),
-    ]
-    for headers, vote, status, says in cases:
-        answer = local.post(f"/study/{made.key}/vote/{vote}", headers=headers)
-        assert (answer.status_code, says in answer.json()["detail"]) == (status, True), (says, answer.text)
-    assert local.post(f"/study/{made.key}/vote/x/1", headers=me).status_code == 422
-    missing = local.get("/study/nothing", headers=HTML)
-    assert missing.status_code == 404 and "There is no such study" in missing.text
-    assert local.post("/study/nothing/next", headers=me).status_code == 422
-    assert lab_of(local).studies.mine("local")[0].voters == 0
-
-
 def test_with_accounts_a_person_is_an_account(shared: TestClient) -> None:
     made = study(shared, "user ada")
     shared.cookies.clear()

@@ -88,13 +88,3 @@ def test_what_cannot_be_a_page_is_refused_with_a_sentence(
     publishing.publish(ME, run)
     with pytest.raises(InputError, match="end one of them first"):
         publishing.publish(ME, run)
-
-
-def test_a_lab_without_public_pages_makes_none_and_shows_none(publishing: Publishing) -> None:
-    run = kept(publishing.history)
-    page = publishing.publish(ME, run)
-    publishing.days = 0
-    with pytest.raises(InputError, match="makes no public pages"):
-        publishing.publish(ME, run)
-    with pytest.raises(InputError, match="or it has ended"):
-        publishing.shown(page.key)

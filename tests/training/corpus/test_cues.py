@@ -41,12 +41,6 @@ def test_a_cue_names_acts_with_part_side_and_offer() -> None:
     assert steps("") == ()
 
 
-@pytest.mark.parametrize("cue", ["no-such-act", "wave!", "wave++wave"])
-def test_a_cue_that_is_no_act_is_named(cue: str) -> None:
-    with pytest.raises(KeyError, match=r"no-such-act|no act"):
-        steps(cue)
-
-
 @given(beats)
 def test_a_label_survives_the_index_and_covers_its_beats(rows: list[Beat]) -> None:
     found = label(placed(rows), 30 * len(rows))

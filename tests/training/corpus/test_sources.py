@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import tarfile
 
 import numpy as np
 import pytest
@@ -76,19 +75,6 @@ def test_second_load_reads_the_cache_a_damaged_one_is_read_again_and_changes_are
     assert len(load_sources(data, cache_dir=tmp_path / "cache")) == len(first)
     next(data.rglob("*bow*000.bvh")).unlink()
     assert len(load_sources(data, cache_dir=tmp_path / "cache")) == len(first) - 1
-
-
-def test_archives_are_read_in_place(data, tmp_path):
-    folder = load_sources(data, cache_dir=tmp_path / "cache")
-    packed = tmp_path / "packed" / "bandai-namco"
-    packed.mkdir(parents=True)
-    (tmp_path / "packed" / "reactidle").mkdir()
-    with tarfile.open(packed / "motions.tar.xz", "w:xz") as archive:
-        archive.add(data / "bandai-namco", "bandai-namco")
-    with tarfile.open(tmp_path / "packed" / "reactidle" / "idle.tar.xz", "w:xz") as archive:
-        archive.add(data / "reactidle", "reactidle")
-    clips = load_sources(tmp_path / "packed", cache_dir=tmp_path / "cache")
-    assert [(c.source, c.split) for c in clips] == [(c.source, c.split) for c in folder]
 
 
 def test_missing_empty_and_damaged_data_is_said(data, tmp_path):

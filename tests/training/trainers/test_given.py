@@ -25,10 +25,6 @@ def draw(kind: str, batch: int = 40, frames: int = FRAMES - 9) -> Known:
     return known
 
 
-def test_nothing_is_given_where_no_kind_is_drawn() -> None:
-    assert known_parts(control(4), [20] * 4, [0] * 4, LAYOUT, NONE, torch.Generator()) is None
-
-
 def test_a_person_is_given_whole() -> None:
     mask = draw("person").mask[:, :, : FRAMES - 9]
     assert (mask.flatten(2).all(-1).sum(1) == 1).all() and (mask.flatten(2).any(-1).sum(1) == 1).all()
@@ -76,16 +72,6 @@ def test_paths_are_places_on_the_floor_and_half_of_them_headings() -> None:
     assert (counts == FRAMES - 9).any() and ((counts > 0) & (counts <= 6)).any()
 
 
-def test_joints_are_given_with_the_pelvis() -> None:
-    mask = draw("joints").mask
-    people = mask.flatten(2).any(-1)
-    assert (people.sum(1) == 1).all()
-    given = mask[people]
-    numbers = given.any(1).sum(-1)
-    assert numbers.min() >= 6 and numbers.max() <= 15
-    assert (given.any(1)[:, :3]).all()
-
-
 def test_a_stage_gives_ways_stands_legs_trunks_and_hands_that_reach() -> None:
     known = draw("staged", batch=200)
     mask, turned = known.mask.flatten(0, 1), known.heading_mask.flatten(0, 1)
@@ -107,22 +93,8 @@ def test_a_stage_gives_ways_stands_legs_trunks_and_hands_that_reach() -> None:
     assert sum(bool(len(gaps)) and int(gaps.median()) > 2 for gaps in apart) > 200, "not at every frame"
 
 
-def test_a_second_kind_joins_the_first() -> None:
-    shares = Shares(**{**vars(NONE), "person": 1.0, "more": 1.0})
-    known = known_parts(control(40), [FRAMES] * 40, [0] * 40, LAYOUT, shares, torch.Generator().manual_seed(1))
-    assert known is not None
-    assert (known.mask.flatten(2).any(-1).sum(1) == 2).sum() > 20
-    assert known.heading_mask.any()
-
-
 def test_the_past_of_a_continued_scene_is_given_in_any_case() -> None:
     known = known_parts(control(2), [FRAMES] * 2, [0, 13], LAYOUT, NONE, torch.Generator())
     assert known is not None
     assert not known.mask[0].any() and not known.mask[1, :, 13:].any()
     assert known.mask[1, :, :13].all()
-
-
-def test_values_are_those_of_the_motion() -> None:
-    known, truth = draw("past", batch=3), control(3)
-    assert torch.allclose(known.rows, LAYOUT.basis(TOKENS) @ truth, atol=1e-5)
-    assert torch.allclose(known.heading.norm(dim=-1), torch.ones(3, 2, FRAMES), atol=1e-5)

@@ -100,16 +100,6 @@ def test_a_later_beat_is_learned_with_what_came_before_it_given(scenes: Path, tm
     assert 12 < cut < 36
 
 
-def test_a_beat_that_was_cut_off_is_left_out(scenes: Path, tmp_path: Path) -> None:
-    data = begin(scenes, tmp_path, replace(SETTINGS, continued=1.0)).data
-    row = data.rows[0] | {"beats": [{}, {"start": 300, "end": 320, "captions": ["They bow."]}]}
-    assert data.continued(row, [0.0] * 4) is None
-    row["beats"][1] |= {"start": 8, "end": 300}
-    assert data.continued(row, [0.0] * 4)[1:] == (8, "They bow.")
-    row["beats"][1]["captions"] = []
-    assert data.continued(row, [0.0] * 4) is None
-
-
 def test_rare_families_and_rare_acts_are_drawn_up_to_five_times() -> None:
     def row(family: str, *acts: str) -> dict[str, Any]:
         return {"family": family, "beats": [{"acts": [act, "stand"]} for act in acts]}
