@@ -31,7 +31,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from models.mapped import let_go, mapped
+from models.weights_io import let_go, mapped
 from motion.cores import usable_cores
 
 log = logging.getLogger(__name__)

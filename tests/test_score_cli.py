@@ -5,7 +5,7 @@ from pathlib import Path
 from motion.metrics.sentences import load_sentences
 from webdemo.cli.judging import Scoring, _folder
 from webdemo.inference import GenerateRequest
-from webdemo.inference.story.prompts import as_scene
+from webdemo.inference.story.sentences import as_scene
 
 SENTENCE = next(s for s in load_sentences() if s.id == "shake-part")
 

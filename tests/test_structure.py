@@ -170,7 +170,6 @@ def test_what_the_page_and_a_request_do_not_use_is_not_loaded(start: str) -> Non
 
 TESTED_FROM_OUTSIDE = {
     "e2e",  # the page in a browser
-    "second_programs",  # files as other programs read them
     "server/attacks",  # a server as an attacker sees it
 }
 """Folders of tests that belong to no one package."""

@@ -44,7 +44,7 @@ class Scenes:
     Attributes:
         control: (total knots, 2, 70) float16, the scenes one after the other.
         rows: for each scene {"start", "tokens", "family", "captions", "alone", "split", "events", "sources",
-            "beats", "label", "hand"}, see :class:`training.corpus.scene.Scene` and
+            "beats", "label", "hand"}, see :class:`training.corpus.cues.Scene` and
             :func:`training.core.handedness.leading_hand`. The label is a :class:`training.corpus.cues.Label` whose
             frames are those of the prepared scene.
         layout: frames a knot and knots a token.

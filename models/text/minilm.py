@@ -21,7 +21,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.errors import count_layers
-from models.mapped import mapped_tensors
+from models.weights_io import mapped_tensors
 from motion.errors import InputError
 
 TOKEN_WIDTH = 384

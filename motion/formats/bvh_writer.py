@@ -26,8 +26,7 @@ from motion.skeleton import SMPL22
 from .bvh import read_bvh, read_rotations
 from .bvh_numbers import Joint
 from .files import ascii_bytes, check_smpl, read_bytes, write_files
-from .rig_pose import posed, root_path
-from .skinned import rigged
+from .skinned import posed, rigged, root_path
 
 Array = NDArray[np.floating]
 

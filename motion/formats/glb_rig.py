@@ -32,7 +32,7 @@ from .glb_nodes import Rig, bind_pose, parts_of, people, placed, quaternions, sp
 from .glb_reader import read_character
 from .glb_writer import Buffer
 from .recording import Animation
-from .rig_pose import posed, reached, root_path
+from .skinned import posed, reached, root_path
 
 Array = NDArray[np.floating]
 

@@ -5,16 +5,20 @@ Every measure takes a :class:`~motion.clip.Duet` of any of the project's skeleto
 
 from .bodies import Capsules, capsules
 from .interaction import (
+    MEASURES,
     Contact,
+    Measure,
+    compare,
     contact_events,
     facing_angle,
     hand_distance,
     hand_to_body,
     pelvis_distance,
+    readouts,
     response_delay,
+    summary,
 )
 from .quality import FootSkate, Penetration, bone_drift, foot_skate, jerk, penetration
-from .readouts import MEASURES, Measure, compare, readouts, summary
 
 __all__ = [
     "MEASURES",

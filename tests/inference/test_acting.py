@@ -11,7 +11,7 @@ from acts import config
 from acts.config import look_again
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.requests.acting import acted
-from webdemo.inference.story.prompts import as_scene
+from webdemo.inference.story.sentences import as_scene
 
 OLLIE = '[ollie]\nframes = ["{a} ollie"]\ncaption = ["{a} [jump]"]\nreads = ["She ollies."]\n'
 

@@ -14,16 +14,11 @@ from models.agent.recogniser import Recogniser, RecogniserConfig
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import save_predictor
 from models.weights_io import save_network
-from motion.formats import read
 from motion.placement import MEDIAN_START_DISTANCE
-from motion.retarget import to_smpl
 from motion.transforms import facing
 from webdemo.inference import ReactRequest, Result
 from webdemo.inference.engine import Engine
-from webdemo.inference.method import WEIGHTS
-from webdemo.inference.pipelines.agent import AgentPipeline, Eye, Look
-from webdemo.inference.pipelines.predictor import PredictorPipeline
-from webdemo.ui.text.examples import CLIPS
+from webdemo.inference.pipelines.agent import AgentPipeline, Look
 
 from .people import waver
 
@@ -62,17 +57,6 @@ def react(engine: Engine, **changed: object) -> Result:
 
 def look(frame: int, *chances: float) -> Look:
     return Look(frame, np.array(chances))
-
-
-def test_a_look_depends_on_the_second_before_it_alone(agent: AgentPipeline) -> None:
-    person = waver(3.0).positions
-    looks = agent.eye.looks(person)
-    assert [one.frame for one in looks] == [45, 60, 75, 90]
-    assert all(abs(one.chances.sum() - 1) < 1e-6 for one in looks)
-    changed = person.copy()
-    changed[60:] += 1.0
-    assert np.allclose(agent.eye.looks(changed)[1].chances, looks[1].chances, atol=1e-6)
-    assert [one.frame for one in agent.eye.looks(person[:31])] == [31]
 
 
 @pytest.mark.parametrize(
@@ -165,11 +149,3 @@ def test_the_answer_goes_on_from_the_waiting_without_a_jump(
         assert np.linalg.norm(duet.b.positions[60] - duet.b.positions[59], axis=-1).max() < 0.15
     one, other = (duet.b.positions[-1] for duet in answered.duets)
     assert not np.allclose(one, other)
-
-
-@pytest.mark.parametrize(("name", "gesture"), [("shake-hands", "shake hands"), ("wave", "wave"), ("push", "push")])
-def test_the_shipped_agent_names_the_example_actors(name: str, gesture: str) -> None:
-    person = to_smpl(read(CLIPS / f"{name}.npz").people[0])
-    eye = Eye(WEIGHTS / "agent", PredictorPipeline(WEIGHTS / "motion-mlp"))
-    decision = eye.decide(eye.looks(person.positions))
-    assert decision.place is not None and eye.recogniser.config.labels[decision.place] == gesture

@@ -8,7 +8,7 @@ import pytest
 from motion import InputError
 from webdemo.inference import Engine, GenerateRequest
 from webdemo.inference.requests.paths import FloorPath, FloorPoint
-from webdemo.inference.story.prompts import as_scene
+from webdemo.inference.story.sentences import as_scene
 
 WAY = FloorPath("a", (FloorPoint(0.0, 0.0, 0.0), FloorPoint(1.0, -0.5)))
 

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
 import numpy as np
 import pytest
 import torch
@@ -12,22 +9,14 @@ import torch
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import save_predictor
 from motion import SMPL22, Clip, Duet, InputError, stacked_positions
-from motion.formats import read, write_clip
+from motion.formats import read
 from motion.kinematics import forward_kinematics
 from motion.skeleton import SBU15
-from motion.transforms import heading, heading_matrix
-from webdemo import cli
+from motion.transforms import heading_matrix
 from webdemo.inference import PredictRequest, PredictResult
 from webdemo.inference.engine import Engine
 from webdemo.inference.method import WEIGHTS
-from webdemo.inference.pipelines.predictor import (
-    PredictorPipeline,
-    faded,
-    to_last_pose,
-    to_world,
-    with_bones_of,
-    with_planted_feet,
-)
+from webdemo.inference.pipelines.predictor import PredictorPipeline, faded, with_bones_of, with_planted_feet
 from webdemo.inference.requests.predict import mean_steps
 from webdemo.ui.text.examples import CLIPS
 
@@ -108,19 +97,6 @@ def test_where_a_motion_lies_changes_nothing(predicting: Engine) -> None:
     assert np.allclose(here @ matrix.T + shift, there, atol=1e-3)
 
 
-def test_who_stands_still_stays(predicting: Engine) -> None:
-    still = walker().with_positions(np.repeat(walker().positions[:1], 60, axis=0))
-    motion = predict(predicting, motion=still, seconds=4.0).duets[0]
-    assert np.array_equal(motion.positions[60:], np.repeat(still.positions[:1], 120, axis=0))
-
-
-def test_zero_velocity_holds_the_last_pose(predicting: Engine) -> None:
-    clip = walker()
-    result = predict(predicting, motion=clip, marker=1.0, seconds=1.0, model="still")
-    assert np.array_equal(result.duets[0].positions[30:], np.repeat(clip.positions[29:30], 30, axis=0))
-    assert result.speed == (0.0,) * 30 and result.error[-1] > result.error[0] > 0
-
-
 @pytest.mark.parametrize(
     ("asked", "sentence"),
     [
@@ -148,14 +124,6 @@ def test_teleporting_joints_are_refused_where_they_are_looked_at() -> None:
     assert PredictRequest(motion=broken, marker=1.5).past_frames == 45
     with pytest.raises(InputError, match="NaN"):
         walker().with_positions(np.full_like(positions, np.nan))
-
-
-def test_frames_of_reference_are_undone() -> None:
-    positions = np.stack([walker().positions, walker(turn=2.5).positions])
-    local, turn, shift = to_last_pose(positions)
-    assert np.allclose(local[:, -1, 0, [0, 2]], 0, atol=1e-6)
-    assert np.allclose(heading(local[:, -1]), 0, atol=1e-6)
-    assert np.allclose(to_world(local, turn, shift), positions, atol=1e-5)
 
 
 def test_two_predictions_are_joined_without_haste() -> None:
@@ -212,20 +180,3 @@ def test_feet_that_stand_stay_where_the_past_left_them() -> None:
     assert np.array_equal(with_planted_feet(past + up, future + up, 30.0), future + up)
     held = np.repeat(past[:, -1:], 40, axis=1)
     assert np.array_equal(with_planted_feet(past, held, 30.0), held)
-
-
-def test_the_shell_writes_one_person(
-    predicting: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr("webdemo.inference.engine.Engine", lambda: predicting)
-    (past,) = write_clip(walker(), tmp_path / "past.npz")
-    out = tmp_path / "future.bvh"
-    ask = ["predict", "--past", str(past)]
-    assert cli.main([*ask, "--marker", "2", "--seconds", "1", "--out", str(out)]) == 0
-    answer = json.loads(capsys.readouterr().out.splitlines()[-1])
-    assert answer["files"] == [str(out)] and answer["past_frames"] == 60 and len(answer["error"]) == 30
-    motion = read(out)
-    assert isinstance(motion, Clip) and motion.num_frames == 90
-    glb = out.with_suffix(".glb")
-    assert cli.main([*ask, "--out", str(glb)]) == 2
-    assert "one person is written as" in capsys.readouterr().err and not glb.exists()

@@ -7,8 +7,8 @@ import pytest
 import torch
 
 from motion import SKELETONS, Clip, Duet, InputError
-from motion.placement import MEDIAN_START_DISTANCE, Placement, leading_wrist
-from motion.transforms import heading, heading_matrix, mirrored
+from motion.placement import leading_wrist
+from motion.transforms import mirrored
 from webdemo.inference import ReactRequest, Result
 from webdemo.inference.engine import Engine
 from webdemo.inference.requests.actor import choose_actor
@@ -64,30 +64,6 @@ def test_the_reaction_differs_by_seed_by_actor_and_by_words(engine: Engine) -> N
         assert moved > least, change
 
 
-@pytest.mark.parametrize(("role", "angle", "shift"), [("a", 2.1, (-4.0, 0.0, 1.0)), ("b", -0.7, (0.0, 5.0, 0.0))])
-def test_a_moved_actor_moves_the_reaction(
-    engine: Engine, role: str, angle: float, shift: tuple[float, float, float]
-) -> None:
-    actor = waver()
-    # Feet exactly on the floor, so that a shift upwards means a higher floor and nothing else.
-    actor = actor.with_positions(actor.positions - np.array([0, actor.positions[..., 1].min(), 0]))
-    turn = heading_matrix(angle)
-    moved = actor.with_positions(actor.positions.astype(np.float64) @ turn.T + shift)
-    here = react(engine, actor=actor, role=role).duets[0].positions
-    there = react(engine, actor=moved, role=role).duets[0].positions
-    np.testing.assert_allclose(here.astype(np.float64) @ turn.T + shift, there, atol=1e-3)
-
-
-@pytest.mark.parametrize("role", ["a", "b"])
-def test_placement_puts_a_person_where_the_network_expects_one(role: str) -> None:
-    placement = Placement.of(waver(), role)
-    seen = placement.to_network(waver().positions)
-    away, towards = (0.0, 0.0) if role == "a" else (MEDIAN_START_DISTANCE, np.pi)
-    np.testing.assert_allclose(seen[0, 0, [0, 2]], [0, away], atol=1e-6)
-    np.testing.assert_allclose(np.cos(heading(seen)[0] - towards), 1, atol=1e-6)
-    np.testing.assert_allclose(placement.to_world(seen), waver().positions, atol=1e-6)
-
-
 def test_the_network_sees_the_given_person_clean_at_every_step(engine: Engine) -> None:
     """Sampling by hand: the given half is set before each network call, and its prediction overwritten."""
     from models.diffusion import make_scheduler, sample_noise
@@ -117,22 +93,6 @@ def test_the_network_sees_the_given_person_clean_at_every_step(engine: Engine) -
     np.testing.assert_allclose(scene.placement.to_world(plain), ours, atol=1e-5)
 
 
-def test_a_network_that_sees_what_is_known_sees_the_given_person(reading_engine: Engine) -> None:
-    seen = []
-    denoiser = reading_engine.pipeline("intergen").model.denoiser
-    handle = denoiser.register_forward_pre_hook(
-        lambda module, args, named: seen.append(named["known"].unflatten(-1, (2, -1)).movedim(2, 0)), with_kwargs=True
-    )
-    try:
-        react(reading_engine, damping=0.0)
-    finally:
-        handle.remove()
-    assert len(seen) == REQUEST.steps
-    for known in seen:
-        assert known[0].abs().sum() > 0 and known[1].abs().sum() == 0  # the actor, not the one who is made
-    np.testing.assert_array_equal(react(reading_engine).duets[0].a.positions, waver().positions)
-
-
 def test_damping_moves_no_given_number(engine: Engine) -> None:
     from webdemo.inference.finish.damping import Damping
 
@@ -143,17 +103,6 @@ def test_damping_moves_no_given_number(engine: Engine) -> None:
     corrected = Damping(model, 1.0, frames=60, timesteps=[0], frozen=frozen)(x0, 0)
     assert torch.equal(corrected[:, frozen], x0[:, frozen])
     assert (corrected[:, ~frozen] != x0[:, ~frozen]).float().mean() > 0.5
-
-
-@pytest.mark.parametrize(("seconds", "frames"), [(1.37, 41), (301 / 30, 301)])
-def test_lengths_from_one_to_ten_seconds(engine: Engine, seconds: float, frames: int) -> None:
-    assert react(engine, actor=waver(seconds), steps=1).duets[0].num_frames == frames
-
-
-def test_other_frame_rates_are_resampled(engine: Engine) -> None:
-    duet = react(engine, actor=waver(2.0, fps=120), steps=1).duets[0]
-    assert (duet.fps, duet.num_frames) == (30, 60)
-    np.testing.assert_allclose(duet.a.positions[10], waver(2.0, fps=120).positions[40], atol=1e-4)
 
 
 def test_the_manifest_names_the_actor_without_the_motion(engine: Engine) -> None:

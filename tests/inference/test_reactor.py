@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 import torch
 
-from models.errors import WeightsError
 from models.motion_tokens import FEATURES, encode
 from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, load_folder
 from models.weights_io import save_network
 from motion import SMPL22, InputError
-from motion.transforms import heading_matrix
-from webdemo.inference import GenerateRequest, ReactRequest, Result
+from webdemo.inference import ReactRequest, Result
 from webdemo.inference.engine import Engine
 from webdemo.inference.pipelines import regennet as reactor
 from webdemo.view.payload import player_payload
@@ -83,19 +81,6 @@ def test_a_reaction_begins_in_the_given_first_pose(engine: Engine, mode: str) ->
     assert steps < np.linalg.norm(np.diff(free, axis=0), axis=-1).max() + 0.5  # no jump: it settles
 
 
-def test_the_first_pose_reaches_the_network(network: CompactReGenNet) -> None:
-    """Beyond the half second of settling, too, the reaction is another one."""
-    poses = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([[[0.0, 1.0, 1.5]], [[0.0, 1.0, 3.0]]])
-    rows = network.begin_row(poses)
-    assert rows.shape == (2, 67) and (rows[:, -1] == 1).all()
-    x, seen = torch.zeros(2, 20, FEATURES), torch.zeros(2, 20, 132)
-    made = network(x, torch.zeros(2).long(), seen, torch.zeros(2, 32), causal=True, begin=rows)
-    assert (made[0] - made[1]).abs().max() > 1e-3
-    open_ = network(x, torch.zeros(2).long(), seen, torch.zeros(2, 32), causal=True)
-    none = network(x, torch.zeros(2).long(), seen, torch.zeros(2, 32), causal=True, begin=torch.zeros(2, 67))
-    torch.testing.assert_close(open_, none)
-
-
 @pytest.mark.parametrize(
     ("pose", "model", "why"),
     [
@@ -139,23 +124,6 @@ def test_the_stream_is_the_sampling_of_the_whole_at_once(network: CompactReGenNe
     torch.testing.assert_close(streamed, whole, atol=1e-4, rtol=0)
 
 
-def test_offline_denoises_at_the_timesteps_of_the_stream(
-    engine: Engine, network: CompactReGenNet, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    seen: list[list[int]] = []
-    made = reactor.Damping
-    monkeypatch.setattr(reactor, "Damping", lambda *a, **k: seen.append(k["timesteps"]) or made(*a, **k))
-    react(engine, mode="offline", steps=5)
-    stream = network.stream(torch.zeros(1, 32), steps=5, max_frames=30)
-    assert seen == [stream.scheduler.timesteps.tolist()] and seen[0][0] == 999
-
-
-@pytest.mark.parametrize("mode", ["online", "offline"])
-@pytest.mark.parametrize("frames", [30, 33])
-def test_any_number_of_frames_is_answered(engine: Engine, mode: str, frames: int) -> None:
-    assert react(engine, mode=mode, actor=waver(frames / 30), steps=1).duets[0].num_frames == frames
-
-
 def test_frames_come_one_by_one_as_the_result_has_them(engine: Engine) -> None:
     live = list(engine.live(REQUEST))
     assert [frame.index for frame in live] == list(range(75))
@@ -175,17 +143,6 @@ def test_the_given_person_stays_and_the_reaction_differs_by_seed_and_words(engin
     assert first.tobytes() == react(engine, mode=mode).duets[0].b.positions.tobytes()
     assert np.abs(first - react(engine, mode=mode, seed=5).duets[0].b.positions).max() > 1e-3
     assert np.abs(first - react(engine, mode=mode, prompt="They bow.").duets[0].b.positions).max() > 1e-6
-
-
-@pytest.mark.parametrize("mode", ["online", "offline"])
-def test_a_moved_actor_moves_the_reaction(engine: Engine, mode: str) -> None:
-    actor = waver(2.5)
-    actor = actor.with_positions(actor.positions - np.array([0, actor.positions[0, :, 1].min(), 0]))
-    turn, shift = heading_matrix(2.1), np.array([-4.0, 0.0, 1.0])
-    moved = actor.with_positions(actor.positions.astype(np.float64) @ turn.T + shift)
-    here = react(engine, mode=mode, actor=actor).duets[0].b.positions
-    there = react(engine, mode=mode, actor=moved).duets[0].b.positions
-    np.testing.assert_allclose(here.astype(np.float64) @ turn.T + shift, there, atol=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -244,20 +201,3 @@ def test_words_that_ask_for_a_touch_reach_the_damping(
         for prompt in ("", "They shake hands."):
             react(chosen, mode="offline", prompt=prompt, samples=2)
     assert heard == [[], [(), ()], [], [hands, hands]]
-
-
-def test_text_alone_is_not_for_regennet(engine: Engine) -> None:
-    with pytest.raises(InputError, match="ReGenNet does not generate"):
-        GenerateRequest(prompt="They bow.", model="regennet")
-    with pytest.raises(InputError, match="online"):
-        engine.live(replace(REQUEST, mode="offline"))
-
-
-def test_damaged_weights_are_reported(folder: Path, tmp_path: Path) -> None:
-    meta = json.loads((folder / "regennet" / "config.json").read_text())
-    broken = tmp_path / "regennet"
-    broken.mkdir()
-    (broken / "model.safetensors").write_bytes((folder / "regennet" / "model.safetensors").read_bytes())
-    (broken / "config.json").write_text(json.dumps(meta | {"model": meta["model"] | {"latent_dim": 64}}))
-    with pytest.raises(WeightsError, match="do not fit"):
-        load_folder(broken)

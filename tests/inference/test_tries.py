@@ -14,7 +14,7 @@ from motion import Duet, InputError
 from tests.motion.metrics.test_sentence_shapes import duet, put, shift, spin
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Progress, Result, SceneRequest
 from webdemo.inference.engine.tries import judged, note, run_tries
-from webdemo.inference.requests import MAX_SEED, replayed
+from webdemo.inference.requests import replayed
 from webdemo.inference.run import StageTimer
 from webdemo.inference.story import Beat
 
@@ -73,33 +73,12 @@ def test_where_none_does_all_the_best_is_kept_of_equals_the_first() -> None:
     assert found.notes[0].endswith(" Done: A raises the left arm.")
 
 
-def test_progress_says_which_try_it_is() -> None:
-    events = [e for e in tried(REQUEST, Runs(ONE, ALL)) if isinstance(e, Progress)]
-    assert [(e.attempt, e.attempts) for e in events] == [(1, 4), (2, 4)]
-    alone = [e for e in tried(replace(REQUEST, tries=1), Runs(ONE)) if isinstance(e, Progress)]
-    assert [(e.attempt, e.attempts) for e in alone] == [(1, 1)]
-
-
 def test_cancelling_ends_the_tries_between_two() -> None:
     cancel, runs = CancelToken(), Runs(STILL, STILL, STILL, STILL)
     with pytest.raises(Cancelled):
         for _ in run_tries(REQUEST, runs, cancel, StageTimer.start()):
             cancel.cancel()  # at the first try's progress; the try itself does not look
     assert len(runs.asked) == 1
-
-
-def test_seeds_go_on_from_zero_after_the_last() -> None:
-    runs = Runs(STILL, ALL)
-    assert result(replace(REQUEST, seed=MAX_SEED), runs).manifest["tries"]["seed"] == 0
-    assert [asked.seed for asked in runs.asked] == [MAX_SEED, 0]
-
-
-def test_what_cannot_be_judged_is_tried_once() -> None:
-    runs = Runs(STILL, STILL, STILL, STILL)
-    found = result(replace(REQUEST, prompt="A sneezes."), runs)
-    assert len(runs.asked) == 1
-    assert [row["done"] for row in found.manifest["checked"]] == [None]
-    assert found.notes == ("Not checked: A sneezes.",)
 
 
 def test_a_replay_is_one_try_of_the_seed_that_won() -> None:
@@ -113,13 +92,6 @@ def test_a_replay_is_one_try_of_the_seed_that_won() -> None:
 def test_tries_are_one_to_four(tries: Any) -> None:
     with pytest.raises(InputError, match="Tries"):
         GenerateRequest(prompt=SENTENCE, tries=tries)
-
-
-def test_tries_count_towards_the_motion_of_a_scene() -> None:
-    beats = tuple(Beat("They wave.", seconds=10.0) for _ in range(12))
-    assert SceneRequest(beats=beats, tries=3).tries == 3
-    with pytest.raises(InputError, match="4 tries of 1 samples of 120 s are 480 s"):
-        SceneRequest(beats=beats, tries=4)
 
 
 # ---- verdicts --------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ import pytest
 import torch
 from safetensors.torch import save_file
 
-from models.mapped import let_go, mapped_tensors
+from models.weights_io import let_go, mapped_tensors
 
 
 def resident(path: Path) -> int:

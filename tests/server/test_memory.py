@@ -7,7 +7,6 @@ import gc
 import json
 import subprocess
 import sys
-import time
 import tracemalloc
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,9 +15,8 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from webdemo.server import process as memory
-from webdemo.server.http import page_sessions as sessions
-from webdemo.server.http.page_sessions import LeanStates
+from webdemo.server.http import page_html as sessions
+from webdemo.server.http.page_html import LeanStates
 
 from .clients import FIELDS, client_of, settings_for
 from .lab import ROOT
@@ -91,18 +89,3 @@ print(before - resident())
 def test_gaps_go_back_to_the_system() -> None:
     said = subprocess.run([sys.executable, "-c", GAPS], cwd=ROOT, capture_output=True, text=True, check=True)
     assert float(said.stdout) > 100  # megabytes
-
-
-def test_garbage_is_looked_for_again_once_the_server_has_started(tmp_path: Path) -> None:
-    try:
-        memory.put_off_collection()
-        assert not gc.isenabled()
-        with client_of(settings_for(tmp_path)):
-            until = time.monotonic() + 60
-            while not gc.isenabled():
-                assert time.monotonic() < until
-                time.sleep(0.05)
-        assert gc.get_freeze_count() > 100_000, "modules are left out"
-    finally:
-        gc.enable()
-        gc.unfreeze()

@@ -20,6 +20,7 @@ from .clients import FIELDS
 from .lab import ROOT
 
 PASSWORD = "a password of ada's"
+DONE = "SELECT owner, id FROM runs WHERE state = 'done'"
 
 
 class Way(Target):
@@ -77,12 +78,12 @@ def test_from_an_empty_folder_to_a_backup_that_serves_again(tmp_path: Path) -> N
             assert "complete" in generate(guest) and "complete" in generate(guest)
             page = ended_by(ada, guest)
         assert "<strong>guest</strong>" in page and " of 200.0 MB" in page
-        runs = [run["id"] for run in lab.shell("share", "runs", "--user", "guest")["runs"]]
-        made = lab.shell("share", "link", "--user", "guest", "--base", lab.url, "--", runs[0])
-        assert lab.ask("stranger", "GET", f"/share/{made['key']}").status_code == 200
+        runs = lab.rows(DONE)
+        key = lab.publish(*runs[0])
+        assert lab.ask("stranger", "GET", f"/share/{key}").status_code == 200
         acts = [(line["act"], line["person"]) for line in lab.audited()]
         assert {("sign-in", "ada"), ("admin-end", "ada")} <= set(acts) and "page-opened" in dict(acts)
-        assert PASSWORD not in lab.log() and made["key"] not in lab.log()
+        assert PASSWORD not in lab.log() and key not in lab.log()
         backup = lab.shell("backup", str(tmp_path / "backups"), "--keep", "7")["backup"]
 
     again = Way(tmp_path, "again")
@@ -90,8 +91,8 @@ def test_from_an_empty_folder_to_a_backup_that_serves_again(tmp_path: Path) -> N
     assert "empty folder" in again.shell("restore", str(tmp_path / "backups"), code=2)["error"]
     with again, again.browser("guest", PASSWORD) as guest:
         assert "complete" in generate(guest)
-        assert again.ask("stranger", "GET", f"/share/{made['key']}").status_code == 200
-    assert len(again.shell("share", "runs", "--user", "guest")["runs"]) == len(runs) + 1
+        assert again.ask("stranger", "GET", f"/share/{key}").status_code == 200
+    assert len(again.rows(DONE)) == len(runs) + 1
 
 
 def ended_by(admin: httpx.Client, person: httpx.Client) -> str:

@@ -20,7 +20,7 @@ from webdemo.inference.requests.live import LiveFrame, LiveProgress, LiveRequest
 from webdemo.inference.requests.predict import PredictRequest, PredictResult, with_people
 from webdemo.inference.run import Cancelled, Progress, Result, StageTimer
 from webdemo.inference.story import SceneProgress, SceneRequest
-from webdemo.inference.story.prompts import as_scene
+from webdemo.inference.story.sentences import as_scene
 
 FPS = 30
 _WALK = 0.8  # metres a second

@@ -11,8 +11,8 @@ import pytest
 
 from tests.static.test_node import newest_node
 from webdemo.view.camera import cameras, sampled
-from webdemo.view.filming import _VIGNETTE, darken_edges, move, moving_cameras
-from webdemo.view.stage import Pane, Stage, Style
+from webdemo.view.filming import _VIGNETTE, move, moving_cameras
+from webdemo.view.stage import Style
 from webdemo.view.theme import THEMES
 
 from .test_film import DUET, FAR, PARTING, SMALL
@@ -67,23 +67,3 @@ def test_the_camera_goes_to_and_fro_about_its_view_and_holds_everybody(view: str
 def test_it_goes_about_the_view_that_a_hand_has_chosen() -> None:
     (moving,) = moving_cameras([DUET], size=SMALL, times=np.zeros(1), yaw=2.0, elevation=0.5)
     assert (moving[0].yaw, moving[0].elevation) == (2.0, 0.5)
-
-
-@pytest.mark.parametrize("theme", list(THEMES))
-def test_no_line_parts_floor_and_sky(theme: str) -> None:
-    ((camera,),) = cameras([DUET], size=SMALL, times=np.zeros(1), view="side")
-    steps = []
-    for film in (False, True):
-        stage = Stage(Pane(DUET), Style(theme=theme, names=False, film=film), SMALL)
-        (picture,) = stage.pictures(np.zeros(1), [camera])
-        column = picture[: SMALL[1] // 2, 2, :3].astype(int)
-        steps.append(np.abs(np.diff(column, axis=0)).sum(axis=1).max())
-    assert steps[1] < 0.6 * steps[0]
-
-
-def test_edges_are_darker_and_the_middle_is_as_it_was() -> None:
-    picture = np.full((90, 160, 4), 200, dtype=np.uint8)
-    darken_edges(picture, 0.5)
-    assert picture[45, 80].tolist() == [200] * 4 and picture[45, 40, 0] == 200
-    assert 100 <= picture[0, 0, 0] < 106 and picture[0, 0, 3] == 200
-    assert picture[0, 0, 0] < picture[0, 40, 0] <= 200

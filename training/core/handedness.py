@@ -1,4 +1,4 @@
-"""The acting hand, and the choice of a scene's mirror image for a sentence.
+"""The acting hand, the choice of a scene's mirror image for a sentence, and mirrored captions.
 
 Half of all handshakes in a mirrored corpus are left-handed. A sentence that names no side then stands for two
 motions at once, and a network that has seen few of each gives their mean: hands that almost meet. So a
@@ -8,6 +8,7 @@ one, or a motion without a leading hand, is mirrored half of the time.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -22,7 +23,7 @@ def leading_hand(positions: NDArray[np.floating], events: Mapping[str, Any] | No
 
     Args:
         positions: (2, T, 22, 3) metres.
-        events: the scene's, see :class:`training.corpus.scene.Scene`: a touch by one limb, or a side that
+        events: the scene's, see :class:`training.corpus.cues.Scene`: a touch by one limb, or a side that
             is noted, decides; else the wrist that moves much further than the other.
     """
     events = events or {}
@@ -38,3 +39,18 @@ def mirrored(caption: str, hand: str | None, draw: float) -> bool:
     if hand is None or names_side(caption):
         return draw < 0.5
     return hand == "left"
+
+
+_SWAP = {"left": "right", "clockwise": "counterclockwise", "leftwards": "rightwards"}
+_SWAP.update({value: key for key, value in _SWAP.items()} | {"anticlockwise": "clockwise"})
+
+
+def mirror_caption(text: str) -> str:
+    """The caption of the mirrored motion: left and right, clockwise and counterclockwise change places."""
+
+    def other(match: re.Match[str]) -> str:
+        word = match.group(0)
+        swapped = _SWAP[word.lower()]
+        return swapped.upper() if word.isupper() else swapped.capitalize() if word[0].isupper() else swapped
+
+    return re.sub(rf"\b({'|'.join(_SWAP)})\b", other, text, flags=re.IGNORECASE)

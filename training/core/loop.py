@@ -1,4 +1,4 @@
-"""The training loop that all networks share: time limit, checkpoints, log."""
+"""The training loop that all networks share: time limit, checkpoints, log, precision, and batches drawn ahead."""
 
 from __future__ import annotations
 
@@ -9,12 +9,17 @@ import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
-from typing import Any
+from queue import Queue
+from typing import Any, TypeVar
 
 import torch
 from torch import Tensor, nn
+from torch.utils.data import DataLoader, Dataset
+
+from models.compiled import has_bfloat16
 
 from . import checkpoint
 from .checkpoint import Parts
@@ -135,12 +140,8 @@ class Loop(ABC):
                     saved = time.monotonic()
         self.save()
 
-    def run_logged(self, *, minutes: float, every: int = 50, after: Callable[[], None] | None = None) -> None:
-        """:meth:`run`, with means over every ``every`` steps printed and appended to ``log.jsonl``.
-
-        Args:
-            after: called after every step.
-        """
+    def run_logged(self, *, minutes: float, every: int = 50) -> None:
+        """:meth:`run`, with means over every ``every`` steps printed and appended to ``log.jsonl``."""
         terms: list[dict[str, float]] = []
         began, first = time.monotonic(), self.step
         with open(self.out / "log.jsonl", "a") as file:
@@ -153,5 +154,74 @@ class Loop(ABC):
                     print(line, file=file, flush=True)
                     print(line, flush=True)
                     terms = []
-                if after:
-                    after()
+
+
+def mixed_precision(device: str) -> AbstractContextManager[object]:
+    """Autocast to bfloat16 on a GPU, or on a CPU with AVX-512 BF16 or AMX.
+
+    On another CPU, bfloat16 products are emulated and take three times as long as float32.
+    """
+    kind = torch.device(device).type
+    return nullcontext() if kind == "cpu" and not has_bfloat16() else torch.autocast(kind, torch.bfloat16)
+
+
+# ---- batches that are drawn ahead ----------------------------------------------------------------
+
+
+Drawn = TypeVar("Drawn")
+
+
+class _Steps(Dataset[Drawn]):
+    def __init__(self, draw: Callable[[int], Drawn]) -> None:
+        self.draw = draw
+
+    def __getitem__(self, step: int) -> Drawn:
+        return self.draw(step)
+
+
+def _one_thread(_: int) -> None:
+    torch.set_num_threads(1)
+
+
+def drawn_ahead(draw: Callable[[int], Drawn], steps: range, workers: int, device: str) -> Iterator[Drawn]:
+    """``draw(step)`` of every step on a device, in order.
+
+    Args:
+        draw: must use the CPU alone and give the same for the same step.
+        workers: processes that draw, each four steps ahead. A thread brings the next two steps to the device.
+    """
+    # Tensors are passed as files in memory: a process may not open as many descriptors as these need.
+    torch.multiprocessing.set_sharing_strategy("file_system")
+    loader = DataLoader(
+        _Steps(draw),
+        sampler=steps,
+        batch_size=None,
+        num_workers=workers,
+        prefetch_factor=4,
+        multiprocessing_context="fork",
+        worker_init_fn=_one_thread,
+    )
+    ready: Queue[Drawn | Exception | None] = Queue(maxsize=2)
+
+    def bring() -> None:
+        try:
+            for drawn in loader:
+                ready.put(moved(drawn, device))
+            ready.put(None)
+        except Exception as error:  # of a worker: raised where the step is taken
+            ready.put(error)
+
+    threading.Thread(target=bring, daemon=True).start()
+    while (drawn := ready.get()) is not None:
+        if isinstance(drawn, Exception):
+            raise drawn
+        yield drawn
+
+
+def moved(value: Drawn, device: str) -> Drawn:
+    """The same tensor or dataclass with all tensors in it on a device."""
+    if isinstance(value, Tensor):
+        return value.to(device, non_blocking=True)
+    if is_dataclass(value) and not isinstance(value, type):
+        return replace(value, **{f.name: moved(getattr(value, f.name), device) for f in fields(value)})
+    return value

@@ -14,7 +14,7 @@ from torch import Tensor
 
 from models.text import MiniLM
 from motion.formats.files import replacing
-from training.core.precision import mixed_precision
+from training.core.loop import mixed_precision
 
 
 class CaptionFeatures:

@@ -30,7 +30,7 @@ from motion.transforms import canonicalize, resample
 from training.core.shell import exit_code
 
 from .build import save
-from .scene import Scene
+from .cues import Scene
 
 FPS = 30.0
 """The processed files are taken as 30 frames a second, as their authors' loader does; the raw ones have 59.94."""

@@ -17,10 +17,10 @@ from motion.formats.files import replacing, write_text
 from .beats.script import compose
 from .checks import fault
 from .compose import FPS
+from .cues import Scene
 from .duets import load_duets
 from .library import Library
 from .pairs import load_pairs
-from .scene import Scene
 from .sources import load_sources
 
 logger = logging.getLogger(__name__)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from motion.skeleton import SMPL22
 
 from .compose import FPS
-from .scene import Scene
+from .cues import Scene
 
 Array = NDArray[np.floating]
 FEET = tuple(tuple(SMPL22.index(f"{side}_{joint}") for joint in ("ankle", "foot")) for side in ("left", "right"))

@@ -20,8 +20,7 @@ from motion.skeleton import SMPL22
 from motion.transforms import heading_matrix
 from motion.vectors import wrapped
 
-from .blending import Array, ease, slerp
-from .feet import FPS, plant_feet, planted
+from .feet import FPS, Array, ease, plant_feet, planted, slerp
 
 ARMS = {
     side: tuple(SMPL22.index(f"{side}_{joint}") for joint in ("collar", "shoulder", "elbow", "wrist"))

@@ -1,17 +1,17 @@
-"""Detects planted feet and keeps them where they landed, by two-bone IK of the legs."""
+"""Detects planted feet and keeps them where they landed, by two-bone IK of the legs; blends poses."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+from scipy.spatial.transform import Rotation
 
 from motion.skeleton import LEGS, SMPL22
 from motion.transforms import heading
 from motion.vectors import runs
 
-from .blending import Array, ease
-
+Array = NDArray[np.floating]
 FPS = 30
 
 
@@ -149,3 +149,35 @@ def two_bone(root: Array, middle: Array, end: Array, target: Array, pole: Array)
     cosine = (upper**2 + distance**2 - lower**2) / (2 * distance)
     height = np.sqrt(np.maximum(upper**2 - cosine**2, 0))
     return root + along * cosine + bend * height, root + along * distance
+
+
+# ---- blending ------------------------------------------------------------------------------------
+
+
+def slerp(first: Array, second: Array, weight: Array) -> Array:
+    """Rotations (…, 3, 3) a share ``weight`` (broadcast over the leading axes) of the way to ``second``.
+
+    By Rodrigues' formula; rotations within a hundredth of a radian of a half turn apart have no shortest
+    way, there the axis is found through quaternions.
+    """
+    relative = np.swapaxes(first, -1, -2) @ second
+    trace = relative[..., 0, 0] + relative[..., 1, 1] + relative[..., 2, 2]
+    skew = (relative - np.swapaxes(relative, -1, -2)) / 2
+    angle = np.arctan2(np.sqrt(skew[..., 2, 1] ** 2 + skew[..., 0, 2] ** 2 + skew[..., 1, 0] ** 2), (trace - 1) / 2)
+    sine = np.sin(angle)
+    share = np.broadcast_to(weight, angle.shape) * angle
+    axis = skew / np.where(sine > 1e-7, sine, 1.0)[..., None, None]
+    half_turn = angle > np.pi - 0.01
+    if half_turn.any():
+        vectors = Rotation.from_matrix(relative[half_turn]).as_rotvec()
+        x, y, z = (vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)).T
+        zero = np.zeros_like(x)
+        axis[half_turn] = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(-1, 3, 3)
+    part = np.sin(share)[..., None, None] * axis + (1 - np.cos(share))[..., None, None] * (axis @ axis)
+    return first + first @ part
+
+
+def ease(steps: int) -> Array:
+    """(steps,) from just above 0 to just below 1 with zero slope and curvature at both ends."""
+    t = (np.arange(steps) + 1.0) / (steps + 1.0)
+    return t**3 * (10 + t * (6 * t - 15))

@@ -16,7 +16,7 @@ from motion.skeleton import LEGS, SMPL22
 from motion.vectors import wrapped
 
 from .compose import Motion, join, mirror, motion_from_positions, time_warp
-from .scene import SourceClip
+from .cues import SourceClip
 
 OTHER = {"left": "right", "right": "left", "both": "both", None: None}
 ONE_HANDED = ("bye", "guide", "respond")

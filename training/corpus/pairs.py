@@ -27,10 +27,9 @@ from motion.transforms import canonicalize, facing
 from motion.vectors import unit
 
 from .checks import foot_skate
-from .cues import STILL, Beat
+from .cues import STILL, Beat, Scene
 from .kinect import ANKLE, FPS, fit_pair
 from .kinect_files import KinectPair, read_pairs
-from .scene import Scene
 from .telling import describe as write_words
 
 Array = NDArray[np.floating]

@@ -1,6 +1,6 @@
 """The contents of a corpus, in numbers and pictures: ``python -m training.corpus.report --corpus DIR --out DIR``.
 
-Writes ``corpus.md``, one row an act of the lexicon, and ``corpus/ACT.webp``, a contact sheet of a scene that shows it.
+Writes ``corpus.md``, one row an act of the lexicon, and ``corpus/ACT.png``, a contact sheet of a scene that shows it.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22, Duet
-from motion.formats.files import replacing, write_text
+from motion.formats.files import write_text
 from motion.metrics import foot_skate, jerk, penetration
 from training.core.shell import add_options, exit_code
 from training.prepare import load_corpus
-from webdemo.view.contact_sheet import contact_sheet
+from webdemo.view.sheet import write_sheet
 
 from .cues import STILL, Label
 
@@ -106,7 +106,7 @@ def _acts_table(motions: NDArray[np.floating], index: list[dict[str, Any]], pict
         if name != STILL:
             # A short scene shows an act best.
             _draw(motions, min((scene for *_, scene in found), key=lambda one: one["frames"]), name, pictures)
-            link = f"[sheet](corpus/{name}.webp)"
+            link = f"[sheet](corpus/{name}.png)"
         lines.append(
             f"| {name} | {len({scene['start'] for *_, scene in found})} | {minutes:.1f} | {recorded:.1f} "
             f"| {f'{np.median(gaps):.0f}' if gaps else '–'} | {link} |"
@@ -122,10 +122,8 @@ def _touch(motions: NDArray[np.floating], scene: dict[str, Any], start: int, sto
 
 
 def _draw(motions: NDArray[np.floating], scene: dict[str, Any], name: str, folder: Path) -> None:
-    sheet = contact_sheet(_duet(motions, scene), title=f"{name}: {scene['captions'][0]}", frames=6)
-    sheet = sheet.resize((PICTURE_WIDTH, round(sheet.height * PICTURE_WIDTH / sheet.width)))
-    with replacing(folder / f"{name}.webp") as temporary:
-        sheet.save(temporary, "webp", quality=45)
+    title = f"{name}: {scene['captions'][0]}"
+    write_sheet(_duet(motions, scene), folder / f"{name}.png", frames=6, width=PICTURE_WIDTH, title=title)
 
 
 def _duet(motions: NDArray[np.floating], scene: dict[str, Any]) -> Duet:

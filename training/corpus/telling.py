@@ -14,10 +14,8 @@ import numpy as np
 from acts import Act
 from motion.metrics.sentences import kept_out
 
-from .cues import STILL, Label, entry, label
-from .people import Cast, Names, draw_cast
-from .phrasing import fitting, held_out, spoken
-from .scene import Scene
+from .cues import STILL, Label, Scene, entry, label
+from .phrasing import Cast, Names, draw_cast, fitting, held_out, spoken
 
 Rng = np.random.Generator
 JOINT, ALONE, ONE_BEAT = 8, 3, 2

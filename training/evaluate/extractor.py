@@ -25,7 +25,7 @@ from models.motion_tokens import FEATURES, TokenLayout, encode, foot_contacts, p
 from models.text import TextConditioner, TextConditionerConfig, TokenFeatures
 from motion import InputError
 from motion.formats.files import replacing
-from training.core.precision import mixed_precision
+from training.core.loop import mixed_precision
 from training.core.shell import add_options, exit_code
 from training.prepare import Scenes, load
 from training.trainers.intergen_data import Data

@@ -8,7 +8,7 @@ knows the same recorded pairs.
 
 Methods whose name ends in *class told* get the sentence of the clip's class (:data:`SENTENCES`), the others no words.
 
-With ``--strict`` the clips are those of :mod:`training.corpus.strict_pairs`: all of the lists, in the data sets' own
+With ``--strict`` the clips are those of :mod:`training.corpus.kinect`: all of the lists, in the data sets' own
 classes.
 """
 
@@ -28,8 +28,8 @@ from motion import Clip, Duet, InputError
 from motion.metrics import summary
 from motion.metrics.generation import frechet_distance, interval
 from training.core.shell import add_options, exit_code, write_scores
+from training.corpus.kinect import strict_pairs
 from training.corpus.pairs import load_pairs
-from training.corpus.strict_pairs import strict_pairs
 from training.evaluate.deep_gru import accuracy, deep_features, fit, measured
 from webdemo.inference import Engine, ReactRequest, Result
 from webdemo.inference.method import WEIGHTS

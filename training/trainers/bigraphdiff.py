@@ -23,8 +23,7 @@ from models.intergen.compact import Touch
 from models.intergen.losses import LossWeights
 from models.weights_io import save_network
 from motion import InputError
-from training.core.loop import adamw
-from training.core.precision import mixed_precision
+from training.core.loop import adamw, mixed_precision
 from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.corpus.cues import class_of
 from training.prepare import Scenes, load

@@ -8,7 +8,6 @@ the control points of :mod:`models.motion_tokens`; the regularisers see position
 from __future__ import annotations
 
 import argparse
-import time
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -18,13 +17,10 @@ from torch import Tensor
 from models.intergen.compact import CompactConfig, CompactInterGen, load_folder
 from models.known import Hold, Known
 from training.core import checkpoint
-from training.core.loop import adamw
-from training.core.precision import mixed_precision
-from training.core.samples import write_sheet
+from training.core.loop import adamw, mixed_precision
 from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
-from training.trainers.given import AS_STAGED, known_parts
-from training.trainers.held import Held
+from training.trainers.given import AS_STAGED, Held, known_parts
 from training.trainers.intergen_data import Batch, Data, Settings, seeded
 from training.trainers.scenes import Drawn, DuetTrainer, draw_timesteps
 
@@ -133,9 +129,6 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train the compact InterGen on prepared scenes.")
     add_options(parser, "scenes", "threads", "device", "workers")
     parser.add_argument("--init", type=Path, help="begin with another run's last.safetensors, or a shipped folder")
-    parser.add_argument(
-        "--sheets", type=float, default=20.0, help="minutes between contact sheets of samples; 0: none (20)"
-    )
     parser.add_argument("--compile", action="store_true", help="compile the network (needs a C++ compiler)")
     add_run_options(parser, Settings, leave_out=("weights", "given"))
     options = parser.parse_args(argv)
@@ -153,15 +146,7 @@ def _run(options: argparse.Namespace) -> None:
     )
     if options.compile:
         trainer.model.denoiser.compile(dynamic=True)
-    drawn = time.monotonic()
-
-    def draw() -> None:
-        nonlocal drawn
-        if options.sheets and time.monotonic() - drawn > options.sheets * 60:
-            write_sheet(trainer.ema.eval(), options.out / "samples" / f"{trainer.step:07d}.png")
-            drawn = time.monotonic()
-
-    trainer.run_logged(minutes=options.minutes, after=draw)
+    trainer.run_logged(minutes=options.minutes)
 
 
 if __name__ == "__main__":

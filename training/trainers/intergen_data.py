@@ -19,10 +19,9 @@ from models.intergen.losses import LossWeights
 from models.motion_tokens import canonical_control, mirror_control, pack, unpack
 from motion import SMPL22, InputError
 from training.core import checkpoint
-from training.core.ahead import moved
-from training.core.handedness import mirrored
+from training.core.handedness import mirror_caption, mirrored
+from training.core.loop import moved
 from training.core.text_features import CaptionFeatures, CaptionTokens
-from training.corpus.grammar import mirror_caption
 from training.prepare import Scenes, normalizer, sentence_lists
 from training.trainers.given import Shares
 

@@ -6,7 +6,7 @@ batches are masked causally (online), the others see all of the actor (offline),
 :mod:`models.regennet.compact`. The words' conditioner is that of a shipped InterGen and stays as it is.
 
 Online, a share of the scenes is learned after the network's own past instead of the recorded one, from some step on:
-see :mod:`training.trainers.regennet_past`.
+see :mod:`training.trainers.regennet_data`.
 """
 
 from __future__ import annotations
@@ -29,13 +29,11 @@ from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, load
 from models.weights_io import save_network
 from motion import InputError
 from motion.skeleton import FEET
-from training.core.loop import adamw
-from training.core.precision import mixed_precision
+from training.core.loop import adamw, mixed_precision
 from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
 from training.trainers.intergen_data import Batch, seeded
-from training.trainers.regennet_data import Data, knot_positions, seen_rows
-from training.trainers.regennet_past import Past, make_past, plan
+from training.trainers.regennet_data import Data, Past, knot_positions, make_past, plan, seen_rows
 from training.trainers.scenes import SceneTrainer
 from training.trainers.touch import with_touches
 

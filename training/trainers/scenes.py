@@ -19,9 +19,8 @@ from models.diffusion import NoiseSchedule
 from models.intergen.losses import InterGenLoss, simple_loss
 from models.known import Hold
 from models.motion_tokens import FEATURES
-from training.core.ahead import drawn_ahead, moved
-from training.core.loop import Loop
-from training.trainers.held import Held
+from training.core.loop import Loop, drawn_ahead, moved
+from training.trainers.given import Held
 from training.trainers.intergen_data import Batch, Data, seeded
 
 

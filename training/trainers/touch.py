@@ -17,9 +17,8 @@ from torch import Tensor, nn
 from models.intergen.compact import CompactInterGen, Touch
 from models.regennet.compact import CompactReGenNet
 from models.text import MiniLM
-from training.core.handedness import mirrored
-from training.core.precision import mixed_precision
-from training.corpus.grammar import mirror_caption
+from training.core.handedness import mirror_caption, mirrored
+from training.core.loop import mixed_precision
 from training.prepare import Scenes
 
 Network = TypeVar("Network", CompactInterGen, CompactReGenNet)

@@ -1,7 +1,7 @@
 """The same jobs from a shell: ``python -m webdemo COMMAND``.
 
-The commands are generate, react, predict, scene, read, render, gallery, score, share, info, benchmark, serve, user,
-admin, backup and restore.
+The commands are generate, react, predict, scene, read, render, gallery, score, info, benchmark, serve, user, admin,
+backup and restore.
 The last line on stdout is one JSON object. An error is one line on stderr that says what is
 wrong and what to do, with exit code 2. A cancelled run (Ctrl+C) ends with 130, and one whose reader has gone
 with 141. No file is left half-written.
@@ -20,16 +20,13 @@ from typing import Any
 
 from motion import InputError
 
-from .admin import add_admin, add_upkeep
 from .gallery import add_gallery
 from .generation import add_generate, add_predict, add_react
 from .parser import Parser
-from .reading import add_read
 from .rendering import add_render
-from .scenes import add_scene
+from .scenes import add_read, add_scene
 from .scoring import add_score
-from .service import add_service
-from .sharing import add_share
+from .service import add_admin, add_service, add_upkeep
 
 __all__ = ["main"]
 
@@ -47,7 +44,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         add_render,
         add_gallery,
         add_score,
-        add_share,
         add_service,
         add_admin,
         add_upkeep,

@@ -17,7 +17,7 @@ import numpy as np
 from motion import Duet, InputError
 from motion.formats.files import write_text
 from motion.metrics.sentences import Sentence, load_sentences, read_sentences
-from motion.metrics.sentences.scores import ALL, Motions, score, table
+from motion.metrics.sentences.catalogue import ALL, Motions, score, table
 from webdemo.inference.method import Method
 from webdemo.inference.methods import method
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest

@@ -1,4 +1,4 @@
-"""The command ``scene``: a story in a TOML file → motion files."""
+"""The commands ``scene``, a story in a TOML file → motion files, and ``read``, a sentence → its plan."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from acts import read
+from acts.reading.director import directed
 from motion import Duet, InputError
 from motion.formats.recording import ImportChoices
 from webdemo.inference.requests import SamplingRequest
@@ -86,3 +88,24 @@ def _motion(path: Path, choices: ImportChoices) -> Duet:
     if not isinstance(found, Duet):
         raise InputError(f"{path.name} holds one person: a scene goes on from a motion of two.")
     return to_smpl(found)
+
+
+# ---- reading -------------------------------------------------------------------------------------
+
+
+def add_read(commands: Any) -> None:
+    """Adds ``read`` to the shell's commands."""
+    parser = commands.add_parser("read", help="print what is understood of a sentence, as a plan")
+    parser.add_argument("sentence", help="English text, at most 2,000 characters")
+    parser.add_argument(
+        "--acts", type=Path, nargs="*", default=[], metavar="FOLDER", help="folders of acts beside the lexicon"
+    )
+    parser.set_defaults(job=lambda options: {"plan": _plan(options)})
+
+
+def _plan(options: argparse.Namespace) -> dict[str, Any]:
+    if options.acts:
+        plan = read(options.sentence, tuple(folder.resolve() for folder in options.acts))
+    else:
+        plan = directed(options.sentence)
+    return plan.model_dump(mode="json")

@@ -25,8 +25,7 @@ from webdemo.server.accounts.login import account_routes, login_routes
 from webdemo.server.accounts.visitors import Visitors
 from webdemo.server.http.admin_pages import admin_routes
 from webdemo.server.http.guard import Guard, may_read_figures
-from webdemo.server.http.page_html import PageCache
-from webdemo.server.http.page_sessions import keep_states_lean, kept_in_cache
+from webdemo.server.http.page_html import PageCache, keep_states_lean, kept_in_cache
 from webdemo.server.http.payloads import Payloads
 from webdemo.server.http.public_pages import public_routes
 from webdemo.server.http.study_pages import study_routes

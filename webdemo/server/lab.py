@@ -14,8 +14,7 @@ from webdemo.server.accounts.people import People
 from webdemo.server.accounts.quotas import Quotas
 from webdemo.server.accounts.users import SignIns, Users
 from webdemo.server.http.guard import OpenAnswers
-from webdemo.server.http.health import Health, check_disk
-from webdemo.server.http.metrics import Figures
+from webdemo.server.http.health import Figures, Health, check_disk
 from webdemo.server.live.streams import Streams
 from webdemo.server.queue.queue import FairQueue
 from webdemo.server.queue.shared_engine import SharedEngine

@@ -98,5 +98,5 @@ def give_back(*, resting: bool = False) -> None:
     """
     if trim := getattr(ctypes.CDLL(None), "malloc_trim", None):
         trim(0)
-    if resting and (mapped := sys.modules.get("models.mapped")):  # not before a network is loaded
-        mapped.let_go()
+    if resting and (weights := sys.modules.get("models.weights_io")):  # not before a network is loaded
+        weights.let_go()

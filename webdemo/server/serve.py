@@ -15,7 +15,7 @@ from starlette.concurrency import run_in_threadpool
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from motion import InputError
-from webdemo.server.accounts.proxy import PeerNoted
+from webdemo.server.accounts.visitors import PeerNoted
 from webdemo.server.http.connections import bounded_protocol
 from webdemo.server.store.scratch import Scratch
 

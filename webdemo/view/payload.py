@@ -10,6 +10,7 @@ import base64
 import hashlib
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,9 +21,8 @@ from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
 from motion.hands import to_lists
 from motion.looks import UNSAID
-from motion.metrics import Contact, contact_events
+from motion.metrics import Contact, contact_events, hand_distance, pelvis_distance
 
-from .curves import Curve, distance_curves
 from .things import thing_payload
 
 Array = NDArray[np.floating]
@@ -216,3 +216,31 @@ def player_payload(
         sample_payload(motion, label=str(i + 1), ghost=ghost, past_until=past_until) for i, motion in enumerate(several)
     ]
     return build_payload(samples, skeleton=skeletons[0], title=title)
+
+
+# ---- curves --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One value a frame.
+
+    Attributes:
+        key: what a program calls it.
+        label: what the page calls it.
+        unit: behind the value, such as ``"m"``.
+        values: (T,).
+    """
+
+    key: str
+    label: str
+    unit: str
+    values: Array
+
+
+def distance_curves(duet: Duet) -> list[Curve]:
+    """Distance in metres between the two roots over the floor plan, and between the nearest two hands."""
+    return [
+        Curve("pelvis_distance", "Apart", "m", pelvis_distance(duet)),
+        Curve("hand_distance", "Hands", "m", hand_distance(duet)),
+    ]

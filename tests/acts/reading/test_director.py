@@ -235,7 +235,7 @@ def test_plain_http_to_another_machine_can_be_allowed(fake: Fake, monkeypatch: p
 def test_a_request_follows_the_plan_of_the_director(fake: Fake) -> None:
     from webdemo.inference.requests import GenerateRequest
     from webdemo.inference.requests.acting import acted
-    from webdemo.inference.story.prompts import as_scene
+    from webdemo.inference.story.sentences import as_scene
 
     fake.answers = [chat({"acts": [HUG | {"part": "nostril", "direction": "sunwise"}, WAVE]})]
     asked = acted(GenerateRequest(prompt=GERMAN))

@@ -12,9 +12,8 @@ from acts.staging.stage import score_of
 from motion import InputError
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.story.beats import Beat, acts_of
-from webdemo.inference.story.prompts import as_scene
 from webdemo.inference.story.request import SceneRequest, beat_of
-from webdemo.inference.story.sentences import beats_of
+from webdemo.inference.story.sentences import as_scene, beats_of
 from webdemo.inference.story.toml import read_story, write_story
 
 from .staged_words import beginning

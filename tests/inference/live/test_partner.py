@@ -7,7 +7,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from motion import InputError
 from motion.steering import Goal, Steering
 from motion.transforms import heading, heading_matrix
 from motion.video.following import HIDDEN, Gaze
@@ -15,7 +14,7 @@ from tests.inference.people import waver
 from tests.inference.test_reactor import bones_off, engine, folder
 from webdemo.inference.engine import Engine
 from webdemo.inference.live import partner_pipeline as live_partner
-from webdemo.inference.live.agent import ANSWER, BACK, BESIDE, IGNORED, LEAVES, LEFT, LISTENS, LiveAgent
+from webdemo.inference.live.agent import BACK, BESIDE, IGNORED, LEAVES, LEFT, LISTENS, LiveAgent
 from webdemo.inference.live.partner_pipeline import ReactingPartner
 from webdemo.inference.pipelines.agent import BETWEEN, FIRST, Eye, Look
 
@@ -98,11 +97,6 @@ def test_nobody_is_walked_through(engine: Engine, monkeypatch: pytest.MonkeyPatc
     assert np.abs(np.diff(made, axis=0)).max() < 0.06
 
 
-def test_who_is_not_known_cannot_answer(engine: Engine) -> None:
-    with pytest.raises(InputError, match="no live partner 'intergen': choose regennet or agent"):
-        engine.partner("intergen")
-
-
 class Scripted(Eye):
     """An eye that sees what a test says, one row of probabilities after the other; the last one goes on."""
 
@@ -167,22 +161,6 @@ def test_a_second_gesture_interrupts_the_first() -> None:
     assert frames[2] - frames[1] == 2 * BETWEEN
 
 
-def test_the_answer_ends_when_nothing_more_is_done() -> None:
-    agent, partner, states = watched(WAVE, WAVE, NOTHING, frames=FIRST + BETWEEN + ANSWER + BETWEEN)
-    began, ended = (frame for frame, _ in partner.words[1:])
-    assert partner.words[-1][1] == SENTENCES[0]
-    assert ANSWER <= ended - began < ANSWER + BETWEEN
-    assert states[-1] == "watches" and "no gesture" in agent.belief.text
-
-
-def test_somebody_who_turns_away_is_waited_for() -> None:
-    agent, partner, states = watched(WAVE, frames=FIRST + 10 * BETWEEN, turned=FIRST + 2 * BETWEEN)
-    assert agent.belief.state == "ignored" and "looks away" in agent.belief.text
-    assert partner.words[-1][1] == SENTENCES[0]
-    first = states.index("ignored")
-    assert IGNORED <= first + 1 - (FIRST + 2 * BETWEEN) <= IGNORED + BETWEEN
-
-
 AT_CAMERA = Gaze(np.array([1.0, 0, 0]), 0.95)
 AT_AGENT = Gaze(np.array([0, 0, 1.0]), -0.3)
 ELSEWHERE = Gaze(np.array([-1.0, 0, 0]), 0.1)
@@ -214,14 +192,6 @@ def test_the_agent_forgets_what_was_meant_for_others_and_bears_a_short_look_asid
     assert began >= 120 + LISTENS // 2 + BETWEEN, "two looks after it was addressed"
     assert set(states[began : len(gazes)]) == {"answers"}
     assert states[-1] == "ignored" and partner.words[-1][1] == SENTENCES[0]
-
-
-def test_the_agent_looks_at_the_person_until_it_answers() -> None:
-    _, partner, _ = watched(MAYBE, frames=30)
-    assert partner.goal is not None and not partner.goal.away and partner.goal.look
-    np.testing.assert_array_equal(partner.goal.towards, STANDING[0])
-    agent, partner, _ = watched(WAVE, frames=FIRST + 3 * BETWEEN)
-    assert agent.gesture is not None and partner.goal is None
 
 
 def test_the_agent_leaves_who_ignores_it_and_comes_back() -> None:

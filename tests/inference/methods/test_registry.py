@@ -18,7 +18,6 @@ from webdemo.inference.methods import (
     BUILT_IN,
     automatic,
     failed,
-    installed,
     label_of,
     method,
     methods,
@@ -27,7 +26,7 @@ from webdemo.inference.methods import (
     unregister,
     variants,
 )
-from webdemo.ui.api import GenerateEndpoint, ReactEndpoint
+from webdemo.ui.api import GenerateEndpoint
 from webdemo.ui.components.actors import react_choices
 from webdemo.ui.components.notebook import method_label
 from webdemo.ui.tabs.generate import generate_choices
@@ -139,19 +138,6 @@ def test_what_is_no_method_is_refused() -> None:
         register("intergen")  # type: ignore[arg-type]
 
 
-def test_a_name_is_used_once() -> None:
-    with pytest.raises(InputError, match="named intergen already"):
-        register(BUILT_IN[0])
-
-
-def test_a_method_for_a_task_does_that_task() -> None:
-    assert {m.name for m in methods("predict")} == {"motion-mlp", "mawgan", "intergen-together", "still"}
-    with pytest.raises(InputError, match="choose one of motion-mlp"):
-        method("intergen", "predict")
-    with pytest.raises(InputError, match="choose one of"):
-        method("mawgan", "generate")
-
-
 def test_the_defaults_of_the_requests_are_the_first_methods() -> None:
     assert methods("generate")[0].name == GenerateRequest.model
     assert ReactRequest.model == AUTOMATIC
@@ -176,11 +162,6 @@ def test_automatic_is_the_best_of_the_table_for_what_is_given(monkeypatch: pytes
     assert "online" in automatic("", "a", "online").modes
 
 
-def test_only_what_is_installed_is_offered(tmp_path: Path) -> None:
-    assert [m.name for m in installed("react", tmp_path)] == ["intergen"]
-    assert [m.name for m in installed("react")] == [m.name for m in methods("react")]
-
-
 def test_every_method_is_listed_in_the_documents_and_has_a_card() -> None:
     root = Path(__file__).resolve().parents[3]
     listed = (root / "docs" / "README.md").read_text()
@@ -188,12 +169,3 @@ def test_every_method_is_listed_in_the_documents_and_has_a_card() -> None:
         if found.weights:
             assert f"| `{found.name}` |" in listed
             assert (root / "models" / "weights" / found.weights / "CARD.md").is_file()
-
-
-def test_the_endpoint_names_the_methods(toy: Path) -> None:
-    import gradio as gr
-
-    with gr.Blocks() as page:
-        ReactEndpoint(None).publish()  # type: ignore[arg-type]
-    labels = [str(getattr(block, "label", "")) for block in page.blocks.values()]
-    assert any("interformer or nearest or agent or toy" in label for label in labels)

@@ -17,7 +17,7 @@ from tests.inference.own.released_files import write_intergen
 from webdemo import cli
 from webdemo.inference import Engine, GenerateRequest, ReactRequest, Result
 from webdemo.inference.methods import failed, method, register_settings
-from webdemo.inference.own import cost, entries
+from webdemo.inference.own import entries, released
 from webdemo.inference.pipelines import intergen
 
 TABLE = """
@@ -111,12 +111,6 @@ def test_a_wrong_table_fails_alone(settings: Path, files: Path, change: str, sen
     assert method("my-run").label == "InterGen, the authors'"
 
 
-def test_settings_that_are_no_toml_leave_the_shipped_models(settings: Path) -> None:
-    use(settings, "[models.my-run\n")
-    assert "cannot be read" in failed()[entries.SETTINGS_FILE]
-    assert method("intergen").name == "intergen"
-
-
 def damage(folder: Path, name: str, data: bytes | None) -> None:
     (folder / name).unlink()
     if data is None:
@@ -164,28 +158,9 @@ def test_another_networks_checkpoint_is_named(settings: Path, files: Path, tmp_p
     assert "is not a checkpoint of InterGen: it has no decoder.net.blocks.* tensors" in why("my-run")
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "sentence"),
-    [
-        ("global_std.npy", np.ones(263, np.float32), "is not 262 numbers"),
-        ("global_std.npy", np.zeros(262, np.float32), "are global_mean.npy and global_std.npy swapped"),
-        ("global_mean.npy", np.full(262, np.nan, np.float32), "not finite"),
-        ("global_mean.npy", np.array([{}] * 262, dtype=object), "is not 262 numbers"),
-    ],
-)
-def test_wrong_normalisers_get_one_sentence(
-    settings: Path, files: Path, tmp_path: Path, name: str, value: np.ndarray, sentence: str
-) -> None:
-    use(settings, TABLE, files)
-    (tmp_path / name).unlink()
-    np.save(tmp_path / name, value)
-    with pytest.raises(InputError, match=sentence):
-        result_of(Engine(), GenerateRequest(prompt="Two people wave.", model="my-run"))
-
-
 def test_a_model_that_does_not_fit_is_refused(settings: Path, files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     use(settings, TABLE, files)
-    monkeypatch.setattr(cost, "free_memory", lambda: 1e6)
+    monkeypatch.setattr(released, "free_memory", lambda: 1e6)
     with pytest.raises(InputError, match=r"needs about .* GB of memory and 0\.0 GB are free"):
         result_of(Engine(), GenerateRequest(prompt="Two people wave.", model="my-run"))
     monkeypatch.setattr("webdemo.inference.own.released.total_memory", lambda: 1e6)

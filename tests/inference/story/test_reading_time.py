@@ -11,7 +11,7 @@ import pytest
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Cancelled
 from webdemo.inference.story import split_sentence
-from webdemo.inference.story.prompts import as_scene
+from webdemo.inference.story.sentences import as_scene
 
 LONGEST = 500
 """The longest prompt that the page takes, in characters."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 import pytest
 
 from acts import read
-from acts.staging.beginnings import placed as beginning
 from acts.staging.stage import score_of
 from motion import InputError
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.story import SceneRequest, split_sentence
 from webdemo.inference.story.beats import plan_of_beat
-from webdemo.inference.story.prompts import as_scene
-from webdemo.inference.story.sentences import MOST_WORDS, beats_of
+from webdemo.inference.story.sentences import MOST_WORDS, as_scene, beats_of
 
 ONE = [
     "Two people hug.",
@@ -72,30 +70,11 @@ def test_speech_and_remarks_are_no_acts() -> None:
     assert score.bows["a"].times == 1 and not score.moves
 
 
-def test_nothing_is_no_beat() -> None:
-    assert split_sentence("  \n ") == ()
-
-
 def test_stories_longer_than_any_scene_are_refused_before_they_are_read() -> None:
     with pytest.raises(InputError, match=r"The story has [\d,]+ characters: shorten it to 30,000"):
         split_sentence("A waves. " * (MOST_WORDS // 9 + 2))
     with pytest.raises(InputError, match="more than 60 beats"):
         split_sentence("A bows. Then A jumps. " * 31)
-
-
-def test_people_sit_side_by_side_where_they_are_said_to() -> None:
-    score = score_of(read("Two strangers sit next to each other on a park bench.").acts)
-    assert score.side and beginning(score) is not None and set(score.changes) == {"a", "b"}
-
-
-def test_who_sits_in_a_chair_sits_from_the_start() -> None:
-    score = score_of(read("Dad reads the paper in his armchair while the baby crawls about.").acts)
-    assert score.changes["a"][0].already
-
-
-def test_who_keeps_their_back_turned_stands_so() -> None:
-    score = score_of(read("She keeps her back turned to him while he is talking to her.").acts)
-    assert [(move.person, move.way) for move in score.moves] == [("a", "averted"), ("b", "stay")]
 
 
 def test_who_turns_round_at_a_tap_was_tapped_from_behind() -> None:
@@ -104,20 +83,6 @@ def test_who_turns_round_at_a_tap_was_tapped_from_behind() -> None:
     assert first.touch is not None and first.touch.behind
     assert ("b", "face") in [(move.person, move.way) for move in second.moves]
     assert not (alone := SceneRequest(beats=beats[:1]).scores[0].touch) or not alone.behind
-
-
-def test_who_jumps_on_the_others_back_runs_up_from_behind() -> None:
-    placed = beginning(score_of(read("A runs up and jumps onto B's back.").acts))
-    assert placed is not None and placed.places[0, 1] < placed.places[1, 1] - 1.0
-
-
-def test_who_bends_down_to_a_shoe_kneels_down_to_it_at_once() -> None:
-    (beat,) = beats_of(read("A bends down and ties B's shoe."))
-    score = score_of(beat.acts)
-    assert score.touch is not None and not score.touch.late
-    assert not score.changes, "a bow on the spot comes before the shoe"
-    (alone,) = beats_of(read("A bends down."))
-    assert [change.posture for change in score_of(alone.acts).changes["a"]] == ["bends down"]
 
 
 @pytest.mark.parametrize(

@@ -13,10 +13,10 @@ from motion import SMPL22, Clip, Duet, InputError
 from motion.formats import glb_motion as reader
 from motion.formats import glb_nodes, on_rig, read, write
 from motion.formats.glb_file import GlbFile, Stored
-from motion.formats.glb_motion import animations_in, read_glb, read_glb_people
+from motion.formats.glb_motion import read_glb, read_glb_people
 from motion.formats.glb_nodes import Channel
 from motion.formats.importing import Imported, import_motion
-from motion.formats.recording import Animations, ImportChoices
+from motion.formats.recording import ImportChoices
 from motion.retarget import retarget
 from motion.transforms import mirrored
 from tests.motion.bodies import marching
@@ -87,13 +87,6 @@ def test_a_spline_goes_through_its_keys_along_its_tangents() -> None:
     moments = np.linspace(-1, 4, 41)
     wanted = np.clip(moments, 0, 3) ** 2
     np.testing.assert_allclose(channel.at(moments)[:, 0], wanted, atol=1e-9)
-
-
-def test_rotations_take_the_short_way_at_one_speed() -> None:
-    ends = Rotation.from_euler("y", [[0], [170]], degrees=True).as_quat() * [[1], [-1]]
-    channel = Channel(0, "rotation", np.array([0.0, 2.0]), ends, "LINEAR")
-    found = Rotation.from_quat(channel.at(np.array([0.5, 1.0, 1.5]))).as_euler("yxz", degrees=True)[:, 0]
-    np.testing.assert_allclose(found, [42.5, 85, 127.5], atol=1e-6)
 
 
 def _sampled(**fields: Any) -> dict[str, Any]:
@@ -252,28 +245,6 @@ def test_another_is_chosen_by_its_name_or_else_by_its_number(choice: Any, number
     found = imported(choice)
     assert found.animations is not None and found.animations.taken == (number,)
     assert (limbs(found) > 0.1) == (number == 1)
-
-
-@pytest.mark.parametrize("choice", [5, "run", "9" * 5000, "²", "\ud800"])
-def test_one_that_is_not_there_is_a_sentence_that_lists_them(choice: Any) -> None:
-    with pytest.raises(InputError) as error:
-        imported(choice)
-    listed = "1 (“Walk”), 2 (“glide”), 3 (“3”) or 4 (“2”)"
-    assert str(error.value) == f"x.glb has no such animation: choose {listed}."
-
-
-def test_people_with_animations_of_their_own_keep_them() -> None:
-    data = glb_motion(ROTATIONS, ROOT, people=2)
-    assert animations_in(data, name="x.glb") == Animations("x.glb", ("walk 0", "walk 1"), (1, 2))
-    assert animations_in(data, name="x.glb").note == "", "both are read"
-    document, blob = unpacked(data)
-    document["animations"].append({**document["animations"][1], "name": "wave 1"})
-    several = packed(document, blob)
-    people, found = read_glb(several, name="x.glb", animation="wave 1")
-    assert len(people) == 2 and found.taken == (1, 3)
-    assert found.note == (
-        "Of the 3 animations in x.glb, 1 (“walk 0”) and 3 (“wave 1”) were taken; the other is 2 (“walk 1”)."
-    )
 
 
 def test_a_partner_stands_in_the_world_of_the_chosen_animation(tmp_path: Path) -> None:

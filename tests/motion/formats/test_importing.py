@@ -8,8 +8,7 @@ from motion.formats.importing import import_motion
 from motion.formats.recording import ImportChoices
 from motion.guesses import AXES, likely_skeleton, turn_of
 from motion.kinematics import forward_kinematics
-from motion.retarget import to_smpl
-from motion.skeleton import K3HI15, LAYOUTS, SBU15, SKELETONS, Skeleton
+from motion.skeleton import LAYOUTS, SKELETONS
 from motion.transforms import heading_matrix
 from tests.motion.bodies import marching
 from tests.motion.formats.arrays import npy
@@ -95,33 +94,6 @@ def test_a_recording_that_is_too_long_is_refused_before_its_joints_are_fitted(mo
         formats.read(npy(bodies), name="kinect.npy", longest=60.0)
 
 
-def test_joints_in_one_place_are_no_body() -> None:
-    for joints in (15, 22):
-        nobody = import_motion(npy(np.full((30, joints, 3), 0.5)), name="nobody.npy").people[0]
-        with pytest.raises(InputError, match="lie in one place"):
-            to_smpl(nobody)
-
-
-def moving(skeleton: Skeleton, scale: float = 1.0) -> np.ndarray:
-    """(40, J, 3) a body with bones of constant length that turn, its sides alike."""
-    rng = np.random.default_rng(0)
-    lengths = {name.replace("right_", "left_"): rng.uniform(0.1, 0.5) for name in skeleton.joint_names}
-    positions = np.zeros((40, skeleton.num_joints, 3))
-    for parent, child in skeleton.bones:
-        way = rng.normal(size=3) + 0.2 * rng.normal(size=(40, 3)).cumsum(0)
-        way /= np.linalg.norm(way, axis=1, keepdims=True)
-        name = skeleton.joint_names[child].replace("right_", "left_")
-        positions[:, child] = positions[:, parent] + lengths[name] * way
-    return scale * positions
-
-
-@pytest.mark.parametrize("skeleton", [SBU15, K3HI15], ids=lambda s: s.name)
-@pytest.mark.parametrize("scale", [1.0, 1000.0])
-def test_bones_that_keep_their_length_decide_between_two_orders(skeleton: Skeleton, scale: float) -> None:
-    assert likely_skeleton(moving(skeleton, scale))[0] is skeleton
-    assert likely_skeleton(np.stack([moving(skeleton, scale)] * 2))[0] is skeleton
-
-
 @pytest.mark.parametrize("name", ["cmu17", "h36m17", "coco17"])
 @pytest.mark.parametrize("turn", [0.0, 1.0, 3.0])
 def test_seventeen_joints_are_of_the_order_in_which_they_are_a_body(name: str, turn: float) -> None:
@@ -130,9 +102,3 @@ def test_seventeen_joints_are_of_the_order_in_which_they_are_a_body(name: str, t
         [body[:, ours if ours >= 0 else SMPL22.index("head")] for ours in LAYOUTS[name].joints], axis=1
     )
     assert likely_skeleton(positions) == (SKELETONS[name], None)
-
-
-def test_an_order_that_stays_unsure_is_asked() -> None:
-    assert likely_skeleton(np.zeros((3, 17, 3)))[1] is not None
-    found = import_motion(npy(np.zeros((3, 17, 3))), name="a.npy")
-    assert found.asks and any("Choose the order" in note for note in found.notes)

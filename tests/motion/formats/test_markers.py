@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 import pytest
@@ -79,20 +79,6 @@ def test_key_points_of_a_trc_are_the_joints(unit: str, scale: float) -> None:
     assert error_of(clip) < 1e-4
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        lambda text: text.replace("\t", ","),
-        lambda text: text.replace("\t", ";").replace(".", ","),
-        lambda text: text.replace("\n", "\r"),
-    ],
-    ids=["commas", "semicolons and decimal commas", "CR"],
-)
-def test_a_trc_may_be_cut_by_other_marks(change: Callable[[str], str]) -> None:
-    clip = formats.read(change(trc_text(keypoints())).encode(), name="walk.trc", keep_skeleton=True)
-    assert isinstance(clip, Clip) and clip.fps == 30 and error_of(clip) < 1e-4
-
-
 @pytest.mark.parametrize("kind", ["trc", "c3d"])
 def test_zeros_are_a_marker_that_was_not_seen(kind: str) -> None:
     points = {name: np.array(place) for name, place in keypoints().items()}
@@ -100,31 +86,6 @@ def test_zeros_are_a_marker_that_was_not_seen(kind: str) -> None:
     data = trc_text(points).encode() if kind == "trc" else c3d_bytes(points)
     clip = formats.read(data, name=f"x.{kind}", keep_skeleton=True)
     assert np.abs(clip.positions[7:9, POINTS17.index("right_knee")] - JOINT["right_knee"][7:9]).max() < 0.1
-
-
-def test_a_c3d_of_many_points_keeps_their_labels_in_several_lists() -> None:
-    many = {f"x{number}": POSITIONS[:, 0] for number in range(300)} | keypoints()
-    data = bytearray(c3d_bytes(dict(list(many.items())[:200])))
-    names = list(many)
-    start = 512 * 12
-    text = b"".join(
-        bytes([len(name), 1]) + name + (3 + len(value)).to_bytes(2, "little") + value + b"\0"
-        for name, value in (
-            (b"RATE", b"\4\0" + np.float32(100).tobytes()),
-            (b"USED", b"\2\0" + np.int16(len(names)).tobytes()),
-            (b"SCALE", b"\4\0" + np.float32(-1).tobytes()),
-            (b"LABELS", b"\xff\2\x09\xff" + "".join(f"{name:9}" for name in names[:255]).encode()),
-            (b"LABELS2", bytes([255, 2, 9, len(names) - 255]) + "".join(f"{name:9}" for name in names[255:]).encode()),
-        )
-    )
-    parameters = b"\1\x50\x0b\x54" + b"\5\xffPOINT\3\0\0" + text + b"\0\0"
-    values = np.zeros((len(POSITIONS), len(names), 4), dtype="<f4")
-    values[..., :3] = np.stack(list(many.values()), axis=1) @ TO_Z_UP.T * 1000
-    head = bytes(data[:2]) + np.array([len(names), 0, 1, len(POSITIONS), 0], "<u2").tobytes() + bytes(4)
-    head += np.array([1 + start // 512, 0], "<u2").tobytes() + np.float32(100).tobytes()
-    whole = head.ljust(512, b"\0") + parameters.ljust(start - 512, b"\0") + values.tobytes()
-    clip = formats.read(whole, name="many.c3d", keep_skeleton=True)
-    assert isinstance(clip, Clip) and clip.fps == 100 and error_of(clip) < 1e-3
 
 
 def test_hips_come_from_the_markers_of_a_pelvis() -> None:

@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from motion import SKELETONS, SMPL22, Duet
+from motion import SMPL22, Duet
 from motion.metrics import MEASURES, contact_events, facing_angle, readouts, response_delay, summary
-from motion.metrics.interaction import LONGEST_DELAY
 from motion.transforms import turn
 
 from .scenes import FPS, duet, face_to_face, put_wrist
@@ -23,10 +22,6 @@ def test_facing_is_the_angle_by_which_a_person_has_turned(degrees: float) -> Non
     angles = facing_angle(duet(scene))
     np.testing.assert_allclose(angles[0], degrees, atol=0.1)
     np.testing.assert_allclose(angles[1], 0, atol=0.1)
-
-
-def test_nobody_touches_at_two_metres() -> None:
-    assert contact_events(duet(face_to_face(2.0))) == []
 
 
 def test_hands_that_meet_are_one_contact_with_its_frames() -> None:
@@ -63,15 +58,6 @@ def test_readouts_are_json_with_every_measure_and_curves_of_full_length() -> Non
     assert found["summary"]["distance"] == pytest.approx(2.0, abs=1e-3)
 
 
-@pytest.mark.parametrize("name", SKELETONS)
-def test_every_skeleton_has_readouts(name: str) -> None:
-    skeleton = SKELETONS[name]
-    scene = np.random.default_rng(0).normal(0, 0.4, (2, 12, skeleton.num_joints, 3)) + 1
-    found = readouts(Duet.from_positions(scene, fps=15, skeleton=skeleton))
-    known = [value for key, value in found["summary"].items() if key != "response_delay"]
-    assert np.isfinite(known).all()
-
-
 def lift(frames: int, begins: int) -> np.ndarray:
     """(T,) from 0 to 1 within half a second."""
     path = np.zeros(frames)
@@ -93,17 +79,6 @@ def answering(delay: int, frames: int = 90, first: int = 35) -> np.ndarray:
 def test_the_delay_of_an_answer_is_found(delay: int) -> None:
     assert response_delay(duet(answering(delay))) == pytest.approx(delay / FPS, abs=1.5 / FPS)
     assert summary(duet(answering(delay)))["response_delay"] == pytest.approx(delay / FPS, abs=1.5 / FPS)
-
-
-def test_where_nobody_answers_there_is_no_delay() -> None:
-    assert response_delay(duet(face_to_face(2.0))) is None
-    alone = answering(10)
-    alone[1] = alone[1, :1]
-    assert response_delay(duet(alone)) is None
-    late = answering(round(LONGEST_DELAY * FPS) + 20, frames=140)
-    assert response_delay(duet(late)) is None
-    for frames in (1, 2, 4):
-        assert response_delay(duet(answering(0)[:, :frames])) is None
 
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "contacts.npz"

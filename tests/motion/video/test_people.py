@@ -14,7 +14,7 @@ from motion.metrics import foot_skate
 from motion.transforms import heading, resample
 from motion.video import Landmarks, people_of
 from motion.video.landmarks import INDEX
-from motion.video.place import focal_length, smooth, translation
+from motion.video.place import focal_length, translation
 
 from .filming import film, stepping
 
@@ -136,12 +136,3 @@ def test_the_place_of_points_is_found_from_their_pictures(x: float, y: float, z:
     assert np.allclose(translation(world, pixels, np.ones((2, 33)), FOCAL), true, atol=1e-6)
     pixels[:, 3] += 400  # one point that is thrown far away does not matter
     assert np.allclose(translation(world, pixels, np.ones((2, 33)), FOCAL), true, atol=0.35)
-
-
-@settings(max_examples=20, deadline=None)
-@given(slope=st.floats(-2, 2), start=st.floats(-3, 3), missing=st.integers(0, 12))
-def test_smoothing_has_no_lag_and_bridges_what_is_missing(slope: float, start: float, missing: int) -> None:
-    line = (start + slope * np.arange(40) / 15)[:, None]
-    known = line.copy()
-    known[15 : 15 + missing] = np.nan
-    assert np.allclose(smooth(known, 15.0, seconds=0.5), line, atol=1e-3)

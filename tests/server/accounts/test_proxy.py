@@ -12,8 +12,8 @@ import pytest
 
 from motion import InputError
 from tests.server.attacks.target import Target
-from webdemo.server.accounts.proxy import PEER, groups_of, is_among, person_by_proxy
-from webdemo.server.http.refused import Refused
+from webdemo.server.accounts.visitors import PEER, groups_of, is_among, person_by_proxy
+from webdemo.server.http.routes import Refused
 from webdemo.server.settings import Settings
 
 NAME, GROUPS = "X-Remote-User", "X-Remote-Groups"

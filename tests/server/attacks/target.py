@@ -6,16 +6,22 @@ import json
 import os
 import secrets
 import socket
+import sqlite3
 import subprocess
 import sys
 import time
 import zipfile
+from contextlib import closing
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 import httpx
+
+from webdemo.server.store.database import Database
+from webdemo.server.store.notebook import Notebook
+from webdemo.server.store.publishing import Publishing
 
 from ..lab import ROOT, add_accounts
 
@@ -137,6 +143,19 @@ class Target:
         """Uploads a file; returns its path there."""
         (path,) = self.ask(who, "POST", "/gradio_api/upload", files={"files": (name, content)}).json()
         return path
+
+    def rows(self, query: str) -> list[tuple[Any, ...]]:
+        """What the server's database answers."""
+        with closing(sqlite3.connect(self.data / "history.db")) as database:
+            return database.execute(query).fetchall()
+
+    def publish(self, owner: str, run: str) -> str:
+        """Makes a public page of somebody's run; returns its key."""
+        database = Database(f"sqlite:///{self.data / 'history.db'}")
+        try:
+            return Publishing(Notebook(database, self.data / "motions")).publish(owner, run).key
+        finally:
+            database.close()
 
     def files_of(self, who: str) -> list[Path]:
         """Files that the server keeps for somebody while they use the page: uploads, downloads, thumbnails."""

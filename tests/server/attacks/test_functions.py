@@ -86,7 +86,7 @@ def test_none_gives_eve_what_is_ada_s(backend: Backend, closed: Target, victims:
     assert not [path for path in closed.files_of("eve") for each in NEVER if closed.holds(path, each)]
     assert [path for path in closed.files_of("ada") if closed.holds(path, SECRET)], "it would be found"
     others = f"SELECT * FROM runs WHERE owner != '{ada.owner}'"
-    assert ada.rows(others) and not [row for row in ada.rows(others) if SECRET in str(row)]
+    assert closed.rows(others) and not [row for row in closed.rows(others) if SECRET in str(row)]
     ada.check(backend.number)
 
 

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import sqlite3
 from collections.abc import Callable
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 from webdemo.server.store.database import Database
-from webdemo.server.store.notebook import Notebook
-from webdemo.server.store.publishing import Publishing
 from webdemo.server.store.studies import Studies
 from webdemo.study import Pair
 
@@ -37,7 +33,7 @@ class Victim:
         finished = target.call("ada", "generate", [SECRET, *FIELDS[1:]])
         (download,) = [word for word in finished.split('"') if word.endswith(".npz") and word[0] == "/"][:1]
         # not the first run there is: other tests of the same server run before
-        ((run, self.owner),) = self.rows(f"SELECT id, owner FROM runs WHERE title = '{SECRET}'")
+        ((run, self.owner),) = target.rows(f"SELECT id, owner FROM runs WHERE title = '{SECRET}'")
         open_call = {"data": [SECRET, *FIELDS[1:]]}
         call = target.ask("ada", "POST", f"{API}/call/generate", json=open_call).json()["event_id"]
         join = {**open_call, "fn_index": 1, "session_hash": "adas own"}
@@ -47,8 +43,6 @@ class Victim:
         study = Studies(database, target.data / "studies").create(
             self.owner, "Which is longer?", (SECRET, f"{SECRET} damped"), [Pair(walking(0.5), walking(0.5))]
         )
-        history = Notebook(database, target.data / "motions")
-        page = Publishing(history).publish(self.owner, run)
         database.close()
         self.things = {
             "upload": upload,
@@ -58,7 +52,7 @@ class Victim:
             "run": run,
             "study": study.id,
             "study_key": study.key,
-            "public": page.key,
+            "public": target.publish(self.owner, run),
             "here": target.url,
             "folder_of_ada": str(Path(upload).parents[1]),
             "canary": str(target.canary),
@@ -73,11 +67,6 @@ class Victim:
         self.things["stream"] = opened["id"]
         return opened["id"]
 
-    def rows(self, query: str) -> list[tuple[Any, ...]]:
-        """What the server's database answers."""
-        with closing(sqlite3.connect(self.target.data / "history.db")) as database:
-            return database.execute(query).fetchall()
-
     def fill(self, value: Any) -> Any:
         """A value with her things in place of their names in braces."""
         if isinstance(value, str):
@@ -91,7 +80,7 @@ class Victim:
     def _state(self) -> list[Any]:
         run, study = self.things["run"], self.things["study"]
         return [
-            self.rows(f"SELECT * FROM {table} WHERE {column} = '{key}'")
+            self.target.rows(f"SELECT * FROM {table} WHERE {column} = '{key}'")
             for table, column, key in (
                 ("runs", "id", run),
                 ("links", "run_id", run),

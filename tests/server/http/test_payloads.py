@@ -18,7 +18,7 @@ from tests.ui.stub_engine import walking
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose
 from webdemo.server.http import payloads
 from webdemo.server.http.payloads import Payloads, check_value
-from webdemo.server.http.refused import Refused
+from webdemo.server.http.routes import Refused
 from webdemo.ui.components.gallery import Gallery
 from webdemo.ui.components.notebook import Action, NotebookView
 from webdemo.ui.components.reading import Reading

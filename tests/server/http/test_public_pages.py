@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from tests.server.attacks.target import Target
 from tests.server.clients import FIELDS
-from tests.server.lab import ROOT
 
 HOSTILE = '"@body@</script><script>alert(1)</script>'
 
@@ -26,50 +21,25 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Target]:
         yield target
 
 
-def share(lab: Target, *words: str, code: int = 0) -> dict[str, Any]:
-    """What ``python -m webdemo share`` prints at the end, or its error as ``error``."""
-    said = subprocess.run(
-        [sys.executable, "-m", "webdemo", "share", *words],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        env={**os.environ, **lab.env, "PASDEDEUX_DATA": str(lab.data)},
-    )
-    assert said.returncode == code, said.stderr
-    return {"error": said.stderr} if code else json.loads(said.stdout.splitlines()[-1])
-
-
 @pytest.fixture(scope="module")
-def runs(lab: Target) -> list[str]:
-    """Two runs of ada's; the newer one first."""
-    for prompt in ("Two people bow.", HOSTILE):
-        assert "complete" in lab.call("ada", "generate", [prompt, *FIELDS[1:]])
-    return [run["id"] for run in share(lab, "runs", "--user", "ada")["runs"]]
+def key(lab: Target) -> str:
+    """A public page of a run of ada's."""
+    assert "complete" in lab.call("ada", "generate", [HOSTILE, *FIELDS[1:]])
+    return lab.publish(*lab.rows("SELECT owner, id FROM runs")[0])
 
 
-def test_a_page_is_made_shown_to_a_stranger_and_revoked_from_a_shell(lab: Target, runs: list[str]) -> None:
-    made = share(lab, "link", "--user", "ada", "--base", f"{lab.url}/", "--", runs[0])
-    assert made["address"] == f"{lab.url}/share/{made['key']}"
-    page = lab.ask("stranger", "GET", f"/share/{made['key']}")
+def test_a_page_is_shown_to_a_stranger(lab: Target, key: str) -> None:
+    page = lab.ask("stranger", "GET", f"/share/{key}")
     assert page.status_code == 200 and page.headers["cache-control"] == "no-store"
     assert HOSTILE not in page.text and "&quot;@body@&lt;/script&gt;" in page.text
     assert "set-cookie" not in page.headers
     assert (page.text.count("<script"), page.text.count("</script")) == (2, 2), "the motion, the module"
     payload = page.text.split('id="motion">')[1].split("</script>")[0]
     assert json.loads(payload)["samples"][0]["frames"] == 30
-    assert f"{lab.url}/embed/{made['key']}" in page.text
-    listed = share(lab, "list")["pages"]
-    assert [(each["key"], each["owner"]) for each in listed] == [(made["key"], "user ada")]
-    share(lab, "revoke", made["key"][:8])
-    for path in ("share", "embed"):
-        gone = lab.ask("stranger", "GET", f"/{path}/{made['key']}")
-        assert gone.status_code == 404 and "it has ended" in gone.text
+    assert f"{lab.url}/embed/{key}" in page.text
 
 
-def test_only_the_player_alone_may_be_framed_and_only_by_the_sites_of_the_settings(
-    lab: Target, runs: list[str]
-) -> None:
-    key = share(lab, "link", "--user", "ada", "--", runs[0])["key"]
+def test_only_the_player_alone_may_be_framed_and_only_by_the_sites_of_the_settings(lab: Target, key: str) -> None:
     for path, frames in (
         (f"/embed/{key}", "frame-ancestors https://blog.example https://*.school.example"),
         (f"/share/{key}", "frame-ancestors 'self'"),
@@ -82,17 +52,12 @@ def test_only_the_player_alone_may_be_framed_and_only_by_the_sites_of_the_settin
     assert "script-src 'self' 'unsafe-eval' blob:;" in policy and "form-action 'none'" in policy
 
 
-def test_the_files_of_public_pages_are_open_and_nothing_beside_them(lab: Target, runs: list[str]) -> None:
+def test_the_files_of_public_pages_are_open_and_nothing_beside_them(lab: Target) -> None:
     main = lab.ask("stranger", "GET", "/shown/player/main.js")
     assert main.status_code == 200 and "max-age" in main.headers["cache-control"]
     assert lab.ask("stranger", "GET", "/shown/bodies/man.json").status_code == 200
     assert lab.ask("stranger", "GET", "/shown/share/page.html").status_code == 404
     assert lab.ask("stranger", "GET", "/gradio_api/file=static/player/main.js").status_code == 401
-
-
-def test_eve_cannot_publish_what_is_ada_s(lab: Target, runs: list[str]) -> None:
-    said = share(lab, "link", "--user", "eve", "--", runs[0], code=2)
-    assert "0 runs begin with" in said["error"]
 
 
 def test_somebody_who_asks_for_pages_too_often_waits(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 import torch
 from torch import Tensor
 
-from training.core.ahead import drawn_ahead, moved
+from training.core.loop import drawn_ahead, moved
 
 
 @dataclass

@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from training.core.precision import mixed_precision
+from training.core.loop import mixed_precision
 
 
 @pytest.mark.parametrize(

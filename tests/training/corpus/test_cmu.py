@@ -11,7 +11,7 @@ import pytest
 from models.predictors import load_predictor
 from motion import InputError
 from training.corpus import cmu
-from training.evaluate.prediction import evaluate, main, markdown, of_predictor, put_into, score, zero_velocity
+from training.evaluate.prediction import evaluate, markdown, of_predictor, put_into, score, zero_velocity
 from webdemo.inference.method import WEIGHTS
 
 REFERENCE = Path(__file__).parents[2] / "data" / "reference"
@@ -35,16 +35,6 @@ def test_forward_kinematics_equal_the_reference() -> None:
         expmap, expected = arrays["expmap"].astype(np.float64), arrays["positions_mm"]
     found = cmu.CmuSkeleton.read(SKELETON).forward_kinematics(expmap)
     assert np.abs(found - expected / 1000).max() < 1e-6
-
-
-def test_bones_join_the_17_joints_and_mirror() -> None:
-    skeleton = cmu.CmuSkeleton.read(SKELETON)
-    assert len(skeleton.bones) == 16 and {child for _, child in skeleton.bones} == set(range(1, 17))
-    pose = np.random.default_rng(0).normal(size=(2, 17, 3))
-    assert np.allclose(cmu.mirrored(cmu.mirrored(pose)), pose)
-    rest = skeleton.forward_kinematics(np.zeros((1, cmu.CHANNELS)))[:, skeleton.kept]
-    # The recorded person is not quite symmetric: legs and arms differ by up to 12 mm.
-    assert np.abs(cmu.mirrored(rest) - rest).max() < 0.04
 
 
 def test_every_second_frame_is_kept(folder: Path) -> None:
@@ -78,14 +68,6 @@ def test_table_goes_between_the_marks(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "bare.md").write_text("no marks")
     with pytest.raises(InputError, match="lacks the lines"):
         put_into(tmp_path / "bare.md", table)
-
-
-def test_bad_data_is_one_sentence(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (folder / "test" / "walking" / "walking_2.txt").write_text("1,2,3\n")
-    assert main(["--data", str(folder)]) == 2
-    message = capsys.readouterr().err
-    assert "walking_2.txt does not hold 117 finite numbers a line" in message and message.count("\n") == 1
-    assert main(["--data", str(folder / "nowhere")]) == 2
 
 
 @pytest.mark.parametrize("name", ["mawgan-cmu", "motion-mlp-cmu"])

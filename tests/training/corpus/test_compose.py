@@ -9,11 +9,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motion.kinematics import forward_kinematics
-from motion.skeleton import LEGS, SMPL22
-from training.corpus import __main__ as command
+from motion.skeleton import SMPL22
 from training.corpus import checks, compose, feet
-from training.corpus.library import Library, extend, shorten
-from training.corpus.scene import Scene, SourceClip
+from training.corpus.cues import Scene, SourceClip
+from training.corpus.library import Library, shorten
 
 J = SMPL22.index
 
@@ -131,41 +130,6 @@ def test_a_foot_that_is_carried_far_steps_and_the_feet_take_turns() -> None:
     np.testing.assert_allclose(np.ptp(toes[:, 0, 2]), 0.4, atol=0.05)
 
 
-def test_steer_turns_left_for_positive_angles() -> None:
-    straight = motion(walk(91))
-    bent = compose.steer(straight, np.linspace(0, np.pi / 2, 91))
-    assert bent.root[-1, 0] > 0.5  # +X is to the left of a person facing +Z
-    assert abs(bent.headings[-1] - straight.headings[-1] - np.pi / 2) < 1e-6
-    length = [np.linalg.norm(np.diff(m.root, axis=0), axis=-1).sum() for m in (straight, bent)]
-    assert abs(length[0] - length[1]) < 1e-9
-
-
-def test_look_at_turns_the_head_to_the_target_and_not_backwards() -> None:
-    still = motion(forward_kinematics(*standing(60)))
-    left = compose.realise(compose.look_at(still, np.tile([2.0, 1.5, 1.0], (60, 1))))
-    nose = left[30, J("head")] - left[30, J("neck")]
-    assert nose[0] > 0.02
-    behind = compose.realise(compose.look_at(still, np.tile([0.0, 1.5, -2.0], (60, 1))))
-    np.testing.assert_allclose(behind, compose.realise(still), atol=1e-9)
-
-
-def test_layer_waves_while_walking() -> None:
-    base, over = motion(walk(100)), motion(gesture(60, "left"))
-    both = compose.realise(compose.layer(base, over, start=20, joints=compose.ARMS["left"]))
-    alone = compose.realise(base)
-    assert both[50, J("left_wrist"), 1] > alone[50, J("left_wrist"), 1] + 0.5
-    legs = [joint for leg in LEGS for joint in leg]
-    np.testing.assert_allclose(both[:, legs], alone[:, legs], atol=1e-9)
-
-
-def test_shorten_and_extend_reach_their_lengths() -> None:
-    assert len(shorten(motion(gesture(200, "left")), 90)) <= 90
-    longer = extend(motion(walk(100)), 250)
-    assert len(longer) >= 250
-    steps = np.diff(longer.root[:, 2])
-    assert steps.min() > 0  # goes on walking forward all the time
-
-
 def test_a_shortened_clip_still_shows_what_it_is_of() -> None:
     """The most alike moments of a bow are before and after it; the cut between them left a person standing."""
     still = forward_kinematics(*standing(60))
@@ -225,12 +189,3 @@ def test_checks_turn_bad_scenes_away() -> None:
     assert checks.fault(_scene(broken)) == "not finite"
     close = np.stack([person, person + np.array([0, 0, 0.1])])
     assert checks.fault(_scene(close)) == "trunks overlap"
-
-
-@pytest.mark.parametrize("extra", [["--hours", "-1"], []])
-def test_command_says_what_is_wrong(tmp_path, capsys, extra: list[str]) -> None:
-    out = tmp_path / "out"
-    assert command.main(["--data", str(tmp_path / "none"), "--out", str(out), *extra]) == 2
-    message = capsys.readouterr().err.strip()
-    assert message.count("\n") == 0 and message
-    assert not out.exists()

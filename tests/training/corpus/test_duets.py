@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import tarfile
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +13,9 @@ from motion import SMPL22
 from motion.transforms import heading, turn
 from tests.motion.bodies import marching
 from tests.motion.formats.rigs import RIGS, bvh_text
-from training.corpus import build, duets
+from training.corpus import duets
 from training.corpus.cues import Label
-from training.corpus.duet_acts import dance_beats, danced, handshake_beats
-from training.corpus.duets import HELD_OUT, SECONDS, Take, load_duets, read_takes, windows
+from training.corpus.duets import HELD_OUT, SECONDS, Take, dance_beats, danced, handshake_beats, read_takes, windows
 
 J = SMPL22.index
 REST = SMPL22.rest_positions() + np.array([0, 0.98, 0])
@@ -43,13 +41,6 @@ def told(people: np.ndarray) -> list[tuple[tuple[str, str], int, int]]:
     return [(beat.acts, beat.start, beat.end) for beat in dance_beats(people)]
 
 
-def test_joined_hands_are_a_hold_and_moments_are_none() -> None:
-    apart, hold = ("dance", "dance"), ("waltz", "waltz")
-    people = joined(couple(200), 60, 130, 1.1)
-    assert told(people) == [(apart, 0, 60), (hold, 60, 130), (apart, 130, 200)]
-    assert told(joined(couple(200), 60, 70, 1.1)) == [(apart, 0, 200)]
-
-
 @pytest.mark.parametrize(
     ("degrees", "height", "twirled"), [(360, 1.9, True), (-360, 1.9, True), (180, 1.9, False), (360, 1.0, False)]
 )
@@ -59,16 +50,6 @@ def test_a_turn_under_a_raised_arm_is_a_twirl(degrees: float, height: float, twi
     if twirled:
         assert dance_beats(people)[0].acts == ("twirl", "")
         assert dance_beats(people[::-1])[0].acts == ("", "twirl")
-
-
-def test_the_dance_begins_when_both_move() -> None:
-    people = couple(240)
-    sway = np.where((np.arange(240) >= 60) & (np.arange(240) < 180), np.arange(240) - 60, 0)
-    people[..., 0] += 0.2 * np.sin(sway / 4)[None, :, None]
-    first, last = danced(people)
-    assert abs(first - 90) < 20 and abs(last - 180) < 20
-    people[1] = couple(240)[1]
-    assert danced(people) == (0, 0)
 
 
 def test_a_handshake_is_come_up_shake_and_part() -> None:
@@ -151,21 +132,3 @@ def test_scenes_are_canonical_and_told_on_several_levels() -> None:
         assert not any("waltz" in text for text in [*scene.captions, *scene.alone[0], *scene.alone[1]])
     again = [scene.captions for scene in windows(Take("cmu-salsa/01", people))]
     assert again == [scene.captions for scene in windows(Take("cmu-salsa/01", people))]
-
-
-def test_a_window_in_which_a_joint_jumps_is_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    people = dancers(400)
-    people[0, 200, J("left_wrist")] += 0.6
-    monkeypatch.setattr(duets, "read_takes", lambda root: [Take("cmu-salsa/01", people)])
-    left_out: Counter[str] = Counter()
-    kept = load_duets(tmp_path, left_out)
-    everything = list(windows(Take("cmu-salsa/01", dancers(400))))
-    assert kept and 0 < left_out.total() == len(everything) - len(kept)
-
-
-def test_a_corpus_takes_the_duets_along(data: Path) -> None:
-    tally = build.Tally()
-    scenes = build.recorded(data, tally, None)
-    assert {scene.split for scene in scenes} == {"train", "test"}
-    assert tally.scenes["recorded salsa"] == sum(scene.family == "salsa" for scene in scenes) > 0
-    assert build.recorded(data / "cmu-salsa" / "bvh", build.Tally(), None) == []

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
-import torch
 
 from models.motion_tokens import TokenLayout
 from training import prepare
 from training.corpus import build
-from training.corpus.cues import Beat, Label, label
-from training.corpus.scene import Scene
+from training.corpus.cues import Beat, Label, Scene, label
 
 BEAT = {"start": 0, "end": 70, "acts": ["wave", "stand"], "captions": ["A wave."]}
 LATE = {"start": 69, "end": 70, "acts": ["bow", "stand"], "captions": ["A bow."]}
@@ -65,15 +62,3 @@ def test_the_label_has_the_frames_of_the_prepared_scene(tmp_path: Path) -> None:
         (("b",), "stand-still", 30, frames),
     ]
     assert known.minor == {"1", "2"} and known.beats[-1] == ()
-
-
-def test_two_corpora_make_one(tmp_path: Path) -> None:
-    folders = [written(tmp_path / str(seed), seed) for seed in (1, 2)]
-    out = tmp_path / "scenes.safetensors"
-    assert prepare.main(["--corpus", *map(str, folders), "--out", str(out)]) == 0
-    scenes = prepare.load(out)
-    apart = [prepare.prepare(folder, TokenLayout()) for folder in folders]
-    for row, own in zip(scenes.rows, apart, strict=True):
-        assert row["captions"] == own.rows[0]["captions"]
-        assert torch.equal(scenes.scene(row), own.scene(own.rows[0]))
-    assert json.dumps(scenes.rows)

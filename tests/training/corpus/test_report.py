@@ -56,11 +56,11 @@ def test_the_report_counts_acts_people_and_the_share_of_recorded_duets(
     assert "3 scenes, 0.0 hours" in text and "1 scenes are for testing" in text
     assert "2 scenes (0 minutes, 66.7 %) are recorded duets." in text
     rows = {line.split("|")[1].strip(): line for line in text.splitlines() if line.startswith("| ")}
-    assert rows["shake-hands"] == "| shake-hands | 1 | 0.0 | 0.0 | 10 | [sheet](corpus/shake-hands.webp) |"
+    assert rows["shake-hands"] == "| shake-hands | 1 | 0.0 | 0.0 | 10 | [sheet](corpus/shake-hands.png) |"
     assert rows["stand-still"].endswith("| – |")
     drawn = {path.stem for path in (out / "corpus").iterdir()}
     assert drawn == {"dance", "twirl", "shake-hands", "hug-offered"}
-    assert Image.open(out / "corpus" / "dance.webp").width == report.PICTURE_WIDTH
+    assert Image.open(out / "corpus" / "dance.png").width == report.PICTURE_WIDTH // 6 * 6
 
 
 def test_a_folder_without_a_corpus(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,8 +12,8 @@ from tests.training.corpus.test_compose import clips, walk
 from training.corpus.beats.script import draw_story, opening
 from training.corpus.beats.stories import stories
 from training.corpus.beats.whole import WHOLE
+from training.corpus.cues import SourceClip
 from training.corpus.library import Library
-from training.corpus.scene import SourceClip
 
 
 def lowered(frames: int, start: float, stop: float) -> np.ndarray:
@@ -37,19 +37,6 @@ def library() -> Library:
         clip(lowered(300, 0.0, 0.0), "shadow-box"),
     ]
     return Library([*clips(), *clips("test"), *more("train"), *more("test"), *own], "train")
-
-
-def test_a_crouch_goes_down_and_comes_up_again(library: Library) -> None:
-    scene = staged(library, "crouch>stand-up / stand-still")
-    beat = main(scene)[0]
-    i = beat["acts"].index("crouch>stand-up")
-    height = scene.positions[i, beat["start"] : beat["end"], 0, 1]
-    lowest = int(height.argmin())
-    assert height[0] - height[lowest] > 0.25 and height[-1] - height[lowest] > 0.25
-    assert scene.label
-    told = {act.act: scene.label.spans[act.id] for act in scene.label.plan.acts if act.act != "stand-still"}
-    assert list(told)[:2] == ["crouch", "stand-up"]
-    assert told["crouch"][0] < beat["start"] + lowest < told["stand-up"][1]
 
 
 def test_who_skips_passes_the_other_who_stays(library: Library) -> None:

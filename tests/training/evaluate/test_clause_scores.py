@@ -9,7 +9,7 @@ import pytest
 
 from motion import Duet, InputError
 from motion.metrics.sentences import read_sentences
-from motion.metrics.sentences.scores import score, table
+from motion.metrics.sentences.catalogue import score, table
 
 from .puppets import play
 

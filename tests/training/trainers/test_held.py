@@ -6,8 +6,7 @@ import torch
 
 from models.known import Hold
 from models.motion_tokens import FEATURES, TokenLayout, pack
-from training.trainers.given import Shares, known_parts
-from training.trainers.held import Held
+from training.trainers.given import Held, Shares, known_parts
 
 LAYOUT = TokenLayout()
 

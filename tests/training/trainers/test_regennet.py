@@ -11,12 +11,11 @@ from models.intergen.compact import CaptionBank, CompactConfig, CompactInterGen
 from models.intergen.compact import save_folder as save_intergen
 from models.motion_tokens import FEATURES, TokenLayout, canonical_control, decode, encode, mirror_control
 from models.regennet.compact import load_folder
-from models.weights_io import save_network
 from motion import SMPL22, InputError
 from training import prepare
 from training.prepare import Scenes
 from training.trainers import regennet
-from training.trainers.regennet import Settings, Trainer, apart_loss, interaction_loss
+from training.trainers.regennet import Settings, Trainer, interaction_loss
 from training.trainers.regennet_data import knot_positions, seen_rows
 
 SETTINGS = Settings(latent_dim=16, ff_size=16, num_layers=1, num_heads=2, batch=4, steps=6, warmup=2)
@@ -136,21 +135,6 @@ def test_the_interaction_loss_is_that_of_the_paper() -> None:
     assert interaction_loss(last, reactor, actor, mask) == 0, "the last frame is not real"
 
 
-def test_init_begins_with_a_shipped_network(scenes: Scenes, words: Path, tmp_path: Path) -> None:
-    trained = take(Trainer(scenes, SETTINGS, tmp_path / "a", words=words), 2)
-    save_network(tmp_path / "shipped", trained.ema)
-    begun = Trainer(scenes, SETTINGS, tmp_path / "b", words=tmp_path / "none", init=tmp_path / "shipped")
-    shipped = load_folder(tmp_path / "shipped")[0].state_dict()
-    assert begun.step == 0
-    for model in (begun.model, begun.ema):
-        assert all(torch.equal(value, shipped[name]) for name, value in model.state_dict().items())
-    trained_parameters = [sum(p.requires_grad for p in run.model.parameters()) for run in (begun, trained)]
-    assert trained_parameters[0] == trained_parameters[1], "the words' conditioner stays as it is"
-    wider = replace(SETTINGS, latent_dim=32)
-    with pytest.raises(InputError, match="of one size"):
-        Trainer(scenes, wider, tmp_path / "c", words=words, init=tmp_path / "shipped")
-
-
 def test_batches_hold_the_scenes_as_they_are_mirrored_or_from_a_later_knot_on(
     scenes: Scenes, words: Path, tmp_path: Path
 ) -> None:
@@ -203,15 +187,3 @@ def share(trainer: Trainer, step: int) -> float:
     found = trainer.own_share()
     trainer.step = kept
     return found
-
-
-def test_only_coming_nearer_than_the_recorded_pelvis_is_walking_through() -> None:
-    rest = torch.tensor(SMPL22.rest_positions()).float()
-    actor, mask = rest.expand(1, 2, -1, -1), torch.ones(1, 2)
-
-    def at(gap: float) -> torch.Tensor:
-        return (rest + torch.tensor([0.0, 0.5, gap])).expand_as(actor)
-
-    assert apart_loss(at(0.6), at(1.5), actor, mask) == 0
-    assert apart_loss(at(0.3), at(0.25), actor, mask) == 0, "they hug"
-    torch.testing.assert_close(apart_loss(at(0.05), at(1.5), actor, mask), torch.tensor([0.16]))

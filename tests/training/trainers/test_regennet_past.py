@@ -7,7 +7,7 @@ from torch import Tensor
 from models.diffusion import NoiseSchedule
 from models.motion_tokens import FEATURES, NUM_CONTACTS
 from models.regennet.compact import LEAD, CompactReGenNet, CompactReGenNetConfig
-from training.trainers.regennet_past import FARTHEST, SHORTEST, Plan, make_past, plan, return_share
+from training.trainers.regennet_data import FARTHEST, SHORTEST, Plan, make_past, plan, return_share
 
 B, K = 6, 24
 STD = torch.ones(FEATURES)

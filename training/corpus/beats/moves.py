@@ -6,9 +6,9 @@ import numpy as np
 
 from motion.vectors import wrapped
 
-from ..blending import ease
 from ..compose import Array, Motion, steer, tempo
 from ..cues import STILL
+from ..feet import ease
 from ..library import Take, pick, stride
 from .acts import ACTS, arms_over
 from .performer import Performer, bearing

@@ -6,8 +6,8 @@ import numpy as np
 
 from motion.vectors import wrapped
 
-from ..blending import ease
 from ..compose import Array, Motion, blend_for, drift, facing_at, join, place, steer, tempo
+from ..feet import ease
 from ..library import Library, Take, stride
 
 Rng = np.random.Generator

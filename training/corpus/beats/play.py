@@ -155,3 +155,39 @@ class Play:
     def sources(self) -> tuple[str, ...]:
         """Names of the clips that both people were made from."""
         return tuple(sorted({source for person in self.people for source in person.motion.sources}))
+
+
+@dataclass(frozen=True)
+class Done:
+    """A performed act.
+
+    Attributes:
+        start, stop: its frames on the person's timeline.
+        side: the hand or foot that leads.
+        style: the actor's manner.
+    """
+
+    start: int
+    stop: int
+    side: str | None = None
+    style: str = "normal"
+
+
+Make = Callable[[Play, int], Done]
+
+
+@dataclass(frozen=True)
+class Act:
+    """One thing that a person can do.
+
+    Attributes:
+        make: (play, person) -> how it was done.
+        needs: source actions it is made of.
+        weight: how often it is drawn.
+        room: metres that must be free in front.
+    """
+
+    make: Make
+    needs: tuple[str, ...]
+    weight: float = 1.0
+    room: float = 0.9

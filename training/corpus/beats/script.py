@@ -11,15 +11,13 @@ from typing import Any
 import numpy as np
 
 from ..compose import Array
-from ..cues import STILL
+from ..cues import STILL, Scene
 from ..library import Library, pick
-from ..scene import Scene
 from ..telling import describe
-from . import moves, passing
-from .act import Done
+from . import joined, moves
 from .acts import ACTS
 from .performer import Rng
-from .play import Play
+from .play import Done, Play
 from .stories import Pair, stories
 from .touching import TOUCH_BEATS
 
@@ -169,8 +167,8 @@ MENU: dict[str, Option] = {
     "follow": Option(moves.follow, ("walk",), 3.0, _close),
     "walk-together": Option(moves.walk_together, ("walk",), 6.0, _near),
     "walk-and": Option(moves.walk_and, ("walk", "walk-back", "wave"), 3.5, _near),
-    "walk-past": Option(passing.walk_past, ("walk",), 2.5, _far),
-    "skip": Option(passing.skip_past, ("skip",), 4.0, _far),
+    "walk-past": Option(joined.walk_past, ("walk",), 2.5, _far),
+    "skip": Option(joined.skip_past, ("skip",), 4.0, _far),
 }
 
 

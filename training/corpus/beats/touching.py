@@ -14,10 +14,9 @@ from ..contact import UP, envelope, on_body, reach
 from ..cues import STILL
 from ..library import pick, stride
 from ..touches import TOUCHES, Touches, chosen_side, help_up, hug, pat_back, pats, whisper
-from .blows import blow_at, push
+from .blows import blow_at, push, refused, throw_catch
 from .joined import arm_around_beat, carousel, hand_in_hand
 from .moves import ahead, close_in, come, leftwards
-from .offers import refused, throw_catch
 from .play import Play
 
 AFTER = 34

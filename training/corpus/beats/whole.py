@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from ..compose import Motion, join
 from ..library import Take, pick
-from .act import Act, Done, Make
-from .play import Play
+from .play import Act, Done, Make, Play
 
 
 def perform(play: Play, i: int, take: Take, *, aim: float = 0.0) -> Done:

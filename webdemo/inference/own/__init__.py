@@ -1,8 +1,7 @@
 """Models of a lab's own, named in the settings: released checkpoints of the papers, and Python classes.
 
 :mod:`.entries` reads the tables ``[models.NAME]``, :mod:`.released` and :mod:`.classes` turn each into a
-:class:`~webdemo.inference.method.Method`, :mod:`.cost` says what a checkpoint takes before it is loaded. No module
-here imports torch when it is imported.
+:class:`~webdemo.inference.method.Method`. No module here imports torch when it is imported.
 """
 
 from webdemo.inference.method import Method

@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
+import math
+import os
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from motion import InputError
+from motion.formats.files import write_text
 from webdemo.inference.method import Input, Method, Pipeline, Task, load_pipeline
 
-from .cost import Cost, Outline, cost_of, outline_of, total_memory
 from .entries import Entry
+
+LOADING = 2.1
+"""Largest memory while a network is loaded, as a multiple of its float32 weights; measured in docs/own-model.md."""
+RESERVE = 0.8e9
+"""Bytes of PyTorch, OpenVINO and a motion's own tensors."""
+Outline = dict[str, tuple[int, ...]]
+"""Tensor name → shape."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,8 +40,6 @@ class Release:
         tasks, takes, seconds, samplers, defaults, fixed, shares_passes: as in :class:`Method`.
         needed: roles of the files that it cannot do without.
         kept: beginnings of the names of tensors that are loaded; all by default.
-        moving: part of the names of the matrices that multiply every frame.
-        passes: people and halves of the guidance that a step computes.
         modes: outline → the method's modes, mode → ending of its label.
     """
 
@@ -46,8 +56,6 @@ class Release:
     shares_passes: bool = False
     needed: tuple[str, ...] = ("checkpoint",)
     kept: tuple[str, ...] = ("",)
-    moving: str
-    passes: int
     modes: Callable[[Outline], dict[str, str]] = lambda outline: {"offline": ""}
 
 
@@ -70,8 +78,6 @@ RELEASES: dict[str, Release] = {
         shares_passes=True,
         needed=("checkpoint", "mean", "std"),
         kept=("model.",),
-        moving="decoder.net.blocks.",
-        passes=4,
     ),
     "regennet": Release(
         network="ReGenNet",
@@ -84,8 +90,6 @@ RELEASES: dict[str, Release] = {
         samplers=("ddim",),
         defaults={"steps": 5, "guidance": 1.0},
         fixed={"damping": 0.0},
-        moving=".layers.",
-        passes=1,
         modes=_regennet_modes,
     ),
     "interformer": Release(
@@ -99,8 +103,6 @@ RELEASES: dict[str, Release] = {
         samplers=("ddim",),
         defaults={"steps": 1},
         fixed={"steps": 1, "guidance": 1.0, "damping": 0.0, "sampler": "ddim"},
-        moving=".layers.",
-        passes=1,
     ),
     "bigraphdiff": Release(
         network="BiGraphDiff",
@@ -112,8 +114,6 @@ RELEASES: dict[str, Release] = {
         takes=frozenset({"words"}),
         defaults={"guidance": 1.0, "steps": 50},
         fixed={"damping": 0.0, "guidance": 1.0},
-        moving="temporal_decoder_blocks.",
-        passes=1,
     ),
 }
 """By the name that a table of the settings gives as its method."""
@@ -133,12 +133,14 @@ def released_method(entry: Entry) -> Method:
         entry.file(role)
     outline = outline_of(entry.file("checkpoint"), release.network)
     _check_network(entry, release, outline)
-    cost = _cost(release, outline)
-    cost.check(entry.name, total_memory())
+    parameters = sum(math.prod(shape) for name, shape in outline.items() if name.startswith(release.kept))
+    loading = 4 * parameters * LOADING + RESERVE
+    _check_memory(entry.name, loading, total_memory())
     return Method(
         name=entry.name,
         label=entry.label,
-        summary=f"{release.summary} {release.loss} {cost.sentence()}",
+        summary=f"{release.summary} {release.loss} {parameters / 1e6:.0f} million parameters, about "
+        f"{loading / 1e9:.1f} GB of memory.",
         tasks=release.tasks,
         takes=release.takes | ({"words"} if entry.labels else set()),
         modes={mode: f"{entry.label}{ending}" for mode, ending in release.modes(outline).items()},
@@ -146,7 +148,7 @@ def released_method(entry: Entry) -> Method:
         fixed=release.fixed,
         samplers=release.samplers,
         shares_passes=release.shares_passes,
-        load=partial(_load, entry, release, cost),
+        load=partial(_load, entry, release, loading),
     )
 
 
@@ -162,13 +164,73 @@ def _check_network(entry: Entry, release: Release, outline: Outline) -> None:
     )
 
 
-def _cost(release: Release, outline: Outline) -> Cost:
-    loaded = {name: shape for name, shape in outline.items() if name.startswith(release.kept)}
-    steps = int(release.defaults.get("steps", 1))
-    return cost_of(loaded, release.moving, passes=release.passes, steps=steps)
-
-
-def _load(entry: Entry, release: Release, cost: Cost, folder: Path) -> Pipeline:
+def _load(entry: Entry, release: Release, loading: float, folder: Path) -> Pipeline:
     """The pipeline; ``folder`` is that of shipped weights, which it does not need."""
-    cost.check(entry.name)
+    _check_memory(entry.name, loading, free_memory())
     return load_pipeline(release.pipeline, entry)
+
+
+# ---- what a checkpoint holds and takes --------------------------------------------------------------
+
+
+def _check_memory(name: str, loading: float, free: float) -> None:
+    """Raises InputError if a network whose loading takes so many bytes does not fit into those that are free."""
+    if loading > free:
+        raise InputError(
+            f"The model {name} needs about {loading / 1e9:.1f} GB of memory and {free / 1e9:.1f} GB are free: "
+            "end other programs, or choose a smaller model or a larger machine."
+        )
+
+
+def free_memory(meminfo: Path = Path("/proc/meminfo")) -> float:
+    """Bytes that programs can still take; all of the machine's where the system does not say what is free."""
+    try:
+        for line in meminfo.read_text().splitlines():
+            if line.startswith("MemAvailable:"):
+                return 1024.0 * int(line.split()[1])
+    except (OSError, ValueError, IndexError):
+        pass
+    return total_memory()
+
+
+def total_memory() -> float:
+    """Bytes of memory of the machine; infinite where the system does not say."""
+    try:
+        return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
+    except (ValueError, OSError, AttributeError):
+        return math.inf
+
+
+def outline_of(path: Path, network: str) -> Outline:
+    """The outline of a checkpoint; the first look at a file imports torch, later ones read a small cache.
+
+    Raises:
+        WeightsError: if the file cannot be read as plain tensors, see :func:`models.released.read_tensors`.
+    """
+    known = _remembered(path)
+    if known is not None:
+        return known
+    from models.released import read_tensors
+
+    outline = {name: tuple(tensor.shape) for name, tensor in read_tensors(path, network=network).items()}
+    with suppress(OSError):  # a folder that cannot be written costs the next start a second
+        file = _cache(path)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_text(file, json.dumps(outline))
+    return outline
+
+
+def _remembered(path: Path) -> Outline | None:
+    try:
+        found = json.loads(_cache(path).read_text())
+        return {str(name): tuple(int(size) for size in shape) for name, shape in found.items()}
+    except (OSError, ValueError, TypeError, AttributeError):
+        return None
+
+
+def _cache(path: Path) -> Path:
+    """The cache's file for this state of a checkpoint."""
+    stat = path.stat()
+    text = f"{path.resolve()} {stat.st_size} {stat.st_mtime_ns}"
+    base = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))
+    return base / "pas-de-deux" / "outlines" / f"{hashlib.sha256(text.encode()).hexdigest()[:24]}.json"

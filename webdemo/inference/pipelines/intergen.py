@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -20,7 +21,7 @@ from models.intergen.compact import CaptionBank, CompactInterGen, load_captions,
 from models.intergen.released import ReleasedInterGen, load_released
 from models.text import MiniLM
 from models.text.clip import find_vocabulary
-from motion import Clip, Duet
+from motion import FPS, Clip, Duet, stacked_positions
 from motion.representation import NUM_FEATURES
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.scene import finish_of, in_touch
@@ -28,11 +29,15 @@ from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.acting import with_plan
 from webdemo.inference.requests.plans import BeatFinish, KeptPlan
+from webdemo.inference.requests.predict import PredictRequest, predicted
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
-from webdemo.inference.story.prompts import as_scene
-from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.story import Beat
+from webdemo.inference.story.beats import SHORTEST
+from webdemo.inference.story.request import SceneProgress, SceneRequest
+from webdemo.inference.story.sentences import as_scene
 
 from .given import Finish, Scene, scene_of
+from .predictor import PredictorPipeline
 from .scene import SceneMaker
 from .two_person import Conditioning, Passes, TwoPersonPipeline
 
@@ -290,3 +295,51 @@ class Measured:
             f"Smoothing (σ = {SMOOTHING:g} frame), constant bones and planted feet moved the joints by "
             f"{100 * float(np.mean(self.moved)):.1f} cm on average."
         )
+
+
+# ---- both people at once -------------------------------------------------------------------------
+# Futures of two people who know of each other, drawn beside their past (InterGen, section 5.4). The first moments are
+# the predictor's, which is surer of them (docs/scenes.md, *Futures*): InterGen goes on from there.
+
+
+FUTURES = 3
+"""Futures of a request."""
+_SEEN = 10.0
+"""Seconds of the past that are given to the scene; a window sees less of it."""
+_LEAD, _LEAD_SHARE = 15, 0.25
+"""Frames that the predictor makes, at most, and its share of short futures."""
+
+
+class TogetherPipeline:
+    """Continues two people as a scene without words.
+
+    Args:
+        folder: of InterGen's weights.
+        intergen: the pipeline that makes scenes.
+        predictor: continues each person alone.
+    """
+
+    def __init__(self, folder: Path, intergen: InterGenPipeline, predictor: PredictorPipeline) -> None:
+        self.name = "intergen-together"
+        self.digest = hashlib.sha256(f"{intergen.digest}{predictor.digest}".encode()).hexdigest()
+        self.intergen, self.predictor = intergen, predictor
+
+    def run(self, request: PredictRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
+        """Progress events, then one :class:`PredictResult` of :data:`FUTURES` futures, without a manifest."""
+        past = request.past
+        assert isinstance(past, Duet)  # the request sees to it
+        frames = round(request.seconds * FPS)
+        lead = min(_LEAD, round(_LEAD_SHARE * frames))
+        begun = np.concatenate([past.positions, self.predictor.predict(past.positions, lead)], axis=1)
+        seen = Duet.from_positions(begun[:, -round(_SEEN * FPS) :], fps=FPS)
+        beats = (Beat("", seconds=max((frames - lead) / FPS, SHORTEST)),)
+        asked = SceneRequest(beats=beats, motion=seen, samples=FUTURES, seed=request.seed)
+        made: tuple[Duet, ...] = ()
+        for event in self.intergen.scenes.run(asked, cancel, timer):
+            if isinstance(event, Result):
+                made = tuple(duet for duet in event.duets if isinstance(duet, Duet))
+            elif not isinstance(event, SceneProgress):
+                yield event
+        ahead = slice(seen.num_frames - lead, seen.num_frames - lead + frames)
+        futures = [stacked_positions(duet)[:, ahead].astype(np.float64) for duet in made]
+        yield predicted(request, futures)

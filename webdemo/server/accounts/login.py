@@ -15,7 +15,7 @@ from motion import InputError
 from webdemo.server.accounts.quotas import network_of
 from webdemo.server.audit import audit
 from webdemo.server.http.error_pages import account_card, never_kept, sign_in_card
-from webdemo.server.http.refused import Refused
+from webdemo.server.http.routes import Refused
 from webdemo.server.settings import Settings
 from webdemo.ui.visitor import visitor_of
 

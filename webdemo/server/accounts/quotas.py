@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from motion import InputError
-from webdemo.server.http.refused import Refused
+from webdemo.server.http.routes import Refused
 from webdemo.server.settings import Settings
 from webdemo.ui.places import AT_ONCE
 

@@ -18,7 +18,7 @@ from webdemo.server.audit import audit
 from webdemo.ui.visitor import visitor_of
 
 from .error_pages import never_kept
-from .refused import Refused
+from .routes import Refused
 
 if TYPE_CHECKING:
     from webdemo.server.lab import Lab

@@ -11,7 +11,7 @@ from python_multipart.exceptions import FormParserError
 from python_multipart.multipart import MultipartParser, parse_options_header
 from starlette.types import Message, Receive
 
-from .refused import Refused
+from .routes import Refused
 
 
 def declared_length(headers: dict[bytes, bytes]) -> int:

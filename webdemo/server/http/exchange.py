@@ -15,8 +15,7 @@ from webdemo.server.settings import on_a_space
 
 from .bodies import BoundedBody
 from .error_pages import message_card
-from .refused import Refused
-from .routes import is_embed, is_public_page
+from .routes import Refused, is_embed, is_public_page
 
 _POLICY = (
     "default-src 'none'",

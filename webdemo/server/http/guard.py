@@ -22,9 +22,17 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from acts.config import is_loopback
 from motion import InputError
-from webdemo.server.accounts.proxy import admin_by_proxy, person_by_proxy
 from webdemo.server.accounts.quotas import Quotas, RateLimit, network_of
-from webdemo.server.accounts.visitors import VISITOR_COOKIE, Bindings, Visitors, new_token, read_cookies, set_cookie
+from webdemo.server.accounts.visitors import (
+    VISITOR_COOKIE,
+    Bindings,
+    Visitors,
+    admin_by_proxy,
+    new_token,
+    person_by_proxy,
+    read_cookies,
+    set_cookie,
+)
 from webdemo.server.audit import SENDER
 from webdemo.server.logs import REFERENCE
 from webdemo.server.settings import Settings, on_a_space
@@ -34,10 +42,9 @@ from webdemo.ui.visitor import Visitor
 
 from .bodies import BoundedBody, UploadForm, declared_length, too_large
 from .exchange import Exchange
-from .metrics import Figures
+from .health import Figures
 from .payloads import Payloads
-from .refused import Refused
-from .routes import API, LIVE, MESSAGE, is_public_page, is_upload, needs_no_sign_in, path_below, route_of
+from .routes import API, LIVE, MESSAGE, Refused, is_public_page, is_upload, needs_no_sign_in, path_below, route_of
 
 log = logging.getLogger(__name__)
 

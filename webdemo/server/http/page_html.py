@@ -1,15 +1,23 @@
-"""Caches what opens the page: Gradio would copy and traverse its whole configuration for every visitor."""
+"""Caches what opens the page, since Gradio would copy and traverse its whole configuration for every visitor; and keeps
+the server's state of each open page and API client small."""
 
 from __future__ import annotations
 
 import asyncio
-from collections import OrderedDict
+import gzip
+import re
+from collections import deque
+from functools import lru_cache
+from typing import Any
 
-from starlette.middleware.gzip import GZipMiddleware
+from gradio.blocks import Blocks
+from gradio.routes import App
+from gradio.state_holder import SessionState, StateHolder
+from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 KEPT = 16
-"""Most cached variants: they differ by host name, scheme and whether the answer may be packed."""
+"""Most packed answers that are kept: they differ by path, scheme and host name."""
 PATHS = ("/", "/config")
 _ANY = b"any-host.invalid"
 """Stands for the name by which a visitor calls this server; the guard lets no name in that is more than a name."""
@@ -26,7 +34,8 @@ class PageCache:
     """An ASGI middleware that answers GET of :data:`PATHS` from memory, compressed; it runs inside the access checks.
 
     The answers are the same for all visitors and whatever the query, which scripts read: personal content arrives
-    through events. So they hold no secret that their compressed size could give away.
+    through events. So they hold no secret that their compressed size could give away. The application makes each of
+    them once, under the name :data:`_ANY`, which gives way to the name by which a visitor calls this server.
 
     Args:
         app: renders the page.
@@ -34,81 +43,115 @@ class PageCache:
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
-        self._page = GZipMiddleware(_Page(app), compresslevel=_LEVEL)
-        self._kept: OrderedDict[tuple[object, ...], list[Message]] = OrderedDict()
+        self._made: dict[tuple[str, str], Response] = {}
         self._making = asyncio.Lock()
+        self._packed = lru_cache(KEPT)(lambda path, scheme, host: gzip.compress(self._body(path, scheme, host), _LEVEL))
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answers a request for the page; passes every other one on."""
         if scope["type"] != "http" or scope["method"] != "GET" or scope["path"] not in PATHS:
             await self.app(scope, receive, send)
             return
-        sent = dict(scope["headers"])
-        packed = b"gzip" in sent.get(b"accept-encoding", b"")
-        heard = [pair for pair in scope["headers"] if pair[0] not in (b"accept-encoding", b"cookie")]
-        heard += [(b"accept-encoding", b"gzip")] if packed else []
-        scope = {**scope, "headers": heard, "query_string": b""}
-        key = (scope["path"], scope["scheme"], sent.get(b"host"), packed)
-        if (kept := self._kept.get(key)) is None:
-            async with self._making:  # whoever comes meanwhile waits for what is being made
-                if (kept := self._kept.get(key)) is None:
-                    kept = await self._made(key, scope, receive)
-        for message in kept:
-            await send(_copy(message))
+        sent, key = dict(scope["headers"]), (scope["path"], scope["scheme"])
+        async with self._making:  # whoever comes meanwhile waits for what is being made
+            made = self._made.get(key) or await self._make(scope, receive)
+            if made.status_code == 200:
+                self._made[key] = made
+        answer, host = Response(status_code=made.status_code), sent.get(b"host", b"")
+        answer.raw_headers = [pair for pair in made.raw_headers if pair[0] != b"content-length"]
+        answer.headers["vary"] = "Accept-Encoding"
+        if b"gzip" in sent.get(b"accept-encoding", b"") and key in self._made:
+            answer.body = self._packed(*key, host)
+            answer.headers["content-encoding"] = "gzip"
+        else:
+            answer.body = bytes(made.body).replace(_ANY, host)
+        answer.headers["content-length"] = str(len(answer.body))
+        await answer(scope, receive, send)
 
-    async def _made(self, key: tuple[object, ...], scope: Scope, receive: Receive) -> list[Message]:
-        """The messages of an answer, which is kept if it is whole."""
+    def _body(self, path: str, scheme: str, host: bytes) -> bytes:
+        """An answer under the name by which it is asked."""
+        return bytes(self._made[path, scheme].body).replace(_ANY, host)
+
+    async def _make(self, scope: Scope, receive: Receive) -> Response:
+        """The application's own answer; :data:`_ASKED` is put at the beginning of a page's head."""
         made: list[Message] = []
 
         async def keep(message: Message) -> None:
-            made.append(_copy(message))
+            made.append(message)
 
-        await self._page(scope, receive, keep)
-        if made and made[0].get("status") == 200:
-            self._kept[key] = made
-            while len(self._kept) > KEPT:
-                self._kept.popitem(last=False)
-        return made
+        dropped = (b"accept-encoding", b"cookie", b"host")
+        heard = [pair for pair in scope["headers"] if pair[0] not in dropped]
+        await self.app({**scope, "headers": [*heard, (b"host", _ANY)], "query_string": b""}, receive, keep)
+        body = b"".join(message.get("body", b"") for message in made)
+        answer = Response(body.replace(b"<head>", b"<head>" + _ASKED, 1), status_code=made[0]["status"])
+        answer.raw_headers = list(made[0]["headers"])
+        return answer
 
 
-class _Page:
-    """An ASGI application that has each answer of another made once, whatever the host's name, and gives it the name.
+# ---- the state of open pages ---------------------------------------------------------------------
 
-    :data:`_ASKED` is put at the beginning of a page's head.
 
-    Args:
-        app: makes them; their addresses are those of :data:`_ANY`.
+CALLS = 64
+"""States kept of single API calls. No client returns to one, and they must not displace those of pages."""
+_CALL = re.compile(r"\A[0-9a-f]{32}\Z")
+"""Gradio's session name of a call outside any session."""
+
+
+class _Undescribed:
+    """Blocks that report no components, so none gets described."""
+
+    def __init__(self, blocks: Blocks) -> None:
+        self._all, self.blocks = blocks, ()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._all, name)
+
+
+class LeanState(SessionState):
+    """Gradio's state of a page or client, without the current description of every component.
+
+    Gradio needs that description for links to a page's state, which :class:`webdemo.server.http.guard.Guard` forbids.
+    It makes up nearly all of a session's memory and most of the time of its first event.
     """
 
-    def __init__(self, app: ASGIApp) -> None:
-        self.app = app
-        self._made: dict[tuple[str, str], tuple[Message, bytes]] = {}
+    def __init__(self, blocks: Blocks) -> None:
+        super().__init__(_Undescribed(blocks))  # type: ignore[arg-type]  # it has all attributes that are read
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answers under the name by which it is asked."""
-        key = scope["path"], scope["scheme"]
-        start, body = self._made.get(key) or await self._make(scope, receive)
-        if start["status"] == 200:
-            self._made[key] = start, body
-        body = body.replace(_ANY, dict(scope["headers"]).get(b"host", b""))
-        headers = [pair for pair in start["headers"] if pair[0] != b"content-length"]
-        headers.append((b"content-length", str(len(body)).encode()))
-        await send({**start, "headers": headers})
-        await send({"type": "http.response.body", "body": body})
+    def _update_config(self, key: int) -> None:
+        pass
 
-    async def _make(self, scope: Scope, receive: Receive) -> tuple[Message, bytes]:
-        made: list[Message] = []
-
-        async def keep(message: Message) -> None:
-            made.append(_copy(message))
-
-        heard = [pair for pair in scope["headers"] if pair[0] != b"host"]
-        await self.app({**scope, "headers": [*heard, (b"host", _ANY)]}, receive, keep)
-        start = next(message for message in made if message["type"] == "http.response.start")
-        body = b"".join(message["body"] for message in made if message.get("body"))
-        return start, body.replace(b"<head>", b"<head>" + _ASKED, 1)
+    def _update_value_in_config(self, key: int, value: Any) -> None:
+        pass
 
 
-def _copy(message: Message) -> Message:
-    """A message with a copy of its headers, since outer middleware adds to them."""
-    return {**message, "headers": list(message["headers"])} if "headers" in message else message
+class LeanStates(StateHolder):
+    """The most recent states: ``capacity`` of pages and clients, :data:`CALLS` of single calls."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._calls: deque[str] = deque()
+
+    def __getitem__(self, session_id: str) -> SessionState:
+        with self.lock:
+            if session_id not in self.session_data:
+                self.session_data[session_id] = LeanState(self.blocks)
+                if _CALL.match(session_id):
+                    self._calls.append(session_id)
+                    if len(self._calls) > CALLS:
+                        self._drop(self._calls.popleft())
+        return super().__getitem__(session_id)
+
+    def _drop(self, session_id: str) -> None:
+        self.session_data.pop(session_id, None)
+        self.time_last_used.pop(session_id, None)
+
+
+def kept_in_cache(page: Blocks) -> set[str]:
+    """Files in Gradio's cache that belong to the page itself, not to a visitor's events."""
+    return {str(file) for block in page.blocks.values() for file in getattr(block, "keep_in_cache", ())}
+
+
+def keep_states_lean(app: App, page: Blocks) -> None:
+    """Gives the application of a page :class:`LeanStates`."""
+    app.state_holder = LeanStates()
+    app.state_holder.set_blocks(page)

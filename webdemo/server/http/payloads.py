@@ -17,7 +17,7 @@ from pydantic import TypeAdapter, ValidationError
 from webdemo.server.store.scratch import owns
 from webdemo.ui.components.accepts import Upload, accepts, accepts_event
 
-from .refused import Refused
+from .routes import Refused
 
 _FOREIGN = "A file must be uploaded before it can be used: choose it again."
 

@@ -19,7 +19,7 @@ from webdemo.ui.public_html import FILES, Place, embed_html, payload_of, player_
 from webdemo.ui.visitor import visitor_of
 from webdemo.view.payload import Payload
 
-from .refused import Refused
+from .routes import Refused
 
 KEPT = 32
 """Motions that are kept as the player takes them, the last ones asked for."""

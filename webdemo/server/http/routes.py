@@ -1,10 +1,8 @@
-"""The paths of the server: which there are, what they are called in metrics, and which no request may name."""
+"""The paths of the server: their names in metrics, and those that no request may name; and the refusal of a request."""
 
 from __future__ import annotations
 
 import re
-
-from .refused import Refused
 
 PUBLIC = ("/login", "/logout", "/healthz", "/metrics")
 """Paths that need no sign-in; /metrics has its own rule."""
@@ -110,3 +108,20 @@ def route_of(path: str) -> str:
         return MESSAGE
     first = "/" + path[1:].partition("/")[0]
     return first if path == "/" or first in _ROUTES else "(other)"
+
+
+# ---- refusals ------------------------------------------------------------------------------------
+
+
+class Refused(Exception):
+    """A refused request.
+
+    Attributes:
+        status: the HTTP status.
+        sentence: the message for the client.
+        reason: its label in the metrics.
+    """
+
+    def __init__(self, status: int, sentence: str, reason: str) -> None:
+        super().__init__(sentence)
+        self.status, self.sentence, self.reason = status, sentence, reason

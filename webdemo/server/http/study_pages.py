@@ -22,7 +22,7 @@ from webdemo.ui.components.player import PLAYER_FOLDER, PLOTLY_JS
 from webdemo.ui.visitor import visitor_of
 from webdemo.view.payload import Payload, build_payload, grid_sample, sample_payload
 
-from .refused import Refused
+from .routes import Refused
 
 STUDY_FOLDER = PLAYER_FOLDER.parent / "study"
 _NO_COOKIE = "Allow this page to keep a cookie, so that each of your votes counts once: then reload it."

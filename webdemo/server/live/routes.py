@@ -20,8 +20,7 @@ from motion.video.landmarks import camera_number
 from webdemo.ui.visitor import Visitor, visitor_of
 from webdemo.view.payload import player_payload
 
-from .messages import read_fields
-from .stream import StreamEnded
+from .stream import StreamEnded, read_fields
 from .streams import StreamRefused, Streams, StreamUnknown
 from .turns import Replaced
 

@@ -17,8 +17,7 @@ from webdemo.inference.requests.live import PARTNERS
 from webdemo.server.accounts.quotas import OverQuota, Quota
 from webdemo.ui.visitor import Visitor
 
-from .messages import read_message
-from .stream import LiveStream, StreamEnded
+from .stream import LiveStream, StreamEnded, read_message
 from .turns import STOPPING, Steps, StepTurns
 
 log = logging.getLogger(__name__)

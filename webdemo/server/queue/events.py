@@ -15,7 +15,7 @@ from fastapi import HTTPException, Request
 from gradio.queueing import Event, EventQueue, Queue
 
 from webdemo.server.accounts.quotas import OverQuota, Quota
-from webdemo.server.http.metrics import Figures
+from webdemo.server.http.health import Figures
 from webdemo.ui.visitor import visitor_of
 
 from .turns import Accounts

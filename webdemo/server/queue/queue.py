@@ -15,7 +15,7 @@ from typing import Any
 from motion import InputError
 from webdemo.inference.run import Cancelled, CancelToken, Progress, Result
 from webdemo.server.accounts.quotas import OverQuota, Quota
-from webdemo.server.http.metrics import Figures
+from webdemo.server.http.health import Figures
 from webdemo.ui.runs import EngineLike, Waiting
 from webdemo.ui.visitor import Visitor, visitor
 

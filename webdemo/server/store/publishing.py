@@ -95,24 +95,17 @@ class Publishing:
     @sentences()
     def pages(self, owner: str) -> Sequence[PublicPage]:
         """The owner's pages that have not ended, newest first."""
-        return [page for whose, page in self._all(Published.owner == owner) if whose and whose == owner]
-
-    @sentences()
-    def everybodys(self) -> Sequence[tuple[str, PublicPage]]:
-        """The owner and the page, for all that have not ended, newest first."""
-        return self._all()
-
-    def _all(self, *conditions: Any) -> list[tuple[str, PublicPage]]:
+        mine = (Published.owner == owner, Published.owner != "", Published.until > time.time())
         query = (
             select(Published)
             .join(Run)
             .outerjoin(Note)
             .options(_WHOLE)
-            .where(Published.until > time.time(), Note.removed.is_(None), *conditions)
+            .where(*mine, Note.removed.is_(None))
             .order_by(Published.created.desc(), Published.key)
         )
         with self.database.session() as session:
-            return [(row.owner, _page(row, entry_of(row.run).title)) for row in session.scalars(query)]
+            return [_page(row, entry_of(row.run).title) for row in session.scalars(query)]
 
     @sentences()
     def revoke(self, key: str, owner: str) -> None:

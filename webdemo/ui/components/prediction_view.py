@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from motion import Clip, Duet, stacked_positions
 from webdemo.inference.methods import label_of, methods
 from webdemo.inference.requests.predict import PredictResult, with_people
-from webdemo.view.curves import Curve
-from webdemo.view.payload import Payload, build_payload, sample_payload
+from webdemo.view.payload import Curve, Payload, build_payload, sample_payload
 
 from .show import with_shown_roles
 

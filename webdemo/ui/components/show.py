@@ -14,8 +14,7 @@ from motion import Clip, Duet
 from motion.formats import read
 from motion.metrics import Contact
 from webdemo.inference.run import Result
-from webdemo.view.curves import Curve
-from webdemo.view.payload import Payload, build_payload, player_payload, sample_payload
+from webdemo.view.payload import Curve, Payload, build_payload, player_payload, sample_payload
 
 ROUNDS = 3
 """Rounds that an example plays before it rests, so that a page left open costs nothing."""
