@@ -14,12 +14,13 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
+from motion.limbs import solve_two_bones
 from motion.skeleton import LEGS, SMPL22
+from motion.smoothing import minimum_jerk
 from motion.transforms import heading
 from motion.vectors import unit
 
 from .compose import ARMS, FPS, Array
-from .feet import two_bone
 
 UP = np.array([0.0, 1.0, 0.0])
 SPINE = tuple(SMPL22.index(name) for name in ("spine1", "spine2", "spine3"))
@@ -44,13 +45,9 @@ _DESCENDANTS = {joint: _below(joint) for joint in (*SPINE, NECK)}
 def envelope(frames: int, start: int, arrive: int, leave: int, end: int) -> Array:
     """(frames,) 0 up to ``start``, 1 from ``arrive`` to ``leave``, 0 from ``end``; minimum jerk between."""
     time = np.arange(frames, dtype=np.float64)
-    rise = np.clip((time - start) / max(arrive - start, 1), 0, 1)
-    fall = np.clip((end - time) / max(end - leave, 1), 0, 1)
-    return _minimum_jerk(rise) * _minimum_jerk(fall)
-
-
-def _minimum_jerk(t: Array) -> Array:
-    return t**3 * (10 + t * (6 * t - 15))
+    rise = (time - start) / max(arrive - start, 1)
+    fall = (end - time) / max(end - leave, 1)
+    return minimum_jerk(rise) * minimum_jerk(fall)
 
 
 def impulse(frames: int, start: int, *, rise: int = 5, fall: int = 22) -> Array:
@@ -135,7 +132,7 @@ def shift_hips(positions: Array, offset: Array) -> Array:
     angle = heading(positions)
     forward = np.stack([np.sin(angle), np.zeros(len(angle)), np.cos(angle)], axis=-1)
     for hip, knee, ankle, toe in LEGS:
-        moved[:, knee], moved[:, ankle] = two_bone(
+        moved[:, knee], moved[:, ankle] = solve_two_bones(
             moved[:, hip], moved[:, knee], moved[:, ankle], positions[:, ankle], forward
         )
         moved[:, toe] = moved[:, ankle] + positions[:, toe] - positions[:, ankle]

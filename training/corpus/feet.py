@@ -1,4 +1,4 @@
-"""Detects planted feet and keeps them where they landed, by two-bone IK of the legs; blends poses."""
+"""Detects planted feet and keeps them where they landed, by IK of the legs; blends poses."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 from scipy.spatial.transform import Rotation
 
+from motion.limbs import solve_two_bones
 from motion.skeleton import LEGS, SMPL22
+from motion.smoothing import minimum_jerk
 from motion.transforms import heading
 from motion.vectors import runs
 
@@ -59,7 +61,7 @@ def plant_feet(positions: Array, contacts: NDArray[np.bool_], *, stride: float =
     positions[..., 1] -= gaussian_filter1d(maximum_filter1d(np.clip(sink, 0, 0.15), 9), 3.0)[:, None]
     forward = np.stack([np.sin(heading(positions)), np.zeros(len(positions)), np.cos(heading(positions))], -1)
     for target, (hip, knee, ankle, toe) in zip(targets, LEGS, strict=True):
-        positions[:, knee], positions[:, ankle] = two_bone(
+        positions[:, knee], positions[:, ankle] = solve_two_bones(
             positions[:, hip], positions[:, knee], positions[:, ankle], target[:, 0], forward
         )
         positions[:, toe] = positions[:, ankle] + target[:, 1] - target[:, 0]
@@ -124,33 +126,6 @@ def foot_shift(toe: Array, contact: NDArray[np.bool_], steps: list[int], *, half
     return gaussian_filter1d(shift, 0.7, axis=0, mode="nearest")
 
 
-def two_bone(root: Array, middle: Array, end: Array, target: Array, pole: Array) -> tuple[Array, Array]:
-    """Two-bone IK: places of the middle joint and the end when the end reaches for ``target``.
-
-    All arguments (T, 3); the bend keeps to the plane in which the limb is bent now, and leans to ``pole``
-    where the limb is nearly straight. A target out of reach is approached as far as the bones allow.
-
-    Returns:
-        (T, 3) middle joint and (T, 3) end; bone lengths are those of the input.
-    """
-    upper = np.linalg.norm(middle - root, axis=-1, keepdims=True)
-    lower = np.linalg.norm(end - middle, axis=-1, keepdims=True)
-    reach = target - root
-    distance = np.linalg.norm(reach, axis=-1, keepdims=True)
-    along = reach / np.maximum(distance, 1e-6)
-    distance = np.clip(distance, np.abs(upper - lower) + 1e-3, (upper + lower) * 0.9995)
-    old = end - root
-    old = old / np.maximum(np.linalg.norm(old, axis=-1, keepdims=True), 1e-6)
-    offset = middle - root
-    offset = offset - np.sum(offset * old, axis=-1, keepdims=True) * old
-    bend = offset + 0.03 * pole
-    bend = bend - np.sum(bend * along, axis=-1, keepdims=True) * along
-    bend = bend / np.maximum(np.linalg.norm(bend, axis=-1, keepdims=True), 1e-6)
-    cosine = (upper**2 + distance**2 - lower**2) / (2 * distance)
-    height = np.sqrt(np.maximum(upper**2 - cosine**2, 0))
-    return root + along * cosine + bend * height, root + along * distance
-
-
 # ---- blending ------------------------------------------------------------------------------------
 
 
@@ -179,5 +154,4 @@ def slerp(first: Array, second: Array, weight: Array) -> Array:
 
 def ease(steps: int) -> Array:
     """(steps,) from just above 0 to just below 1 with zero slope and curvature at both ends."""
-    t = (np.arange(steps) + 1.0) / (steps + 1.0)
-    return t**3 * (10 + t * (6 * t - 15))
+    return minimum_jerk((np.arange(steps) + 1.0) / (steps + 1.0))

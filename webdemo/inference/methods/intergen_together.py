@@ -16,5 +16,5 @@ METHOD = Method(
     seconds=(0.5, 4.0),
     weights="intergen",
     needs=("intergen", "motion-mlp"),
-    load=partial(load_pipeline, "together.TogetherPipeline"),
+    load=partial(load_pipeline, "intergen.TogetherPipeline"),
 )
