@@ -83,8 +83,9 @@ class PageCache:
         heard = [pair for pair in scope["headers"] if pair[0] not in dropped]
         await self.app({**scope, "headers": [*heard, (b"host", _ANY)], "query_string": b""}, receive, keep)
         body = b"".join(message.get("body", b"") for message in made)
-        answer = Response(body.replace(b"<head>", b"<head>" + _ASKED, 1), status_code=made[0]["status"])
-        answer.raw_headers = list(made[0]["headers"])
+        start = next(message for message in made if message["type"] == "http.response.start")
+        answer = Response(body.replace(b"<head>", b"<head>" + _ASKED, 1), status_code=start["status"])
+        answer.raw_headers = list(start["headers"])
         return answer
 
 
