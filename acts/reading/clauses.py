@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from acts.events import Event
 
-from .syntax import is_adverb, is_kept
+from .syntax import is_adverb, is_kept, is_noun_or_side
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ class ClauseTree:
         return self._clauses[token.i]
 
     def _has_verb(self, token: Token) -> bool:
-        if token.i in self._held or is_adverb(token.lower_):
+        if token.i in self._held or is_adverb(token.lower_) or is_noun_or_side(token):
             return False
         if token.dep_ == "amod" and token.tag_ not in ("VBP", "VBZ"):  # "the sleeping baby"
             return (

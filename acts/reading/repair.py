@@ -9,6 +9,7 @@ from acts.frames import PREPOSITIONS
 
 from . import wordnet
 from .people import A_NAME, B_NAME
+from .syntax import is_noun_or_side
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -52,11 +53,15 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
     for token in doc:
         last = "" if token.is_sent_start else last
         form = forms.get(token.lower_)
-        if form is not None and (
-            (_is_other(token) and (_after_person(token, form[1]) or _opens(token, form[1])))
-            or _coordinated(token, form[1], last)
-            or _is_ordered(token, form[1])
-            or _is_kept(token, form[1])
+        if (
+            form is not None
+            and not is_noun_or_side(token)
+            and (
+                (_is_other(token) and (_after_person(token, form[1]) or _opens(token, form[1])))
+                or _coordinated(token, form[1], last)
+                or _is_ordered(token, form[1])
+                or _is_kept(token, form[1])
+            )
         ):
             found[token.idx] = (_safe(token, form[1]), form[0])
             last = form[1]
@@ -71,6 +76,7 @@ def suspects(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[
         token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0])
         for token in doc
         if token.lower_ in forms
+        and not is_noun_or_side(token)
         and forms[token.lower_][1] in ("", "s", "ed")
         and (token.pos_ not in ("VERB", "AUX", "ADP", "ADV") or token.dep_ in ("compound", "amod", "nmod"))
     }

@@ -143,6 +143,19 @@ def is_adverb(text: str) -> bool:
     return is_word(text[:-2]) or is_word(f"{text[:-3]}y")
 
 
+def is_noun_or_side(token: Token) -> bool:
+    """True for what looks like a verb and is none: "leaning left", "then both hands", "to chest level"."""
+    if not token.i or any(c.dep_ in ("dobj", "nsubj") for c in token.children):
+        return False
+    before, part = token.nbor(-1), vocabulary().part
+    if token.lower_ == "left":
+        return before.pos_ == "VERB"
+    if token.lower_ in ("level", "height"):
+        return bool(part(before.lemma_.lower()))
+    sided = before.lower_ in ("both", "left", "right") or before.tag_ == "PRP$"
+    return sided and token.tag_ == "NNS" and bool(part(token.lemma_.lower()))
+
+
 def is_kept(token: Token) -> bool:
     """True for the participle of "keeps her back turned", which says how something of one's own is held."""
     keeps = token.tag_ in ("VBN", "VBD") and token.dep_ == "dep" and token.head.lemma_ in ("keep", "have", "hold")

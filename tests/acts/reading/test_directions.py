@@ -28,6 +28,8 @@ def told(text: str) -> Told:
         ("They are both seated.", [("sit-down", "ab", None)]),
         ("They stretch before a run.", [("stretch", "ab", None), ("run-together", "ab", None)]),
         ("A shows B how to bow.", [("bow", "a", None)]),
+        ("A lifts both arms while leaning left.", [("raise-arm", "a", None), ("lean", "a", None)]),
+        ("B holds the ball with the right hand, then both hands.", [("hold-thing", "b", None)]),
     ],
 )
 def test_a_direction_is_read(text: str, acts: Told) -> None:
