@@ -12,7 +12,9 @@ import pytest
 from motion import InputError
 from tests.server.lab import ROOT
 from webdemo.benchmark import load, server
-from webdemo.benchmark.load import GOALS, KINDS, Tally, goals_missed
+from webdemo.benchmark.attackers import ATTACKERS
+from webdemo.benchmark.jobs import KINDS
+from webdemo.benchmark.load import GOALS, LivePerson, Tally, attacked_figures, goals_missed
 from webdemo.cli import main
 
 pytestmark = pytest.mark.slow
@@ -40,8 +42,12 @@ def test_every_kind_of_job_comes_back(tmp_path: Path, monkeypatch: pytest.Monkey
     assert figures["runs_done"] >= people == figures["people_served"], figures
     assert figures["runs_lost"] == figures["runs_swapped"] == figures["runs_refused_or_failed"] == 0, figures
     assert figures["memory_at_rest_before_mb"] > 0 and figures["memory_most_mb"] > 0
-    assert figures["page_worst_seconds"] > 0 < figures["healthz_worst_seconds"]
-    assert figures["live_frames_a_second"] > 0 and not figures["live_refused"], figures
+    assert figures["page_worst_seconds"] > 0 < figures["attacked_healthz_worst_seconds"]
+    assert figures["attack_events_taken"] > 0 < figures["attack_events_refused"], figures
+    assert figures["attack_messages_answered"] > 0 < figures["attack_messages_replaced"], figures
+    assert figures["attacked_runs_done"] >= people == len(figures["attacked_waits_over_fair_share"]), figures
+    assert figures["attacked_runs_lost"] == figures["attacked_runs_refused_or_failed"] == 0, figures
+    assert figures["attacked_live_wait_over_fair_share"] > 0 < figures["attacked_live_frames_over_fair_share"]
 
 
 def test_a_server_that_ends_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -57,6 +63,25 @@ def test_shares_are_compared_by_work() -> None:
     figures = tally.figures()
     assert figures["longest_wait_over_fair_share"] == 1.5
     assert figures["memory_most_mb"] == 9.0 and figures["memory_last_over_first_quarter"] == 1.2
+
+
+def test_what_attackers_leave_is_compared_with_a_fair_share() -> None:
+    """As many attackers as people are entitled to half, so that waits twice as long are fair."""
+    calm = Tally(kinds={0: {"generate": [(1.0, 1.0)], "render": [(4.0, 1.0)]}, 1: {"generate": [(3.0, 1.0)]}})
+    attacked = Tally(
+        kinds={0: {"generate": [(9.0, 1.0), (15.0, 5.0)]}, 1: {"generate": [(8.0, 1.0)], "render": [(40.0, 1.0)]}}
+    )
+    calm.live = LivePerson(delays=[0.2, 0.1, 0.3], frames=60, seconds=2.0)
+    attacked.live = LivePerson(delays=[1.2], frames=30, seconds=2.0)
+    figures = attacked_figures(calm, attacked, ATTACKERS)
+    assert figures["attacked_waits_over_fair_share"] == [1.0, 4.0]
+    assert figures["attacked_longest_wait_over_fair_share"] == 4.0
+    assert figures["attacked_live_wait_over_fair_share"] == pytest.approx(2.0)
+    assert figures["attacked_live_frames_over_fair_share"] == 1.0
+    calm.live = LivePerson(refused="The server is too busy.")
+    figures = attacked_figures(calm, attacked, ATTACKERS)
+    assert "attacked_live_wait_over_fair_share" not in figures
+    assert figures["live_refused"] == ["The server is too busy."]
 
 
 def test_the_command_says_which_goals_are_missed(

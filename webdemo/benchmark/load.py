@@ -1,5 +1,6 @@
 """Load test: many people send mixed jobs to a server on loopback, and every answer is checked.
 
+In the second half of the time attackers join them (:mod:`.attackers`).
 ``python -m webdemo benchmark --load --people 20 --minutes 2``.
 """
 
@@ -21,12 +22,11 @@ import httpx
 import numpy as np
 
 from motion import FPS, InputError
-from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
-from webdemo.server.queue.turns import units
 
-from . import PROMPTS
+from .attackers import ATTACKERS, attack
+from .jobs import KINDS, NOBODY, SHEET, Job
 from .server import ROOT, serving, wait_until
 
 PROBE_EVERY = 1.0
@@ -46,6 +46,13 @@ GOALS: dict[str, tuple[float, float]] = {
     "page_worst_seconds": (0, 1),
     "healthz_worst_seconds": (0, 1),
     "memory_last_over_first_quarter": (0, 1.05),
+    "attacked_longest_wait_over_fair_share": (0, 3),
+    "attacked_runs_lost": (0, 0),
+    "attacked_runs_swapped": (0, 0),
+    "attacked_runs_refused_or_failed": (0, 0),
+    "attacked_healthz_worst_seconds": (0, 1),
+    "attacked_live_wait_over_fair_share": (0, 3),
+    "attacked_live_frames_over_fair_share": (1 / 3, float("inf")),
 }
 """The goals of a server for a lab: the least and the most of each figure."""
 REST_SECONDS = 6.0
@@ -59,11 +66,13 @@ class LivePerson:
 
     Attributes:
         refused: the sentence with which the server refused them.
+        delays: seconds from a message to its answer.
         frames: that were answered.
         seconds: of the stream.
     """
 
     refused: str = ""
+    delays: list[float] = field(default_factory=list)
     frames: int = 0
     seconds: float = 0.0
 
@@ -118,8 +127,6 @@ class Tally:
             "page_worst_seconds": max(self.page, default=None),
             "healthz_median_seconds": statistics.median(self.healthz) if self.healthz else None,
             "healthz_worst_seconds": max(self.healthz, default=None),
-            "live_refused": self.live.refused if self.live else "",
-            "live_frames_a_second": self.live.frames / self.live.seconds if self.live and self.live.seconds else None,
             "memory_most_mb": max(self.memory, default=0.0),
             "memory_last_over_first_quarter": last / first if first else None,
         }
@@ -136,6 +143,46 @@ def seconds_a_unit(waits: Sequence[tuple[float, float]]) -> float:
     return sum(took for took, _ in waits) / sum(work for _, work in waits)
 
 
+def attacked_figures(calm: Tally, attacked: Tally, people: int) -> dict[str, Any]:
+    """Figures of what people got while they were attacked, over their fair share.
+
+    An attacker is entitled to as much as anybody else, so a fair share is what a person got before, divided among as
+    many people more. A live stream is one of two then. Waiting is weighed by work: a short run waits for the same turn
+    as a long one, and alone says little of its owner's share.
+    """
+    usual: dict[str, list[tuple[float, float]]] = {}
+    for kinds in calm.kinds.values():
+        for endpoint, waits in kinds.items():
+            usual.setdefault(endpoint, []).extend(waits)
+    more = (people + ATTACKERS) / people
+    ratios = []
+    for kinds in attacked.kinds.values():
+        known = {endpoint: waits for endpoint, waits in kinds.items() if endpoint in usual}
+        waited = sum(took for waits in known.values() for took, _ in waits)
+        fair = sum(work * seconds_a_unit(usual[endpoint]) for endpoint, waits in known.items() for _, work in waits)
+        if known:
+            ratios.append(waited / fair / more)
+    figures = {
+        f"attacked_{name}": value
+        for name, value in attacked.figures().items()
+        if name.startswith(("runs_", "first_errors", "people_served", "page_", "healthz_", "memory_most"))
+    }
+    figures["attacked_waits_over_fair_share"] = sorted(round(ratio, 2) for ratio in ratios)
+    figures["attacked_longest_wait_over_fair_share"] = max(ratios, default=None)
+    before, after = calm.live, attacked.live
+    figures["live_refused"] = [person.refused for person in (before, after) if person and person.refused]
+    if before and after and before.delays and after.delays:
+        a_frame = [sum(person.delays) / person.frames for person in (before, after)]  # seconds
+        frames = [person.frames / person.seconds for person in (before, after)]
+        figures |= {
+            "live_frames_a_second": frames[0],
+            "attacked_live_frames_a_second": frames[1],
+            "attacked_live_wait_over_fair_share": a_frame[1] / (2 * a_frame[0]),
+            "attacked_live_frames_over_fair_share": 2 * frames[1] / frames[0],
+        }
+    return figures
+
+
 def goals_missed(figures: Mapping[str, Any]) -> list[str]:
     """The names of the :data:`GOALS` that the figures miss, or that were not measured."""
     return [
@@ -148,7 +195,7 @@ def run_load(*, people: int, minutes: float, steps: int = 8, seed: int = 0) -> d
 
     Args:
         people: number of people at once; each sends the next request when the result is there.
-        minutes: duration; runs that are under way at its end are finished.
+        minutes: duration, half of it beside the attackers; runs that are under way at its end are finished.
         steps: the most denoising steps that a job has; jobs differ in prompt, length, samples and steps.
         seed: of the mix of jobs.
 
@@ -167,22 +214,28 @@ def run_load(*, people: int, minutes: float, steps: int = 8, seed: int = 0) -> d
 
 
 async def _load(url: str, people: int, minutes: float, steps: int, seed: int) -> dict[str, Any]:
-    tally = Tally()
+    calm, attacked = Tally(), Tally()
     limits = httpx.Limits(max_connections=None)
     async with httpx.AsyncClient(base_url=url, timeout=httpx.Timeout(60, read=None), limits=limits) as client:
         # The first run of each kind imports and prepares things, so it comes before memory is read.
         await _crowd(client, Tally(), max(people, len(KINDS)), 0.0, steps, f"warm-up {seed}")
         await asyncio.sleep(REST_SECONDS)
         memory = await _memory(client)
-        took = await _crowd(client, tally, people, 60 * minutes, steps, f"{seed}")
+        took = await _crowd(client, calm, people, 30 * minutes, steps, f"{seed}")
         await asyncio.sleep(REST_SECONDS)
         after = await _memory(client)
+        attackers = asyncio.create_task(attack(url))
+        await _crowd(client, attacked, people, 30 * minutes, steps, f"attacked {seed}")
+        attackers.cancel()
+        sent = await attackers
     return {
         "people": people,
         "seconds": took,
-        **tally.figures(),
+        **calm.figures(),
         "memory_at_rest_before_mb": memory,
         "memory_at_rest_after_mb": after,
+        **sent,
+        **attacked_figures(calm, attacked, people),
     }
 
 
@@ -217,7 +270,9 @@ async def _live(client: httpx.AsyncClient, seconds: float) -> LivePerson:
         frames = np.arange(max(sent, due - MOST_POSES), due)
         if len(frames):
             data = base64.b64encode(poses[frames % len(poses)].tobytes()).decode()
+            asked = time.monotonic()
             answer = await client.post(address, json={"times": (frames / FPS).tolist(), "poses": data}, headers=cookies)
+            person.delays.append(time.monotonic() - asked)
             if answer.status_code != 200:
                 raise InputError(f"A live stream broke off: {answer.text}")
             person.frames += answer.json()["frames"]["shape"][1]
@@ -296,64 +351,3 @@ async def _ask(client: httpx.AsyncClient, cookies: dict[str, str], job: Job) -> 
     except httpx.TransportError as error:
         return "error", type(error).__name__
     return "lost", None
-
-
-# ---- jobs ----------------------------------------------------------------------------------------
-# What people of the load test ask for: :data:`KINDS`, drawn by their own dice.
-
-
-SHEET = "render"
-NOBODY = object()
-"""Stands for no character, since None stands for the uploaded file."""
-
-
-@dataclass(frozen=True)
-class Job:
-    """A request that a simulated person sends.
-
-    Attributes:
-        endpoint: name of the endpoint.
-        data: its arguments; None stands for an uploaded :data:`CLIP`.
-        asked: fields of the request that the result's manifest must hold.
-        work: units of work, see :func:`webdemo.server.queue.turns.units`.
-    """
-
-    endpoint: str
-    data: tuple[Any, ...]
-    asked: dict[str, Any]
-    work: float
-
-
-def _generation(dice: random.Random, steps: int) -> Job:
-    r = GenerateRequest(
-        prompt=dice.choice(PROMPTS),
-        seconds=dice.choice((2.0, 4.0, 5.0)),
-        seed=dice.randrange(2**32),
-        samples=dice.choice((1, 1, 1, 2)),
-        steps=dice.choice((max(steps // 2, 1), steps)),
-    )
-    run = (r.prompt, r.seconds, r.seed, r.samples, r.guidance, r.steps, r.damping, r.sampler, r.model, r.tries)
-    return Job("generate", run, json.loads(json.dumps(r.to_dict())), units(r))
-
-
-def _reaction(dice: random.Random, steps: int) -> Job:
-    seed, seconds = dice.randrange(2**32), 2.0
-    chosen = (None, "", "a", 0, seconds, "a", seed, 1, 3.0, steps, 0.7, "ddim", "intergen", "offline")
-    data = (*chosen, False, False, "", 0, "", "")
-    return Job("react", data, {"kind": "react", "seed": seed, "steps": steps}, seconds * steps + 10)
-
-
-def _prediction(dice: random.Random, steps: int) -> Job:
-    seconds = dice.choice((0.5, 1.0, 1.5))
-    data = (None, 1.5, seconds, "motion-mlp", "", 0, 0, "", "")
-    return Job("predict", data, {"kind": "predict", "seconds": seconds}, seconds + 10)
-
-
-def _sheet(dice: random.Random, steps: int) -> Job:
-    """A contact sheet, which waits in the queue of events."""
-    look = ("png", "bodies", "light", "threequarter", False, 24, dice.choice((480, 640)), 360)
-    return Job(SHEET, (None, *look, NOBODY, "", 0, 0, False, "", ""), {}, 1.0)
-
-
-KINDS = (_generation, _generation, _generation, _generation, _reaction, _sheet, _prediction)
-"""Jobs are drawn from these, so a kind that stands here twice is twice as frequent; a person's first is fixed."""
