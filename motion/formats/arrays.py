@@ -15,9 +15,12 @@ from numpy.typing import NDArray
 
 from motion.errors import InputError
 
+from .files import MAX_JSON, MAX_NUMBERS
+
 Array = NDArray[Any]
 
 MAX_UNPACKED = 128 * 2**20
+_MOST_TEXTS = 1000
 _MOST_MEMBERS = 200
 _MAX_HEADER = 4096
 _NO_RATE = "{} does not give its frame rate: {:g} frames a second are assumed. Give the true rate if it differs."
@@ -47,9 +50,10 @@ def load_members(data: bytes, label: str, keys: Collection[str]) -> dict[str, Ar
     """The arrays of a .npz that are called one of ``keys``.
 
     Raises:
-        InputError: if the file is damaged or would unpack to more than :data:`MAX_UNPACKED` bytes.
+        InputError: if the file is damaged, or would unpack to more than :data:`MAX_UNPACKED` bytes or
+            :data:`~motion.formats.files.MAX_NUMBERS` numbers.
     """
-    arrays = {}
+    arrays: dict[str, Array] = {}
     if data.count(b"PK\x01\x02") > _MOST_MEMBERS:
         raise InputError(f"{label} holds more than {_MOST_MEMBERS} parts: save its arrays alone.")
     try:
@@ -64,7 +68,8 @@ def load_members(data: bytes, label: str, keys: Collection[str]) -> dict[str, Ar
             for member in wanted:
                 key = member.filename.removesuffix(".npy")
                 with archive.open(member) as stream:  # gives no more than the declared size
-                    arrays[key] = load_array(stream, member.file_size, f"{label}, {key}")
+                    left = MAX_NUMBERS - sum(array.size for array in arrays.values())
+                    arrays[key] = load_array(stream, member.file_size, f"{label}, {key}", most=left)
     except InputError:
         raise
     except ZIP_ERRORS as error:
@@ -72,8 +77,9 @@ def load_members(data: bytes, label: str, keys: Collection[str]) -> dict[str, Ar
     return arrays
 
 
-def load_array(stream: IO[bytes], size: int, label: str) -> Array:
-    """One .npy, whose header is checked against the bytes that are there before anything is made."""
+def load_array(stream: IO[bytes], size: int, label: str, *, most: int = MAX_NUMBERS) -> Array:
+    """One .npy of so many numbers at most, whose header is checked against the bytes that are there before anything is
+    made. What is a byte each in the file may take eight as it is read."""
     try:
         version = np.lib.format.read_magic(stream)
         reader = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
@@ -87,6 +93,10 @@ def load_array(stream: IO[bytes], size: int, label: str) -> Array:
         count *= int(length)
     if count * dtype.itemsize != size - stream.tell():
         raise InputError(f"{label} is damaged: its header says {shape}, its data has another size.")
+    if count > most:
+        raise InputError(f"{label} holds {count:,} numbers, more than the {most:,} that are left: cut the motion.")
+    if dtype.kind in "USV" and (count > _MOST_TEXTS or count * dtype.itemsize > 4 * MAX_JSON):
+        raise InputError(f"{label} holds too much text: save the motion's own arrays alone.")
     stream.seek(0)
     return np.lib.format.read_array(stream, allow_pickle=False, max_header_size=_MAX_HEADER)
 

@@ -6,6 +6,7 @@ before as many of analog channels as the header says, which are passed over.
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Iterator
 from typing import Any
@@ -23,6 +24,8 @@ Array = NDArray[np.floating]
 
 _BLOCK = 512
 _UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+_MOST_BLOCKS = 255
+"""Of parameters: their number is one byte."""
 _MOST_POINTS = 1000
 _MOST_VALUES = 16 * 2**20
 _DEC, _MIPS = 85, 86
@@ -55,7 +58,7 @@ def _points(data: bytes, label: str, fps: float | None) -> tuple[list[str], Arra
     machine = data[parameters + 3]
     order = ">" if machine == _MIPS else "<"
     used, analog, first, last, _, _, start, _ = struct.unpack_from(f"{order}5H4s2H", data, 2)
-    found = dict(_parameters(data, parameters + 4, machine))
+    found = dict(_parameters(data[: parameters + _MOST_BLOCKS * _BLOCK], parameters + 4, machine))
     rate = fps or float(found["POINT:RATE"][0] if "POINT:RATE" in found else _floats(data[20:24], machine)[0])
     count = int(found["POINT:USED"][0]) if "POINT:USED" in found else used
     scale = float(found["POINT:SCALE"][0] if "POINT:SCALE" in found else _floats(data[12:16], machine)[0])
@@ -94,10 +97,10 @@ def _names(found: dict[str, Any], count: int) -> list[str]:
 
 
 def _parameters(data: bytes, at: int, machine: int) -> Iterator[tuple[str, Any]]:
-    """ "GROUP:NAME" and values of each parameter; texts are arrays of bytes."""
+    """ "GROUP:NAME" and values of each parameter; texts are arrays of bytes. None reaches into the next."""
     order = ">" if machine == _MIPS else "<"
     groups: dict[int, str] = {}
-    later: list[tuple[int, str, int]] = []
+    later: list[tuple[int, str, int, int]] = []
     while at + 4 < len(data):
         length, group = struct.unpack_from("bb", data, at)
         length = abs(length)
@@ -105,19 +108,17 @@ def _parameters(data: bytes, at: int, machine: int) -> Iterator[tuple[str, Any]]
         (step,) = struct.unpack_from(f"{order}H", data, at + 2 + length)
         if length == 0:
             break
+        begin, at = at + 4 + length, (at + 2 + length + step if step else len(data))
         if group < 0:
             groups[-group] = name
         else:
-            later.append((group, name, at + 4 + length))
-        if step == 0:
-            break
-        at += 2 + length + step
-    for group, name, place in later:
+            later.append((group, name, begin, at))
+    for group, name, place, end in later:
         kind, count = struct.unpack_from("bB", data, place)
         sizes = data[place + 2 : place + 2 + count]
         dtype = np.dtype(order + _TYPES.get(kind, "u1"))
-        total = int(np.prod([int(size) for size in sizes], dtype=np.int64))  # 1 for a scalar
-        raw = data[place + 2 + count : place + 2 + count + total * dtype.itemsize]
+        total = math.prod(sizes)  # 1 for a scalar
+        raw = data[place + 2 + count : min(place + 2 + count + total * dtype.itemsize, end)]
         if len(raw) == total * dtype.itemsize and total:
             values = _floats(raw, machine) if kind == 4 else np.frombuffer(raw, dtype)
             yield (

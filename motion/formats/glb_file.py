@@ -23,6 +23,8 @@ from .files import read_bytes, read_json
 
 MOST_JOINTS = 512
 MOST_NODES = 5_000
+DEEPEST = 500
+"""Nodes above a node."""
 MOST_SKINS = 200
 """Skins of a file: a character has one for each of its meshes."""
 MOST_ITEMS = 20_000
@@ -226,8 +228,8 @@ class GlbFile:
             seen, at = 0, number
             while at >= 0:
                 seen, at = seen + 1, parents[at]
-                if seen > len(nodes):
-                    self.refuse("its nodes go round in a circle")
+                if seen > DEEPEST:
+                    self.refuse(f"its nodes are more than {DEEPEST} deep, or go round in a circle")
         return parents
 
     def skin_joints(self, skin: Any) -> list[int]:

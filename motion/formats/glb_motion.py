@@ -90,7 +90,9 @@ def _whole(file: GlbFile) -> list[_Person]:
         raise InputError(
             f"{file.label} has no animation: export it with one, or put it on both people with “Wear a character”."
         )
-    found = [_Person(file, parents, rig) for rig in people(file, parents)]
+    rigs = people(file, parents)
+    still = placed(file, with_those_above([node for rig in rigs for node in rig.nodes], parents), parents)
+    found = [_Person(file, parents, rig, still) for rig in rigs]
     whole = [person for person in found if person.problem is None]
     if not whole:
         assert found[0].problem is not None
@@ -101,16 +103,15 @@ def _whole(file: GlbFile) -> list[_Person]:
 
 
 class _Person:
-    """One skeleton of a file; ``problem`` says why it is not a person's."""
+    """One skeleton of a file, whose nodes at rest are given; ``problem`` says why it is not a person's."""
 
-    def __init__(self, file: GlbFile, parents: Sequence[int], rig: Rig) -> None:
+    def __init__(self, file: GlbFile, parents: Sequence[int], rig: Rig, still: dict[int, Array]) -> None:
         self.file, self.parents, self.rig = file, parents, rig
         self.nodes = with_those_above(rig.nodes, parents)
         self.names = tuple(file.joint_name(node) for node in rig.nodes)
         self.problem: InputError | None = None
-        world = placed(file, self.nodes, parents)
-        self.mirrored = bool(np.linalg.det(world[rig.nodes[0]][0, :3, :3]) < 0)
-        rest = self._joints(world, 1)
+        self.mirrored = bool(np.linalg.det(still[rig.nodes[0]][0, :3, :3]) < 0)
+        rest = self._joints(still, 1)
         try:
             match_joints(self.motion(rest, _RATE))
         except InputError as error:

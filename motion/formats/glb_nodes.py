@@ -16,7 +16,7 @@ from .glb_file import MOST_JOINTS, GlbFile, Stored, in_order
 
 Array = NDArray[np.floating]
 
-MOST_KEYS = 6_000_000
+MOST_KEYS = 4_000_000
 """Key frames of all channels together; those that channels share count once."""
 _NO_FIT = "its key frames do not fit their times"
 _PATHS = {"translation": ("VEC3", 3), "rotation": ("VEC4", 4), "scale": ("VEC3", 3)}
@@ -119,12 +119,14 @@ def people(file: GlbFile, parents: Sequence[int]) -> list[Rig]:
 
 def with_those_above(nodes: Sequence[int], parents: Sequence[int]) -> list[int]:
     """Nodes and all above them, those above first."""
-    needed: set[int] = set()
+    needed: dict[int, None] = {}
     for node in nodes:
+        way = []
         while node >= 0 and node not in needed:
-            needed.add(node)
+            way.append(node)
             node = parents[node]
-    return in_order(sorted(needed), parents)[0]
+        needed |= dict.fromkeys(reversed(way))
+    return list(needed)
 
 
 def bind_pose(file: GlbFile, rig: Rig) -> Array | None:
@@ -156,7 +158,7 @@ def channels(file: GlbFile, animation: Any, nodes: set[int]) -> list[Channel]:
         file.refuse(f"it has more than {MOST_KEYS:,} key frames", "lower its frame rate")
     if sum(part.size for part in stored) > len(file.blob):
         file.refuse("its key frames overlap")
-    tables = {part: file.decoded(part, "key frames").astype(np.float64) for part in stored}
+    tables = {part: file.decoded(part, "key frames").astype(np.float64, copy=False) for part in stored}
     clocks = {times: tables[times][:, 0] for *_, times, _ in found}
     if any((np.diff(times) < 0).any() or times[0] < 0 for times in clocks.values()):
         file.refuse(_NO_FIT)

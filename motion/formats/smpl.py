@@ -113,18 +113,23 @@ def _first(arrays: Mapping[str, Array], keys: Sequence[str]) -> Array | None:
 
 
 def _vectors(rotations: Array | None, label: str) -> Array:
-    """(T, 3 J) rotation vectors of (T, 3 J), (T, J, 3) or (T, J, 3, 3)."""
+    """(T, 3 J) rotation vectors of (T, 3 J), (T, J, 3) or (T, J, 3, 3); of matrices those of the body's joints."""
     assert rotations is not None
     found = numbers(rotations, label)
     if found.ndim < 2 or not found.size:
         return np.zeros((0, 0))
     if found.ndim > 2 and found.shape[-2:] == (3, 3):
+        matrices = found.reshape(len(found), -1, 3, 3)[:, : SMPL22.num_joints]
+        vectors = np.empty(matrices.shape[:3], dtype=np.float32)
         try:
-            turns = scipy.spatial.transform.Rotation.from_matrix(found.reshape(-1, 3, 3))
+            for first in range(0, len(matrices), _AT_ONCE):
+                part = matrices[first : first + _AT_ONCE]
+                turns = scipy.spatial.transform.Rotation.from_matrix(part.reshape(-1, 3, 3))
+                vectors[first : first + _AT_ONCE] = turns.as_rotvec().reshape(part.shape[:3])
         except ValueError:
             raise InputError(f"{label} holds matrices that are no rotations: save it again.") from None
-        found = turns.as_rotvec()
-    return found.reshape(len(rotations), -1)
+        found = vectors
+    return found.reshape(len(found), -1)
 
 
 def _posed(poses: Array, trans: Array) -> tuple[Array, Array]:

@@ -73,7 +73,10 @@ def _rows(text: str, start: int, markers: int, mark: str | None, rate: float, la
     """(T, markers, 3) float32 as in the file; NaN where a marker was not seen."""
     width = 2 + 3 * markers
     longest = 40 * width
-    lines = min(text.count("\n", start) + 1, int(MAX_SECONDS * rate) + 1, MAX_FRAMES)
+    lines = text.count("\n", start) + 1
+    if lines > 4 * MAX_FRAMES:
+        raise InputError(f"{label} has {lines:,} lines: cut it, or leave out those that are empty.")
+    lines = min(lines, int(MAX_SECONDS * rate) + 1, MAX_FRAMES)
     if lines * width > MAX_NUMBERS:
         raise InputError(
             f"{label} holds {markers} markers in more than {MAX_NUMBERS // width:,} frames: cut it or lower its rate."

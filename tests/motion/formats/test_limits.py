@@ -53,18 +53,38 @@ HOSTILE: dict[str, tuple[Callable[[], bytes], str]] = {
     "line.trc": (lambda: trc_text(keypoints()).encode() + b"1\t" * (FULL // 2 - 10_000), "is longer than"),
     "noise.c3d": (lambda: b"\x02\x50" * (FULL // 2), "not possible"),
     "lists.glb": (lambda: packed({"asset": {"version": "2.0"}, "extras": [[]] * 900_000}, b""), "100,000 parts"),
-    "manifest.npz": (lambda: _with_text("manifest"), "100,000 parts"),
+    "lines.trc": (lambda: trc_text(keypoints()).encode() + b"\n" * (FULL - 20_000), "lines: cut it"),
+    "sizes.c3d": (lambda: _with_parameters(), "not a whole C3D"),
+    "deep.glb": (lambda: _deep(), "more than 500 deep"),
+    "manifest.npz": (lambda: _with(manifest=np.array("[" + "[]," * 1_300_000 + "[]]")), "100,000 parts"),
+    "text.npz": (lambda: _with(manifest=np.array("a" * 30_000_000)), "too much text"),
+    "names.npz": (lambda: _with(joint_names=np.full(10_000_000, "a")), "too much text"),
+    "bytes.npz": (lambda: _with(positions=np.zeros((2, 9_000, 200, 3, 3), np.int8)), "that are left"),
     "noise.npy": (lambda: b"\x93NUMPY\x01\x00\xff\xff" + b"(" * FULL, "not a NumPy"),
 }
 
 
-def _with_text(key: str) -> bytes:
-    """A .npz of two people, a few kilobytes packed, with an array of text: as much JSON as once held a server."""
-    text = np.array("[" + "[]," * 1_300_000 + "[]]")
+def _with(**arrays: np.ndarray) -> bytes:
+    """A .npz of two people, a few kilobytes packed, with further arrays."""
     people = np.stack([marching(30)[0]] * 2)
     file = io.BytesIO()
-    np.savez_compressed(file, positions=people, fps=np.array(30.0), **{key: text})  # type: ignore[arg-type]
+    np.savez_compressed(file, **{"positions": people, "fps": np.array(30.0), **arrays})  # type: ignore[arg-type]
     return file.getvalue()
+
+
+def _with_parameters() -> bytes:
+    """A .c3d file of 300 parameters of 16 MB each, all of the same bytes, and 5 million small ones."""
+    data = c3d_bytes({name: places[:2] for name, places in keypoints().items()})
+    large = b"".join(b"\x04\x01%04d\x07\x00\x01\x03\xff\xff\xff" % i for i in range(300))
+    return data[: 512 * (data[0] - 1) + 4] + large + b"\x01\x01A\x02\x00" * 5_000_000
+
+
+def _deep() -> bytes:
+    """A .glb file of 200 skeletons below a chain of nodes."""
+    nodes = [{"children": [i + 1]} for i in range(4_999)] + [{}]
+    skins = [{"joints": [4_999 - i]} for i in range(200)]
+    moves = [{"channels": [], "samplers": []}]
+    return packed({"asset": {"version": "2.0"}, "nodes": nodes, "skins": skins, "animations": moves}, b"")
 
 
 @pytest.mark.slow
@@ -114,7 +134,16 @@ VALID: dict[str, Callable[[], bytes]] = {
     "full.c3d": lambda: _recorded(250, 12_800),
     "full.txt": lambda: b"\n".join([b"1," + b",".join([b"0.4", b"0.5", b"0.6"] * 30)] * 9_000),
     "full.npy": lambda: _saved(np.linspace(0, 1, 2 * 36_000 * 22 * 3, dtype=np.float32).reshape(2, -1, 22, 3)),
+    "full.npz": lambda: _turned(36_000),
 }
+
+
+def _turned(frames: int) -> bytes:
+    """SMPL's parameters as matrices of a byte a number."""
+    made = io.BytesIO()
+    turns = np.tile(np.eye(3, dtype=np.int8), (frames, 60, 1, 1))
+    np.savez_compressed(made, poses=turns, trans=np.zeros((frames, 3), np.float32))
+    return made.getvalue()
 
 
 def _saved(array: np.ndarray) -> bytes:

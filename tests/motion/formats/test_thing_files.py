@@ -62,6 +62,8 @@ HOSTILE = {
     "counts.stl": bytes(80) + struct.pack("<I", 2**32 - 1),
     "counts-ascii.stl": b"solid x\n" + b"facet normal 0 0 0\nendfacet\n" * 450_000,
     "many.obj": b"v 0 0 0\n" * 3 + b"\nf 1 2 3" * 500_000,
+    "corners.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf" + b" 1 2 3" * 1_100_000,
+    "materials.obj": b"v 0 0 0\nv 1 0 0\n" + b"".join(b"usemtl m%d\nf 1 2 2\n" % i for i in range(60_000)),
     "far.obj": b"\nv 1e300 nan inf\nv 0 0 0\nv 1 0 0\nf 1 2 3\n",
     "missing.obj": b"\nv 0 0 0\nv 1 0 0\nf 1 2 99999999\n",
     "files.obj": b"mtllib /etc/passwd\nusemtl x\n\nv 0 0 0\nv 0 1 0\nv 1 0 0\n\nf 1 2 9\n",
