@@ -7,20 +7,31 @@ from pathlib import Path
 from motion import Clip, Duet, InputError
 from motion.retarget import to_smpl
 
-from .bvh_writer import bvh_on_rig, bvh_text
-from .files import write_files
+from .bvh_writer import bvh_on_rig
 from .glb_motion import animations_in
 from .glb_rig import glb_on_rig
 from .importing import import_motion, import_pair
-from .npz import write_npy, write_npz
 from .recording import Animation, ImportChoices
-from .registry import FORMATS, GLBS, RIGS, Format, can_read, can_write, read_rigs, suffix_of, unknown, with_stem
-from .smpl import SUFFIX, smpl_bytes
+from .registry import (
+    ALONE,
+    FORMATS,
+    GLBS,
+    READABLE,
+    RIGS,
+    Format,
+    can_read,
+    can_write,
+    read_rigs,
+    suffix_of,
+    unknown,
+    with_stem,
+)
 
 __all__ = [
     "ALONE",
     "FORMATS",
     "GLBS",
+    "READABLE",
     "RIGS",
     "Animation",
     "Format",
@@ -115,10 +126,6 @@ def write(duet: Duet | Clip, path: str | Path) -> list[Path]:
     return write_clip(duet, path) if isinstance(duet, Clip) else known.writer(duet, path)
 
 
-ALONE = (".npz", ".bvh", ".npy", SUFFIX)
-"""Suffixes of files that hold one person, without a second."""
-
-
 def write_clip(clip: Clip, path: str | Path) -> list[Path]:
     """Writes one person in the format of the path's suffix, as :func:`read` reads them.
 
@@ -131,14 +138,10 @@ def write_clip(clip: Clip, path: str | Path) -> list[Path]:
         InputError: for a suffix that holds two people only, or where the file cannot be written.
     """
     path = Path(path)
-    suffix = path.suffix.lower()
-    if suffix not in ALONE:
+    known = FORMATS.get(suffix_of(path))
+    if known is None or known.alone is None:
         raise InputError(f"{path.name}: one person is written as {', '.join(ALONE[:-1])} or {ALONE[-1]}: choose one.")
-    if path.name.lower().endswith(SUFFIX):
-        return write_files({path: smpl_bytes(clip)})
-    if suffix == ".bvh":
-        return write_files({path: bvh_text(clip).encode()})
-    return write_npy(clip, path) if suffix == ".npy" else write_npz(clip, path)
+    return known.alone(clip, path)
 
 
 def on_rig(clip: Clip, reference: Path, *, animation: Animation | None = None) -> bytes:

@@ -6,21 +6,21 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from motion.clip import Duet
+from motion.clip import Clip, Duet
 from motion.errors import InputError
 from motion.rigs import RigMotion
 
 from .bvh import read_bvh_people
-from .bvh_writer import write_bvh
+from .bvh_writer import bvh_text, write_bvh
 from .c3d_points import read_c3d
-from .files import read_bytes
+from .files import read_bytes, write_files
 from .glb_motion import read_glb
 from .glb_writer import write_glb
 from .kinect import read_kinect
 from .npz import read_npy, read_npz, write_npy, write_npz
 from .pairs import Source, in_folder, in_zip
 from .recording import Animation, ImportChoices, Recording
-from .smpl import write_smpl
+from .smpl import smpl_bytes, write_smpl
 from .trc import read_trc
 from .usd import write_usd
 
@@ -42,12 +42,14 @@ class Format:
         reader: gives what a file's bytes hold, by its name in messages and what is known of it; ``None`` where it is
             only written.
         writer: ``writer(duet, path)`` gives the paths it wrote; ``None`` where it is only read.
+        alone: likewise for one person; ``None`` where a file always holds two.
     """
 
     suffix: str
     label: str
     reader: Callable[[bytes, str, ImportChoices], Recording] | None = None
     writer: Callable[[Duet, Path], list[Path]] | None = None
+    alone: Callable[[Clip, Path], list[Path]] | None = None
 
 
 def read_rigs(
@@ -71,25 +73,35 @@ def _rigs(data: bytes, label: str, choices: ImportChoices) -> Recording:
     return Recording(read_bvh_people(data, name=label, fps=RIG_FPS, file_fps=choices.fps))
 
 
+def _bvh_alone(clip: Clip, path: Path) -> list[Path]:
+    return write_files({path: bvh_text(clip).encode()})
+
+
+def _smpl_alone(clip: Clip, path: Path) -> list[Path]:
+    return write_files({path: smpl_bytes(clip)})
+
+
 FORMATS: dict[str, Format] = {
     f.suffix: f
     for f in (
-        Format(".npz", "NumPy archive", read_npz, write_npz),
-        Format(".bvh", "Biovision BVH", _rigs, write_bvh),
-        Format(".npy", "NumPy array", read_npy, write_npy),
+        Format(".npz", "NumPy archive", read_npz, write_npz, write_npz),
+        Format(".bvh", "Biovision BVH", _rigs, write_bvh, _bvh_alone),
+        Format(".npy", "NumPy array", read_npy, write_npy, write_npy),
         Format(".skeleton", "Kinect v2 text", read_kinect),
         Format(".txt", "Kinect text", read_kinect),
         Format(".glb", "glTF binary", _rigs, write_glb),
         Format(".vrm", "VRM character", _rigs),
         Format(".vrma", "VRM animation", _rigs),
         Format(".usda", "USD as text", None, write_usd),
-        Format(".smpl.npz", "SMPL parameters", None, write_smpl),
+        Format(".smpl.npz", "SMPL parameters", None, write_smpl, _smpl_alone),
         Format(".trc", "Marker trajectories", read_trc),
         Format(".c3d", "C3D points", read_c3d),
         Format(".zip", "Two people's files", lambda *_: Recording(())),
     )
 }
 READABLE = [f.suffix for f in FORMATS.values() if f.reader]
+ALONE = tuple(f.suffix for f in FORMATS.values() if f.alone)
+"""Suffixes of files that hold one person, without a second."""
 
 
 def recordings(source: str | Path | bytes, name: str | None, choices: ImportChoices) -> tuple[list[Recording], str]:

@@ -10,18 +10,16 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from motion.formats import GLBS
+from motion.formats import GLBS, READABLE, RIGS
 from motion.formats.glb_motion import animations_in
 from motion.formats.recording import Animations
 from webdemo.ui.text.texts import say, worded
 
-FILE_TYPES = [".bvh", ".glb", ".vrm", ".vrma", ".npz", ".npy", ".c3d", ".trc", ".zip", ".skeleton", ".txt"]
-
 
 def file_field(key: str, *, elem_id: str) -> gr.File:
     """A field that takes a motion file; ``key`` names its text."""
-    named = say(key, types=" ".join(FILE_TYPES[:4]))  # all would lie under the cross that takes it away
-    return gr.File(label=named, file_types=FILE_TYPES, height=64, elem_id=elem_id, elem_classes="pd-file")
+    named = say(key, types=" ".join(RIGS))  # all would lie under the cross that takes it away
+    return gr.File(label=named, file_types=READABLE, height=64, elem_id=elem_id, elem_classes="pd-file")
 
 
 def chip(label: str, *, elem_id: str | None = None) -> gr.Button:
