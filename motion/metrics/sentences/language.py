@@ -1,7 +1,8 @@
 """Rules as text, such as ``then(hands_meet(), walks_away(a))``: read without running any code of theirs.
 
-A rule is one condition over predicates (:mod:`.vocabulary`), or several joined by ``and`` and ``or``. ``a`` and
-``b`` are the two people; numbers, text and keywords are passed on as they are.
+A rule is one condition over predicates (of :mod:`.paths`, :mod:`.poses`, :mod:`.shapes` and
+:mod:`.touches`), or several joined by ``and`` and ``or``. ``a`` and ``b`` are the two people; numbers, text and
+keywords are passed on as they are.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ import numpy as np
 
 from .joints import Array, Motion
 from .poses import _lift, _wrist_speed
+from .shapes import lean_to
 from .touches import _hand_gaps, elbow_gap, to_joints
 
 MEASURES: dict[str, Callable[..., str]] = {}
@@ -148,8 +149,14 @@ def _upright(m: Motion, who: int) -> str:
     return f"pelvis at {100 * min(1.0, float(m.height(who)[-1])):.0f} % of its height in standing at the end"
 
 
-@measure("bows", "leans", "trunk_upright")
-def _leans(m: Motion, who: int, *_: object, **__: object) -> str:
+@measure("leans")
+def _leans(m: Motion, who: int, way: str, degrees: float = 0.0) -> str:
+    said = {"any": "", "left": " to the left", "right": " to the right", "towards": " towards the other"}
+    return f"trunk leans{said.get(way, f' {way}')} by {max(0.0, lean_to(m, who, way).max()):.0f}°"
+
+
+@measure("bows", "trunk_upright")
+def _bows(m: Motion, who: int, *_: object, **__: object) -> str:
     return f"trunk leans by {m.lean(who).max():.0f}°"
 
 

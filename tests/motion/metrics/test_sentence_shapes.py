@@ -9,7 +9,7 @@ import pytest
 
 from motion import SMPL22
 from motion.metrics.sentences.joints import PREDICATES, Motion
-from motion.metrics.sentences.language import CONDITIONS, RuleError, check
+from motion.metrics.sentences.language import CONDITIONS, RuleError, check, measured
 
 FPS, FRAMES = 30.0, 120
 Edit = Callable[[np.ndarray], None]
@@ -194,6 +194,13 @@ def test_a_count_is_exact_and_until_needs_an_event_that_ends_it() -> None:
     assert not until(motion, np.ones(FRAMES, dtype=bool), event), "it goes on"
     assert not until(motion, ~going, event), "it had not begun"
     assert not until(motion, going, ~event & False), "nothing ends it"
+
+
+def test_a_lean_is_measured_in_the_way_that_is_asked_for() -> None:
+    motion = duet(tilt(30, (0, 1)))
+    assert measured("happens(leans(a, 'left'))", motion, lacking=True) == "trunk leans to the left by 0°, 15° needed"
+    assert measured("happens(leans(a, 'forward'))", motion) == "trunk leans forward by 30°"
+    assert measured("happens(leans(a, 'any'))", motion) == "trunk leans by 30°"
 
 
 def test_a_child_reaches_out_as_far_as_its_arm() -> None:
