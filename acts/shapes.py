@@ -234,8 +234,8 @@ class Limb(_Shape):
 
     Attributes:
         does: which movement.
-        side: of the leg, or to which trunk and head go, where the words name none.
-        direction: likewise.
+        side: of the leg, where the words name none; trunk and head go to it only where the direction is "out".
+        direction: of leg, trunk or head, where the words name none. A trunk without one leans forward.
         times: how often, of what is repeated; 0 for as long as the beat lasts.
     """
 
