@@ -111,8 +111,8 @@ def test_an_empty_seed_is_drawn_and_shown(tab: GenerateTab) -> None:
 
     seeds = set()
     for _ in range(2):
-        fields = {**FIELDS, "seed": None, "model": "intergen", "class_name": None, "planned": True, "acts": None}
-        steps = tab.start({part: fields[name] for name, part in tab.controls.items()}, Visit())
+        fields = {**FIELDS, "seed": None, "class_name": None, "acts": None}
+        steps = tab.start({part: fields.get(name, part.value) for name, part in tab.controls.items()}, Visit())
         last = [changes(tab.outputs, step) for step in steps][-1]
         seed = last["record"].result.manifest["request"]["seed"]
         assert f"<dd>{seed}</dd>" in last["readouts"]
