@@ -30,12 +30,6 @@ export function placesOf({ components, layout }) {
   return found;
 }
 
-/** The switches and cameras of a player on a tab, which are reached by their element: { kind, name, more, tab, folds, element } each. */
-export function switchesOf(player, tab) {
-  const buttons = [...player.querySelectorAll("[data-act], [data-camera]")].filter((button) => !button.hidden && button.title);
-  return buttons.map((element) => ({ kind: say("finder.control"), name: element.ariaLabel || element.title, more: element.title, tab, folds: [], element }));
-}
-
 /** The entries that have all words of `asked` in their names or what is said of them, the likeliest first. */
 export function search(entries, asked) {
   const words = plain(asked).split(/\s+/).filter(Boolean);

@@ -1,6 +1,6 @@
 // The page's search: Ctrl K opens a dialog, arrows choose, Enter goes there. webdemo/ui/components/finder.py has its data.
 
-import { placesOf, search, switchesOf } from "./finder.js";
+import { placesOf, search } from "./finder.js";
 import { say, translate } from "../texts.js";
 
 const PATIENCE = 8000; // ms until what was chosen must be on the page
@@ -39,9 +39,8 @@ async function reach(folds, target) {
 }
 
 /** Opens the tab and the folded parts around a control, brings it into view and puts the focus on it. */
-async function goTo({ tab, folds, target, element }) {
+async function goTo({ tab, folds, target }) {
   await openTab(tab);
-  element?.focus();
   if (!target) return;
   const end = performance.now() + PATIENCE;
   for (;;) {
@@ -61,13 +60,6 @@ async function write(sentence) {
   Object.getOwnPropertyDescriptor(Object.getPrototypeOf(prompt), "value").set.call(prompt, sentence);
   prompt.dispatchEvent(new Event("input", { bubbles: true }));
   prompt.focus();
-}
-
-/** The switches of the player that is seen, if one is. */
-function switchesInView() {
-  const player = [...document.querySelectorAll(".pdd")].find((each) => each.offsetParent && each.dataset.state === "ready");
-  const tab = document.querySelector(".pd-tabs [role=tab][aria-selected=true]");
-  return player && tab ? switchesOf(player, tab.textContent.trim()) : [];
 }
 
 class Finder {
@@ -115,8 +107,7 @@ class Finder {
   }
 
   show() {
-    const entries = this.entries.length ? this.entries : this.places;
-    this.found = search([...entries, ...switchesInView()], this.field.value); // a player may come while this is open
+    this.found = search(this.entries.length ? this.entries : this.places, this.field.value);
     this.at = 0;
     this.list.replaceChildren(...this.found.map((entry, index) => {
       const row = make("li", "pdq-row", "");

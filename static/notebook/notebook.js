@@ -40,17 +40,11 @@ export class Notebook {
     list.value = pairs.some(([value]) => value === was) ? was : "";
   }
 
-  /** What is searched for now; days are the visitor's own. */
+  /** What is searched for now. */
   wanted() {
     const value = (name) => this.find(`[data-find=${name}]`).value;
-    const day = (name, plus) => {
-      const [year, month, date] = value(name).split("-").map(Number);
-      return date ? new Date(year, month - 1, date + plus).getTime() / 1000 : null;
-    };
-    return {
-      words: value("words"), kind: value("kind"), model: value("model"), tag: value("tag"),
-      starred: this.find("[data-find=starred]").checked, since: day("since", 0), until: day("until", 1),
-    };
+    const starred = this.find("[data-find=starred]").checked;
+    return { words: value("words"), kind: value("kind"), model: value("model"), tag: value("tag"), starred };
   }
 
   search(limit = null) {

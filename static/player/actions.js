@@ -3,7 +3,7 @@
 import { savePicture } from "./picture.js";
 
 const SPEEDS = [0.25, 0.5, 1, 1.5, 2];
-const MOVES = new Set(["play", "step", "back", "forward", "first", "last", "sample"]); // to another moment or motion
+const MOVES = new Set(["play", "step", "first", "last", "sample"]); // to another moment or motion
 const SWITCHES = new Set(["trails", "ghosts"]);
 
 export class Actions {
@@ -27,9 +27,9 @@ export class Actions {
     if (action === "pause") clock.pause();
     else if (action === "play") clock.playing ? clock.pause() : clock.play();
     else if (action === "loop") clock.loop = !clock.loop;
-    else if (action === "step" || action === "back" || action === "forward") {
+    else if (action === "step") {
       clock.pause();
-      clock.seek(Math.round(clock.shown) + (argument ?? (action === "back" ? -1 : 1)));
+      clock.seek(Math.round(clock.shown) + argument);
     } else if (action === "first") clock.seek(0);
     else if (action === "last") clock.seek(clock.frames - 1);
     else if (action === "faster") this.setSpeed(SPEEDS[Math.min(Math.max(SPEEDS.indexOf(clock.speed) + argument, 0), SPEEDS.length - 1)]);
@@ -37,7 +37,7 @@ export class Actions {
     else if (action === "camera") player.framing.goTo(argument);
     else if (action === "picture") this.savePicture();
     else if (action === "follow") player.orbit.following = !player.orbit.following;
-    else if (action === "figure") player.clothes.next();
+    else if (action === "figure") player.clothes.choose(argument);
     else if (action === "film") player.filming.toggle();
     else if (SWITCHES.has(action)) player.show[action] = !player.show[action];
     player.refresh();

@@ -5,6 +5,7 @@ import { coarser, decodeBody } from "./body.js";
 import { loadBody } from "./loader.js";
 import { keepFigure } from "./remember.js";
 
+const FIGURES = ["both", "character", "body", "skeleton"];
 const GHOST_VERTICES = 2000; // of an uploaded character on each ghost of a future; light bodies have a thousand
 
 const light = (looks) => Promise.all(looks.map((look) => loadBody(`${look}-small`)));
@@ -65,16 +66,20 @@ export class Clothes {
     this.player.refresh();
   }
 
-  /** Bodies, skeletons, both and, where there is one, the uploaded character: each in its turn. */
-  next() {
+  /** How people are drawn: "both", the uploaded "character", "body" or "skeleton". */
+  get figure() {
+    const { bodies, skeletons, character } = this.player.show;
+    return character ? "character" : bodies ? (skeletons ? "both" : "body") : "skeleton";
+  }
+
+  /** Draws people so, or as comes next where no figure is named. */
+  choose(figure) {
     const { show } = this.player;
-    const { bodies, skeletons, character } = show;
-    if (character || (bodies && skeletons && this.character)) {
-      Object.assign(show, { character: !character, bodies: true, skeletons: false });
-      this.change();
-    } else if (bodies && skeletons) show.skeletons = false;
-    else if (bodies) Object.assign(show, { bodies: false, skeletons: true });
-    else show.bodies = true;
+    const known = FIGURES.filter((each) => each !== "character" || this.character);
+    const next = figure ?? known[(known.indexOf(this.figure) + 1) % known.length];
+    const changed = show.character !== (next === "character");
+    Object.assign(show, { character: next === "character", bodies: next !== "skeleton", skeletons: next === "both" || next === "skeleton" });
+    if (changed) this.change();
     if (!show.character) keepFigure(show);
   }
 }

@@ -39,6 +39,7 @@ export class Controls {
       const tab = event.target.closest("[role=tab]");
       if (tab) player.select([...tab.parentElement.children].indexOf(tab));
     });
+    this.find(".pdd-figure").addEventListener("change", (event) => player.act("figure", event.target.value));
     this.find(".pdd-range").addEventListener("input", (event) => player.seek(Number(event.target.value)));
     this.find(".pdd-speed select").addEventListener("change", (event) => player.actions.setSpeed(Number(event.target.value)));
     attach(this.find(".pdd-touch"), player.orbit, {
@@ -120,7 +121,7 @@ export class Controls {
   }
 
   /** Brings everything to what is true of the player now. */
-  show({ clock, directing, filming, framing, orbit, posing, sample, show }) {
+  show({ clock, clothes, directing, filming, framing, orbit, posing, sample, show }) {
     const { root } = this;
     const frame = clock.shown;
     const range = this.find(".pdd-range");
@@ -131,6 +132,8 @@ export class Controls {
     this.find(".pdd-time").textContent = sample
       ? say("player.time", { now: (frame / clock.fps).toFixed(2), all: clock.duration.toFixed(2), frame: Math.round(frame) + 1, frames: clock.frames }) : "";
     root.dataset.playing = String(clock.playing);
+    if (root.dataset.figure !== clothes.figure) this.find(`.pdd-figure [value=${(root.dataset.figure = clothes.figure)}]`).checked = true;
+    this.find(".pdd-figure label:has([value=character])").hidden = !clothes.character;
     this.find(".pdd-play").setAttribute("aria-label", say(clock.playing ? "player.pause" : "player.play"));
     const speed = this.find(".pdd-speed select");
     if (speed.value !== String(clock.speed)) speed.value = String(clock.speed);
@@ -138,7 +141,6 @@ export class Controls {
     press("loop", clock.loop);
     press("follow", orbit.following);
     press("trails", show.trails);
-    this.find("[data-act=figure]").dataset.figure = show.character ? "character" : show.bodies ? (show.skeletons ? "both" : "body") : "skeleton";
     press("ghosts", show.ghosts);
     press("film", filming.on);
     press("pose", Boolean(posing));

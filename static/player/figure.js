@@ -9,7 +9,7 @@ const JOINT = 0.018;
 const LEAST_PX = 1.5;
 const GHOST_BEHIND = 0.25; // metres away from the eye, so that they never cover the figures
 const BODY_BEFORE = 0.25; // metres towards the eye, so that a skeleton is seen over the body around it
-const PALER = 0.6; // of white, in limbs on a body of the same hue
+const INK = 0.45; // of black, in limbs on a body of the same hue
 const TRAIL_SECONDS = 1;
 const GHOSTS = 5;
 
@@ -53,9 +53,9 @@ export function headCenter(points, skeleton) {
 /** The points moved towards the eye, each along its own ray, but at most half of the way. */
 export const ahead = (points, lens) => points.map((p) => lens.behind(p, -Math.min(BODY_BEFORE, 0.5 * lens.depth(p))));
 
-/** Colours of limbs that are seen on a body. */
-export const paler = (limbs) =>
-  Object.fromEntries(Object.entries(limbs).map(([side, color]) => [side, mix(color, [1, 1, 1], PALER)]));
+/** Colours of limbs that are seen on a body: darker than what it wears. */
+export const inked = (limbs) =>
+  Object.fromEntries(Object.entries(limbs).map(([side, color]) => [side, mix(color, [0, 0, 0], INK)]));
 
 /** Lines for one person: points, colours and widths of a layer. */
 export function bones(points, skeleton, colors, lens, wide = 1) {

@@ -98,7 +98,7 @@ export class Pane {
       const thin = show.skeletons || !bodies.length ? pose : [];
       thin.forEach((own, person) => {
         const points = bodies.length ? figure.ahead(own, lens) : own;
-        const limbs = bodies.length ? figure.paler(colors[person]) : colors[person];
+        const limbs = bodies.length ? figure.inked(colors[person]) : colors[person];
         put(`bones${"AB"[person]}`, figure.bones(points, skeleton, limbs, lens, wide));
         put(`joints${"AB"[person]}`, figure.joints(points, skeleton, limbs, lens, wide));
       });

@@ -111,6 +111,7 @@ export class Player {
     this.futures.load(this.data);
     this.select(0);
     this.clothes.change();
+    this.root.toggleAttribute("data-first", Boolean(payload.rounds)); // nothing is made yet that could be directed
     this.filming.load(Boolean(payload.rounds));
     if (!goesOn) this.framing.reset();
     if (this.sample.live) this.clock.pause();

@@ -9,7 +9,7 @@ import * as edits from "./plan.js";
 import { say, translate } from "../texts.js";
 
 const NAMES = { a: "A", b: "B", ab: say("reading.a_and_b") };
-const MARKS = { true: ["✓", say("reading.done")], false: ["✗", say("reading.not_done")] };
+const MARKS = { true: ["✓", say("reading.done")], false: ["✗", say("reading.not_done")], null: ["–", say("reading.not_measured")] };
 
 /** An element with a class and a text. */
 function node(tag, kind, text = "") {
@@ -34,7 +34,8 @@ class View {
     this.number = 0; // of what was asked last
     this.entries = null; // all acts
     this.note = "";
-    this.checks = null;
+    this.checks = null; // the verdicts on the last result, and those by the ids of its acts
+    this.verdicts = new Map();
     this.waiting = false; // a run, for its text to be read
     this.editor = new Editor(root, this);
     const lab = root.closest(".pd-lab");
@@ -92,11 +93,23 @@ class View {
   /** The props of the component as they are now. */
   sync(props) {
     if (props.acts) this.entries = props.acts;
-    this.checks = props.checked ?? null;
     this.answer(props.shown);
     this.typed(props.text ?? "");
     this.answer(props.shown);
+    this.judge(props.checked ?? null);
     if (this.shown) this.draw();
+  }
+
+  /** Takes the verdicts on a result of the present plan, whose acts they follow in the sentence's order. */
+  judge(checks) {
+    if (checks === this.checks || (checks && !(this.shown?.plan && this.asking.text === checks.text))) return;
+    this.checks = checks;
+    this.verdicts.clear();
+    const left = [...(checks?.acts ?? [])];
+    for (const act of checks ? this.shown.plan.acts : []) {
+      const at = left.findIndex((each) => each.act === act.act);
+      if (at >= 0) this.verdicts.set(act.id, left.splice(0, at + 1).at(-1));
+    }
   }
 
   typed(text) {
@@ -213,8 +226,9 @@ class View {
     this.root.hidden = !this.asking.text.trim() || !text.trim();
     this.find(".pdr-state").hidden = !this.edited;
     this.find(".pdr-add").hidden = !(this.editable && plan);
-    this.find(".pdr-said").replaceChildren(...(plan ? this.sentence(plan) : []));
-    this.find(".pdr-unread").replaceChildren(...(plan ? plan.unread.map((part, i) => this.unread(part, i)) : []));
+    const unread = plan ? this.unreadIn(plan) : [];
+    this.find(".pdr-said").replaceChildren(...(plan ? this.sentence(plan, unread) : []));
+    this.find(".pdr-unread").replaceChildren(...unread.map((part, i) => this.unread(part, i)));
     this.find(".pdr-plan").hidden = !plan?.acts.length;
     this.length.draw(plan ? this.shown.seconds : null, current ? this.asking.text : null);
     this.find(".pdr-beats").replaceChildren(...(plan ? this.shown.beats.map((beat) => this.beat(beat)) : []));
@@ -229,28 +243,42 @@ class View {
     this.editor.draw();
   }
 
+  /** The parts that are not understood: those of the reading, and the words that the verdict found in no act. */
+  unreadIn({ sentence, unread }) {
+    const known = unread.map((part) => wordsOf(sentence, part.words));
+    const more = this.checks?.text === this.asking.text ? this.checks.unread : [];
+    return [...unread, ...more.filter((words) => !known.some((own) => own.includes(words))).map((words) => {
+      const start = Array.from(sentence.slice(0, Math.max(sentence.indexOf(words), 0))).length;
+      return { words: { start, stop: start + Array.from(words).length }, nearest: [] };
+    })];
+  }
+
+  whyOf(number) {
+    return this.shown.whys[number] ?? say("reading.in_no_act");
+  }
+
   /** What is understood and done, in a line. */
   line(plan) {
-    const done = plan.acts.map((act) => this.checked(act)).filter(Boolean);
+    const done = plan.acts.map((act) => this.checked(act)).filter((each) => each && each.done !== null);
     const seen = done.filter((each) => each.done).length;
     return `${summary(plan)}${done.length ? ` ${say("reading.count_done", { seen, all: done.length })}` : ""}`;
   }
 
-  sentence(plan) {
-    return pieces(plan.sentence, plan.acts, plan.unread).map((piece) => {
+  sentence(plan, unread) {
+    return pieces(plan.sentence, plan.acts, unread).map((piece) => {
       if (!piece.who && piece.unread < 0) return document.createTextNode(piece.text);
       const made = node("span", `pdr-words ${[...piece.who].map((who) => `pdr-${who}`).join(" ")}`, piece.text);
       made.classList.toggle("pdr-lost", piece.unread >= 0);
       made.dataset.acts = piece.acts.join(" ");
       const said = piece.acts.map((id) => this.said[id]).join(", ");
-      made.title = piece.who ? `${NAMES[piece.who]}: ${said}` : this.shown.whys[piece.unread];
+      made.title = piece.who ? `${NAMES[piece.who]}: ${said}` : this.whyOf(piece.unread);
       return made;
     });
   }
 
   unread(part, number) {
     const row = node("li", "");
-    row.append(node("q", "pdr-lost", wordsOf(this.shown.plan.sentence, part.words)), ` ${this.shown.whys[number]}`);
+    row.append(node("q", "pdr-lost", wordsOf(this.shown.plan.sentence, part.words)), ` ${this.whyOf(number)}`);
     const near = part.nearest.filter((name) => this.shown.nearest[name]);
     if (near.length && this.editable) {
       const buttons = node("span", "pdr-near");
@@ -292,15 +320,15 @@ class View {
 
   /** What the last result did of an act, where it is known. */
   checked(act) {
-    if (!this.checks || this.checks.text !== this.asking.text) return null;
-    const found = this.checks.acts.find((each) => each.id === act.id && each.act === act.act);
-    return found && found.done !== null ? found : null;
+    const found = this.checks?.text === this.asking.text ? this.verdicts.get(act.id) : null;
+    return found?.act === act.act ? found : null;
   }
 
   check(act) {
     const found = this.checked(act);
     if (!found) return null;
-    const made = node("span", `pdr-check pdr-check-${found.done}`, `${MARKS[found.done][0]} ${found.measure}`.trim());
+    const [sign, name] = MARKS[found.done];
+    const made = node("span", `pdr-check pdr-check-${found.done}`, `${sign} ${found.done === null ? [name, found.measure].filter(Boolean).join(": ") : found.measure}`.trim());
     made.ariaHidden = "true";
     return made;
   }

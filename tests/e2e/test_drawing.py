@@ -23,6 +23,10 @@ def drawing(shared_page: Page) -> Page:
     """The tab Generate at the first frame of its motion, seen from above, with the tool taken up and no path."""
     page = shared_page
     until(page, "window.__pasdedeux.player?.directing.drawing && window.__pasdedeux.frame !== null")
+    if page.locator("#player .pdd[data-first]").count():  # the tool comes with the first result
+        ask(page, "two people walk")
+        status(page, "done")
+        expect(page.locator("button#generate")).to_be_enabled()
     page.keyboard.press("Escape")
     page.evaluate(
         """() => { const { player } = window.__pasdedeux;

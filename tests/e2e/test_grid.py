@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from .playing import choose, stage_pixels, unfold, until
-from .serving import live
+from .serving import ask, live
 
 pytestmark = pytest.mark.e2e
 
@@ -39,7 +39,8 @@ def test_nine_results_share_one_context_and_one_opens_large(
 ) -> None:
     page = open_page(server.url, width=1280, height=900, before=lambda tab: tab.add_init_script(COUNT_CONTEXTS))
     live(page, slow=SLOW)
-    page.fill("#prompt textarea", "Two people shake hands.")
+    ask(page, "Two people shake hands.")
+    expect(page.locator("#status .pd-done")).to_be_visible()
     unfold(page, "#grid")
     sweep(page, "across", "Seeds", "1-500")
     page.click("#grid-make")

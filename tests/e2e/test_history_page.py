@@ -124,8 +124,7 @@ def test_a_notebook_is_searched_written_in_and_taken_along(lab: str, open_page: 
         "(() => { const p = window.__pasdedeux.player; p.act('play'); p.seek(42); p.orbit.turn(0.5, 0.1); })()"
     )
     yaw = page.evaluate("window.__pasdedeux.player.orbit.yaw")
-    unfold(page, "#share")
-    page.click("#link")
+    page.click("#share")
     address = "document.querySelector('#address textarea, #address input')?.value"
     page.wait_for_function(address)
     link = page.evaluate(address)

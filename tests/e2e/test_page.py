@@ -197,7 +197,7 @@ def test_an_empty_seed_is_drawn_and_samples_become_tabs(page: Page, server: Simp
 
 def test_downloads_are_files_and_never_those_of_the_run_before(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
     made(page, "two people walk home")
-    unfold(page, "#downloads", "#share")
+    unfold(page, "#downloads")
     button = page.locator("#download-json")
     expect(button).to_be_enabled()
     for kind in ("npz", "bvh", "png"):
@@ -214,10 +214,26 @@ def test_downloads_are_files_and_never_those_of_the_run_before(page: Page, monke
     finally:
         written.set()
     expect(button).to_be_enabled()
+    unfold(page, "#downloads")
     with page.expect_download() as waiting:
         button.click()
     assert waiting.value.suggested_filename.startswith("two-people-hug-at-last-seed")
     assert json.loads(Path(waiting.value.path()).read_text())["request"]["prompt"] == "two people hug at last"
+
+
+def test_undo_brings_the_motion_before_and_its_words(page: Page) -> None:
+    for prompt in ("two people nod", "two people skip"):
+        made(page, prompt)
+        expect(page.locator("button#generate")).to_be_enabled()
+    page.click("#undo")
+    expect(page.locator("#player .pdd-title")).to_have_text("two people nod")
+    expect(page.locator("#prompt textarea")).to_have_value("two people nod")
+    unfold(page, "#downloads")
+    with page.expect_download() as waiting:
+        page.click("#download-json:enabled")
+    assert waiting.value.suggested_filename.startswith("two-people-nod-seed")
+    page.keyboard.press("Escape")
+    expect(page.locator("#download-json")).to_be_hidden()
 
 
 def test_two_sessions_do_not_cancel_each_other(page: Page, phone: Page, server: SimpleNamespace) -> None:

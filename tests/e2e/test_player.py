@@ -157,14 +157,14 @@ def test_when_the_loop_begins_anew_both_are_in_view_at_once(player):
 def test_everything_has_a_name_and_can_be_reached(player):
     page = player()
     nameless = page.evaluate("""() => [...document.querySelectorAll('.pdd button, .pdd input, .pdd select')]
-        .filter((e) => !(e.getAttribute('aria-label') || e.textContent.trim())).length""")
+        .filter((e) => !(e.ariaLabel || e.textContent.trim() || e.labels?.[0]?.textContent.trim())).length""")
     assert nameless == 0
     page.locator(".pdd").focus()
     reached = set()
     for _ in range(24):
         page.keyboard.press("Tab")
         reached.add(page.evaluate("document.activeElement.dataset.act || document.activeElement.className"))
-    assert {"play", "follow", "help", "pdd-range"} <= reached
+    assert {"play", "fullscreen", "help", "pdd-range"} <= reached
 
 
 def test_trails_and_onion_skin_are_drawn(player):
@@ -173,10 +173,10 @@ def test_trails_and_onion_skin_are_drawn(player):
     page.locator(".pdd-range").fill("60")
     page.wait_for_timeout(800)
     plain = stage_pixels(page)
-    page.locator("[data-act=ghosts]").click()
+    page.keyboard.press("g")
     page.wait_for_timeout(800)
     ghosts = stage_pixels(page)
-    page.locator("[data-act=trails]").click()
+    page.keyboard.press("t")
     page.wait_for_timeout(800)
     trails = stage_pixels(page)
 
@@ -223,8 +223,8 @@ def test_user_text_stays_text(player):
 
 def test_empty_busy_and_empty_again(player):
     page = player(None)
-    assert "press Generate" in page.locator(".pdd-empty-text").inner_text()
-    assert "download the motion" in page.locator(".pdd-empty-more").inner_text()
+    assert "No motion is here" in page.locator(".pdd-empty-text").inner_text()
+    assert "choose an example" in page.locator(".pdd-empty-more").inner_text()
     assert page.locator(".pdd-foot").is_hidden()
     press(page, "busy")
     page.wait_for_selector(".pdd-busy:visible")
@@ -252,6 +252,7 @@ def test_saves_a_picture(player):
     page = player()
     pause(page)
     with page.expect_download() as download:
+        page.locator("[data-act=help]").click()
         page.locator("[data-act=picture]").click()
     assert download.value.suggested_filename.startswith("pas-de-deux-1-frame-")
     image = np.asarray(Image.open(download.value.path()).convert("RGB"), dtype=np.int16)
@@ -294,7 +295,9 @@ def test_a_second_press_takes_the_film_look_back(player) -> None:
     pause(page)
     before = at(page, 40)
     plain = stage_pixels(page)
+    page.locator("[data-act=help]").click()
     page.locator(SWITCH).click()
+    page.keyboard.press("Escape")
     until(page, f"document.querySelector('{SWITCH}').ariaPressed === 'true'")
     seen = at(page, 40)
     assert np.linalg.norm(np.subtract(seen, before)) > 0.1

@@ -147,6 +147,8 @@ def test_automatic_chooses_by_the_words_and_a_method_greys_those_it_does_not_hea
 def test_methods_are_compared_side_by_side(page: Page, server: SimpleNamespace, tmp_path: Path) -> None:
     page.set_input_files("#react-file input[type=file]", write(walking(2.0).a, tmp_path / "walker.npz")[0])
     people(page, 1)
+    page.click("button#react-generate")
+    people(page, 2)
     unfold(page, "#react-grid")
     choose(page, "#react-grid-across", "Methods")
     page.fill("#react-grid-across-values textarea", "InterGen, person to person; ReGenNet, online")

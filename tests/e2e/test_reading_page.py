@@ -41,7 +41,7 @@ def test_words_are_underlined_and_chips_stand_on_two_lanes(page: Page) -> None:
     expect(length).to_be_hidden()
     seconds.fill("5")
     seconds.blur()
-    expect(length).to_contain_text("This takes about 7 s, and the motion lasts 5 s.")
+    expect(length).to_contain_text("The acts take about 7 s, and the motion lasts 5 s.")
     length.get_by_role("button", name="Make it 7 s").click()
     expect(length).to_be_hidden()
     expect(seconds).to_have_value("7")

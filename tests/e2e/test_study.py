@@ -29,11 +29,11 @@ def test_a_grid_is_linked_compared_and_voted_on(lab: str, open_page: Callable, t
     owner.set_default_timeout(SLOW)
     owner.fill("#prompt textarea", "Two people shake hands.")
     set_number(owner, "#seconds", "1.5")  # files of short motions are written sooner
+    owner.click("#generate")
     unfold(owner, "#grid")
     owner.get_by_role("button", name="Plain beside damped").first.click()
     expect(owner.locator("#status .pd-done")).to_contain_text("2 results done", timeout=SLOW)
-    unfold(owner, "#share")
-    owner.click("#link")
+    owner.click("#share")
     linked = open_page(link_in(owner, "#address"), **small)
     linked.wait_for_function(f"{CELLS} === 2", timeout=SLOW)
     expect(linked.locator("#player .pdd-cell-text")).to_have_text(["damping 0", "damping 0.7"])

@@ -100,20 +100,19 @@ def test_the_list_of_acts_comes_when_it_is_wanted() -> None:
 
 
 def test_marks_are_of_the_acts_that_were_checked() -> None:
-    plan = read("They wave, then they hug.")
     rows = [
-        {"act": "wave", "words": "They wave", "done": None, "measure": ""},
+        {"act": "wave", "words": "They wave", "done": True, "measure": "", "unchecked": ["how often"]},
         {"act": "hug", "words": "They hug", "done": False, "measure": "0.6 m apart"},
     ]
-    assert checked(plan.sentence, plan, {"checked": rows}) == {
-        "text": plan.sentence,
+    assert checked("They wave, then they hug.", {"checked": rows, "unread": ["slowly"]}) == {
+        "text": "They wave, then they hug.",
         "acts": [
-            {"id": "1", "act": "wave", "done": None, "measure": ""},
-            {"id": "2", "act": "hug", "done": False, "measure": "0.6 m apart"},
+            {"act": "wave", "done": None, "measure": "how often"},
+            {"act": "hug", "done": False, "measure": "0.6 m apart"},
         ],
+        "unread": ["slowly"],
     }
-    assert checked(plan.sentence, plan, {"checked": rows[1:]}) is None, "rows of another plan"
-    assert checked(plan.sentence, plan, {}) is None
+    assert checked("They hug.", {}) is None
 
 
 def test_a_reading_says_how_long_its_beats_take() -> None:

@@ -60,8 +60,6 @@ class Search:
         model: name of its method; "" for all.
         tag: one of its tags; "" for all.
         starred: only those that are kept.
-        since: created at this time or later, in seconds since 1970.
-        until: created before this time.
         limit: how many at most.
         offset: how many of the newest are left out.
     """
@@ -71,8 +69,6 @@ class Search:
     model: str = ""
     tag: str = ""
     starred: bool = False
-    since: float | None = None
-    until: float | None = None
     limit: int = 60
     offset: int = 0
 

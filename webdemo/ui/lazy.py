@@ -40,10 +40,6 @@ class LazyEngine:
         """Imports and loads everything."""
         self._made().warm_up()
 
-    def info(self) -> dict[str, Any]:
-        """The default model's card."""
-        return self._made().info()
-
     def run(self, request: Any, cancel: CancelToken | None = None) -> Iterator[Progress | Result]:
         """Runs a request; the first one may have to load the networks."""
         if not self.ready:

@@ -56,11 +56,6 @@ ENDPOINTS = (
 _HEADER = f'<div class="pd-brand"><h1>Pas de Deux</h1><p>{say("page.intro")}</p></div>'
 _CACHE = (1800, 7200)
 """Seconds: how often Gradio's copies of downloads are looked through, and how old they may get."""
-_FOLDED = """() => {
-  const narrow = matchMedia("(max-width: 960px)").matches;
-  return Array(%d).fill({ __type__: "update", ...(narrow ? { open: false } : {}) });
-}"""
-"""JavaScript that folds the settings at first where the screen is narrow; to be filled with the number of folds."""
 _LOOK = 0.02
 """Seconds between two looks at a queue of events in which nothing waits."""
 
@@ -168,9 +163,10 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
                 job.build(demo, record)
         predict = jobs["predict"]
         assert isinstance(predict, PredictTab)
+        react = jobs["react"]
+        assert isinstance(react, ReactTab)
+        react.actor.wire_arrival(shown["react"], record, react.label)
         predict.wire_page(shown["predict"], tabs, [job.results.onward for job in jobs.values()])
-        folds = [job.sampling.fold for job in jobs.values() if job.sampling is not None]
-        demo.load(None, outputs=folds, js=_FOLDED % len(folds), **QUIET)
         if page.history is not None:
             with gr.Tab(say("tabs.history"), id=HISTORY.lower()) as past:
                 HistoryTab(page, jobs, tabs).build(demo, past, record)

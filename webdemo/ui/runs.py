@@ -26,9 +26,6 @@ class EngineLike(Protocol):
     def warm_up(self) -> None:
         """Loads the networks; returns when they are ready."""
 
-    def info(self) -> dict[str, Any]:
-        """``name`` and ``summary`` of the default model, and whatever else its card tells."""
-
     def run(self, request: Any, cancel: CancelToken | None = None) -> Iterator[Progress | Result]:
         """Progress, then one result; raises ``Cancelled`` within one step of a cancellation."""
 

@@ -77,6 +77,15 @@ document.addEventListener("keydown", (event) => {
   event.preventDefault();
   ask.querySelector("button.pd-run:enabled")?.click();
 });
+// A press beside an open menu, or Escape, closes it.
+const shut = ({ type, key, target }) => {
+  if (type === "keydown" && key !== "Escape") return;
+  for (const fold of document.querySelectorAll(".pd-menu > .label-wrap.open")) {
+    if (type === "keydown" || !fold.parentElement.contains(target)) fold.click();
+  }
+};
+document.addEventListener("pointerdown", shut);
+document.addEventListener("keydown", shut);
 </script>"""
 
 

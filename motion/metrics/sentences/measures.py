@@ -90,7 +90,7 @@ def _apart(m: Motion, metres: float) -> str:
 
 @measure("faces")
 def _faces(m: Motion, who: int, degrees: float = 0.0) -> str:
-    return f"{_NAMES[who]} looks {m.off(who).min():.0f}° past {_NAMES[1 - who]}"
+    return f"{_NAMES[who]} faces {m.off(who).min():.0f}° away from {_NAMES[1 - who]}"
 
 
 @measure("orbits")
@@ -141,12 +141,12 @@ def _turns(m: Motion, who: int, *_: object, **__: object) -> str:
 # ---- one body --------------------------------------------------------------------------------------------
 @measure("low", "sits", "kneels", "lies", "falls")
 def _low(m: Motion, who: int, share: float = 0.0) -> str:
-    return f"pelvis at {100 * min(1.0, float(m.height(who).min())):.0f} % of its height in standing"
+    return f"hips down to {100 * min(1.0, float(m.height(who).min())):.0f} % of standing height"
 
 
 @measure("upright")
 def _upright(m: Motion, who: int) -> str:
-    return f"pelvis at {100 * min(1.0, float(m.height(who)[-1])):.0f} % of its height in standing at the end"
+    return f"hips at {100 * min(1.0, float(m.height(who)[-1])):.0f} % of standing height at the end"
 
 
 @measure("leans")
@@ -185,4 +185,4 @@ def _strikes(m: Motion, who: int, *_: object, **__: object) -> str:
 @measure("foot_up", "knee_high", "kicks")
 def _foot_up(m: Motion, who: int, *_: object, **__: object) -> str:
     heights = m.pair(who, "ankle")[..., 1]
-    return f"foot {_cm(float(np.abs(heights[0] - heights[1]).max()))} above the other"
+    return f"foot {_cm(float(np.abs(heights[0] - heights[1]).max()))} high"

@@ -7,7 +7,6 @@ import signal
 import threading
 import time
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
@@ -78,9 +77,7 @@ def test_the_same_request_gives_the_same_motion(replicas: RayEngine, weights: Pa
     assert_same(result_of(events), result_of(list(Engine(weights).run(WANTED))))
     steps = [event.step for event in events[:-1] if event.stage == "sample"]
     assert steps == [1, 2, 3, 4, 5, 6]
-    with ThreadPoolExecutor(1) as pool:  # Playwright leaves an event loop in this one
-        card = pool.submit(replicas.info).result()
-    assert replicas.ready and card["summary"] == "a tiny untrained model"
+    assert replicas.ready
 
 
 def test_what_shares_a_pass_in_a_replica() -> None:

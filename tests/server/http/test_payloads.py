@@ -43,7 +43,7 @@ ACTION = {
     "act": "search",
     "ids": ["r1"],
     "limit": None,
-    "search": {"words": "", "kind": "", "model": "", "tag": "", "starred": False, "since": 1.7e9, "until": None},
+    "search": {"words": "", "kind": "", "model": "", "tag": "", "starred": False},
 }
 DESCRIBED = ACTION | {"act": "describe", "title": "A bow", "tags": "x, y", "note": "", "frame": 3}
 TYPICAL: dict[type, Any] = {

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { placesOf, search, switchesOf } from "../../../static/finder/finder.js";
+import { placesOf, search } from "../../../static/finder/finder.js";
 
 const component = (id, type, props) => ({ id, type, props: { visible: true, ...props } });
 const CONFIG = {
@@ -38,15 +38,6 @@ test("what is hidden, or a program's alone, is not found", () => {
   const targets = placesOf(CONFIG).map(({ target }) => target);
   assert.ok(!targets.includes("hidden") && !targets.includes("outside") && targets.every((target) => target !== undefined));
   assert.equal(placesOf(CONFIG).length, 6);
-});
-
-test("the switches of the player are found with their keys, but for those that are not offered", () => {
-  const buttons = [
-    { ariaLabel: "Film look: a slow camera", title: "Film look (C)" }, { ariaLabel: null, title: "Front (2)" }, { ariaLabel: "Pose", title: "Pose (E)", hidden: true },
-  ];
-  const found = search(switchesOf({ querySelectorAll: () => buttons }, "Generate"), "film look");
-  assert.deepEqual(found.map(({ name, more, tab, element }) => [name, more, tab, element]), [["Film look: a slow camera", "Film look (C)", "Generate", buttons[0]]]);
-  assert.equal(switchesOf({ querySelectorAll: () => buttons }, "Generate").length, 2);
 });
 
 test("names come before sentences, and all words must fit", () => {

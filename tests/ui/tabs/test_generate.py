@@ -14,7 +14,6 @@ from motion import InputError
 from tests.ui.stub_engine import StubEngine
 from tests.ui.tab_events import built, changes, in_english
 from tests.ui.tabs.generating import FIELDS, result_of, run
-from webdemo.inference.methods import method
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Cancelled, Result
 from webdemo.ui.history import Entry, Kept, Opened
@@ -33,7 +32,7 @@ def test_a_run_ends_with_a_motion_readouts_and_a_record(tab: GenerateTab) -> Non
     steps = run(tab)
     assert steps[0]["go"]["interactive"] is False
     assert steps[0]["stop"]["interactive"] is True
-    assert [button["interactive"] for button in tab.rest()] == [True, True, False]
+    assert [button["interactive"] for button in tab.rest(None, [])[:3]] == [True, True, False]
     last = steps[-1]
     assert last["player"]["value"]["title"] == "two people walk"
     assert last["player"]["busy"] == ""
@@ -48,9 +47,8 @@ def test_a_class_is_asked_for_in_place_of_a_sentence(tab: GenerateTab) -> None:
     unchosen = run(tab, model="bigraphdiff", class_name=None)[-1]
     assert "No class is chosen" in unchosen["line"] and "record" not in unchosen
     for way, sentence in (("intergen", True), ("bigraphdiff", False)):
-        *shown, about, _, guidance, steps, pace = tab.asked_by(way)
+        *shown, _, guidance, steps, pace = tab.asked_by(way)
         assert steps["value"] == pace["value"] == (FAST if sentence else FAITHFUL)
-        assert method(way).summary in in_english(about)
         assert [update["visible"] for update in shown] == [sentence, not sentence]
         assert guidance["value"] == GenerateRequest(prompt="x").guidance if sentence else guidance["value"] < 4
 
@@ -178,8 +176,8 @@ def test_words_become_paths_unless_that_is_switched_off(tab: GenerateTab) -> Non
         last = run(tab, planned=planned)[-1]
         assert last["record"].result.manifest["request"]["planned"] is planned
         assert ("Plan from the words" in last["readouts"]) is not planned
-        assert ("lays out 60 %" if planned else "lays out nothing") in last["laid"]
-    assert [tab.asked_by(way)[3]["visible"] for way in ("intergen", "bigraphdiff")] == [True, False]
+        assert ("fixes 60 %" if planned else "The network makes all") in last["laid"]
+    assert [tab.asked_by(way)[2]["visible"] for way in ("intergen", "bigraphdiff")] == [True, False]
 
 
 def test_the_switch_of_steps_shows_how_a_kept_run_was_made(tab: GenerateTab) -> None:

@@ -65,8 +65,8 @@ def test_a_full_disk_is_reported_and_leaves_nothing(tab: GenerateTab, monkeypatc
 @pytest.mark.parametrize("shown", ["{}", "no json", '{"yaw": 1e999, "look": "none", "sample": 9, "view": null}'])
 def test_a_film_shows_the_last_result(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch, shown: str) -> None:
     monkeypatch.setattr("webdemo.ui.components.film.film.SIZE", (96, 64))
-    (busy, _), (line, button) = tab.results.make_film(result_of(tab, seconds=1.0), shown)
-    assert "Drawing" in busy and "The film is saved" in line
+    (_, busy, _), *_, (_, _, button) = tab.results.draw("result.film", result_of(tab, seconds=1.0), shown)
+    assert busy["value"].endswith(" %")
     with av.open(str(button["value"])) as opened:
         assert sum(1 for _ in opened.decode(video=0)) == 30
 

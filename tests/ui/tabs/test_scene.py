@@ -154,7 +154,7 @@ def test_an_edit_gives_lengths_and_text(tab: SceneTab) -> None:
 def test_the_text_becomes_the_line(tab: SceneTab) -> None:
     text = 'seed = 9\nsteps = 12\nguidance = 5.5\n[[beat]]\nwords = "They bow."\n'
     story, words, line, *settings = use_text(text)
-    assert (story["beats"][0]["words"], words) == ("They bow.", "They bow.") and "1 beats" in line
+    assert (story["beats"][0]["words"], words) == ("They bow.", "They bow.") and "1 beat, " in line
     assert settings == [9, gr.skip(), 5.5, 12, gr.skip()], "what the text does not name stays"
     story, words, line, *settings = use_text("[[beat]]\nwrods = 1\n")
     assert story == words == gr.skip() and "Line 2" in line and settings == 5 * [gr.skip()]
@@ -169,7 +169,6 @@ def part(tab: SceneTab, which: str, record: Record | None, story: Any, words: st
         "steps": 2,
         "damping": 0.7,
         "record": record,
-        "earlier": [],
         "frame": 60,
         "sample": 0,
         "seed": 0,
@@ -177,7 +176,7 @@ def part(tab: SceneTab, which: str, record: Record | None, story: Any, words: st
     return shown(tab, tab.run("session", fields))[-1]
 
 
-def test_a_span_is_made_again_and_gone_back_from(tab: SceneTab) -> None:
+def test_a_span_is_made_again(tab: SceneTab) -> None:
     record = generate(tab)[-1]["record"]
     laid = story_value((Beat("They meet."), Beat("They hug."))) | {"span": [1.0, 3.0]}
     last = part(tab, "span", record, laid)
@@ -185,10 +184,6 @@ def test_a_span_is_made_again_and_gone_back_from(tab: SceneTab) -> None:
     assert (asked["start"], asked["end"], asked["beats"][0]["words"]) == (1.0, 3.0, "They meet.")
     old, new = (r.result.duets[0].positions for r in (record, last["record"]))
     np.testing.assert_array_equal(old[:, 90:], new[:, 90:])
-    assert last["earlier"] == [record]
-    back = tab.go_back(last["earlier"])
-    assert back[2].result is record.result and back[4] == []
-    assert "no motion before" in tab.go_back([])[1]
 
 
 def test_futures_begin_at_the_playhead_and_one_is_taken(tab: SceneTab) -> None:
@@ -200,11 +195,9 @@ def test_futures_begin_at_the_playhead_and_one_is_taken(tab: SceneTab) -> None:
     assert [(b["words"], b["seconds"]) for b in beats] == [("They meet.", 2.0), ("They bow.", 3.0)]
     assert last["prompt"] == "They meet. They bow."
     assert last["player"]["value"]["futures"] == 60
-    player, line, kept, _, earlier = tab.take_shown(last["record"], [record], '{"sample": 2}')
+    player, line, kept, _, past = tab.take_shown(last["record"], ["run"], '{"sample": 2}')
     assert kept.result.duets == found.duets[2:] and "number 3" in line and "futures" not in player["value"]
-    # The choice can be gone back to.
-    assert earlier == [record, last["record"]]
-    assert tab.go_back(earlier)[0]["value"]["futures"] == 60
+    assert past == ["run", found.run], "Undo opens the choice again"
 
 
 def test_parts_need_a_motion_and_a_span(tab: SceneTab) -> None:

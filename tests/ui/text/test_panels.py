@@ -13,7 +13,7 @@ from tests.ui.stub_engine import StubEngine, walking
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Progress, Result
 from webdemo.ui.components.show import result_payload
-from webdemo.ui.text.panels import model_card, model_state, notes_lines, plan_line, readout_panel, status
+from webdemo.ui.text.panels import effect_line, model_state, notes_lines, readout_panel, status
 from webdemo.ui.text.words import cancelled_line, progress_line, text
 
 HOSTILE = "<img src=x onerror=alert(1)> ${alert(2)} {{value}} `x` \"quoted\" 'single'"
@@ -35,7 +35,6 @@ def test_text_is_escaped_and_comes_back_the_same() -> None:
     [
         status(HOSTILE, tone="error"),
         model_state("failed", HOSTILE),
-        model_card({"name": HOSTILE, "summary": HOSTILE, HOSTILE: HOSTILE}),
         notes_lines(Result(duets=result().duets, manifest={}, notes=(HOSTILE,))),
         readout_panel(Result(duets=result().duets, manifest={"request": {"kind": "react", "model": HOSTILE}})),
     ],
@@ -90,14 +89,15 @@ def test_progress_and_cancellation_name_the_step() -> None:
     assert cancelled_line(None) == "Cancelled before the first step."
 
 
-def test_a_line_says_what_share_of_a_motion_is_planned() -> None:
+def test_a_line_says_what_the_settings_did() -> None:
     def line(*shares: float | None) -> str:
         readouts = tuple({} if share is None else {"planned": share} for share in shares)
-        return plan_line([Result(duets=(), manifest={}, readouts=readouts)])
+        return effect_line([Result(duets=(), manifest={}, readouts=readouts)])
 
     assert line(None) == "" == line(), "no sentence, no plan"
-    assert "lays out all of this motion" in line(0.999) and "lays out nothing" in line(0.0, 0.0)
-    assert "lays out 62 %" in line(0.62) and "lays out 5 to 62 %" in line(0.62, 0.05)
+    assert "fixes all of this motion" in line(0.999) and "The network makes all" in line(0.0, 0.0)
+    assert "fixes 62 %" in line(0.62) and "fixes 5 to 62 %" in line(0.62, 0.05)
+    assert "foot skate" in effect_line([result()]) and "→" in effect_line([result()])
 
 
 @pytest.mark.parametrize(

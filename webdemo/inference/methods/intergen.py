@@ -9,7 +9,7 @@ from webdemo.inference.method import Method, load_pipeline
 METHOD = Method(
     name="intergen",
     label="InterGen",
-    summary="Generates two people from a sentence, or a partner for one person from the whole motion.",
+    summary="Makes two people from a sentence, or a partner for one person whose whole motion it sees first.",
     tasks=("generate", "react", "scene"),
     takes=frozenset({"words", "actor", "either role"}),
     modes={"offline": "InterGen, person to person"},

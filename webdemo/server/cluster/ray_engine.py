@@ -126,10 +126,6 @@ class RayEngine:
         """
         self._handle(SamplingRequest.model)
 
-    def info(self) -> dict[str, Any]:
-        """The default model's card, from a replica."""
-        return self._handle(SamplingRequest.model).info.remote().result(timeout_s=60)
-
     def run(self, request: Any, cancel: CancelToken | None = None) -> Iterator[Progress | Result]:
         """As :meth:`webdemo.inference.engine.Engine.run`, on a replica; restarted if the replica dies."""
         cancel = cancel or CancelToken()

@@ -59,10 +59,6 @@ class ModelReplica:
         if model == SamplingRequest.model:
             self._engine.warm_up()
 
-    def info(self) -> dict[str, Any]:
-        """The default model's card."""
-        return self._engine.info()
-
     async def run(self, request: Any) -> AsyncIterator[tuple[Began | Event, ...]]:
         """Yields a request's events in tuples; an empty tuple is a heartbeat.
 

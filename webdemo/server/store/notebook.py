@@ -339,10 +339,6 @@ def _conditions(wanted: Search) -> list[ColumnElement[bool]]:
         found.append(Note.tags.contains(f" {wanted.tag} ", autoescape=True))
     if wanted.starred:
         found.append(Run.favourite.is_(True))
-    if wanted.since is not None:
-        found.append(Run.created >= wanted.since)
-    if wanted.until is not None:
-        found.append(Run.created < wanted.until)
     return found
 
 

@@ -85,11 +85,12 @@ KINDS = (
     Kind(ALL, "All files .zip"),
 )
 PURPOSES = {
-    "Blender and game engines": ("glb", "bvh", "usda", RIG),
+    "For Blender / my rig": ("glb", "bvh", "usda", RIG),
     "Numbers": ("npz", "smpl.npz", "csv", "json"),
+    "Pictures and film": ("png",),
     "Everything": (ALL,),
 }
-"""What files are for, the likeliest first, and their kinds; a contact sheet is there to be shown instead."""
+"""What files are for, the likeliest first, and their kinds."""
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
@@ -45,13 +45,18 @@ def suffix() -> str:
     return ".mp4" if film.can_write(".mp4") else ".gif"
 
 
-def make_film(record: Record | None, shown: str, folder: Path) -> Path:
+Drawn = Callable[[int, int], None]
+"""Hears how many pictures are drawn, and of how many."""
+
+
+def make_film(record: Record | None, shown: str, folder: Path, progress: Drawn | None = None) -> Path:
     """Films a session's last result as its player shows it.
 
     Args:
         record: the result, or None where there is none yet.
         shown: what :data:`READ_PLAYER` gave; whatever is unknown in it is left at its default.
         folder: where the film is written.
+        progress: hears how far it is.
 
     Raises:
         InputError: where there is nothing to film, or it is too long.
@@ -82,39 +87,44 @@ def make_film(record: Record | None, shown: str, folder: Path) -> Path:
             title=record.prompt,
             yaw=number_of(state, "yaw", -1000.0, 1000.0),
             elevation=number_of(state, "elevation", -0.05, 1.5),
+            progress=progress,
         )
     except InputError as error:
         raise without_place(error, folder) from None
 
 
-def make_figure(record: Record | None, shown: str, folder: Path) -> tuple[Path, Path]:
-    """The sample that the player shows as a plotly figure that plays offline, and its moment as a mesh.
+def make_figure(record: Record | None, shown: str, folder: Path, progress: Drawn | None = None) -> Path:
+    """The sample that the player shows as a plotly figure, an .html that plays offline; see :func:`make_film`.
 
-    Args:
-        record: the result, or None where there is none yet; of compared ones the first is taken.
-        shown: as in :func:`make_film`.
-        folder: where both files are written.
-
-    Returns:
-        the .html and the .ply.
-
-    Raises:
-        InputError: where there is nothing to show, or it is too long.
+    Of compared results it is the first.
     """
+    motion, path, style, _ = _shown_motion(record, shown, folder)
+    path = path.with_name(f"{path.name}.html")
+    try:
+        return plotly_figure.write_figure(motion, path, title=record.prompt if record else "", theme=style.theme)
+    except InputError as error:
+        raise without_place(error, folder) from None
+
+
+def make_mesh(record: Record | None, shown: str, folder: Path, progress: Drawn | None = None) -> Path:
+    """The moment that the player shows as a mesh, a .ply; see :func:`make_figure`."""
+    motion, path, style, frame = _shown_motion(record, shown, folder)
+    try:
+        return mesh.write_mesh(motion, path.with_name(f"{path.name}-frame{frame}.ply"), frame=frame, style=style)
+    except InputError as error:
+        raise without_place(error, folder) from None
+
+
+def _shown_motion(record: Record | None, shown: str, folder: Path) -> tuple[Clip | Duet, Path, Style, int]:
+    """The sample that the player shows, the beginning of its files' names, its looks and the frame."""
     if record is None:
         raise InputError("There is no motion to show yet: make one first.")
     state = read_player(shown)
     motion = _pane(record.result, state.get("sample"), "").motion
-    path = folder / file_name(record.prompt, record.result.manifest)
-    theme = _one_of(state, "theme", tuple(THEMES), "light")
-    frame = int(number_of(state, "frame", 0, motion.num_frames - 1) or 0)
     worn = record.worn.body if record.worn and state.get("character") is True else None
-    try:
-        page = plotly_figure.write_figure(motion, path.with_name(f"{path.name}.html"), title=record.prompt, theme=theme)
-        surface = path.with_name(f"{path.name}-frame{frame}.ply")
-        return page, mesh.write_mesh(motion, surface, frame=frame, style=Style(theme=theme, body=worn))
-    except InputError as error:
-        raise without_place(error, folder) from None
+    style = Style(theme=_one_of(state, "theme", tuple(THEMES), "light"), body=worn)
+    frame = int(number_of(state, "frame", 0, motion.num_frames - 1) or 0)
+    return motion, folder / file_name(record.prompt, record.result.manifest), style, frame
 
 
 def _pane(result: Result, sample: Any, name: str) -> Pane:

@@ -54,15 +54,13 @@ _MARKS = {"running": "⏳ running", "failed": "✕ failed", "cancelled": "✕ ca
 
 
 class SentSearch(Sent):
-    """A search as the browser sends it; moments in seconds since 1970."""
+    """A search as the browser sends it."""
 
     words: Text = ""
     kind: Text = ""
     model: Text = ""
     tag: Text = ""
     starred: Flag = False
-    since: Finite | None = None
-    until: Finite | None = None
 
 
 class SentAction(Sent):
@@ -211,9 +209,5 @@ class Action:
 
 def _search(fields: Mapping[str, Any], limit: Any) -> Search:
     words: dict[str, Any] = {name: str(fields.get(name) or "")[:200] for name in ("words", "kind", "model", "tag")}
-    for name in ("since", "until"):
-        value = fields.get(name)
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
-            words[name] = float(value)
     most = limit if type(limit) is int and STEP <= limit <= MOST_SHOWN else STEP
     return Search(**words, starred=fields.get("starred") is True, limit=most)

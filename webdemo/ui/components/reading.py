@@ -198,23 +198,25 @@ def entry_facts(name: str) -> dict[str, Any]:
     }
 
 
-def checked(text: str, plan: Plan, manifest: Mapping[str, Any]) -> dict[str, Any] | None:
+def checked(text: str, manifest: Mapping[str, Any]) -> dict[str, Any] | None:
     """The verdicts on a result's acts, as the component marks them; None where there are none.
 
     Args:
         text: its prompt.
-        plan: whose acts were checked.
-        manifest: of the result, or of its first sample; ``checked`` has a row for each act, in the plan's order, with
-            the ``act``, whether it is ``done`` or None, and a ``measure`` in words.
+        manifest: of the result, or of its first sample; ``checked`` has a row for each act in the order of the
+            sentence, and ``unread`` the words that are in no act.
     """
-    acts = [
-        {
-            "id": act.id,
-            "act": act.act,
-            "done": None if row.get("done") and (row.get("unchecked") or row.get("wrote")) else row.get("done"),
-            "measure": "; ".join(row.get("unchecked") or ()) or row.get("measure") or "",
-        }
-        for act, row in zip(plan.acts, manifest.get("checked") or (), strict=False)
-        if row.get("act") == act.act
-    ]
-    return {"text": text, "acts": acts} if acts else None
+    rows = manifest.get("checked") or ()
+    acts = [{"act": row.get("act"), "done": _mark(row), "measure": _measured(row)} for row in rows]
+    return {"text": text, "acts": acts, "unread": list(manifest.get("unread") or ())} if acts else None
+
+
+def _mark(row: Mapping[str, Any]) -> bool | None:
+    """Whether an act was done; None where that, or a part of what was said of it, is not measured."""
+    return None if row.get("done") and (row.get("unchecked") or row.get("wrote")) else row.get("done")
+
+
+def _measured(row: Mapping[str, Any]) -> str:
+    if row.get("wrote"):
+        return f"“{row['wrote']}” was read as this"
+    return "; ".join(row.get("unchecked") or ()) or str(row.get("measure") or "")

@@ -31,15 +31,7 @@ def place_of(shown: str) -> dict[str, int]:
 
 
 def part_fields(
-    part: str,
-    story: Any,
-    words: str,
-    guidance: float,
-    steps: float,
-    damping: float,
-    record: Record | None,
-    earlier: list[Record],
-    place: str,
+    part: str, story: Any, words: str, guidance: float, steps: float, damping: float, record: Record | None, place: str
 ) -> dict[str, Any]:
     """The fields of a tab for a part, "span" or "futures", of the motion that the player shows."""
     return {
@@ -50,7 +42,6 @@ def part_fields(
         "steps": steps,
         "damping": damping,
         "record": record,
-        "earlier": earlier,
         "seed": 0,
         **place_of(place),
     }

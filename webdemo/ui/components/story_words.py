@@ -101,12 +101,16 @@ def said_of(text: str, story: Any) -> str:
 # ---- events
 
 
+def _counted(beats: Sequence[Beat]) -> str:
+    return f"{len(beats)} beats" if len(beats) != 1 else "1 beat"
+
+
 def lay_out(sentences: str, story: Any = None) -> Updates:
     """A sentence, and the line with its beats; what was ticked on the line stays so."""
     beats = split_sentence(sentences, in_time())
     ticks = ticked(story)
     text = write_story(SceneRequest(beats=beats, **ticks))
-    return sentences, story_value(beats, **ticks), text, status(f"{len(beats)} beats: press Generate.")
+    return sentences, story_value(beats, **ticks), text, status(f"{_counted(beats)}: press Generate.")
 
 
 def edited(story: Any, seed: float | None) -> Updates:
@@ -139,7 +143,7 @@ def written(text: str, story: Any, seed: float | None) -> Updates:
         empty = not (text or "").strip()
         return unchanged if empty else (*unchanged[:2], status(error_line(error), tone="warning"), gr.skip())
     shown = {name: laid[name] for name in ("beats", "paths", "poses")}
-    line = status(f"{len(request.beats)} beats, {request.seconds:g} s: press Generate.")
+    line = status(f"{_counted(request.beats)}, {request.seconds:g} s: press Generate.")
     return gr.update(laid=shown), write_story(request), line, gr.skip() if said == text else said
 
 
@@ -151,7 +155,7 @@ def use_text(text: str | None) -> Updates:
     except Exception as error:
         kept = (gr.skip(),) * len(SETTINGS)
         return gr.skip(), gr.skip(), status(error_line(error), tone="error"), *kept
-    line = status(f"{len(request.beats)} beats, {request.seconds:g} s: press Generate.")
+    line = status(f"{_counted(request.beats)}, {request.seconds:g} s: press Generate.")
     shown = story_value(fields["beats"], request.paths, request.poses, loop=request.loop, planned=request.planned)
     named = (getattr(request, name) if name in fields else gr.skip() for name in SETTINGS)
     return shown, story_text(fields["beats"]), line, *named

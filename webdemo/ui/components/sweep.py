@@ -179,19 +179,28 @@ def grid_table(results: Mapping[str, Result]) -> str:
     measures = [m for m in MEASURES if any(m.key in cell for cell in values.values())]
     if not measures:
         return ""
+    done = {name: _acts_done(result) for name, result in results.items()}
     heads = "".join(
         f'<th scope="col" title="{text(m.meaning)}">{text(m.label)} <small>{text(m.unit)}</small></th>'
         for m in measures
     )
+    heads = '<th scope="col">Acts done</th>' * any(done.values()) + heads
     rows = ""
     for name, cell in values.items():
         marked = "".join(_cell(m.key, m.digits, cell, list(values.values()), bool(m.better)) for m in measures)
-        rows += f'<tr><th scope="row">{text(name)}</th>{marked}</tr>'
+        acts = f"<td><b>{done[name] or '–'}</b></td>" * any(done.values())
+        rows += f'<tr><th scope="row">{text(name)}</th>{acts}{marked}</tr>'
     return (
         '<div class="pd-readouts"><div class="pd-table pd-grid-table"><table>'
         f"<caption>Read-outs of the grid, the best in green and the worst in red</caption>"
         f"<thead><tr><td></td>{heads}</tr></thead><tbody>{rows}</tbody></table></div></div>"
     )
+
+
+def _acts_done(result: Result) -> str:
+    """How many acts of the sentence the first sample shows, of those that are measured: "2 of 3"; "" for none."""
+    judged = [row["done"] for row in result.manifest.get("checked") or () if row["done"] is not None]
+    return f"{sum(judged)} of {len(judged)}" if judged else ""
 
 
 def _cell(

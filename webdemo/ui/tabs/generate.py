@@ -25,10 +25,8 @@ from webdemo.ui.components.upload import chip
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.classes import installed_classes, takes_class
-from webdemo.ui.text.examples import CLIPS, EXAMPLES
-from webdemo.ui.text.panels import method_line, model_card, status
+from webdemo.ui.text.examples import ARRIVAL, CLIPS, EXAMPLES
 from webdemo.ui.text.texts import say, worded
-from webdemo.ui.text.words import error_line
 
 from .grids import SENTENCES, methods_kind
 from .job import JobTab
@@ -54,8 +52,7 @@ def _chosen_class(fields: Mapping[str, Any]) -> str:
 
 def _class_in(sentence: str, label: str) -> str:
     """The class that a sentence names; raises InputError if it names none."""
-    names, _ = installed_classes()
-    found = next((name for name in names if name in sentence.lower()), None)
+    found = next((name for name in installed_classes() if name in sentence.lower()), None)
     if found is None:
         raise InputError(
             f"The sentence names none of {label}'s classes: write one of them, such as “shake hands”, or change to "
@@ -64,19 +61,7 @@ def _class_in(sentence: str, label: str) -> str:
     return found
 
 
-def _marks(text: str, result: Result) -> dict[str, Any] | None:
-    """The marks of a result's acts; None where they were not checked, or their plan cannot be had."""
-    if not result.manifest.get("checked"):
-        return None
-    try:
-        return checked(text, plans_of_result(result.manifest)[0], result.manifest)
-    except InputError:
-        return None
-
-
 _EDITED_UNPLANNED = "The plan was edited, but it is not followed: choose Plan from the words, or press Read again."
-ARRIVAL = "shake-hands.npz"
-"""The example that plays before anything is asked for."""
 
 
 class GenerateTab(JobTab):
@@ -140,11 +125,9 @@ class GenerateTab(JobTab):
         with gr.Row(elem_classes="pd-lab", equal_height=False):
             with gr.Column(elem_classes="pd-controls", min_width=0):
                 self._ask()
-                self.results.build_panel()
+                self.results.build_readouts()
                 self._settings()
-                with gr.Accordion(say("generate.about"), open=False, elem_classes="pd-panel pd-about"):
-                    card = gr.HTML(elem_id="model-card")
-            self.results.build_stage(first=arrival_payload(CLIPS / ARRIVAL))
+            self.results.build_stage(compare=self.grids.build, first=arrival_payload(CLIPS / ARRIVAL))
         self.controls = {
             "model": self.model,
             "prompt": self.prompt,
@@ -163,12 +146,11 @@ class GenerateTab(JobTab):
         self.gallery.fill(self.prompt, self.seconds, self.sampling.seed, self.go, **QUIET)
         asked_by = {name: self.asked_by(name) for _, name in generate_choices()}
         form = self.sampling
-        fitted = [self.by_sentence, self.class_name, self.about, self.planned, form.guidance, form.steps, form.pace]
+        fitted = [self.by_sentence, self.class_name, self.planned, form.guidance, form.steps, form.pace]
         self.model.input(None, inputs=self.model, outputs=fitted, js=looked_up(asked_by), **QUIET)
-        demo.load(self.describe_model, outputs=card, queue=False, **QUIET)
 
     def _ask(self) -> None:
-        classes, self.class_card = installed_classes()
+        classes = installed_classes()
         choices = generate_choices()
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
             self.model = gr.Radio(
@@ -180,10 +162,10 @@ class GenerateTab(JobTab):
                 elem_id="way",
                 elem_classes="pd-way",
             )
-            self.about = gr.HTML(method_line(method(GenerateRequest.model).summary), elem_id="about-method")
             with gr.Column(min_width=0, elem_classes="pd-sentence") as self.by_sentence:
                 self.prompt = gr.Textbox(
                     label=say("generate.prompt"),
+                    info=say("generate.prompt_info"),
                     placeholder=EXAMPLES[0][1],
                     lines=1,  # so that Enter generates; the style sheet gives it the height of three
                     max_lines=6,
@@ -213,12 +195,12 @@ class GenerateTab(JobTab):
                 label=say("generate.seconds"),
                 info=say("generate.seconds_info"),
                 elem_id="seconds",
+                buttons=[],
             )
-            self.sampling.build(self._plan)
-            self.grids.build()
+            self.sampling.build(self._more)
 
-    def _plan(self) -> None:
-        """A switch: words become paths, or not."""
+    def _more(self) -> None:
+        """A switch, by which words become paths, or not."""
         self.planned = gr.Radio(
             [(say("generate.planned"), True), (say("generate.alone"), False)],
             value=GenerateRequest.planned,
@@ -230,24 +212,16 @@ class GenerateTab(JobTab):
 
     @staticmethod
     def asked_by(way: str) -> Updates:
-        """Shows the inputs that a method takes, describes it in a line and sets its guidance and steps."""
+        """Shows the inputs that a method takes, and sets its guidance and steps."""
         found, by_class = method(way), takes_class(way)
         return (
             gr.update(visible=not by_class),
             gr.update(visible=by_class),
-            method_line(found.summary),
             gr.update(visible=not by_class),
             gr.update(value=found.default("guidance", GenerateRequest.guidance)),
             gr.update(value=found.steps),
             gr.update(value=pace_of(found.steps)),
         )
-
-    def describe_model(self) -> str:
-        """The cards of both models for the page."""
-        try:
-            return model_card(self.page.engine.info()) + (model_card(self.class_card) if self.class_card else "")
-        except Exception as error:
-            return status(error_line(error), tone="error")
 
     # ---- what is shown ---------------------------------------------------------------------------
 
@@ -256,20 +230,24 @@ class GenerateTab(JobTab):
         return {"reading": self.reading}
 
     def restored(self) -> Sequence[Any]:
-        """The inputs that the method takes, and its line."""
-        return [self.by_sentence, self.class_name, self.about]
+        """The inputs that the method takes."""
+        return [self.by_sentence, self.class_name]
 
     def shown(self, result: Result, title: str) -> dict[str, Any]:
         """Also the verdicts on the acts."""
         asked = result.manifest.get("request") or {}
-        marks = _marks(str(asked.get("prompt") or ""), result)
+        marks = checked(str(asked.get("prompt") or ""), result.manifest)
         return {**super().shown(result, title), "reading": gr.update(checked=marks)}
+
+    def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
+        """The verdicts of the last result go: the cells have their own, in the table."""
+        return {"reading": gr.update(checked=None)}
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also what was asked by: a sentence or a class."""
         asked = run.entry.request
         model = asked.get("model", GenerateRequest.model)
-        sentence, label, about, plan, *_ = self.asked_by(model)
+        sentence, label, plan, *_ = self.asked_by(model)
         found = super().opened(run)
         if takes_class(model):
             label = gr.update(value=asked.get("prompt"), visible=True)
@@ -277,7 +255,7 @@ class GenerateTab(JobTab):
             found[self.reading] = self._opened_reading(asked, run.result)
         planned = bool(asked.get("planned", takes_class(model)))  # once, words did not become paths
         found[self.planned] = plan | {"value": planned}
-        return found | {self.by_sentence: sentence, self.class_name: label, self.about: about}
+        return found | {self.by_sentence: sentence, self.class_name: label}
 
     def _opened_reading(self, asked: Mapping[str, Any], result: Result) -> dict[str, Any]:
         """The update that shows the plan of a kept run."""
@@ -285,4 +263,4 @@ class GenerateTab(JobTab):
         plan = plans_of_result(result.manifest)[0]
         drawn = [path_value(path_of(path)) for path in asked.get("paths") or ()]
         of_text = {"text": text, "number": None, "edited": plan.reader == "hand", "paths": drawn}
-        return gr.update(shown=of_text | shown(plan), checked=_marks(text, result))
+        return gr.update(shown=of_text | shown(plan), checked=checked(text, result.manifest))

@@ -75,7 +75,7 @@ class Grids:
         """Lays out the menu, folded: grids that are one press away, and the settings of a grid."""
         tab = self.tab
         choices = [(say("sweeps.nothing"), ""), *((worded("swept", kind.label), kind.field) for kind in tab.kinds())]
-        with gr.Accordion(say("sweeps.compare"), open=False, elem_id=f"{tab.prefix}grid", elem_classes="pd-advanced"):
+        with gr.Accordion(say("sweeps.compare"), open=False, elem_id=f"{tab.prefix}grid", elem_classes="pd-menu"):
             with gr.Row(elem_classes="pd-chips"):
                 self.chips = [chip(worded("preset", label)) for label in tab.presets()]
             gr.HTML(f'<p class="pd-method">{say("sweeps.info", most=MOST)}</p>')

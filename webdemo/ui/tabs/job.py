@@ -25,9 +25,9 @@ from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Kept, Opened, Original
-from webdemo.ui.text.panels import notes_lines, plan_line, readout_panel, status
+from webdemo.ui.text.panels import effect_line, made_line, notes_lines, readout_panel, status
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import cancelled_line, error_line, progress_line, seconds
+from webdemo.ui.text.words import cancelled_line, error_line, progress_line
 from webdemo.ui.visitor import visitor
 
 from .grids import BASIC, PRESETS, Grids, Kind
@@ -38,6 +38,8 @@ log = logging.getLogger(__name__)
 
 PACE = 0.5
 """Seconds between two updates of the page while a run goes on; each costs a browser about ten milliseconds."""
+MOST_BACK = 20
+"""Runs of a tab that can be gone back to."""
 _ASKED = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role", "model")
 """Fields of a request that a tab may have a control of the same name for."""
 Watch = Callable[[Progress], dict[str, Any] | None]
@@ -155,6 +157,7 @@ class JobTab(ABC):
     def wire(self, triggers: Sequence[Any], record: gr.State | None) -> None:
         """Wires what every tab has; ``triggers`` start a run with the values of ``controls``."""
         self.record = record or gr.State(None, time_to_live=3600)
+        self.trail = gr.State([], time_to_live=3600)
         self.outputs = {
             "player": self.results.player,
             "line": self.line,
@@ -163,7 +166,7 @@ class JobTab(ABC):
             "under": self.results.under,
             "readouts": self.results.readouts,
             "record": self.record,
-            **({"laid": self.sampling.laid} if self.sampling and self.sampling.laid else {}),
+            **({"laid": self.sampling.laid} if self.sampling else {}),
             **self.more_outputs(),
         }
         self.results.wire(self.record, self.line)
@@ -171,6 +174,10 @@ class JobTab(ABC):
             self.sampling.wire(self.results.another, self.go)
         self.wire_start(self.start, triggers, first=self.first)
         self.stop.click(self.cancel, queue=False, **QUIET)
+        undone = {part._id: part for part in (*self.parts(), self.trail, self.results.back)}
+        self.undone = list(undone.values())
+        back = self.results.back.click(self.go_back, inputs=[self.record, self.trail], outputs=self.undone, **QUIET)
+        self.results.hand_out(back)
         self.grids.wire()
 
     def wire_start(
@@ -202,7 +209,8 @@ class JobTab(ABC):
             **QUIET,
         )
         # Only now would a press be taken: while the event goes on, Gradio drops it.
-        run.then(self.rest, outputs=[*self.starts().values(), self.stop], queue=False, **QUIET)
+        rested = [*self.starts().values(), self.stop, self.trail, self.results.back]
+        run.then(self.rest, inputs=[self.record, self.trail], outputs=rested, queue=False, **QUIET)
         self.results.hand_out(run)
 
     def start(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
@@ -301,9 +309,28 @@ class JobTab(ABC):
     def _stopped(self, line: str, tone: str) -> Updates:
         return self.updates(player=busy(""), line=status(line, tone=tone))
 
-    def rest(self) -> Updates:
-        """The buttons once a run is over, however it ended."""
-        return *(gr.update(interactive=True) for _ in self.starts()), gr.update(interactive=False)
+    def rest(self, record: Record | None, trail: list[str]) -> Updates:
+        """The buttons once a run is over, however it ended, and the runs of this tab that can be gone back to."""
+        run, kind = "", ""
+        if record is not None:
+            run, kind = record.result.run, record.result.manifest.get("request", {}).get("kind", "generate")
+        if run and kind == self.label.lower() and run not in trail[-1:]:
+            trail = [*trail, run][-MOST_BACK:]
+        ready = (gr.update(interactive=True) for _ in self.starts())
+        return *ready, gr.update(interactive=False), trail, gr.update(visible=len(trail) > 1)
+
+    def go_back(self, record: Record | None, trail: list[str]) -> Updates:
+        """Opens the run before the one that is shown, with all its settings, from the history."""
+        if record is not None and trail[-1:] == [record.result.run]:
+            trail = trail[:-1]
+        try:
+            if self.page.history is None or not trail:
+                raise InputError("There is no motion before this one.")
+            found = self.opened(self.page.history.open(trail[-1], visitor().owner))
+        except Exception as error:
+            found = {self.line: status(error_line(error), tone="error")}
+        found |= {self.trail: trail, self.results.back: gr.update(visible=len(trail) > 1)}
+        return tuple(found.get(part, gr.skip()) for part in self.undone)
 
     def cancel(self, request: gr.Request) -> None:
         """Stops the session's run within one denoising step, or as soon as what it needs was read."""
@@ -318,12 +345,9 @@ class JobTab(ABC):
 
     def shown(self, result: Result, title: str) -> dict[str, Any]:
         """Updates that show a result, by the names of the outputs."""
-        spent, count = total(result), len(result.duets)
-        time_spent = f" in {seconds(spent)}" if spent else ""
-        made = f"Made{time_spent}." if count == 1 else f"{count} samples made{time_spent}."
         return {
             "player": show(result_payload(result, title=title)),
-            "line": status(made, tone="done") + notes_lines(result),
+            "line": status(made_line(result, total(result)), tone="done") + notes_lines(result),
             "under": gr.update(visible=True),
             "readouts": readout_panel(result),
             "record": Record(result, title),
@@ -331,8 +355,8 @@ class JobTab(ABC):
         }
 
     def laid_out(self, results: Iterable[Result]) -> dict[str, str]:
-        """The update of the line on how much is planned, where the tab has it."""
-        return {"laid": plan_line(results)} if "laid" in self.outputs else {}
+        """The update of the line on what the settings did, where the tab has it."""
+        return {"laid": effect_line(results)} if "laid" in self.outputs else {}
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Updates that show a kept run here, by the components of this tab."""

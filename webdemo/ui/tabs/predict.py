@@ -15,12 +15,10 @@ from motion import FPS, Clip, Duet, InputError
 from webdemo.inference.methods import installed, method
 from webdemo.inference.requests.predict import LONGEST, PAST_SECONDS, PredictRequest, PredictResult
 from webdemo.inference.run import Result
-from webdemo.ui.components.actors import Source, given_again, offered_animations, read_source
-from webdemo.ui.components.exports import Record
+from webdemo.ui.components.actors import Source, given_again, offered_animations
 from webdemo.ui.components.player import show
 from webdemo.ui.components.prediction_view import curves_figure, error_lines, prediction_payload, without_name
 from webdemo.ui.components.settings import looked_up
-from webdemo.ui.components.show import ROUNDS
 from webdemo.ui.components.sweep import Kind, grid_table, real
 from webdemo.ui.components.upload import kept_animation
 from webdemo.ui.context import PageContext
@@ -31,7 +29,7 @@ from webdemo.view.payload import player_payload
 
 from .grids import methods_kind
 from .job import JobTab
-from .results import QUIET, Updates
+from .results import QUIET
 from .sampling import seed_field
 from .source import SourcePanel
 
@@ -177,11 +175,11 @@ class PredictTab(JobTab):
                     self.past.build()
                     self.past.build_animation()
                     self.build_go(say("predict.go"))
-                self.results.build_panel(another=False)
+                self.results.build_readouts()
                 with gr.Column(elem_classes="pd-panel pd-curves", min_width=0, visible=False) as self.curves:
                     self.plot = gr.Plot(show_label=False, elem_id="predict-curves")
                 self._settings()
-            self.results.build_stage("player.empty_predict")
+            self.results.build_stage(compare=self.grids.build, another=False)
         self.controls = {
             "source": self.past.state,
             "marker": self.past.marker,
@@ -221,7 +219,6 @@ class PredictTab(JobTab):
             about, _ = self._of_method(PredictRequest.model)
             self.about = gr.HTML(about, elem_id="predict-about")
             self.seed = seed_field(self.prefix, "predict.seed_info", visible="hidden")
-            self.grids.build()
 
     def more_outputs(self) -> dict[str, gr.components.Component]:
         """The curves under the player."""
@@ -237,27 +234,17 @@ class PredictTab(JobTab):
         """Wires what happens as the tab is opened.
 
         Args:
-            tab: this one, among ``tabs``; where nothing is on it, it begins with the first example.
+            tab: this one, among ``tabs``.
             tabs: of the page.
             onwards: buttons of any tab that take the last result here, as a past that is to go on.
         """
         load = self.past.load_options
-        tab.select(self.arrive, inputs=[self.past.state, self.record], **load)
+        self.past.wire_arrival(tab, self.record, self.label)
         for button in onwards:
             taken = button.click(partial(self.past.take_result, "a"), inputs=self.record, **load)
             taken.then(None, outputs=self.past.file, js="() => null", **QUIET)
             # Only now is the tab opened, which finds the result on it.
             taken.then(lambda: gr.update(selected=self.label.lower()), outputs=tabs, queue=False, **QUIET)
-
-    def arrive(self, source: Source | None, record: Record | None) -> Updates:
-        """Shows the first example where there is nothing else to show; it plays and then rests."""
-        predicted = record is not None and isinstance(record.result, PredictResult)
-        if source is not None or predicted or not self.past.examples:
-            return (gr.skip(),) * len(self.past.shown)
-        name, path = self.past.examples[0]
-        *_, updates = self.past.load(partial(read_source, path, name))
-        state, line, player, *more = updates
-        return state, line, {**player, "value": {**player["value"], "rounds": ROUNDS}}, *more
 
     @staticmethod
     def _of_method(model: str) -> list[Any]:

@@ -91,11 +91,10 @@ class ReactTab(JobTab):
         with gr.Row(elem_classes="pd-lab", equal_height=False):
             with gr.Column(elem_classes="pd-controls", min_width=0):
                 self._ask()
-                self.results.build_panel()
+                self.results.build_readouts()
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     self.sampling.build()
-                    self.grids.build()
-            self.results.build_stage("player.empty_react")
+            self.results.build_stage(compare=self.grids.build)
         self.controls = {
             "source": self.actor.state,
             "person": self.actor.person,

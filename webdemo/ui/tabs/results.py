@@ -1,10 +1,11 @@
-"""A result as every tab shows it: the player, and beside it read-outs, a link, a film and files."""
+"""A result as every tab shows it: the player, over it what can be done with the result, and its figures."""
 
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor, wait
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -25,15 +26,14 @@ from webdemo.ui.components.exports import (
     write_on_rig,
     write_record,
 )
-from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film
-from webdemo.ui.components.film import suffix as film_suffix
+from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film, make_mesh
 from webdemo.ui.components.own_thing import FILE_TYPES, bring
-from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer, show, wear
+from webdemo.ui.components.player import MotionPlayer, show, wear
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.context import PageContext
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say, worded
-from webdemo.ui.text.words import error_line, link_line, seconds
+from webdemo.ui.text.words import error_line, link_line
 from webdemo.ui.visitor import visitor
 from webdemo.view.payload import Payload
 
@@ -53,6 +53,8 @@ _SAVE = """() => {
   setTimeout(() => button?.disabled === false && button.click(), 50);
 }"""
 """JavaScript that presses a download button that has a file; to be filled with its id as JSON."""
+DRAWN = {"result.film": make_film, "result.figure": make_figure, "result.mesh": make_mesh}
+"""What is drawn of a result when its button is pressed, by the key of the button's text."""
 _CHANGED = (*WORN, ALL)
 """The downloads that change when a character is put on."""
 
@@ -60,7 +62,7 @@ Updates = tuple[Any, ...]
 
 
 class Results:
-    """The player, and a panel with how a result came out, *Share* and *Export*.
+    """The player with the actions on a result, and all its figures.
 
     Args:
         page: what the tabs share.
@@ -80,24 +82,43 @@ class Results:
         return self.prefix + name
 
     def build_stage(
-        self, empty_text: str = EMPTY_TEXT, below: Callable[[], None] = lambda: None, first: Payload | None = None
+        self,
+        *,
+        compare: Callable[[], None],
+        below: Callable[[], None] = lambda: None,
+        first: Payload | None = None,
+        another: bool = True,
     ) -> None:
-        """The player, and under it what ``below`` lays out. ``first`` is played before anything is asked for."""
+        """The player, over it what can be done with its motion, and under it what ``below`` lays out.
+
+        Args:
+            compare: lays out the menu of grids.
+            below: lays out more under the player.
+            first: is played before anything is asked for.
+            another: offers one more take of a result.
+        """
         with gr.Column(elem_classes="pd-results", min_width=0):
             with gr.Column(elem_classes="pd-panel pd-stage", min_width=0):
-                self.player = MotionPlayer(first, elem_id=self._id("player"), empty_text=empty_text)
+                with gr.Row(elem_classes="pd-actions", visible=False) as self.under:
+                    self.back = self._button("result.undo", "undo", visible=False)
+                    self.another = self._button("result.another", "another", visible=another)
+                    self.onward = self._button("result.next", "continue")
+                    compare()
+                    self.share = self._button("result.share", "share", visible=self.page.history is not None)
+                    self._export()
+                    self.address = gr.Textbox(
+                        label=say("result.link"),
+                        interactive=False,
+                        visible=False,
+                        buttons=["copy"],
+                        elem_id=self._id("address"),
+                    )
+                self.player = MotionPlayer(first, elem_id=self._id("player"))
             below()
 
-    def build_panel(self, *, another: bool = True) -> None:
-        """How a result came out, *Share* and *Export*; ``another`` offers one more take of it."""
-        with gr.Column(elem_classes="pd-panel pd-under", min_width=0, visible=False) as self.under:
-            self.readouts = gr.HTML(elem_id=self._id("readouts"))
-            with gr.Column(elem_classes="pd-menus", min_width=0):
-                self._share()
-                self._export()
-            with gr.Row(elem_classes="pd-chips"):
-                self.another = self._button("result.another", "another", "pd-onward", visible=another)
-                self.onward = self._button("result.next", "continue", "pd-onward")
+    def build_readouts(self) -> None:
+        """All figures of a result; nothing until there is one."""
+        self.readouts = gr.HTML(elem_id=self._id("readouts"), elem_classes="pd-panel pd-under")
 
     def _button(self, text: str, name: str, classes: str | None = None, **options: Any) -> gr.Button:
         return gr.Button(say(text), size="sm", min_width=0, elem_id=self._id(name), elem_classes=classes, **options)
@@ -112,25 +133,6 @@ class Results:
             say(text), file_types=suffixes, size="sm", min_width=0, elem_id=self._id(name), elem_classes="pd-character"
         )
 
-    def _share(self) -> None:
-        """Ways to show a result to somebody, the likeliest first."""
-        with gr.Accordion(say("result.share"), open=False, elem_id=self._id("share"), elem_classes="pd-menu"):
-            with gr.Row(elem_classes="pd-downloads"):
-                kept = self.page.history is not None
-                self.link = self._button("result.link_to_view", "link", "pd-onward", visible=kept)
-                self.film = self._button("result.make_film", "film")
-                self.filmed = self._saved(f"{say('files.film')} {film_suffix()}", "film")
-                self.picture = self._button("result.picture", "picture")
-                self._download("png")
-                self.player_state = gr.Textbox(visible=False)
-            self.address = gr.Textbox(
-                label=say("result.link"),
-                interactive=False,
-                visible=False,
-                buttons=["copy"],
-                elem_id=self._id("address"),
-            )
-
     def _export(self) -> None:
         """Files of a result, by what they are for."""
         with gr.Accordion(say("result.export"), open=False, elem_id=self._id("downloads"), elem_classes="pd-menu"):
@@ -139,12 +141,14 @@ class Results:
                 with gr.Row(elem_classes="pd-downloads"):
                     for key in keys:
                         self._download(key)
-                    if "npz" in keys:
-                        self.figure = self._button("result.figure", "figure")
-                        self.figured = [self._saved(say("files.figure"), "html"), self._saved(say("files.mesh"), "ply")]
                     if RIG in keys:
                         self.character = self._upload("result.character", "character", [".glb", ".vrm"])
                         self.thing = self._upload("result.thing", "thing", FILE_TYPES)
+                    if "png" in keys:
+                        self.picture = self._button("result.picture", "picture")
+                        self.drawn = {key: self._button(key, key.split(".")[1]) for key in DRAWN}
+            self.saved = self._saved(say("files.film"), "drawn", elem_classes="pd-drawn")
+            self.player_state = gr.Textbox(visible=False)
             self.worn = gr.State(None, time_to_live=3600)
 
     def _download(self, key: str) -> None:
@@ -162,11 +166,11 @@ class Results:
         self.record, self.line = record, line
         drawn: dict[str, Any] = {"concurrency_limit": 1, "concurrency_id": "film", "trigger_mode": "once", **QUIET}
         shown: dict[str, Any] = {"inputs": [record, self.player_state], "js": READ_PLAYER}
-        filmed = self.film.click(self.make_film, outputs=[line, self.filmed], **shown, **drawn)
-        filmed.then(None, js=_SAVE % json.dumps(self.filmed.elem_id), **QUIET)
-        self.figure.click(self.make_figure, outputs=[line, *self.figured], **shown, **drawn)
+        for key, button in self.drawn.items():
+            made = button.click(partial(self.draw, key), outputs=[line, button, self.saved], **shown, **drawn)
+            made.then(None, js=_SAVE % json.dumps(self.saved.elem_id), **QUIET)
         self.picture.click(None, js=_TAKE_PICTURE, **QUIET)
-        self.link.click(self.make_link, outputs=[line, self.address], **shown, **QUIET)
+        self.share.click(self.make_link, outputs=[line, self.address], **shown, **QUIET)
         worn: dict[str, Any] = {**drawn, "concurrency_id": "character"}
         changed = [line, self.worn, self.player, *(self._buttons[key] for key in _CHANGED)]
         self.character.upload(self.put_on, inputs=[self.character, record], outputs=changed, **worn)
@@ -175,7 +179,8 @@ class Results:
 
     def hand_out(self, event: Any) -> None:
         """Writes the files of a new result after an event, and until then gives none of the result before."""
-        event.then(self.withhold, inputs=self.record, outputs=self.handed_out, queue=False, **QUIET).then(
+        gone = [*self.handed_out, self.address]
+        event.then(self.withhold, inputs=self.record, outputs=gone, queue=False, **QUIET).then(
             self.export,
             inputs=[self.record, self.worn],
             outputs=[self.line, *self.downloads],
@@ -212,34 +217,31 @@ class Results:
             return status(error_line(error), tone="error"), *((gr.skip(),) * (2 + len(_CHANGED)))
         sentence = (
             f"Both wear {worn.body.name}, in films, in the .glb and on the contact sheet as well. "
-            "The figure button of the player shows bodies again."
+            "The switch over the stage shows bodies again."
         )
         offered = (_offered(key, files[key]) if key in files else gr.skip() for key in _CHANGED)
         return status(sentence, tone="done"), worn, wear(worn.body), *offered
 
-    def make_film(self, record: Record | None, shown: str) -> Iterator[Updates]:
-        """Films the last result as the player shows it and hands the film to its download button."""
-        yield status("Drawing the film …", tone="busy"), gr.update(value=None, interactive=False)
-        began = time.perf_counter()
-        try:
-            path = make_film(record, shown, self.page.shelf.folder())
-        except Exception as error:
-            yield status(error_line(error), tone="error"), gr.skip()
-            return
-        line = f"The film is saved, drawn in {seconds(time.perf_counter() - began)}. Film {path.suffix} saves it again."
-        yield status(line, tone="done"), gr.update(value=path, interactive=True)
+    def draw(self, key: str, record: Record | None, shown: str) -> Iterator[Updates]:
+        """Draws the last result as the player shows it, as one of :data:`DRAWN`, and hands the file out.
 
-    def make_figure(self, record: Record | None, shown: str) -> Iterator[Updates]:
-        """Makes a plotly figure of the last result, and a mesh of the moment that the player shows."""
+        Its button says how much of it is drawn.
+        """
+        label = say(key)
         off = gr.update(value=None, interactive=False)
-        yield status("Making the figure and the mesh …", tone="busy"), off, off
+        done = [0.0]
         try:
-            paths = make_figure(record, shown, self.page.shelf.folder())
+            folder = self.page.shelf.folder()
+            with ThreadPoolExecutor(1) as pool:
+                drawing = pool.submit(DRAWN[key], record, shown, folder, lambda n, all: done.append(n / all))
+                while not drawing.done():
+                    yield gr.skip(), gr.update(value=f"{label} {100 * done[-1]:.0f} %"), off
+                    wait([drawing], timeout=0.5)
+            path = drawing.result()
         except Exception as error:
-            yield status(error_line(error), tone="error"), gr.skip(), gr.skip()
+            yield status(error_line(error), tone="error"), gr.update(value=label), gr.skip()
             return
-        line = "Ready: Figure .html plays offline in any browser; Mesh .ply is the moment that the player shows."
-        yield status(line, tone="done"), *(gr.update(value=path, interactive=True) for path in paths)
+        yield gr.skip(), gr.update(value=label), gr.update(value=path, interactive=True)
 
     def make_link(self, record: Record | None, shown: str) -> Updates:
         """Makes a link to the shown run, at the moment and from the side that the player shows."""
@@ -254,13 +256,14 @@ class Results:
 
     @property
     def handed_out(self) -> list[gr.DownloadButton]:
-        """The buttons of all files of a result: :attr:`downloads`, its film, and its figure and mesh."""
-        return [*self.downloads, self.filmed, *self.figured]
+        """The buttons of all files of a result: :attr:`downloads`, and what is drawn of it."""
+        return [*self.downloads, self.saved]
 
     def withhold(self, record: Record | None) -> Updates:
-        """Takes the last result's files from the buttons where a new result's are still to be written."""
-        new = record is not None and not record.exported
-        return tuple(gr.update(value=None, interactive=False) if new else gr.skip() for _ in self.handed_out)
+        """Takes the last result's files and link away where a new result's are still to be made."""
+        if record is None or record.exported:
+            return (gr.skip(),) * (len(self.handed_out) + 1)
+        return *(gr.update(value=None, interactive=False) for _ in self.handed_out), gr.update(visible=False)
 
     def export(self, record: Record | None, worn: Worn | None = None) -> Updates:
         """Writes the files of a new result and hands them to the download buttons; both people wear ``worn``."""

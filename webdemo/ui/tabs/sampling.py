@@ -22,23 +22,21 @@ _FOLLOWED = f"(steps) => [{FAST}, {FAITHFUL}].includes(steps) ? steps : null"
 
 
 class Sampling:
-    """Guidance, steps and damping; in *More* samples, the seed and, for sentences, tries.
+    """Guidance, steps and damping, with what they did; in *More* samples, the seed and, for sentences, tries.
 
     Args:
         prefix: before the ids of the elements.
-        sentences: puts the switch *Fast* or *Faithful* over the sliders, and under them how much of a motion the
-            plan lays out.
+        sentences: puts the switch *Fast* or *Faithful* over the sliders.
     """
 
     pace: gr.Radio | None = None
-    laid: gr.HTML | None = None
     tries: gr.Slider | None = None
 
     def __init__(self, prefix: str, *, sentences: bool = False) -> None:
         self.prefix, self.sentences = prefix, sentences
 
-    def build(self, beside: Callable[[], None] = lambda: None) -> None:
-        """Lays out the form; ``beside`` lays out more under the sliders."""
+    def build(self, more: Callable[[], None] = lambda: None) -> None:
+        """Lays out the form; ``more`` lays out more at the end of *More*."""
         if self.sentences:
             self.pace = gr.Radio(
                 [(say("sampling.fast"), FAST), (say("sampling.faithful"), FAITHFUL)],
@@ -50,27 +48,20 @@ class Sampling:
                 elem_classes="pd-way pd-pace",
             )
         usual = SamplingRequest
-        with self._fold("sampling.advanced", open=True) as self.fold:
-            self.guidance = self._slider("sampling.guidance", "sampling.guidance_info", GUIDANCE, usual.guidance, 0.1)
-            self.steps = self._slider("sampling.steps", "sampling.steps_info", STEPS_SHOWN, DEFAULT_STEPS)
-            self.damping = self._slider("sampling.damping", "sampling.damping_info", DAMPING, usual.damping, 0.05)
-            beside()
-            if self.sentences:
-                self.laid = gr.HTML(elem_id=f"{self.prefix}laid")
-        with self._fold("sampling.more", open=False) as self.more:
+        self.guidance = self._slider("sampling.guidance", "sampling.guidance_info", GUIDANCE, usual.guidance, 0.1)
+        self.steps = self._slider("sampling.steps", "sampling.steps_info", STEPS_SHOWN, DEFAULT_STEPS)
+        self.damping = self._slider("sampling.damping", "sampling.damping_info", DAMPING, usual.damping, 0.05)
+        self.laid = gr.HTML(elem_id=f"{self.prefix}laid")
+        with gr.Accordion(say("sampling.more"), open=False, elem_id=f"{self.prefix}more", elem_classes="pd-advanced"):
             self.samples = self._slider("sampling.samples", "sampling.samples_info", SAMPLES, usual.samples)
             self.seed = seed_field(self.prefix)
             if self.sentences:
                 self.tries = self._slider("sampling.tries", "sampling.tries_info", TRIES, usual.tries)
-
-    def _fold(self, key: str, *, open: bool) -> gr.Accordion:
-        return gr.Accordion(say(key), open=open, elem_id=self._id(key), elem_classes="pd-advanced")
+            more()
 
     def _slider(self, key: str, info: str, bounds: tuple[float, float], value: float, step: float = 1) -> gr.Slider:
-        return gr.Slider(*bounds, value=value, step=step, label=say(key), info=say(info), elem_id=self._id(key))
-
-    def _id(self, key: str) -> str:
-        return self.prefix + key.split(".")[1]
+        name = self.prefix + key.split(".")[1]
+        return gr.Slider(*bounds, value=value, step=step, label=say(key), info=say(info), elem_id=name, buttons=[])
 
     @property
     def controls(self) -> dict[str, gr.components.Component]:

@@ -14,7 +14,7 @@ from webdemo.inference.story import SceneProgress, SceneRequest, write_story
 from webdemo.inference.story.beats import story_title
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import show
-from webdemo.ui.components.reading import Reading
+from webdemo.ui.components.reading import Reading, checked
 from webdemo.ui.components.scene_parts import (
     FUTURES,
     only_sample,
@@ -24,11 +24,13 @@ from webdemo.ui.components.scene_parts import (
     shown_duet,
     went_on,
 )
+from webdemo.ui.components.show import arrival_payload
 from webdemo.ui.components.story import StoryLine, motion_marks, story_fields, value_of
 from webdemo.ui.components.story_words import SETTINGS, edited, lay_out, said_of, settled, story_text, use_text, written
 from webdemo.ui.components.upload import chip
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
+from webdemo.ui.text.examples import ARRIVAL, CLIPS
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import error_line, tries_line
@@ -55,8 +57,6 @@ EXAMPLES = (
     ),
 )
 """(name, story) of the examples."""
-MOST_EARLIER = 10
-"""Motions that can be gone back to."""
 
 
 class SceneTab(JobTab):
@@ -88,7 +88,12 @@ class SceneTab(JobTab):
     def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
         """The story of the first cell, without its motion: the cells differ in it."""
         request = SceneRequest.from_dict(next(iter(made.values())).manifest["request"])
-        return {"story": gr.update(value=value_of(request)), "text": write_story(request), "prompt": _changed(fields)}
+        return {
+            "story": gr.update(value=value_of(request)),
+            "text": write_story(request),
+            "prompt": _changed(fields),
+            "reading": gr.update(checked=None),
+        }
 
     def title(self, request: SceneRequest) -> str:
         """The words of its beats."""
@@ -101,14 +106,14 @@ class SceneTab(JobTab):
         with gr.Row(elem_classes="pd-lab", equal_height=False):
             with gr.Column(elem_classes="pd-controls", min_width=0):
                 self._ask()
-                self.results.build_panel()
+                self.results.build_readouts()
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     self.sampling.build()
-                    self.grids.build()
                 with gr.Accordion(say("scene.text"), open=False, elem_classes="pd-panel pd-about"):
                     self.text = gr.Textbox(label=say("scene.toml"), lines=8, max_lines=24, elem_id="scene-text")
                     self.use = gr.Button(say("scene.use"), size="sm", elem_id="scene-use-text")
-            self.results.build_stage("player.empty_scene", self._story)
+            first = arrival_payload(CLIPS / ARRIVAL)
+            self.results.build_stage(compare=self.grids.build, below=self._story, first=first)
         self.controls = {"prompt": self.prompt, "story": self.line_up, **self.sampling.controls}
         self.wire([self.go.click, self.prompt.submit], record)
         self._wire_parts()
@@ -143,13 +148,11 @@ class SceneTab(JobTab):
                 self.take = gr.Button(
                     say("scene.take"), size="sm", min_width=0, elem_id=self._id("take"), elem_classes="pd-take"
                 )
-                self.back = gr.Button(say("scene.back"), size="sm", min_width=0, elem_id=self._id("back"))
         self.shown_at = gr.Textbox(visible=False)
-        self.earlier = gr.State([], time_to_live=3600)
 
     def more_outputs(self) -> dict[str, Any]:
-        """The story with its text and its words, and the motions that can be gone back to."""
-        return {"story": self.line_up, "text": self.text, "prompt": self.prompt, "earlier": self.earlier}
+        """The story with its text and its words, and their verdicts."""
+        return {"story": self.line_up, "text": self.text, "prompt": self.prompt, "reading": self.reading}
 
     def starts(self) -> dict[str, gr.Button]:
         """Also those of parts."""
@@ -173,17 +176,16 @@ class SceneTab(JobTab):
         knobs = [self.controls[name] for name in SETTINGS]
         self.use.click(use_text, inputs=self.text, outputs=[self.line_up, self.prompt, self.line, *knobs], **QUIET)
         player, under, readouts = self.results.player, self.results.under, self.results.readouts
-        changed = [player, self.line, self.record, self.line_up, self.earlier]
-        shown = [self.record, self.earlier, self.shown_at]
+        changed = [player, self.line, self.record, self.line_up, self.trail]
+        shown = [self.record, self.trail, self.shown_at]
         self.take.click(self.take_shown, inputs=shown, js=_READ_PLACE, outputs=changed, **QUIET)
         last_shown = [player, self.line, under, readouts, self.line_up]
         self.last.click(self.take_last, inputs=self.record, outputs=last_shown, **QUIET)
-        self.back.click(self.go_back, inputs=self.earlier, outputs=changed, **QUIET)
 
     def _wire_parts(self) -> None:
         form = self.sampling
         settings = [form.guidance, form.steps, form.damping]
-        inputs = [self.line_up, self.words, *settings, self.record, self.earlier, self.shown_at]
+        inputs = [self.line_up, self.words, *settings, self.record, self.shown_at]
         for button, part in ((self.remake, "span"), (self.futures, "futures")):
             self.wire_start(self._starter(part), [button.click], inputs=inputs, first=_READ_PLACE)
 
@@ -205,15 +207,15 @@ class SceneTab(JobTab):
         part = fields.get("part")
         if part is not None:
             wanted = part_request(fields)
-            earlier = [*fields["earlier"], fields["record"]][-MOST_EARLIER:]
         else:
-            wanted, earlier = self.request(fields), []
+            wanted = self.request(fields)
             laid = {"text": write_story(wanted), "prompt": _changed(fields)}
             # Not the story itself: Gradio's page would change it in place into the update after it.
             yield self.updates(**laid, story=gr.update(value=fields["story"]))
         title = fields["record"].prompt if part is not None else self.title(wanted)
         result = yield from self.made(session, wanted, watch=partial(self._watch, title))
-        shown = self.shown(result, title) | {"earlier": earlier}
+        verdicts = checked(str(fields["prompt"]), result.manifest) if part is None else None
+        shown = self.shown(result, title) | {"reading": gr.update(checked=verdicts)}
         duet = result.duets[0]
         assert isinstance(duet, Duet)
         marks = motion_marks(duet, result.readouts[0])
@@ -237,11 +239,10 @@ class SceneTab(JobTab):
             steps: float,
             damping: float,
             record: Record | None,
-            earlier: list[Record],
             place: str,
             request: gr.Request,
         ) -> Iterator[Updates]:
-            fields = part_fields(part, story, words, guidance, steps, damping, record, earlier, place)
+            fields = part_fields(part, story, words, guidance, steps, damping, record, place)
             yield from self.run(str(request.session_hash), fields)
 
         return start
@@ -264,7 +265,7 @@ class SceneTab(JobTab):
         line = status("Select a span of it, or ask for continuations.")
         return shown["player"], line, shown["under"], shown["readouts"], gr.update(motion=motion_marks(duet))
 
-    def take_shown(self, record: Record | None, earlier: list[Record], shown: str) -> Updates:
+    def take_shown(self, record: Record | None, trail: list[str], shown: str) -> Updates:
         """Keeps one of several futures as the motion; the choice can be gone back to."""
         try:
             sample = place_of(shown)["sample"]
@@ -281,20 +282,8 @@ class SceneTab(JobTab):
             line,
             kept,
             gr.update(motion=motion_marks(duet)),
-            [*earlier, record][-MOST_EARLIER:],
+            [*trail, record.result.run],
         )
-
-    def go_back(self, earlier: list[Record]) -> Updates:
-        """The motion before the last part was made again."""
-        if not earlier:
-            return gr.skip(), status("There is no motion before this one."), gr.skip(), gr.skip(), gr.skip()
-        record, left = earlier[-1], earlier[:-1]
-        duet = record.result.duets[0]
-        assert isinstance(duet, Duet)
-        record = Record(record.result, record.prompt)
-        shown = self.shown(record.result, record.prompt)
-        line = status("This is the motion before.", tone="done")
-        return shown["player"], line, record, gr.update(motion=motion_marks(duet)), left
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the story that was asked for."""
@@ -311,7 +300,9 @@ class SceneTab(JobTab):
                 text = edited(story, request.seed)[1]
             found[self.line_up] = gr.update(value=story, motion=motion_marks(duet))
             found[self.text] = text
-            found[self.prompt] = gr.update(value=said_of(str(run.kept.controls.get("prompt") or ""), story))
+            said = said_of(str(run.kept.controls.get("prompt") or ""), story)
+            found[self.prompt] = gr.update(value=said)
+            found[self.reading] = gr.update(checked=None if motion is not None else checked(said, run.result.manifest))
         return found
 
 

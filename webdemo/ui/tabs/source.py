@@ -15,6 +15,7 @@ from webdemo.ui.components.actors import Source, offered_animations, read_source
 from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
+from webdemo.ui.components.show import ROUNDS
 from webdemo.ui.components.upload import animation_field, chip, example_chips, file_field
 from webdemo.ui.text.examples import example_clips
 from webdemo.ui.text.panels import status
@@ -112,7 +113,21 @@ class SourcePanel(ABC):
             **{**load, "outputs": [*self.shown, *chosen]},
         )
 
+    def wire_arrival(self, tab: gr.Tab, record: gr.State, kind: str) -> None:
+        """Lets the tab, which makes results of a kind, begin with the first example where nothing is on it."""
+        arrive = partial(self.arrive, kind.lower())
+        tab.select(arrive, inputs=[self.state, record], **self.load_options)
+
     # ---- events ----------------------------------------------------------------------------------
+
+    def arrive(self, kind: str, source: Source | None, record: Record | None) -> Updates:
+        """Shows the first example where there is nothing else to show; it plays and then rests."""
+        made = record is not None and record.result.manifest.get("request", {}).get("kind") == kind
+        if source is not None or made or not self.examples:
+            return (gr.skip(),) * len(self.shown)
+        name, path = self.examples[0]
+        *_, (state, line, player, *more) = self.load(partial(read_source, path, name))
+        return state, line, {**player, "value": {**player["value"], "rounds": ROUNDS}}, *more
 
     def upload(self, path: str | None) -> Iterator[Updates]:
         """Reads an uploaded file and shows its motion; one that cannot be read leaves no motion."""

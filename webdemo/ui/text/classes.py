@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
 from webdemo.inference.method import Method
 from webdemo.inference.methods import WEIGHTS, method, methods
@@ -20,11 +19,10 @@ def class_method() -> Method:
     return next(found for found in methods("generate") if "class" in found.takes)
 
 
-def installed_classes(weights: Path = WEIGHTS) -> tuple[list[str], dict[str, Any]]:
-    """Names of the classes, and what the model's card says; none and nothing where there are no weights."""
-    found = class_method()
+def installed_classes(weights: Path = WEIGHTS) -> list[str]:
+    """Names of the classes; none where there are no weights."""
     try:
-        meta = json.loads((weights / str(found.weights) / "config.json").read_text())
-        return list(map(str, meta["model"]["labels"])), {"name": found.name, **meta.get("card", {})}
+        meta = json.loads((weights / str(class_method().weights) / "config.json").read_text())
+        return list(map(str, meta["model"]["labels"]))
     except (OSError, ValueError, KeyError, TypeError):
-        return [], {}
+        return []

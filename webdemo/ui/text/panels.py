@@ -19,6 +19,8 @@ QUALITY = tuple(measure for measure in MEASURES if measure.better)
 RELATION = tuple(measure for measure in MEASURES if not measure.better)
 _NO_WARNINGS = ("This was made as ", "Read as ")
 """Beginnings of notes that say how a sentence was understood."""
+_VERDICT = ("Done", "Not understood:", "Not checked:", "Not seen:", "This is the ", "Best of ")
+"""Beginnings of the note on the acts, which the reading under the prompt shows at its chips."""
 _SAME = '<td class="pd-same">same</td>'
 
 
@@ -35,34 +37,40 @@ def status(line: str = "", *, tone: str = "quiet") -> str:
     return f'<p class="pd-status pd-{tone}" role="{role}">{text(line)}</p>'
 
 
+def made_line(result: Result, spent: float) -> str:
+    """How many samples were made, in how many seconds, and by which of several tries."""
+    count, tries = len(result.duets), result.manifest.get("tries")
+    made = "Made" if count == 1 else f"{count} samples made"
+    within = f" in {seconds(spent)}" if spent else ""
+    chosen = f", try {tries['won']} of {tries['made']}" if tries else ""
+    return f"{made}{within}{chosen}."
+
+
 def notes_lines(result: Result) -> str:
-    """The notes of a result, which stand right beside how long it took."""
-    return "".join(status(note, tone=_note_tone(note)) for note in result.notes)
+    """The notes of a result, but for the verdict on its acts."""
+    notes = (note for note in result.notes if not note.startswith(_VERDICT))
+    return "".join(status(note, tone="note" if note.startswith(_NO_WARNINGS) else "warning") for note in notes)
 
 
-def _note_tone(note: str) -> str:
-    """The tone of a note: what was not done is a warning; how the sentence was read, and what was done, is not."""
-    if any(head in note for head in ("Not understood:", "Not checked:", "Not seen:")):
-        return "warning"
-    if note.startswith("Done"):
-        return "quiet"
-    return "note" if note.startswith(_NO_WARNINGS) else "warning"
+def effect_line(results: Iterable[Result]) -> str:
+    """What the settings did: what share of sentences' motion the plan fixes, and what damping changed of the first.
 
-
-def plan_line(results: Iterable[Result]) -> str:
-    """One line on what share of sentences' motion was laid out for the network; "" where none says so."""
-    shares = [100 * each["planned"] for made in results for each in made.readouts if "planned" in each]
-    if not shares:
-        return ""
-    least, most = (f"{edge:.0f}" for edge in (min(shares), max(shares)))
-    if least == "100":
-        said = "The plan lays out all of this motion: guidance, steps and seed change little."
-    elif most == "0":
-        said = "The plan lays out nothing of this motion: the network makes it."
-    else:
+    "" where no result says either.
+    """
+    readouts = [each for made in results for each in made.readouts]
+    shares = [100 * each["planned"] for each in readouts if "planned" in each]
+    said = ""
+    if shares:
+        least, most = (f"{edge:.0f}" for edge in (min(shares), max(shares)))
         share = most if least == most else f"{least} to {most}"
-        said = f"The plan lays out {share} % of this motion, whatever is set here; the network makes the rest."
-    return f'<p class="pd-method pd-laid" role="status">{text(said)}</p>'
+        said = f"The plan fixes {share} % of this motion; the settings here change the rest."
+        said = "The plan fixes all of this motion: the settings here change little." if least == "100" else said
+        said = "The network makes all of this motion." if most == "0" else said
+    before, after = sides(readouts[0]) if readouts else (None, {})
+    pairs = [(measure, _value(measure, before or {}), _value(measure, after)) for measure in QUALITY]
+    changed = [f"{m.label.lower()} {old} → {new} {m.unit}".strip() for m, old, new in pairs if old not in ("–", new)]
+    said += f" Damping and clean-up: {', '.join(changed[:2])}." if changed else ""
+    return f'<p class="pd-method pd-laid" role="status">{text(said.strip())}</p>' if said else ""
 
 
 def method_line(summary: str) -> str:
@@ -240,20 +248,6 @@ def _table(caption: str, head: Sequence[str], rows: str) -> str:
     return (
         f'<div class="pd-table"><table><caption>{text(caption)}</caption>'
         f"<thead><tr><td></td>{cells}</tr></thead><tbody>{rows}</tbody></table></div>"
-    )
-
-
-def model_card(info: Mapping[str, Any]) -> str:
-    """A model's name, its summary and the plain facts of its card."""
-    facts = "".join(
-        f"<div><dt>{text(str(key).replace('_', ' ').capitalize())}</dt><dd>{text(value)}</dd></div>"
-        for key, value in info.items()
-        if key not in ("name", "summary") and isinstance(value, (str, int, float)) and not isinstance(value, bool)
-    )
-    paragraphs = "".join(f"<p>{text(part)}</p>" for part in str(info.get("summary", "")).split("\n\n") if part.strip())
-    return (
-        f'<div class="pd-card"><h4>{text(info.get("name", "Model"))}</h4>{paragraphs}'
-        f'<dl class="pd-facts">{facts}</dl></div>'
     )
 
 
