@@ -162,6 +162,17 @@ def test_it_serves_and_writes_nowhere_else(lab: Confined) -> None:
     assert "Read-only file system" not in lab.log.read_text()
 
 
+def test_a_full_disk_is_told_and_the_page_stays_open(lab: Confined) -> None:
+    with open(lab.disk / "big", "wb") as big:
+        big.write(b"0" * (shutil.disk_usage(lab.disk).free - 8 * 2**20))
+    lab.wait_for(lambda: lab.answers("/healthz", 503))
+    answer = lab.get("/healthz")
+    assert answer is not None and "disk space" in json.dumps(answer.json()["checks"])
+    assert lab.answers("/login", 200), "what the probes of Kubernetes ask"
+    (lab.disk / "big").unlink()
+    lab.wait_for(lambda: lab.answers("/healthz", 200))
+
+
 def test_systemd_is_told_of_start_life_and_stop(lab: Confined) -> None:
     said = [lab.told.recv(100), lab.told.recv(100)]
     assert sorted(said) == [b"READY=1", b"WATCHDOG=1"]

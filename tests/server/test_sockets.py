@@ -17,6 +17,12 @@ from webdemo.server.settings import Settings
 from .clients import JOIN, UPLOAD, answers, read_all
 
 
+def test_a_head_that_never_ends_is_cut_off(served: tuple[str, int]) -> None:
+    with socket.create_connection(served, timeout=30) as slow:
+        slow.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: ")
+        assert read_all(slow) == b""
+
+
 def test_a_body_that_never_comes_is_cut_off(served: tuple[str, int]) -> None:
     head = f"POST {JOIN} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100\r\nConnection: close\r\n\r\n{{"
     with socket.create_connection(served, timeout=30) as slow:
@@ -85,6 +91,13 @@ def test_answers_that_nobody_reads_are_ended(served: tuple[str, int]) -> None:
                 time.sleep(0.2)
 
 
+def test_broken_http_is_refused(served: tuple[str, int]) -> None:
+    for text in (b"NOT HTTP AT ALL\r\n\r\n", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: a\r\n b\x00\r\n\r\n"):
+        with socket.create_connection(served, timeout=30) as broken:
+            broken.sendall(text)
+            assert b" 400 " in broken.recv(4096)
+
+
 def answer_to(connection: socket.socket) -> bytes:
     """An answer with a Content-Length, whole."""
     got = b""
@@ -113,6 +126,24 @@ def test_a_body_that_drips_is_cut_off(served: tuple[str, int]) -> None:
             for _ in range(999):
                 slow.sendall(b"-")
                 time.sleep(0.1)
+
+
+@elsewhere
+def test_thousands_of_connections(served: tuple[str, int]) -> None:
+    """One address gets so many and no more, and others are answered meanwhile."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    many = 2500
+    if hard != resource.RLIM_INFINITY and hard < 2 * many:
+        pytest.skip("this system allows too few open files")
+    resource.setrlimit(resource.RLIMIT_NOFILE, (max(soft, 2 * many), hard))
+    try:
+        with ExitStack() as flood:
+            found = [flood.enter_context(connect(served)) for _ in range(many)]
+            assert answers(served, "127.0.0.9")
+            assert closed(found[60:]) == many - 60
+        wait_for(lambda: answers(served))
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
 
 
 def test_files_enough_for_all_connections(monkeypatch: pytest.MonkeyPatch) -> None:

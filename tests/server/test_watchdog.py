@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.server.attacks.target import Target
-from tests.server.clients import FIELDS
+from tests.server.clients import FIELDS, client_of, lab_of, settings_for
 from tests.server.lab import ROOT, stub_module
 from tests.server.queue.test_queue import make, request, wait_for
 from webdemo.server.http import health as health_module
@@ -65,6 +65,18 @@ def test_what_is_stuck_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     assert people.queue.stuck == 0
 
 
+def test_a_queue_whose_worker_is_gone_is_stuck(monkeypatch: pytest.MonkeyPatch) -> None:
+    _, people = make(monkeypatch)
+    monkeypatch.setattr(people.queue, "_work", lambda group: None)
+    people.ask_only("a", request("a"))
+    assert people.queue.stuck < 90
+    people.queue._rested -= 100
+    people.queue._waiting[0].came -= 100
+    assert people.queue.stuck >= 100
+    people.queue.cancel("session of a")
+    people.end()
+
+
 def test_health_says_what_is_stuck() -> None:
     still = {"queue": 5.0, "live stream": 0.0}
     works = {name: lambda name=name: still[name] for name in still}
@@ -100,3 +112,15 @@ def test_a_health_check_that_never_ends_is_stuck() -> None:
     assert health.stuck() == ""
     health._tried_at -= 100
     assert "The health check has made no progress" in health.stuck()
+
+
+def test_health_knows_a_full_disk(tmp_path: Path) -> None:
+    with client_of(settings_for(tmp_path, free_megabytes=1e9)) as client:
+        wait_for(lambda: lab_of(client).health.ready)
+        answer = client.get("/healthz")
+        assert answer.status_code == 503
+        assert answer.json()["checks"]["disk"] == "failed: Less than 1e+09 MB of disk space are left."
+    with client_of(settings_for(tmp_path / "other")) as client:
+        wait_for(lambda: client.get("/healthz").status_code == 200)
+        (tmp_path / "other" / "data").rename(tmp_path / "gone")
+        assert client.get("/healthz").json()["checks"]["disk"].startswith("failed")

@@ -2,17 +2,31 @@
 
 from __future__ import annotations
 
+import json
 import time
 from pathlib import Path
 
 import httpx
+import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import update
 
-from tests.server.clients import FIELDS, HTML, JOIN, find_fn, lab_of, no_room, served_on_loopback, sign_in
+from motion import InputError
+from tests.server.clients import (
+    CALL,
+    FIELDS,
+    HTML,
+    JOIN,
+    events_of,
+    find_fn,
+    lab_of,
+    no_room,
+    served_on_loopback,
+    sign_in,
+)
 from webdemo.server.accounts.users import Users
-from webdemo.server.store.database import SignIn
-from webdemo.ui.history import Search
+from webdemo.server.store.database import Link, SignIn
+from webdemo.ui.history import Entry, Search
 
 
 def test_nothing_without_signing_in(shared: TestClient) -> None:
@@ -122,6 +136,59 @@ def test_a_browser_is_remembered_that_somebody_signed_in_with(shared: TestClient
     assert shared.post("/login", data=given, headers={"cookie": f"pasdedeux_known={known}"}).json() == {"success": True}
     sign_ins._throttle._names.take("ada", -60)
     shared.cookies.clear()
+
+
+def newest(client: TestClient, owner: str) -> Entry:
+    return lab_of(client).history.search(owner, Search()).entries[0]
+
+
+def test_a_run_of_another_is_not_opened_by_its_id(shared: TestClient) -> None:
+    ada = sign_in(shared, "ada")
+    assert "event: complete" in events_of(shared, "generate", FIELDS, ada)
+    history, entry = lab_of(shared).history, newest(shared, "user ada")
+    for key, owner in ((entry.id, "user eve"), (entry.id, ""), (entry.id[:-1], "user ada")):
+        with pytest.raises(InputError, match="There is no such run"):
+            history.open(key, owner)
+    # Its event is hers as well: nobody else may read what it ends with.
+    event = shared.post(f"{CALL}/generate", json={"data": FIELDS}, headers=ada).json()["event_id"]
+    assert shared.get(f"{CALL}/generate/{event}").status_code == 401
+    assert shared.get("/config", headers={"cookie": "pasdedeux_session=user ada"}).status_code == 401
+    assert "event: complete" in shared.get(f"{CALL}/generate/{event}", headers=ada).text  # else it ends in a later test
+
+
+def page_at(client: TestClient, key: str, headers: dict[str, str]) -> str:
+    """What the page does first at ``/?run=KEY``: all that it is given then."""
+    session = f"page{time.monotonic_ns()}"
+    fn = find_fn(client, headers, "open_address")
+    body = {"data": [key], "fn_index": fn, "session_hash": session}
+    assert client.post("/gradio_api/queue/join", json=body, headers=headers).status_code == 200
+    lines = client.get(f"/gradio_api/queue/data?session_hash={session}", headers=headers).text.splitlines()
+    events = [json.loads(line.removeprefix("data: ")) for line in lines if line.startswith("data: ")]
+    (done,) = [event for event in events if event["msg"] == "process_completed"]
+    assert done["success"]
+    return json.dumps(done["output"]["data"])
+
+
+def test_an_address_opens_no_run_of_another(shared: TestClient) -> None:
+    """To a stranger a run, one that never was and a link that ended or was revoked are the same."""
+    ada, eve = sign_in(shared, "ada"), sign_in(shared, "eve")
+    assert "event: complete" in events_of(shared, "generate", ["SECRET", *FIELDS[1:]], ada)
+    history, entry = lab_of(shared).history, newest(shared, "user ada")
+    assert "SECRET" in page_at(shared, entry.id, ada)
+    key, _ = history.link(entry.id, "user ada")
+    assert "SECRET" in page_at(shared, key, eve)
+    history.revoke(entry.id, "user ada")
+    late, _ = history.link(entry.id, "user ada")
+    with history.database.session.begin() as session:
+        session.execute(update(Link).where(Link.token == late).values(until=time.time() - 1))
+    keys = [entry.id, "n" * len(entry.id), key, late, "../" + entry.id, entry.id + "' OR '1'='1"]
+    answers = {page_at(shared, each, eve) for each in keys}
+    assert len(answers) == 1
+    (answer,) = answers
+    assert "There is no such run, or its link has expired" in answer and "SECRET" not in answer
+    shared.post("/logout", headers=eve)
+    signed_out = shared.get(f"/?run={entry.id}", headers={**eve, **HTML})
+    assert signed_out.status_code == 303 and "SECRET" not in signed_out.text
 
 
 def test_behind_a_proxy_that_speaks_tls(tmp_path: Path) -> None:

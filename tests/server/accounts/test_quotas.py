@@ -5,9 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fastapi.testclient import TestClient
 
-from tests.server.clients import settings_for
+from tests.server.clients import HERE, settings_for
+from tests.server.lab import stub_module
+from webdemo.server.accounts import quotas
 from webdemo.server.accounts.quotas import OverQuota, Quota, Quotas, RateLimit, network_of
+from webdemo.server.app import create_app
 from webdemo.server.http.routes import Refused
 
 
@@ -70,6 +74,16 @@ def test_a_full_bucket_is_enough_for_any_one_request(clock: Clock) -> None:
     limit.take("a", weight=500)
 
 
+def test_people_who_were_idle_longest_are_forgotten(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(quotas, "_MOST", 2)
+    limit = RateLimit(1, clock)
+    for person in "abc":
+        limit.take(person)
+    limit.take("a")  # was forgotten, so it begins anew
+    with pytest.raises(Refused):
+        limit.take("c")
+
+
 @pytest.mark.parametrize(
     ("address", "network"),
     [
@@ -84,3 +98,17 @@ def test_a_full_bucket_is_enough_for_any_one_request(clock: Clock) -> None:
 )
 def test_a_subscriber_is_one_network(address: str, network: str) -> None:
     assert network_of(address) == network
+
+
+def test_all_addresses_of_a_subscriber_share_one_rate(tmp_path: Path) -> None:
+    """On an open server nobody gets more requests by a new address in their own network for each."""
+    settings = settings_for(tmp_path, open=True, rate=10, address_people=2)
+    app = create_app(settings, engine=stub_module().StubEngine())
+    statuses = []
+    with TestClient(app):
+        for i in range(30):
+            one = TestClient(app, base_url=HERE, client=(f"2001:db8:1:2::{i + 1:x}", 5))
+            statuses.append(one.post("/gradio_api/reset", json={"event_id": "x"}).status_code)
+        other = TestClient(app, base_url=HERE, client=("2001:db8:1:3::1", 5))
+        assert other.post("/gradio_api/reset", json={"event_id": "x"}).status_code != 429
+    assert 10 <= statuses.count(429) <= 20

@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 from sqlalchemy import update
+from starlette.responses import Response
 
 from motion import InputError
 from webdemo.cli import main
@@ -22,6 +23,7 @@ from webdemo.inference.requests import GenerateRequest
 from webdemo.server.accounts import users as accounts
 from webdemo.server.accounts.administration import Administration
 from webdemo.server.accounts.users import SignIns, Throttle, TooManyTries, Users
+from webdemo.server.accounts.visitors import set_cookie
 from webdemo.server.settings import Settings, read_settings
 from webdemo.server.store.database import Database, SignIn
 from webdemo.server.store.notebook import Notebook
@@ -55,6 +57,13 @@ def test_passwords_are_kept_as_salted_hashes(users: Users) -> None:
     assert not users.knows("nobody", "nobody") and not users.knows("", "")
 
 
+def test_passwords_outlive_a_change_of_what_a_try_costs(users: Users, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(accounts, "COST", 2**5)
+    users.add("eve", "battery staple")
+    for reader in (users, Users(users.path)):
+        assert reader.knows("ada", "correct horse") and reader.knows("eve", "battery staple")
+
+
 def test_lines_without_a_cost_are_read_and_impossible_costs_refused(users: Users) -> None:
     salt, digest = b"salt", hashlib.scrypt(b"correct horse", salt=b"salt", n=2**14, r=8, p=1, dklen=32)
     line = ":".join(base64.b64encode(part).decode() for part in (salt, digest))
@@ -72,6 +81,13 @@ def test_changes_are_seen_by_who_reads(users: Users) -> None:
     assert reader.knows("ada", "another password") and not reader.knows("ada", "correct horse")
     users.remove("ada")
     assert not reader.knows("ada", "another password")
+
+
+@pytest.mark.parametrize("name", ["", "a:b", "a\nroot:x", "../x", "Ada", "a" * 41, "é"])
+def test_names_that_would_break_the_file(users: Users, name: str) -> None:
+    with pytest.raises(InputError, match="is not a valid account name"):
+        users.add(name, "long enough")
+    assert users.names == ["ada"]
 
 
 def test_what_cannot_be_is_a_sentence(users: Users, tmp_path: Path) -> None:
@@ -106,6 +122,12 @@ def test_sign_ins_end(sign_ins: SignIns) -> None:
     assert sign_ins.person(token) is None
 
 
+def test_a_removed_person_is_signed_out(sign_ins: SignIns) -> None:
+    token = sign_ins.begin("ada", "correct horse", "1.2.3.4")
+    sign_ins.users.remove("ada")
+    assert token and sign_ins.person(token) is None
+
+
 @pytest.fixture
 def clock(sign_ins: SignIns) -> Clock:
     clock = Clock()
@@ -130,6 +152,11 @@ def test_guesses_from_an_address_are_slowed_down(sign_ins: SignIns, clock: Clock
     assert sign_ins.begin("ada", "correct horse", "1.2.3.4"), "its owner is not locked out"
     clock.now += wait
     assert sign_ins.begin("ada", "correct horse", "6.6.6.6"), "after a while the next try is looked at"
+
+
+def test_right_passwords_cost_no_tries(sign_ins: SignIns, clock: Clock) -> None:
+    for _ in range(3 * accounts.TRIES):
+        assert sign_ins.begin("ada", "correct horse", "1.2.3.4")
 
 
 def test_a_name_is_slowed_down_for_all_addresses_together(sign_ins: SignIns, clock: Clock) -> None:
@@ -218,6 +245,16 @@ def test_it_is_never_open_unsaid(fields: dict[str, Any], allowed: bool) -> None:
             settings.check()
 
 
+def test_a_space_is_open_and_behind_its_own_proxy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SPACE_ID", "lab/pas-de-deux")
+    settings = Settings()
+    settings.check()
+    assert (settings.host, settings.open) == ("0.0.0.0", True) and "*" not in settings.proxies
+    response = Response()
+    set_cookie(response, "a", "b", seconds=1, root="", secure=False)
+    assert "SameSite=none; Secure" in response.headers["set-cookie"]
+
+
 def test_secrets_are_not_printed() -> None:
     shown = Settings(metrics_token="s3cret", database="postgresql://lab:s3cret@db/x").shown()
     assert "s3cret" not in str(shown)
@@ -250,6 +287,15 @@ def test_accounts_from_a_shell(
     assert main(["user", "remove", "eve", "--users", file]) == 2
     assert main(["user", "remove", "ada", "--users", file]) == 0
     assert Users(Path(file)).names == []
+
+
+def test_settings_from_a_shell(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setenv("PASDEDEUX_METRICS_TOKEN", "s3cret")
+    assert main(["serve", "--port", "8123", "--print-settings"]) == 0
+    said = capsys.readouterr().out
+    assert "port = 8123  # port to listen on" in said and "s3cret" not in said
+    assert main(["serve", "--host", "0.0.0.0"]) == 2
+    assert "there are no accounts" in capsys.readouterr().err
 
 
 def test_nobody_inherits_from_an_earlier_account_of_the_same_name(

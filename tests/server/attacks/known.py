@@ -12,6 +12,7 @@ from typing import Any
 from ..clients import FIELDS, PREDICT
 
 API = "/gradio_api"
+FORM = "multipart/form-data; boundary=x"
 NO_COOKIE = {"cookie": 'pasdedeux_session=\x01; a="b'}
 
 
@@ -52,6 +53,16 @@ def post(name: str, path: str, *expected: int, **more: Any) -> Attack:
     return Attack(name=name, path=path, method="POST", expected=expected, **more)
 
 
+def part(disposition: str, content: str = "HIERARCHY", kind: str = "application/octet-stream") -> bytes:
+    """A form of one part."""
+    head = f"--x\r\nContent-Disposition: form-data; {disposition}\r\nContent-Type: {kind}\r\n\r\n"
+    return f"{head}{content}\r\n--x--\r\n".encode()
+
+
+def upload(name: str, content: bytes, *expected: int, kind: str = FORM, **more: Any) -> Attack:
+    return post(name, f"{API}/upload", *expected, content=content, headers={"content-type": kind}, **more)
+
+
 def call(name: str, data: Any, *expected: int, **more: Any) -> Attack:
     return post(name, f"{API}/call/generate", *expected, body={"data": data}, **more)
 
@@ -63,12 +74,21 @@ PATHS = [
     get(f"no file by {path}", path, 400, 403, 404)
     for path in (
         f"{API}/file=/etc/passwd",
+        f"{API}/file=../../etc/passwd",
         f"{API}/file=%2e%2e/%2e%2e/etc/passwd",
+        f"{API}/file=/proc/self/environ",
+        f"{API}/file=https://example.invalid/x",
+        f"{API}/file=app.py",
         f"{API}/file={{data}}/history.db",
+        f"{API}/file={{folder}}/users",
         f"{API}/file={{canary}}",
         f"{API}/file={{data}}/scratch/uploads/../../../../canary.txt",
+        f"{API}/file//etc/passwd",
         f"{API}/proxy=https://example.invalid/",
+        f"{API}/proxy=http://127.0.0.1:9/",
         "/a%00b",
+        f"{API}/stream/x/1/2/playlist.m3u8",
+        "/static/../app.py",
         "/static/%2e%2e/%2e%2e/app.py",
         "/..%5c..%5cx",
         "/monitoring",
@@ -76,7 +96,11 @@ PATHS = [
         "/openapi.json",
         f"{API}/openapi.json",
         f"{API}/deep_link",
+        f"{API}/dev/reload",
+        f"{API}/vibe-code/",
         f"{API}/runs",
+        f"{API}/run-history/records",
+        "/monitoring/x",
         "/svelte/../../../etc/passwd",
         f"{API}/custom_component/1/client/component/../../../../etc/passwd",
     )
@@ -141,11 +165,40 @@ FORGED = [
     post("an event that is a list", f"{API}/cancel", 400, body={**OWN, "event_id": []}),
     post("deep JSON", f"{API}/queue/join", 400, 413, content=b"[" * 200_000),
     post("JSON that is none", f"{API}/queue/join", 400, content=b"{"),
+    post(
+        "JSON in a form",
+        f"{API}/component_server",
+        400,
+        content=part('name="fn_name"', "x"),
+        headers={"content-type": FORM},
+    ),
     post("a body of three megabytes", f"{API}/queue/join", 413, content=b" " * 3 * 2**20),
     get("an address of 5,000 letters", "/" + "a" * 5000, 414),
     get("sixty parameters", f"{API}/queue/data?" + "&".join(f"a{i}=1" for i in range(60)), 400, holds="many"),
     get("a cookie that is none", "/config", 401, headers=NO_COOKIE, who="stranger", at="closed"),
     get("a cookie that is none", "/config", 200, headers=NO_COOKIE, who="stranger", at="open", holds='"api_prefix"'),
+]
+
+UPLOADS = [
+    upload("an upload without a name", part('name="files"; filename=""'), 400, holds="no name"),
+    upload("an upload named by dots", part('name="files"; filename=".."'), 400, holds="no name"),
+    upload("an upload named by signs", part('name="files"; filename="???"'), 400, holds="no name"),
+    upload("an upload that is a text", part('name="files"'), 400),
+    upload("an upload of another name", part('name="file"; filename="a.bvh"'), 400),
+    upload("an upload without a part", b"--x--\r\n", 400),
+    upload("an upload that is cut short", part('name="files"; filename="a.bvh"')[:-6], 400, holds="cut short"),
+    upload("an upload that is no form", b"HIERARCHY", 400, kind="text/plain"),
+    upload("an upload without a boundary", b"HIERARCHY", 400, kind="multipart/form-data"),
+    upload(
+        "an upload in another alphabet",
+        part('name="files"; filename="\\ud800.bvh"'),
+        400,
+        kind=FORM + "; charset=unicode_escape",
+    ),
+    upload("an upload with a long head", part(f'name="files"; filename="{"a" * 20_000}.bvh"'), 400),
+    upload("many files", part('name="files"; filename="a.bvh"')[:-7].rstrip(b"-") * 20, 400),
+    upload("an upload with a path", part('name="files"; filename="../../../evil.bvh"'), 200, never=("..",)),
+    upload("a page as an upload", part('name="files"; filename="a.html"', "<script>alert(1)</script>"), 200),
 ]
 
 ADMIN = [
@@ -278,7 +331,9 @@ VOTE = "/study/{study_key}/vote/0/1"
 STUDIES = [
     get("what is compared in a study", "/study/{study_key}", 200, holds="Which is longer?", never=("SECRET",)),
     get("a study by its id", "/study/{study}", 404, holds="no such study"),
+    get("a study by another's run", "/study/{run}", 404, holds="no such study"),
     get("a script in a study's key", f"/study/{SCRIPT}", 404, headers={"accept": "text/html"}, never=(SCRIPT,)),
+    get("a step out of a study", "/study/..%2f..%2fapp.py", 404),
     get("the motions of studies", f"{API}/file={{data}}/studies/{{study}}/0.npz", 403, 404, never=("PK",)),
     post(
         "what is compared in a pair",
@@ -289,12 +344,13 @@ STUDIES = [
         never=("SECRET", "manifest", "damped"),
     ),
     post("a vote by a program", VOTE, 403, holds="own page"),
+    post("a pair for a program", "/study/{study_key}/next", 403, holds="own page"),
     post("a vote from another site", VOTE, 403, holds="Another site", headers={"origin": "https://example.invalid"}),
     post("a vote by a stranger", VOTE, 401, who="stranger", at="closed", headers=OWN_PAGE),
     post("a vote without a cookie", VOTE, 403, who="stranger", at="open", headers=OWN_PAGE, holds="cookie"),
     *(
         post(f"a vote that is {vote}", f"/study/{{study_key}}/vote/{vote}", 404, 422, headers=OWN_PAGE)
-        for vote in ("x/1", "9/1", "0/..%2f..")
+        for vote in ("x/1", "0/x", "-1/1", "9/1", "1e99/1", "0/..%2f..", "0/1/1")
     ),
 ]
 
@@ -325,11 +381,24 @@ PUBLIC_PAGES = [
     get("a file of public pages", "/shown/player/main.js", 200, who="stranger", holds="export"),
     *(
         get(f"no file of public pages at {path}", f"/shown/{path}", 401, 404, who="stranger")
-        for path in ("../app.py", "%2e%2e/app.py", "{upload}", "{canary}")
+        for path in (
+            "share/page.html",
+            "../app.py",
+            "player/../../app.py",
+            "%2e%2e/app.py",
+            "/etc/passwd",
+            "{upload}",
+            "{canary}",
+            "player",
+            "",
+        )
     ),
 ]
 
 OWN_ACCOUNT = [
+    get("her account", "/account", 200, at="closed", holds="Signed in as eve", never=("ada",)),
+    get("a stranger's account", "/account", 401, at="closed", who="stranger"),
+    get("an account where there are none", "/account", 404, at="open"),
     post(
         "another's password for one's own",
         "/account/password",
@@ -347,6 +416,15 @@ OWN_ACCOUNT = [
         headers={"origin": "https://evil.example", "content-type": "application/x-www-form-urlencoded"},
         content=b"now=password+of+ada&new=something+else&again=something+else",
     ),
+    post(
+        "another site signs somebody out everywhere",
+        "/account/sign-out",
+        403,
+        at="closed",
+        who="ada",
+        headers={"origin": "https://evil.example"},
+    ),
+    post("a stranger signs somebody out everywhere", "/account/sign-out", 401, at="closed", who="stranger"),
     get(
         "a name by a header that the settings do not name",
         "/config",
@@ -357,14 +435,102 @@ OWN_ACCOUNT = [
     ),
 ]
 
+OTHER_ROUTES = [
+    *(
+        get(f"nothing of hers in {path}", path, 200, never=("SECRET", "{data}", "password"))
+        for path in (
+            "/config/",
+            f"{API}/app_id",
+            f"{API}/app_id/",
+            f"{API}/info/",
+            f"{API}/login_check",
+            f"{API}/queue/status",
+            "/manifest.json",
+            "/robots.txt",
+            "/favicon.ico",
+            "/healthz",
+            f"{API}/theme.css",
+            f"{API}/user",
+            f"{API}/user/",
+            f"{API}/login_check/",
+            f"{API}/token",
+            f"{API}/token/",
+        )
+    ),
+    *(
+        Attack(name=f"closed: {method} {path}", method=method, path=path, expected=(404,))
+        for method, path in (
+            ("GET", f"{API}/custom_component/1/client/component/x.js"),
+            ("GET", f"{API}/runs/"),
+            ("GET", f"{API}/stream/{{session}}/1/1/playlist-file"),
+            ("GET", f"{API}/vibe-code"),
+            ("GET", f"{API}/call/v2/generate/{{call}}"),
+            ("GET", "/assets/../../app.py"),
+            ("GET", "/pwa_icon"),
+            ("GET", "/pwa_icon/7"),
+            ("GET", "/monitoring/summary"),
+            ("HEAD", "/openapi.json"),
+            ("HEAD", f"{API}/proxy=http://127.0.0.1:9/"),
+            ("POST", f"{API}/process_recording"),
+            ("POST", f"{API}/stream/{{call}}"),
+            ("POST", f"{API}/stream/{{call}}/close"),
+            ("POST", f"{API}/vibe-edit"),
+            ("POST", f"{API}/vibe-edit/"),
+            ("POST", f"{API}/undo-vibe-edit"),
+            ("POST", f"{API}/undo-vibe-edit/"),
+            ("POST", f"{API}/vibe-code"),
+            ("POST", f"{API}/vibe-code/"),
+            ("POST", f"{API}/vibe-starter-queries"),
+            ("POST", f"{API}/vibe-starter-queries/"),
+            ("POST", f"{API}/call/v2/generate/"),
+        )
+    ),
+    Attack(name="the length of another's upload", method="HEAD", path=f"{API}/file={{upload}}", expected=(403, 404)),
+    Attack(name="the page's head", method="HEAD", path="/", expected=(200,)),
+    get("the progress of an upload that never was", f"{API}/upload_progress?upload_id={'x' * 3000}", 404),
+    *(
+        post(f"another's upload, at {path}", f"{API}/{path}", 400, 403, body={"data": [OTHER_FILE, *FIELDS[1:]]})
+        for path in ("call/generate/", "api/generate", "api/generate/", "run/generate/")
+    ),
+    post(
+        "another's component, with a slash",
+        f"{API}/component_server/",
+        403,
+        404,
+        body={"session_hash": "{session}", "component_id": 1, "fn_name": "x", "data": []},
+    ),
+    post("the end of another's call, with a slash", f"{API}/reset/", 403, 404, body={**OWN, "event_id": "{call}"}),
+    post(
+        "a sign-in at Gradio's own address, which knows nobody",
+        "/login/",
+        302,
+        at="closed",
+        who="stranger",
+        headers={"content-type": "application/x-www-form-urlencoded"},
+        content=b"username=ada&password=x",
+    ),
+    post(
+        "another site signs somebody out",
+        "/logout",
+        403,
+        at="closed",
+        who="ada",
+        headers={"origin": "https://evil.example"},
+    ),
+]
+
 LIVE = [
     *(
         post(f"a live stream with {fields!r:.60}", "/live", 422, body=fields, never=("Traceback",))
         for fields in (
+            {},
             [],
+            {"partner": "nobody"},
             {"partner": ["agent"]},
             {"partner": "agent", "lens": 1e9},
+            {"partner": "agent", "seed": 2**32},
             {"partner": "agent", "seed": True},
+            {"partner": "agent", "tilt": "x"},
         )
     ),
     post("a live stream of half a megabyte", "/live", 422, content=b"[" * 2**19),
@@ -390,10 +556,12 @@ LIVE = [
 
 KNOWN = [
     *ADMIN,
+    *OTHER_ROUTES,
     *LIVE,
     *PATHS,
     *OTHERS_THINGS,
     *FORGED,
+    *UPLOADS,
     *OTHER_SITES,
     *STRANGERS,
     *SCRIPTS,

@@ -45,6 +45,14 @@ def test_no_value_names_a_file_of_the_servers(target: Target, endpoint: str) -> 
     assert not target.copies(CANARY) and target.healthy()
 
 
+@pytest.mark.parametrize("place", range(1, len(FIELDS)))
+def test_nor_does_any_other_value_of_a_call(target: Target, place: int) -> None:
+    data: list[Any] = list(FIELDS)
+    data[place] = file_data(str(target.canary))
+    assert "event: complete" not in target.call("eve", "generate", data)
+    assert not target.copies(CANARY)
+
+
 def test_nor_does_an_event_of_the_page(target: Target) -> None:
     """Every function, not those for programs alone, and every way in which Gradio takes a call."""
     config = target.ask("eve", "GET", "/config").json()

@@ -21,6 +21,7 @@ from motion import InputError
 from motion.formats.importing import import_motion
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_motion
+from tests.motion.formats.rigs import RIGS, bvh_text
 from webdemo.inference.story.toml import read_story
 
 from ..clients import FIELDS
@@ -197,15 +198,28 @@ def test_requests_end_in_no_error_of_the_programs(target: Target) -> None:
 
 
 def samples() -> dict[str, bytes]:
-    """A whole file of each kind that is changed inside; ``tests/motion/formats/test_fuzz.py`` changes bytes of all."""
+    """A whole file of every kind that is read."""
     import io
 
     import numpy as np
 
     positions, rotations = marching(30)
-    archive = io.BytesIO()
+    bvh = bvh_text(rotations, positions[:, 0], RIGS["mixamo"], unit=100, frame_time=1 / 30).encode()
+    array, archive = io.BytesIO(), io.BytesIO()
+    np.save(array, positions.astype(np.float32))
     np.savez(archive, positions=positions.astype(np.float32), fps=30.0)
-    return {"a.npz": archive.getvalue(), "a.glb": glb_motion(rotations, positions[:, 0]), "a.toml": STORY}
+    body = b"".join(b"%d.0 %d.5 2.5 0 0 0 0 0 0 0 0 2\n" % (j % 3, j % 5) for j in range(25))
+    skeleton = b"5\n" + (b"1\n7 0 0 0 0 0 0 0 0 2\n25\n" + body) * 5
+    sbu = b"\n".join(b"%d," % i + b",".join(b"0.%d" % (k % 9 + 1) for k in range(90)) for i in range(5))
+    return {
+        "a.bvh": bvh,
+        "a.npy": array.getvalue(),
+        "a.npz": archive.getvalue(),
+        "a.skeleton": skeleton,
+        "a.txt": sbu,
+        "a.glb": glb_motion(rotations, positions[:, 0]),
+        "a.toml": STORY,
+    }
 
 
 Change = Callable[[bytes, random.Random], bytes]
@@ -236,10 +250,11 @@ def read_mutants(name: str, data: bytes, change: Change, count: int, send: Calla
     send("")
 
 
-CHANGES = (("a.npz", changed_archive), ("a.glb", changed_glb), ("a.toml", changed_story), ("a.toml", mutated))
+WHOLE = ("a.bvh", "a.npy", "a.npz", "a.skeleton", "a.txt", "a.glb", "a.toml")
+INSIDE: tuple[tuple[str, Change], ...] = (("a.npz", changed_archive), ("a.glb", changed_glb), ("a.toml", changed_story))
 
 
-@pytest.mark.parametrize(("name", "change"), CHANGES)
+@pytest.mark.parametrize(("name", "change"), [*((name, mutated) for name in WHOLE), *INSIDE])
 def test_files_end_in_a_motion_or_a_sentence(name: str, change: Change) -> None:
     context = multiprocessing.get_context("fork")
     receive, send = context.Pipe(duplex=False)

@@ -1,11 +1,14 @@
-"""Every route of the application: none is open to strangers unsaid, none hands out another's."""
+"""Every route of the application: each has an attack, none is open to strangers unsaid, none hands out another's."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable
 
+from starlette.routing import compile_path
+
 from .backend import Backend
+from .known import KNOWN
 from .target import Target
 from .test_known import SECRETS
 from .victim import Victim
@@ -45,6 +48,19 @@ THINGS = {
     "file_name": ("index.js",),
 }
 """What stands for each parameter of a path."""
+
+
+def test_every_route_has_an_attack(backend: Backend) -> None:
+    """One that is new has none: add it to known.py."""
+    without = [
+        route
+        for route in sorted(backend.routes)
+        for method, path in [route.split(" ", 1)]
+        if not any(
+            method == attack.method and compile_path(path)[0].match(re.split(r"\?", attack.path)[0]) for attack in KNOWN
+        )
+    ]
+    assert not without
 
 
 def test_strangers_sign_in_first(backend: Backend, closed: Target) -> None:

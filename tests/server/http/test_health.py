@@ -6,14 +6,17 @@ import json
 import logging
 import re
 import time
+import traceback
+from typing import Any
 
+import gradio as gr
 import pytest
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 
 from tests.server.clients import FIELDS, JOIN, answer_of, events_of, lab_of
 from tests.server.queue.test_queue import wait_for
-from webdemo.server.logs import JsonLines
+from webdemo.server.logs import JsonLines, log_instead_of_printing
 
 CRASH = ["crash", *FIELDS[1:5], 3, *FIELDS[6:]]
 """What the stub breaks at."""
@@ -84,6 +87,29 @@ def test_an_error_is_found_in_the_log_by_its_id(local: TestClient, caplog: pytes
     assert line["request"] == reference[1] and line["error"] == "RuntimeError"
     assert any("stub_engine.py" in place for place in line["where"])
     assert "crash" not in json.dumps([line for line in lines if line["logger"].startswith("webdemo")])
+
+
+def test_gradios_own_errors_hold_no_prompt(
+    local: TestClient,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """It prints what it was sent, a line each: a forged line of the log among them."""
+    forged = 'SECRET PROMPT\n{"level": "error", "message": "forged"}'
+    monkeypatch.setattr(traceback, "print_exc", log_instead_of_printing)
+
+    def breaks(component: gr.Textbox, value: Any) -> str:
+        raise ValueError(f"{value} is no sentence")
+
+    monkeypatch.setattr(gr.Textbox, "preprocess", breaks)
+    said = events_of(local, "generate", [forged, *FIELDS[1:]])
+    assert "event: error" in said
+    lines = [JsonLines().format(record) for record in caplog.records]
+    printed = "".join(capfd.readouterr())
+    assert not any("SECRET" in text or "forged" in text for text in (*lines, printed))
+    (line,) = [json.loads(line) for line in lines if "An event failed." in line]
+    assert line["error"] == "ComponentProcessingError" and line["where"]
 
 
 def test_logs_hold_no_prompt_and_no_forged_line(local: TestClient, caplog: pytest.LogCaptureFixture) -> None:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import tempfile
 import threading
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
 from motion import InputError
-from tests.server.clients import FIELDS, HERE, client_of, events_of, lab_of, settings_for
+from tests.server.clients import FIELDS, HERE, REACT, UPLOAD, client_of, events_of, lab_of, settings_for
 from tests.server.lab import stub_module
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.queue.queue import FairQueue
@@ -25,6 +27,76 @@ def open_to_all(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient
     with client_of(settings_for(folder, open=True, rate=25, address_people=2)) as client:
         client.cookies.clear()
         yield client
+
+
+def react(client: TestClient, actor: Any) -> str:
+    return events_of(client, "react", [actor, *REACT])
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "../../../evil.bvh",
+        "/etc/evil.bvh",
+        "..\\..\\evil.bvh",
+        "a/../../evil.bvh",
+        "%2e%2e%2fevil.bvh",
+        "evil.bvh\r\nSet-Cookie: a=b",
+        "e" * 3000 + ".bvh",
+        "CON.bvh",
+        ".bvh",
+        "evil.bvh/",
+    ],
+)
+def test_an_upload_stays_in_its_folder(local: TestClient, name: str, tmp_path: Path) -> None:
+    answer = local.post(UPLOAD, files={"files": (name, b"HIERARCHY")})
+    assert answer.status_code in (200, 400, 422) and "set-cookie" not in answer.headers
+    if answer.status_code == 200:
+        (path,) = answer.json()
+        assert Path(path).resolve().is_relative_to(Path(tempfile.gettempdir()).resolve() / "gradio")
+        assert Path(path).is_file() and len(Path(path).name) < 256
+    assert not Path("/etc/evil.bvh").exists() and not (Path.cwd().parent / "evil.bvh").exists()
+
+
+def test_an_upload_is_an_upload(local: TestClient) -> None:
+    """No file of the server's, and nothing of another host's, is read as if somebody had sent it."""
+    database = lab_of(local).settings.data / "history.db"
+    for path in (str(database), "/etc/passwd", "../../etc/passwd", str(Path(__file__)), "", "\0"):
+        said = react(local, {"path": path, "meta": {"_type": "gradio.FileData"}})
+        assert "event: complete" not in said and "root:" not in said
+    for address in ("http://127.0.0.1:9/x.bvh", "https://example.invalid/x.bvh", "file:///etc/passwd"):
+        for actor in ({"path": address, "url": address, "meta": {"_type": "gradio.FileData"}}, address):
+            said = react(local, actor)
+            assert "event: complete" not in said and "root:" not in said
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"\0" * 1000, b"PK\x03\x04 no zip", b"\x80\x04\x95 a pickle.", b"HIERARCHY\nROOT" * 99]
+)
+def test_a_broken_upload_is_a_sentence(local: TestClient, content: bytes) -> None:
+    for suffix in ("bvh", "npz", "npy"):
+        answer = local.post(UPLOAD, files={"files": (f"clip.{suffix}", content)})
+        said = react(local, {"path": answer.json()[0], "meta": {"_type": "gradio.FileData"}})
+        assert f'event: error\ndata: {{"error": "clip.{suffix}' in said, said
+        assert "Traceback" not in said and "its log says more" not in said
+
+
+def test_what_the_page_does_not_offer_is_no_error_of_the_programs(local: TestClient) -> None:
+    """A name or number that is made up is refused before Gradio stumbles over it."""
+    errors = lab_of(local).figures.errors.collect()[0].samples
+    for path, body in (
+        ("call/nosuch", {"data": []}),
+        ("run/nosuch", {"data": []}),
+        ("api/..", {"data": []}),
+        ("call/refresh", {"data": [None]}),
+        ("queue/join", {"data": [], "fn_index": 99999}),
+        ("queue/join", {"data": [], "fn_index": -1}),
+        ("run/predict", {"data": [], "fn_index": "0"}),
+        ("queue/join", {"data": [], "fn_index": True}),
+    ):
+        answer = local.post(f"/gradio_api/{path}", json=body)
+        assert answer.status_code == 404, (path, body, answer.text)
+    assert lab_of(local).figures.errors.collect()[0].samples == errors
 
 
 def test_a_visitors_history_is_not_had_by_naming_them(open_to_all: TestClient) -> None:

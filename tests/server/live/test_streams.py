@@ -18,7 +18,15 @@ from tests.server.lab import stub_module
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.live import stream as stream_module
 from webdemo.server.live import streams as streams_module
-from webdemo.server.live.stream import MOST_BYTES, MOST_PICTURES, LiveStream, Message, Resampled, read_message
+from webdemo.server.live.stream import (
+    MOST_BYTES,
+    MOST_FRAMES,
+    MOST_PICTURES,
+    LiveStream,
+    Message,
+    Resampled,
+    read_message,
+)
 from webdemo.server.live.streams import StreamEnded, StreamRefused, Streams, StreamUnknown
 from webdemo.ui.visitor import Visitor
 from webdemo.view.payload import unpack_positions
@@ -262,6 +270,13 @@ def test_what_no_page_sends_is_refused_in_a_sentence(body: bytes) -> None:
         read_message(body)
 
 
+def test_a_message_that_spans_half_a_minute_is_not_computed_whole() -> None:
+    one = stream()
+    answer = answered(one, read_message(poses([float(second) for second in range(32)])))
+    assert MOST_FRAMES <= one.counts.frames < MOST_FRAMES + 30
+    assert answer["start"] == 0
+
+
 def test_a_stream_gets_no_more_frames_than_time_has_passed() -> None:
     one = stream()
     for minute in range(3):
@@ -270,6 +285,16 @@ def test_a_stream_gets_no_more_frames_than_time_has_passed() -> None:
     one.clock.now += 1.0
     answered(one, read_message(poses([600 + 0.9 * i for i in range(32)])))
     assert one.counts.frames == stream_module.AHEAD + 30
+
+
+def test_points_that_lie_in_one_place_do_no_harm() -> None:
+    filmed = film([stepping(1.0)])
+    for part in (
+        replace(filmed, image=np.full_like(filmed.image, 0.5), world=np.zeros_like(filmed.world)),
+        replace(filmed, seen=np.zeros_like(filmed.seen), image=np.zeros_like(filmed.image)),
+    ):
+        answer = answered(stream(), read_message(packed(part).encode()))
+        assert answer["frames"] is None or np.isfinite(unpack_positions(answer["frames"])).all()
 
 
 def test_things_are_sent_whole_with_the_first_frames_and_then_only_as_they_move() -> None:

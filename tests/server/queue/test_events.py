@@ -14,7 +14,7 @@ from gradio.routes import App
 from starlette.routing import Mount
 
 from tests.server.attacks.target import Target
-from tests.server.clients import settings_for
+from tests.server.clients import FIELDS, settings_for
 from tests.server.lab import ROOT, stub_module
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.app import create_app
@@ -24,6 +24,7 @@ from webdemo.ui.page import build_page, start_queue
 from webdemo.ui.visitor import Visitor
 
 CLIP = ROOT / "static" / "examples" / "shake-hands.npz"
+OLD_LIMIT = 192
 """Events of everybody that the server once took at a time."""
 
 
@@ -169,3 +170,24 @@ def sheet(target: Target, who: str) -> list[Any]:
     path = target.upload(who, "hands.npz", CLIP.read_bytes())
     file = {"path": path, "meta": {"_type": "gradio.FileData"}}
     return [file, "png", "bodies", "light", "threequarter", False, 24, 640, 360, None, "", 0, 0, False, "", ""]
+
+
+def test_one_person_cannot_stop_the_events_of_others(target: Target) -> None:
+    """As many events as once stopped everybody's: a few are taken, and others' turn comes after one of them."""
+    data = sheet(target, "eve")
+    asked = [target.ask("eve", "POST", "/gradio_api/call/render", json={"data": data}) for _ in range(OLD_LIMIT + 5)]
+    refused = [answer for answer in asked if answer.status_code != 200]
+    assert len(refused) > OLD_LIMIT / 2 and {answer.status_code for answer in refused} == {429}
+    assert "unfinished tasks" in refused[-1].json()["detail"]
+    before = target.ask("ada", "GET", "/gradio_api/queue/status").json()["queue_size"]
+    assert before >= 8  # or nothing is shown below
+    assert "event: complete" in target.call("ada", "render", sheet(target, "ada"))
+    after = target.ask("ada", "GET", "/gradio_api/queue/status").json()["queue_size"]
+    assert before - after <= 4, "one contact sheet of hers waits for no more than a few of the other's"
+    assert "event: complete" in target.call("ada", "generate", FIELDS)
+
+
+def test_no_event_is_called_past_the_queue(target: Target) -> None:
+    for path, body in (("render", {"data": sheet(target, "eve")}), ("predict", {"fn_index": 4, "data": []})):
+        answer = target.ask("eve", "POST", f"/gradio_api/run/{path}", json=body)
+        assert answer.status_code in (400, 404), path

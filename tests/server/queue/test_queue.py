@@ -188,6 +188,26 @@ def test_a_person_has_so_many_at_work(monkeypatch: pytest.MonkeyPatch) -> None:
         assert all(sum(name != "other" for name in names) <= 2 for names in gate.order)
 
 
+def test_a_person_may_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch, waiting=2)
+    for i in range(4):
+        people.ask("one", request(f"r{i}"))
+    people.ask("other", request("other"))
+    gate.open.release(4)
+    people.end()
+    assert str(people.ends["r3"]).startswith("You already have 2 runs waiting")
+    assert isinstance(people.ends["other"], Result)
+
+
+def test_a_full_line_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch, everybody=2)
+    for name in "abcd":
+        people.ask(name, request(name))
+    gate.open.release(3)
+    people.end()
+    assert str(people.ends["d"]).startswith("There are 2 runs waiting here already")
+
+
 def test_places_and_estimates(monkeypatch: pytest.MonkeyPatch) -> None:
     gate, people = make(monkeypatch)
     people.queue.paces["m"].learn(120.0, 12.0)  # 0.1 s a unit; a request here has 60 units
@@ -243,6 +263,15 @@ def test_stopping_lets_running_end_and_returns_the_rest(monkeypatch: pytest.Monk
     assert isinstance(people.ends["c"], InputError)
 
 
+def test_stopping_does_not_wait_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
+    _, people = make(monkeypatch)
+    people.ask("a", request("a"))
+    wait_for(lambda: people.queue.running == 1)
+    assert people.queue.close(0.05) == 1
+    people.end()
+    assert isinstance(people.ends["a"], (InputError, Cancelled))
+
+
 def test_what_may_share_a_pass() -> None:
     engine = SharedEngine()
     one = GenerateRequest(prompt="They wave.", seconds=4.0, steps=20)
@@ -254,6 +283,21 @@ def test_what_may_share_a_pass() -> None:
     assert not engine.fits([one], replace(one, seconds=5.1))
     assert not engine.fits([one, replace(one, seconds=5.0)], replace(one, seconds=3.9))
     assert not engine.ready  # nothing of this loads a network
+
+
+def test_several_workers_of_a_group(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where passes are shared elsewhere, several requests of a model are on their way at once."""
+    gate, people = make(monkeypatch, workers=2)
+    people.queue.paces["m"].learn(120.0, 12.0)
+    for name in "abcd":
+        people.ask(name, request(name))
+    wait_for(lambda: people.queue.running == 2 and people.waits.get("c") and people.waits.get("d"))
+    assert sorted(names[0] for names in gate.order) == ["a", "b"]
+    assert people.waits["c"][0].seconds_left == pytest.approx(6, abs=1.5)  # each worker has a run of 6 s
+    assert people.waits["d"][0].seconds_left == pytest.approx(9, abs=1.5)
+    gate.open.release(4)
+    people.end()
+    assert all(isinstance(end, Result) for end in people.ends.values())
 
 
 def test_the_engine_that_settings_name(monkeypatch: pytest.MonkeyPatch) -> None:

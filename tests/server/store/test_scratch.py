@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
-from motion import InputError
+from motion import InputError, formats
 from tests.server.clients import FIELDS, HERE, UPLOAD, client_of, events_of, lab_of, settings_for
 from tests.server.lab import stub_module
 from tests.server.queue.test_queue import wait_for
@@ -107,6 +109,18 @@ def test_a_server_keeps_its_files_there_and_tidies_them(tmp_path: Path, monkeypa
         assert client.get("/", headers={"accept": "text/html"}).status_code == 200
 
 
+def test_uploads_are_weighed(tmp_path: Path) -> None:
+    def undeclared() -> Iterator[bytes]:
+        yield b"--x\r\n"
+
+    with client_of(settings_for(tmp_path, rate=30, upload_megabytes=20)) as client:
+        file = {"files": ("a.bvh", os.urandom(12 * MB))}
+        assert [client.post(UPLOAD, files=file).status_code for _ in range(3)] == [200, 200, 429]
+        other = {"cookie": "pasdedeux_visitor=" + "o" * 32, "content-type": "multipart/form-data; boundary=x"}
+        statuses = [client.post(UPLOAD, content=undeclared(), headers=other).status_code for _ in range(3)]
+        assert 429 in statuses[1:] and statuses[0] != 429
+
+
 def test_nothing_is_taken_where_the_disk_is_nearly_full(tmp_path: Path) -> None:
     with client_of(settings_for(tmp_path, free_megabytes=1e12)) as client:
         said = events_of(client, "generate", FIELDS)
@@ -135,3 +149,14 @@ def test_a_disk_that_fills_and_a_program_that_breaks(local: TestClient, monkeypa
     reference = answer.headers["x-request-id"]
     assert answer.status_code == 500 and answer.json()["request"] == reference
     assert f"its log says more under {reference}" in answer.text and "secret" not in answer.text
+
+
+def test_an_error_does_not_say_where_the_files_are(local: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(duet: Any, path: Path) -> None:
+        raise InputError(f"{path} could not be written because the disk is full: free some space and try again.")
+
+    monkeypatch.setattr(formats, "write", full)
+    said = events_of(local, "generate", ["They walk to the end of the road.", *FIELDS[1:]])
+    assert "event: error" in said
+    assert re.search(r"road-seed0-[0-9a-f]{4}\.\w+ could not be written because the disk is full", said)
+    assert "/" not in said.partition("data: ")[2]

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from motion import InputError
+from tests.server.clients import no_room
 from tests.server.lab import stub_module
 from webdemo.server.accounts.quotas import Rooms
 from webdemo.server.store.database import Database
@@ -102,6 +103,12 @@ def test_two_tabs_of_one_person_cannot_vote_twice(studies: Studies) -> None:
     assert sum(studies.mine(ME)[0].wins) == 1
 
 
+@pytest.mark.parametrize(("number", "pressed"), [(3, "1"), (-1, "1"), (0, "3"), (0, "")])
+def test_an_answer_that_no_page_sends_is_a_sentence(studies: Studies, number: int, pressed: str) -> None:
+    with pytest.raises(InputError, match="An answer is 1, 2 or ="):
+        studies.vote(new(studies).key, "ada", number, pressed)
+
+
 def test_nobody_reads_or_changes_what_is_not_theirs(studies: Studies, tmp_path: Path) -> None:
     study = new(studies)
     for owner in (OTHER, ""):
@@ -137,3 +144,12 @@ def test_what_makes_no_study_is_a_sentence_and_leaves_nothing(studies: Studies) 
     with pytest.raises(InputError, match="nothing of others is removed for yours"):
         new(studies)
     assert studies.mine(ME) == [] and not studies.folder.exists()
+
+
+def test_a_full_disk_leaves_no_half_study(tmp_path: Path) -> None:
+    studies = Studies(Database(f"sqlite:///{tmp_path / 'h.db'}"), tmp_path / "studies")
+    many = [Pair(walking(0.2), walking(0.2), "They walk. " * 9)] * 80
+    with no_room(studies.database), pytest.raises(InputError, match="disk is full"):
+        studies.create(ME, "Which?", RUNS, many)
+    assert list((tmp_path / "studies").iterdir()) == []
+    studies.database.close()
