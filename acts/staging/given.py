@@ -27,18 +27,19 @@ from .lifts import Carrying
 from .limbs import limb_parts
 from .moves import coming, meeting, towards_touched
 from .places import Standing, Way2D
-from .poses import ARMS, HANDS, UPRIGHT, Pose, all_but, standing, upright
+from .poses import UPRIGHT, Pose, standing, upright
 from .postures import bow_parts, posture_parts, postures
 from .room import Room, roomy
 from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
 from .touches import touch_parts
+from .track import EVERY
 from .window import SETTLES, KnownFrames, Part, Stretch, Window
 
 Array = NDArray[np.floating]
 
 _POSED = 4
-"""Frames between two poses of a bystander: as many as between the network's knots, of which others would waver."""
+"""Frames between two poses of a statue: as many as between the network's knots, of which others would waver."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +149,8 @@ class _Beat:
     def on_the_spot(self, moves: Sequence[Move], stretch: Stretch) -> tuple[list[Part], dict[int, Array]]:
         """The parts of people who stay where they are, and a pose (22, 3) of those whose hands are still free.
 
-        A figure comes before limbs, these before a bow, a bow before standing by, and that before a posture.
+        A figure comes before limbs, these before a bow, a bow before standing by, and that before a posture. Who
+        stands by has a place, and no pose.
         """
         score, seed = self.score, self.story.seed
         gone = {move.person for move in moves if move.way not in ("stay", "back to back")}
@@ -167,11 +169,12 @@ class _Beat:
             elif stays and up and who in score.bows and _only_bows(score, who):
                 parts += bow_parts(person, score, stretch, seed)
                 posed[person] = stands
+            elif up and who in score.idle & score.frozen:
+                parts += _statue_parts(person, stretch, seed)
             elif up and who in score.idle:
-                parts += _standing_parts(person, stretch, seed)
+                parts += _staying_parts(person, stretch)
             elif stays and up and (turned or who in score.gesturing):
-                touched = score.touch is not None and score.touch.person != who and who not in score.gestures
-                parts += _standing_parts(person, stretch, seed, () if touched else HANDS if turned else ARMS)
+                parts += _staying_parts(person, stretch)
                 posed[person] = stands
             elif stays:
                 poses = self._postures(person, stretch)
@@ -257,14 +260,22 @@ def _keeps_back(score: Score, who: str) -> bool:
     return bool(score.side) or (touch is not None and touch.behind and touch.person != who)
 
 
-def _standing_parts(person: int, stretch: Stretch, seed: int, free: Collection[int] = ()) -> list[Part]:
-    """The poses of a person who stands by, but for the joints that are ``free``."""
+def _staying_parts(person: int, stretch: Stretch) -> list[Part]:
+    """The place and the heading of a person who stays; what they do there is the network's."""
+    frames = stretch.every(EVERY, SETTLES if stretch.start else 0)
+    angle = float(stretch.stand.headings[person])
+    way = Way2D(person, frames.tolist(), np.tile(stretch.halt(person), (len(frames), 1)), np.full(len(frames), angle))
+    return stretch.known_way(way)
+
+
+def _statue_parts(person: int, stretch: Stretch, seed: int) -> list[Part]:
+    """The poses of a person who stands like a statue."""
     frames = stretch.every(_POSED, SETTLES if stretch.start else 0)
     if not len(frames):
         return []
     seconds = (frames + stretch.start) / FPS
     poses = standing(stretch.halt(person), float(stretch.stand.headings[person]), seconds, seed=seed + person)
-    return [stretch.known(person, frames, poses, all_but(free))]
+    return [stretch.known(person, frames, poses)]
 
 
 def _apart(story: Story, window: Window, placement: Placement) -> list[Part]:

@@ -113,6 +113,14 @@ def away(alone: tuple[str, str], moves: Sequence[Move]) -> tuple[str, str]:
     return a, b
 
 
+def told_still(alone: tuple[str, str], idle: Collection[str]) -> tuple[str, str]:
+    """The sentences of each, of which one who stands by is told so: the network would have them do as the other."""
+    if not any(alone):
+        return alone
+    a, b = (words or "One person stands still." * (who in idle) for who, words in zip("ab", alone, strict=True))
+    return a, b
+
+
 def meeting(
     touch: Touch | None, found: Sequence[Move], posed: Mapping[int, Array], stand: Standing
 ) -> tuple[Touch | None, tuple[Move, ...]]:

@@ -35,7 +35,17 @@ from .act_kinds import (
     walks,
 )
 from .gestures import GESTURES
-from .moves import away, fastest, followed, held_moves, led_backwards, lifted_moves, struck_moves, twirled_moves
+from .moves import (
+    away,
+    fastest,
+    followed,
+    held_moves,
+    led_backwards,
+    lifted_moves,
+    struck_moves,
+    told_still,
+    twirled_moves,
+)
 from .score import LOW, LOWERED, Change, Lift, Move, Score, Strike, Touch, Way, as_story, goes
 
 PULLED = 0.8
@@ -156,7 +166,7 @@ class _Stage:
             behind=self.stands_behind,
             apart=self.apart,
             reaching=self._reaching(),
-            alone=away(of_each(self.acts, self.known), moves),
+            alone=told_still(away(of_each(self.acts, self.known), moves), idle),
         )
 
     # ---- shapes --------------------------------------------------------------------------------------
