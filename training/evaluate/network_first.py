@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from torch import Tensor
 
 from acts import Act, Plan, lexicon, read
 from acts.captions import worded
@@ -27,7 +28,6 @@ from acts.staging.poses import UPRIGHT
 from acts.staging.window import KnownPath, Part
 from motion import Duet
 from motion.transforms import heading
-from webdemo.cli.judging import silence
 from webdemo.inference.pipelines import window
 from webdemo.inference.pipelines.scene import Parts
 from webdemo.inference.run import Result
@@ -168,14 +168,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     engine = Engine()
     pipeline: Any = engine.pipeline("intergen")
+    guided = pipeline.model.denoiser.guided
     pipeline.scenes.parts = Parts(0)  # zeros are not to be taken for what the network made
 
+    def nothing(x: Tensor, *_: Any, **__: Any) -> Tensor:
+        return x.new_zeros(x.shape)
+
     def run(request: SceneRequest, zeros: bool) -> Duet:
-        if zeros:
-            silence(pipeline)
+        pipeline.model.denoiser.guided = nothing if zeros else guided
         *_, result = engine.run(request)
-        if zeros:
-            del pipeline.model.denoiser.guided
         assert isinstance(result, Result) and isinstance(result.duets[0], Duet)
         return result.duets[0]
 
