@@ -22,6 +22,7 @@ from motion.formats import read
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_character, glb_motion, glb_takes
 from webdemo.inference.methods import method
+from webdemo.ui.components import film
 from webdemo.ui.page import build_page, launch_options
 
 from .stub_engine import StubEngine, walking
@@ -140,7 +141,7 @@ def test_one_animation_of_several_is_chosen_and_noted(client: Client, walkers: P
         client.predict(story="They bow.", motion=handle_file(robot), animation="run", api_name="/scene")
 
 
-def test_render_films_a_motion_file(client: Client, walkers: Path) -> None:
+def test_render_films_a_motion_file(client: Client, walkers: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = client.predict(motion=handle_file(walkers), kind="gif", width=96, height=64, fps=5, api_name="/render")
     with Image.open(path) as picture:
         assert picture.size == (96, 64) and picture.n_frames == 60
@@ -162,3 +163,6 @@ def test_render_films_a_motion_file(client: Client, walkers: Path) -> None:
     ):
         with pytest.raises(AppError, match=sentence):
             client.predict(api_name="/render", **({"motion": handle_file(walkers)} | fields))
+    monkeypatch.setattr(film, "DRAWN_IN", 0.0)
+    with pytest.raises(AppError, match="were drawn in"):
+        client.predict(motion=handle_file(walkers), kind="gif", width=96, height=64, fps=5, api_name="/render")

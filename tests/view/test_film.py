@@ -24,6 +24,7 @@ from webdemo.view.theme import THEMES
 
 A = marching(12)[0]
 DUET = Duet.from_positions(np.stack([A, turn(A, np.pi) + np.array([0, 0, 1.4])]), fps=30)
+SLOW = Duet.from_positions(DUET.positions, fps=5)
 SMALL = (160, 120)
 PALETTE = Path(__file__).resolve().parents[2] / "static" / "player" / "palette.js"
 
@@ -88,6 +89,7 @@ def test_panes_stand_side_by_side_under_their_captions(tmp_path):
         ({"size": (10, 10)}, "64 to 3840"),
         ({"size": (101, 100)}, "are even"),
         ({"view": "moon"}, "no view"),
+        ({"size": (3840, 3840), "panes": [Pane(SLOW)]}, "too large"),
         ({"panes": []}, "no motion"),
     ],
 )

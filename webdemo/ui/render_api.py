@@ -11,7 +11,7 @@ from motion.character import character_body
 from motion.formats import read
 from motion.formats.glb_reader import read_character
 from webdemo.ui.components.exports import file_name, without_place
-from webdemo.ui.components.film import LONGEST
+from webdemo.ui.components.film import LONGEST, in_time
 from webdemo.ui.text.words import error_line
 from webdemo.view.camera import VIEWS
 from webdemo.view.film import FPS, SIZE, write_film
@@ -123,6 +123,9 @@ class RenderEndpoint:
             if suffix in MESHES:
                 return str(write_mesh(found, out, frame=frame_at(found, second), style=style))
             size = (int(width), int(height))
-            return str(write_film([Pane(found)], out, fps=fps, size=size, style=style, view=view, title=name))
+            film = write_film(
+                [Pane(found)], out, fps=fps, size=size, style=style, view=view, title=name, progress=in_time()
+            )
+            return str(film)
         except Exception as error:
             raise gr.Error(error_line(without_place(error, folder)), print_exception=False) from None

@@ -36,6 +36,8 @@ SIZE = (1280, 720)
 FPS = 30.0
 _GIF_FPS = 25.0
 """GIF counts in hundredths of a second and browsers slow down what is shown for one: 25 is its best rate."""
+MOST_GIF = 400_000_000
+"""Pixels of a GIF's pictures together, a byte each: all are held until the last."""
 _FEW = 45
 """Frames up to which starting other processes costs more than it saves."""
 _PLANES = "yuv420p"
@@ -91,6 +93,10 @@ def write_film(
     rate = min(fps, _GIF_FPS) if suffix == ".gif" else fps
     seconds = max(pane.motion.seconds for pane in panes)
     times = np.arange(max(1, round(seconds * rate))) / rate
+    if suffix == ".gif" and len(times) * size[0] * size[1] > MOST_GIF:
+        raise InputError(
+            f"A GIF of {len(times):,} pictures of {size[0]}x{size[1]} is too large: ask for a smaller one."
+        )
     placed = moving_cameras if style.film else cameras
     views = placed(
         [pane.motion for pane in panes],

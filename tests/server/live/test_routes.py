@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
@@ -61,6 +63,24 @@ def test_another_sites_page_cannot_open_one(client: TestClient) -> None:
 
 def test_a_message_is_a_small_part_of_a_request() -> None:
     assert 60 * 30 * _LIVE_WEIGHT <= 120, "thirty messages a second leave half of the 240 requests a minute"
+
+
+def test_a_message_that_breaks_off_is_no_error(client: TestClient, caplog: pytest.LogCaptureFixture) -> None:
+    scope = {
+        **{"type": "http", "method": "POST", "path": "/live/x", "raw_path": b"/live/x", "query_string": b""},
+        **{"headers": [(b"host", b"127.0.0.1")], "client": ("127.0.0.1", 1), "scheme": "http", "root_path": ""},
+    }
+    messages = iter([{"type": "http.request", "body": b"{", "more_body": True}, {"type": "http.disconnect"}])
+    sent: list[Any] = []
+
+    async def receive() -> Any:
+        return next(messages)
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    asyncio.run(client.app(scope, receive, send))  # type: ignore[arg-type]
+    assert not sent and "A request failed" not in caplog.text
 
 
 def test_whoever_has_an_account_signs_in_first_and_has_their_own(shared: TestClient) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -31,7 +32,7 @@ OLD_LIMIT = 192
 def made(quota: Quota | None = None) -> FairEvents:
     """A queue of a page with a film (one at a time), a list (four at a time) and a run (any number)."""
     with gr.Blocks(analytics_enabled=False) as page:
-        for name, limit in (("film", 1), ("list", 4), ("read", 4), ("tidy", 4), ("run", None)):
+        for name, limit in (("film", 1), ("list", 4), ("reading", 4), ("tidy", 4), ("run", None)):
             gr.Button().click(lambda: None, concurrency_limit=limit, concurrency_id=name, api_name=name)
     start_queue(page, lambda **options: FairEvents(quota=quota or Quota("tasks", 16), figures=Figures(), **options))
     queue = page._queue
@@ -62,7 +63,7 @@ def begin(queue: FairEvents) -> Any:
 def end(queue: FairEvents, event: Any, seconds: float) -> None:
     queue.active_jobs[queue.active_jobs.index([event])] = None
     queue.event_queue_per_concurrency_id[event.concurrency_id].current_concurrency -= 1
-    queue.accounts.charge(event.request.scope["state"]["visitor"].person, seconds)
+    queue._charge(event, seconds)
 
 
 def names(queue: FairEvents, count: int, seconds: float = 1.0) -> list[str]:
@@ -96,9 +97,20 @@ def test_long_events_cost_later_turns() -> None:
     assert names(queue, 5) == ["short"] * 3 + ["long"] * 2
 
 
+def test_whoever_has_had_a_long_text_read_waits_longer_for_the_next() -> None:
+    """Texts of 2,000 characters, one after the other, took a core from the runs of others."""
+    queue = made()
+    for who in ("greedy", "greedy", "other"):
+        ask(queue, who, "reading")
+    end(queue, begin(queue), 0.2)
+    assert names(queue, 1, 0.0) == ["other"] and begin(queue) is None
+    time.sleep(0.65)
+    assert begin(queue) is not None
+
+
 def test_a_person_has_half_of_a_group_and_so_many_in_all() -> None:
     queue = made()
-    for what in ("list", "read", "tidy"):
+    for what in ("list", "reading", "tidy"):
         for _ in range(4):
             ask(queue, "greedy", what)
     begun = []

@@ -29,7 +29,7 @@ LONGEST = 600.0
 BUSIEST = 0.9
 """Processor time that the partners of all streams may take of one core: with more, none would answer in time. A tenth
 is left for following cameras. A clock on the wall would also count the runs beside the streams: with a few of them, the
-first person to be live would keep everybody else out."""
+first person to be live would keep everybody else out. Two are always let in, for the same reason: each gets half."""
 _PACE = 0.1
 """Share of the latest message in the mean processor time of a frame."""
 KEPT = 256
@@ -143,7 +143,7 @@ class Streams:
         except OverQuota as over:
             raise StreamRefused(str(over)) from None
         count = len(held)
-        if count and (count + 1) * FPS * self.pace > BUSIEST:
+        if count > 1 and (count + 1) * FPS * self.pace > BUSIEST:
             raise StreamRefused(
                 f"The server is too busy for another live partner beside {count}: try again in a few minutes."
             )

@@ -16,6 +16,7 @@ from gradio.queueing import Event, EventQueue, Queue
 
 from webdemo.server.accounts.quotas import OverQuota, Quota
 from webdemo.server.http.health import Figures
+from webdemo.ui.components.reading import READING_EVENTS
 from webdemo.ui.visitor import visitor_of
 
 from .turns import Accounts
@@ -23,6 +24,9 @@ from .turns import Accounts
 AT_ONCE = 4
 """Events of one person that are worked on at a time, without runs: fewer than any page needs, so that two long ones
 leave room for short ones."""
+REST = 3.0
+"""Times as long as the reading of a text took, its person's next one waits: a sentence takes 20 ms, and the longest
+texts, one after the other, would take a core from the runs of others."""
 
 
 class FairEvents(Queue):
@@ -42,6 +46,7 @@ class FairEvents(Queue):
         self.quota, self.figures = quota, figures
         self.accounts = Accounts()
         self._begun: dict[Event, float] = {}
+        self._rests: dict[str, float] = {}
 
     async def push(self, body: Any, request: Request, username: str | None) -> Any:
         """Takes an event in.
@@ -91,9 +96,17 @@ class FairEvents(Queue):
             await super().process_events(events, *rest, **more)
         finally:
             del self._begun[event]
-            self.accounts.charge(visitor_of(event.request).person, time.monotonic() - began)
+            self._charge(event, time.monotonic() - began)
 
     # ---- parts -----------------------------------------------------------------------------------
+
+    def _charge(self, event: Event, seconds: float) -> None:
+        """Charges an event's seconds to its person, who rests after a reading."""
+        self.accounts.charge(visitor_of(event.request).person, seconds)
+        if event.concurrency_id == READING_EVENTS:
+            now = time.monotonic()
+            self._rests = {source: until for source, until in self._rests.items() if until > now}
+            self._rests[_source(event)] = now + REST * seconds
 
     def _able(self, group: EventQueue, running: list[Event], busy: Counter[str]) -> Iterator[Event]:
         """The events of a group that may begin now, in order of arrival."""
@@ -103,9 +116,11 @@ class FairEvents(Queue):
             return
         if group.current_concurrency >= limit:
             return
-        share = max(1, limit // 2)
+        share, now = max(1, limit // 2), time.monotonic()
         here = Counter(_source(event) for event in running if event.concurrency_id == group.concurrency_id)
         for event in group.queue:
+            if event.concurrency_id == READING_EVENTS and self._rests.get(_source(event), 0.0) > now:
+                continue
             if busy[visitor_of(event.request).person] < AT_ONCE and here[_source(event)] < share:
                 yield event
 

@@ -217,7 +217,8 @@ def write_on_rig(record: Record, folder: Path) -> list[Path]:
             partner = duet.people[1 - ROLES.index(asked.get("role", ROLES[0]))]
             number = f"-{i + 1}" if len(result.duets) > 1 else ""
             path = folder / f"{name}{number}-on-your-rig{record.rig.suffix.lower()}"
-            files[path] = on_rig(partner, record.rig, animation=record.animation)
+            with READING.place():
+                files[path] = on_rig(partner, record.rig, animation=record.animation)
     files[folder / record.rig.name] = record.rig.read_bytes()
     with _writing(folder):
         return replace_all(files)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,10 @@ from .show import with_shown_roles
 
 LONGEST = 60.0
 """Seconds of motion that the page films; the shell has no such limit."""
+
+DRAWN_IN = 600.0
+"""Seconds in which a film must be drawn, as others' films wait for it; with a character of many triangles a picture
+takes seconds."""
 
 READ_PLAYER = """(record, _) => {
   const player = window.__pasdedeux?.player;
@@ -47,6 +52,22 @@ def suffix() -> str:
 
 Drawn = Callable[[int, int], None]
 """Hears how many pictures are drawn, and of how many."""
+
+
+def in_time(progress: Drawn | None = None) -> Drawn:
+    """Hears as ``progress`` does, from now on, and raises InputError once :data:`DRAWN_IN` has passed."""
+    until = time.monotonic() + DRAWN_IN
+
+    def hear(done: int, total: int) -> None:
+        if time.monotonic() > until:
+            raise InputError(
+                f"Of {total:,} pictures {done:,} were drawn in {DRAWN_IN / 60:.0f} minutes: ask for fewer pixels, "
+                "frames a second or seconds, or use `python -m webdemo render`."
+            )
+        if progress is not None:
+            progress(done, total)
+
+    return hear
 
 
 def make_film(record: Record | None, shown: str, folder: Path, progress: Drawn | None = None) -> Path:
@@ -87,7 +108,7 @@ def make_film(record: Record | None, shown: str, folder: Path, progress: Drawn |
             title=record.prompt,
             yaw=number_of(state, "yaw", -1000.0, 1000.0),
             elevation=number_of(state, "elevation", -0.05, 1.5),
-            progress=progress,
+            progress=in_time(progress),
         )
     except InputError as error:
         raise without_place(error, folder) from None
