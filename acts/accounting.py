@@ -180,7 +180,7 @@ def shown_caption(act: Act, entry: Entry) -> str:
 def _counts(token: Token, parsed: Parse) -> bool:
     """True for a word that says something of what is done."""
     lemma, words = _lemma(token, parsed), vocabulary()
-    if _is_place(token) or _is_target(token):
+    if _is_place(token) or _is_target(token) or token.lower_ == "half":
         return True
     if token.pos_ not in _CONTENT or not token.text[0].isalnum() or (len(token.text) < 2 and not token.text.isdigit()):
         return False

@@ -82,7 +82,7 @@ def worded(act: Act, caption: str) -> str:
     text = " ".join(_SLOT.sub(fill, text).split())
     text += _by_hand(act, caption)
     if act.times is not None and act.times > 1:
-        text += f" {_COUNTS.get(act.times, 'several times')}"
+        text += f" {_COUNTS.get(act.times, f'{act.times} times')}"
     for adverb in act.manner[:1]:
         if adverb not in ("then", "finally") and not text.endswith(adverb):
             text += f" {adverb}"

@@ -176,6 +176,9 @@ class Arguments:
                     event.words += [token.lower_, child.lower_]
             elif child.dep_ in ("pobj", "obj"):
                 found = True
+                part = next((c for c in child.children if child.lemma_ == "time" and self._words.part(c.lower_)), None)
+                if part is not None:  # "on the back four times"
+                    event.times, child = int(self._amount(child)), part
                 self._likeness(child, token, event)
                 if self._measure(child, token, event):
                     continue

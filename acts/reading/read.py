@@ -292,6 +292,8 @@ class _Planner:
     def _add(
         self, number: int, event: Event, name: str, frame: Frame, match: Match, beside: Relation | None = None
     ) -> None:
+        if name == "follow" and event.lemma in vocabulary().verbs["goes"] and self._rests(match.patient):
+            name = "come-behind"  # "B lies down. A walks behind B."
         number_of = str(len(self._acts) + 1)
         self.cost += 0.5 * match.left
         part = match.part
@@ -345,6 +347,11 @@ class _Planner:
             self._beside[number_of] = beside
         else:
             self._of[number] = number_of
+
+    def _rests(self, who: str | None) -> bool:
+        """True for a person whose last act was to sit, kneel or lie down."""
+        own = [act for act in self._acts if who in act.agents]
+        return bool(own) and any(shape.do == "posture" for shape in self._known.entries[own[-1].act].stage)
 
     def _named(self, event: Event, name: str) -> str | None:
         """The thing of an act whose frame has its noun as a word, a seat, or the window before which one is done."""

@@ -27,6 +27,7 @@ _THEN = frozenset(
     ("then", "afterwards", "afterward", "finally", "next", "later", "subsequently", "eventually", "lastly")
 )
 _AT_ONCE = frozenset(("simultaneously", "meanwhile"))
+_SAYS = frozenset(("say", "shout", "yell", "scream"))
 _NEARLY = frozenset(("almost", "nearly"))
 _MEANING = frozenset(("NOUN", "PROPN", "VERB", "ADV", "ADJ"))
 """Parts of speech of words with a meaning of their own."""
@@ -301,12 +302,15 @@ class Reader:
         if above is None or token.dep_ == "advcl":
             return
         verbs = self._words.verbs
+        if above.lemma in _SAYS and token.tag_ == "VB":  # "says hit me"
+            event.modality = "wished"
         for kind in ("tried", "pretended", "wished", "offered"):
             if above.lemma in verbs[kind]:
                 event.modality = kind
                 event.denied = event.denied or above.denied
         if above.lemma in verbs["not"]:
-            event.denied = not above.denied
+            named = any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)  # "refuses what he holds out"
+            event.denied = event.denied if named else not above.denied
         elif above.lemma in verbs["begins"] | verbs["causes"]:
             event.denied = event.denied or above.denied
             event.modality = above.modality if event.modality == "told" else event.modality
@@ -327,7 +331,8 @@ class Reader:
         marks = [c.lower_ for c in bare if c.dep_ in ("mark", "advmod", "prep", "cc", "intj")]
         above = head if head is not None else next((t for t in token.ancestors if self._tree.is_clause(t)), None)
         previous = max((i for i in self._of if i < token.i), default=None)
-        if not _THEN.isdisjoint(marks) or (above is not None and token.dep_ == "conj" and self._then_before(token)):
+        listed = above is not None and (token.dep_ == "conj" or (token.dep_ == "xcomp" and token.tag_ in ("VB", "VBP")))
+        if not _THEN.isdisjoint(marks) or (listed and self._then_before(token)):
             return "then", previous
         if not _AT_ONCE.isdisjoint(marks) and token.dep_ != "xcomp":
             return "with", previous

@@ -217,7 +217,7 @@ def _swaying(limb: Limb, held: Array, since: Array) -> Turns:
 def _head(limb: Limb, held: Array, since: Array) -> Turns:
     if limb.direction in ("left", "right", "out"):
         return {joint: about(2, -_aside(limb) * 0.3 * held) for joint in ("neck", "head")}
-    sign = -0.7 if limb.direction in ("up", "back") else 0.4
+    sign = -0.7 if limb.direction in ("up", "back") else 0.6
     return {joint: about(0, sign * held) for joint in ("neck", "head")}
 
 

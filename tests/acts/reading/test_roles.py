@@ -120,3 +120,8 @@ def test_slow_circles_are_done_and_nothing_slows() -> None:
     assert said("He does slow arm circles.") == ["a circle-arms"]
     assert said("does slow arm circles") == ["ab circle-arms"]
     assert said("They do shake hands.") == ["ab shake-hands"]
+
+
+def test_a_count_behind_a_part_is_no_part_of_it() -> None:
+    pats = last("One person taps the other on the back four times with the left hand.")
+    assert (pats.part, pats.part_of, pats.times, pats.side) == ("back", "b", 4, "left")
