@@ -86,7 +86,8 @@ class ClauseTree:
 
     def main_before(self, token: Token) -> int | None:
         """The last main clause's verb in the sentence of ``token``."""
-        return next((i for i in reversed(self.mains) if self.doc[i].sent == token.sent), None)
+        sentence = token.sent
+        return next((i for i in reversed(self.mains) if sentence.start <= i < sentence.end), None)
 
     def lemma(self, token: Token) -> str:
         """The lemma of a verb, with what is known better than by the parser."""

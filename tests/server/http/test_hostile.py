@@ -58,6 +58,12 @@ def test_an_upload_stays_in_its_folder(local: TestClient, name: str, tmp_path: P
     assert not Path("/etc/evil.bvh").exists() and not (Path.cwd().parent / "evil.bvh").exists()
 
 
+def test_many_parts_of_a_file_are_the_whole_of_it(local: TestClient) -> None:
+    (path,) = local.post("/gradio_api/upload", files={"files": ("a.bvh", b"HIERARCHY")}).json()
+    answer = local.get(f"/gradio_api/file={path}", headers={"range": "bytes=0-0,2-2"})
+    assert (answer.status_code, answer.content) == (200, b"HIERARCHY")
+
+
 def test_an_upload_is_an_upload(local: TestClient) -> None:
     """No file of the server's, and nothing of another host's, is read as if somebody had sent it."""
     database = lab_of(local).settings.data / "history.db"

@@ -132,6 +132,7 @@ class Guard:
             exchange.path = path
             route = route_of(path)
             heard = [pair for pair in scope["headers"] if pair[0] not in _NOT_HEARD or on_a_space()]
+            heard = [pair for pair in heard if pair[0] != b"range" or b"," not in pair[1]]  # Gradio knows one part
             scope = {**scope, "path": path, "raw_path": path.encode(), "headers": heard}
             await self._pass(exchange, scope, receive, route)
         except ClientDisconnect:  # in the middle of a body: there is nobody to answer
@@ -255,11 +256,10 @@ class Guard:
         if visitor is None and needs_no_sign_in(path):
             visitor = nobody
         if scope["method"] in _CHANGING or is_public_page(path):  # a motion is read for each of these
-            weight = self._weight(scope, headers)
-            self._take(visitor or nobody, weight, self.quotas.requests, self.quotas.address_requests)
+            weight, limits = self._weight(scope, headers), (self.quotas.requests, self.quotas.address_requests)
         else:
-            weight = _DEAR_WEIGHT if path in _DEAR else 1.0
-            self._take(visitor or nobody, weight, self.quotas.gets, self.quotas.address_gets)
+            weight, limits = _DEAR_WEIGHT if path in _DEAR else 1.0, (self.quotas.gets, self.quotas.address_gets)
+        self._take(visitor or nobody, weight, *limits)
         return visitor
 
     @staticmethod
@@ -291,10 +291,9 @@ class Guard:
         """The number of requests that this one counts as; each megabyte of an upload adds one. An undeclared length
         counts as the largest allowed."""
         path, declared = scope["path"], declared_length(headers)
-        most = self._most(path)
         if path.startswith(LIVE):
             return _LIVE_WEIGHT
-        if not is_upload(path) or declared > most:
+        if not is_upload(path) or declared > (most := self._most(path)):
             return 1.0
         return 1.0 + (declared if b"content-length" in headers else most) / 2**20
 
