@@ -20,7 +20,6 @@ from motion.transforms import heading
 from .gaits import on_all_fours
 from .places import Standing
 from .poses import (
-    ALL,
     FLAT,
     HANDS,
     JOINT,
@@ -30,6 +29,7 @@ from .poses import (
     TOES,
     UPRIGHT,
     Pose,
+    all_but,
     at_rest,
     bowed,
     bowing,
@@ -45,7 +45,7 @@ from .poses import (
     upright,
 )
 from .score import Change, Score, at_start
-from .window import HALT, OFTEN, SETTLES, Part, Stretch, late_by
+from .window import HALT, SETTLES, Part, Stretch, late_by
 
 Array = NDArray[np.floating]
 
@@ -76,6 +76,10 @@ BOWED, DEEP = 0.9, 1.25
 """Radians of a bow, and of a deep one."""
 BOW = 50
 """Frames from the lowest moment of a bow to that of the next."""
+_BOWS = 6
+"""Frames between two given poses of a bow."""
+_ABOVE = [JOINT["pelvis"], *all_but(LOWER), JOINT["spine1"]]
+"""Joints of a bow; the network has the legs."""
 _LOW = ("lies", "sits on the ground")
 """Postures from which people sit up and get their feet under them before they stand."""
 _MAKES: Mapping[str, Callable[[Array, float], Array]] = {
@@ -223,16 +227,16 @@ def posture_joints(
 
 
 def bow_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part]:
-    """The body of a person who bows on the spot, as far as it falls into a window."""
+    """The body of a person who bows on the spot, but for the legs, as far as it falls into a window."""
     bows = score.bows["ab"[person]]
-    frames = beat.every(OFTEN, SETTLES // 2 if beat.start else 0)
+    frames = beat.every(_BOWS, SETTLES // 2 if beat.start else 0)
     if not len(frames):  # of a beat of which only the way to the next one is in the window
         return []
     angle, seconds = float(beat.stand.headings[person]), (frames + beat.start) / FPS
     stands = standing(beat.halt(person), angle, seconds, seed=seed + person)
     late, lean = late_by(seed, person), DEEP if bows.deep else BOWED
     poses = bowed(stands, angle, frames / FPS - late, beat.frames / FPS - late, bows.times, lean)
-    return [beat.known(person, frames, poses, ALL)]
+    return [beat.known(person, frames, poses, _ABOVE)]
 
 
 def _stays(pose: Array, start: int, stop: int) -> dict[int, Array]:
