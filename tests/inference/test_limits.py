@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from motion import InputError
-from webdemo.inference.requests.limits import MAX_PROMPT, number, prompt_of
+from webdemo.inference.requests.limits import MAX_PROMPT, number, prompt_of, whole
 
 
 @pytest.mark.parametrize("value", [1, 2.5, 4])
@@ -24,6 +24,13 @@ def test_numbers_outside_their_limits_are_refused_with_them(value: float) -> Non
 def test_what_is_no_number_is_refused(value: Any) -> None:
     with pytest.raises(InputError, match=r"Seed must be a number from 0 to 4,294,967,295"):
         number("Seed", value, 0, 2**32 - 1)
+
+
+def test_whole_numbers_are_whole() -> None:
+    found = whole("Steps", 8.0, 1, 1000)
+    assert found == 8 and isinstance(found, int)
+    with pytest.raises(InputError, match=r"Steps must be a whole number from 1 to 1000, not 2\.5"):
+        whole("Steps", 2.5, 1, 1000)
 
 
 def test_prompts_have_words_and_an_end() -> None:

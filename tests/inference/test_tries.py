@@ -14,7 +14,7 @@ from motion import Duet, InputError
 from tests.motion.metrics.test_sentence_shapes import duet, put, shift, spin
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Progress, Result, SceneRequest
 from webdemo.inference.engine.tries import judged, note, run_tries
-from webdemo.inference.requests import replayed
+from webdemo.inference.requests import MAX_SEED, replayed
 from webdemo.inference.run import StageTimer
 from webdemo.inference.story import Beat
 
@@ -79,6 +79,12 @@ def test_cancelling_ends_the_tries_between_two() -> None:
         for _ in run_tries(REQUEST, runs, cancel, StageTimer.start()):
             cancel.cancel()  # at the first try's progress; the try itself does not look
     assert len(runs.asked) == 1
+
+
+def test_seeds_go_on_from_zero_after_the_last() -> None:
+    runs = Runs(STILL, ALL)
+    assert result(replace(REQUEST, seed=MAX_SEED), runs).manifest["tries"]["seed"] == 0
+    assert [asked.seed for asked in runs.asked] == [MAX_SEED, 0]
 
 
 def test_a_replay_is_one_try_of_the_seed_that_won() -> None:

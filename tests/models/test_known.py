@@ -154,3 +154,9 @@ def test_the_share_that_is_laid_out_is_that_which_a_network_no_longer_moves():
     both = Known.nothing(FRAMES, batch=2)
     both.add_joints(1, motion[1], range(FRAMES), range(11))
     assert shares(both) == pytest.approx(0.25, abs=1e-3), "half of the joints of one of two people"
+
+
+def test_a_single_pose_says_nothing_of_planted_feet() -> None:
+    known = Known.nothing(8)
+    known.add_person(0, torch.zeros(1, 22, 3), [3])
+    assert known.mask[0, 0, 3, :-4].all() and not known.mask[..., -4:].any()

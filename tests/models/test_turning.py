@@ -73,3 +73,12 @@ def test_a_turn_dies_out_and_the_other_person_stays() -> None:
     found = Hold(known, LAYOUT, MEAN, STD).bend(x)
     assert np.abs(angles(found, SHOULDERS)[:20]).max() < 1
     assert torch.allclose(unpack(found, LAYOUT)[:, 1], unpack(x, LAYOUT)[:, 1], atol=1e-5)
+
+
+def test_a_turn_goes_on_past_half_a_turn() -> None:
+    known = Known.nothing(FRAMES)
+    for frame, angle in ((40, 2.6), (55, 3.3), (70, 4.0)):
+        facing(known, angle, [frame])
+    found = np.unwrap(np.radians(angles(Hold(known, LAYOUT, MEAN, STD).bend(predicted()), SHOULDERS)))
+    assert np.abs(found[[40, 55, 70]] - [2.6, 3.3, 4.0]).max() < 0.2
+    assert (np.diff(found[42:66]) > 0).all()

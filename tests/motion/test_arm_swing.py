@@ -68,6 +68,13 @@ def test_only_elbows_and_wrists_move_on_their_bones_and_no_elbow_bends_back() ->
         assert reach.max() < 0.9985, "bent by six degrees at least"
 
 
+def test_an_arm_that_swings_wide_enough_stays() -> None:
+    person = walker(swing=0.7)
+    assert np.abs(swinging(person, FPS, FREE) - person)[MIDDLE].max() < 0.01
+    narrow = walker(swing=0.1)
+    assert np.abs(swinging(narrow, FPS, FREE) - narrow)[MIDDLE].max() > 0.05
+
+
 def test_arms_that_are_raised_or_may_not_be_changed_stay() -> None:
     person = walker()
     np.testing.assert_array_equal(swinging(person, FPS, 0 * FREE), person)

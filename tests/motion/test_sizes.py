@@ -112,6 +112,16 @@ def test_a_child_is_lifted_to_where_the_adults_hands_are() -> None:
     )
 
 
+def test_who_lies_with_their_toes_up_is_not_lifted() -> None:
+    adult, child = (np.tile(standing(), (60, 1, 1)) for _ in range(2))
+    on_back = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # the face and the toes up
+    lying = standing() @ on_back.T
+    adult[:] = lying + (0.08 - lying[:, 1].min()) * np.array([0.0, 1.0, 0.0])
+    child[..., 2] += adult[0, 0, 2] + 0.6
+    found = at_sizes(np.stack([adult, child]), MIXED)
+    np.testing.assert_allclose(found[0, :, 0, 1], adult[:, 0, 1], atol=0.01)
+
+
 def test_adults_come_back_from_children() -> None:
     pair = hand_in_hand()
     back = of_adults(at_sizes(pair, MIXED), MIXED)
@@ -120,3 +130,13 @@ def test_adults_come_back_from_children() -> None:
     np.testing.assert_allclose(back[:, :, 0] * FLAT, pair[:, :, 0] * FLAT, atol=0.01)
     assert (np.abs(back - pair)[:, :, 0, 1] < 0.1).all(), "who has bent their knees keeps them bent"
     np.testing.assert_allclose(of_adults(CHILD * pair, (CHILD, CHILD)), pair)
+
+
+def test_the_taller_looks_down_at_the_child() -> None:
+    pair = np.stack([np.tile(standing(), (40, 1, 1))] * 2)
+    pair[1] = pair[1] @ heading_matrix(np.pi).T + np.array([0.0, 0.0, 1.0])
+    found = at_sizes(pair, MIXED)
+    nods = [found[p, 20, J("head")] - found[p, 20, J("neck")] for p in (0, 1)]
+    before = pair[0, 20, J("head")] - pair[0, 20, J("neck")]
+    assert nods[0][1] < before[1] - 0.01, "down"
+    assert nods[1][1] > CHILD * before[1] + 0.005, "up"

@@ -1,10 +1,13 @@
 """Clean-up of one person, for whole motions and frame by frame."""
 
 import numpy as np
+import pytest
 
 from acts.staging.poses import lying
 from motion import SMPL22
-from webdemo.inference.finish.cleanup import FollowingCleanup, clean_person, on_constant_bones
+from motion.metrics.quality import standing_foot
+from webdemo.inference.finish import cleanup
+from webdemo.inference.finish.cleanup import FollowingCleanup, _elbow_pole, clean_person, on_constant_bones
 
 WRISTS = [SMPL22.index(name) for name in ("left_wrist", "right_wrist")]
 TOES = [SMPL22.index(name) for name in ("left_foot", "right_foot")]
@@ -58,6 +61,15 @@ def test_a_standing_foot_keeps_its_place_and_is_let_go() -> None:
     assert min(loose[:, TOES, 1].min(), stands[:, TOES, 1].min()) > -1e-6
 
 
+def test_toes_that_swing_are_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+    walker = np.repeat((SMPL22.rest_positions() + np.array([0, 0.95, 0]))[None], 40, axis=0)
+    share = np.clip((np.arange(40) - 12) / 14, 0, 1)
+    walker[:, [SMPL22.index("right_ankle"), TOES[1]], 2] += (0.6 * share**2 * (3 - 2 * share))[:, None]
+    raised = clean_person(walker)[:, TOES[1], 1]
+    monkeypatch.setattr(cleanup, "lift_swinging_feet", lambda positions, fps: positions)
+    assert (raised - clean_person(walker)[:, TOES[1], 1]).max() > 0.015
+
+
 def test_bodies_are_kept_above_the_floor() -> None:
     sunk = np.repeat(lying(np.zeros(2), 0.0)[None], 20, axis=0) - [0.0, 0.3, 0.0]
     assert clean_person(sunk)[:, 0, 1].min() > 0.05
@@ -72,3 +84,29 @@ def test_an_arm_that_folds_over_its_shoulder_does_not_fling_its_elbow() -> None:
     moving[:, wrist] = moving[:, shoulder] + np.stack([0.02 + 0 * height, height, 0.01 + 0 * height], axis=-1)
     cleaned = clean_person(moving)
     assert np.linalg.norm(np.diff(cleaned[:, elbow], axis=0), axis=-1).max() * 30 < 2.0
+
+
+def test_a_straight_arm_bends_backwards_and_down() -> None:
+    ahead = np.array([[0.0, 0.0, 1.0]])
+    np.testing.assert_array_equal(_elbow_pole(ahead), [[0.0, -1.0, -1.0]])
+
+
+def walking() -> np.ndarray:
+    """(T, 22, 3) a person who walks at 1.2 m/s, whose feet glide by turns as one hands the weight to the other."""
+    rest = SMPL22.rest_positions() + np.array([0, 0.93, 0])
+    time = np.arange(90) / 30
+    walker = np.repeat(rest[None], 90, axis=0)
+    walker[..., 2] += 1.2 * time[:, None]
+    for side, phase in (("left", 0.0), ("right", 0.5)):
+        step = time + phase
+        swing = np.clip((step % 1.0 - 0.54) / 0.46, 0, 1)
+        ahead = 1.2 * (np.floor(step) + swing**2 * (3 - 2 * swing) - phase) + 0.32
+        for joint, rise in (("knee", 0.0), ("ankle", 0.06), ("foot", 0.02)):
+            at = SMPL22.index(f"{side}_{joint}")
+            walker[:, at, 2] = rest[at, 2] + (0.5 * (ahead + 1.2 * time) if joint == "knee" else ahead)
+            walker[:, at, 1] += rise * np.sin(np.pi * swing) ** 2
+    return walker
+
+
+def test_one_foot_stands_until_the_other_does() -> None:
+    assert standing_foot(clean_person(walking()), 30.0) < 1.0

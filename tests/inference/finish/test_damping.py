@@ -92,6 +92,13 @@ def test_feet_that_stand_stop_sliding(model):
     assert slide(damped(model, before, standing=0.0)) > 0.0095  # a foot in the air may move
 
 
+def test_feet_that_stand_in_one_of_two_frames_may_move_between_them(model):
+    sliding = (people(model) + 0.01 * torch.arange(61)[:, None, None])[None]
+    sometimes = (torch.arange(61) % 2.0)[:, None].expand(1, 2, 61, 4)
+    free, half = (float(damping.energy(sliding, contacts)) for contacts in (0 * sometimes, sometimes))
+    assert half == free < float(damping.energy(sliding, torch.ones(1, 2, 61, 4)))
+
+
 def test_feet_come_out_of_the_floor(model):
     before = people(model)
     before[..., 1] -= before[0, 0, list(FEET), 1].max() + 0.04

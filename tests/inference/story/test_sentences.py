@@ -77,12 +77,26 @@ def test_stories_longer_than_any_scene_are_refused_before_they_are_read() -> Non
         split_sentence("A bows. Then A jumps. " * 31)
 
 
+def test_who_sits_in_a_chair_sits_from_the_start() -> None:
+    score = score_of(read("Dad reads the paper in his armchair while the baby crawls about.").acts)
+    assert score.changes["a"][0].already
+
+
 def test_who_turns_round_at_a_tap_was_tapped_from_behind() -> None:
     beats = beats_of(read("She taps him on the shoulder, he turns around, and she gives him a letter."))
     first, second, _ = SceneRequest(beats=beats).scores
     assert first.touch is not None and first.touch.behind
     assert ("b", "face") in [(move.person, move.way) for move in second.moves]
     assert not (alone := SceneRequest(beats=beats[:1]).scores[0].touch) or not alone.behind
+
+
+def test_who_bends_down_to_a_shoe_kneels_down_to_it_at_once() -> None:
+    (beat,) = beats_of(read("A bends down and ties B's shoe."))
+    score = score_of(beat.acts)
+    assert score.touch is not None and not score.touch.late
+    assert not score.changes, "a bow on the spot comes before the shoe"
+    (alone,) = beats_of(read("A bends down."))
+    assert [change.posture for change in score_of(alone.acts).changes["a"]] == ["bends down"]
 
 
 @pytest.mark.parametrize(

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from motion import SMPL22
+from motion.looks import SIZES
 from motion.metrics import bone_drift, foot_skate, jerk, penetration
 from motion.metrics.bodies import capsules, segment_segment_distance
 from motion.metrics.quality import limb_depth, naturalness
@@ -49,6 +52,14 @@ def test_penetration_is_zero_apart_and_the_radii_when_spines_meet() -> None:
     inside = penetration(duet(np.stack([np.tile(standing(), (10, 1, 1))] * 2)))
     assert inside.deepest == pytest.approx(24, abs=1e-3), "two spines of 12 cm radius in one place"
     assert inside.mean == pytest.approx(inside.deepest)
+
+
+def test_a_child_is_as_thin_as_it_is_short() -> None:
+    """Two who are children beside each other overlap as much in proportion as two adults."""
+    scene = face_to_face(0.1)
+    adults = duet(scene)
+    children = replace(duet(SIZES["boy"] * scene), looks=("boy", "girl"))
+    assert penetration(children).deepest == pytest.approx(SIZES["boy"] * penetration(adults).deepest, rel=1e-3)
 
 
 def test_penetration_agrees_with_all_pairs() -> None:
