@@ -1,7 +1,17 @@
 """The diffusion that every network here trains and samples with: schedule, guidance and sampling loop."""
 
-from .guidance import Guided, Term, classifier_free, guide, terms, weighted
-from .sampling import SamplingStep, denoise, sample_noise, sample_steps
+from .sampling import (
+    Guided,
+    SamplingStep,
+    Term,
+    classifier_free,
+    denoise,
+    guide,
+    sample_noise,
+    sample_steps,
+    terms,
+    weighted,
+)
 from .schedule import (
     TRAIN_TIMESTEPS,
     NoiseSchedule,

@@ -17,11 +17,11 @@ from .files import read_bytes, write_files
 from .glb_motion import read_glb
 from .glb_writer import write_glb
 from .kinect import read_kinect
+from .markers import read_trc
 from .npz import read_npy, read_npz, write_npy, write_npz
 from .pairs import Source, in_folder, in_zip
 from .recording import Animation, ImportChoices, Recording
 from .smpl import smpl_bytes, write_smpl
-from .trc import read_trc
 from .usd import write_usd
 
 RIG_FPS = 30.0

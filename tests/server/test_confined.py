@@ -57,47 +57,11 @@ class Confined:
         assert start == [("/opt/pas-de-deux/.venv/bin/python", "app.py")]
         reading, writing = os.pipe()
         packages = str(Path(sys.prefix).resolve())
-        words = [
-            "bwrap",
-            "--ro-bind",
-            "/",
-            "/",
-            "--dev",
-            "/dev",
-            "--tmpfs",
-            "/tmp",
-            "--tmpfs",
-            "/run",
-            "--size",
-            str(SIZE),
-            "--tmpfs",
-            "/var/lib",
-            "--dir",
-            DATA,
-            "--ro-bind",
-            str(ROOT),
-            str(ROOT),
-            "--ro-bind",
-            packages,
-            packages,
-            "--file",
-            "9",
-            f"{DATA}/users",
-            "--unshare-user",
-            "--uid",
-            "64321",
-            "--gid",
-            "64321",
-            "--cap-drop",
-            "ALL",
-            "--die-with-parent",
-            "--info-fd",
-            str(writing),
-            "--chdir",
-            str(ROOT),
-            sys.executable,
-            "app.py",
-        ]
+        mounts = f"--ro-bind / / --dev /dev --tmpfs /tmp --tmpfs /run --size {SIZE} --tmpfs /var/lib --dir {DATA}"
+        rights = "--unshare-user --uid 64321 --gid 64321 --cap-drop ALL --die-with-parent"
+        words = ["bwrap", *mounts.split(), "--ro-bind", str(ROOT), str(ROOT), "--ro-bind", packages, packages]
+        words += ["--file", "9", f"{DATA}/users", *rights.split(), "--info-fd", str(writing), "--chdir", str(ROOT)]
+        words += [sys.executable, "app.py"]
         with open(folder / "users", "rb") as users, open(self.log, "w") as log:
             words[words.index("9")] = str(users.fileno())
             self.process = subprocess.Popen(

@@ -30,7 +30,7 @@ from webdemo.server.http.payloads import Payloads
 from webdemo.server.http.public_pages import public_routes
 from webdemo.server.http.study_pages import study_routes
 from webdemo.server.lab import Lab, engine_of, make_lab
-from webdemo.server.live.routes import live_routes
+from webdemo.server.live.streams import live_routes
 from webdemo.server.queue.events import FairEvents
 from webdemo.server.queue.recorder import Recorder
 from webdemo.server.queue.turns import Batcher

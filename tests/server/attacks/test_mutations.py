@@ -64,24 +64,13 @@ VALUES: tuple[Any, ...] = (
     "NaN",
     ["\ud83d"],
 )
-HEADERS = (
-    "content-type",
-    "accept",
-    "cookie",
-    "origin",
-    "referer",
-    "range",
-    "accept-encoding",
-    "x-forwarded-for",
-    "x-forwarded-proto",
-    "authorization",
-    "if-none-match",
-    "x-gradio-user",
-    "content-encoding",
-    "te",
-)
+HEADERS = ("content-type", "accept", "cookie", "origin", "referer", "range", "accept-encoding", "authorization", "te")
+HEADERS += ("x-forwarded-for", "x-forwarded-proto", "if-none-match", "x-gradio-user", "content-encoding")
 BYTES = (b"\0", b"\xff", b"-", b"9" * 400, b"nan", b"\n", b"{", b"}", b"ROOT", b"1e400", b"PK\x03\x04", b"\r")
-
+_CALLS = ("queue/join", "call/generate", "call/react", "run/predict", "api/generate", "component_server", "upload")
+POSTED = (*(f"{API}/{end}" for end in (*_CALLS, "cancel", "reset")), "/login")
+_STREAMS = ("queue/data?session_hash=mutant", "heartbeat/mutant2", "upload_progress?upload_id=x")
+READ = (*(f"{API}/{end}" for end in (*_STREAMS, "info", "file=x", "app_id")), "/", "/config", "/theme.css", "/logout")
 
 STORY = b"""seed = 1
 
@@ -126,45 +115,8 @@ def mutated(data: bytes, dice: random.Random) -> bytes:
 
 def mutated_request(dice: random.Random) -> tuple[str, str, dict[str, Any]]:
     """Method, path and the rest of a request."""
-    path = dice.choice(
-        (
-            f"{API}/queue/join",
-            f"{API}/call/generate",
-            f"{API}/call/react",
-            f"{API}/run/predict",
-            f"{API}/api/generate",
-            f"{API}/cancel",
-            f"{API}/reset",
-            f"{API}/component_server",
-            f"{API}/upload",
-            "/login",
-            "/",
-            "/config",
-            f"{API}/info",
-            f"{API}/queue/data?session_hash=mutant",
-            f"{API}/file=x",
-            f"{API}/upload_progress?upload_id=x",
-            f"{API}/heartbeat/mutant2",
-            "/theme.css",
-            "/static/img/logo.svg",
-            "/manifest.json",
-            "/robots.txt",
-            f"{API}/app_id",
-            "/logout",
-        )
-    )
-    posted = path.split("/")[-1].split("?")[0] in (
-        "join",
-        "generate",
-        "react",
-        "predict",
-        "cancel",
-        "reset",
-        "component_server",
-        "upload",
-        "login",
-    )
-    method = "POST" if posted else "GET"
+    path = dice.choice((*POSTED, *READ))
+    method = "POST" if path in POSTED else "GET"
     if dice.random() < 0.1:
         method = dice.choice(("GET", "POST", "PUT", "DELETE", "HEAD", "OPTIONS", "PATCH", "BREW"))
     if dice.random() < 0.2:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from webdemo.server.http.bodies import MOST_FILES, UploadForm
+from webdemo.server.http.exchange import MOST_FILES, UploadForm
 from webdemo.server.http.routes import Refused
 
 TYPE = b"multipart/form-data; boundary=xyz"

@@ -14,9 +14,9 @@ from ..compose import ARMS, Array, Motion, drift, layer, lean
 from ..contact import UP, axes, bend, envelope, nod, on_body, reach_arm
 from ..library import Library, Take, pick
 from ..touches import Touches
+from .blows import blow
 from .performer import Rng
 from .play import Act, Done, Make, Play
-from .strikes import blow
 from .whole import WHOLE, part_of, perform, taken
 
 HEAD = SMPL22.index("head")

@@ -42,8 +42,7 @@ from webdemo.server.store.database import is_full
 from webdemo.server.store.scratch import PERSON
 from webdemo.ui.visitor import Visitor
 
-from .bodies import BoundedBody, UploadForm, declared_length, too_large
-from .exchange import Exchange
+from .exchange import BoundedBody, Exchange, UploadForm, declared_length, too_large
 from .health import Figures
 from .payloads import Payloads
 from .routes import API, LIVE, MESSAGE, Refused, is_public_page, is_upload, needs_no_sign_in, path_below, route_of
