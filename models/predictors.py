@@ -9,7 +9,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from models.mawgan import MAWGANConfig, PredictiveMAWGAN
+from models.mawgan.network import MAWGANConfig, PredictiveMAWGAN
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.weights_io import WeightsFolder, load_network, save_network
 

@@ -33,7 +33,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.interformer import JOINTS, skeleton_mask
+from models.interformer.network import JOINTS, skeleton_mask
 from models.layers import FeedForward, sinusoids
 from models.weights_io import WeightsFolder, load_network
 from motion.skeleton import find_layout

@@ -26,7 +26,15 @@ from models.diffusion import classifier_free, denoise, guide, make_scheduler
 from models.intergen.compact import Touch, TouchReader, as_touches
 from models.layers import sinusoids_at
 from models.motion_tokens import FEATURES, NUM_JOINTS, TokenLayout, decode
-from models.regennet import ROW_WIDTH, CausalPass, ReGenNet, ReGenNetConfig, StreamError, attend_to_one, decoder_layer
+from models.regennet.network import (
+    ROW_WIDTH,
+    CausalPass,
+    ReGenNet,
+    ReGenNetConfig,
+    StreamError,
+    attend_to_one,
+    decoder_layer,
+)
 from models.text import TextConditioner, TextConditionerConfig
 from models.weights_io import WeightsFolder, load_network
 

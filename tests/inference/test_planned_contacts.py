@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from acts.staging.moves import coming
+from acts.staging.moves import coming, meeting
 from acts.staging.places import Standing
-from acts.staging.score import Move, Score
+from acts.staging.score import Move, Score, Touch
 from motion import FPS, SMPL22
 from motion.metrics.quality import jerk_percentile
 from motion.transforms import heading
@@ -56,6 +56,14 @@ def test_a_head_is_laid_on_the_shoulder_of_the_one_beside(engine: Engine, before
     assert abs(lean[[0, 2]] @ facing[0]) < 0.2, "to the side, not forward"
 
 
+def test_a_pat_is_given_twice(engine: Engine) -> None:
+    gap = nearest(
+        made(engine, "Person B pats person A on the shoulder."), 1, ["right_wrist"], ["left_shoulder", "right_shoulder"]
+    )
+    on = gap < gap.min() + 0.08
+    assert np.count_nonzero(on[1:] & ~on[:-1]) + on[0] >= 2
+
+
 def test_who_is_tapped_and_turns_round_is_tapped_first(engine: Engine) -> None:
     found = made(engine, "Person A is tapped on the back by person B and turns around.")
     gap = nearest(found, 1, ["right_wrist"], ["left_shoulder", "right_shoulder", "spine3"])
@@ -92,6 +100,15 @@ def test_a_touch_of_the_back_or_from_behind_comes_from_there(engine: Engine, pro
     assert gap[behind].min() < 0.3, "a hand may come near on the way round them as well"
 
 
+def test_a_person_who_comes_up_goes_to_the_side_that_is_touched() -> None:
+    stand = Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi]))
+    for behind, way in ((True, "behind"), (False, "to")):
+        touch = Touch(person="a", part="back", hands="right", behind=behind)
+        for moves in ((), (Move("a", "to", 1.0),)):
+            _, found = meeting(touch, moves, {}, stand)
+            assert [move.way for move in found if move.person == "a"] == [way]
+
+
 def test_who_waves_while_touched_from_behind_is_not_given_two_places_for_a_hand(engine: Engine) -> None:
     found = made(engine, "Person A hugs person B from behind while person B waves.")
     assert np.linalg.norm(np.diff(found[1, :, SMPL22.index("right_wrist")], axis=0), axis=-1).max() * 30 < 8
@@ -103,6 +120,17 @@ def test_a_hand_that_is_offered_stays_out_and_nobody_takes_it(engine: Engine) ->
     assert np.mean((wrist - pelvis)[:, 2] > 0.25) > 0.8, "a faces +Z"
     hands = nearest(found, 0, ["left_wrist", "right_wrist"], ["left_wrist", "right_wrist"])
     assert hands.min() > 0.3
+
+
+@pytest.mark.parametrize(
+    ("prompt", "same"), [("They practise side by side.", True), ("They sit on the floor back to back.", False)]
+)
+def test_people_begin_and_stay_where_the_words_put_them(engine: Engine, prompt: str, same: bool) -> None:
+    found = made(engine, prompt)
+    across = found[:, :, SMPL22.index("left_hip")] - found[:, :, SMPL22.index("right_hip")]
+    facing = np.cross(across, [0.0, 1.0, 0.0])
+    alike = np.einsum("ti,ti->t", facing[0], facing[1])[29::30]
+    assert (alike > 0).all() if same else (alike < 0).all()
 
 
 def test_who_is_pushed_over_stood_and_was_pushed_first(engine: Engine) -> None:
@@ -228,6 +256,17 @@ def test_nobody_comes_up_who_is_there_or_has_a_way_of_their_own() -> None:
     own = (Move("a", "away"),)
     assert coming(replace(reaching, moves=own), far, ()) == own
     assert coming(Score(), far, ()) == ()
+
+
+def test_a_couple_in_hold_steps_and_begins_in_it(engine: Engine) -> None:
+    found = made(engine, "A couple dances a waltz.")
+    joined = nearest(found, 0, ["left_wrist"], ["right_wrist"])
+    assert joined[:10].max() < 0.3, "they stand in the hold as the story begins"
+    middle = found[:, :, 0].mean(axis=0)[30:120, [0, 2]]
+    assert np.linalg.norm(np.diff(middle, axis=0), axis=-1).sum() > 0.6, "and go to and fro"
+    ankles = found[0, 30:120, [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]][..., [0, 2]]
+    speeds = np.linalg.norm(np.gradient(ankles, axis=1), axis=-1) * 30
+    assert (speeds.max(axis=1) > 0.8).all() and np.median(speeds) < 0.1, "in steps, on feet that stand"
 
 
 def test_who_sits_keeps_still_between_the_given_poses(engine: Engine) -> None:

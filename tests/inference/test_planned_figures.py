@@ -41,6 +41,15 @@ def test_a_person_does_a_handstand_and_the_other_stands_by(engine: Engine) -> No
     assert not (free[0][:, FEET, 1].min(axis=1) > 1.5).any()
 
 
+def test_arms_that_are_lowered_were_up_or_stay_down(engine: Engine) -> None:
+    found = made(engine, "Person A lowers both arms.", seconds=3.0)
+    up = found[0][:, WRISTS, 1] - found[0][:, SHOULDERS, 1]
+    assert up[0].min() > 0.3 and up[-10:].max() < -0.3
+    beats = (Beat("Person A stands still.", seconds=2.0), Beat("Person A lowers both arms.", seconds=2.0))
+    found = positions(run(engine, SceneRequest(beats=beats, **QUICK)))[0]
+    assert (found[60:, WRISTS, 1] - found[60:, SHOULDERS, 1]).max() < 0.0, "they hang already"
+
+
 def test_two_who_carry_a_table_face_each_other_and_walk_one_way(engine: Engine) -> None:
     found = made(engine, "They carry a table across the room.", seconds=5.0)
     way = found[:, -1, 0] - found[:, 30, 0]
@@ -51,6 +60,13 @@ def test_two_who_carry_a_table_face_each_other_and_walk_one_way(engine: Engine) 
     for person in (0, 1):
         wrists = found[person][60:, WRISTS, 1] - found[person][60:, SHOULDERS, 1]
         assert (wrists.mean(axis=0) > -0.5).all() and (wrists.mean(axis=0) < -0.1).all()
+
+
+def test_a_person_types_with_moving_hands_on_a_seat(engine: Engine) -> None:
+    found = made(engine, "Person A types on a keyboard.", seconds=5.0)[0]
+    assert np.abs(found[-30:, 0, 1] - 0.63).max() < 0.08, "seated"
+    beside = found[-45:, WRISTS] - found[-45:, :1]
+    assert (np.ptp(beside[..., 1], axis=0) > 0.01).all()
 
 
 def test_a_person_who_lies_gets_up_before_a_cartwheel(engine: Engine) -> None:

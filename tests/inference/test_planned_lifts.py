@@ -76,6 +76,17 @@ def test_who_carries_walks_one_foot_after_the_other(engine: Engine, words: str, 
     assert np.median(speeds.min(axis=1)) < 0.3 and np.median(speeds.max(axis=1)) > 0.8
 
 
+def test_who_is_dragged_lies_and_is_pulled_along_by_the_feet(engine: Engine) -> None:
+    found = made(engine, "Person A drags person B across the floor.")
+    pelvis = found[:, :, 0]
+    assert pelvis[1, 10:, 1].max() < 0.35 and pelvis[0, :, 1].min() > 0.6
+    gone = pelvis[:, -1] - pelvis[:, 0]
+    assert np.linalg.norm(gone, axis=-1).min() > 1.0 and np.linalg.norm(gone[0] - gone[1]) < 0.3
+    wrists, ankles = ([SMPL22.index(f"{side}_{part}") for side in ("left", "right")] for part in ("wrist", "ankle"))
+    apart = found[0][20:-20, wrists][:, :, None] - found[1][20:-20, ankles][:, None]
+    assert np.median(np.linalg.norm(apart, axis=-1).min(axis=(1, 2))) < 0.25
+
+
 def test_nobody_is_carried_by_somebody_who_is_sent_elsewhere(engine: Engine) -> None:
     beats = (Beat("A couple dances a waltz.", seconds=2.0), Beat("Person A carries person B away.", seconds=3.0))
     away = FloorPath("a", (FloorPoint(2.0, 0.0, 3.5), FloorPoint(3.0, 0.0, 4.9)))

@@ -149,6 +149,20 @@ def test_who_lies_from_the_start_lies_across_the_way_of_the_other(engine: Engine
     assert abs(body @ line) < 0.35 * np.linalg.norm(body) * np.linalg.norm(line)
 
 
+def test_those_who_only_clap_have_their_hands_led(engine: Engine) -> None:
+    for person in made(engine, "They clap."):
+        gap = np.linalg.norm(person[:, WRISTS[0]] - person[:, WRISTS[1]], axis=1)
+        assert gap[50:-45].min() < 0.25 and gap[50:-45].max() < 0.5
+        assert (person[[0, -1]][:, WRISTS, 1] < 1.1).all(), "from where they hang, and down again"
+
+
+def test_the_other_arm_hangs_while_one_salutes(engine: Engine) -> None:
+    found = made(engine, "Person A salutes person B.", seconds=5.0)[0]
+    high = found[:, WRISTS, 1] - found[:, :1, 1]
+    assert high[60, 1] > 0.5 and (high[:, 0] < 0.15).all()
+    assert np.abs(high[[0, -1]]).max() < 0.2
+
+
 def test_two_who_wave_do_not_wave_as_one(engine: Engine) -> None:
     found = made(engine, "They wave to each other.", seconds=5.0)
     risen = [int(np.argmax(person[:, WRISTS[1], 1] - person[:, 0, 1] > 0.3)) for person in found]
@@ -160,6 +174,14 @@ def test_an_arm_begins_where_the_beat_before_left_it(engine: Engine) -> None:
     found = positions(run(engine, SceneRequest(beats=beats, **QUICK)))[0]
     high = found[:, WRISTS[1], 1] - found[:, 0, 1]
     assert high[50:75].min() > 0.45, "the hand that is up stays up"
+
+
+def test_who_claps_beside_a_jump_brings_the_hands_together(engine: Engine) -> None:
+    found = made(engine, "Person A jumps for joy and person B claps.", seconds=6.0)[1]
+    wrists = [found[:, SMPL22.index(f"{side}_wrist")] for side in ("left", "right")]
+    gap = np.linalg.norm(wrists[0] - wrists[1], axis=1)[15:-15]
+    meets = np.sum(np.diff((gap < 0.28).astype(int)) == 1)
+    assert gap.min() < 0.25 and meets >= 3 and heights(found[None].repeat(2, axis=0), 0).min() > 0.7
 
 
 def test_hands_are_at_a_window_from_when_the_person_has_come_to_it(engine: Engine) -> None:

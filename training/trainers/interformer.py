@@ -30,8 +30,8 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from models.interformer import JOINTS
 from models.interformer.compact import FPS, JOINTS_15, CompactInterFormer, CompactInterFormerConfig
+from models.interformer.network import JOINTS
 from models.intergen.losses import masked_mean
 from models.weights_io import save_network
 from motion import InputError

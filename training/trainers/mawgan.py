@@ -18,21 +18,16 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from models.mawgan import (
-    Critic,
-    MAWGANConfig,
+from models.mawgan.losses import (
     MAWGANLossWeights,
-    PredictiveMAWGAN,
     bone_loss,
     critic_loss,
     position_loss,
     reconstruction_loss,
     skeleton_loss,
     speed_loss,
-    to_curves,
-    to_positions,
-    without_flicker,
 )
+from models.mawgan.network import Critic, MAWGANConfig, PredictiveMAWGAN, to_curves, to_positions, without_flicker
 from models.mawgan.srvf import exp_map, karcher_mean, log_map, to_srvf
 from motion import InputError
 from training.core.shell import exit_code
@@ -45,7 +40,7 @@ class Settings:
 
     width: channels of the predictor's first block (thesis: 512), halved in each further block; the critic's first
         has an eighth of it, halved likewise.
-    linear, length, pose, coefficients, shortcut, dropout: as in :class:`~models.mawgan.MAWGANConfig`.
+    linear, length, pose, coefficients, shortcut, dropout: as in :class:`~models.mawgan.network.MAWGANConfig`.
     ridge: above 0, the penalty with which the linear map is fitted in closed form, to ``fit`` windows, before the
         first step.
     noise: metres of noise on the pasts.

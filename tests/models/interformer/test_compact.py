@@ -9,8 +9,8 @@ import pytest
 import torch
 
 from models.errors import WeightsError
-from models.interformer import JOINTS
 from models.interformer.compact import CompactInterFormer, CompactInterFormerConfig, load_folder
+from models.interformer.network import JOINTS
 from models.weights_io import save_network
 
 

@@ -6,7 +6,14 @@ import pytest
 import torch
 
 from models.errors import WeightsError
-from models.interformer import InterFormer, InterFormerConfig, Positions, from_released, joint_distances, target_mask
+from models.interformer.network import (
+    InterFormer,
+    InterFormerConfig,
+    Positions,
+    from_released,
+    joint_distances,
+    target_mask,
+)
 from tests.models.reference_arrays import Reference, assert_equal
 
 

@@ -8,7 +8,7 @@ import torch
 from scipy.spatial.transform import Rotation
 from torch import nn
 
-from models.mawgan import (
+from models.mawgan.losses import (
     bone_loss,
     critic_loss,
     gradient_penalty,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from models.mawgan import MAWGANConfig, PredictiveMAWGAN
+from models.mawgan.network import MAWGANConfig, PredictiveMAWGAN
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import load_predictor, save_predictor, without_jump
 

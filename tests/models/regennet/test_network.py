@@ -7,7 +7,7 @@ import torch
 
 from models.diffusion import make_scheduler, sample_steps
 from models.errors import WeightsError
-from models.regennet import ReGenNet, ReGenNetConfig, StreamError, from_released
+from models.regennet.network import ReGenNet, ReGenNetConfig, StreamError, from_released
 from tests.models.reference_arrays import Reference, assert_equal
 
 KINDS = ("regennet_online", "regennet_offline", "regennet_online_action")
