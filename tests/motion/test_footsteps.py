@@ -102,3 +102,14 @@ def test_feet_that_a_turn_leaves_crossed_are_set_down_under_the_hips_until_they_
     before = turned(np.pi, later=60)
     found = pivoting(before, FPS)
     assert (apart(before)[60:110] < 0).all() and (apart(found)[60:110] > 0.1).all()
+
+
+def test_a_body_that_surges_ahead_takes_no_giant_stride() -> None:
+    frames, way = 60, 1.3
+    rest = np.repeat((SMPL22.rest_positions() + np.array([0, 0.92, 0]))[None], frames, axis=0)
+    rest = plant_feet(rest, np.ones((frames, 4), dtype=bool))
+    share = np.clip((np.arange(frames) - 18) / 24, 0, 1)
+    before = rest + way * (share * share * (3 - 2 * share))[:, None, None] * np.array([0, 0, 1.0])
+    after = stepping(before, FPS)
+    apart = np.linalg.norm((after[:, FEET[0]] - after[:, FEET[2]])[:, [0, 2]], axis=-1)
+    assert 0.35 < apart.max() < 0.85

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from acts.staging.poses import lying
+from acts.staging.poses import kneeling, lying, upright
 from motion import SMPL22
 from motion.swings import above_floor, lift_swinging_feet
 
@@ -36,6 +36,14 @@ def test_a_toe_passes_over_the_floor_and_is_up_before_the_foot_comes_down() -> N
     assert lifted[12:22].min() > 0.01
     assert 0.03 < lifted.max() < 0.08
     assert lifted[:7].max() < 1e-3 and lifted[-7:].max() < 1e-3
+
+
+@pytest.mark.parametrize("forwards", [True, False])
+def test_who_steps_backwards_does_not_come_down_on_the_heel(forwards: bool) -> None:
+    poses = step(0.9 if forwards else -0.9)
+    lifted = (lift_swinging_feet(poses, FPS) - poses)[:, TOE, 1]
+    rises_again = lifted[21:23].mean() > lifted[17:20].mean()
+    assert rises_again == forwards
 
 
 @pytest.mark.parametrize(
@@ -91,3 +99,9 @@ def test_only_an_arm_in_the_floor_is_turned(side: str) -> None:
     np.testing.assert_allclose(lengths(raised), lengths(np.stack([pose] * 5)), atol=1e-9)
     others = [joint for joint in range(22) if joint not in (elbow, wrist)]
     np.testing.assert_array_equal(raised[:, others], np.stack([pose] * 5)[:, others])
+
+
+@pytest.mark.parametrize("pose", [upright(HERE, 1.0), kneeling(HERE, 0.0), lying(HERE, 2.0)])
+def test_who_is_above_the_floor_stays(pose: Array) -> None:
+    still = np.stack([pose] * 3)
+    np.testing.assert_allclose(above_floor(still), still, atol=1e-9)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, Clip, Duet
-from motion.metrics.quality import DEEP, limb_depth
+from motion.metrics.quality import DEEP, jerk_percentile, limb_depth, standing_foot
 from motion.touch.apart import CLEAR, bodies_apart, out_of_the_way
 from motion.transforms import heading_matrix
 from webdemo.inference import ReactRequest, Result
@@ -43,6 +43,16 @@ def test_bodies_and_feet_move_apart_on_bones_as_long_as_before(gap: float, aside
     parents, children = (list(ends) for ends in zip(*SMPL22.bones, strict=True))
     lengths = [np.linalg.norm(x[:, :, children] - x[:, :, parents], axis=-1) for x in (pair, found)]
     np.testing.assert_allclose(lengths[1], lengths[0], atol=2e-3)
+
+
+def test_feet_that_stand_do_not_slide_when_the_other_comes_for_a_while() -> None:
+    pair = _pair(0.6)
+    pair[1, :, :, 2] -= 0.44 * np.exp(-(((np.arange(FRAMES) - 45) / 12) ** 2))[:, None]
+    found = bodies_apart(pair, 30.0)
+    assert _deepest(pair) > 2 * DEEP > 2 * _deepest(found)
+    assert np.abs(np.diff(found[0][:, FEET], axis=0)).max() < 1e-3
+    assert standing_foot(found[0], 30.0) < 0.1
+    assert jerk_percentile(found[0], 30.0) < 20
 
 
 def test_a_kick_ends_at_the_other_body() -> None:
