@@ -203,7 +203,7 @@ def launch_options() -> dict[str, Any]:
         "theme": theme(),
         "css": style_sheet(),
         "head": HEAD,
-        "footer_links": ["api"],
+        "footer_links": [],
         "run_history": False,
         "i18n": gr.I18n(**translations()),
         "ssr_mode": False,

@@ -77,13 +77,16 @@ document.addEventListener("keydown", (event) => {
   event.preventDefault();
   ask.querySelector("button.pd-run:enabled")?.click();
 });
-// A press beside an open menu, or Escape, closes it.
+// A press beside an open menu, Escape, or what starts a run in it closes it.
 const shut = ({ type, key, target }) => {
   if (type === "keydown" && key !== "Escape") return;
+  const starts = type === "click" && target.closest(".pd-menu :is(.pd-chip, [id$=grid-make])");
+  if (type === "click" && !starts) return;
   for (const fold of document.querySelectorAll(".pd-menu > .label-wrap.open")) {
-    if (type === "keydown" || !fold.parentElement.contains(target)) fold.click();
+    if (type !== "pointerdown" || !fold.parentElement.contains(target)) fold.click();
   }
 };
+document.addEventListener("click", shut);
 document.addEventListener("pointerdown", shut);
 document.addEventListener("keydown", shut);
 </script>"""

@@ -46,7 +46,7 @@ class ActorPanel(SourcePanel):
                 visible=False,
             )
             with gr.Row(elem_classes="pd-trim"):
-                span: dict[str, Any] = {"minimum": 0, "maximum": SECONDS[1], "step": 0.1}
+                span: dict[str, Any] = {"minimum": 0, "maximum": SECONDS[1], "step": 0.1, "buttons": []}
                 self.begin = gr.Slider(
                     value=0, label=say("react.start"), elem_id="react-start", elem_classes="pd-trim-start", **span
                 )

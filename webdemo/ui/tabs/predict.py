@@ -88,6 +88,7 @@ class PastPanel(SourcePanel):
             label=say("predict.marker"),
             info=say("predict.marker_info"),
             elem_id="predict-marker",
+            buttons=[],
         )
 
     def more(self) -> list[gr.components.Component]:
@@ -206,6 +207,7 @@ class PredictTab(JobTab):
                 step=0.5,
                 label=say("predict.seconds"),
                 elem_id="predict-seconds",
+                buttons=[],
             )
             with gr.Row(elem_classes="pd-rows"):
                 self.model = gr.Dropdown(
