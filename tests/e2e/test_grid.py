@@ -48,6 +48,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
     until(page, "window.__pasdedeux.open")
     before = page.evaluate("window.contexts")
 
+    unfold(page, "#grid")
     sweep(page, "across", "Seeds", "1-3")
     sweep(page, "down", "Damping", "0, 0.4, 0.7")
     page.click("#grid-make")
