@@ -4,7 +4,6 @@ import { placesOf, search } from "./finder.js";
 import { say, translate } from "../texts.js";
 
 const PATIENCE = 8000; // ms until what was chosen must be on the page
-const SETTLING = 200; // ms in which a tab that opens folds its parts as they were left
 
 const make = (tag, className, text) => Object.assign(document.createElement(tag), { className, textContent: text });
 
@@ -24,32 +23,23 @@ async function openTab(label) {
   tabs.find((tab) => tab.textContent.trim() === label && tab.ariaSelected !== "true")?.click();
 }
 
-/** The control once the folded parts around it are open, with the focus on it; null if it does not come. */
+/** Puts the focus on a control, once the folded parts around it are open. */
 async function reach(folds, target) {
   for (const id of folds) {
     const fold = await appeared(() => document.querySelector(`#${id} > button.label-wrap`));
     if (fold && !fold.classList.contains("open")) fold.click();
   }
   const element = await appeared(() => document.getElementById(target));
-  if (!element) return null;
+  if (!element) return;
   element.scrollIntoView({ block: "center" });
   const field = element.matches("button") ? element : element.querySelector("input:not([type=file]), textarea, select, button");
   (field ?? element).focus();
-  return element;
 }
 
 /** Opens the tab and the folded parts around a control, brings it into view and puts the focus on it. */
 async function goTo({ tab, folds, target }) {
   await openTab(tab);
-  if (!target) return;
-  const end = performance.now() + PATIENCE;
-  for (;;) {
-    const element = await reach(folds, target);
-    await new Promise((done) => setTimeout(done, SETTLING));
-    // A part that opened with its tab may be folded again as the tab is laid out: then the focus is nowhere.
-    const lost = element && !element.offsetParent && document.activeElement === document.body;
-    if (!lost || performance.now() > end) return;
-  }
+  if (target) await reach(folds, target);
 }
 
 /** Puts a sentence into the prompt, as if it had been typed. */
