@@ -36,3 +36,8 @@ def test_a_particle_that_no_frame_has_is_another_verb(words: str) -> None:
 @pytest.mark.parametrize("words", ["A bows.", "She sits down.", "A picks up a book."])
 def test_a_particle_that_a_frame_has_is_a_part_of_it(words: str) -> None:
     assert len(read(words).acts) == 1
+
+
+def test_then_at_the_same_time_is_after_what_came_before() -> None:
+    clap, bow = read("They clap, then bow at the same time.").acts
+    assert [(r.kind, r.act) for r in bow.order] == [("after", clap.id)]
