@@ -24,6 +24,7 @@ def unfold(page, *folds: str) -> None:
         button.wait_for()
         if "open" not in (button.get_attribute("class") or "").split():
             button.click()
+            page.wait_for_timeout(500)  # Gradio puts the first values over what is set as the contents appear
 
 
 def set_number(page, box: str, value: float | str) -> None:

@@ -76,6 +76,7 @@ def test_a_class_a_reaction_and_a_prediction_open_as_they_were(lab: str, open_pa
     page.click("button[role=tab]:has-text('React')")
     page.set_input_files("#react-file input[type=file]", str(file))
     page.wait_for_selector("#react-status :text('0.0 to')")
+    unfold(page, "#react-advanced")
     choose(page, "#react-method", "ReGenNet, offline")
     set_number(page, "#react-steps", "7")
     page.click("button#react-generate")

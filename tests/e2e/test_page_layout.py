@@ -45,6 +45,8 @@ def test_a_phone_has_the_player_high_and_no_sideways_scroll(server: SimpleNamesp
     assert top["#player"] < 440  # under the actions on the result
     for tab, field in (("React", "#react-method"), ("Predict", "#predict-method")):
         live(phone, tab)
+        if tab == "React":
+            unfold(phone, "#react-advanced")
         phone.locator(f"{field} input").wait_for()
         room = phone.evaluate(_ROOM, [field, "InterGen, person to person"])
         assert room >= 0, f"{field} lacks {-room:g} pixels"

@@ -124,6 +124,7 @@ def test_automatic_chooses_by_the_words_and_a_method_greys_those_it_does_not_hea
     page: Page, server: SimpleNamespace, tmp_path: Path
 ) -> None:
     player = page.locator("#react-player")
+    unfold(page, "#react-advanced")
     expect(page.locator("#react-method input")).to_have_value("Automatic")
     expect(page.locator("#react-live-method")).to_contain_text("Stream always uses ReGenNet, online")
     page.set_input_files("#react-file input[type=file]", write(walking(3.0).a, tmp_path / "walker.npz")[0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -34,8 +34,8 @@ class ActorPanel(SourcePanel):
     named = "react.file"
     takes = (("react.take_a", "-a", "a"), ("react.take_b", "-b", "b"))
 
-    def build_trim(self, more: Callable[[], None]) -> None:
-        """Who is given and which part of their motion, with what ``more`` lays out; seen once there is a motion."""
+    def build_trim(self) -> None:
+        """Who is given and which part of their motion; seen once there is a motion."""
         with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
             self.build_animation()
             self.person = gr.Radio(
@@ -52,7 +52,6 @@ class ActorPanel(SourcePanel):
                 )
                 self.end = gr.Slider(value=SECONDS[1], label=say("react.end"), elem_id="react-end", **span)
             self._import_choices()
-            more()
 
     def _import_choices(self) -> None:
         """The line on how the file was read, and its settings."""

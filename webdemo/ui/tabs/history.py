@@ -64,19 +64,19 @@ class HistoryTab:
             record: keeps the session's last result.
         """
         with gr.Column(elem_classes="pd-panel pd-history", min_width=0):
-            self.who = gr.HTML(elem_id="history-who")
             self.line = gr.HTML(status(), elem_id="history-status", elem_classes="pd-line")
             self.address = gr.Textbox(
                 label=say("result.link"), interactive=False, visible=False, buttons=["copy"], elem_id="history-address"
             )
             self.saved = gr.DownloadButton(say("history.save"), visible=False, elem_id="history-saved", size="sm")
+            self.view = NotebookView(elem_id="history-notebook")
+            self.who = gr.HTML(elem_id="history-who")
             self.study = StudyPanel(self.page, self.line) if self.page.studies is not None else None
             if self.study is not None:
                 self.study.build()
             self.sharing = SharingPanel(self.page) if self.page.sharing is not None else None
             if self.sharing is not None:
                 self.sharing.build()
-            self.view = NotebookView(elem_id="history-notebook")
             self.files.build()
         self.removed = gr.State([])
         self._wire(demo, tab, record)

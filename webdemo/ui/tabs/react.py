@@ -129,20 +129,7 @@ class ReactTab(JobTab):
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
             self.actor.build(self._live)
-            self.actor.build_trim(self._part)
-            with gr.Row(elem_classes="pd-rows"):
-                self.method = gr.Dropdown(
-                    [(worded("way", label), key) for label, key in react_choices()],
-                    value=AUTOMATIC,
-                    label=say("react.method"),
-                    elem_id="react-method",
-                    min_width=0,
-                    filterable=False,
-                )
-            self.about = gr.HTML(self.fit_method(AUTOMATIC)[-1], elem_id="react-about")
-            if live := live_variant():
-                line = say("react.stream_uses", method=text(live.label))
-                gr.HTML(f'<p class="pd-method">{line}</p>', elem_id="react-live-method")
+            self.actor.build_trim()
             self.prompt = gr.Textbox(
                 label=_WORDS,
                 placeholder="One person waves and the other waves back.",
@@ -151,19 +138,34 @@ class ReactTab(JobTab):
                 elem_id="react-prompt",
             )
             self.build_go(say("react.go"), self._stream_button)
+            with gr.Accordion(say("react.advanced"), open=False, elem_id="react-advanced", elem_classes="pd-advanced"):
+                self._advanced()
 
     def _live(self) -> None:
         self.live = LivePanel(elem_id="react-live")
 
-    def _part(self) -> None:
-        """What the given person does in the reaction, and where the other begins."""
-        self.keep = gr.Checkbox(False, label=say("react.keep"), elem_id="react-keep", visible=False, min_width=0)
+    def _advanced(self) -> None:
+        """The method, what the given person does in the reaction, and where the other begins."""
+        with gr.Row(elem_classes="pd-rows"):
+            self.method = gr.Dropdown(
+                [(worded("way", label), key) for label, key in react_choices()],
+                value=AUTOMATIC,
+                label=say("react.method"),
+                elem_id="react-method",
+                min_width=0,
+                filterable=False,
+            )
+        self.about = gr.HTML(self.fit_method(AUTOMATIC)[-1], elem_id="react-about")
+        if live := live_variant():
+            line = say("react.stream_uses", method=text(live.label))
+            gr.HTML(f'<p class="pd-method">{line}</p>', elem_id="react-live-method")
         self.role = gr.Radio(
             [(say("react.acts_first"), "a"), (say("react.reacts"), "b")],
             value=ReactRequest.role,
             label=say("react.role"),
             elem_id="react-role",
         )
+        self.keep = gr.Checkbox(False, label=say("react.keep"), elem_id="react-keep", visible=False, min_width=0)
 
     def _stream_button(self) -> None:
         self.stream = gr.Button(
