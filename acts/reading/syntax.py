@@ -145,15 +145,18 @@ def is_adverb(text: str) -> bool:
 
 def is_noun_or_side(token: Token) -> bool:
     """True for what looks like a verb and is none: "leaning left", "then both hands", "to chest level"."""
-    if not token.i or any(c.dep_ in ("dobj", "nsubj") for c in token.children):
+    word = token.lower_
+    if not token.i or (token.tag_ != "NNS" and word not in ("left", "level", "height")):
+        return False
+    if any(c.dep_ in ("dobj", "nsubj") for c in token.children):
         return False
     before, part = token.nbor(-1), vocabulary().part
-    if token.lower_ == "left":
+    if word == "left":
         return before.pos_ == "VERB"
-    if token.lower_ in ("level", "height"):
+    if word in ("level", "height"):
         return bool(part(before.lemma_.lower()))
     sided = before.lower_ in ("both", "left", "right") or before.tag_ == "PRP$"
-    return sided and token.tag_ == "NNS" and bool(part(token.lemma_.lower()))
+    return sided and bool(part(token.lemma_.lower()))
 
 
 def is_kept(token: Token) -> bool:

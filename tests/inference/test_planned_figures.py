@@ -41,13 +41,10 @@ def test_a_person_does_a_handstand_and_the_other_stands_by(engine: Engine) -> No
     assert not (free[0][:, FEET, 1].min(axis=1) > 1.5).any()
 
 
-def test_arms_that_are_lowered_were_up_or_stay_down(engine: Engine) -> None:
+def test_arms_that_are_lowered_were_up(engine: Engine) -> None:
     found = made(engine, "Person A lowers both arms.", seconds=3.0)
     up = found[0][:, WRISTS, 1] - found[0][:, SHOULDERS, 1]
     assert up[0].min() > 0.3 and up[-10:].max() < -0.3
-    beats = (Beat("Person A stands still.", seconds=2.0), Beat("Person A lowers both arms.", seconds=2.0))
-    found = positions(run(engine, SceneRequest(beats=beats, **QUICK)))[0]
-    assert (found[60:, WRISTS, 1] - found[60:, SHOULDERS, 1]).max() < 0.0, "they hang already"
 
 
 def test_two_who_carry_a_table_face_each_other_and_walk_one_way(engine: Engine) -> None:
