@@ -25,7 +25,9 @@ PAUSE = 0.01
 
 @pytest.fixture
 def page(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
-    return live(open_page(server.url), "React")
+    page = live(open_page(server.url), "React")
+    expect(page.locator("#react-status")).to_contain_text("Push: 0.0 to")  # the example that it opens with
+    return page
 
 
 def people(page: Page, count: int) -> None:
