@@ -261,7 +261,7 @@ def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, 
     start, radius = bearing(out), float(np.linalg.norm(out))
     wanted = 2 * math.pi * move.turns * (1.1 if move.turns >= 1 else 1.5)
     end_radius = max(radius, WIDE / 2 if both else WIDE)
-    speed = max(move.speed, 1.3)
+    speed = max(move.speed, 1.6)  # once around within the usual five seconds
     wanted = min(wanted, speed * max(seconds - 0.4, 0.5) / max((radius + end_radius) / 2, 0.4))
     angles = start + move.sense * np.linspace(0, wanted, 60)
     radii = radius + (end_radius - radius) * np.clip(np.linspace(0, 5, 60), 0, 1)

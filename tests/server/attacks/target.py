@@ -112,6 +112,10 @@ class Target:
                 client.get("/", headers={"accept": "text/html"})
         return self._clients[who]
 
+    def sign_in_anew(self, who: str) -> None:
+        """Forgets somebody's connection: what was asked at random may have signed them out."""
+        self._clients.pop(who, None)
+
     def ask(self, who: str, method: str, path: str, **more: Any) -> httpx.Response:
         """One request of somebody's."""
         return self.client(who).request(method, path, **more)

@@ -76,6 +76,7 @@ def test_none_hands_out_what_is_another_s(
     backend: Backend, target: Target, victims: Callable[[Target], Victim]
 ) -> None:
     ada = victims(target)
+    target.sign_in_anew("eve")
     for route in sorted(backend.routes):
         method, path = route.split(" ", 1)
         if path in ("/logout", "/login", "/login/", "/account/sign-out") or "queue/data" in path or "heartbeat" in path:
