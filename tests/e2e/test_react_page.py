@@ -37,7 +37,6 @@ def people(page: Page, count: int) -> None:
 def test_an_uploaded_person_is_seen_trimmed_and_gets_a_partner(page: Page, tmp_path: Path) -> None:
     file = write(walking(12.0), tmp_path / "walkers.npz")[0]
     page.set_input_files("#react-file input[type=file]", file)
-    people(page, 1)
     expect(page.locator("#react-status")).to_contain_text("0.0 to 10.0 s of 12.0 s")
     page.fill("#react-end input[type=number]", "3")
     page.press("#react-end input[type=number]", "Tab")
@@ -96,7 +95,7 @@ def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     monkeypatch.setattr(server.engine, "live_waits_at", 72)  # so that a slow browser sees the run while it goes on
     (file, _) = write(walking(4.0), tmp_path / "walker.bvh")
     page.set_input_files("#react-file input[type=file]", file)
-    people(page, 1)
+    expect(page.locator("#react-status")).to_contain_text("walker.bvh: 0.0 to 4.0")
     page.click("button#react-stream")
     expect(page.locator("#react-player .pdd-chip")).to_contain_text("streaming · delay")
     people(page, 2)
@@ -130,7 +129,7 @@ def test_automatic_chooses_by_the_words_and_a_method_greys_those_it_does_not_hea
     expect(page.locator("#react-method input")).to_have_value("Automatic")
     expect(page.locator("#react-live-method")).to_contain_text("Stream always uses ReGenNet, online")
     page.set_input_files("#react-file input[type=file]", write(walking(3.0).a, tmp_path / "walker.npz")[0])
-    people(page, 1)
+    expect(page.locator("#react-status")).to_contain_text("walker.npz: 0.0 to 3.0")
     assert player.locator(".pdd-label").all_text_contents() == ["A · given"]
     for words, title, model in (
         ("", "Reaction to walker.npz", automatic("", "a").name),
@@ -149,7 +148,7 @@ def test_automatic_chooses_by_the_words_and_a_method_greys_those_it_does_not_hea
 
 def test_methods_are_compared_side_by_side(page: Page, server: SimpleNamespace, tmp_path: Path) -> None:
     page.set_input_files("#react-file input[type=file]", write(walking(2.0).a, tmp_path / "walker.npz")[0])
-    people(page, 1)
+    expect(page.locator("#react-status")).to_contain_text("walker.npz: 0.0 to 2.0")
     page.click("button#react-generate")
     people(page, 2)
     unfold(page, "#react-grid")

@@ -14,6 +14,7 @@ from webdemo.inference.methods import methods
 from webdemo.ui.again import actor_source
 from webdemo.ui.components.actors import AUTO, ReadWith, Source, given_again, offered_animations
 from webdemo.ui.components.player import busy, show
+from webdemo.ui.components.settings import FittedSlider
 from webdemo.ui.components.upload import kept_animation
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
@@ -47,10 +48,10 @@ class ActorPanel(SourcePanel):
             )
             with gr.Row(elem_classes="pd-trim"):
                 span: dict[str, Any] = {"minimum": 0, "maximum": SECONDS[1], "step": 0.1, "buttons": []}
-                self.begin = gr.Slider(
+                self.begin = FittedSlider(
                     value=0, label=say("react.start"), elem_id="react-start", elem_classes="pd-trim-start", **span
                 )
-                self.end = gr.Slider(value=SECONDS[1], label=say("react.end"), elem_id="react-end", **span)
+                self.end = FittedSlider(value=SECONDS[1], label=say("react.end"), elem_id="react-end", **span)
             self._import_choices()
 
     def _import_choices(self) -> None:

@@ -18,7 +18,7 @@ from webdemo.inference.run import Result
 from webdemo.ui.components.actors import Source, given_again, offered_animations
 from webdemo.ui.components.player import show
 from webdemo.ui.components.prediction_view import curves_figure, error_lines, prediction_payload, without_name
-from webdemo.ui.components.settings import looked_up
+from webdemo.ui.components.settings import FittedSlider, looked_up
 from webdemo.ui.components.sweep import Kind, grid_table, real
 from webdemo.ui.components.upload import kept_animation
 from webdemo.ui.context import PageContext
@@ -76,11 +76,11 @@ class PastPanel(SourcePanel):
     named = "predict.file"
     takes = (("predict.take", "", "a"),)
     take_at_end = True
-    marker: gr.Slider
+    marker: FittedSlider
 
     def build_marker(self) -> None:
         """The slider of the marker."""
-        self.marker = gr.Slider(
+        self.marker = FittedSlider(
             0,
             10,
             value=PAST_SECONDS,
