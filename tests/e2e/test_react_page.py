@@ -95,7 +95,7 @@ def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     monkeypatch.setattr(server.engine, "live_waits_at", 72)  # so that a slow browser sees the run while it goes on
     (file, _) = write(walking(4.0), tmp_path / "walker.bvh")
     page.set_input_files("#react-file input[type=file]", file)
-    expect(page.locator("#react-status")).to_contain_text("walker.bvh: 0.0 to 4.0")
+    expect(page.locator("#react-status")).to_contain_text("walker_a.bvh: 0.0 to 4.0")
     page.click("button#react-stream")
     expect(page.locator("#react-player .pdd-chip")).to_contain_text("streaming · delay")
     people(page, 2)
