@@ -38,7 +38,6 @@ export class Actions {
     else if (action === "picture") this.savePicture();
     else if (action === "follow") player.orbit.following = !player.orbit.following;
     else if (action === "figure") player.clothes.choose(argument);
-    else if (action === "film") player.filming.toggle();
     else if (SWITCHES.has(action)) player.show[action] = !player.show[action];
     player.refresh();
   }
@@ -61,10 +60,10 @@ export class Actions {
   }
 
   savePicture() {
-    const { clock, data, filming, shown, stage, theme, sampleIndex } = this.player;
+    const { clock, data, shown, stage, theme, sampleIndex } = this.player;
     const frame = Math.round(clock.shown);
     const caption = [data.title, `${(frame / clock.fps).toFixed(2)} s`].filter(Boolean).join("  ·  ");
     const name = `pas-de-deux-${sampleIndex + 1}-frame-${frame}.png`;
-    return savePicture({ panes: shown, stage, theme, film: filming.on, caption, name });
+    return savePicture({ panes: shown, stage, theme, caption, name });
   }
 }

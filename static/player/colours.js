@@ -3,7 +3,6 @@
 //
 // `floor` is the floor at the camera's target, `far` the floor in the distance, `horizon` the sky right above it.
 // `people` are the middle, left and right limbs of A's and B's skeletons; `given` those of a motion that is given.
-// `film` is the film look: metres after which the floor is the horizon, and how dark the corners are.
 export default {
   "light": {
     "background": "#eef1f6",
@@ -21,8 +20,7 @@ export default {
     ],
     "people": [["#2468d8", "#5c9cf5", "#17479e"], ["#e07a10", "#f7a944", "#b25606"]],
     "given": [["#7186ab", "#9fb2d2", "#566a8c"], ["#b09070", "#cdb498", "#8c7053"]],
-    "curve": ["#475569", "#94a3b8"],
-    "film": { "reach": 11, "vignette": 0.16 }
+    "curve": ["#475569", "#94a3b8"]
   },
   "dark": {
     "background": "#141922",
@@ -40,7 +38,6 @@ export default {
     ],
     "people": [["#4f94f7", "#8fc0ff", "#2f6bd0"], ["#f2933a", "#ffc27a", "#c96a14"]],
     "given": [["#7f92b5", "#a9bad6", "#64769a"], ["#b59a7d", "#d0bba2", "#93795e"]],
-    "curve": ["#cbd5e1", "#64748b"],
-    "film": { "reach": 9, "vignette": 0.5 }
+    "curve": ["#cbd5e1", "#64748b"]
   }
 };

@@ -121,7 +121,7 @@ export class Controls {
   }
 
   /** Brings everything to what is true of the player now. */
-  show({ clock, clothes, directing, filming, framing, orbit, posing, sample, show }) {
+  show({ clock, clothes, directing, framing, orbit, posing, sample, show }) {
     const { root } = this;
     const frame = clock.shown;
     const range = this.find(".pdd-range");
@@ -142,7 +142,6 @@ export class Controls {
     press("follow", orbit.following);
     press("trails", show.trails);
     press("ghosts", show.ghosts);
-    press("film", filming.on);
     press("pose", Boolean(posing));
     press("draw", Boolean(directing.drawing?.on));
     press("touch", Boolean(directing.touching));

@@ -41,7 +41,7 @@ export class Framing {
       box: this.box,
     }));
     const { yaw, elevation } = view ?? orbit.glide?.to ?? orbit;
-    return fit(pairs, skeleton, { yaw: yaw + orbit.drift.yaw, elevation });
+    return fit(pairs, skeleton, { yaw, elevation });
   }
 
   /** Measures the room for people in a view, in pixels: what names, captions and tools leave of it. */

@@ -25,7 +25,6 @@ export class Orbit {
     this.distance = 5;
     this.targets = [[0, 0, 0.9]]; // one a view
     this.pan = [0, 0, 0]; // what the user moved the target by
-    this.drift = { yaw: 0, away: 1 }; // of the film look, on top of the view; see filming.js
     this.glide = null;
     this.following = true;
     this.framing = true; // whether the distance adapts, until the user zooms
@@ -44,28 +43,19 @@ export class Orbit {
   view(index = 0) {
     const target = this.targets[index] ?? this.targets[0];
     const center = target.map((v, i) => v + this.pan[i]);
-    const { back } = axesOf(this.yaw + this.drift.yaw, this.elevation);
-    const eye = center.map((v, i) => v + this.drift.away * this.distance * back[i]);
+    const { back } = axesOf(this.yaw, this.elevation);
+    const eye = center.map((v, i) => v + this.distance * back[i]);
     return { target, center, eye, matrix: matrixOf(eye, center) };
-  }
-
-  /** Makes the view what is seen now, before a hand changes it. */
-  hold() {
-    this.yaw += this.drift.yaw;
-    this.distance *= this.drift.away;
-    this.drift = { yaw: 0, away: 1 };
   }
 
   /** Turns by radians. */
   turn(yaw, elevation) {
-    this.hold();
     this.glide = null;
     this.yaw += yaw;
     this.elevation = clamp(this.elevation + elevation, LOWEST, HIGHEST);
   }
 
   zoom(factor) {
-    this.hold();
     this.glide = null;
     this.framing = false;
     this.distance = clamp(this.distance * factor, NEAREST, FARTHEST);
@@ -73,7 +63,6 @@ export class Orbit {
 
   /** Moves the target in the image plane by fractions of the view's height. */
   slide(right, up) {
-    this.hold();
     const scale = 2 * this.distance * Math.tan(FIELD_OF_VIEW / 2);
     const [s, c] = [Math.sin(this.yaw), Math.cos(this.yaw)];
     const [se, ce] = [Math.sin(this.elevation), Math.cos(this.elevation)];

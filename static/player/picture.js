@@ -1,10 +1,8 @@
 // Saving what the stage shows: the scene, the names above heads and a line about the moment.
 
-import { darkenEdges } from "./filming.js";
 import { css } from "./palette.js";
 
-/** `film` says whether the picture has the film look. */
-export async function savePicture({ panes, stage, theme, film, caption, name }) {
+export async function savePicture({ panes, stage, theme, caption, name }) {
   const images = await Promise.all(panes.map((pane) => pane.scene.picture()));
   const ratio = images[0].width / panes[0].host.clientWidth;
   const canvas = document.createElement("canvas");
@@ -13,7 +11,6 @@ export async function savePicture({ panes, stage, theme, film, caption, name }) 
   context.fillStyle = css(theme.background);
   context.fillRect(0, 0, canvas.width, canvas.height);
   images.forEach((image, i) => context.drawImage(image, ratio * panes[i].host.offsetLeft, ratio * panes[i].host.offsetTop));
-  if (film) darkenEdges(context, canvas.width, canvas.height, theme);
   context.scale(ratio, ratio);
   const family = getComputedStyle(stage).fontFamily;
   const from = stage.getBoundingClientRect();

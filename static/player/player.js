@@ -7,7 +7,6 @@ import { Clothes } from "./clothes.js";
 import { Controls } from "./controls.js";
 import { decode, describe } from "./decode.js";
 import { Directing } from "./directing.js";
-import { Filming } from "./filming.js";
 import { Framing } from "./framing.js";
 import { Futures } from "./futures.js";
 import * as live from "./stream.js";
@@ -33,7 +32,6 @@ export class Player {
     this.show = { trails: false, ghosts: false, ...figureAtFirst(), character: false };
     this.clothes = new Clothes(this);
     this.framing = new Framing(this);
-    this.filming = new Filming(this);
     this.pane = new Pane(this.find(".pdd-pane"));
     this.pane.dress((look) => this.clothes.body(look));
     this.grid = new Grid(this.find(".pdd-grid"), this.pane);
@@ -54,7 +52,6 @@ export class Player {
   async open(Plotly) {
     await this.pane.open(this.theme.background, Plotly);
     this.scene = this.pane.scene;
-    if (!this.data) this.filming.load(true);
     this.listen();
     this.wake();
     this.clothes.change();
@@ -62,7 +59,7 @@ export class Player {
   }
 
   get theme() {
-    return this.filming.seen(THEMES[this.themeName]);
+    return THEMES[this.themeName];
   }
 
   get sample() {
@@ -94,7 +91,6 @@ export class Player {
       this.focus = null;
       this.grid.load(null);
       this.pane.load(null);
-      this.filming.load(true);
       this.refresh();
       return;
     }
@@ -112,7 +108,6 @@ export class Player {
     this.select(0);
     this.clothes.change();
     this.root.toggleAttribute("data-first", Boolean(payload.rounds)); // nothing is made yet that could be directed
-    this.filming.load(Boolean(payload.rounds));
     if (!goesOn) this.framing.reset();
     if (this.sample.live) this.clock.pause();
     else if (!goesOn && !(payload.rounds && reducedMotion())) this.clock.play();
@@ -214,7 +209,6 @@ export class Player {
   /** A hand has turned the view: it is no longer that of a preset. */
   turned() {
     this.framing.preset = null;
-    this.filming.leave();
     this.wake();
   }
 
@@ -222,7 +216,6 @@ export class Player {
     if (name === this.themeName) return;
     this.themeName = name;
     this.root.dataset.theme = name;
-    this.filming.dress();
     this.scene?.setBackground(this.theme.background);
     this.strip.load(this.sample, this.theme.curve);
     this.refresh();
@@ -268,7 +261,6 @@ export class Player {
     const before = this.clock.frame;
     this.clock.advance(now);
     const pose = this.data && this.everybody(this.clock.shown);
-    this.filming.step(seconds);
     const wanted = pose && this.framing.wanted();
     if (this.clock.frame < before) {
       this.orbit.cut(wanted); // the loop begins anew
@@ -276,7 +268,7 @@ export class Player {
       if (this.data.rounds && this.rounds >= this.data.rounds) this.clock.pause();
     }
     this.orbit.step(now, seconds, wanted);
-    const moving = this.clock.playing || !this.filming.settled || !this.orbit.settled(wanted);
+    const moving = this.clock.playing || !this.orbit.settled(wanted);
     if (moving && this.sparing && now - this.painted < LIVE_PAUSE) return this.wake();
     this.painted = now;
     if (moving || this.dirty) {

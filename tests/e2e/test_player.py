@@ -279,50 +279,6 @@ def test_the_joint_under_the_pointer_says_where_it_is_and_how_fast(player):
     tip.wait_for(state="hidden")
 
 
-SWITCH = "[data-act=film]"
-RESTS = "window.__pasdedeux.loops === 0 && window.__pasdedeux.player.filming.settled"
-
-
-def at(page, frame: int) -> list[float]:
-    """The eye at a frame, once everything rests."""
-    page.evaluate(f"window.__pasdedeux.player.seek({frame})")
-    until(page, f"window.__pasdedeux.frame === {frame} && {RESTS}")
-    return hook(page, "eye")
-
-
-def test_a_second_press_takes_the_film_look_back(player) -> None:
-    page = player()
-    pause(page)
-    before = at(page, 40)
-    plain = stage_pixels(page)
-    page.locator("[data-act=help]").click()
-    page.locator(SWITCH).click()
-    page.keyboard.press("Escape")
-    until(page, f"document.querySelector('{SWITCH}').ariaPressed === 'true'")
-    seen = at(page, 40)
-    assert np.linalg.norm(np.subtract(seen, before)) > 0.1
-    page.wait_for_timeout(600)
-    film = stage_pixels(page)
-    corners = [np.s_[:40, :40], np.s_[-40:, :40], np.s_[-40:, -40:]]
-    assert all(film[corner].mean() < plain[corner].mean() - 8 for corner in corners)
-    assert at(page, 100) != seen
-    assert at(page, 40) == pytest.approx(seen, abs=0.01)
-    page.locator(".pdd").focus()
-    page.keyboard.press("c")
-    until(page, f"document.querySelector('{SWITCH}').ariaPressed === 'false'")
-    assert at(page, 40) == pytest.approx(before, abs=0.01)
-
-
-def test_what_is_there_at_first_has_the_film_look(player) -> None:
-    page = player(None)
-    assert page.locator(".pdd[data-state=empty].pdd-film").count(), "nor is the empty stage plain"
-    press(page, "arrival")
-    until(page, "window.__pasdedeux.frame > 0 && window.__pasdedeux.player.filming.on")
-    press(page, "load")
-    until(page, "window.__pasdedeux.player.data?.samples[0].frames === 150")
-    assert not page.evaluate("window.__pasdedeux.player.filming.on")
-
-
 def test_the_distance_is_drawn_as_far_as_it_is_known(player):
     page = player()
     actor: Clip = walking(4.0).a

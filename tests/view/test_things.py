@@ -40,13 +40,9 @@ def test_a_film_shows_things_with_every_look(look):
     assert red(drawn(WITH_BALL, look=look)) > 100 > red(drawn(PEOPLE, look=look))
 
 
-@pytest.mark.parametrize("suffix", [".png", ".svg"])
-def test_sheets_show_things(suffix, tmp_path):
-    paths = [write_sheet(d, tmp_path / f"{i}{suffix}", frames=1, width=400) for i, d in enumerate((PEOPLE, WITH_BALL))]
-    if suffix == ".png":
-        assert red(np.asarray(Image.open(paths[0]))) < 50 < red(np.asarray(Image.open(paths[1])))
-    else:
-        assert paths[1].read_text().count("<path") > paths[0].read_text().count("<path") + 100
+def test_sheets_show_things(tmp_path):
+    paths = [write_sheet(d, tmp_path / f"{i}.png", frames=1, width=400) for i, d in enumerate((PEOPLE, WITH_BALL))]
+    assert red(np.asarray(Image.open(paths[0]))) < 50 < red(np.asarray(Image.open(paths[1])))
 
 
 def test_a_process_that_draws_is_sent_things():

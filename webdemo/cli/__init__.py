@@ -1,6 +1,6 @@
 """The same jobs from a shell: ``python -m webdemo COMMAND``.
 
-The commands are generate, react, predict, scene, read, render, gallery, score, info, benchmark, serve, user, admin,
+The commands are generate, react, predict, scene, read, render, score, info, benchmark, serve, user, admin,
 backup and restore.
 The last line on stdout is one JSON object. An error is one line on stderr that says what is
 wrong and what to do, with exit code 2. A cancelled run (Ctrl+C) ends with 130, and one whose reader has gone
@@ -20,7 +20,6 @@ from typing import Any
 
 from motion import InputError
 
-from .gallery import add_gallery
 from .generation import add_generate, add_predict, add_react
 from .parser import Parser
 from .rendering import add_render
@@ -42,7 +41,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         add_scene,
         add_read,
         add_render,
-        add_gallery,
         add_score,
         add_service,
         add_admin,

@@ -21,7 +21,7 @@ def add_render(commands: Any) -> None:
     parser.add_argument(
         "--out",
         type=Path,
-        help="film: .mp4, .webm or .gif; contact sheet: .png, .svg or .pdf; plotly figure: .html; mesh: .ply or .obj; "
+        help="film: .mp4, .webm or .gif; contact sheet: .png or .pdf; plotly figure: .html; mesh: .ply or .obj; "
         "a .png beside the file by default",
     )
     parser.add_argument("--beside", type=Path, action="append", default=[], help="film: a motion to show beside it")
@@ -33,17 +33,12 @@ def add_render(commands: Any) -> None:
     parser.add_argument("--fps", type=float, default=30.0, help="film: frames a second")
     parser.add_argument("--size", default="1280x720", help="film: width and height in pixels")
     parser.add_argument("--trails", action="store_true", help="film: lines behind hands and pelvis")
-    parser.add_argument(
-        "--film-look",
-        action="store_true",
-        help="film: a camera that moves slowly about the people, a floor that fades into the sky, darker edges",
-    )
     parser.add_argument("--still-camera", action="store_true", help="film: the camera does not follow the people")
     parser.add_argument(
         "--frames", default="8", help="contact sheet: how many moments, 1 to 24, or which, as in 0,30,75"
     )
     parser.add_argument("--frame", type=int, help="mesh: which frame; the middle one by default")
-    parser.add_argument("--width", type=int, default=1600, help="contact sheet: pixels (points for .svg, .pdf)")
+    parser.add_argument("--width", type=int, default=1600, help="contact sheet: pixels")
     parser.set_defaults(job=render)
 
 
@@ -63,7 +58,6 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
         trails=options.trails and suffix in film.SUFFIXES,
         names=suffix in film.SUFFIXES,
         theme=options.theme,
-        film=options.film_look and suffix in film.SUFFIXES,
         body=character_body(read_character(options.character)) if options.character else None,
     )
     if suffix in film.SUFFIXES:
@@ -97,7 +91,7 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
         mesh.write_mesh(motion, out, frame=frame, style=style)
     else:
         raise InputError(
-            f"{out.name} cannot be rendered: give --out a name that ends in .mp4, .webm, .gif, .png, .svg, .pdf, "
+            f"{out.name} cannot be rendered: give --out a name that ends in .mp4, .webm, .gif, .png, .pdf, "
             ".html, .ply or .obj."
         )
     written = {"files": [str(out)], "frames": motion.num_frames, "fps": motion.fps, "seconds": motion.seconds}

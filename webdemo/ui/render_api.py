@@ -15,7 +15,6 @@ from webdemo.ui.components.film import LONGEST, in_time
 from webdemo.ui.text.words import error_line
 from webdemo.view.camera import VIEWS
 from webdemo.view.film import FPS, SIZE, write_film
-from webdemo.view.film import SUFFIXES as FILMS
 from webdemo.view.mesh import SUFFIXES as MESHES
 from webdemo.view.mesh import frame_at, write_mesh
 from webdemo.view.plotly_figure import SUFFIX as FIGURE
@@ -45,8 +44,7 @@ class RenderEndpoint:
             inputs = [
                 gr.File(label="the motion of one person or two: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
                 gr.Textbox(
-                    "mp4",
-                    label="film: mp4, webm, gif; contact sheet: png, svg, pdf; plotly figure: html; mesh: ply, obj",
+                    "mp4", label="film: mp4, webm, gif; contact sheet: png, pdf; plotly figure: html; mesh: ply, obj"
                 ),
                 gr.Textbox(Style.look, label=" or ".join(LOOKS)),
                 gr.Textbox(Style.theme, label="light or dark"),
@@ -59,7 +57,6 @@ class RenderEndpoint:
                 gr.Textbox("", label=WHICH),
                 gr.Number(0, label=RATE),
                 gr.Number(0, label="second of the motion that a mesh shows"),
-                gr.Checkbox(False, label="film look: a slow camera and a distance that fades, in a film"),
                 gr.Textbox("", label=UP),
                 gr.Textbox("", label=ORDER),
             ]
@@ -87,7 +84,6 @@ class RenderEndpoint:
         animation: str = "",
         file_fps: float = 0.0,
         second: float = 0.0,
-        film_look: bool = False,
         up: str = "",
         order: str = "",
     ) -> str:
@@ -108,14 +104,7 @@ class RenderEndpoint:
                 body = character_body(read_character(Path(character))) if character else None
             name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
             out = folder / f"{file_name(name, {})}{suffix}"
-            style = Style(
-                look=look,
-                theme=theme,
-                trails=trails,
-                film=bool(film_look) and suffix in FILMS,
-                names=suffix not in SHEETS,
-                body=body,
-            )
+            style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS, body=body)
             if suffix in SHEETS:
                 return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
             if suffix == FIGURE:

@@ -80,24 +80,6 @@ class Camera:
         middle = np.array(self.size) / 2
         return np.stack([seen[..., 0] * scale, -seen[..., 1] * scale], axis=-1) + middle, seen[..., 2]
 
-    def ground_lines(self, metres: int = 4) -> Array:
-        """(N, 2, 2) pixels of the lines of a grid of metres on the floor, around what the camera looks at."""
-        middle = np.round(self.target[[0, 2]])
-        steps = np.arange(-metres, metres + 1, dtype=float)
-        along = np.stack(np.meshgrid(steps[:-1], steps), axis=-1).reshape(-1, 2)
-        ends = np.stack([along, along + np.array([1.0, 0.0])], axis=1)
-        ends = np.concatenate([ends, ends[..., ::-1]]) + middle
-        lines = np.insert(ends, 1, 0.0, axis=-1)
-        pixels, depth = self.project(lines)
-        return pixels[(depth > 0.3).all(axis=1)]
-
-
-def project_shadow(points: Array) -> Array:
-    """Projects points (…, 3) onto the floor from a lamp overhead and slightly to the side."""
-    slant = np.array([-0.25, 0.0, -0.35])
-    height = np.maximum(points[..., 1:2], 0.0)
-    return points * np.array([1.0, 0.0, 1.0]) + height * slant
-
 
 def cameras(
     panes: Sequence[Clip | Duet],

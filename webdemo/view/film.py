@@ -25,7 +25,6 @@ from motion.errors import InputError
 from motion.formats.files import replacing
 
 from .camera import cameras
-from .filming import darken_edges, moving_cameras
 from .parcel import Job, packed, unpacked
 from .stage import Pane, Picture, Stage, Style, paste, words
 
@@ -97,8 +96,7 @@ def write_film(
         raise InputError(
             f"A GIF of {len(times):,} pictures of {size[0]}x{size[1]} is too large: ask for a smaller one."
         )
-    placed = moving_cameras if style.film else cameras
-    views = placed(
+    views = cameras(
         [pane.motion for pane in panes],
         size=_cell(size, len(panes)),
         times=times,
@@ -155,8 +153,6 @@ def _draw(job: Job) -> Iterator[Picture]:
     ]
     for seconds, shown in zip(job.times, zip(*stages, strict=True), strict=True):
         whole = _joined(job, shown)
-        if job.style.film:
-            darken_edges(whole, job.style.colours.vignette)
         _caption(job, whole, float(seconds))
         yield _planes(whole) if job.planar else whole
 

@@ -1,41 +1,32 @@
-"""A motion as a figure for a paper: moments side by side on the ground, as PNG, SVG or PDF.
-
-PNG shows the player's own picture of each moment. SVG and PDF are drawn as lines and triangles that stay sharp at
-any size; their shadow is the bodies' outline under a lamp overhead.
-"""
+"""A motion as a figure for a paper: moments side by side on the ground, each as the player shows it, as PNG or PDF."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from motion.body import skin
-from motion.clip import Clip, Duet, stacked_positions
+from motion.clip import Clip, Duet
 from motion.errors import InputError
 from motion.formats.files import replacing
-from motion.skeleton import SMPL22
-from motion.things.thing import Mesh
 
-from .camera import Camera, cameras, project_shadow
-from .light import lit, shaded
-from .stage import Pane, Stage, Style, paste, seen_by, side_of, words
-from .things import drawn_things, hands_of
+from .camera import Camera, cameras
+from .stage import Pane, Stage, Style, paste, words
 
 Array = NDArray[np.floating]
 
-SUFFIXES = (".png", ".svg", ".pdf")
+SUFFIXES = (".png", ".pdf")
 MOMENTS = (1, 24)
 WIDTHS = (200, 8000)
 WIDTH = 1600
 _COLUMNS, _IN_ROW = 8, 6
+_DPI = 300.0
+"""Pixels an inch of a PDF."""
 _TALL = 1.15
 """Height of a picture over its width."""
-_VECTOR: dict[Any, Any] = {"svg.fonttype": "none", "pdf.fonttype": 42, "svg.hashsalt": "pas de deux"}
 
 
 def chosen_frames(motion: Clip | Duet, frames: int | Sequence[int]) -> list[int]:
@@ -71,9 +62,9 @@ def write_sheet(
 
     Args:
         motion: one person or two.
-        path: ends in .png, .svg or .pdf.
+        path: ends in .png or .pdf.
         frames: how many, evenly spaced, or which.
-        width: of the whole in pixels; in points for SVG and PDF.
+        width: of the whole in pixels.
         title: stands above.
         style: how people are drawn.
         view: one of :data:`~webdemo.view.camera.VIEWS`.
@@ -87,7 +78,7 @@ def write_sheet(
     path, style = Path(path), style or Style(names=False)
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise InputError(f"Contact sheets end in .png, .svg or .pdf, not in {suffix or 'nothing'}.")
+        raise InputError(f"Contact sheets end in .png or .pdf, not in {suffix or 'nothing'}.")
     if not WIDTHS[0] <= width <= WIDTHS[1]:
         raise InputError(f"A width of {width} is not possible: give {WIDTHS[0]} to {WIDTHS[1]}.")
     moments = chosen_frames(motion, frames)
@@ -96,11 +87,9 @@ def write_sheet(
     times = np.arange(motion.num_frames) / motion.fps
     (views,) = cameras([motion], size=tile, times=times[moments], view=view, around=0.0)
     with replacing(path) as temporary:
-        if suffix == ".png":
-            sheet = _raster(motion, style, moments, views, tile, title)
-            sheet.save(temporary, format="PNG")
-        else:
-            _vector(motion, style, moments, views, tile, title, temporary, suffix[1:])
+        _sheet(motion, style, moments, views, tile, title).save(
+            temporary, format=suffix[1:].upper(), resolution=_DPI, quality=95
+        )
     return path
 
 
@@ -167,7 +156,7 @@ def _whole(count: int, tile: tuple[int, int], head: int) -> tuple[int, int]:
     return tile[0] * min(count, _COLUMNS), head + rows * (tile[1] + _text_size(tile) * 2)
 
 
-def _raster(
+def _sheet(
     motion: Clip | Duet, style: Style, moments: list[int], views: list[Camera], tile: tuple[int, int], title: str
 ) -> Image.Image:
     small, ink = _text_size(tile), style.colours.ink
@@ -182,111 +171,3 @@ def _raster(
     if title:
         paste(sheet, words(title, ink, small), small // 2, small // 4)
     return Image.fromarray(sheet).convert("RGB")
-
-
-def _vector(
-    motion: Clip | Duet,
-    style: Style,
-    moments: list[int],
-    views: list[Camera],
-    tile: tuple[int, int],
-    title: str,
-    path: Path,
-    kind: str,
-) -> None:
-    import matplotlib
-    from matplotlib.figure import Figure
-
-    small, theme = _text_size(tile), style.colours
-    head = 2 * small if title else 0
-    width, height = _whole(len(moments), tile, head)
-    figure = Figure(figsize=(width / 72, height / 72), dpi=72, facecolor=theme.horizon)
-    axes = figure.add_axes((0, 0, 1, 1))
-    axes.set(xlim=(0, width), ylim=(height, 0))
-    axes.set_axis_off()
-    if title:
-        axes.text(small / 2, small * 1.3, title, size=small, color=theme.ink)
-    people, things = stacked_positions(motion).astype(np.float64), drawn_things(motion)
-    for frame, camera, (x, y) in zip(moments, views, _places(len(moments), tile, head), strict=True):
-        seen = [(thing.mesh, thing.at(frame)) for thing in things]
-        _draw_tile(axes, motion, frame, people[:, frame], seen, camera, np.array([x, y]), style)
-        axes.text(x + small / 2, y + tile[1] + small * 1.3, f"{frame / motion.fps:.2f} s", size=small, color=theme.ink)
-    with matplotlib.rc_context(_VECTOR):
-        metadata = {"Date": None} if kind == "svg" else {"CreationDate": None}
-        figure.savefig(path, format=kind, metadata=metadata)
-
-
-def _draw_tile(
-    axes,
-    motion: Clip | Duet,
-    frame_number: int,
-    pose: Array,
-    seen_things: list[tuple[Mesh, Array]],
-    camera: Camera,
-    corner: Array,
-    style: Style,
-) -> None:
-    from matplotlib.collections import LineCollection, PolyCollection
-    from matplotlib.patches import PathPatch, Rectangle
-
-    theme = style.colours
-    frame = Rectangle((float(corner[0]), float(corner[1])), *camera.size, facecolor=theme.floor, edgecolor="none")
-    axes.add_patch(frame)
-
-    def add(kind, shapes: Array, **look) -> None:
-        drawn = kind(list(shapes + corner), zorder=2, **look)  # as painters do, one over the other
-        axes.add_collection(drawn)
-        drawn.set_clip_path(frame)
-
-    grid = camera.ground_lines()
-    add(LineCollection, grid, colors=[theme.grid], linewidths=0.5)
-    dressed = style.look != "skeletons" and motion.skeleton.joint_names == SMPL22.joint_names
-    triangles, depths, colours = [], [], []
-    bodies = style.worn(motion, small=True) if dressed else ()
-    solid = []
-    for person, (body, points) in enumerate(zip(bodies, pose, strict=False)):
-        hands = hands_of(motion, person, np.array([frame_number]))
-        surface = skin(body, points[None], hands, seen_by(pose[:, None], person))[0].astype(np.float64)
-        shades = shaded(body, surface, theme.bodies[person], theme.lamps, camera)
-        solid.append((body.faces, surface, shades))
-    for mesh, surface in seen_things:
-        bright = lit(surface, mesh.faces, mesh.colours / 255, np.ones(len(surface)), theme.lamps, camera)
-        solid.append((mesh.faces, surface, bright))
-    for faces, surface, shades in solid:
-        pixels, depth = camera.project(surface)
-        corners = pixels[faces]
-        seen = _facing(corners)
-        triangles.append(corners[seen])
-        depths.append(depth[faces][seen].mean(axis=1))
-        colours.append(shades[seen].mean(axis=1))
-        shade = camera.project(project_shadow(surface))[0][faces]
-        dark = np.array(theme.floor) * (1 + np.array(theme.shade)) / 2
-        shadow = PathPatch(_outlines(shade[_facing(shade)] + corner), facecolor=dark, edgecolor="none", zorder=2)
-        axes.add_patch(shadow)
-        shadow.set_clip_path(frame)
-    if triangles:
-        order = np.argsort(-np.concatenate(depths))
-        fill = np.concatenate(colours)[order]
-        shapes = np.concatenate(triangles)[order]
-        add(PolyCollection, shapes, facecolors=fill, edgecolors=fill, linewidths=0.5)
-    if style.look != "bodies" or not dressed:
-        bones = np.array(motion.skeleton.bones)
-        sides = [side_of(motion.skeleton.joint_names[joint]) for _, joint in bones]
-        for person in np.argsort(-camera.project(pose[:, 0])[1]):
-            limbs = [theme.people[person][side] for side in sides]
-            lines = camera.project(pose[person][bones])[0]
-            add(LineCollection, lines, colors=limbs, linewidths=camera.size[0] / 90, capstyle="round")
-
-
-def _outlines(triangles: Array):
-    from matplotlib.path import Path as Outline
-
-    codes = np.array([Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY], dtype=Outline.code_type)
-    closed = np.concatenate([triangles, triangles[:, :1]], axis=1)
-    return Outline(closed.reshape(-1, 2), np.tile(codes, len(triangles)))
-
-
-def _facing(corners: Array) -> NDArray[np.bool_]:
-    """(F,) whether triangles (F, 3, 2) in pixels are seen from outside."""
-    one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    return one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0] < 0

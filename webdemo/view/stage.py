@@ -22,7 +22,6 @@ from motion.smoothing import smoothstep
 from motion.things.thing import Thing
 
 from .camera import Camera, sampled
-from .filming import hazy
 from .light import Shadow, lit, shaded
 from .theme import THEMES, Colour, Theme, mix
 from .things import drawn_things, hands_of, shadow_spots
@@ -69,7 +68,6 @@ class Style:
         trails: whether pelvis and wrists leave a line of their last second.
         names: whether roles stand above the heads.
         theme: "light" or "dark".
-        film: whether pictures have the film look, see :mod:`webdemo.view.filming`.
         body: worn by everybody, such as one of :func:`motion.character.character_body`; a body each by default.
 
     Raises:
@@ -80,7 +78,6 @@ class Style:
     trails: bool = False
     names: bool = True
     theme: str = "light"
-    film: bool = False
     body: Body | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -91,8 +88,8 @@ class Style:
 
     @property
     def colours(self) -> Theme:
-        """The colours of its theme, in haze for the film look."""
-        return hazy(THEMES[self.theme]) if self.film else THEMES[self.theme]
+        """The colours of its theme."""
+        return THEMES[self.theme]
 
     def worn(self, motion: Clip | Duet, *, small: bool) -> tuple[Body, ...]:
         """The body of each person; ``small`` gives a third of the triangles where there is a choice."""

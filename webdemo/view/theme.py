@@ -39,7 +39,6 @@ class Theme:
         lamps: the light on bodies.
         bodies, given_bodies: by zone, a's and b's; greyer while a motion is given.
         people, given: middle, left and right limbs of skeletons, a's and b's.
-        film_reach, vignette: of the film look: its ``reach``, and how dark the corners are.
     """
 
     sky: Colour
@@ -56,8 +55,6 @@ class Theme:
     people: tuple[tuple[Colour, Colour, Colour], ...]
     given: tuple[tuple[Colour, Colour, Colour], ...]
     reach: float
-    film_reach: float
-    vignette: float
 
     @property
     def given_bodies(self) -> tuple[Worn, Worn]:
@@ -96,8 +93,6 @@ def _theme(stored: Mapping[str, Any]) -> Theme:
         people=_limbs(stored["people"]),
         given=_limbs(stored["given"]),
         reach=_REACH,
-        film_reach=stored["film"]["reach"],
-        vignette=stored["film"]["vignette"],
     )
 
 

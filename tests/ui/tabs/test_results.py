@@ -82,12 +82,11 @@ def test_a_film_is_what_the_player_shows(tab: GenerateTab, monkeypatch: pytest.M
         "trails": True,
         "look": "both",
         "theme": "dark",
-        "film": True,
     }
     record = result_of(tab)
     make_film(record, json.dumps(shown), tab.page.shelf.folder())
     assert (asked["yaw"], asked["elevation"], asked["view"], asked["follow"]) == (1.5, 1.5, "top", False)
-    assert asked["style"] == Style(look="both", trails=True, theme="dark", film=True)
+    assert asked["style"] == Style(look="both", trails=True, theme="dark")
     assert asked["title"] == "two people walk"
 
 

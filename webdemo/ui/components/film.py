@@ -38,7 +38,7 @@ READ_PLAYER = """(record, _) => {
   return [record, JSON.stringify({
     yaw: orbit.yaw, elevation: orbit.elevation, view: player.framing.preset, follow: orbit.following,
     frame: Math.round(player.clock.shown), distance: orbit.distance,
-    trails: Boolean(show.trails), film: player.filming.on, theme: player.themeName, sample: player.sampleIndex,
+    trails: Boolean(show.trails), theme: player.themeName, sample: player.sampleIndex,
     look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons", character: Boolean(show.character),
   })];
 }"""
@@ -94,7 +94,6 @@ def make_film(record: Record | None, shown: str, folder: Path, progress: Drawn |
         look=_one_of(state, "look", LOOKS, "bodies"),
         trails=state.get("trails") is True,
         theme=_one_of(state, "theme", tuple(THEMES), "light"),
-        film=state.get("film") is True,
         body=record.worn.body if record.worn and state.get("character") is True else None,
     )
     try:

@@ -1,7 +1,6 @@
 """The drawer of examples: scenes that show what the lab can do, each one press from being made and changed.
 
 ``static/gallery/scenes.json`` holds each scene's ``prompt``, ``seconds`` and ``seed``, and a moving thumbnail.
-``python -m webdemo gallery`` makes it anew.
 """
 
 from __future__ import annotations
