@@ -1,4 +1,4 @@
-"""The lexicon: one entry an act, in TOML files grouped by kind; a lab's own (:mod:`acts.config`) are merged into it.
+"""The lexicon: one entry an act, in TOML files grouped by kind.
 
 An entry gives everything about its act: how it is said, the words on which the network was trained, how long it takes,
 how it is staged, the rule that checks it, and examples that are its tests. ``python -m acts check FOLDER`` says what is
@@ -7,7 +7,7 @@ wrong with an entry, with its file and line.
 
 from __future__ import annotations
 
-import logging
+import os
 import re
 import tomllib
 from collections import defaultdict
@@ -21,14 +21,13 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from motion import InputError
 
-from .config import OwnFiles, own_files
 from .frames import Frame
 from .shapes import Shape
 from .things import Does, Prop
 
-log = logging.getLogger(__name__)
-
 OURS = Path(__file__).with_name("lexicon")
+FOLDERS = "PASDEDEUX_ACTS"
+"""Environment variable with further folders of acts, separated as in ``PATH``."""
 MOST_BYTES = 1_000_000
 """Bytes of a lexicon file, at most."""
 
@@ -104,15 +103,13 @@ class Lexicon:
         entries: by name, a lab's own among them.
         frames: (name, frame) by the lemma of the verb.
         synsets: names by the WordNet sense that stands for them.
-        own: names of the entries that the lab of the settings added or replaced.
-        problems: a sentence, with file and line, for each of its entries that was left out.
+        own: names of the entries of further folders.
     """
 
     entries: Mapping[str, Entry]
     frames: Mapping[str, list[tuple[str, Frame]]]
     synsets: Mapping[str, tuple[str, ...]]
-    own: tuple[str, ...] = ()
-    problems: tuple[str, ...] = ()
+    own: frozenset[str] = frozenset()
 
     @classmethod
     def of(cls, entries: Mapping[str, Entry]) -> Lexicon:
@@ -130,41 +127,30 @@ class Lexicon:
 
 
 def lexicon(folders: tuple[Path, ...] = ()) -> Lexicon:
-    """Our entries, those of the lab's own folders in the settings, and those of further folders.
+    """Our entries, and those of further folders: of ``PASDEDEUX_ACTS`` and of ``folders``, each read once.
 
-    A later entry replaces an earlier one of its name. What is wrong in the lab's own folders is left out and stands in
-    ``problems``; their files are read again when they change.
+    A later entry replaces an earlier one of its name.
 
     Raises:
-        InputError: for the first thing that is wrong in the further folders.
+        InputError: for the first thing that is wrong in a further folder, with its file and line.
     """
-    return _lexicon(folders, own_files())
+    named = os.environ.get(FOLDERS, "").split(os.pathsep)
+    return _lexicon((*(Path(name).resolve() for name in named if name), *folders))
 
 
 @lru_cache(maxsize=8)
-def _lexicon(folders: tuple[Path, ...], own: OwnFiles) -> Lexicon:
-    entries: dict[str, Entry] = {}
-    _read_all(OURS, entries)
-    added: dict[str, Entry] = {}
-    problems = [*own.problems, *(problem for path, *_ in own.files for problem in read_file(path, added))]
-    for problem in problems:
-        log.warning("Left out of the lab's own acts: %s", problem)
-    entries |= added
+def _lexicon(folders: tuple[Path, ...]) -> Lexicon:
+    ours: dict[str, Entry] = {}
+    _read_all(OURS, ours)
+    own: dict[str, Entry] = {}
     for folder in folders:
-        _read_all(folder, entries)
-    return replace(Lexicon.of(entries), own=tuple(added), problems=tuple(problems))
+        _read_all(folder, own)
+    return replace(Lexicon.of(ours | own), own=frozenset(own))
 
 
 def _read_all(folder: Path, into: dict[str, Entry]) -> None:
     for problem in (p for path in files(folder) for p in read_file(path, into)):
         raise InputError(problem)
-
-
-def look_at_own_acts() -> None:
-    """Reads the lab's own acts if the settings name any, so that the log says at start what is wrong with them."""
-    found = own_files()
-    if found.files or found.problems:
-        lexicon()
 
 
 def files(folder: Path) -> list[Path]:

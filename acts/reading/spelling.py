@@ -148,12 +148,12 @@ def other_language(text: str) -> str | None:
     if not letters:
         return "There are no words in this text: write in English what the two people do."
     if sum(ord(c) < 0x250 for c in letters) < 0.6 * len(letters):
-        return "This is not in the Latin alphabet: write in English, or let a director's model read other languages."
+        return "This is not in the Latin alphabet: write in English."
     words = [word for word in "".join(c if c.isalpha() or c == "'" else " " for c in text).split() if len(word) > 1]
     if len(words) >= 4 and not any(word.lower() in _ENGLISH for word in words):
         unknown = sum(not is_word(word.lower()) for word in words)
         if unknown >= 0.4 * len(words):
-            return "This does not seem to be English: write in English, or let a director's model read other languages."
+            return "This does not seem to be English: write in English."
     return None
 
 

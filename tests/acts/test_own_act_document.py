@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from acts import config
 from acts.__main__ import main as acts_main
-from acts.config import look_again
 from motion.formats import read as read_motion
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -27,20 +24,12 @@ def first_act() -> tuple[str, list[str]]:
     return entry, commands
 
 
-@pytest.fixture(autouse=True)
-def no_folders_afterwards(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    yield
-    monkeypatch.undo()
-    look_again()
-
-
 def test_the_first_act_goes_from_an_empty_folder_to_a_motion(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from webdemo.cli import main
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(config, "LOOK_EVERY", 0.0)
     entry, commands = first_act()
     done = []
     for command in commands:
@@ -61,7 +50,7 @@ def test_the_first_act_goes_from_an_empty_folder_to_a_motion(
             assert main(words[3:]) == 0, capsys.readouterr().err
             answer = json.loads(capsys.readouterr().out.splitlines()[-1])
             done.append(words[3])
-            plan = answer["plan"] if words[3] == "read" else answer["manifest"]["request"]["acts"]
+            plan = answer["plan"] if words[3] == "read" else answer["manifest"]["plan"]["acts"][0]
             assert [act["act"] for act in plan["acts"]] == ["ollie"]
             if words[3] == "generate":
                 assert "jumps up high" in json.dumps(answer["manifest"])

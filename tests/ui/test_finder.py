@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 from typing import Any
 
-from acts.reading.director import directed
+from acts import read
 from webdemo.ui.components.finder import known
 from webdemo.ui.history import Entry, Found
 
@@ -12,7 +12,7 @@ def test_every_act_comes_with_a_sentence_that_has_it() -> None:
     acts = known(None)["acts"]
     assert len(acts) > 300 and acts == sorted(acts)
     (sentence,) = [sentence for name, sentence in acts if name == "hugs"]
-    assert [act.act for act in directed(sentence, ask=False).acts] == ["hug"]
+    assert [act.act for act in read(sentence).acts] == ["hug"]
 
 
 def test_runs_that_can_be_opened_are_listed() -> None:

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from acts import Act, Plan, lexicon, read
-from acts.reading.director import directed
 from acts.reading.syntax import parse
 
 from .plans import Act as Expected
@@ -118,11 +117,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
     parser = argparse.ArgumentParser(description="Scores the reader of sentences on a file of plans.")
     parser.add_argument("file", type=Path)
-    parser.add_argument(
-        "--director", action="store_true", help="ask the director of the settings, with the lexicon behind it"
-    )
     args = parser.parse_args(argv)
-    print(json.dumps(vars(score(read_plans(args.file), directed if args.director else read))))
+    print(json.dumps(vars(score(read_plans(args.file)))))
 
 
 if __name__ == "__main__":

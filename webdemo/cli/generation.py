@@ -15,7 +15,6 @@ from motion import FPS, Duet, InputError
 from motion.formats import check_rig, on_rig
 from webdemo.inference.methods import AUTOMATIC, automatic, methods
 from webdemo.inference.requests import GenerateRequest, ReactRequest
-from webdemo.inference.requests.acting import acted
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.run import Result
@@ -64,7 +63,7 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
     fields |= {"split": not options.no_split, "planned": not options.no_plan, "tries": options.tries}
     if options.plan is not None:
         words, fields["acts"] = "", read_plan(options.plan)
-    request = acted(GenerateRequest(prompt=words, seconds=options.seconds, **fields))
+    request = GenerateRequest(prompt=words, seconds=options.seconds, **fields)
     if options.thing is None:
         return write_result(run(request), options.out)
     from motion.formats.thing_files import read_thing

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from acts import read
-from acts.reading.director import directed
 from motion import Duet, InputError
 from motion.formats.recording import ImportChoices
 from webdemo.inference.requests import SamplingRequest
@@ -104,8 +103,5 @@ def add_read(commands: Any) -> None:
 
 
 def _plan(options: argparse.Namespace) -> dict[str, Any]:
-    if options.acts:
-        plan = read(options.sentence, tuple(folder.resolve() for folder in options.acts))
-    else:
-        plan = directed(options.sentence)
-    return plan.model_dump(mode="json")
+    folders = tuple(folder.resolve() for folder in options.acts)
+    return read(options.sentence, folders).model_dump(mode="json")

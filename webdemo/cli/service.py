@@ -67,7 +67,7 @@ def info(options: argparse.Namespace) -> dict[str, Any]:
             for found in methods()
         },
         "failed": failed(),
-        "acts": {"all": len(known.entries), "own": list(known.own), "problems": list(known.problems)},
+        "acts": {"all": len(known.entries), "own": sorted(known.own)},
         "weights": sorted({file.parent.name for file in engine.weights.glob("*/*.safetensors")}),
         "formats": {s: {"read": can_read(s), "write": can_write(s)} for s in FORMATS},
         "versions": {name: version(name) for name in ("gradio", "torch", "numpy", "plotly", "diffusers")},

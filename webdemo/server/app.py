@@ -20,7 +20,7 @@ from starlette.middleware.cors import CORSMiddleware
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Mount
 
-from acts.lexicon import look_at_own_acts
+from acts.lexicon import lexicon
 from webdemo.server.accounts.login import account_routes, login_routes
 from webdemo.server.accounts.visitors import Visitors
 from webdemo.server.http.admin_pages import admin_routes
@@ -165,7 +165,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         log.warning("%d runs were interrupted when the server last stopped.", lost)
     tasks = [
         asyncio.create_task(_later(WARM_UP_AFTER, lab.health.probe)),
-        asyncio.create_task(_later(WARM_UP_AFTER, look_at_own_acts)),
+        asyncio.create_task(_later(WARM_UP_AFTER, lexicon)),
         asyncio.create_task(_collect_when_loaded(lab)),
         asyncio.create_task(_every(CLEAN_EVERY, lab.history.clean)),
         asyncio.create_task(_every(CLEAN_EVERY, lab.publishing.clean)),

@@ -6,22 +6,21 @@ folder or what ``PASDEDEUX_SETTINGS`` names. ``python -m webdemo serve --print-s
 
 from __future__ import annotations
 
+import ipaddress
 import os
 import tempfile
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, ValidationError
 from pydantic_settings import (
     BaseSettings,
-    NoDecode,
     PydanticBaseSettingsSource,
     SettingsConfigDict,
     SettingsError,
     TomlConfigSettingsSource,
 )
 
-from acts.config import is_loopback, listed
 from motion import InputError
 from motion.cores import usable_cores
 
@@ -32,6 +31,14 @@ FILE = "pasdedeux.toml"
 PRIVATE = ("127.0.0.0/8", "10.0.0.0/8", "172.16.0.0/12", "192.168.0.0/16")
 """Private networks: a Space's proxy is in one of them, and nobody else reaches the Space directly. With "*", a visitor
 could claim any address, since the first one that is forwarded would count."""
+
+
+def is_loopback(host: str) -> bool:
+    """True if an address or name is this machine's loopback."""
+    try:
+        return host == "localhost" or ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
 
 
 def on_a_space() -> bool:
@@ -150,17 +157,6 @@ class Settings(BaseSettings):
         {}, description="released checkpoints and Python classes, one table for each: see docs/own-model.md"
     )
 
-    # ---- acts of the lab's own
-    acts: Annotated[list[Path], NoDecode] = Field(
-        [], description="folders of acts beside ours, with : between them in the environment: see docs/acts.md"
-    )
-
-    director: dict[str, Any] = Field(
-        {},
-        description="language model that reads what the lexicon does not: PASDEDEUX_DIRECTOR_URL, _MODEL and "
-        "_KEY, or a table with url, model and key: see docs/acts.md",
-    )
-
     # ---- limits
     rate: int = Field(240, ge=1, description="requests per person and minute that change something")
     address_people: int = Field(8, ge=1, description="on an open server: how many people's share one address may take")
@@ -179,12 +175,6 @@ class Settings(BaseSettings):
     # ---- logs
     log_level: str = Field("info", pattern="^(debug|info|warning|error)$", description="lowest level that is logged")
     log_content: bool = Field(False, description="let logs contain prompts and what errors say about them")
-
-    @field_validator("acts", mode="before")
-    @classmethod
-    def _folders(cls, value: Any) -> Any:
-        """Splits the variable's text, as :mod:`acts.config` does, which reads the setting wherever acts are read."""
-        return listed(value) if isinstance(value, str) else value
 
     @classmethod
     def settings_customise_sources(
@@ -254,7 +244,6 @@ class Settings(BaseSettings):
         plain = self.model_dump(mode="json")
         plain["database"] = _without_password(self.database_url)
         plain["person_megabytes"] = self.person_bytes / 2**20
-        plain["director"] = {k: "set" if k == "key" else v for k, v in self.director.items()}
         plain["metrics_token"] = "set" if self.metrics_token else ""
         return plain
 
@@ -275,8 +264,6 @@ def read_settings(**given: Any) -> Settings:
         name = ".".join(str(part) for part in first["loc"]) or "the settings"
         if first["type"] == "extra_forbidden":
             raise InputError(f"There is no setting {name!r}: see `python -m webdemo serve --print-settings`.") from None
-        if name.startswith("director"):  # which holds a key
-            raise InputError("The setting director must be a table with url and model.") from None
         raise InputError(
             f"The setting {name} ({PREFIX}{name.upper()}) cannot be {first['input']!r:.60}: "
             f"{first['msg'][:1].lower()}{first['msg'][1:]}."

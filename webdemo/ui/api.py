@@ -14,7 +14,6 @@ from motion import Clip, Duet, InputError
 from motion.formats import ImportChoices, animation_note, check_rig, read
 from webdemo.inference.methods import AUTOMATIC, methods
 from webdemo.inference.requests import OWN_STEPS, GenerateRequest, ReactRequest, SamplingRequest
-from webdemo.inference.requests.acting import acted
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.run import Cancelled, Result
@@ -179,19 +178,17 @@ class GenerateEndpoint(Endpoint):
         .png, and a manifest .json. An error is one sentence that says what to change.
         """
         return self._answer(
-            lambda: acted(
-                GenerateRequest(
-                    prompt=prompt,
-                    seconds=seconds,
-                    seed=seed,
-                    samples=samples,
-                    guidance=guidance,
-                    steps=steps,
-                    damping=damping,
-                    sampler=sampler,
-                    model=model,
-                    tries=tries,
-                )
+            lambda: GenerateRequest(
+                prompt=prompt,
+                seconds=seconds,
+                seed=seed,
+                samples=samples,
+                guidance=guidance,
+                steps=steps,
+                damping=damping,
+                sampler=sampler,
+                model=model,
+                tries=tries,
             ),
             prompt,
             progress,

@@ -12,8 +12,6 @@ from typing import Any
 import gradio as gr
 from gradio.queueing import Queue
 
-from acts import lexicon
-from acts.config import own_files
 from motion.formats.files import MAX_BYTES
 from webdemo.study import StudiesLike
 from webdemo.ui.components.exports import Shelf
@@ -26,7 +24,7 @@ from webdemo.ui.tabs.predict import PredictTab
 from webdemo.ui.tabs.react import ReactTab
 from webdemo.ui.tabs.results import QUIET
 from webdemo.ui.tabs.scene import SceneTab
-from webdemo.ui.text.panels import model_state, own_acts
+from webdemo.ui.text.panels import model_state
 from webdemo.ui.text.texts import say, translations
 
 from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint
@@ -110,7 +108,6 @@ def build_page(
             endpoint(page).publish()
         mark = _build_header(history)
         _build_tabs(page, demo)
-        _build_own_acts(demo)
         demo.load(loading, outputs=mark, concurrency_limit=None, **QUIET)
         demo.unload(leave)
     start_queue(demo, partial(Queue, max_size=64))
@@ -170,17 +167,6 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
         if page.history is not None:
             with gr.Tab(say("tabs.history"), id=HISTORY.lower()) as past:
                 HistoryTab(page, jobs, tabs).build(demo, past, record)
-
-
-def _build_own_acts(demo: gr.Blocks) -> None:
-    own = gr.HTML("", elem_id="own-acts", padding=False)
-    demo.load(_own_acts, outputs=own, concurrency_limit=None, **QUIET)
-
-
-def _own_acts() -> str:
-    """The list of what the lab added to the lexicon; where it names no folder, nothing is loaded for it."""
-    found = own_files()
-    return own_acts(lexicon()) if found.files or found.problems else ""
 
 
 def watch_loading(loader: Loader, *, interval: float = 0.3) -> Iterator[str]:

@@ -6,7 +6,7 @@ from typing import Any
 
 import gradio as gr
 
-from acts.reading.director import directed
+from acts import read
 from webdemo.ui.components.reading import READERS, READING_EVENTS
 from webdemo.ui.text.words import error_line
 
@@ -36,6 +36,6 @@ class ReadEndpoint(Endpoint):
         Returns the plan as JSON (docs/acts.md). An error is one sentence that says what to change.
         """
         try:
-            return directed(text or "").model_dump(mode="json")
+            return read(text or "").model_dump(mode="json")
         except Exception as error:
             raise gr.Error(error_line(error), print_exception=False) from None

@@ -1,14 +1,8 @@
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
-import pytest
-
 from acts import read
-from training.evaluate import reading_scores
 from training.evaluate.plans import Act, Reading
-from training.evaluate.reading_scores import main, score
+from training.evaluate.reading_scores import score
 
 
 def reading(words: str, *acts: Act, unread: tuple[str, ...] = ()) -> Reading:
@@ -38,14 +32,3 @@ def test_each_kind_of_fault_counts() -> None:
 def test_another_reader_is_scored() -> None:
     backwards = score([reading("He pats her.", Act("pat", ("a",), "b"))], lambda words: read("She bows."))
     assert backwards.found == 0 and backwards.extra == 1
-
-
-def test_the_director_may_be_scored(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = tmp_path / "plans.toml"
-    path.write_text('[[reading]]\nid = "1"\nwords = "He bows."\nacts = [{ verb = "bow", agents = ["a"] }]\n')
-    monkeypatch.setattr(reading_scores, "directed", lambda text: read("They jump."))
-    for flags, found in (([], 1), (["--director"], 0)):
-        main([str(path), *flags])
-        assert json.loads(capsys.readouterr().out)["found"] == found

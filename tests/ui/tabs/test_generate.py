@@ -231,7 +231,7 @@ def test_a_kept_run_opens_with_its_own_plan(tab: GenerateTab) -> None:
     by_hand = {**acts, "reader": "hand"}
     for asked, said, edited in (
         ({"acts": by_hand}, {"7": "hug"}, True),
-        ({"acts": acts}, {"7": "hug"}, False),  # as a lab's own acts are kept
+        ({"acts": acts}, {"7": "hug"}, False),  # as earlier versions kept them
         ({}, {"1": "wave"}, False),
     ):
         result = result_of(tab).result

@@ -6,11 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from acts import Plan, lexicon
-from acts.config import director_settings, own_files
+from acts import Plan
 from acts.plan import plan_of
-from acts.reading.director import directed
-from motion import InputError
 from webdemo.inference import methods
 from webdemo.inference.story.beats import beat_of, plan_of_beat, plan_of_words
 from webdemo.inference.story.request import SceneRequest
@@ -35,32 +32,6 @@ def with_plan(request: Request) -> Request:
     else:
         acts = (plan_of_words(request.prompt),)
     return replace(request, plan=replace(plan, acts=acts))
-
-
-def acted(request: GenerateRequest) -> GenerateRequest:
-    """The request with its acts, if a director reads its words or they name an act of the lab's own.
-
-    Both are settings of the process in which people ask; a run may be made in another one.
-
-    Raises:
-        InputError: if the parser is not installed.
-    """
-    planned = request.split and request.planned and request.acts is None and request.plan is None
-    if not planned or "scene" not in methods.method(request.model).tasks:
-        return request
-    own = set(lexicon().own) if own_files().files else set()
-    if not own and not _has_director():
-        return request
-    plan = directed(request.prompt)
-    followed = [act for act in plan.acts if act.happens and (plan.reader != "lexicon" or act.act in own)]
-    return replace(request, acts=plan if followed else None, plan=KeptPlan(acts=(plan,)))
-
-
-def _has_director() -> bool:
-    try:
-        return director_settings() is not None
-    except InputError:  # `read` and `/read` say what is wrong with it
-        return False
 
 
 def plans_of(request: Any) -> Iterator[tuple[Plan, int, int | None, int | None]]:

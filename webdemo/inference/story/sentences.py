@@ -141,7 +141,7 @@ def beats_of(plan: Plan, *, own_words: bool = True) -> tuple[Beat, ...]:
 
 def _own_sentences(plan: Plan, found: Sequence[Sequence[Act]]) -> dict[int, str]:
     """The whole sentences of the text that tell a beat's acts and no other's, by the number of the beat."""
-    if any(act.words is None for act in plan.acts):  # of a director's plan, whose text may be in any language
+    if any(act.words is None for act in plan.acts):  # of a plan that somebody edited
         return {}
     told: list[tuple[str, set[int]]] = []
     start = 0
@@ -287,7 +287,7 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
             raise
         return None
     plans = tuple(plan_of_beat(beat) if beat.acts else whole for beat in beats)
-    as_it_is = len(beats) == 1 and request.acts is None and not request.paths and not replays
+    as_it_is = len(beats) == 1 and not _in_captions(request, whole) and not request.paths and not replays
     if not beats or (as_it_is and not (request.planned and score_of(plans[0].acts).is_planned)):
         return None
     if not replays:
@@ -338,11 +338,18 @@ def _beats(request: GenerateRequest, script: Plan) -> tuple[Beat, ...]:
     A sentence of one beat keeps its words, which the network reads, unless they say what is not done.
     """
     most = request.seconds / LEAST_SHARE
-    if request.acts is None and not script.acts:
+    captions = _in_captions(request, script)
+    if not captions and not script.acts:
         return (Beat(request.prompt),)
-    words = request.prompt if request.acts is None else ""
-    beats = beats_of(script, own_words=request.acts is None)
+    words = "" if captions else request.prompt
+    beats = beats_of(script, own_words=not captions)
     if not beats or len(beats) > most:
         return (Beat(words, acts=script.acts),)
     score = words and all(act.happens for act in script.acts)  # a network hears no "not"
     return (replace(beats[0], words=words),) if len(beats) == 1 and score else beats
+
+
+def _in_captions(request: GenerateRequest, script: Plan) -> bool:
+    """True where the network reads its acts' captions: of an edited plan, and for acts whose names it never learned."""
+    own = lexicon().own
+    return request.acts is not None or any(act.happens and act.act in own for act in script.acts)

@@ -15,11 +15,10 @@ from starlette.requests import cookie_parser
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from acts.config import is_loopback
 from motion import InputError
 from webdemo.server.accounts.quotas import network_of
 from webdemo.server.http.routes import Refused
-from webdemo.server.settings import Settings, on_a_space
+from webdemo.server.settings import Settings, is_loopback, on_a_space
 from webdemo.ui.visitor import Visitor
 
 from .people import People

@@ -22,7 +22,6 @@ from starlette.requests import ClientDisconnect
 from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from acts.config import is_loopback
 from motion import InputError
 from webdemo.server.accounts.quotas import Quotas, RateLimit, network_of
 from webdemo.server.accounts.visitors import (
@@ -37,7 +36,7 @@ from webdemo.server.accounts.visitors import (
 )
 from webdemo.server.audit import SENDER
 from webdemo.server.logs import REFERENCE
-from webdemo.server.settings import Settings, on_a_space
+from webdemo.server.settings import Settings, is_loopback, on_a_space
 from webdemo.server.store.database import is_full
 from webdemo.server.store.scratch import PERSON
 from webdemo.ui.visitor import Visitor

@@ -13,10 +13,9 @@ from typing import Any, ClassVar
 import gradio as gr
 from pydantic import TypeAdapter
 
-from acts import Act, Plan, lexicon
+from acts import Act, Plan, lexicon, read
 from acts.captions import short, worded
 from acts.plan import plan_of
-from acts.reading.director import directed
 from motion import InputError
 from webdemo.inference.requests.paths import FloorPath, path_of
 from webdemo.inference.story.sentences import beats_of
@@ -110,7 +109,7 @@ def reread(sent: Any) -> dict[str, Any]:
     text = str(fields.get("text") or "")
     asked = {"text": text, "number": fields.get("number"), "edited": bool(fields.get("plan"))}
     try:
-        plan = edited_plan(sent, text) or directed(text, ask=False)
+        plan = edited_plan(sent, text) or read(text)
         found = shown(plan)
     except Exception as error:
         found = {"error": error_line(error)}

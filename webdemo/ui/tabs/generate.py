@@ -12,7 +12,7 @@ from motion import InputError
 from webdemo.inference.method import SECONDS
 from webdemo.inference.methods import installed, label_of, method
 from webdemo.inference.requests import GenerateRequest
-from webdemo.inference.requests.acting import acted, plans_of_result
+from webdemo.inference.requests.acting import plans_of_result
 from webdemo.inference.requests.paths import path_of
 from webdemo.inference.run import Result
 from webdemo.ui.components.gallery import Gallery
@@ -79,12 +79,12 @@ class GenerateTab(JobTab):
         asked = {name: value for name, value in fields.items() if name not in ("class_name", "acts")}
         if takes_class(fields.get("model", GenerateRequest.model)):
             asked["prompt"] = _chosen_class(fields)
-            return acted(GenerateRequest(**asked))
+            return GenerateRequest(**asked)
         plan = edited_plan(fields.get("acts"), str(fields.get("prompt") or ""))
         if plan is not None and not asked.get("planned", True):
             raise InputError(_EDITED_UNPLANNED)
         asked |= {"acts": plan, "paths": drawn_paths(fields.get("acts"))}
-        return acted(GenerateRequest(**asked))
+        return GenerateRequest(**asked)
 
     def title(self, request: GenerateRequest) -> str:
         """The sentence or class."""

@@ -1,11 +1,10 @@
-"""The page's small pieces of HTML: status, read-outs, model card, own acts. Every text in them is escaped."""
+"""The page's small pieces of HTML: status, read-outs, model card. Every text in them is escaped."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from acts import Lexicon
 from motion.metrics import MEASURES, Measure
 from webdemo.inference.methods import label_of
 from webdemo.inference.run import Result
@@ -249,26 +248,3 @@ def _table(caption: str, head: Sequence[str], rows: str) -> str:
         f'<div class="pd-table"><table><caption>{text(caption)}</caption>'
         f"<thead><tr><td></td>{cells}</tr></thead><tbody>{rows}</tbody></table></div>"
     )
-
-
-MOST_LISTED = 200
-"""Acts in the table, at most."""
-
-
-def own_acts(known: Lexicon) -> str:
-    """HTML on what the lab added to the lexicon and what of it was left out; empty where it added nothing."""
-    if not known.own and not known.problems:
-        return ""
-    rows = []
-    for name in known.own[:MOST_LISTED]:
-        entry = known.entries[name]
-        cells = (name.replace("-", " "), entry.reads[0], f"{entry.group}.toml")
-        rows.append("<tr>" + "".join(f"<td>{text(cell)}</td>" for cell in cells) + "</tr>")
-    left_out = "".join(status(f"Left out: {problem}", tone="warning") for problem in known.problems)
-    heads = "".join(f"<th>{head}</th>" for head in ("Act", "For example", "File"))
-    table = f"<table><thead><tr>{heads}</tr></thead>"
-    listed = f"{table}<tbody>{''.join(rows)}</tbody></table>" if rows else ""
-    head = f"This lab's own acts: {len(known.own)}"
-    if known.problems:
-        head += f" (left out: {len(known.problems)})"
-    return f'<details class="pd-own"><summary>{text(head)}</summary>{left_out}{listed}</details>'
