@@ -14,9 +14,8 @@ from models.weights_io import save_network
 from motion import SMPL22, InputError
 from motion.formats import read
 from webdemo import cli
-from webdemo.inference import CancelToken, GenerateRequest, Result
+from webdemo.inference import GenerateRequest, Result
 from webdemo.inference.engine import Engine
-from webdemo.inference.engine.batch import run_batch
 from webdemo.inference.method import WEIGHTS
 
 LABELS = ("shake hands", "wave to each other")
@@ -83,17 +82,6 @@ def test_no_damping_is_the_plain_sampler_and_more_lets_hands_meet(engine: Engine
 def test_a_class_that_is_not_known_is_answered_with_those_that_are(engine: Engine) -> None:
     with pytest.raises(InputError, match="no class 'juggle': choose one of: shake hands; wave to each other"):
         result(engine, "juggle")
-
-
-def test_requests_share_passes(engine: Engine) -> None:
-    requests = [
-        GenerateRequest(prompt=label, **QUICK | {"seconds": seconds, "seed": 4})
-        for label, seconds in (("shake hands", 1.5), ("wave to each other", 1.3))
-    ]
-    together = {i: e for i, e in run_batch(engine, [(r, CancelToken()) for r in requests]) if isinstance(e, Result)}
-    for i, request in enumerate(requests):
-        (alone,) = (e for e in engine.run(request) if isinstance(e, Result))
-        assert np.allclose(together[i].duets[0].positions, alone.duets[0].positions, atol=2e-3)
 
 
 def test_the_shell_takes_a_class(

@@ -11,7 +11,6 @@ from acts import Plan
 from motion import SMPL22, Duet
 from motion.skeleton import ARMS
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
-from webdemo.inference.engine.batch import run_batch
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
 from webdemo.inference.story.sentences import as_scene
 
@@ -159,18 +158,6 @@ def test_a_sentence_of_several_beats_is_split_by_plain_generation_too(engine: En
     np.testing.assert_array_equal(positions(made), positions(run(engine, split)))
     whole = run(engine, GenerateRequest(prompt=prompt, seconds=4.0, split=False, **QUICK))
     assert np.abs(positions(whole) - positions(made)).max() > 0.01 and not any("beats" in n for n in whole.notes)
-
-
-def test_a_scene_shares_its_passes_with_other_requests(engine: Engine) -> None:
-    scene = SceneRequest(beats=BEATS[:2], seed=31, **QUICK)
-    plain = GenerateRequest(prompt="They hug.", seconds=2.0, seed=32, **QUICK)
-    found = {
-        i: event
-        for i, event in run_batch(engine, [(scene, CancelToken()), (plain, CancelToken())])
-        if isinstance(event, Result)
-    }
-    for i, request in enumerate((scene, plain)):
-        np.testing.assert_allclose(positions(found[i]), positions(run(engine, request)), atol=2e-3)
 
 
 def test_a_network_that_reads_them_is_given_each_persons_own_words(reading_engine: Engine) -> None:

@@ -19,7 +19,7 @@ def add_service(commands: Any) -> None:
     """Adds ``info``, ``benchmark``, ``serve`` and ``user`` to the shell's commands."""
     info_parser = commands.add_parser("info", help="show what is installed and what the models can do")
     info_parser.set_defaults(job=info)
-    bench = commands.add_parser("benchmark", help="measure the speed of this machine, as figures and ratios")
+    bench = commands.add_parser("benchmark", help="measure the speed of this machine")
     bench.add_argument("--seconds", type=float, default=10.0, help="length of the motion")
     bench.add_argument("--steps", type=int, help="denoising steps (50; with --motion and --load 8)")
     bench.add_argument("--repeats", type=int, default=3)

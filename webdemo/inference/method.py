@@ -81,7 +81,6 @@ class Method:
         fixed: fields of a request that mean nothing to this method, with the value that they are set to.
         samplers: names of the samplers that it can use.
         seconds: (shortest, longest) motion in seconds.
-        shares_passes: whether requests may be batched into one pass through the network.
         weights: name of its folder under ``models/weights``; None for a method without weights.
         needs: names of the methods whose pipelines it is built on.
     """
@@ -97,7 +96,6 @@ class Method:
     fixed: Mapping[str, Any] = field(default_factory=dict)
     samplers: tuple[str, ...] = ("ddim", "dpm++")
     seconds: tuple[float, float] = SECONDS
-    shares_passes: bool = False
     weights: str | None = None
     needs: tuple[str, ...] = ()
 

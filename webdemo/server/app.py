@@ -33,7 +33,6 @@ from webdemo.server.lab import Lab, engine_of, make_lab
 from webdemo.server.live.streams import live_routes
 from webdemo.server.queue.events import FairEvents
 from webdemo.server.queue.recorder import Recorder
-from webdemo.server.queue.turns import Batcher
 from webdemo.server.store.scratch import Scratch, keep_files_apart, visitors_folder
 from webdemo.ui.page import build_page, launch_options, start_queue
 from webdemo.ui.places import READING
@@ -61,19 +60,12 @@ LONGEST_LOAD = 60.0
 """Seconds after which Python looks for garbage again, even if the networks do not load."""
 
 
-def create_app(
-    settings: Settings,
-    *,
-    engine: EngineLike | None = None,
-    batcher: Batcher | None = None,
-    scratch: Scratch | None = None,
-) -> FastAPI:
+def create_app(settings: Settings, *, engine: EngineLike | None = None, scratch: Scratch | None = None) -> FastAPI:
     """Builds the application.
 
     Args:
         settings: all of them.
-        engine: what generates; by default the shipped networks, which also share passes.
-        batcher: runs several requests of ``engine`` at once.
+        engine: what generates; by default the shipped networks.
         scratch: for uploads and files that are made for download; Gradio's own folder by default.
 
     Raises:
@@ -81,8 +73,8 @@ def create_app(
     """
     settings.check()
     if engine is None:
-        engine, batcher = engine_of(settings)
-    lab = make_lab(settings, engine, batcher, scratch)
+        engine = engine_of(settings)
+    lab = make_lab(settings, engine, scratch)
     page = build_page(
         engine,
         loader=Loader(engine),

@@ -17,8 +17,7 @@ from webdemo.server.http.guard import OpenAnswers
 from webdemo.server.http.health import Figures, Health, check_disk
 from webdemo.server.live.streams import Streams
 from webdemo.server.queue.queue import FairQueue
-from webdemo.server.queue.shared_engine import SharedEngine
-from webdemo.server.queue.turns import Batcher, QueueLimits
+from webdemo.server.queue.turns import QueueLimits
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
 from webdemo.server.store.publishing import Publishing
@@ -105,13 +104,12 @@ class Lab:
             log.warning("%d runs were stopped before their end.", left)
 
 
-def make_lab(settings: Settings, engine: EngineLike, batcher: Batcher | None, scratch: Scratch | None = None) -> Lab:
+def make_lab(settings: Settings, engine: EngineLike, scratch: Scratch | None = None) -> Lab:
     """Puts the parts together.
 
     Args:
         settings: all of them.
         engine: what generates.
-        batcher: runs several requests of ``engine`` at once.
         scratch: uploads and files for download; without it they are not counted.
 
     Raises:
@@ -129,13 +127,8 @@ def make_lab(settings: Settings, engine: EngineLike, batcher: Batcher | None, sc
         wants["accounts"] = lambda: users.names
     works: dict[str, Callable[[], float]] = {"queue": lambda: queue.stuck, "live stream": lambda: streams.stuck}
     health = Health(engine, wants, works=works, stuck_seconds=settings.stuck_seconds)
-    limits = QueueLimits(
-        running=settings.running,
-        batch=settings.batch,
-        workers=getattr(engine, "parallel", 1),
-        seconds=settings.run_seconds,
-    )
-    queue = FairQueue(engine, limits, quotas.waiting, batcher=batcher, figures=figures, broken=health.broken)
+    limits = QueueLimits(running=settings.running, workers=getattr(engine, "parallel", 1), seconds=settings.run_seconds)
+    queue = FairQueue(engine, limits, quotas.waiting, figures=figures, broken=health.broken)
     partners: Any = engine if hasattr(engine, "partner") else LazyEngine()  # with an engine elsewhere, they run here
     streams = Streams(partners, quotas.live)
     figures.watch(
@@ -190,8 +183,8 @@ def history_of(settings: Settings, storage: Storage) -> Notebook:
     )
 
 
-def engine_of(settings: Settings) -> tuple[EngineLike, Batcher | None]:
-    """The engine that the settings name, and what shares its passes where that is done in this process.
+def engine_of(settings: Settings) -> EngineLike:
+    """The engine that the settings name.
 
     Raises:
         InputError: if it is Ray and Ray is not installed.
@@ -199,11 +192,5 @@ def engine_of(settings: Settings) -> tuple[EngineLike, Batcher | None]:
     if settings.engine == "ray":
         from webdemo.server.cluster.ray_engine import RayEngine
 
-        return RayEngine(
-            address=settings.ray_address,
-            replicas=(1, settings.ray_replicas),
-            cores=settings.ray_cores,
-            batch=settings.batch,
-        ), None
-    shared = SharedEngine()
-    return shared, shared
+        return RayEngine(address=settings.ray_address, replicas=(1, settings.ray_replicas), cores=settings.ray_cores)
+    return LazyEngine()

@@ -128,7 +128,6 @@ class Settings(BaseSettings):
         16, ge=8, le=1000, description="unfinished events of one person: runs, films, files that are read"
     )
     run_seconds: float = Field(600, ge=0, description="time that one run may take once it has begun; 0: any")
-    batch: int = Field(8, ge=1, le=64, description="motions in one pass through the network")
     grace_seconds: float = Field(60, ge=0, description="how long runs may take to finish at a shutdown")
 
     # ---- when something is stuck

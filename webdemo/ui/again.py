@@ -100,13 +100,7 @@ def verdict(old: Result, new: Result) -> str:
         apart = f"joints differ by up to {1000 * largest:.3g} mm"
     if changed:
         return f"Run again: another motion ({apart}), because of {'; '.join(changed)}."
-    shared = [
-        f"the {which} shared its pass through the network with {others} other{'s' if others > 1 else ''}"
-        for which, result in (("first", old), ("second", new))
-        if (others := result.manifest.get("runs_in_pass", 1) - 1)
-    ]
-    why = " and ".join(shared) if shared else "it ran on another machine"
-    return f"Run again: {apart}, with the same weights and versions; {why}, which changes the rounding."
+    return f"Run again: {apart}, with the same weights and versions; it ran on another machine."
 
 
 def _changed(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:

@@ -47,8 +47,8 @@ class RunsLike(Protocol):
     def cancel(self, session: str) -> bool:
         """Stops the session's run within one step; False where it has none."""
 
-    def run(self, session: str, request: Any, *, alone: bool = False) -> Iterator[Progress | Result]:
-        """Runs a request: its progress, then its result; ``alone`` lets no other share its passes."""
+    def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
+        """Runs a request: its progress, then its result."""
 
 
 class Runs:
@@ -74,11 +74,10 @@ class Runs:
             token.cancel()
         return token is not None
 
-    def run(self, session: str, request: Any, *, alone: bool = False) -> Iterator[Progress | Result]:
+    def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
         """Runs a request: its progress, with the stage "queue" while others run, then its result.
 
-        An earlier run of the same session is cancelled. Closing the iterator cancels the run. Every
-        run has its passes ``alone``.
+        An earlier run of the same session is cancelled. Closing the iterator cancels the run.
 
         Raises:
             InputError: for what the engine cannot do.

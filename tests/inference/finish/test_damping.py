@@ -184,19 +184,6 @@ def test_beside_a_given_actor_the_reactor_alone_moves(model):
     torch.testing.assert_close(after[:, 0], actor[None], rtol=0, atol=0)
 
 
-def test_actors_of_one_batch_are_not_mixed(model):
-    """Two dampings beside different actors are corrected one by one, each as if alone."""
-    reactor = CompactReGenNet(CompactReGenNetConfig(latent_dim=32, ff_size=32, num_layers=1, num_heads=2, cond_dim=16))
-    asked = []
-    for apart in (0.3, 0.6):
-        actor, other = model.positions(standing(model, apart))[0][0, :, :61]
-        x = encode(other, torch.ones(61, 4), reactor.layout)[None]
-        asked.append((Damping(Beside(reactor, actor), 1.0, frames=61, timesteps=[0], touches=[HANDS]), x))
-    together = damping.correct_together(asked, 0)
-    for (alone, x), made in zip(asked, together, strict=True):
-        torch.testing.assert_close(alone(x, 0), made, rtol=0, atol=0)
-
-
 @pytest.mark.parametrize("apart", [0.2, 1.7])
 def test_the_pairs_that_touch_are_all_that_overlap(apart):
     """The sum over all pairs of spheres at all moments, and its gradient, from those alone that touch."""

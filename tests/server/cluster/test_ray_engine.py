@@ -22,7 +22,6 @@ from webdemo.inference import Engine
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Progress, Result
 from webdemo.server.cluster.ray_engine import RayEngine
-from webdemo.server.queue.shared_engine import SharedEngine
 
 pytestmark = [pytest.mark.slow, pytest.mark.ray]
 WANTED = GenerateRequest(prompt="Two people shake hands.", seconds=1.0, steps=6, seed=5)
@@ -36,7 +35,7 @@ TERMS: list[int] = []
 def replicas(weights: Path) -> Iterator[RayEngine]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("RAY_worker_niceness", "0")  # the rest of the machine may be busy
-        engine = RayEngine(replicas=(2, 2), batch=4, weights=weights)
+        engine = RayEngine(replicas=(2, 2), weights=weights)
         assert not engine.ready
         before = signal.signal(signal.SIGTERM, lambda number, frame: TERMS.append(number))
         starter = threading.Thread(target=engine.warm_up)  # as a server does: its end must not end Ray's
@@ -53,8 +52,7 @@ def result_of(events: Sequence[Any]) -> Result:
 
 
 def assert_same(one: Result, other: Result) -> None:
-    manifests = [{**result.manifest, "runs_in_pass": 0} for result in (one, other)]
-    assert manifests[0] == manifests[1]
+    assert one.manifest == other.manifest
     for duet, wanted in zip(one.duets, other.duets, strict=True):
         np.testing.assert_allclose(duet.positions, wanted.positions, atol=2e-4)
 
@@ -80,16 +78,8 @@ def test_the_same_request_gives_the_same_motion(replicas: RayEngine, weights: Pa
     assert replicas.ready
 
 
-def test_what_shares_a_pass_in_a_replica() -> None:
-    from webdemo.server.cluster.ray_replica import groups
-
-    a, longer, other = WANTED, replace(WANTED, seconds=2.0), replace(WANTED, sampler="dpm++")
-    many = replace(WANTED, samples=3)
-    assert groups(SharedEngine(), [a, longer, a, other, many, a, many], 5) == [[0, 2, 4], [1], [3], [5, 6]]
-
-
 def test_a_replica_that_is_killed_loses_no_request(replicas: RayEngine, weights: Path) -> None:
-    events: dict[int, list[Any]] = {0: [], 1: [], 2: []}
+    events: dict[int, list[Any]] = {0: [], 1: []}
     wanted = [replace(LONG, seed=seed) for seed in events]
 
     def run(i: int) -> None:

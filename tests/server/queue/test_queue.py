@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Iterator
-from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,16 +12,15 @@ import pytest
 
 from motion import InputError
 from webdemo.inference import run
-from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.app import engine_of
 from webdemo.server.cluster import ray_engine
 from webdemo.server.queue import queue as line
 from webdemo.server.queue.queue import FairQueue
-from webdemo.server.queue.shared_engine import SharedEngine
 from webdemo.server.queue.turns import QueueLimits
 from webdemo.server.settings import Settings
+from webdemo.ui.lazy import LazyEngine
 from webdemo.ui.runs import Waiting
 from webdemo.ui.visitor import Visitor
 
@@ -32,34 +30,22 @@ def request(name: str, *, samples: int = 1, steps: int = 10, model: str = "m") -
 
 
 class Gate:
-    """An engine whose runs end when the test says so; it also runs several at once."""
+    """An engine whose runs end when the test says so."""
 
     ready = True
 
     def __init__(self) -> None:
-        self.order: list[tuple[str, ...]] = []
+        self.order: list[str] = []
         self.open = threading.Semaphore(0)
 
     def run(self, request: Any, cancel: Any = None) -> Iterator[Any]:
-        self.order.append((request.name,))
+        self.order.append(request.name)
         yield Progress(stage="text")
         while not self.open.acquire(timeout=0.01):
             cancel.raise_if_cancelled()
         if "crash" in request.name:
             raise RuntimeError("broken")
         yield Result(duets=(), manifest={"name": request.name})
-
-    def key(self, request: Any) -> tuple[Any, ...] | None:
-        return None if "alone" in request.name else (request.steps,)
-
-    def fits(self, requests: Any, other: Any) -> bool:
-        return True
-
-    def run_together(self, items: Any) -> Iterator[Any]:
-        self.order.append(tuple(request.name for request, _ in items))
-        self.open.acquire()
-        for i, (request, _) in enumerate(items):
-            yield i, Result(duets=(), manifest={"name": request.name})
 
 
 class People:
@@ -74,24 +60,24 @@ class People:
         monkeypatch.setattr(line, "visitor", lambda: Visitor(person=self.who.name))
         monkeypatch.setattr(line, "TICK", 0.02)
 
-    def ask(self, person: str, wanted: Any, *, alone: bool = False) -> None:
+    def ask(self, person: str, wanted: Any) -> None:
         """Asks in a thread of its own; returns when the request is in the line, runs or was refused."""
-        thread = self.ask_only(person, wanted, alone=alone)
+        thread = self.ask_only(person, wanted)
         wait_for(lambda: self.queue.running or not thread.is_alive())  # the first is taken at once
 
-    def ask_only(self, person: str, wanted: Any, *, alone: bool = False) -> threading.Thread:
+    def ask_only(self, person: str, wanted: Any) -> threading.Thread:
         """As :meth:`ask`, where nothing takes the first request."""
         before = self.queue.waiting + self.queue.running
-        thread = threading.Thread(target=self._run, args=(person, wanted, alone), daemon=True)
+        thread = threading.Thread(target=self._run, args=(person, wanted), daemon=True)
         self.threads.append(thread)
         thread.start()
         wait_for(lambda: self.queue.waiting + self.queue.running > before or not thread.is_alive())
         return thread
 
-    def _run(self, person: str, wanted: Any, alone: bool) -> None:
+    def _run(self, person: str, wanted: Any) -> None:
         self.who.name = person
         try:
-            for event in self.queue.run(f"session of {wanted.name}", wanted, alone=alone):
+            for event in self.queue.run(f"session of {wanted.name}", wanted):
                 if isinstance(event, Waiting):
                     self.waits.setdefault(wanted.name, []).append(event)
                 if isinstance(event, Result):
@@ -106,11 +92,11 @@ class People:
 
 
 def make(
-    monkeypatch: pytest.MonkeyPatch, *, together: bool = False, waiting: int = 4, everybody: int = 64, **limits: int
+    monkeypatch: pytest.MonkeyPatch, *, waiting: int = 4, everybody: int = 64, **limits: int
 ) -> tuple[Gate, People]:
     gate: Any = Gate()
     quota = Quota("runs waiting", person=waiting, everybody=everybody)
-    queue = FairQueue(gate, QueueLimits(**limits), quota, batcher=gate if together else None)
+    queue = FairQueue(gate, QueueLimits(**limits), quota)
     return gate, People(queue, monkeypatch)
 
 
@@ -129,7 +115,7 @@ def test_who_has_had_least_goes_first(monkeypatch: pytest.MonkeyPatch) -> None:
     people.ask("later", request("later 0"))
     gate.open.release(6)
     people.end()
-    assert [names[0] for names in gate.order] == ["greedy 0", "late 0", "later 0", "greedy 1", "greedy 2", "greedy 3"]
+    assert gate.order == ["greedy 0", "late 0", "later 0", "greedy 1", "greedy 2", "greedy 3"]
     assert {name: end.manifest["name"] for name, end in people.ends.items()} == {n: n for n in people.ends}
 
 
@@ -141,51 +127,19 @@ def test_a_long_run_costs_later_turns(monkeypatch: pytest.MonkeyPatch) -> None:
         people.ask("short", request(f"short {i}"))
     gate.open.release(5)
     people.end()
-    assert [names[0] for names in gate.order] == ["long 0", "short 0", "short 1", "short 2", "long 1"]
-
-
-def test_compatible_runs_of_different_people_share_a_pass(monkeypatch: pytest.MonkeyPatch) -> None:
-    gate, people = make(monkeypatch, together=True, batch=3)
-    people.ask("x", request("alone first"))
-    people.ask("a", request("a0"))
-    people.ask("a", request("a1"))
-    people.ask("b", request("b0", steps=20))
-    people.ask("c", request("c0"))
-    people.ask("d", request("d0"))
-    gate.open.release(6)
-    people.end()
-    assert gate.order[0] == ("alone first",)
-    assert gate.order[1] == ("a0", "c0", "d0")  # one each before a's second; three motions at most
-    assert sorted(gate.order[2:]) == [("a1",), ("b0",)]
-
-
-def test_run_again_shares_no_pass(monkeypatch: pytest.MonkeyPatch) -> None:
-    gate, people = make(monkeypatch, together=True)
-    people.ask("first", request("alone first"))
-    people.ask("a", request("a"))
-    people.ask("b", request("b"), alone=True)
-    people.ask("c", request("c"))
-    gate.open.release(4)
-    people.end()
-    assert gate.order[1:] == [("a", "c"), ("b",)]
-    assert all(isinstance(end, Result) for end in people.ends.values())
+    assert gate.order == ["long 0", "short 0", "short 1", "short 2", "long 1"]
 
 
 def test_a_person_has_so_many_at_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In one pass as well as in several at a time."""
-    for options in ({"together": True, "workers": 1}, {"together": False, "workers": 4}):
-        gate, people = make(monkeypatch, running=2, waiting=8, **options)
-        people.ask("busy", request("alone 0"))
-        for i in range(1, 5):
-            people.ask("busy", request(f"{i}"))
-        people.ask("other", request("other"))
-        gate.open.release(1)
-        wait_for(lambda queue=people.queue: queue.waiting <= 4)
-        mine = [sum(name != "other" for name in names) for names in gate.order]
-        assert max(mine) <= 2 and people.queue.running <= 3
-        gate.open.release(9)
-        people.end()
-        assert all(sum(name != "other" for name in names) <= 2 for names in gate.order)
+    gate, people = make(monkeypatch, running=2, waiting=8, workers=4)
+    for i in range(5):
+        people.ask("busy", request(f"{i}"))
+    people.ask("other", request("other"))
+    wait_for(lambda: "other" in gate.order)
+    assert len(gate.order) == 3 and people.queue.running == 3
+    gate.open.release(6)
+    people.end()
+    assert len(gate.order) == 6
 
 
 def test_a_person_may_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -231,7 +185,7 @@ def test_cancel_while_waiting_and_while_running(monkeypatch: pytest.MonkeyPatch)
     assert people.queue.cancel("session of a")
     people.end()
     assert all(isinstance(people.ends[name], Cancelled) for name in "ab")
-    assert gate.order == [("a",)]
+    assert gate.order == ["a"]
     wait_for(lambda: people.queue.running == 0)
     assert not people.queue.cancel("session of a")
 
@@ -272,27 +226,14 @@ def test_stopping_does_not_wait_for_ever(monkeypatch: pytest.MonkeyPatch) -> Non
     assert isinstance(people.ends["a"], (InputError, Cancelled))
 
 
-def test_what_may_share_a_pass() -> None:
-    engine = SharedEngine()
-    one = GenerateRequest(prompt="They wave.", seconds=4.0, steps=20)
-    key = engine.key(one)
-    assert key == engine.key(replace(one, prompt="They hug.", seconds=5.0, guidance=1.0, damping=0.0, seed=4))
-    assert key != engine.key(replace(one, steps=21)) and key != engine.key(replace(one, sampler="dpm++"))
-    assert engine.key(request("of another kind")) is None
-    assert engine.fits([one], replace(one, seconds=5.0))
-    assert not engine.fits([one], replace(one, seconds=5.1))
-    assert not engine.fits([one, replace(one, seconds=5.0)], replace(one, seconds=3.9))
-    assert not engine.ready  # nothing of this loads a network
-
-
 def test_several_workers_of_a_group(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where passes are shared elsewhere, several requests of a model are on their way at once."""
+    """With replicas, several requests of a model are on their way at once."""
     gate, people = make(monkeypatch, workers=2)
     people.queue.paces["m"].learn(120.0, 12.0)
     for name in "abcd":
         people.ask(name, request(name))
     wait_for(lambda: people.queue.running == 2 and people.waits.get("c") and people.waits.get("d"))
-    assert sorted(names[0] for names in gate.order) == ["a", "b"]
+    assert sorted(gate.order) == ["a", "b"]
     assert people.waits["c"][0].seconds_left == pytest.approx(6, abs=1.5)  # each worker has a run of 6 s
     assert people.waits["d"][0].seconds_left == pytest.approx(9, abs=1.5)
     gate.open.release(4)
@@ -301,14 +242,13 @@ def test_several_workers_of_a_group(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_engine_that_settings_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    engine, batcher = engine_of(Settings())
-    assert engine is batcher and isinstance(engine, SharedEngine)
+    assert isinstance(engine_of(Settings()), LazyEngine)
     monkeypatch.setattr(ray_engine, "find_spec", lambda name: None)
     with pytest.raises(InputError, match="Ray is not installed"):
         engine_of(Settings(engine="ray"))
     monkeypatch.setattr(ray_engine, "find_spec", lambda name: name)
-    engine, batcher = engine_of(Settings(engine="ray", ray_replicas=3, batch=4))
-    assert batcher is None and engine.parallel == 12 and not engine.ready
+    engine = engine_of(Settings(engine="ray", ray_replicas=3))
+    assert isinstance(engine, ray_engine.RayEngine) and engine.parallel == 3 and not engine.ready
 
 
 def test_the_time_of_a_run_begins_when_it_runs(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -319,7 +259,7 @@ def test_the_time_of_a_run_begins_when_it_runs(monkeypatch: pytest.MonkeyPatch) 
     people.ask("eve", request("second"))
     now = 599.0
     gate.open.release()
-    wait_for(lambda: ("second",) in gate.order and "first" in people.ends)
+    wait_for(lambda: "second" in gate.order and "first" in people.ends)
     assert isinstance(people.ends["first"], Result)
     now = 599.0 + 600.0  # the second has waited as long as it may run
     people.ask("ada", request("third"))
@@ -328,7 +268,7 @@ def test_the_time_of_a_run_begins_when_it_runs(monkeypatch: pytest.MonkeyPatch) 
     people.threads[1].join(timeout=10)
     assert isinstance(people.ends["second"], InputError)
     assert "longer than the 10 minutes that this lab allows" in str(people.ends["second"])
-    wait_for(lambda: ("third",) in gate.order)  # else the second may still take what is released
+    wait_for(lambda: "third" in gate.order)  # else the second may still take what is released
     gate.open.release()
     people.end()
     assert isinstance(people.ends["third"], Result)

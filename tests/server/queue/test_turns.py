@@ -1,28 +1,15 @@
 """The account of the work done for each person, and how long a run waits."""
 
-from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
 from webdemo.server.queue import turns
-from webdemo.server.queue.turns import Accounts, Line, Pace, units
+from webdemo.server.queue.turns import Accounts, Job, Pace, in_turn, next_job, units
 
 
-@dataclass(eq=False)
-class Job:
-    person: str
-    cost: float
-    started: float = 0.0
-
-
-def first_come(waiting: list[Any], served: dict[str, float], running: Any) -> list[Any]:
-    return waiting[:1]
-
-
-def line(waiting: list[Job], running: list[Job], pace: Pace, workers: int = 1) -> Line:
-    return Line(waiting, running, {}, first_come, pace, workers)
+def job(person: str, cost: float, started: float = 0.0) -> Job:
+    return Job(person, None, "m", cost, started=started)
 
 
 @pytest.fixture(autouse=True)
@@ -47,15 +34,21 @@ def test_the_pace_is_learned_and_later_runs_count() -> None:
 
 
 def test_a_job_waits_for_those_before_it_and_for_the_rest_of_what_runs() -> None:
-    jobs, pace = [Job("a", 5), Job("b", 7)], Pace(2.0)
-    running = [Job("c", 10, started=95.0)]  # takes 20 s, 5 of which are over
-    assert line(jobs, running, pace).place(jobs[1]) == (2, 15 + 2 * 5)
-    assert line(jobs, running, pace, workers=2).place(jobs[1]) == (2, pytest.approx(5))
+    running, pace = [job("c", 10, started=95.0)], Pace(2.0)  # takes 20 s, 5 of which are over
+    assert pace.wait(5, running, 1) == 15 + 2 * 5
+    assert pace.wait(5, running, 2) == pytest.approx(5)
+    assert Pace().wait(5, running, 1) is None
 
 
 def test_a_late_run_is_taken_to_need_a_tenth_yet() -> None:
-    job, late = Job("a", 5), Job("c", 10, started=0.0)
-    assert line([job], [late], Pace(2.0)).place(job) == (1, pytest.approx(2.0))
+    assert Pace(2.0).wait(0, [job("c", 10, started=0.0)], 1) == pytest.approx(2.0)
+
+
+def test_those_who_wait_take_turns_by_what_they_have_had() -> None:
+    jobs = [job("a", 5), job("a", 5), job("b", 2), job("b", 2), job("b", 2)]
+    assert [each.person for each in in_turn(jobs, {"a": 1.0})] == ["b", "a", "b", "b", "a"]
+    assert next_job(jobs, {}, [job("a", 5)], 1) is jobs[2]
+    assert next_job(jobs[:2], {}, [job("a", 5)], 1) is None
 
 
 def test_a_newcomer_starts_where_the_least_served_person_is() -> None:

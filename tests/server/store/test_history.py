@@ -99,8 +99,6 @@ def test_the_verdict_names_what_differs(history: Notebook) -> None:
     assert all(part in sentence for part in ("up to 2 mm", "the weights (unknown → ffffffff)", "torch (none → 9)"))
     elsewhere = replace(new, manifest=old.manifest)
     assert "same weights and versions; it ran on another machine" in verdict(old, elsewhere)
-    shared = replace(old, manifest=old.manifest | {"runs_in_pass": 3})
-    assert "the first shared its pass through the network with 2 others, which" in verdict(shared, elsewhere)
 
 
 def test_others_see_nothing_but_by_a_link_that_lasts(history: Notebook) -> None:

@@ -1,4 +1,4 @@
-"""The engine: it loads networks once and runs requests on them, one at a time or several that share passes."""
+"""The engine: it loads networks once and runs requests on them, one after another."""
 
 from .engine import Engine
 

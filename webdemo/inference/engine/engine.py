@@ -76,7 +76,7 @@ class Engine:
         meta = WeightsFolder(self.weights / name).meta
         return {"name": name, "ready": self.ready, **meta.get("card", {})}
 
-    def run(self, request: Request, cancel: CancelToken | None = None, **options: Any) -> Iterator[Progress | Result]:
+    def run(self, request: Request, cancel: CancelToken | None = None) -> Iterator[Progress | Result]:
         """Yields :class:`Progress` events, then exactly one :class:`Result`.
 
         The same request on the same machine gives the same bytes.
@@ -84,7 +84,6 @@ class Engine:
         Args:
             request: what is asked for.
             cancel: stops the run.
-            options: passed on to the pipeline, such as the ``passes`` that several requests share.
 
         Raises:
             InputError: one sentence on what is wrong and what to do.
@@ -102,10 +101,7 @@ class Engine:
             events = _with_things(request.results(timer), request)
         else:
             events = run_tries(
-                request,
-                lambda one: _with_things(pipeline.run(enlarged(one), cancel, timer, **options), one),
-                cancel,
-                timer,
+                request, lambda one: _with_things(pipeline.run(enlarged(one), cancel, timer), one), cancel, timer
             )
         for event in events:
             if isinstance(event, Result):

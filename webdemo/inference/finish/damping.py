@@ -276,57 +276,23 @@ class Damping:
         """True if anything is corrected at a timestep of the sampler."""
         return self.shares[timestep] > 0
 
-    def steps(self, timestep: int) -> int:
-        """Gradient steps of a whole correction at a timestep."""
-        return LAST_STEPS if timestep == self.last else GRADIENT_STEPS
-
     def __call__(self, x0: Tensor, timestep: int) -> Tensor:
-        """The corrected prediction, (B, tokens, F) as given; the same object if not due."""
-        return correct_together([(self, x0)], timestep)[0] if self.due(timestep) else x0
-
-
-def correct_together(predictions: Sequence[tuple[Damping, Tensor]], timestep: int) -> list[Tensor]:
-    """Applies dampings that are due to their predictions; predictions of one length share a pass.
-
-    The energy is a sum over motions, so the motions do not affect each other.
-
-    Args:
-        predictions: each a damping and its (B, tokens, F).
-    """
-    groups: dict[tuple[object, ...], list[int]] = {}
-    for i, (damping, x0) in enumerate(predictions):
-        kind = (damping.space.positions, x0.shape[1:], damping.frames, damping.steps(timestep))
-        groups.setdefault(kind, []).append(i)
-    corrected: dict[int, Tensor] = {}
-    for group in groups.values():
-        made = _descend([predictions[i] for i in group], timestep)
-        corrected.update(zip(group, made, strict=True))
-    return [corrected[i] for i in range(len(predictions))]
-
-
-def _descend(predictions: Sequence[tuple[Damping, Tensor]], timestep: int) -> Sequence[Tensor]:
-    """Gradient steps on predictions of one space and shape; shares, frozen numbers and touches may differ."""
-    first, sizes = predictions[0][0], [len(x0) for _, x0 in predictions]
-    x0 = torch.cat([x0 for _, x0 in predictions])
-    touches = [touch for d, x in predictions for touch in (d.touches or ((),) * len(x))]
-    frozen = None
-    if any(d.frozen is not None for d, _ in predictions):
-        free = torch.zeros(x0.shape[1:], dtype=torch.bool)
-        frozen = torch.cat([(free if d.frozen is None else d.frozen).expand_as(x) for d, x in predictions])
-    scale, before = first.space.scale, x0
-    for _ in range(first.steps(timestep)):
-        with torch.enable_grad():
-            x = x0.detach().requires_grad_(True)
-            positions, contacts = first.space.positions(x)
-            positions, contacts = positions[:, :, : first.frames], contacts[:, :, : first.frames]
-            total = energy(positions, contacts).sum()
-            if any(touches):
-                total = total + asked_energy(positions, touches).sum()
-            (gradient,) = torch.autograd.grad(total, x)
-        # The step is taken on control points in metres: d/dcontrol = d/dx / std.
-        move = (STEP * gradient / scale).clamp(-STEP, STEP)
-        if frozen is not None:
-            move = move.masked_fill(frozen, 0.0)
-        x0 = x0.detach() - move / scale
-    share = torch.cat([x.new_full((len(x), 1, 1), d.shares[timestep]) for d, x in predictions])
-    return torch.lerp(before, x0, share).split(sizes)
+        """The corrected prediction, (B, tokens, F) as given; the same object if nothing is due."""
+        if not self.due(timestep):
+            return x0
+        scale, before = self.space.scale, x0
+        for _ in range(LAST_STEPS if timestep == self.last else GRADIENT_STEPS):
+            with torch.enable_grad():
+                x = x0.detach().requires_grad_(True)
+                positions, contacts = self.space.positions(x)
+                positions, contacts = positions[:, :, : self.frames], contacts[:, :, : self.frames]
+                total = energy(positions, contacts).sum()
+                if any(self.touches):
+                    total = total + asked_energy(positions, self.touches).sum()
+                (gradient,) = torch.autograd.grad(total, x)
+            # The step is taken on control points in metres: d/dcontrol = d/dx / std.
+            move = (STEP * gradient / scale).clamp(-STEP, STEP)
+            if self.frozen is not None:
+                move = move.masked_fill(self.frozen, 0.0)
+            x0 = x0.detach() - move / scale
+        return torch.lerp(before, x0, self.shares[timestep])

@@ -13,7 +13,6 @@ METHOD = Method(
     tasks=("generate",),
     takes=frozenset({"class"}),
     defaults={"guidance": 1.8, "steps": 50},
-    shares_passes=True,
     weights="bigraphdiff",
     load=partial(load_pipeline, "bigraphdiff.BiGraphDiffPipeline"),
 )

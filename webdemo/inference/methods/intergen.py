@@ -13,7 +13,6 @@ METHOD = Method(
     tasks=("generate", "react", "scene"),
     takes=frozenset({"words", "actor", "either role"}),
     modes={"offline": "InterGen, person to person"},
-    shares_passes=True,
     weights="intergen",
     load=partial(load_pipeline, "intergen.InterGenPipeline"),
 )

@@ -37,7 +37,7 @@ class Release:
         pipeline: module and class in :mod:`webdemo.inference.pipelines`.
         summary: one sentence on what it does.
         loss: one sentence on what its representation loses here.
-        tasks, takes, seconds, samplers, defaults, fixed, shares_passes: as in :class:`Method`.
+        tasks, takes, seconds, samplers, defaults, fixed: as in :class:`Method`.
         needed: roles of the files that it cannot do without.
         kept: beginnings of the names of tensors that are loaded; all by default.
         modes: outline → the method's modes, mode → ending of its label.
@@ -53,7 +53,6 @@ class Release:
     samplers: tuple[str, ...] = ("ddim", "dpm++")
     defaults: Mapping[str, Any] = field(default_factory=dict)
     fixed: Mapping[str, Any] = field(default_factory=dict)
-    shares_passes: bool = False
     needed: tuple[str, ...] = ("checkpoint",)
     kept: tuple[str, ...] = ("",)
     modes: Callable[[Outline], dict[str, str]] = lambda outline: {"offline": ""}
@@ -75,7 +74,6 @@ RELEASES: dict[str, Release] = {
         takes=frozenset({"words", "actor", "either role"}),
         defaults={"guidance": 3.5, "steps": 50},
         fixed={"damping": 0.0},
-        shares_passes=True,
         needed=("checkpoint", "mean", "std"),
         kept=("model.",),
     ),
@@ -147,7 +145,6 @@ def released_method(entry: Entry) -> Method:
         defaults=release.defaults,
         fixed=release.fixed,
         samplers=release.samplers,
-        shares_passes=release.shares_passes,
         load=partial(_load, entry, release, loading),
     )
 

@@ -39,7 +39,7 @@ from webdemo.inference.story.sentences import as_scene
 from .given import Finish, Scene, scene_of
 from .predictor import PredictorPipeline
 from .scene import SceneMaker
-from .two_person import Conditioning, Passes, TwoPersonPipeline
+from .two_person import Conditioning, TwoPersonPipeline
 
 Array = NDArray[np.floating]
 SMOOTHING = 1.0
@@ -76,31 +76,30 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         request: GenerateRequest | ReactRequest | SceneRequest,
         cancel: CancelToken,
         timer: StageTimer,
-        passes: Passes | None = None,
         scene: Scene | None = None,
     ) -> Iterator[Progress | Result]:
         """As :meth:`TwoPersonPipeline.run`; a scene, or a sentence of several beats, is made window by window."""
         if isinstance(request, SceneRequest):
-            return self.scenes.run(request, cancel, timer, passes)
+            return self.scenes.run(request, cancel, timer)
         if isinstance(request, GenerateRequest) and scene is None:
-            return self._generate(with_plan(request), cancel, timer, passes)
-        return super().run(with_plan(request), cancel, timer, passes, scene)
+            return self._generate(with_plan(request), cancel, timer)
+        return super().run(with_plan(request), cancel, timer, scene)
 
     def _generate(
-        self, request: GenerateRequest, cancel: CancelToken, timer: StageTimer, passes: Passes | None
+        self, request: GenerateRequest, cancel: CancelToken, timer: StageTimer
     ) -> Iterator[Progress | Result]:
         """A sentence, made as a scene where it has several beats or a plan."""
         assert request.plan is not None
         split, plan = as_scene(request, cancel.raise_if_cancelled), request.plan
         if split is None:
             plan = plan if plan.of_result else _unsplit(plan, request.planned)
-            events = super().run(replace(request, plan=plan), cancel, timer, passes)
+            events = super().run(replace(request, plan=plan), cancel, timer)
         else:
             plan = replace(plan, beats=tuple(beat.to_dict() for beat in split.beats))
             notes = [
                 f"This was made as {len(split.beats)} beats, one after another; the tab Scene lets you change them."
             ]
-            events = self.scenes.run(split, cancel, timer, passes, notes=notes if len(split.beats) > 1 else ())
+            events = self.scenes.run(split, cancel, timer, notes=notes if len(split.beats) > 1 else ())
         for event in events:
             if isinstance(event, Result):
                 if split is None:
@@ -200,12 +199,11 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
         request: GenerateRequest | ReactRequest,
         cancel: CancelToken,
         timer: StageTimer,
-        passes: Passes | None = None,
         scene: Scene | None = None,
     ) -> Iterator[Progress | Result]:
         """As :meth:`TwoPersonPipeline.run`; the result's notes say what the conversion lost."""
         measured = Measured(scene or self.scene(request))
-        for event in super().run(request, cancel, timer, passes, measured):  # type: ignore[arg-type]
+        for event in super().run(request, cancel, timer, measured):  # type: ignore[arg-type]
             if isinstance(event, Result):
                 notes = [CONVERTED, measured.note(request.cleanup)]
                 notes += [NOT_TUNED] if isinstance(request, ReactRequest) else []

@@ -29,7 +29,7 @@ from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story.request import SceneProgress, SceneRequest, window_seed, windows
 
 from .given import NAMES
-from .two_person import Conditioning, Passes, TwoPersonPipeline
+from .two_person import Conditioning, TwoPersonPipeline
 from .window import Setting
 
 Array = NDArray[np.floating]
@@ -93,12 +93,7 @@ class SceneMaker:
         self.parts = Parts()
 
     def run(
-        self,
-        request: SceneRequest,
-        cancel: CancelToken,
-        timer: StageTimer,
-        passes: Passes | None = None,
-        notes: Sequence[str] = (),
+        self, request: SceneRequest, cancel: CancelToken, timer: StageTimer, notes: Sequence[str] = ()
     ) -> Iterator[Progress | Result]:
         """Progress events, a :class:`SceneProgress` after each window, then one :class:`Result`.
 
@@ -106,7 +101,6 @@ class SceneMaker:
             request: what is asked for.
             cancel: looked at before every step.
             timer: of the run.
-            passes: as :meth:`TwoPersonPipeline.run` takes them.
             notes: come first among the result's notes, where the plan of the request has none.
 
         Raises:
@@ -131,7 +125,7 @@ class SceneMaker:
                 setting = Setting.of(request, window, scene, kept.windows[len(made_plans)] if kept else None)
                 made_plans.append(setting.plan)
                 said += setting.plan.notes
-                made = yield from self._window(request, sample, setting, cancel, timer, passes, done, steps)
+                made = yield from self._window(request, sample, setting, cancel, timer, done, steps)
                 scene[:, window.start : window.stop] = made.positions
                 said += made.notes
                 laid += made.planned * made.positions.shape[1]
@@ -169,7 +163,6 @@ class SceneMaker:
         setting: Setting,
         cancel: CancelToken,
         timer: StageTimer,
-        passes: Passes | None,
         done: int,
         steps: int,
     ) -> Generator[Progress, None, Made]:
@@ -182,15 +175,12 @@ class SceneMaker:
         conditioning = self.words(words, request.plans[window.beat], setting.plan.alone, request.guidance)
         timer.lap("text")
         scene = setting.scene(self.pipeline)
-        for event in self.pipeline.sample(
-            request, conditioning, scene, (seed, 1), cancel, timer, passes, measured=False
-        ):
+        for event in self.pipeline.sample(request, conditioning, scene, (seed, 1), cancel, timer, measured=False):
             if isinstance(event, Result):
                 positions = setting.made(event.duets[0].positions)
                 notes = tuple(_of_beat(note, request, window) for note in event.notes)
                 made = Made(positions, setting.share(self.pipeline), notes)
-                if passes is None:  # sharing a pass changes the rounding, and kept windows give the same bytes
-                    self.parts.keep(key, made)
+                self.parts.keep(key, made)
                 return made
             if event.stage == "sample":
                 yield replace(event, step=done + event.step, total=steps)

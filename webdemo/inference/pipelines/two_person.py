@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar, cast
+from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 import torch
@@ -47,42 +47,6 @@ class Conditioning:
     notes: tuple[str, ...] = ()
 
 
-class Passes(Protocol):
-    """The network calls of a run, step by step."""
-
-    def guided(
-        self,
-        x: Tensor,
-        t: Tensor,
-        cond: Tensor,
-        mask: Tensor | None = None,
-        known: Tensor | None = None,
-        *,
-        scale: float,
-    ) -> Tensor:
-        """The guided prediction of x0, as the denoiser's own ``guided``."""
-        ...
-
-    def correct(self, damping: Damping, x0: Tensor, timestep: int) -> Tensor:
-        """A prediction (B, tokens, features) corrected by its damping."""
-        ...
-
-
-class OwnPasses:
-    """The passes of a request that runs alone.
-
-    Args:
-        denoiser: has ``guided`` as :meth:`Passes.guided`.
-    """
-
-    def __init__(self, denoiser: Any) -> None:
-        self.guided = denoiser.guided
-
-    def correct(self, damping: Damping, x0: Tensor, timestep: int) -> Tensor:
-        """A prediction corrected by its damping."""
-        return damping(x0, timestep)
-
-
 class TwoPersonPipeline(ABC, Generic[Network]):
     """Denoises two people by the network of a weights folder; a subclass says what it conditions on.
 
@@ -113,7 +77,6 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         request: GenerateRequest | ReactRequest,
         cancel: CancelToken,
         timer: StageTimer,
-        passes: Passes | None = None,
         scene: Scene | None = None,
     ) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`Result` without a manifest; raises Cancelled within one step.
@@ -122,15 +85,13 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             request: what is asked for.
             cancel: looked at before every step.
             timer: of the run.
-            passes: makes the guided predictions and the corrections, for requests that share them; by default
-                the network itself does.
             scene: what is known of the motion, and how samples become duets; by default what the request says.
         """
         yield timer.progress("text")
         conditioning = self.conditioning(request)
         timer.lap("text")
         scene, noise = scene or self.scene(request), (request.seed, request.samples)
-        yield from self.sample(request, conditioning, scene, noise, cancel, timer, passes)
+        yield from self.sample(request, conditioning, scene, noise, cancel, timer)
 
     def sample(
         self,
@@ -140,7 +101,6 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         noise: tuple[int, int],
         cancel: CancelToken,
         timer: StageTimer,
-        passes: Passes | None = None,
         *,
         measured: bool = True,
     ) -> Iterator[Progress | Result]:
@@ -151,10 +111,9 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             conditioning: of the network.
             scene: what is known of the motion, and how samples become duets.
             noise: the seed, and the number of samples.
-            cancel, timer, passes: as in :meth:`run`.
+            cancel, timer: as in :meth:`run`.
             measured: the result has the read-outs of its duets.
         """
-        passes = passes or OwnPasses(self.model.denoiser)
         layout, given = self.model.layout, scene.given
         x = sample_noise(*noise, (layout.num_tokens(scene.frames), 2 * layout.token_features))
         scheduler = make_scheduler(cast(SamplerName, settings.sampler), settings.steps, spacing=self.spacing)
@@ -174,12 +133,12 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         uncorrected = x
 
         def predict(x: Tensor, t: Tensor) -> Tensor:
-            return passes.guided(with_given(x), t, condition, scale=conditioning.guidance, **seen)
+            return self.model.denoiser.guided(with_given(x), t, condition, scale=conditioning.guidance, **seen)
 
         def correct(x0: Tensor, timestep: int) -> Tensor:
             nonlocal uncorrected
             uncorrected = bent(x0)
-            return with_given(passes.correct(damping, uncorrected, timestep))
+            return with_given(damping(uncorrected, timestep))
 
         cancel.raise_if_cancelled()
         for step in sample_steps(predict, x, scheduler, correct=correct):

@@ -1,8 +1,8 @@
 """The engine on Ray Serve: networks run in separate processes, on this machine or on several.
 
 Each model is a Ray Serve application whose number of replicas follows the load; the page's process holds no
-network. A request goes to one replica, which runs it together with compatible ones and streams its progress back.
-If the replica dies, the request starts again on another replica, from its seed.
+network. A request goes to one replica, which streams its progress back. If the replica dies, the request starts again
+on another one, from its seed.
 """
 
 from __future__ import annotations
@@ -43,8 +43,6 @@ AGAIN_AFTER = 0.5
 """Seconds between a replica's death and the next try."""
 STORE_BYTES = 128 * 2**20
 """Shared memory of a cluster started here; a result takes 1 MB."""
-MOST_PARALLEL = 128
-"""Most concurrent requests of a page's process to one model; each holds two threads."""
 LOOPBACK = "127.0.0.1"
 
 
@@ -77,7 +75,6 @@ class RayEngine:
         address: of a running cluster; empty starts one on this machine that listens on loopback only.
         replicas: (fewest, most) of the default model; the others have none until their first request.
         cores: CPU cores of one replica.
-        batch: most motions in one pass, and most concurrent requests of a replica.
         weights: folder with one folder per model, on every machine of the cluster; None for the shipped one.
 
     Raises:
@@ -85,20 +82,13 @@ class RayEngine:
     """
 
     def __init__(
-        self,
-        *,
-        address: str = "",
-        replicas: tuple[int, int] = (1, 1),
-        cores: float = 1.0,
-        batch: int = 8,
-        weights: Path | None = None,
+        self, *, address: str = "", replicas: tuple[int, int] = (1, 1), cores: float = 1.0, weights: Path | None = None
     ) -> None:
         if find_spec("ray") is None:
             raise InputError(
                 "Ray is not installed: `pip install -r requirements-ray.txt`, or set PASDEDEUX_ENGINE=local."
             )
-        self.address, self.replicas, self.cores, self.batch = address, replicas, cores, batch
-        self.weights = weights
+        self.address, self.replicas, self.cores, self.weights = address, replicas, cores, weights
         self.at_work: dict[int, int] = {}
         """Number of this process's runs on each replica, by the replica's process id."""
         self._handles: dict[str, DeploymentHandle] = {}
@@ -111,7 +101,7 @@ class RayEngine:
     @property
     def parallel(self) -> int:
         """Useful number of concurrent requests to a model."""
-        return min(self.replicas[1] * self.batch, MOST_PARALLEL)
+        return self.replicas[1]
 
     @property
     def ready(self) -> bool:
@@ -279,11 +269,11 @@ class RayEngine:
         replica: Any = serve.deployment(
             ModelReplica,
             name=model,
-            max_ongoing_requests=self.batch,
+            max_ongoing_requests=1,
             autoscaling_config={
                 "min_replicas": fewest,
                 "max_replicas": most,
-                "target_ongoing_requests": max(self.batch / 2, 1),
+                "target_ongoing_requests": 1,
                 "upscale_delay_s": 5,
                 "downscale_delay_s": 120,
             },
@@ -291,7 +281,7 @@ class RayEngine:
             health_check_period_s=5,
         )
         weights = None if self.weights is None else str(self.weights)
-        application = replica.bind(model, weights, self.batch, loopback=not self.address)
+        application = replica.bind(model, weights, loopback=not self.address)
         return serve.run(application, name=name, route_prefix=None)
 
     def _cores(self, model: str) -> float:

@@ -196,19 +196,6 @@ class Figures:
             buckets=_SECONDS,
             registry=registry,
         )
-        self.batch_size = Histogram(
-            "pasdedeux_batch_runs",
-            "Runs in one pass through a network",
-            ["model"],
-            buckets=(1, 2, 3, 4, 6, 8, 16),
-            registry=registry,
-        )
-        self.estimate_ratio = Histogram(
-            "pasdedeux_estimate_ratio",
-            "Waiting time of a run divided by its first estimate",
-            buckets=(0.25, 0.5, 0.8, 1, 1.25, 2, 4),
-            registry=registry,
-        )
         self.errors = Counter("pasdedeux_errors", "Errors that are not the user's", ["kind"], registry=registry)
         self.refused = Counter("pasdedeux_refused", "Requests refused", ["reason"], registry=registry)
         self._waiting = Gauge("pasdedeux_queue_waiting", "Runs that wait", registry=registry)

@@ -1,1 +1,1 @@
-"""The run queue: fair shares, waiting times, and runs that share a pass."""
+"""The run queue: fair shares and waiting times."""

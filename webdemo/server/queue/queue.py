@@ -1,4 +1,4 @@
-"""The run queue: the person served least goes first, and compatible runs share a pass.
+"""The run queue: the person served least goes first.
 
 Runs of one model group go to one worker; :mod:`webdemo.server.queue.turns` decides the order.
 """
@@ -10,6 +10,7 @@ import threading
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator
+from itertools import takewhile
 from typing import Any
 
 from motion import InputError
@@ -19,7 +20,7 @@ from webdemo.server.http.health import Figures
 from webdemo.ui.runs import EngineLike, Waiting
 from webdemo.ui.visitor import Visitor, visitor
 
-from .turns import Batcher, Job, Line, Pace, QueueLimits, Turns, units
+from .turns import Accounts, Job, Pace, QueueLimits, in_turn, next_job, units
 
 TICK = 0.5
 """Seconds between two updates of the place in the queue."""
@@ -34,7 +35,6 @@ class FairQueue:
         engine: runs the requests.
         limits: of what runs.
         quota: of waiting runs.
-        batcher: runs several requests at once; without it each runs alone.
         figures: metrics to update.
         broken: called with errors of the program, not those of the user.
     """
@@ -45,20 +45,18 @@ class FairQueue:
         limits: QueueLimits | None = None,
         quota: Quota | None = None,
         *,
-        batcher: Batcher | None = None,
         figures: Figures | None = None,
         broken: Callable[[BaseException], None] = lambda error: None,
     ) -> None:
         self.engine = engine
         self.limits, self.quota = limits or QueueLimits(), quota or Quota("runs waiting", person=4)
-        self.batcher = batcher
         self.figures = figures or Figures()
         self.broken = broken
         self.paces: defaultdict[str, Pace] = defaultdict(Pace)
         self._change = threading.Condition()
         self._waiting: list[Job] = []
         self._running: list[Job] = []
-        self._turns = Turns(self.limits, batcher)
+        self._accounts = Accounts()
         self._sessions: dict[str, CancelToken] = {}
         self._workers: set[str] = set()
         self._stopping = False
@@ -112,7 +110,7 @@ class FairQueue:
                     return True
         return False
 
-    def run(self, session: str, request: Any, *, alone: bool = False) -> Iterator[Progress | Result]:
+    def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
         """Runs a request; yields its place in the queue, its progress and its result.
 
         An earlier run of the same session is cancelled. Closing the iterator cancels the run.
@@ -120,14 +118,13 @@ class FairQueue:
         Args:
             session: owner of the run.
             request: the request.
-            alone: share its pass with no other run, so the same request gives the same bytes.
 
         Raises:
             InputError: if the queue or the person's share of it is full, the server is stopping, the run takes too
                 long, or the engine cannot fulfil the request.
             Cancelled: if the run was cancelled.
         """
-        job = self._enter(session, request, visitor(), alone=alone)
+        job = self._enter(session, request, visitor())
         try:
             yield from self._watch(job)
         finally:
@@ -162,17 +159,9 @@ class FairQueue:
 
     # ---- the queue -------------------------------------------------------------------------------
 
-    def _enter(self, session: str, request: Any, who: Visitor, *, alone: bool = False) -> Job:
-        key, person = self.batcher.key(request) if self.batcher and not alone else None, who.person
-        job = Job(
-            person,
-            request,
-            group="",
-            cost=units(request),
-            key=key,
-            address=who.address,
-            token=CancelToken(self.limits.seconds),
-        )
+    def _enter(self, session: str, request: Any, who: Visitor) -> Job:
+        token, person = CancelToken(self.limits.seconds), who.person
+        job = Job(person, request, group="", cost=units(request), address=who.address, token=token)
         with self._change:
             if self._stopping:
                 raise InputError("The server is stopping: send this again in a minute.")
@@ -186,10 +175,9 @@ class FairQueue:
                 raise
             job.group = self._group(request)
             running = [(job.person, job.cost) for job in self._running]
-            self._turns.meet(person, {job.person for job in (*self._waiting, *self._running)}, running)
+            self._accounts.meet(person, {job.person for job in (*self._waiting, *self._running)}, running)
             self._sessions[session] = job.token
             self._waiting.append(job)
-            job.estimate = self._line(job.group).place(job)[1]
             self._change.notify_all()
         return job
 
@@ -220,7 +208,7 @@ class FairQueue:
                 with self._change:
                     if job not in self._waiting:
                         continue
-                    place, left = self._line(job.group).place(job)
+                    place, left = self._place(job)
                     count = len(self._waiting)
                 elapsed = time.monotonic() - job.came
                 yield Waiting(stage="queue", step=place, total=count, elapsed=elapsed, seconds_left=left)
@@ -229,99 +217,64 @@ class FairQueue:
             if isinstance(event, Result):
                 return
 
-    def _line(self, group: str) -> Line:
-        """A snapshot of the group's queue; the caller holds the lock."""
-        return Line(
-            waiting=[job for job in self._waiting if job.group == group],
-            running=[job for job in self._running if job.group == group],
-            served=self._turns.served,
-            pick=self._turns.pick,
-            pace=self.paces[group],
-            workers=self.limits.workers,
-        )
+    def _place(self, job: Job) -> tuple[int, float | None]:
+        """A waiting run's place in its group's queue, from 1, and the seconds until it starts, if they are known; the
+        caller holds the lock."""
+        mine = [other for other in self._waiting if other.group == job.group]
+        before = list(takewhile(lambda other: other is not job, in_turn(mine, self._accounts.served)))
+        running = [other for other in self._running if other.group == job.group]
+        ahead = sum(other.cost for other in before)
+        return len(before) + 1, self.paces[job.group].wait(ahead, running, self.limits.workers)
 
     # ---- the workers -----------------------------------------------------------------------------
 
     def _work(self, group: str) -> None:
         while True:
             with self._change:
-                while not (batch := self._next(group)):
+                while (job := self._next(group)) is None:
                     if self._stopping:
                         return
                     self._change.wait()
-                began = time.monotonic()
-                for job in batch:
-                    self._waiting.remove(job)
-                    self._turns.charge(job.person, job.cost)
-                    job.batch = len(batch)
-                    job.started = job.moved = began
-                    job.token.start()
-                    self._running.append(job)
+                self._waiting.remove(job)
+                self._accounts.charge(job.person, job.cost)
+                job.started = job.moved = time.monotonic()
+                job.token.start()
+                self._running.append(job)
             try:
-                whole = self._run_batch(batch)
+                whole = self._run(job)
             finally:
                 with self._change:
-                    for job in batch:
-                        self._running.remove(job)
+                    self._running.remove(job)
                     self._rested = time.monotonic()
                     self._change.notify_all()
             if whole:
-                self.paces[group].learn(sum(job.cost for job in batch), time.monotonic() - began)
-            self._count(group, batch, began)
+                self.paces[group].learn(job.cost, time.monotonic() - job.started)
+            self.figures.stage_seconds.labels(group, "queue").observe(job.started - job.came)
 
-    def _next(self, group: str) -> list[Job]:
+    def _next(self, group: str) -> Job | None:
         self._waiting = [job for job in self._waiting if not job.token.cancelled]
         mine = [job for job in self._waiting if job.group == group]
-        return self._turns.pick(mine, self._turns.served, self._running) if mine else []
+        return next_job(mine, self._accounts.served, self._running, self.limits.running)
 
-    def _run_batch(self, batch: list[Job]) -> bool:
-        """Runs a batch; returns whether all of it finished, so its duration can be used to learn the pace."""
-        ended: set[int] = set()
-        whole = True
+    def _run(self, job: Job) -> bool:
+        """Runs a job; returns whether it finished, so that its duration can be used to learn the pace."""
         try:
-            for i, event in self._events(batch):
-                for job in batch:
-                    job.moved = time.monotonic()
-                batch[i].events.put(event)
+            for event in self.engine.run(job.request, cancel=job.token):
+                job.moved = time.monotonic()
+                job.events.put(event)
                 if isinstance(event, Result):
-                    ended.add(i)
-                elif isinstance(event, Exception):
-                    ended.add(i)
-                    whole = False
-                    self._note(batch[i], event)
-        except Exception as error:  # of the whole batch
-            whole = False
-            for i in set(range(len(batch))) - ended:
-                batch[i].events.put(error)
-                self._note(batch[i], error)
-            return whole
-        for i in set(range(len(batch))) - ended:  # an engine stops without a result only when cancelled
-            whole = False
-            batch[i].events.put(Cancelled("The run ended without a result."))
-        return whole
-
-    def _events(self, batch: list[Job]) -> Iterator[tuple[int, Progress | Result | Exception]]:
-        if len(batch) > 1 and self.batcher is not None:
-            yield from self.batcher.run_together([(job.request, job.token) for job in batch])
-            return
-        for event in self.engine.run(batch[0].request, cancel=batch[0].token):
-            yield 0, event
-            if isinstance(event, Result):
-                return
+                    return True
+        except Exception as error:
+            self._note(job, error)
+            job.events.put(error)
+        else:  # an engine stops without a result only when cancelled
+            job.events.put(Cancelled("The run ended without a result."))
+        return False
 
     def _note(self, job: Job, error: Exception) -> None:
-        kind = type(error).__name__
         ours = not isinstance(error, (InputError, Cancelled))
         outcome = "failed" if ours else "cancelled" if isinstance(error, Cancelled) else "refused"
         self.figures.runs.labels(job.group, outcome).inc()
         if ours:
-            self.figures.errors.labels(kind).inc()
+            self.figures.errors.labels(type(error).__name__).inc()
             self.broken(error)
-
-    def _count(self, group: str, batch: list[Job], began: float) -> None:
-        self.figures.batch_size.labels(group).observe(len(batch))
-        for job in batch:
-            waited = began - job.came
-            self.figures.stage_seconds.labels(group, "queue").observe(waited)
-            if job.estimate and job.estimate > 1:
-                self.figures.estimate_ratio.observe(waited / job.estimate)

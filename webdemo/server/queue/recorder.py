@@ -36,7 +36,7 @@ class Recorder:
         """Stops the session's run, waiting or running; False if it has none."""
         return self.queue.cancel(session)
 
-    def run(self, session: str, request: Any, *, alone: bool = False) -> Iterator[Progress | Result]:
+    def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
         """As :meth:`FairQueue.run`; the result comes when it is kept, or with a note that it could not be.
 
         Raises:
@@ -47,7 +47,7 @@ class Recorder:
         run = self.history.begin(who.owner, request, title, address=who.address) if who.owner else ""
         state, message = "refused", ""
         try:
-            for event in self.queue.run(session, request, alone=alone):
+            for event in self.queue.run(session, request):
                 if isinstance(event, Result):
                     state, event = "done", self._kept(run, event)
                     self._count(event)

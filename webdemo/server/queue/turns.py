@@ -1,8 +1,8 @@
-"""Fair scheduling: an account of the work done for each person, the choice of the next batch, and how long a run waits.
+"""Fair scheduling: an account of the work done for each person, whose run is next, and how long one waits.
 
 The next run is that of the waiting person who has been served least (start-time fair queueing). Sending more
-requests brings no advantage, and a long run delays its owner's later ones. A wait is estimated by a simulation of the
-queue at the pace of earlier runs.
+requests brings no advantage, and a long run delays its owner's later ones. A wait is estimated at the pace of earlier
+runs.
 """
 
 from __future__ import annotations
@@ -10,38 +10,22 @@ from __future__ import annotations
 import queue
 import secrets
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any
 
-from webdemo.inference.run import CancelToken, Progress, Result
+from webdemo.inference.run import CancelToken
 
 MAX_ACCOUNTS = 1000
 """Above this number, accounts of people without runs are dropped."""
 
 
-class Batcher(Protocol):
-    """Runs several requests in one pass."""
-
-    def key(self, request: Any) -> tuple[Any, ...] | None:
-        """Requests of equal keys may share a pass; None for one that must run alone."""
-
-    def fits(self, requests: Sequence[Any], other: Any) -> bool:
-        """True if another request of the same key may join these."""
-
-    def run_together(
-        self, items: Sequence[tuple[Any, CancelToken]]
-    ) -> Iterator[tuple[int, Progress | Result | Exception]]:
-        """(index of a request, its event); each request ends in a Result or an Exception."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class QueueLimits:
-    """Limits of a person's running runs, of motions per pass, of concurrent batches per model, and of the seconds of
-    one run (0: none)."""
+    """Limits of a person's running runs, of concurrent runs of a model, and of the seconds of one run (0: none)."""
 
     running: int = 2
-    batch: int = 8
     workers: int = 1
     seconds: float = 0.0
 
@@ -54,11 +38,8 @@ class Job:
         person: its owner.
         group: the model group whose worker runs it.
         cost: its work, in units.
-        key: jobs of equal keys may share a pass; None for one that runs alone.
         events: progress, then a result or an error; read by the caller.
-        moved: when its pass last began or made progress.
-        estimate: estimated wait in seconds when it arrived.
-        batch: number of runs that shared its pass.
+        moved: when it last began or made progress.
         ended: the sentence with which an administrator has ended it.
         id: names it for administrators.
     """
@@ -67,15 +48,12 @@ class Job:
     request: Any
     group: str
     cost: float
-    key: tuple[Any, ...] | None
     address: str = ""
     token: CancelToken = field(default_factory=CancelToken)
     events: queue.SimpleQueue[Any] = field(default_factory=queue.SimpleQueue)
     came: float = field(default_factory=time.monotonic)
     started: float = 0.0
     moved: float = 0.0
-    estimate: float | None = None
-    batch: int = 1
     ended: str = ""
     id: str = field(default_factory=lambda: secrets.token_hex(6))
 
@@ -115,46 +93,29 @@ class Accounts:
         self.served[person] = self.served.get(person, 0.0) + units
 
 
-class Turns(Accounts):
-    """Keeps the accounts and chooses batches by them; the caller must hold a lock.
+def least_served(waiting: Iterable[Job], served: Mapping[str, float]) -> Job | None:
+    """The first run of the person who has been served least; None if nothing waits.
 
     Args:
-        limits: upper limits.
-        batcher: decides which runs may share a pass; without it none do.
+        waiting: runs in order of arrival.
+        served: units of work by person.
     """
+    return min(waiting, key=lambda job: served.get(job.person, 0.0), default=None)
 
-    def __init__(self, limits: QueueLimits, batcher: Batcher | None) -> None:
-        super().__init__()
-        self.limits, self.batcher = limits, batcher
 
-    def pick(self, waiting: Sequence[Job], served: Mapping[str, float], running: Sequence[Job]) -> list[Job]:
-        """The next batch: the first run of the least served person, and the runs that may share its pass."""
-        count: dict[str, int] = {}
-        for job in running:
-            count[job.person] = count.get(job.person, 0) + 1
-        batch: list[Job] = []
-        rest = list(waiting)
-        extra: dict[str, float] = {}
-        while rest:
-            able = [job for job in rest if count.get(job.person, 0) < self.limits.running and self._joins(batch, job)]
-            if not able:
-                break
-            job = min(able, key=lambda j: (served.get(j.person, 0.0) + extra.get(j.person, 0.0), waiting.index(j)))
-            batch.append(job)
-            rest.remove(job)
-            count[job.person] = count.get(job.person, 0) + 1
-            extra[job.person] = extra.get(job.person, 0.0) + job.cost
-            if job.key is None:
-                break
-        return batch
+def next_job(waiting: Sequence[Job], served: Mapping[str, float], running: Iterable[Job], most: int) -> Job | None:
+    """As :func:`least_served`, of people who have fewer than ``most`` running runs."""
+    busy = Counter(job.person for job in running)
+    return least_served((job for job in waiting if busy[job.person] < most), served)
 
-    def _joins(self, batch: Sequence[Job], job: Job) -> bool:
-        if not batch:
-            return True
-        if self.batcher is None or job.key is None or job.key != batch[0].key:
-            return False
-        motions = sum(other.request.samples for other in batch) + job.request.samples
-        return motions <= self.limits.batch and self.batcher.fits([o.request for o in batch], job.request)
+
+def in_turn(waiting: Sequence[Job], served: Mapping[str, float]) -> Iterator[Job]:
+    """Waiting runs in the order in which they will run, if nobody else comes."""
+    left, accounts = list(waiting), dict(served)
+    while job := least_served(left, accounts):
+        left.remove(job)
+        accounts[job.person] = accounts.get(job.person, 0.0) + job.cost
+        yield job
 
 
 # ---- how long it will take ---------------------------------------------------------------------------
@@ -181,56 +142,24 @@ class Pace:
     seconds_a_unit: float | None = None
 
     def learn(self, work: float, seconds: float) -> None:
-        """Updates the pace with a batch of ``work`` units; recent batches weigh more."""
+        """Updates the pace with a run of ``work`` units; recent runs weigh more."""
         new = seconds / max(work, 1e-9)
         old = self.seconds_a_unit
         self.seconds_a_unit = new if old is None else 0.7 * old + 0.3 * new
 
+    def wait(self, ahead: float, running: Collection[Job], workers: int) -> float | None:
+        """Seconds until a run starts; None while the pace is unknown.
 
-@dataclass
-class Line:
-    """A snapshot of one group's queue.
-
-    Attributes:
-        waiting: jobs in order of arrival.
-        running: jobs that are running.
-        served: each person's account.
-        pick: chooses the next batch from (waiting, accounts, running).
-        pace: a worker's pace.
-        workers: number of batches that run at a time.
-    """
-
-    waiting: Sequence[Any]
-    running: Sequence[Any]
-    served: dict[str, float]
-    pick: Callable[[list[Any], dict[str, float], Sequence[Any]], list[Any]]
-    pace: Pace
-    workers: int = 1
-
-    def place(self, job: Any) -> tuple[int, float | None]:
-        """(place in the queue from 1, seconds until it starts, None while the pace is unknown)."""
-        waiting, served = list(self.waiting), dict(self.served)
-        ahead, work = 0, 0.0
-        while waiting:
-            batch = self.pick(waiting, served, ())
-            if job in batch:
-                place = ahead + batch.index(job) + 1
-                return place, self._seconds(work)
-            for other in batch:
-                waiting.remove(other)
-                served[other.person] = served.get(other.person, 0.0) + other.cost
-            ahead += len(batch)
-            work += sum(other.cost for other in batch)
-        return ahead + 1, self._seconds(work)
-
-    def _seconds(self, work: float) -> float | None:
-        if self.pace.seconds_a_unit is None:
+        Args:
+            ahead: units of the runs before it.
+            running: runs of its group.
+            workers: number of runs of the group at a time.
+        """
+        if self.seconds_a_unit is None:
             return None
-        now = time.monotonic()
-        batches: dict[float, float] = {}
-        for job in self.running:  # the jobs of a batch started together
-            batches[job.started] = batches.get(job.started, 0.0) + job.cost * self.pace.seconds_a_unit
-        # A batch that is late is taken to need a tenth of its time yet.
-        left = [max(whole - (now - started), 0.1 * whole) for started, whole in batches.items()]
-        busy = sum(left) if len(left) >= self.workers else 0.0
-        return (busy + work * self.pace.seconds_a_unit) / self.workers
+        now, left = time.monotonic(), 0.0
+        if len(running) >= workers:
+            for job in running:
+                whole = job.cost * self.seconds_a_unit
+                left += max(whole - (now - job.started), 0.1 * whole)  # one that is late is taken to need a tenth yet
+        return (left + ahead * self.seconds_a_unit) / workers

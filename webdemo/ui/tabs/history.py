@@ -198,7 +198,7 @@ class HistoryTab:
             else:
                 opened = self.history.open(run, visitor().owner)
                 wanted = request_of(opened)
-            for made in self.page.runs.run(_session(request), wanted, alone=True):
+            for made in self.page.runs.run(_session(request), wanted):
                 if isinstance(made, Result):
                     sentence = verdict(opened.result, made) if opened else "Run again: its result is in the list."
                     line = status(sentence, tone="done")
