@@ -221,7 +221,7 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
     words, lemma, text = vocabulary(), _lemma(token, parsed), token.lower_
     forms = {lemma, text, *_WORD.findall(text)}
     if (way := words.directions.get(text)) in _TURNS:
-        return way in (act.direction, act.side)
+        return way in (act.direction, act.side, act.part_side)
     if lemma in (act.act.split("-")[0], act.act.replace("-", "")):
         return True
     if text == "own":

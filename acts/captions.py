@@ -66,7 +66,7 @@ def worded(act: Act, caption: str) -> str:
     values = {
         "a": "they" if both else _NAMES[act.agents[0]],
         "b": "each other" if both else _NAMES[other],
-        "part": act.part or "",
+        "part": f"{act.part_side or ''} {act.part or ''}".strip(),
         "side": act.side if act.side in ("left", "right") else "",
         "thing": act.thing or "",
         "direction": act.direction or "",
@@ -80,6 +80,7 @@ def worded(act: Act, caption: str) -> str:
         return f"{value} " if value and match[0].endswith(" ") else value
 
     text = " ".join(_SLOT.sub(fill, text).split())
+    text = text.replace(" forward", " backwards") if act.direction == "back" else text
     text += _by_hand(act, caption)
     if act.times is not None and act.times > 1:
         text += f" {_COUNTS.get(act.times, f'{act.times} times')}"
@@ -231,10 +232,11 @@ def _phrase(act: Act, entry: Entry | None) -> str:
         if name[0] in verbs and not verbs.intersection(name[1:]):
             return named
     side = f"{act.side} " if act.side in ("left", "right") and "{side}" not in caption else ""
+    of_part = f"{act.part_side} " if act.part_side else side
     values = {
         "a": "",
         "b": "*",
-        "part": f"{side}{act.part}" if act.part else "",
+        "part": f"{of_part}{act.part}" if act.part else "",
         "side": side.strip(),
         "thing": act.thing or "something",
         "direction": act.direction or "",

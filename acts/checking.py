@@ -2,7 +2,7 @@
 
 A rule is a condition of :mod:`motion.metrics.sentences` in which these names stand for an act's own values: ``who`` is
 its agent and ``whom`` the other; ``side`` and ``way`` are "any" and ``part`` (of the body) is "body" where the words
-name none; ``hands`` is "both" or "any"; ``n`` is how often, 1 where they do not say, and ``times(…, n)`` asks for no
+name none; ``n`` is how often, 1 where they do not say, and ``times(…, n)`` asks for no
 more where they do.
 """
 
@@ -27,6 +27,7 @@ from .lexicon import Entry, Lexicon, lexicon
 from .plan import Act, Plan
 from .qualifiers import OTHER_THING, plain, qualifiers
 from .reading.vocabulary import vocabulary
+from .shapes import Lift, Posture
 
 ONLY = {"tried": "only tried", "offered": "only offered", "pretended": "only pretended", "wished": "only wished"}
 """The reason why an act that is not told cannot be judged, by its modality."""
@@ -127,7 +128,7 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
     if not failed and OTHER_THING in unchecked:
         wrote = account(plan, known).others.get(act.id, "")
         return Verdict(act.id, act.act, _words(act, entry), None, OTHER_THING, wrote=wrote)
-    late = "" if failed else _too_early(act, plan, motion, known, before)
+    late = "" if failed else _held_before(act, plan, motion, known) or _too_early(act, plan, motion, known, before)
     done = not failed and not late
     words = _words(plain(act, frozenset(unchecked)) if done else act, entry)
     left = account(plan, known)
@@ -152,24 +153,37 @@ def _measure(failed: list[str], rules: list[str], motion: Motion) -> str:
     return next(filter(None, (measured(rule, motion, lacking=lacking) for rule in failed or rules)), "")
 
 
+_LATER = 0.2
+"""Seconds by which an act that comes after another is later, at least."""
+_ENTERS = re.compile(r"\b(?:down|up|onto|(?:get|take|mount|jump|hop|climb|leap|drop|sink|lower)s?)\b")
+"""Words that say of an attitude that it begins."""
+
+
 # ---- order -----------------------------------------------------------------------------------------------
 def _too_early(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mapping[str, Verdict]) -> str:
     """Names the act that an act wrongly comes before, or "".
 
-    It does where all that shows it is over before the middle of the first stretch that shows the other, or before the
-    first second of it, where that lasts: two that overlap are in order.
+    What shows it must come later than the first stretch that shows the other, so that a motion which shows both at
+    once shows no order: each by its middle, or its first second, where it lasts, and an attitude by its beginning.
+    What is no attitude may also have begun before, where it goes on for a second after the other is over.
     """
     acts = {other.id: other for other in plan.acts}
     earlier = [acts[name] for name in _chain(act, plan) if name in before and before[name].done]
     told = [other for other in earlier if other.polarity == "done"]
-    mine = _last(act, motion, known)
-    if mine is not None and mine < 0.3 * motion.fps and not act.already and len(motion.positions[0]) > motion.fps:
+    mine = [each for mask in _seen(act, known) for each in _stretches(mask, motion)]
+    last = max((j for _, j in mine), default=None)
+    if last is not None and last < 0.3 * motion.fps and not act.already and len(motion.positions[0]) > motion.fps:
         return "is over when it begins"
+    begins = _is_attitude(known.entries[act.act])
+    moments = [i if begins else _middle((i, j), motion) for i, j in mine]
     for other in told:
-        first = [each for mask in _seen(other, known) for each in _stretches(mask, motion)[:1]]
-        theirs = [min((i + j) / 2, i + motion.fps) for i, j in first]
-        if theirs and mine is not None and mine < min(theirs):
-            return f"comes before “{before[other.id].words}”"
+        theirs = min((each for mask in _seen(other, known) for each in _stretches(mask, motion)[:1]), default=None)
+        if theirs is None or last is None:
+            continue
+        first = theirs[0] if _is_attitude(known.entries[other.act]) else _middle(theirs, motion)
+        goes_on = not begins and last >= theirs[1] + motion.fps
+        if max(moments) <= first + _LATER * motion.fps and not goes_on:
+            return f"does not come after “{before[other.id].words}”"
     same = [other for other in told if (other.act, other.agents) == (act.act, act.agents)]
     if same and any(len(_stretches(mask, motion)) <= len(same) for mask in _seen(act, known)):
         between = [other for other in told if other not in same]  # done again: as many times as it is said
@@ -181,9 +195,27 @@ def _stretches(mask: str, motion: Motion) -> list[tuple[int, int]]:
     return stretches(mask_of(mask, motion), motion.fps)
 
 
-def _last(act: Act, motion: Motion, known: Lexicon) -> int | None:
-    """The last frame that shows an act; None for one that is true all along, or that nothing shows."""
-    return max((j for mask in _seen(act, known) for _, j in _stretches(mask, motion)), default=None)
+def _middle(stretch: tuple[int, int], motion: Motion) -> float:
+    """The moment that stands for a stretch: its middle, or a second after it begins, where it lasts."""
+    return min((stretch[0] + stretch[1]) / 2, stretch[0] + motion.fps)
+
+
+def _is_attitude(entry: Entry) -> bool:
+    """True for an act after which somebody stays as they are: sits, kneels, or is carried."""
+    return any(
+        isinstance(shape, Lift)
+        or (isinstance(shape, Posture) and not (shape.passing or shape.already) and shape.posture != "stands")
+        for shape in entry.stage
+    )
+
+
+def _held_before(act: Act, plan: Plan, motion: Motion, known: Lexicon) -> str:
+    """Says so of an attitude that the words begin, as "sits down" does, and that is held from the start."""
+    said = plan.text(act.words).lower() if act.words is not None else ""
+    if act.already or not _ENTERS.search(said) or not _is_attitude(known.entries[act.act]):
+        return ""
+    begins = [i for mask in _seen(act, known) for i, _ in _stretches(mask, motion)]
+    return "is so from the start" if begins and max(begins) < _LATER * motion.fps else ""
 
 
 def _chain(act: Act, plan: Plan) -> list[str]:
@@ -219,6 +251,7 @@ def rules_of(act: Act, entry: Entry, who: str) -> list[str]:
     named = act.part or ""
     part = named if named in BODY else vocabulary().part(named)
     part = part if part in BODY else "body"
+    part = f"{act.part_side} {part}" if act.part_side else part
     way = WAYS.get(act.direction or "", "any")
     values = {"side": act.side or "any", "part": part, "way": way}
     return [cast(rule, who, whom, **values, n=act.times or 1, counted=bool(act.times)) for rule in entry.rule]
@@ -252,7 +285,6 @@ def cast(
         "who": ast.Name(who),
         "whom": ast.Name(whom),
         "side": ast.Constant(side),
-        "hands": ast.Constant("both" if side == "both" else "any"),
         "part": ast.Constant(part),
         "way": ast.Constant(way),
         "n": ast.Constant(n),
@@ -338,7 +370,7 @@ def _clauses(acts: Sequence[Act], known: Lexicon) -> Iterator[tuple[str, str]]:
 
 def _sided(act: Act, caption: str) -> str:
     """An act in the words of a caption, with the side of the part where it has one."""
-    if act.side in ("left", "right") and not any(slot in caption for slot in ("{side}", "{limb}")):
+    if act.side in ("left", "right") and not act.part_side and not any(s in caption for s in ("{side}", "{limb}")):
         if act.part and "{part}" in caption:
             act = act.model_copy(update={"part": f"{act.side} {act.part}"})
         elif act.part in ("hand", "foot"):

@@ -78,7 +78,8 @@ class Act(_Model):
         order: relations to other acts.
         already: it goes on when its beat begins, as "is sitting" and "keeps walking" say; others begin in it.
         seconds: length in seconds, where the words give one.
-        side: of the body, or of the turn.
+        side: of the agent's body, or of the turn.
+        part_side: of a part of the other's body, as in "B's left shoulder".
         times: how often, where the words give a number.
         manner: adverbs, in the text's order.
         speed: factor beside the act's usual speed.
@@ -94,6 +95,7 @@ class Act(_Model):
     thing: Name | None = None
     part: Name | None = None
     part_of: Who | None = None
+    part_side: Literal["left", "right"] | None = None
     polarity: Literal["done", "not"] = "done"
     modality: Literal["told", "tried", "offered", "pretended", "wished"] = "told"
     order: Annotated[tuple[Relation, ...], Field(max_length=8)] = ()

@@ -8,11 +8,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from motion.metrics.sentences.touches import BODY
+
 from .accounting import FILLERS, said_words, shown_caption
 from .lexicon import Entry
 from .plan import FROM_BEHIND, Act
 from .reading.vocabulary import is_act, vocabulary
-from .shapes import Go
+from .shapes import Go, Touch
 
 _BOTH = re.compile(r"\bboth (?:\w+ )?(hands|arms|palms|fists|feet|legs|knees|elbows|shoulders|cheeks)\b", re.IGNORECASE)
 
@@ -38,8 +40,10 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
         yield "how often", ""
     if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
         yield "which side", ""
+    if act.part_side and "part" not in names:
+        yield "which side", _on_side(act, entry, who)
     both = _BOTH.search(said) if act.side == "both" else None
-    if both and not names & {"side", "hands"} and not _is_two_handed(entry):
+    if both and "side" not in names and not _is_two_handed(entry):
         yield "on both sides" if both[1] in ("feet", "legs", "knees") else "with both hands", ""
     if act.direction is not None and act.direction not in words and "way" not in names:
         yield "which way", _goes_way(act, who) if goes else ""
@@ -75,7 +79,7 @@ def plain(act: Act, kinds: frozenset[str]) -> Act:
     """An act without the qualifiers of these kinds."""
     left: dict[str, dict[str, object]] = {
         "how often": {"times": None},
-        "which side": {"side": None},
+        "which side": {"side": None, "part_side": None},
         "with both hands": {"side": None},
         "on both sides": {"side": None},
         "which way": {"direction": None},
@@ -89,6 +93,13 @@ def plain(act: Act, kinds: frozenset[str]) -> Act:
 def _is_two_handed(entry: Entry) -> bool:
     """True for an entry whose own shape has both hands or arms."""
     return any("both" in (getattr(shape, "sides", ""), getattr(shape, "hands", "")) for shape in entry.stage)
+
+
+def _on_side(act: Act, entry: Entry, who: str) -> str:
+    """A hand is on that side of the other's body, where it is an act of the hands; else ""."""
+    by_hand = any(isinstance(shape, Touch) and shape.hands != "none" for shape in entry.stage)
+    part = next((name for name in (act.part, vocabulary().part(act.part or "")) if name in BODY), "")
+    return f"happens(hand_on({who}, '{act.part_side} {part}', gap=0.25))" * (by_hand and bool(part))
 
 
 def _goes_way(act: Act, who: str) -> str:

@@ -138,8 +138,8 @@ class Arguments:
                 event.words.append(child.lemma_.lower())
                 if self._words.directions.get(child.lower_) in _TURNS:
                     self._direction(child.lower_, event)
-                if child.lower_ in ("left", "right") and is_act(token.lemma_.lower()):  # "a left hook"
-                    event.side = event.side or child.lower_
+                if child.lower_ in ("left", "right") and is_act(token.lemma_.lower()) and not self._others(token, who):
+                    event.side = event.side or child.lower_  # "a left hook"
             owner = child.lower_ == "of" and self._words.part(token.lemma_.lower())  # "the arms of the other"
             if child.dep_ == "prep" and (owner or child.i in states):
                 continue
@@ -153,6 +153,10 @@ class Arguments:
             elif child.lower_ == "no" and child.dep_ == "det":
                 event.denied = not event.denied
         return reference(token, self.cast, who)
+
+    def _others(self, noun: Token, who: str) -> bool:
+        """True for what the other does: "parries A's left punch"."""
+        return self.cast.owner(noun, who) not in ("", who)
 
     def place(self, token: Token, who: str, event: Event) -> None:
         """Takes up the phrase of a preposition or an adverb: "on his back", "forward"."""

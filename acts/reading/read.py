@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from acts.events import Event
+from acts.events import Event, Ref
 from acts.frames import Frame, Match
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread, other_of
@@ -303,12 +303,6 @@ class _Planner:
         usual = Go.model_fields["speed"].default
         if any(isinstance(shape, Go) and shape.speed == usual for shape in self._known.entries[name].stage):
             speed *= vocabulary().gaits.get(event.lemma, 1.0)
-        refs = [event.object, part, *(ref for _, ref in event.prepositions)]  # "with the left foot"
-        parts = [ref for ref in refs if ref is not None and ref.kind == "part" and ref.side]
-        own = [ref.side for ref in parts if ref.who in ("", match.agents)]
-        side = next(filter(None, (event.side, *own, *(ref.side for ref in parts))), None)
-        if own and event.direction in ("left", "right"):
-            side = own[0]  # "to the left with the right foot"
         patient = match.patient
         entry = self._known.entries[name]
         upwards = entry.thing == "throws" and event.direction == "up"  # to nobody
@@ -322,6 +316,13 @@ class _Planner:
         if part is not None:
             whose = match.agents if frame.of_agent() else patient or match.agents
             owner = whose if len(whose) == 1 else None
+        part_side = _side_of_other(part, frame, match, patient, owner)
+        refs = [event.object, part, *(ref for _, ref in event.prepositions)]  # "with the left foot"
+        parts = [ref for ref in refs if ref is not None and ref.kind == "part" and ref.side]
+        own = [ref.side for ref in parts if ref.who in ("", match.agents) and not (part_side and ref is part)]
+        side = next(filter(None, (event.side, *own, *(ref.side for ref in parts if ref.side == "both"))), None)
+        if own and event.direction in ("left", "right"):
+            side = own[0]  # "to the left with the right foot"
         act = Act(
             id=number_of,
             act=name,
@@ -330,6 +331,7 @@ class _Planner:
             thing=match.thing or self._named(event, name),
             part=part.lemma if part is not None else None,
             part_of=owner,  # type: ignore[arg-type]
+            part_side=part_side,  # type: ignore[arg-type]
             polarity="not" if event.denied else "done",
             modality=event.modality,  # type: ignore[arg-type]
             already=self._goes_on(event, match.agents) and not self._known.entries[name].moment,
@@ -371,3 +373,10 @@ class _Planner:
         told = {who for act in self._acts for who in act.agents}
         ongoing = event.ongoing or (event.joint == "while" and event.direction != "down")
         return ongoing and not told & set(agents)
+
+
+def _side_of_other(part: Ref | None, frame: Frame, match: Match, patient: str, owner: str | None) -> str | None:
+    """The side of the other's part that an act is about, "left" or "right": "B's left shoulder"."""
+    if part is None or part.side not in ("left", "right") or frame.of_agent():
+        return None
+    return part.side if (part.who == "each" if len(match.agents) == 2 else owner == patient) else None

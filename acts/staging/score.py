@@ -102,9 +102,11 @@ class Touch(shapes.Touch):
     Attributes:
         person: the one who touches the other.
         late: something else goes on until then.
+        part_side: "left" or "right" for one side of the other's body.
     """
 
     person: str
+    part_side: Literal["", "left", "right"] = ""
     late: bool = False
 
     @property

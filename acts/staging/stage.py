@@ -338,6 +338,7 @@ class _Stage:
             behind=behind and not shape.beside,
             fells=shape.fells,
             beside=shape.beside,
+            part_side=act.part_side or "",
         )
         if shape.fells:
             other = other_of(giver)

@@ -133,12 +133,13 @@ def lean(touch: Touch, pose: Array) -> float:
 
 def middle(touch: Touch, pose: Array) -> Array:
     """The middle (3,) of the joints of a pose (22, 3) that are touched."""
-    return np.asarray(pose)[_joints(touch.part)].mean(axis=0)
+    return np.asarray(pose)[_joints(touch.part, touch.part_side)].mean(axis=0)
 
 
-def _joints(part: str) -> list[int]:
+def _joints(part: str, only: str = "") -> list[int]:
+    """The joints of a part of the body: of both sides, or ``only`` of one."""
     name = _JOINTS[part]
-    return [JOINT[name.format(side=side)] for side in (SIDES if "{" in name else SIDES[:1])]
+    return [JOINT[name.format(side=side)] for side in ((only,) if only else SIDES if "{" in name else SIDES[:1])]
 
 
 def touched(touch: Touch, other: Array, own: Array) -> Array:
@@ -152,7 +153,7 @@ def touched(touch: Touch, other: Array, own: Array) -> Array:
     Returns:
         (len(sides), 3) metres; (1, 3) for a kiss.
     """
-    joints = _joints(touch.part)
+    joints = _joints(touch.part, touch.part_side)
     back = other[JOINT["spine3"]]
     if touch.part == "back" and float((own[0] - other[0]) @ _facing(other)) > 0:
         joints = _joints("shoulder")  # as far as an arm gets round somebody from the front

@@ -161,7 +161,7 @@ def test_an_act_after_another_must_come_later() -> None:
     leg, arm = told("raise-leg", 1), told("raise-arm", 2, order=(Relation(kind="after", act="1"),))
     verdicts = checked(plan(leg, arm), arm_then_leg())
     assert [v.done for v in verdicts] == [True, False]
-    assert "before" in verdicts[1].measure
+    assert "not come after" in verdicts[1].measure
 
 
 def test_who_follows_begins_before_the_other_has_gone() -> None:
@@ -202,6 +202,65 @@ def test_who_stands_up_after_sitting_stands_up_later() -> None:
     after = (Relation(kind="after", act="1"),)
     low, up = told("crouch", 1), told("stand-up", 2, order=after)
     assert [v.done for v in checked(plan(low, up), duet(sit))] == [True, True]
+
+
+# ---- sides, order and what is held before -------------------------------------------------------------------
+def verdicts(sentence: str, motion: Motion) -> list[bool | None]:
+    return [verdict.done for verdict in checked(read(sentence), motion)]
+
+
+@pytest.mark.parametrize("words", ["A taps B on the {} shoulder.", "A puts a hand on B's {} shoulder."])
+def test_the_side_of_the_other_is_theirs(words: str) -> None:
+    """a's left hand is on b's right shoulder."""
+    motion = on_other("right_shoulder")
+    assert verdicts(words.format("right"), motion) == [True]
+    assert verdicts(words.format("left"), motion) == [False]
+
+
+def test_the_hand_that_touches_counts_beside_the_side_that_is_touched() -> None:
+    motion = on_other("right_shoulder")
+    assert verdicts("A touches B's right shoulder with the left hand.", motion) == [True]
+    assert verdicts("A touches B's right shoulder with the right hand.", motion) == [False]
+
+
+def test_who_ties_a_shoe_has_a_hand_at_that_shoe() -> None:
+    def kneels(both: np.ndarray) -> None:
+        both[0, 30:, :, 1] *= 0.6
+        both[0, 30:, index("left_wrist")] = both[1, 30:, index("right_foot")] + [0, 0.1, 0]
+
+    assert verdicts("A ties B's right shoe.", duet(kneels, gap=0.8)) == [True]
+    assert verdicts("A ties B's left shoe.", duet(kneels, gap=0.8)) == [False]
+    assert verdicts("A ties B's shoes.", duet(lambda both: both[0, 30:, :, 1].__imul__(0.6))) == [False]
+
+
+def test_what_is_done_at_the_same_time_is_in_no_order() -> None:
+    both = apply(duet(), WAVES_UP, put("right_ankle", (-0.1, -0.5, 0.0)), frames=slice(40, 80))
+    assert verdicts("A raises an arm and then lifts a leg.", both) == [True, False]
+    assert verdicts("A raises an arm while he lifts a leg.", both) == [True, True]
+    assert verdicts("A raises an arm and then lifts a leg.", arm_then_leg()) == [True, True]
+
+
+def sits(*frames: slice) -> Motion:
+    def sit(both: np.ndarray) -> None:
+        for who, during in enumerate(frames):
+            both[who, during, :, 1] -= 0.4
+            for foot in ("left_foot", "right_foot"):
+                both[who, during, index(foot), 1] = 0.02
+
+    return duet(sit)
+
+
+def test_who_sits_from_the_start_does_not_sit_down() -> None:
+    assert verdicts("A crouches down.", sits(slice(0, 120))) == [False]
+    assert verdicts("A crouches down.", sits(slice(30, 120))) == [True]
+    assert verdicts("A is crouching.", sits(slice(0, 120))) == [True]
+
+
+def test_an_attitude_after_another_act_begins_after_it() -> None:
+    first, later = slice(20, 120), slice(70, 120)
+    assert verdicts("A crouches down, and then B crouches down.", sits(first, later)) == [True, True]
+    assert verdicts("A crouches down, and then B crouches down.", sits(later, first)) == [True, False]
+    assert verdicts("A crouches down, and then B crouches down.", sits(first, first)) == [True, False]
 
 
 # ---- whole -----------------------------------------------------------------------------------------------

@@ -81,18 +81,32 @@ def both_hands_meet(m: Motion, gap: float = 0.15) -> Mask:
     return np.minimum(straight, crossed) < gap
 
 
+def opposite(side: str) -> str:
+    """ "right" for "left", and the other way round."""
+    return SIDES[1 - SIDES.index(side)]
+
+
 def to_joints(m: Motion, points: Array, who: int, part: str) -> Array:
-    """(P, T) least distance of points (P, T, 3) to a person's joints of a part."""
-    joints = np.stack([m.joint(who, name) for name in BODY[part]])
+    """(P, T) least distance of points (P, T, 3) to a person's joints of a part, such as "arm" or "left arm"."""
+    side, _, name = part.rpartition(" ")
+    sided = [joint for joint in BODY[name] if side and joint.startswith(side)]
+    joints = np.stack([m.joint(who, joint) for joint in sided or BODY[name]])
     return np.linalg.norm(points[:, None] - joints[None], axis=-1).min(axis=1)
 
 
 @predicate
 def hand_on(m: Motion, who: int, part: str, side: str = "any", gap: float = ON_JOINT) -> Mask:
-    """A hand (wrist or palm) is on a part of the other's body; "both": each hand is."""
+    """A hand (wrist or palm) is on a part of the other's body; "both": each hand is.
+
+    On "left foot" it is within ``gap`` metres and nearer to the left one than to the right one.
+    """
     if side == "both":
         return hand_on(m, who, part, "left", gap) & hand_on(m, who, part, "right", gap)
-    return to_joints(m, m.hands(who, side), 1 - who, part).min(axis=0) < gap
+    gaps = to_joints(m, m.hands(who, side), 1 - who, part)
+    if part.startswith(SIDES):
+        named, _, name = part.partition(" ")
+        gaps[gaps >= to_joints(m, m.hands(who, side), 1 - who, f"{opposite(named)} {name}")] = np.inf
+    return gaps.min(axis=0) < gap
 
 
 @predicate

@@ -198,3 +198,25 @@ def test_clauses_of_few_words_keep_who_does_what_and_whether(sentence: str, acts
 
 def test_what_is_prevented_is_not_asked_for() -> None:
     assert [act.modality for act in read("A catches B before he falls.").acts] == ["told", "wished"]
+
+
+@pytest.mark.parametrize(
+    ("text", "side", "part_side"),
+    [
+        ("A lifts B's left leg.", None, "left"),
+        ("A ties the left shoe of B.", None, "left"),
+        ("She taps him on the right shoulder.", None, "right"),
+        ("A touches B's left shoulder with the right hand.", "right", "left"),
+        ("They touch each other's left shoulder.", None, "left"),
+        ("B parries A's left punch.", None, None),
+        ("A throws a left hook.", "left", None),
+        ("A raises the right arm.", "right", None),
+    ],
+)
+def test_a_side_is_of_whom_the_words_say(text: str, side: str | None, part_side: str | None) -> None:
+    act = only(text)
+    assert (act.side, act.part_side) == (side, part_side)
+
+
+def test_a_letter_before_is_is_a_name() -> None:
+    assert told("A is kneeling.") == [("kneel", "a", None)]
