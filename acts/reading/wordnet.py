@@ -1,23 +1,18 @@
 """WordNet 3.0 on words: which verbs mean what an act's verbs mean, and which nouns are people.
 
-The tables beside this module are an extract; ``python -m acts.reading.wordnet FOLDER`` makes them anew from WordNet's
-``dict`` folder (Debian's ``wordnet-base``). Its licence is in ``WORDNET-LICENSE``.
+The tables beside this module are an extract, which this module made in commit 360d5918 of WordNet's ``dict`` folder
+(Debian's ``wordnet-base``). Its licence is in ``WORDNET-LICENSE``.
 """
 
 from __future__ import annotations
 
 import bisect
-import sys
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 _HERE = Path(__file__).parent
 VERBS, PEOPLE, NOUNS = _HERE / "verbs.tsv", _HERE / "people.tsv", _HERE / "nouns.tsv"
-_PERSON, _ACT = "18", "04"
-"""WordNet's numbers for the lexicographer's files of people and of acts."""
-
-
 _STARTS = (
     "00001740",
     "00109660",
@@ -162,73 +157,3 @@ def meanings(lemma: str, most: int = 3, height: int = 2) -> list[tuple[str, floa
                 found[each] = min(cost, found.get(each, cost))
             level, cost = [up for each in level for up in verbs.above.get(each, ())], cost + 1.0
     return sorted(found.items(), key=lambda item: item[1])
-
-
-def build(folder: Path) -> None:
-    """Writes the tables from WordNet's files."""
-    rows, ups = [], []
-    for line in _lines(folder / "index.verb"):
-        fields = line.split()
-        lemma, count, skipped = fields[0], int(fields[2]), int(fields[3])
-        if lemma.count("_") < 2:  # "bump_into" is a verb and its particle
-            rows.append(f"v\t{lemma}\t{' '.join(fields[6 + skipped :][:count])}")
-    for line in _lines(folder / "data.verb"):
-        fields = line.split("|")[0].split()
-        pointers = fields[5 + 2 * int(fields[3], 16) - 1 :]
-        above = [pointers[i + 1] for i, sign in enumerate(pointers) if sign == "@" and pointers[i + 2] == "v"]
-        if above:
-            ups.append(f"s\t{fields[0]}\t{' '.join(above)}")
-    VERBS.write_text("\n".join([*rows, *ups]) + "\n", encoding="utf-8")
-    above_of: dict[str, list[str]] = {}
-    file_of: dict[str, str] = {}
-    words_of: dict[str, set[str]] = {}
-    spelt: dict[str, set[str]] = {}  # "ball", but not "Ball"
-    for line in _lines(folder / "data.noun"):
-        fields = line.split("|")[0].split()
-        file_of[fields[0]] = fields[1]
-        count = int(fields[3], 16)
-        spelt[fields[0]] = {fields[4 + 2 * i] for i in range(count)}
-        words_of[fields[0]] = {word.lower() for word in spelt[fields[0]]}
-        pointers = fields[4 + 2 * count :]
-        above_of[fields[0]] = [pointers[i + 1] for i, sign in enumerate(pointers) if sign in ("@", "@i")]
-    roots = {
-        word: {key for key, words in words_of.items() if file_of[key] == _PERSON and word in words}
-        for word in ("male_person", "female_person", "juvenile_person", "golden_ager", "child")
-    }
-    animal = {key for key, words in words_of.items() if words >= {"animal", "fauna"}}
-    lines, nouns = [], []
-    for line in _lines(folder / "index.noun"):
-        fields = line.split()
-        noun, senses = fields[0], fields[6 + int(fields[3]) :]
-        first = senses[0]
-        if "_" in noun or not noun.isalpha():
-            continue
-        closure: set[str] = set()
-        waiting = [first]
-        while waiting:
-            key = waiting.pop()
-            if key not in closure:
-                closure.add(key)
-                waiting += above_of[key]
-        if closure & animal and file_of[first] != _PERSON:
-            nouns.append(f"{noun}\tanimal")
-        if is_verb(noun) and any(file_of[sense] == _ACT for sense in senses[:3]):
-            nouns.append(f"{noun}\tact")
-        if file_of[first] != _PERSON:
-            if any(file_of[sense] == _PERSON and noun in spelt[sense] for sense in senses[1:]):
-                nouns.append(f"{noun}\tperson")
-            continue
-        sex = "m" if closure & roots["male_person"] else "f" if closure & roots["female_person"] else ""
-        young = closure & (roots["juvenile_person"] | roots["child"])
-        age = "child" if young else "old" if closure & roots["golden_ager"] else ""
-        lines.append(f"{noun}\t{sex}\t{age}")
-    PEOPLE.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    NOUNS.write_text("\n".join(nouns) + "\n", encoding="utf-8")
-
-
-def _lines(path: Path) -> list[str]:
-    return [line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("  ")]
-
-
-if __name__ == "__main__":
-    build(Path(sys.argv[1]))

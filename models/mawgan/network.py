@@ -18,21 +18,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil
-from typing import Any, cast
+from typing import Any
 
-import numpy as np
 import torch
-from scipy.fft import dct
 from torch import Tensor, nn
 
 from models.mawgan.srvf import exp_map, inner, log_map, norm, to_curve, to_srvf, to_tangent
 
 _DOUBLINGS = 5
 _STILL = 1e-6
-_LAST = (1, 3, 8)
-"""Numbers of last steps of the past; the mean length of each is an input of the network."""
-_SHORT = 1e-2
-"""Metres that all joints together must move before a past differs from one without movement."""
 _LONGER = 2.0
 """Bound of the logarithm of the ratio of the future's curve length per frame to the past's."""
 
@@ -52,14 +46,6 @@ class MAWGANConfig:
         linear: adds a linear map from past to future, which the convolutions correct. The thesis has none. It
             shortens training: adjacent rows of the image are unrelated joints, which convolutions learn slowly.
         length: whether the length of the future's curve is predicted; otherwise it equals the past's.
-        pose: further inputs: the last given pose, the logarithm of the past's length, and the logarithms of
-            the speed of its last frames relative to its mean speed. The thesis' network sees only changes of
-            pose, so it cannot know that raised arms cannot be raised further.
-        coefficients: number of temporal cosine coefficients of each coordinate that the linear map reads and
-            writes, lowest frequencies first; 0: all frames.
-        shortcut: feeds the first layer's outputs to the linear map as well, which makes it a two-layer
-            network. In the thesis they reach the future through the convolutions only.
-        dropout: of the first layer's outputs, in training.
     """
 
     joints: int = 17
@@ -72,10 +58,6 @@ class MAWGANConfig:
     critic_stride: int = 2
     linear: bool = False
     length: bool = False
-    pose: bool = False
-    coefficients: int = 0
-    shortcut: bool = False
-    dropout: float = 0.0
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> MAWGANConfig:
@@ -88,11 +70,6 @@ class MAWGANConfig:
         return 3 * self.joints, self.future + 1
 
     @property
-    def beside(self) -> int:
-        """Number of inputs in addition to the past's tangent vector."""
-        return 3 * self.joints + 1 + len(_LAST) if self.pose else 0
-
-    @property
     def grid(self) -> tuple[int, int]:
         """Size of the first feature map."""
         high, wide = (ceil(size / 2**_DOUBLINGS) for size in self.image)
@@ -100,75 +77,33 @@ class MAWGANConfig:
 
 
 class Generator(nn.Module):
-    """Tangent vectors of the past (B, past, D) and more → raw vectors of the future (B, future + 1, D)."""
-
-    analysis: Tensor
-    synthesis: Tensor
+    """Tangent vectors of the past (B, past, D) → raw vectors of the future (B, future + 1, D)."""
 
     def __init__(self, config: MAWGANConfig) -> None:
         super().__init__()
         self.config = config
         high, wide = config.grid
         first = config.fc // (high * wide)
-        self.fc = nn.Linear(config.past * 3 * config.joints + config.beside, first * high * wide)
+        coordinates, points = config.image
+        self.fc = nn.Linear(config.past * coordinates, first * high * wide)
         layers: list[nn.Module] = []
         for i, (inputs, outputs) in enumerate(zip((first, *config.channels), (*config.channels, 1), strict=True)):
             layers += [nn.Upsample(scale_factor=2.0), nn.Conv2d(inputs, outputs, 3, padding=1)]
             if i < _DOUBLINGS - 1:
                 layers.append(nn.ReLU())
         self.up = nn.Sequential(*layers)
-        self.dropout = nn.Dropout(config.dropout)
-        coordinates, points = config.image
-        for name, size in (("analysis", config.past), ("synthesis", points)):
-            cosines = torch.from_numpy(dct(np.eye(size), norm="ortho", axis=0)).float()
-            kept = cosines[: config.coefficients] if config.coefficients else torch.eye(size)
-            self.register_buffer(name, kept if name == "analysis" else kept.T, persistent=False)
-        inputs = self.analysis.shape[0] * coordinates + config.beside
-        inputs += config.shortcut * self.fc.out_features
-        outputs = self.synthesis.shape[1] * coordinates
-        self.linear = nn.Linear(inputs, outputs) if config.linear else None
+        self.linear = nn.Linear(config.past * coordinates, points * coordinates) if config.linear else None
         if self.linear is not None:
             nn.init.zeros_(self.linear.weight)
             nn.init.zeros_(self.linear.bias)
 
-    def forward(self, s: Tensor, beside: Tensor) -> Tensor:
-        """``beside`` is (B, :attr:`MAWGANConfig.beside`)."""
+    def forward(self, s: Tensor) -> Tensor:
+        """See the class."""
         coordinates, points = self.config.image
-        x = self.dropout(torch.relu(self.fc(torch.cat([s.flatten(1), beside], 1))))
+        x = torch.relu(self.fc(s.flatten(1)))
         image = self.up(x.unflatten(1, (-1, *self.config.grid)))
         made = image[:, 0, :coordinates, :points].transpose(1, 2)
-        if self.linear is None:
-            return made
-        given = [self.coefficients(s, beside)] + [x] * self.config.shortcut
-        return made + self.synthesis @ self.linear(torch.cat(given, 1)).unflatten(1, (-1, coordinates))
-
-    def coefficients(self, s: Tensor, beside: Tensor) -> Tensor:
-        """The linear map's own inputs (B, inputs)."""
-        return torch.cat([(self.analysis @ s).flatten(1), beside], 1)
-
-    @torch.no_grad()
-    def fit_linear(self, s: Tensor, beside: Tensor, made: Tensor, *, ridge: float) -> None:
-        """Solves for the linear map in closed form; the convolutions begin with corrections of 0.
-
-        Args:
-            s, beside: (N, …) inputs as in :meth:`forward`.
-            made: (N, future + 1, D) what should come out.
-            ridge: weight of the penalty, for inputs of variance 1, as a share of N.
-        """
-        assert self.linear is not None
-        x = self.coefficients(s, beside).double()
-        y = (torch.linalg.pinv(self.synthesis) @ made).flatten(1).double()
-        mean, deviation = x.mean(0), x.std(0).clamp_min(1e-3)
-        x = (x - mean) / deviation
-        gram = x.T @ x + ridge * len(x) * torch.eye(x.shape[1], dtype=x.dtype, device=x.device)
-        weight = torch.linalg.solve(gram, x.T @ (y - y.mean(0))).T / deviation
-        last = cast(nn.Conv2d, self.up[-1])
-        nn.init.zeros_(last.weight)
-        assert last.bias is not None
-        nn.init.zeros_(last.bias)
-        self.linear.weight.zero_()
-        self.linear.weight[:, : x.shape[1]] = weight
-        self.linear.bias.copy_(y.mean(0) - weight @ mean)
+        return made if self.linear is None else made + self.linear(s.flatten(1)).unflatten(1, (-1, coordinates))
 
 
 class Critic(nn.Module):
@@ -207,7 +142,6 @@ class PredictiveMAWGAN(nn.Module):
 
     past_mean: Tensor
     future_mean: Tensor
-    beside_mean: Tensor
 
     def __init__(self, config: MAWGANConfig) -> None:
         super().__init__()
@@ -217,19 +151,6 @@ class PredictiveMAWGAN(nn.Module):
         for name, count in (("past_mean", config.past), ("future_mean", points)):
             mean = torch.ones(count, coordinates)
             self.register_buffer(name, mean / norm(mean))
-        if config.pose:
-            self.register_buffer("beside_mean", torch.zeros(config.beside))
-
-    def inputs(self, past: Tensor) -> tuple[Tensor, Tensor]:
-        """The generator's inputs for past curves (B, past, D): tangent vectors and the additional inputs."""
-        q, length = to_srvf(past)
-        s = log_map(self.past_mean, q)
-        if not self.config.pose:
-            return s, s.new_zeros(len(s), 0)
-        size = length.clamp_min(_SHORT)[:, None]
-        lengths = past.diff(dim=1).norm(dim=-1)
-        ends = [(lengths[:, -n:].mean(1, keepdim=True) * past.shape[1] / size + 0.1).log() for n in _LAST]
-        return s, torch.cat([past[:, -1], size.log(), *ends], 1) - self.beside_mean
 
     def generate(self, past: Tensor) -> tuple[Tensor, Tensor]:
         """Runs the generator on past curves.
@@ -241,21 +162,9 @@ class PredictiveMAWGAN(nn.Module):
             Tangent vectors at ``future_mean`` (B, future + 1, D), and the logarithm (B,) of the ratio
             of the future's curve length per frame to the past's.
         """
-        made = self.generator(*self.inputs(past))
+        made = self.generator(log_map(self.past_mean, to_srvf(past)[0]))
         along = inner(self.future_mean, made).clamp(-_LONGER, _LONGER)
         return to_tangent(self.future_mean, made), along if self.config.length else torch.zeros_like(along)
-
-    def wanted(self, past: Tensor, future: Tensor) -> Tensor:
-        """The generator's targets (B, future + 1, D): outputs that decode to the true futures.
-
-        Args:
-            past: (B, past, D).
-            future: (B, future + 1, D), the last given pose and the frames after it.
-        """
-        (_, before), (q, after) = to_srvf(past), to_srvf(future)
-        steps = (self.config.future + 1) / self.config.past
-        longer = (after / (before * steps)).log().clamp(-_LONGER, _LONGER)
-        return log_map(self.future_mean, q) + longer[:, None, None] * self.future_mean
 
     def decode(self, s: Tensor, longer: Tensor, past: Tensor) -> Tensor:
         """Turns the outputs of :meth:`generate` into curves (B, future, D) that continue the past (B, past, D)."""

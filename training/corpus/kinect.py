@@ -1,30 +1,24 @@
 """Corrects a Kinect's errors on two people: lean, sides, spikes, open trunks; then fits bodies.
 
 The joints go in as recorded (:class:`training.corpus.kinect_files.KinectPair`) and come out on the 22-joint skeleton
-of constant bones. :func:`strict_pairs` has them by the protocol of Chopin's thesis: every listed clip, the data sets'
-own classes, nothing mended after. :mod:`training.corpus.pairs` drops clips that fit no body or do not show their class,
-relabels approaches in which both walk, and brings hands together. Here each clip of the published lists is only fitted
-to bodies, because the networks speak SMPL22: 195 and 30 clips of SBU in six classes, 236 and 28 of K3HI in eight.
+of constant bones. :mod:`training.corpus.pairs` then drops clips that fit no body or do not show their class.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
-from pathlib import Path
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from motion.formats.files import replacing
 from motion.ik import body_scale, fit_skeleton
 from motion.kinematics import project_to_skeleton
 from motion.skeleton import SMPL22, Skeleton
-from motion.transforms import canonicalize, heading_matrix, resample
+from motion.transforms import heading_matrix, resample
 from motion.vectors import wrapped
 
-from .kinect_files import KinectPair, read_pairs
+from .kinect_files import KinectPair
 
 Array = NDArray[np.floating]
 
@@ -204,69 +198,3 @@ def without_spikes(positions: Array, fps: float, *, threshold: float = 0.15) -> 
     # A joint that is far off half the time is moving, not jumping.
     spike &= spike.mean(axis=0) < 0.25
     return np.where(spike[..., None], np.nan, positions)
-
-
-# ---- the thesis' protocol ------------------------------------------------------------------------
-
-CACHE = "strict-pairs-1.npz"
-WALKING = "walking"
-"""SBU's approaching and departing are one class in the thesis (section 3.4.1)."""
-
-
-@dataclass(frozen=True, eq=False)
-class StrictPair:
-    """A listed clip.
-
-    Attributes:
-        positions: (2, T, 22, 3) metres at 30 fps, the actor first, canonical to the actor.
-        label: the class, of the data set.
-        dataset: "sbu" or "k3hi".
-        test: True in the test list.
-        name: of the clip.
-    """
-
-    positions: Array = field(repr=False)
-    label: str
-    dataset: str
-    test: bool
-    name: str
-
-
-def strict_pairs(data: str | Path, cache: str | Path | None = None) -> list[StrictPair]:
-    """All listed clips, fitted once (about five minutes) and then read from a cache.
-
-    Args:
-        data: the folder that holds ``sbu`` and ``k3hi``, unpacked or as archives.
-        cache: folder of the cache file; by default ``data``.
-
-    Raises:
-        InputError: if the data are not there.
-    """
-    path = Path(cache or data) / CACHE
-    if not path.is_file():
-        pairs = list(_fitted_of(read_pairs(data)))
-        arrays = {f"positions{number}": pair.positions for number, pair in enumerate(pairs)}
-        kept = {key: np.array([getattr(pair, key) for pair in pairs]) for key in ("label", "dataset", "test", "name")}
-        with replacing(path) as temporary, open(temporary, "wb") as file:
-            np.savez_compressed(file, **arrays, **kept)
-    with np.load(path, allow_pickle=False) as stored:
-        return [
-            StrictPair(stored[f"positions{number}"], str(label), str(dataset), bool(test), str(name))
-            for number, (label, dataset, test, name) in enumerate(
-                zip(*(stored[key] for key in ("label", "dataset", "test", "name")), strict=True)
-            )
-        ]
-
-
-def _fitted_of(pairs: Iterable[KinectPair]) -> Iterator[StrictPair]:
-    """The listed ones, on bodies."""
-    for pair in pairs:
-        if pair.split != "unlisted":
-            people = canonicalize(fit_pair(pair)[0]).astype(np.float32)
-            yield StrictPair(people, label_of(pair), pair.dataset, pair.split == "benchmark", pair.name)
-
-
-def label_of(pair: KinectPair) -> str:
-    """The class of a clip in the thesis."""
-    walks = pair.dataset == "sbu" and pair.family in ("approach", "depart")
-    return WALKING if walks else pair.family

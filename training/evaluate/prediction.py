@@ -1,7 +1,7 @@
-"""The table of prediction: ``python -m training.evaluate.prediction --data DIR --table docs/prediction.md``.
+"""Scores the page's predictions: ``python -m training.evaluate.prediction --data CORPUS``.
 
-CMU MoCap as the papers cut it (:mod:`training.corpus.cmu`), on *every* window of the test clips: zero velocity, and
-each folder of a trained predictor that is named with ``--predictor``.
+Whole predictions as the page makes them (frame of reference, bones, seam, feet, recursion), on windows of the
+corpus' test split, root and all in the world.
 """
 
 from __future__ import annotations
@@ -12,31 +12,36 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import torch
+from numpy.typing import NDArray
 
-from models.predictors import Predictor, load_predictor
 from motion import InputError
+from motion.cleaning import foot_contacts
 from motion.formats.files import write_text
 from training.core.shell import add_options, exit_code
-from training.corpus import cmu
-from training.corpus.cmu import Array
+from training.trainers.prediction import Windows
+from webdemo.inference.pipelines.predictor import PredictorPipeline
 from webdemo.inference.requests.predict import mean_steps
 
+Array = NDArray[np.floating]
 Predict = Callable[[Array], Array]
 """(N, past, J, 3) metres → (N, future, J, 3)."""
-ZERO = "zero velocity"
+
+FPS = 30
+PAST, FUTURE = FPS, 4 * FPS
+TRUTH = "what really followed"
+AHEAD = (2, 5, 10, 15, 30, 60, 90, 120)
+"""Predicted frames that are scored."""
+_FEET = (7, 10, 8, 11)
+"""Ankle and toe of the left and the right foot, in the order of :func:`foot_contacts`."""
 
 
 @dataclass(frozen=True)
 class Scores:
-    """Of one method on the windows of one action.
+    """Of one method on windows.
 
     Attributes:
         windows: how many.
-        error: (future,) mean distance of joints from the truth at each predicted frame, in millimetres, as the
-            papers' tables have it.
-        rms: (future,) the thesis' eq. 2.12: root mean square of the distances over joints and all frames so
-            far, in millimetres.
+        error: (future,) mean distance of joints from the truth at each predicted frame, in millimetres.
         speed: (future,) mean distance per joint and frame (MPJS, eq. 2.13), in millimetres.
         true_speed: the same of the truth.
         seam: share of windows whose first predicted step is at most the largest step of the past.
@@ -44,7 +49,6 @@ class Scores:
 
     windows: int
     error: Array
-    rms: Array
     speed: Array
     true_speed: Array
     seam: float
@@ -52,110 +56,58 @@ class Scores:
 
 def score(predict: Predict, windows: Array, past: int, *, batch: int = 512) -> Scores:
     """Scores a method on windows (N, past + future, J, 3) in metres."""
-    errors, squares, speeds, true_speeds, seams = [], [], [], [], []
+    errors, speeds, true_speeds, seams = [], [], [], []
     for start in range(0, len(windows), batch):
         part = windows[start : start + batch]
         seen, truth = part[:, :past], part[:, past:]
         made = predict(seen)
-        distances = np.linalg.norm(made - truth, axis=-1)
-        errors.append(distances.mean(-1))
-        so_far = np.arange(1, distances.shape[1] + 1)
-        squares.append(np.sqrt(np.square(distances).mean(-1).cumsum(-1) / so_far))
+        errors.append(np.linalg.norm(made - truth, axis=-1).mean(-1))
         speeds.append(mean_steps(np.concatenate([seen[:, -1:], made], axis=1)))
         true_speeds.append(mean_steps(part[:, past - 1 :]))
         seams.append(speeds[-1][:, 0] <= mean_steps(seen).max(axis=1) + 1e-6)
-    means = (1000 * np.concatenate(x).mean(0) for x in (errors, squares, speeds, true_speeds))
+    means = (1000 * np.concatenate(x).mean(0) for x in (errors, speeds, true_speeds))
     return Scores(len(windows), *means, float(np.concatenate(seams).mean()))
 
 
-def zero_velocity(future: int) -> Predict:
-    """The last pose, held (Martinez et al.; thesis, section 2.5.3)."""
-    return lambda past: np.repeat(past[:, -1:], future, axis=1)
+def measure(predict: Predict, windows: Array) -> tuple[Scores, float]:
+    """Of a method on windows (N, PAST + FUTURE, 22, 3) in metres: its scores, and how standing feet glide in cm/s."""
+    made = predict(windows[:, :PAST])
+    scores = score(lambda _: made, windows, PAST, batch=len(windows))
+    return scores, float(np.mean([glide(motion) for motion in made]))
 
 
-def average(scores: list[Scores]) -> Scores:
-    """The mean over actions, each with the same weight, as in the papers' tables."""
-    return Scores(
-        sum(s.windows for s in scores),
-        *(np.mean([getattr(s, name) for s in scores], axis=0) for name in ("error", "rms", "speed", "true_speed")),
-        float(np.mean([s.seam for s in scores])),
-    )
+def glide(positions: Array) -> float:
+    """Mean speed over the floor of feet that stand, in centimetres a second; 0 if none does.
 
-
-Table = dict[str, dict[str, Scores]]
-"""Scores by method, then by action."""
-
-
-def of_predictor(predictor: Predictor) -> Predict:
-    """A predictor as a function of arrays; beyond its own length it goes on recursively."""
-
-    def predict(past: Array) -> Array:
-        tensor = torch.from_numpy(np.ascontiguousarray(past, dtype=np.float32))
-        return predictor.recursive(tensor, cmu.FUTURE).numpy()
-
-    return predict
-
-
-def evaluate(data: Path, predictors: list[Path]) -> Table:
-    """Scores of zero velocity and every predictor on all test windows.
-
-    Raises:
-        InputError: if data or weights are missing, or a predictor is for another skeleton.
+    Args:
+        positions: (T, 22, 3) metres.
     """
-    methods = {ZERO: zero_velocity(cmu.FUTURE)}
-    for folder in predictors:
-        predictor = load_predictor(folder)
-        if predictor.joints != 17 or predictor.past > cmu.PAST:
-            raise InputError(
-                f"{folder.name} takes {predictor.past} frames of {predictor.joints} joints: name a predictor "
-                f"of CMU's 17 joints and at most {cmu.PAST} frames."
-            )
-        methods[folder.name] = of_predictor(predictor)
-    found: Table = {name: {} for name in methods}
-    for action, clips in cmu.read_actions(data, "test").items():
-        windows = cmu.windows(clips)
-        for name, predict in methods.items():
-            found[name][action] = score(predict, windows, cmu.PAST)
-    return found
+    stands = foot_contacts(positions, FPS)
+    moves = np.linalg.norm(np.diff(positions[:, _FEET][..., [0, 2]], axis=0), axis=-1)
+    both = stands[1:] & stands[:-1]
+    return float(100 * FPS * moves[both].mean()) if both.any() else 0.0
 
 
-def markdown(found: Table) -> str:
-    """The scores as a page of tables."""
-    actions = list(found[ZERO])
-    benchmark = [action for action in actions if action in cmu.ACTIONS]
-    means = {name: average([scores[a] for a in benchmark]) for name, scores in found.items()}
-    head = " | ".join(f"{h}" for h in cmu.HORIZONS)
-    lines = [f"| action (windows) | method | {head} |", "|---|---|" + "---:|" * len(cmu.HORIZONS)]
-    for action in actions:
-        for i, (name, scores) in enumerate(found.items()):
-            label = f"{action} ({scores[action].windows})" if i == 0 else ""
-            lines.append(f"| {label} | {name} | {_errors(scores[action].error)} |")
-    for i, (name, mean) in enumerate(means.items()):
-        label = f"**average of {len(benchmark)}** ({mean.windows})" if i == 0 else ""
-        lines.append(f"| {label} | {name} | {_errors(mean.error)} |")
-    for i, (name, mean) in enumerate(means.items()):
-        label = "**the same by eq. 2.12**" if i == 0 else ""
-        lines.append(f"| {label} | {name} | {_errors(mean.rms)} |")
-    lines += ["", f"| on average | {' | '.join(found)} |", "|---|" + "---:|" * len(found)]
-    zero = means[ZERO]
-    for h in (10, 25):
-        ratios = [f"{m.error[h - 1] / zero.error[h - 1]:.2f}" for m in means.values()]
-        lines.append(f"| error at {h} frames over that of zero velocity | {' | '.join(ratios)} |")
-        ratios = [f"{m.rms[h - 1] / zero.rms[h - 1]:.2f}" for m in means.values()]
-        lines.append(f"| the same by eq. 2.12 | {' | '.join(ratios)} |")
-    share = [m.speed / m.true_speed for m in means.values()]
-    for label, place in (("first", 0), ("10th", 9), ("25th", 24)):
-        values = " | ".join(f"{s[place]:.2f}" for s in share)
-        lines.append(f"| speed over the truth's, {label} step | {values} |")
-    ranges = " | ".join(f"{s.min():.2f} to {s.max():.2f}" for s in share)
-    lines.append(f"| the same, slowest and fastest of all steps | {ranges} |")
-    seams = " | ".join(f"{m.seam:.1%}" for m in means.values())
-    lines.append(f"| windows whose first step is within the past's largest | {seams} |")
+def markdown(found: dict[str, tuple[Scores, float]]) -> str:
+    """The scores by method as a table."""
+    speeds = {name: scores.speed / scores.true_speed for name, (scores, _) in found.items()}
+    methods = [name for name in found if name != TRUTH]
+    head = " | ".join(f"{frame / FPS:.2g} s" for frame in AHEAD)
+    lines = [f"| {found[TRUTH][0].windows} windows | {head} |", "|---|" + "---:|" * len(AHEAD)]
+    for name in methods:
+        lines.append(f"| {name}, mm | {' | '.join(f'{found[name][0].error[f - 1]:.0f}' for f in AHEAD)} |")
+    for name in methods:
+        if speeds[name].any():
+            ratios = " | ".join(f"{speeds[name][f - 1]:.2f}" for f in AHEAD)
+            lines.append(f"| {name}, speed over the truth's | {ratios} |")
+    lines += ["", f"|  | {' | '.join(found)} |", "|---|" + "---:|" * len(found)]
+    for label, values in (
+        ("slowest and fastest step over the truth's", [f"{s.min():.2f} to {s.max():.2f}" for s in speeds.values()]),
+        ("first step within the past's largest", [f"{scores.seam:.1%}" for scores, _ in found.values()]),
+        ("standing feet glide, cm/s", [f"{glides:.1f}" for _, glides in found.values()]),
+    ):
+        lines.append(f"| {label} | {' | '.join(values)} |")
     return "\n".join(lines) + "\n"
-
-
-def _errors(errors: Array) -> str:
-    return " | ".join(f"{errors[h - 1]:.1f}" for h in cmu.HORIZONS)
 
 
 def put_into(page: Path, table: str, *, name: str = "table") -> None:
@@ -177,16 +129,25 @@ def put_into(page: Path, table: str, *, name: str = "table") -> None:
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    parser = argparse.ArgumentParser(description="Score predictors on CMU MoCap.")
-    add_options(parser, "cmu")
-    parser.add_argument("--predictor", type=Path, action="append", default=[], help="a predictor's folder")
+    parser = argparse.ArgumentParser(description="Score the page's predictions on the corpus' test split.")
+    parser.add_argument("--data", type=Path, required=True, help="folder of the corpus")
+    add_options(parser, "weights")
+    parser.add_argument("--model", action="append", help="name of a model; motion-mlp by default")
+    parser.add_argument("--windows", type=int, default=200, help="how many are drawn")
     parser.add_argument("--table", type=Path, help="Markdown page that the table is put into")
     options = parser.parse_args(argv)
 
     def job() -> None:
-        table = markdown(evaluate(options.data, options.predictor))
+        source = Windows(options.data, PAST, FUTURE, split="test")
+        windows = source.draw(options.windows, np.random.default_rng(0)).astype(np.float64)
+        truth = windows[:, PAST:]
+        found = {TRUTH: measure(lambda _: truth, windows)}
+        for name in ("still", *(options.model or ["motion-mlp"])):
+            predictor = PredictorPipeline(None if name == "still" else options.weights / name)
+            found[name] = measure(lambda past, own=predictor: own.predict(past, FUTURE), windows)
+        table = markdown(found)
         if options.table:
-            put_into(options.table, table)
+            put_into(options.table, table, name="product")
         print(table)
 
     return exit_code(job)

@@ -7,9 +7,6 @@ to the actors of the test lists, which no model was trained on. The nearest reco
 knows the same recorded pairs.
 
 Methods whose name ends in *class told* get the sentence of the clip's class (:data:`SENTENCES`), the others no words.
-
-With ``--strict`` the clips are those of :mod:`training.corpus.kinect`: all of the lists, in the data sets' own
-classes.
 """
 
 from __future__ import annotations
@@ -28,7 +25,6 @@ from motion import Clip, Duet, InputError
 from motion.metrics import summary
 from motion.metrics.generation import frechet_distance, interval
 from training.core.shell import add_options, exit_code, write_scores
-from training.corpus.kinect import strict_pairs
 from training.corpus.pairs import load_pairs
 from training.evaluate.deep_gru import accuracy, deep_features, fit, measured
 from webdemo.inference import Engine, ReactRequest, Result
@@ -66,9 +62,8 @@ SENTENCES = {
     "point": "One person points at the other.",
     "punch": "One person punches the other.",
     "push": "One person pushes the other.",
-    "walking": "One person walks and the other stands still.",
 }
-"""What the actor, named first, and the reactor do, by class. *Meet* and *part* are of the filtered pairs."""
+"""What the actor, named first, and the reactor do, by class."""
 CLASS_TOLD = {f"{name}, class told": chosen for name, chosen in METHODS.items() if chosen["model"] == "regennet"}
 """Request fields of ReGenNet with the sentence of a clip's class, at the page's guidance scale."""
 DATASETS = {"sbu": "SBU", "k3hi": "K3HI"}
@@ -144,22 +139,6 @@ def recorded(data: Path, cache: Path | None, dataset: str) -> tuple[list[Reactio
     if not kinds[False]:
         raise InputError(f"{data} holds no test clips of {DATASETS[dataset]}: give the whole release.")
     return kinds[True], kinds[False], classes
-
-
-def strictly(data: Path, cache: Path | None, dataset: str) -> tuple[list[Reaction], list[Reaction], list[str]]:
-    """Every listed training and test pair of a data set, and its classes."""
-    pairs = [pair for pair in strict_pairs(data, cache) if pair.dataset == dataset]
-    classes = sorted({pair.label for pair in pairs})
-    kinds: dict[bool, list[Reaction]] = {True: [], False: []}
-    for pair in pairs:
-        kinds[pair.test].append(Reaction(pair.positions, classes.index(pair.label)))
-    return kinds[False], kinds[True], classes
-
-
-def long_enough(people: Array) -> Array:
-    """The pair (2, T, 22, 3) with its last poses held where it is shorter than a model's second."""
-    missing = max(0, SHORTEST - people.shape[1])
-    return np.concatenate([people, np.repeat(people[:, -1:], missing, axis=1)], axis=1)
 
 
 def nearest(bank: Bank, people: Array) -> Array:
@@ -258,7 +237,6 @@ def main(argv: list[str] | None = None) -> int:
     add_options(parser, "pairs", "cache", "out", "table", "weights")
     parser.add_argument("--datasets", nargs="+", choices=list(DATASETS), default=list(DATASETS))
     parser.add_argument("--methods", nargs="*", choices=list(offered), default=installed(offered))
-    parser.add_argument("--strict", action="store_true", help="the thesis' lists and classes, unfiltered")
     parser.add_argument("--seeds", type=int, default=3, help="classifiers, each with a seed of its own")
     parser.add_argument("--samples", type=int, default=3, help="reactions to every actor")
     options = parser.parse_args(argv)
@@ -268,8 +246,7 @@ def main(argv: list[str] | None = None) -> int:
 def _run(options: argparse.Namespace) -> None:
     engine, scores = Engine(options.weights), {}
     for dataset in options.datasets:
-        read = strictly if options.strict else recorded
-        train, test, classes = read(options.data, options.cache, dataset)
+        train, test, classes = recorded(options.data, options.cache, dataset)
         made = {"Zero velocity": [[zero_velocity(reaction) for reaction in test]]}
         bank = Bank([reaction.people for reaction in train])
         made["Nearest recorded reaction"] = [[nearest(bank, reaction.people) for reaction in test]]
@@ -292,10 +269,10 @@ def _run(options: argparse.Namespace) -> None:
 
 def reacted(engine: Engine, pair: Reaction, classes: Sequence[str], seed: int, method: str) -> Array:
     """Person b (T, 22, 3) as a method makes them for a recorded pair, one of these ``classes``."""
-    whole = Duet.from_positions(long_enough(pair.people), fps=30.0)
+    whole = Duet.from_positions(pair.people, fps=30.0)
     prompt = SENTENCES[classes[pair.label]] if method in CLASS_TOLD else ""
     made = react(engine, whole, seed, (METHODS | CLASS_TOLD)[method], prompt=prompt)
-    return np.asarray(made.b.positions)[: pair.people.shape[1]]
+    return np.asarray(made.b.positions)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Trains PredictiveMA-WGAN: ``python -m training.trainers.mawgan --windows cmu --data DIR --out RUN``.
+"""Trains PredictiveMA-WGAN: ``python -m training.trainers.mawgan --data CORPUS --out RUN``.
 
 Chopin's thesis, Algorithm 2 and section 2.5.2: Adam at 1e-4, batches of 64, β = (1, 1, 10, 10), gradient
 penalty 10. Where the thesis and its release differ, the release is the default: four critic steps a predictor
@@ -40,16 +40,12 @@ class Settings:
 
     width: channels of the predictor's first block (thesis: 512), halved in each further block; the critic's first
         has an eighth of it, halved likewise.
-    linear, length, pose, coefficients, shortcut, dropout: as in :class:`~models.mawgan.network.MAWGANConfig`.
-    ridge: above 0, the penalty with which the linear map is fitted in closed form, to ``fit`` windows, before the
-        first step.
-    noise: metres of noise on the pasts.
+    linear, length: as in :class:`~models.mawgan.network.MAWGANConfig`.
     final_rate: share of the learning rate at which its cosine schedule ends; 1 keeps it constant, as in the thesis.
     """
 
-    windows: str = "cmu"
-    past: int = 25
-    future: int = 25
+    past: int = 30
+    future: int = 30
     fc: int = 36_864
     width: int = 512
     critic_fc: int = 1024
@@ -69,14 +65,6 @@ class Settings:
     speed: float = 0.0
     linear: bool = False
     length: bool = False
-    pose: bool = False
-    coefficients: int = 0
-    shortcut: bool = False
-    dropout: float = 0.0
-    ridge: float = 0.0
-    fit: int = 20_000
-    noise: float = 0.0
-    weight_decay: float = 0.0
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -100,10 +88,6 @@ class Settings:
             critic_stride=self.critic_stride,
             linear=self.linear,
             length=self.length,
-            pose=self.pose,
-            coefficients=self.coefficients,
-            shortcut=self.shortcut,
-            dropout=self.dropout,
         )
 
     def weights(self) -> MAWGANLossWeights:
@@ -155,24 +139,16 @@ class Trainer(PredictionTrainer):
         self.ema.load_state_dict(self.model.state_dict())
         self.ema.requires_grad_(False)
         self.optimizer, self.critic_optimizer = (
-            torch.optim.AdamW(part.parameters(), lr=s.learning_rate, betas=(0.5, 0.9), weight_decay=decay, fused=True)
-            for part, decay in ((self.model, s.weight_decay), (self.critic, 0.0))
+            torch.optim.AdamW(part.parameters(), lr=s.learning_rate, betas=(0.5, 0.9), weight_decay=0.0, fused=True)
+            for part in (self.model, self.critic)
         )
 
     def measure(self) -> None:
-        """Means of the training data, and the linear map where it is fitted in closed form."""
+        """Means of the training data."""
         s, model = self.settings, self.model
         past, future = self.curves(self.windows.batch(512, (s.seed, 0, 1)).to(self.device))
         model.past_mean.copy_(karcher_mean(moving(past)))
         model.future_mean.copy_(karcher_mean(moving(future)))
-        if s.pose:
-            model.beside_mean.copy_(model.inputs(past)[1].mean(0))
-        if s.linear and s.ridge:
-            past, future = self.curves(self.windows.batch(s.fit, (s.seed, 0, 2)).to(self.device))
-            past = past + s.noise * torch.randn_like(past)
-            moves = self.moves(past, future)
-            past, future = past[moves], future[moves]
-            model.generator.fit_linear(*model.inputs(past), model.wanted(past, future), ridge=s.ridge)
 
     def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
         """The contents of a checkpoint, by name."""
@@ -183,15 +159,11 @@ class Trainer(PredictionTrainer):
         s, curves = self.settings, to_curves(windows)
         return curves[:, : s.past], curves[:, s.past - 1 : s.past + s.future]
 
-    def moves(self, past: Tensor, future: Tensor) -> Tensor:
-        """(B,) which windows' curves move."""
-        return (to_srvf(past)[1] > _STILL) & (to_srvf(future)[1] > _STILL)
-
     def pairs(self, windows: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """(B,) which windows (B, past + future, J, 3) move; the past curves and the real futures' tangent
         vectors of those."""
         past, future = self.curves(windows)
-        moves = self.moves(past, future)
+        moves = (to_srvf(past)[1] > _STILL) & (to_srvf(future)[1] > _STILL)
         real = log_map(self.model.future_mean, to_srvf(future[moves])[0])
         return moves, past[moves], real
 
@@ -229,7 +201,6 @@ class Trainer(PredictionTrainer):
 
     def train_step(self) -> dict[str, float]:
         """Takes one optimizer step; returns each loss by name."""
-        torch.manual_seed(self.settings.seed + self.step)  # dropout
         weights = self.settings.weights()
         for optimizer in (self.optimizer, self.critic_optimizer):
             for group in optimizer.param_groups:
@@ -237,7 +208,7 @@ class Trainer(PredictionTrainer):
         windows = self.batch()
         moves, past, real = self.pairs(windows)
         truth = windows[moves, self.settings.past :]
-        s, longer = self.model.generate(past + self.settings.noise * torch.randn_like(past))
+        s, longer = self.model.generate(past)
         made = self.seen(s)
         critic = list(self.critic_steps(real, made.detach())) if weights.adversarial else [0.0]
         curves = self.model.decode(s, longer, past)

@@ -1,4 +1,4 @@
-"""Trains the default predictor: ``python -m training.trainers.motion_mlp --windows corpus --data DIR --out RUN``.
+"""Trains the default predictor: ``python -m training.trainers.motion_mlp --data CORPUS --out RUN``.
 
 Loss: mean distance of joints (what MPJPE measures), the same of their velocities, and how far mean speeds lie from the
 truth's (:func:`speed_gap`). Without the last a network that is unsure slows down (thesis, section 2.5.4), because half
@@ -24,7 +24,6 @@ from training.trainers.prediction import PredictionTrainer, add_predictor_option
 class Settings:
     """The settings of a run; a checkpoint of others is refused. ``fit`` windows solve the linear part."""
 
-    windows: str = "corpus"
     past: int = 30
     future: int = 30
     past_coefficients: int = 12

@@ -12,7 +12,6 @@ from training.evaluate.deep_gru import accuracy, deep_features, diversity_score,
 from training.evaluate.reactions import (
     METHODS,
     Reaction,
-    long_enough,
     nearest,
     react,
     reacted,
@@ -128,15 +127,6 @@ def test_the_nearest_reaction_begins_in_the_given_pose_and_the_reaction_is_not_l
     np.testing.assert_allclose((made[-1] - made[0])[:, 2], 0.5, atol=1e-6)  # that of the pair that goes 1 m
     asked[1, 1:] += 3.0
     np.testing.assert_array_equal(nearest(bank, asked), made)
-
-
-@pytest.mark.parametrize(("frames", "wanted"), [(12, 31), (50, 50)])
-def test_short_clips_hold_their_last_poses(frames: int, wanted: int) -> None:
-    people = walking(1.0, frames)
-    found = long_enough(people)
-    assert found.shape[1] == wanted
-    np.testing.assert_array_equal(found[:, :frames], people)
-    np.testing.assert_array_equal(found[:, -1], people[:, -1])
 
 
 @pytest.fixture

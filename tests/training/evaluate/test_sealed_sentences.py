@@ -1,4 +1,4 @@
-"""The sealed sentences with clauses, and the reading test: well-formed, and fair by the motion of other sentences.
+"""The sealed sentences with clauses: well-formed, and fair by the motion of other sentences.
 
 Sealed files' words must not appear in a test's output: parameters and messages name sentences by their ids.
 """
@@ -13,26 +13,18 @@ import training.evaluate
 from motion.metrics.sentences import Sentence, kept_out, read_sentences
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import check
-from training.evaluate.plans import FIELDS, MODALITIES, ORDERS, Reading, read_plans
 
 from . import ordinary_scripts, sentence_scripts
 from .puppets import play
 
 FOLDER = Path(training.evaluate.__file__).parent
-NAMES = ("lookable", "sealed")
 SECONDS = 8.0
 OTHERS = 40
 VOICES = ("caption", "visitor", "studio")
 
-each_set = pytest.mark.parametrize("name", NAMES)
-
 
 def sentences() -> tuple[Sentence, ...]:
     return read_sentences(FOLDER / "sealed_sentences.toml")
-
-
-def readings(name: str) -> tuple[Reading, ...]:
-    return read_plans(FOLDER / f"{name}_plans.toml")
 
 
 def wrong(ids: list[str]) -> None:
@@ -71,41 +63,3 @@ def test_standing_still_does_not_do_a_sentence() -> None:
     for gap in (0.7, 1.5, 3.0):
         still = Motion(play(f"gap {gap}", SECONDS))
         wrong([s.id for s in sentences() if s.judge(still).passed])
-
-
-# ---- the reading test ------------------------------------------------------------------------------------
-@each_set
-def test_there_are_fifty_plans_and_ten_leave_something_unread(name: str) -> None:
-    found = readings(name)
-    assert len({r.words.lower() for r in found}) == len({r.id for r in found}) == 50
-    assert sum(bool(r.unread) for r in found) == 10
-    wrong([r.id for r in found if not all(span and span in r.words for span in r.unread)])
-    wrong([r.id for r in found if not r.acts and not r.unread])
-    assert {r.sealed for r in found} == {name == "sealed"}
-
-
-@each_set
-def test_acts_use_known_values_and_point_at_other_acts(name: str) -> None:
-    for reading in readings(name):
-        for i, act in enumerate(reading.acts):
-            good = (
-                act.verb == act.verb.strip().lower() != ""
-                and act.agents in (("a",), ("b",), ("a", "b"))
-                and act.patient in ("a", "b", None)
-                and act.patient not in act.agents[: 1 if len(act.agents) == 1 else 0]
-                and act.polarity in ("done", "not")
-                and act.modality in MODALITIES
-                and act.side in ("left", "right", "both", None)
-                and (act.times is None or act.times >= 1)
-                and all(kind in ORDERS and j != i and 0 <= j < len(reading.acts) for kind, j in act.order)
-            )
-            if not good:
-                wrong([f"{reading.id}, act {i}"])
-
-
-def test_plans_say_what_is_wrong_without_the_words(tmp_path: Path) -> None:
-    path = tmp_path / "x.toml"
-    path.write_text('sealed = true\n[[reading]]\nid = "one"\nwords = "secret words"\nacts = [{verbs = "walk"}]\n')
-    with pytest.raises(ValueError, match=r"one of x\.toml") as caught:
-        read_plans(path)
-    assert "secret" not in str(caught.value) and "verb" in FIELDS

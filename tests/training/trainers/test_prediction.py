@@ -14,10 +14,10 @@ from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import load_predictor, save_predictor
 from motion import SMPL22, InputError
 from motion.transforms import heading
-from training.evaluate import prediction_product as product
+from training.evaluate import prediction as product
 from training.trainers import mawgan
 from training.trainers import motion_mlp as mlp
-from training.trainers.prediction import CorpusWindows, PredictionTrainer, open_windows
+from training.trainers.prediction import PredictionTrainer, Windows
 
 MLP = mlp.Settings(
     past=10,
@@ -31,25 +31,8 @@ MLP = mlp.Settings(
     steps=6,
     warmup=1,
 )
-GAN = mawgan.Settings(
-    windows="corpus", past=10, future=8, fc=36, width=32, critic_fc=8, critic_steps=2, batch=4, steps=3
-)
-LEAN_GAN = replace(
-    GAN,
-    critic_steps=1,
-    final_rate=0.1,
-    position=100.0,
-    speed=300.0,
-    linear=True,
-    length=True,
-    pose=True,
-    coefficients=4,
-    shortcut=True,
-    dropout=0.3,
-    ridge=0.1,
-    fit=64,
-    noise=0.001,
-)
+GAN = mawgan.Settings(past=10, future=8, fc=36, width=32, critic_fc=8, critic_steps=2, batch=4, steps=3)
+LEAN_GAN = replace(GAN, critic_steps=1, final_rate=0.1, position=100.0, speed=300.0, linear=True, length=True)
 
 
 @pytest.fixture(scope="module")
@@ -67,14 +50,14 @@ def corpus(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def start(kind: str, corpus: Path, out: Path, **changed: int) -> PredictionTrainer:
-    windows = open_windows("corpus", corpus, 10, 8)
+    windows = Windows(corpus, 10, 8)
     if kind == "mlp":
         return mlp.Trainer(windows, replace(MLP, **changed), out)
     return mawgan.Trainer(windows, replace(LEAN_GAN if kind == "lean" else GAN, **changed), out)
 
 
 def test_windows_are_of_one_split_in_the_frame_of_their_last_pose(corpus: Path) -> None:
-    windows = CorpusWindows(corpus, 10, 8)
+    windows = Windows(corpus, 10, 8)
     assert windows.starts.min() == 0 and windows.starts.max() == 42
     batch = windows.batch(6, (0, 1))
     assert batch.shape == (6, 18, 22, 3) and torch.equal(batch, windows.batch(6, (0, 1)))
