@@ -18,7 +18,7 @@ from motion.placement import Placement
 from motion.transforms import heading
 
 from .arms import hand_parts, outer_hand_parts
-from .beginnings import beginning, going, starting
+from .beginnings import Room, beginning, going, roomy, starting
 from .figures import figure_parts, figure_poses
 from .floor import plan
 from .gaits import STEPS, low_gait_parts, step_parts
@@ -29,7 +29,6 @@ from .moves import coming, meeting, towards_touched
 from .places import Standing, Way2D
 from .poses import UPRIGHT, Pose, standing, upright
 from .postures import bow_parts, posture_parts, postures
-from .room import Room, roomy
 from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
 from .touches import touch_parts

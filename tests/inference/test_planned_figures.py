@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from acts.shapes import Figure
+from acts.staging.beginnings import BODY, distance
 from acts.staging.figures import figured
-from acts.staging.room import BODY, distance
 from acts.staging.window import late_by
 from motion import SMPL22
 from webdemo.inference import Engine, SceneRequest

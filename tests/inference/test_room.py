@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from acts import read
+from acts.staging.beginnings import BODY, distance, roomy
 from acts.staging.places import Standing
 from acts.staging.poses import at_rest, bowing, lying, upright
 from acts.staging.postures import postures
-from acts.staging.room import BODY, distance, roomy
 from acts.staging.score import Score
 from acts.staging.stage import score_of
 from motion import FPS, SMPL22, Duet

@@ -28,8 +28,7 @@ from motion.vectors import unit
 
 from .checks import foot_skate
 from .cues import STILL, Beat, Scene
-from .kinect import ANKLE, FPS, fit_pair
-from .kinect_files import KinectPair, read_pairs
+from .kinect import ANKLE, FPS, KinectPair, fit_pair, read_pairs
 from .telling import describe as write_words
 
 Array = NDArray[np.floating]

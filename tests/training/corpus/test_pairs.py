@@ -11,8 +11,7 @@ from scipy.spatial.transform import Rotation
 from motion.kinematics import forward_kinematics
 from motion.skeleton import K3HI15, LAYOUTS, SBU15, SMPL22, Skeleton
 from motion.transforms import heading_matrix
-from training.corpus.kinect import unswap
-from training.corpus.kinect_files import KinectPair, read_release
+from training.corpus.kinect import KinectPair, read_release, unswap
 from training.corpus.pairs import build_scene, load_pairs
 
 

@@ -14,8 +14,7 @@ from ..compose import ARMS, Array, Motion, drift, layer, lean
 from ..contact import UP, axes, bend, envelope, nod, on_body, reach_arm
 from ..library import Library, Take, pick
 from ..touches import Touches
-from .performer import Rng
-from .play import Act, Done, Make, Play
+from .play import Act, Done, Make, Play, Rng
 from .whole import WHOLE, part_of, perform, taken
 
 HEAD = SMPL22.index("head")

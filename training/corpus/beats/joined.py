@@ -12,8 +12,7 @@ from ..cues import STILL
 from ..library import pick, stride
 from ..touches import Touches, arm_around, joined_hands, meet_hands, opposite
 from .moves import abreast, ahead, come, leftwards, side_by_side
-from .performer import bearing
-from .play import Effect, Play
+from .play import Effect, Play, bearing
 
 
 def arm_around_beat(play: Play, i: int) -> None:

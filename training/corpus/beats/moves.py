@@ -11,8 +11,7 @@ from ..cues import STILL
 from ..feet import ease
 from ..library import Take, pick, stride
 from .acts import ACTS, arms_over
-from .performer import Performer, bearing
-from .play import Play
+from .play import Performer, Play, bearing
 
 
 def ahead(angle: float) -> Array:

@@ -1,4 +1,4 @@
-"""Two performers on one stage, the beats they have played, and the finished scene."""
+"""Two performers, each with a timeline, on one stage, the beats they have played, and the finished scene."""
 
 from __future__ import annotations
 
@@ -11,11 +11,187 @@ import numpy as np
 from motion.transforms import canonicalize
 from motion.vectors import wrapped
 
-from ..compose import FPS, Array, look_at, realise
+from ..compose import FPS, Array, Motion, blend_for, drift, facing_at, join, look_at, place, realise, steer, tempo
 from ..cues import STILL, Beat
-from ..library import Library
+from ..feet import ease
+from ..library import Library, Take, stride
 from ..touches import Touches
-from .performer import Performer, Rng, bearing
+
+Rng = np.random.Generator
+
+SHUFFLE = 0.45
+"""Metres up to which a person shifts by small steps on the spot instead of walking."""
+
+
+def bearing(vector: Array) -> float:
+    """Heading of an (x, z) vector in radians."""
+    return float(np.arctan2(vector[0], vector[1]))
+
+
+class Performer:
+    """One person on the stage.
+
+    Args:
+        rng: where choices come from.
+        library: the recordings.
+        spot: (x, z) metres and ``angle`` radians: where the person stands at first.
+        style: the manner of walking, or None for any.
+
+    Attributes:
+        motion: all that was done so far.
+    """
+
+    def __init__(
+        self,
+        rng: Rng,
+        library: Library,
+        spot: tuple[float, float] = (0.0, 0.0),
+        angle: float = 0.0,
+        *,
+        style: str | None = None,
+    ) -> None:
+        self.rng, self.library, self.style = rng, library, style
+        self._rest = library.idle(rng, 420, at_ease=0.9)
+        self._used = 4
+        self._calm = True
+        self.motion = place(self._rest[:4], *spot, angle)
+
+    def state(self) -> tuple[Motion, int, bool]:
+        """The state that :meth:`restore` goes back to."""
+        return self.motion, self._used, self._calm
+
+    def restore(self, state: tuple[Motion, int, bool]) -> None:
+        """Goes back to a state that ``state`` gave."""
+        self.motion, self._used, self._calm = state
+
+    def __len__(self) -> int:
+        return len(self.motion)
+
+    @property
+    def spot(self) -> Array:
+        """(2,) x and z of the root at the last frame."""
+        return self.motion.root[-1, [0, 2]]
+
+    @property
+    def angle(self) -> float:
+        """Heading at the last frame, radians."""
+        return facing_at(self.motion, len(self.motion) - 1)
+
+    def _resting(self, frames: int) -> Motion:
+        """The next ``frames`` frames of the person's own way of standing."""
+        if self._used + frames > len(self._rest):
+            self._used = 0
+        while len(self._rest) < frames:
+            self._rest = join(self._rest, self._rest, blend=20)
+        part = self._rest[self._used : self._used + frames]
+        self._used += frames
+        return part
+
+    def append(self, motion: Motion, *, turn: float = 0.0, blend: int | None = None) -> int:
+        """Goes on with ``motion``; returns the frame at which it begins."""
+        blend = min(blend or blend_for(self.motion, motion), len(motion) // 2, len(self.motion))
+        self._calm = False
+        start = len(self.motion) - blend
+        self.motion = join(self.motion, motion, blend=blend, turn=turn)
+        return max(start, 0)
+
+    def hold(self, frames: int, *, turn: float = 0.0, shift: Array | None = None) -> None:
+        """Stands for ``frames`` frames, turning by ``turn`` radians and moving by ``shift`` (x, z) metres."""
+        if frames <= 0:
+            return
+        blend = min(10 if self._calm else blend_for(self.motion, self._rest), len(self.motion))
+        piece = self._resting(frames + blend)
+        course = np.concatenate([np.zeros(blend // 2), ease(frames), np.ones(blend - blend // 2)])
+        if turn:
+            piece = steer(piece, turn * course)
+        before = len(self.motion)
+        self.append(piece, blend=blend)
+        self._calm = True
+        if shift is not None:
+            path = np.zeros((len(self.motion), 3))
+            grown = ease(len(self.motion) - before)[:, None]
+            path[before:, [0, 2]] = grown * np.asarray(shift)
+            self.motion = drift(self.motion, path)
+
+    def hold_until(self, frame: int) -> None:
+        """Stands until the timeline has ``frame`` frames."""
+        self.hold(frame - len(self.motion))
+
+    def turn(self, angle: float) -> None:
+        """Turns on the spot by ``angle`` radians."""
+        if abs(angle) > 0.05:
+            self.hold(int(12 + 13 * abs(angle)), turn=angle)
+
+    def go(self, target: Array, angle: float | None = None, *, action: str = "walk", stop: bool = True) -> Take:
+        """Walks to ``target`` (x, z), turning on the way and, with ``angle``, to that heading at its end.
+
+        Returns:
+            the walk as it was drawn.
+        """
+        target = np.asarray(target, dtype=float)
+        gap = target - self.spot
+        distance = float(np.linalg.norm(gap))
+        if distance < SHUFFLE:
+            turn = 0.0 if angle is None else wrapped(angle - self.angle)
+            self.hold(int(16 + 30 * distance + 12 * abs(turn)), turn=turn, shift=gap)
+            return Take(self.motion[-1:], action, "normal")
+        take, course = self._walk(gap, angle, action)
+        self.append(course)
+        if stop:
+            self.hold(int(self.rng.integers(8, 16)))
+            if angle is not None and abs(left := wrapped(angle - self.angle)) > 0.12:
+                self.hold(int(10 + 14 * abs(left)), turn=left)
+        return take
+
+    def _walk(self, gap: Array, angle: float | None, action: str) -> tuple[Take, Motion]:
+        """A walk that ends ``gap`` from here: turned, bent and scaled a little until it does."""
+        distance = float(np.linalg.norm(gap))
+        best: tuple[float, Take] | None = None
+        for _ in range(4):
+            take = stride(self.rng, self.library, action, distance, style=self.style)
+            length = float(np.linalg.norm((take.motion.root[-1] - take.motion.root[0])[[0, 2]]))
+            ratio = distance / max(length, 1e-3)
+            if best is None or abs(np.log(ratio)) < abs(np.log(best[0])):
+                best = (ratio, take)
+            if 0.85 < ratio < 1.18:
+                break
+        assert best is not None
+        take = best[1]
+        walk = take.motion
+        here = self.angle
+        walk = place(walk, 0.0, 0.0, here)
+        frames = len(walk)
+        first = wrapped(bearing(gap) - here)
+        turning = int(np.clip(14 + 12 * abs(first), 14, frames * 0.7))
+        rise = np.concatenate([ease(turning), np.ones(frames - turning)])
+        slow = np.ones(frames)
+        if abs(first) > 0.9:  # who turns far hardly gets on meanwhile
+            slow[:turning] = 0.3 + 0.7 * ease(turning) ** 2
+        fall = np.zeros(frames)
+        last = 0.0
+        if angle is not None:
+            ending = min(18, frames // 2)
+            fall[frames - ending :] = ease(ending)
+            last = float(np.clip(wrapped(angle - bearing(gap)), -0.7, 0.7))
+        gain, bend = float(np.clip(best[0], 0.7, 1.4)), first
+        steps = np.diff(walk.root[:, [0, 2]], axis=0)
+        for _ in range(5):
+            extra = bend * rise + last * fall
+            cos, sin = np.cos(extra[:-1]), np.sin(extra[:-1])
+            way = (steps * (slow * gain)[:-1, None]).T
+            end = np.array([(cos * way[0] + sin * way[1]).sum(), (cos * way[1] - sin * way[0]).sum()])
+            bend += wrapped(bearing(gap) - bearing(end))
+            gain = float(np.clip(gain * distance / max(np.linalg.norm(end), 1e-3), 0.6, 1.5))
+        return take, steer(tempo(walk, slow * gain), bend * rise + last * fall)
+
+    def perform(self, motion: Motion, *, aim: float = 0.0) -> tuple[int, int]:
+        """Does something; ``aim`` turns it away from the person's front. (first, last) frame."""
+        start = self.append(motion, turn=-aim)
+        return start, len(self.motion)
+
+
+# ---- two performers on one stage ---------------------------------------------------------------------
+
 
 Effect = Callable[[Array, Array], tuple[Array, Array, Touches]]
 

@@ -16,8 +16,7 @@ from ..library import Library, pick
 from ..telling import describe
 from . import joined, moves
 from .acts import ACTS
-from .performer import Rng
-from .play import Done, Play
+from .play import Done, Play, Rng
 from .stories import Pair, stories
 from .touching import TOUCH_BEATS
 
