@@ -45,6 +45,7 @@ class Scores:
         speed: (future,) mean distance per joint and frame (MPJS, eq. 2.13), in millimetres.
         true_speed: the same of the truth.
         seam: share of windows whose first predicted step is at most the largest step of the past.
+        glide: mean speed of standing feet over the floor, in centimetres a second.
     """
 
     windows: int
@@ -52,28 +53,22 @@ class Scores:
     speed: Array
     true_speed: Array
     seam: float
+    glide: float
 
 
-def score(predict: Predict, windows: Array, past: int, *, batch: int = 512) -> Scores:
-    """Scores a method on windows (N, past + future, J, 3) in metres."""
-    errors, speeds, true_speeds, seams = [], [], [], []
-    for start in range(0, len(windows), batch):
-        part = windows[start : start + batch]
-        seen, truth = part[:, :past], part[:, past:]
-        made = predict(seen)
-        errors.append(np.linalg.norm(made - truth, axis=-1).mean(-1))
-        speeds.append(mean_steps(np.concatenate([seen[:, -1:], made], axis=1)))
-        true_speeds.append(mean_steps(part[:, past - 1 :]))
-        seams.append(speeds[-1][:, 0] <= mean_steps(seen).max(axis=1) + 1e-6)
-    means = (1000 * np.concatenate(x).mean(0) for x in (errors, speeds, true_speeds))
-    return Scores(len(windows), *means, float(np.concatenate(seams).mean()))
-
-
-def measure(predict: Predict, windows: Array) -> tuple[Scores, float]:
-    """Of a method on windows (N, PAST + FUTURE, 22, 3) in metres: its scores, and how standing feet glide in cm/s."""
-    made = predict(windows[:, :PAST])
-    scores = score(lambda _: made, windows, PAST, batch=len(windows))
-    return scores, float(np.mean([glide(motion) for motion in made]))
+def score(predict: Predict, windows: Array) -> Scores:
+    """Scores a method on windows (N, PAST + FUTURE, 22, 3) in metres."""
+    seen, truth = windows[:, :PAST], windows[:, PAST:]
+    made = predict(seen)
+    steps = mean_steps(np.concatenate([seen[:, -1:], made], axis=1))
+    return Scores(
+        len(windows),
+        error=1000 * np.linalg.norm(made - truth, axis=-1).mean(-1).mean(0),
+        speed=1000 * steps.mean(0),
+        true_speed=1000 * mean_steps(windows[:, PAST - 1 :]).mean(0),
+        seam=float(np.mean(steps[:, 0] <= mean_steps(seen).max(axis=1) + 1e-6)),
+        glide=float(np.mean([glide(motion) for motion in made])),
+    )
 
 
 def glide(positions: Array) -> float:
@@ -88,14 +83,14 @@ def glide(positions: Array) -> float:
     return float(100 * FPS * moves[both].mean()) if both.any() else 0.0
 
 
-def markdown(found: dict[str, tuple[Scores, float]]) -> str:
+def markdown(found: dict[str, Scores]) -> str:
     """The scores by method as a table."""
-    speeds = {name: scores.speed / scores.true_speed for name, (scores, _) in found.items()}
+    speeds = {name: scores.speed / scores.true_speed for name, scores in found.items()}
     methods = [name for name in found if name != TRUTH]
     head = " | ".join(f"{frame / FPS:.2g} s" for frame in AHEAD)
-    lines = [f"| {found[TRUTH][0].windows} windows | {head} |", "|---|" + "---:|" * len(AHEAD)]
+    lines = [f"| {found[TRUTH].windows} windows | {head} |", "|---|" + "---:|" * len(AHEAD)]
     for name in methods:
-        lines.append(f"| {name}, mm | {' | '.join(f'{found[name][0].error[f - 1]:.0f}' for f in AHEAD)} |")
+        lines.append(f"| {name}, mm | {' | '.join(f'{found[name].error[f - 1]:.0f}' for f in AHEAD)} |")
     for name in methods:
         if speeds[name].any():
             ratios = " | ".join(f"{speeds[name][f - 1]:.2f}" for f in AHEAD)
@@ -103,8 +98,8 @@ def markdown(found: dict[str, tuple[Scores, float]]) -> str:
     lines += ["", f"|  | {' | '.join(found)} |", "|---|" + "---:|" * len(found)]
     for label, values in (
         ("slowest and fastest step over the truth's", [f"{s.min():.2f} to {s.max():.2f}" for s in speeds.values()]),
-        ("first step within the past's largest", [f"{scores.seam:.1%}" for scores, _ in found.values()]),
-        ("standing feet glide, cm/s", [f"{glides:.1f}" for _, glides in found.values()]),
+        ("first step within the past's largest", [f"{scores.seam:.1%}" for scores in found.values()]),
+        ("standing feet glide, cm/s", [f"{scores.glide:.1f}" for scores in found.values()]),
     ):
         lines.append(f"| {label} | {' | '.join(values)} |")
     return "\n".join(lines) + "\n"
@@ -141,10 +136,10 @@ def main(argv: list[str] | None = None) -> int:
         source = Windows(options.data, PAST, FUTURE, split="test")
         windows = source.draw(options.windows, np.random.default_rng(0)).astype(np.float64)
         truth = windows[:, PAST:]
-        found = {TRUTH: measure(lambda _: truth, windows)}
+        found = {TRUTH: score(lambda _: truth, windows)}
         for name in ("still", *(options.model or ["motion-mlp"])):
             predictor = PredictorPipeline(None if name == "still" else options.weights / name)
-            found[name] = measure(lambda past, own=predictor: own.predict(past, FUTURE), windows)
+            found[name] = score(lambda past, own=predictor: own.predict(past, FUTURE), windows)
         table = markdown(found)
         if options.table:
             put_into(options.table, table, name="product")
