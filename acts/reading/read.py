@@ -14,13 +14,13 @@ from acts.shapes import Go
 from acts.things import SEATS, is_fixture, kind_of
 from motion import InputError
 
-from .clauses import spans
 from .completion import completed, formations, held, is_next_to, noun_acts, of_the_last, repeated, seated
 from .matching import Found, matcher
 from .parses import parses
 from .reader import Reader
 from .relations import related
 from .spelling import Speller, other_language, unknown
+from .syntax import spans
 from .text import Text
 from .vocabulary import vocabulary
 from .wording import prepared

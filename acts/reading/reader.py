@@ -12,12 +12,11 @@ from acts.lexicon import Lexicon
 
 from . import wordnet
 from .arguments import Arguments
-from .clauses import MARKS, NOUNMARKS, ClauseTree, tells_on
 from .ellipsis import Absolute, absolutes
 from .people import A_NAME, B_NAME, Cast
 from .references import names_one, reference
 from .subjects import Subjects, give_roles, goes_on, is_passive, state_of
-from .syntax import is_ongoing, seems
+from .syntax import MARKS, NOUNMARKS, ClauseTree, is_ongoing, seems, tells_on
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:

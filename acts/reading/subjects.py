@@ -11,9 +11,9 @@ from acts.frames import best
 from acts.lexicon import Lexicon
 from acts.plan import other_of
 
-from .clauses import ClauseTree, is_finite
 from .people import A_NAME, B_NAME, Cast, begins_clause
 from .references import reference
+from .syntax import ClauseTree, is_finite
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
