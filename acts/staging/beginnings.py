@@ -149,8 +149,6 @@ def _carried(lift: Lift) -> Standing:
 # ---- the room that poses need ------------------------------------------------------------------------
 
 
-Array = NDArray[np.floating]
-
 BODY = 0.2
 """Metres between the bones of two people at which their bodies touch."""
 FARTHEST = 3.0

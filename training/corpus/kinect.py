@@ -162,8 +162,6 @@ def _metres(content: bytes) -> Array:
 # ---- repairs and bodies ------------------------------------------------------------------------------
 
 
-Array = NDArray[np.floating]
-
 FPS = 30.0
 ANKLE = float(-SMPL22.offsets[SMPL22.index("left_foot"), 1])
 """Height of an ankle over its sole in metres."""

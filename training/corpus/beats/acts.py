@@ -11,7 +11,7 @@ from motion.skeleton import SMPL22
 from motion.smoothing import smoothstep
 
 from ..compose import ARMS, Array, Motion, drift, layer, lean
-from ..contact import UP, axes, bend, envelope, nod, on_body, reach_arm
+from ..contact import UP, axes, bend, envelope, impulse, nod, on_body, reach_arm
 from ..library import Library, Take, pick
 from ..touches import Touches
 from .play import Act, Done, Make, Play, Rng
@@ -302,17 +302,9 @@ def reach(take: Take) -> float:
     return float(np.linalg.norm((tip - take.motion.root[0])[[0, 2]]))
 
 
-def pulse(frames: int, start: int, rise: int, fall: int) -> np.ndarray:
-    """(frames,) 0, up to 1 within ``rise`` frames from ``start`` on, back to 0 within ``fall``; smooth."""
-    t = np.arange(frames) - start
-    up = 0.5 - 0.5 * np.cos(np.pi * np.clip(t / rise, 0, 1))
-    down = 0.5 + 0.5 * np.cos(np.pi * np.clip((t - rise) / fall, 0, 1))
-    return up * down
-
-
 def recoil(rng: Rng, motion: Motion, frame: int) -> Motion:
     """The upper body is thrown back at ``frame`` and comes forward again; the hips give way a little."""
-    shape = pulse(len(motion), frame, int(rng.integers(5, 8)), int(rng.integers(16, 26)))
+    shape = impulse(len(motion), frame, rise=int(rng.integers(5, 8)), fall=int(rng.integers(16, 26)))
     motion = lean(motion, -shape * rng.uniform(0.5, 0.85), towards=float(rng.normal(0, 0.4)))
     back = -np.stack([np.sin(motion.headings), np.zeros(len(motion)), np.cos(motion.headings)], axis=-1)
     return drift(motion, back * shape[:, None] * rng.uniform(0.08, 0.16))
@@ -320,7 +312,7 @@ def recoil(rng: Rng, motion: Motion, frame: int) -> Motion:
 
 def dodge(rng: Rng, motion: Motion, frame: int) -> Motion:
     """The upper body leans out of the way around ``frame``, to one side and back."""
-    shape = pulse(len(motion), max(frame - 10, 0), 10, int(rng.integers(14, 22)))
+    shape = impulse(len(motion), max(frame - 10, 0), rise=10, fall=int(rng.integers(14, 22)))
     towards = pick(rng, (-1, 1)) * rng.uniform(1.3, 2.3)
     motion = lean(motion, shape * rng.uniform(0.45, 0.7), towards=towards)
     angle = motion.headings + towards
