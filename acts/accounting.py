@@ -77,19 +77,18 @@ class Account(NamedTuple):
     others: Mapping[str, str] = {}
 
 
-def unread_words(plan: Plan, known: Lexicon | None = None) -> tuple[str, ...]:
+def unread_words(plan: Plan) -> tuple[str, ...]:
     """The stretches of a plan's sentence that are in no act, in its order, as they were written."""
-    return account(plan, known).unread
+    return account(plan).unread
 
 
-def account(plan: Plan, known: Lexicon | None = None) -> Account:
+def account(plan: Plan) -> Account:
     """All that the acts of a plan leave out of its sentence.
 
     Args:
         plan: with the sentence that it was read from; one that was written by hand has none.
-        known: the lexicon; ours by default.
     """
-    return _account(plan, lexicon() if known is None else known) if plan.sentence.strip() else Account()
+    return _account(plan, lexicon()) if plan.sentence.strip() else Account()
 
 
 @lru_cache(maxsize=256)

@@ -77,7 +77,7 @@ class Verdict:
         return found | ({"wrote": self.wrote} if self.wrote else {})
 
 
-def checked(plan: Plan, motion: Duet | Motion, known: Lexicon | None = None) -> tuple[Verdict, ...]:
+def checked(plan: Plan, motion: Duet | Motion) -> tuple[Verdict, ...]:
     """One verdict an act, in the plan's order.
 
     A denied act is done where its rule does not hold. An act that comes after others is done where its rule holds and
@@ -86,12 +86,11 @@ def checked(plan: Plan, motion: Duet | Motion, known: Lexicon | None = None) -> 
     Args:
         plan: of the motion.
         motion: of SMPL's 22 joints.
-        known: the lexicon; ours by default.
 
     Raises:
         ValueError: for a motion of another skeleton.
     """
-    known = lexicon() if known is None else known
+    known = lexicon()
     if isinstance(motion, Duet):
         if motion.a.skeleton.joint_names != SMPL22.joint_names:
             raise ValueError("Acts are checked on SMPL's 22 joints: bring the motion there first (to_smpl).")
@@ -110,8 +109,9 @@ def _in_order(plan: Plan) -> Iterator[Act]:
 
 def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mapping[str, Verdict]) -> Verdict:
     entry = known.entries.get(act.act)
+    left = account(plan)
+    wrote = left.others.get(act.id, "")
     if why := _unjudged(act, entry):
-        wrote = account(plan, known).others.get(act.id, "")
         return Verdict(act.id, act.act, _words(act, entry), None, why, wrote=wrote)
     assert entry is not None
     casts = [rule for who in act.agents for rule in rules_of(act, entry, who)]
@@ -126,15 +126,13 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
             unchecked |= {} if rule else {kind: None}
     failed = [rule for rule in casts if not check(rule, motion)]
     if not failed and OTHER_THING in unchecked:
-        wrote = account(plan, known).others.get(act.id, "")
         return Verdict(act.id, act.act, _words(act, entry), None, OTHER_THING, wrote=wrote)
     late = "" if failed else _held_before(act, plan, motion, known) or _too_early(act, plan, motion, known, before)
     done = not failed and not late
     words = _words(plain(act, frozenset(unchecked)) if done else act, entry)
-    left = account(plan, known)
     kinds = (*unchecked, *(f"“{each}”" for each in left.unsaid.get(act.id, ())))
     measure = late or _measure(failed, casts, motion)
-    return Verdict(act.id, act.act, words, done, measure, kinds, left.others.get(act.id, ""))
+    return Verdict(act.id, act.act, words, done, measure, kinds, wrote)
 
 
 def _unjudged(act: Act, entry: Entry | None) -> str:
@@ -325,15 +323,14 @@ def _words(act: Act, entry: Entry | None) -> str:
 _BOTH, _THEY = "A and B", "they"
 
 
-def describe(plan: Plan, verdicts: Sequence[Verdict], known: Lexicon | None = None) -> str:
+def describe(plan: Plan, verdicts: Sequence[Verdict]) -> str:
     """One or two sentences on what a motion shows of a plan; "" where it shows nothing and nothing is amiss.
 
     Args:
         plan: of the motion.
         verdicts: on the plan's acts, as :func:`checked` gives them.
-        known: the lexicon; ours by default.
     """
-    known = lexicon() if known is None else known
+    known = lexicon()
     by_id = {verdict.id: verdict for verdict in verdicts}
     acts = [act for group in plan.beats() for act in group if act.act in known.entries and act.id in by_id]
     done = [act for act in acts if act.happens and by_id[act.id].done]

@@ -69,14 +69,13 @@ def scores_of(story: Sequence[Sequence[Act]]) -> tuple[Score, ...]:
     return as_story([score_of(acts) for acts in story])
 
 
-def score_of(acts: Sequence[Act], known: Lexicon | None = None) -> Score:
+def score_of(acts: Sequence[Act]) -> Score:
     """The score of the acts of one beat.
 
     Args:
         acts: of the beat; those that the lexicon does not have are passed over.
-        known: the lexicon; ours by default.
     """
-    return _score_of(tuple(acts), lexicon() if known is None else known)
+    return _score_of(tuple(acts), lexicon())
 
 
 @lru_cache(maxsize=512)
