@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import InputError
 from motion.cleaning import foot_contacts
 from motion.formats.files import write_text
 from training.core.shell import add_options, exit_code
@@ -105,31 +104,13 @@ def markdown(found: dict[str, Scores]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def put_into(page: Path, table: str, *, name: str = "table") -> None:
-    """Writes a table between its marks in a page; creates the page if it does not exist.
-
-    Args:
-        page: of Markdown.
-        table: its Markdown.
-        name: of the marks, ``<!-- name -->`` and ``<!-- end of name -->``.
-    """
-    begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->\n"
-    text = page.read_text() if page.exists() else begin + end
-    before, mark, rest = text.partition(begin)
-    _, found, after = rest.partition(end)
-    if not (mark and found):
-        raise InputError(f"{page} lacks the lines {begin.strip()} and {end.strip()}: add them.")
-    write_text(page, before + begin + "\n" + table + "\n" + end + after)
-
-
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Score the page's predictions on the corpus' test split.")
     parser.add_argument("--data", type=Path, required=True, help="folder of the corpus")
-    add_options(parser, "weights")
+    add_options(parser, "weights", "table")
     parser.add_argument("--model", action="append", help="name of a model; motion-mlp by default")
     parser.add_argument("--windows", type=int, default=200, help="how many are drawn")
-    parser.add_argument("--table", type=Path, help="Markdown page that the table is put into")
     options = parser.parse_args(argv)
 
     def job() -> None:
@@ -142,7 +123,7 @@ def main(argv: list[str] | None = None) -> int:
             found[name] = score(lambda past, own=predictor: own.predict(past, FUTURE), windows)
         table = markdown(found)
         if options.table:
-            put_into(options.table, table, name="product")
+            write_text(options.table, table)
         print(table)
 
     return exit_code(job)

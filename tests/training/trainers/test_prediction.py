@@ -114,7 +114,6 @@ def test_the_page_s_predictions_are_scored(tmp_path: Path) -> None:
     np.save(folder / "motions.npy", (people + along).astype(np.float32))
     (folder / "index.json").write_text(json.dumps([{"start": 0, "frames": 200, "split": "test"}]))
     page = tmp_path / "page.md"
-    page.write_text("<!-- product -->\n<!-- end of product -->\n")
     tiny = MotionMLP(MotionMLPConfig(width=16, blocks=1))
     save_predictor(tmp_path / "tiny", tiny, kind="mlp", fps=30.0)
     asked = ["--data", str(folder), "--weights", str(tmp_path), "--model", "tiny", "--windows", "4"]
