@@ -50,7 +50,7 @@ class Body:
         turns: (22, 3, 3) rotation that takes each bone from the pose of binding to SMPL22's T-pose.
         bones: (V, 4) joints that move each vertex.
         weights: (V, 4) their shares, which sum to 1.
-        fingers: how its hands take shapes; None where they are stiff, as those of an uploaded character.
+        fingers: how its hands take shapes; None where they are stiff.
         eyes: how its eyes turn; None where they do not.
     """
 

@@ -20,7 +20,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InputError
-from .skeleton import SMPL22
 
 Array = NDArray[np.floating]
 
@@ -133,20 +132,6 @@ def matched_names(rig: RigMotion) -> list[tuple[str, str]]:
     for side, limb in (("left", parts.left), ("right", parts.right)):
         pairs += [(joint, f"{side}_{'foot' if part == 'toe' else part}") for part, joint in limb.items()]
     return [(rig.joint_names[joint], name) for joint, name in pairs if joint is not None]
-
-
-def pairs_of(rig: RigMotion) -> dict[int, int]:
-    """The joint of SMPL22 beside each joint of a rig's body; the last of any spine carries the shoulders in both.
-
-    Raises:
-        InputError: as :func:`match_joints`.
-    """
-    spine = match_joints(rig).spine[1:]
-    shares = np.linspace(0, 2, len(spine)) if len(spine) > 1 else np.array([2.0])
-    found = {rig.joint_names.index(theirs): SMPL22.index(ours) for theirs, ours in matched_names(rig)}
-    return found | {
-        joint: SMPL22.index(_SPINE_NAMES[round(share)]) for joint, share in zip(spine, shares, strict=False)
-    }
 
 
 def match_joints(rig: RigMotion) -> BodyParts:

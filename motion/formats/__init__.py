@@ -9,7 +9,6 @@ from motion.retarget import to_smpl
 
 from .bvh_writer import bvh_on_rig
 from .glb_motion import animations_in
-from .glb_rig import glb_on_rig
 from .importing import import_motion, import_pair
 from .recording import Animation, ImportChoices
 from .registry import (
@@ -144,30 +143,27 @@ def write_clip(clip: Clip, path: str | Path) -> list[Path]:
     return known.alone(clip, path)
 
 
-def on_rig(clip: Clip, reference: Path, *, animation: Animation | None = None) -> bytes:
-    """One person's motion as a file of the reference's kind, on its rig and in its world.
+def on_rig(clip: Clip, reference: Path) -> bytes:
+    """One person's motion as a BVH file on the reference's rig and in its world.
 
     Args:
         clip: on SMPL22, metres.
-        reference: a .bvh or .glb of one person.
-        animation: the one that the person was read from, of a .glb with several.
+        reference: a .bvh of one person.
 
     Raises:
         InputError: as :func:`check_rig`, and where the rig cannot be moved.
     """
     _check_kind(reference)
-    if reference.suffix.lower() in GLBS:
-        return glb_on_rig(clip, reference, animation=animation)
     return bvh_on_rig(clip, reference)
 
 
 def check_rig(reference: Path) -> None:
-    """Raises InputError for a file that is no .bvh or .glb of one person, before a partner is made."""
+    """Raises InputError for a file that is no .bvh of one person, before a partner is made."""
     _check_kind(reference)
     if (count := len(read_rigs(reference))) > 1:
         raise InputError(f"A partner is taken on the rig of one person, and {reference.name} holds {count}.")
 
 
 def _check_kind(reference: Path) -> None:
-    if reference.suffix.lower() not in RIGS:
-        raise InputError(f"A partner is taken on the rig of a BVH or .glb file, and {reference.name} is none.")
+    if reference.suffix.lower() != ".bvh":
+        raise InputError(f"A partner is taken on the rig of a BVH file, and {reference.name} is none.")

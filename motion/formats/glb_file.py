@@ -47,7 +47,7 @@ def opened(
     Args:
         source: a path, or the file's bytes.
         name: what to call the file in messages; its own name by default.
-        purpose: what it cannot be, such as "used as a character".
+        purpose: what it cannot be, such as "read as motion".
         harmless: beginnings of the names of extensions that it may need.
 
     Raises:
@@ -241,8 +241,6 @@ class GlbFile:
 
     def bind_matrices(self, skin: Any, count: int) -> NDArray[np.floating]:
         """(J, 4, 4) the joints of a skin when the mesh is as it is stored."""
-        if skin.get("inverseBindMatrices") is None:
-            self.refuse("its skin has no bind pose")
         stored = self.numbers(skin["inverseBindMatrices"], "MAT4", MOST_JOINTS, "bind matrices")
         if len(stored) < count:
             self.refuse("some of its joints have no bind matrix")

@@ -37,13 +37,6 @@ _LEGS = (0.6, 1.7)
 """Length of an average person's legs over that of people's."""
 
 
-def read_glb_people(
-    source: str | Path | bytes, *, name: str | None = None, animation: Animation | None = None
-) -> tuple[RigMotion, ...]:
-    """The people of :func:`read_glb` alone."""
-    return read_glb(source, name=name, animation=animation)[0]
-
-
 def read_glb(
     source: str | Path | bytes, *, name: str | None = None, animation: Animation | None = None
 ) -> tuple[tuple[RigMotion, ...], Animations]:
@@ -87,9 +80,7 @@ def _whole(file: GlbFile) -> list[_Person]:
     """The people in a file with animations, one at least and not too many."""
     parents = file.node_parents()
     if not file.document.get("animations"):
-        raise InputError(
-            f"{file.label} has no animation: export it with one, or put it on both people with “Wear a character”."
-        )
+        raise InputError(f"{file.label} has no animation: export it with one.")
     rigs = people(file, parents)
     still = placed(file, with_those_above([node for rig in rigs for node in rig.nodes], parents), parents)
     found = [_Person(file, parents, rig, still) for rig in rigs]

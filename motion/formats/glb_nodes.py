@@ -201,15 +201,10 @@ def local_parts(file: GlbFile, node: int) -> dict[str, Array]:
     """Translation (3,), rotation (4,) and scale (3,) of a node at rest."""
     stored = file.document["nodes"][node]
     if stored.get("matrix") is not None:
-        return parts_of(_numbers(file, stored["matrix"], 16))
+        matrix = _numbers(file, stored["matrix"], 16).reshape(4, 4).T
+        turn, scale = _split(matrix[None, :3, :3])
+        return {"translation": matrix[:3, 3], "rotation": quaternions(turn)[0], "scale": scale[0]}
     return {path: _numbers(file, stored.get(path, usual), len(usual)) for path, usual in _DEFAULTS.items()}
-
-
-def parts_of(stored: Array) -> dict[str, Array]:
-    """Translation (3,), rotation (4,) and scale (3,) of a matrix (16,) as a node has it."""
-    matrix = stored.reshape(4, 4).T
-    turn, scale = split(matrix[None, :3, :3])
-    return {"translation": matrix[:3, 3], "rotation": quaternions(turn)[0], "scale": scale[0]}
 
 
 def _numbers(file: GlbFile, values: Any, count: int) -> Array:
@@ -263,7 +258,7 @@ def placed(
     return world
 
 
-def split(linear: Array) -> tuple[Array, Array]:
+def _split(linear: Array) -> tuple[Array, Array]:
     """Rotations (T, 3, 3) and scales (T, 3) of (T, 3, 3), the nearest ones where they are sheared."""
     left, _, right = np.linalg.svd(linear)
     flips = np.ones((len(linear), 3))

@@ -121,11 +121,10 @@ class Buffer:
 
     Args:
         document: the description, with one animation that has a name.
-        blob: numbers that it has already.
     """
 
-    def __init__(self, document: dict[str, Any], blob: bytes = b"") -> None:
-        self.document, self.data = document, bytearray(blob)
+    def __init__(self, document: dict[str, Any]) -> None:
+        self.document, self.data = document, bytearray()
         document["animations"][0] |= {"samplers": [], "channels": []}
 
     def append(self, key: str, part: dict[str, Any]) -> int:

@@ -14,7 +14,6 @@ from motion.body import Body, bone_rotations, load_body
 from motion.clip import Clip, Duet
 from motion.hands import FINGERS, SIDES, angles
 from motion.kinematics import local_rotations, swing
-from motion.limbs import solve_two_bones
 from motion.looks import BODIES as COLOURS
 from motion.retarget import leg_scale
 from motion.rigs import RigMotion, match_joints
@@ -174,48 +173,6 @@ def posed(
         bone = world[:, joint] @ (bones[after] / np.linalg.norm(bones[after]))
         wanted = unit(positions[:, pairs[after]] - positions[:, pairs[joint]])
         world[:, joint] = swing(bone, wanted) @ world[:, joint]
-    return world
-
-
-def reached(
-    rig: RigMotion,
-    bones: Array,
-    clip: Clip,
-    pairs: Mapping[int, int],
-    usual: Array,
-    world: Array,
-    lift: float,
-    near: Mapping[str, Array],
-) -> Array:
-    """The rotations of :func:`posed` with wrists where the person's are; hands stay as turned as they were.
-
-    Args:
-        rig, bones, clip, pairs, usual: as for :func:`posed`.
-        world: (T, J, 3, 3) as it gives them.
-        lift: as for :func:`root_path`.
-        near: (T,) share of the way that each wrist goes there, 0 to 1, by side.
-
-    Returns:
-        (T, J, 3, 3) world rotations, Y up.
-    """
-    path = root_path(rig, bones, clip, world, lift)
-    places = _placed(rig, bones, world) + path[:, None]
-    parts, world = match_joints(rig), np.array(world)
-    for side, limb in (("left", parts.left), ("right", parts.right)):
-        chain = cast(list[int], [limb[part] for part in ("shoulder", "elbow", "wrist")])
-        shoulder, elbow, wrist = (places[:, joint] for joint in chain)
-        goal = clip.positions[:, SMPL22.index(f"{side}_wrist")] + np.array([0.0, lift, 0.0])
-        share = near[side][:, None]
-        goal = wrist + share * (goal / leg_scale(rig) - wrist)
-        bent, end = solve_two_bones(shoulder, elbow, wrist, goal, np.array([0.0, -1.0, 0.0]))
-        upper = swing(unit(elbow - shoulder), unit(bent - shoulder))
-        forearm = np.einsum("tij,tj->ti", upper, wrist - elbow)
-        lower = swing(unit(forearm), unit(end - bent)) @ upper
-        world[:, chain[0]] = upper @ world[:, chain[0]]
-        world[:, chain[1]] = lower @ world[:, chain[1]]
-    for joint, parent in enumerate(rig.parents):
-        if joint not in pairs and parent >= 0:
-            world[:, joint] = world[:, parent] @ usual[joint]
     return world
 
 

@@ -133,7 +133,6 @@ export class Controls {
       ? say("player.time", { now: (frame / clock.fps).toFixed(2), all: clock.duration.toFixed(2), frame: Math.round(frame) + 1, frames: clock.frames }) : "";
     root.dataset.playing = String(clock.playing);
     if (root.dataset.figure !== clothes.figure) this.find(`.pdd-figure [value=${(root.dataset.figure = clothes.figure)}]`).checked = true;
-    this.find(".pdd-figure label:has([value=character])").hidden = !clothes.character;
     this.find(".pdd-play").setAttribute("aria-label", say(clock.playing ? "player.pause" : "player.play"));
     const speed = this.find(".pdd-speed select");
     if (speed.value !== String(clock.speed)) speed.value = String(clock.speed);

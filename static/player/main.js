@@ -70,8 +70,6 @@ export async function mount(element, props, watch, { plotly, empty, styles: addr
       shown = id;
       player.load(props.value || null);
     }
-    const worn = props.character ?? null;
-    if (player.scene && worn?.id !== player.clothes.character?.id) player.clothes.wear(worn);
     const message = props.live ?? null;
     const key = message && `${message.id} ${message.start} ${message.stop}`;
     if (player.scene && key !== heard) {
@@ -81,7 +79,7 @@ export async function mount(element, props, watch, { plotly, empty, styles: addr
   };
   player.controls.setEmptyText(say(empty));
   sync();
-  watch(["value", "busy", "progress", "live", "character"], sync);
+  watch(["value", "busy", "progress", "live"], sync);
   try {
     const styles = loadStyles(address ?? new URL("player.css", import.meta.url).href);
     const styled = styles.finally(() => root.classList.add("pdd-styled")); // the empty state is there at once

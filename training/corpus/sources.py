@@ -33,7 +33,7 @@ from motion import InputError
 from motion.cleaning import foot_contacts, plant_feet
 from motion.formats.bvh import read_bvh
 from motion.formats.files import replacing
-from motion.formats.glb_motion import animations_in, read_glb_people
+from motion.formats.glb_motion import animations_in, read_glb
 from motion.kinematics import project_to_skeleton
 from motion.retarget import retarget
 from motion.rigs import RigMotion
@@ -220,7 +220,7 @@ def _rigs(folder: Path, wanted: set[str]) -> dict[str, RigMotion]:
             try:
                 if folder.name == ANIMATED:
                     for name in wanted & set(animations_in(path).names):
-                        found[name] = replace(read_glb_people(path, animation=name)[0], up="y")
+                        found[name] = replace(read_glb(path, animation=name)[0][0], up="y")
                 elif path.stem in wanted and folder.name in FILES:
                     found[path.stem] = read_deepmimic(path.read_bytes(), name=path.name)
                 elif path.stem in wanted:

@@ -112,7 +112,7 @@ def add_react(commands: Any) -> None:
     parser.add_argument(
         "--own-rig",
         action="store_true",
-        help="of a .bvh or .glb: also the partner on that file's rig, as NAME_rig, in its unit and rest pose",
+        help="of a .bvh: also the partner on that file's rig, as NAME_rig.bvh, in its unit and rest pose",
     )
     add_sampling(parser, "react")
     parser.set_defaults(job=react)
@@ -156,7 +156,7 @@ def _on_own_rig(result: Result, request: ReactRequest, options: argparse.Namespa
         given_is_a = np.array_equal(duet.a.positions, request.actor.positions)
         made = duet.b if given_is_a else duet.a
         name = f"{options.out.stem}{number}_rig{options.actor.suffix.lower()}"
-        files[options.out.with_name(name)] = on_rig(made, options.actor, animation=options.animation)
+        files[options.out.with_name(name)] = on_rig(made, options.actor)
     return [str(path) for path in write_files(files)]
 
 

@@ -26,7 +26,6 @@ def add_render(commands: Any) -> None:
     )
     parser.add_argument("--beside", type=Path, action="append", default=[], help="film: a motion to show beside it")
     parser.add_argument("--look", default="bodies", help="bodies, skeletons or both")
-    parser.add_argument("--character", type=Path, metavar="FILE.glb", help="a skinned character for everybody to wear")
     parser.add_argument("--theme", default="light", help="light or dark")
     parser.add_argument("--view", default="threequarter", help="threequarter, front, side, top, a or b")
     parser.add_argument("--title", help="title in the picture; the file's name by default")
@@ -44,8 +43,6 @@ def add_render(commands: Any) -> None:
 
 def render(options: argparse.Namespace) -> dict[str, Any]:
     """Draws a motion file; two people with a file each may be given as two files, by the first, or as a folder."""
-    from motion.character import character_body
-    from motion.formats.glb_reader import read_character
     from webdemo.view import film, mesh, plotly_figure, sheet
     from webdemo.view.stage import Pane, Style
 
@@ -58,7 +55,6 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
         trails=options.trails and suffix in film.SUFFIXES,
         names=suffix in film.SUFFIXES,
         theme=options.theme,
-        body=character_body(read_character(options.character)) if options.character else None,
     )
     if suffix in film.SUFFIXES:
         beside = [_motion(path, None) for path in options.beside]

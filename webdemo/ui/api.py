@@ -102,8 +102,7 @@ class Endpoint:
             result = self._run(request, progress)
             files = write_files(result, self.page.shelf.folder(), prompt=title)
             if rig is not None:
-                record = Record(result, title, rig=rig, animation=given[1] if given else None)
-                files[RIG] = write_on_rig(record, self.page.shelf.folder())
+                files[RIG] = write_on_rig(Record(result, title, rig=rig), self.page.shelf.folder())
         except Cancelled:
             raise gr.Error("The run was cancelled: send the request again.", print_exception=False) from None
         except Exception as error:

@@ -7,9 +7,7 @@ from pathlib import Path
 import gradio as gr
 
 from motion import InputError
-from motion.character import character_body
 from motion.formats import read
-from motion.formats.glb_reader import read_character
 from webdemo.ui.components.exports import file_name, without_place
 from webdemo.ui.components.film import LONGEST, in_time
 from webdemo.ui.text.words import error_line
@@ -53,7 +51,6 @@ class RenderEndpoint:
                 gr.Number(FPS, label="frames a second of a film, 1 to 60"),
                 gr.Number(SIZE[0], label="width in pixels: even, 64 to 1920"),
                 gr.Number(SIZE[1], label="height of a film in pixels: even, 64 to 1080"),
-                gr.File(label="a skinned character for everybody to wear: .glb, up to 50 MB; may be left out"),
                 gr.Textbox("", label=WHICH),
                 gr.Number(0, label=RATE),
                 gr.Number(0, label="second of the motion that a mesh shows"),
@@ -80,7 +77,6 @@ class RenderEndpoint:
         fps: float,
         width: float,
         height: float,
-        character: str | None = None,
         animation: str = "",
         file_fps: float = 0.0,
         second: float = 0.0,
@@ -101,10 +97,9 @@ class RenderEndpoint:
                 raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
             with READING.place():
                 found = read(Path(motion), choices=reading_choices(animation, file_fps, up, order), longest=LONGEST)
-                body = character_body(read_character(Path(character))) if character else None
             name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
             out = folder / f"{file_name(name, {})}{suffix}"
-            style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS, body=body)
+            style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS)
             if suffix in SHEETS:
                 return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
             if suffix == FIGURE:

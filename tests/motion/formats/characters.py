@@ -20,18 +20,6 @@ THICK = 0.04
 """Half of a box's width in metres."""
 
 
-def a_pose() -> np.ndarray:
-    """(22, 3) metres: SMPL22 with arms that hang at 40 degrees, and a fifth longer than usual."""
-    places = SMPL22.rest_positions().astype(float)
-    for side, sign in (("left", -1.0), ("right", 1.0)):
-        start = places[SMPL22.index(f"{side}_shoulder")].copy()
-        turn = Rotation.from_euler("z", sign * 40, degrees=True)
-        for part in ("elbow", "wrist"):
-            joint = SMPL22.index(f"{side}_{part}")
-            places[joint] = start + 1.2 * turn.apply(places[joint] - start)
-    return places
-
-
 def glb_character(
     rig: str = "mixamo",
     *,

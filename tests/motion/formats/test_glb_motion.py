@@ -11,9 +11,9 @@ from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, Duet, InputError
 from motion.formats import glb_motion as reader
-from motion.formats import glb_nodes, on_rig, read, write
+from motion.formats import glb_nodes, read, write
 from motion.formats.glb_file import GlbFile, Stored
-from motion.formats.glb_motion import read_glb, read_glb_people
+from motion.formats.glb_motion import read_glb
 from motion.formats.glb_nodes import Channel
 from motion.formats.importing import Imported, import_motion
 from motion.formats.recording import ImportChoices
@@ -44,7 +44,7 @@ WALK = glb_motion(ROTATIONS, ROOT)
 )
 def test_joints_stand_where_they_do_in_the_file(given: dict[str, Any]) -> None:
     data = glb_motion(ROTATIONS, ROOT, **given)
-    (found,) = read_glb_people(data, name="walk.glb")
+    (found,) = read_glb(data, name="walk.glb")[0]
     order = [found.joint_names.index(RIGS["mixamo"][ours]) for ours in SMPL22.joint_names]
     assert found.fps == 30 and found.metres_per_unit == 1.0
     np.testing.assert_allclose(found.positions[:, order], POSITIONS, atol=1e-4)
@@ -72,7 +72,7 @@ def test_our_own_file_comes_back_as_it_was(tmp_path: Path) -> None:
 
 def test_several_people_share_one_clock_and_one_world() -> None:
     data = glb_motion(ROTATIONS, ROOT, people=3)
-    people = read_glb_people(data, name="crowd.glb")
+    people = read_glb(data, name="crowd.glb")[0]
     assert [len(person.positions) for person in people] == [30] * 3
     for number, person in enumerate(people):
         np.testing.assert_allclose(person.positions[:, 0], ROOT + np.array([2 * number, 0, 0]), atol=1e-4)
@@ -95,8 +95,23 @@ def _sampled(**fields: Any) -> dict[str, Any]:
 
 
 GLTF = unpacked(WALK)[0]
+CLOCK = GLTF["animations"][0]["samplers"][0]["input"]
+"""The accessor of the times, and the view that it is alone in."""
+
+
+def _changed(kind: str, number: int, **fields: Any) -> dict[str, Any]:
+    return {kind: [each | fields if i == number else each for i, each in enumerate(GLTF[kind])]}
+
+
 WRONG: dict[str, tuple[dict[str, Any], str]] = {
-    "no animation": ({"animations": []}, "has no animation: export it with one, or put it on"),
+    "no animation": ({"animations": []}, "has no animation: export it with one"),
+    "a view outside": (_changed("bufferViews", CLOCK, byteOffset=2**30), "outside of the file"),
+    "a stride of none": (_changed("bufferViews", CLOCK, byteStride=3), "outside of the file"),
+    "too many keys": (_changed("accessors", CLOCK, count=10**9), "are the limit"),
+    "another file": ({"buffers": [{"byteLength": 4, "uri": "file:///etc/passwd"}]}, "in other files"),
+    "a circle": (_changed("nodes", 21, children=[0]), "circle|two parents"),
+    "a node that is not there": (_changed("nodes", 0, children=[999]), "is not there"),
+    "wrong kinds": ({"skins": [7]}, "is damaged"),
     "keys of another number": (_sampled(output=0), "do not fit|not read here"),
     "a node nowhere": ({"nodes": [each | {"translation": [1e999, 0, 0]} for each in GLTF["nodes"]]}, "nowhere|damaged"),
     "no person": ({"nodes": [each | {"name": "rope"} for each in GLTF["nodes"]]}, "no joint that looks like"),
@@ -109,20 +124,33 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
 def test_what_is_wrong_is_one_sentence(name: str) -> None:
     changes, says = WRONG[name]
     with pytest.raises(InputError, match=says) as error:
-        read_glb_people(glb_motion(ROTATIONS, ROOT, **changes), name="walk.glb")
+        read_glb(glb_motion(ROTATIONS, ROOT, **changes), name="walk.glb")[0]
     assert "\n" not in str(error.value) and str(error.value).startswith("walk.glb")
+
+
+@pytest.mark.parametrize(
+    ("data", "says"),
+    [
+        (b"nothing at all, really", "no glTF binary"),
+        (WALK[:-3000], "cut off"),
+        (WALK[:4] + b"\1\0\0\0" + WALK[8:], "version 1"),
+    ],
+)
+def test_other_files_are_one_sentence(data: bytes, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        read_glb(data, name="walk.glb")
 
 
 def test_long_motions_are_refused_before_they_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InputError, match="more than the 600 s allowed"):
-        read_glb_people(glb_motion(ROTATIONS[:4], ROOT[:4], fps=1 / 300), name="walk.glb")
+        read_glb(glb_motion(ROTATIONS[:4], ROOT[:4], fps=1 / 300), name="walk.glb")[0]
     monkeypatch.setattr(glb_nodes, "MOST_KEYS", 100)
     with pytest.raises(InputError, match="key frames"):
-        read_glb_people(WALK, name="walk.glb")
+        read_glb(WALK, name="walk.glb")[0]
     monkeypatch.undo()
     monkeypatch.setattr(reader, "MAX_NUMBERS", 100)
     with pytest.raises(InputError, match="lower its frame rate"):
-        read_glb_people(WALK, name="walk.glb")
+        read_glb(WALK, name="walk.glb")[0]
 
 
 def _shared(joints: int, keys: int, *, apart: int = 0) -> bytes:
@@ -173,7 +201,7 @@ def test_a_sampler_that_joints_share_is_decoded_and_worked_out_once(monkeypatch:
     decoding, courses = Decoding(monkeypatch), []
     at = Channel.at
     monkeypatch.setattr(Channel, "at", lambda channel, moments: courses.append(1) or at(channel, moments))
-    (found,) = read_glb_people(data, name="walk.glb")
+    (found,) = read_glb(data, name="walk.glb")[0]
     assert found.positions.shape == (1000, 200, 3)
     assert decoding.rows == 2 * keys and len(courses) == 1
 
@@ -182,7 +210,7 @@ def test_key_frames_that_overlap_are_refused_before_they_are_decoded(monkeypatch
     data = _shared(200, 1000, apart=16)
     decoding = Decoding(monkeypatch)
     with pytest.raises(InputError, match=r"walk\.glb cannot be read as motion because its key frames overlap"):
-        read_glb_people(data, name="walk.glb")
+        read_glb(data, name="walk.glb")[0]
     assert decoding.rows == 0
 
 
@@ -245,22 +273,3 @@ def test_another_is_chosen_by_its_name_or_else_by_its_number(choice: Any, number
     found = imported(choice)
     assert found.animations is not None and found.animations.taken == (number,)
     assert (limbs(found) > 0.1) == (number == 1)
-
-
-def test_a_partner_stands_in_the_world_of_the_chosen_animation(tmp_path: Path) -> None:
-    high = glb_takes(ROTATIONS, ROOT + np.array([0, 5.0, 0]), ["high"])
-    document, blob = unpacked(high)
-    still = {
-        "name": "low",
-        "samplers": document["animations"][0]["samplers"],
-        "channels": [c for c in document["animations"][0]["channels"] if c["target"]["path"] == "rotation"],
-    }
-    document["animations"].append(still)
-    path = tmp_path / "x.glb"
-    path.write_bytes(packed(document, blob))
-    made = {
-        choice: read_glb(on_rig(Clip(POSITIONS, 30.0), path, animation=choice), name="y.glb")[0][0].positions
-        for choice in (1, "low")
-    }
-    lower = made[1][:, 0, 1].mean() - made["low"][:, 0, 1].mean()
-    assert lower == pytest.approx(5.0 + ROOT[:, 1].mean(), abs=0.3), "the floor is where that animation has it"

@@ -18,7 +18,7 @@ from motion.formats import ImportChoices, read
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_motion, glb_takes
 from tests.ui.tab_events import built, changes
-from webdemo.ui.components.actors import offered_animations, rig_of
+from webdemo.ui.components.actors import offered_animations
 from webdemo.ui.history import Entry, Kept, Opened, Original
 from webdemo.ui.tabs.predict import PredictTab
 from webdemo.ui.tabs.react import ReactTab
@@ -68,14 +68,6 @@ def test_another_is_read_when_it_is_chosen(tab: ReactTab, takes: Path) -> None:
     assert np.abs(again["source"].people[0].positions - source.people[0].positions).max() > 0.1
     *_, wrong = [changes(READ, u) for u in tab.actor.read_again(again["source"], "auto", "auto", None, "auto", 9)]
     assert "takes.glb has no such animation" in wrong["line"] and wrong["animation"] == shown(2)
-
-
-def test_a_partner_is_taken_on_the_rig_as_the_chosen_animation_has_it(tab: ReactTab, takes: Path) -> None:
-    source = upload(tab, takes)[-1]["source"]
-    *_, again = [changes(READ, u) for u in tab.actor.read_again(source, "auto", "auto", None, "auto", 2)]
-    assert rig_of(again["source"]) == takes
-    *_, last = run(tab, again["source"], end=2.0)
-    assert (last["record"].rig, last["record"].animation) == (takes, 2)
 
 
 def test_an_opened_run_was_made_from_its_animation(tab: ReactTab, takes: Path) -> None:

@@ -19,7 +19,6 @@ import gradio as gr
 from motion import Clip
 from motion.formats import read
 from tests.motion.bodies import marching
-from tests.motion.formats.characters import glb_motion
 from tests.motion.formats.rigs import RIGS, bvh_text
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, changes
@@ -120,22 +119,6 @@ def test_a_partner_is_taken_on_the_rig_of_an_uploaded_bvh(tab: ReactTab, tmp_pat
     partner = last["record"].result.duets[0].b.positions
     found = min(np.abs(read(c, name="x.bvh").positions - partner).mean() for c in files.values())
     assert found < 0.1, "it is the partner, in the rig's own world"
-
-
-def test_a_partner_is_taken_on_the_skeleton_of_an_uploaded_glb(tab: ReactTab, tmp_path: Path) -> None:
-    rig = tmp_path / "robot.glb"
-    positions, rotations = marching(90)
-    rig.write_bytes(glb_motion(rotations, positions[:, 0], "unreal", unit=100.0))
-    *_, last = run(tab, upload(tab, rig)[-1]["source"], end=2.0)
-    _, *updates = tab.results.export(last["record"])
-    update = updates[[kind.key for kind in KINDS].index("rig")]
-    with zipfile.ZipFile(update["value"]) as archive:
-        files = {name: archive.read(name) for name in archive.namelist()}
-    assert files.pop("robot.glb") == rig.read_bytes(), "the original stands beside it, untouched"
-    ((name, content),) = files.items()
-    assert name.endswith("-on-your-rig.glb")
-    partner = last["record"].result.duets[0].b.positions
-    assert np.abs(read(content, name=name).positions - partner).mean() < 0.1, "it is the partner"
 
 
 def test_only_a_rig_that_was_read_as_it_is_is_offered(tab: ReactTab, walker: Path, walkers: Path) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import Clip, Duet, InputError
-from motion.formats import RIGS, write
+from motion.formats import write
 from motion.formats.importing import import_motion
 from motion.formats.recording import ImportChoices
 from motion.retarget import to_smpl
@@ -172,11 +172,11 @@ def offered_animations(source: Source | None) -> Any:
 
 
 def rig_of(source: Source | None) -> Path | None:
-    """The BVH or .glb file of one person that a source was read from as it is; None for any other source.
+    """The BVH file of one person that a source was read from as it is; None for any other source.
 
     Where somebody said which axis is up or what the unit is, the file's own world is another, and so are examples.
     """
-    if source is None or source.path is None or source.path.suffix.lower() not in RIGS or len(source.people) != 1:
+    if source is None or source.path is None or source.path.suffix.lower() != ".bvh" or len(source.people) != 1:
         return None
     return source.path if source.read_with[:4] == Source.read_with[:4] else None
 

@@ -27,8 +27,7 @@ LONGEST = 60.0
 """Seconds of motion that the page films; the shell has no such limit."""
 
 DRAWN_IN = 600.0
-"""Seconds in which a film must be drawn, as others' films wait for it; with a character of many triangles a picture
-takes seconds."""
+"""Seconds in which a film must be drawn, as others' films wait for it."""
 
 READ_PLAYER = """(record, _) => {
   const player = window.__pasdedeux?.player;
@@ -39,7 +38,7 @@ READ_PLAYER = """(record, _) => {
     yaw: orbit.yaw, elevation: orbit.elevation, view: player.framing.preset, follow: orbit.following,
     frame: Math.round(player.clock.shown), distance: orbit.distance,
     trails: Boolean(show.trails), theme: player.themeName, sample: player.sampleIndex,
-    look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons", character: Boolean(show.character),
+    look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons",
   })];
 }"""
 """JavaScript that tells how the player shows the motion: what :func:`make_film` takes."""
@@ -94,7 +93,6 @@ def make_film(record: Record | None, shown: str, folder: Path, progress: Drawn |
         look=_one_of(state, "look", LOOKS, "bodies"),
         trails=state.get("trails") is True,
         theme=_one_of(state, "theme", tuple(THEMES), "light"),
-        body=record.worn.body if record.worn and state.get("character") is True else None,
     )
     try:
         return film.write_film(
@@ -141,8 +139,7 @@ def _shown_motion(record: Record | None, shown: str, folder: Path) -> tuple[Clip
         raise InputError("There is no motion to show yet: make one first.")
     state = read_player(shown)
     motion = _pane(record.result, state.get("sample"), "").motion
-    worn = record.worn.body if record.worn and state.get("character") is True else None
-    style = Style(theme=_one_of(state, "theme", tuple(THEMES), "light"), body=worn)
+    style = Style(theme=_one_of(state, "theme", tuple(THEMES), "light"))
     frame = int(number_of(state, "frame", 0, motion.num_frames - 1) or 0)
     return motion, folder / file_name(record.prompt, record.result.manifest), style, frame
 

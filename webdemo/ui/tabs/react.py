@@ -13,7 +13,7 @@ from webdemo.inference.methods import AUTOMATIC, variants
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.live import LiveRequest, LiveTake
 from webdemo.inference.run import Result
-from webdemo.ui.components.actors import Source, chosen_actor, live_variant, react_choices, reactor, rig_of, with_method
+from webdemo.ui.components.actors import chosen_actor, live_variant, react_choices, reactor, rig_of, with_method
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.live import LivePanel, LiveView, take_of
 from webdemo.ui.components.player import show
@@ -64,8 +64,7 @@ class ReactTab(JobTab):
     def complete(self, record: Record, fields: Mapping[str, Any]) -> Record:
         """The rig of an uploaded file, for the partner on it."""
         if not record.grid:
-            source: Source | None = fields.get("source")
-            record.rig, record.animation = rig_of(source), source.read_with[4] if source else None
+            record.rig = rig_of(fields.get("source"))
         return record
 
     def kinds(self) -> Sequence[Kind]:
