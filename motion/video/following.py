@@ -1,4 +1,4 @@
-"""A filmed person, picture by picture: what :mod:`.people` does for a film, without the pictures to come.
+"""A filmed person, picture by picture: what :mod:`.person` does for a film, without the pictures to come.
 
 The first pictures measure the body and by how much the camera looks down; from then on every picture gives a pose at
 once. Noise is filtered by the 1 € filter (Casiez et al., 2012), which lags little while somebody moves fast.
@@ -18,7 +18,7 @@ from motion.skeleton import SMPL22
 from motion.vectors import FLAT
 
 from .landmarks import INDEX, LENS, TORSO, Landmarks
-from .people import LAYOUT, TILTS, check_camera, layout_points
+from .person import LAYOUT, TILTS, check_camera, layout_points
 from .place import body_tilt, focal_length, towards, translation, upright
 
 Array = NDArray[np.floating]

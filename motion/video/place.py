@@ -5,8 +5,6 @@ Axes of the camera: x to the right of the picture, y down, z away from it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
@@ -14,7 +12,6 @@ from numpy.typing import NDArray
 from motion.skeleton import SMPL22
 
 from .landmarks import INDEX, LENS, LIMBS
-from .tracks import Track
 
 Array = NDArray[np.floating]
 
@@ -123,11 +120,6 @@ def upright(tilt: float) -> Array:
     return np.array([[1.0, 0.0, 0.0], [0.0, -cos, -sin], [0.0, sin, -cos]])
 
 
-def centred(track: Track, width: int, height: int) -> Array:
-    """(T, 33, 2) pixels from the middle of the picture."""
-    return track.pixels - np.array([width, height]) / 2
-
-
 # ---- The floor: how the camera is tilted, and a path on which standing feet stay where they are ----------------------
 _ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
 _TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
@@ -147,31 +139,27 @@ _INDEPENDENT = 0.5
 """Seconds after which the error of a foot's height is another one."""
 
 
-def level(people: Sequence[Array], lean: Sequence[float], fps: float = 15.0) -> float:
-    """Radians by which the camera looks down: people are upright, and their standing feet are on one plane.
+def level(positions: Array, lean: float, fps: float = 15.0) -> float:
+    """Radians by which the camera looks down: the person is upright, and standing feet are on one plane.
 
     Args:
-        people: (T, 22, 3) joints of each along the axes right, up and towards the camera, not yet levelled.
-        lean: the tilt at which each person would be upright on the whole.
+        positions: (T, 22, 3) joints along the axes right, up and towards the camera, not yet levelled.
+        lean: the tilt at which the person would be upright on the whole.
     """
-    tilt = float(np.mean(lean))
+    tilt = lean
     flip = np.diag([1.0, -1.0, -1.0])
     for _ in range(4):
         turn = upright(tilt) @ flip
         # How the height of the feet changes with the tilt, and what it should change by: least squares.
-        normal = len(people) / _LEAN**2
-        right = sum((each - tilt) / _LEAN**2 for each in lean)
-        for positions in people:
-            feet = (positions @ turn.T)[:, _ANKLES]
-            low = feet[..., 1].min(axis=1)
-            far = np.take_along_axis(feet[..., 2], feet[..., 1].argmin(axis=1)[:, None], axis=1)[:, 0]
-            weight = 1 / _UNEVEN**2 / max(_INDEPENDENT * fps, 1.0)
-            away, height = far - far.mean(), low - low.mean()
-            # Turning by δ lifts what is nearer to the camera by δ times its distance.
-            normal += weight * float(away @ away)
-            right -= weight * float(away @ height)
-        step = right / normal
-        tilt += float(np.clip(step, -0.2, 0.2))
+        feet = (positions @ turn.T)[:, _ANKLES]
+        low = feet[..., 1].min(axis=1)
+        far = np.take_along_axis(feet[..., 2], feet[..., 1].argmin(axis=1)[:, None], axis=1)[:, 0]
+        weight = 1 / _UNEVEN**2 / max(_INDEPENDENT * fps, 1.0)
+        away, height = far - far.mean(), low - low.mean()
+        # Turning by δ lifts what is nearer to the camera by δ times its distance.
+        normal = 1 / _LEAN**2 + weight * float(away @ away)
+        right = (lean - tilt) / _LEAN**2 - weight * float(away @ height)
+        tilt += float(np.clip(right / normal, -0.2, 0.2))
     return tilt
 
 

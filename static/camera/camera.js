@@ -1,7 +1,7 @@
 // Entry point: a panel that turns a video or the webcam's picture into landmarks for the server.
 
 import { analyse } from "./analysis.js";
-import { detectorsOf } from "./detector.js";
+import { detectorOf } from "./detector.js";
 import { drawPeople, drawSureness } from "./drawing.js";
 import { close, FilmError, LONGEST, openFilm } from "./film.js";
 import { keepLens, lensOf } from "./lens.js";
@@ -12,7 +12,7 @@ import { say, translate } from "../texts.js";
 /** `element` holds camera.html; `send(text)` hands landmarks to the page's Python side. */
 export async function mount(element, send, { folder }) {
   translate(element);
-  new Panel(element.querySelector(".pdcam"), send, detectorsOf(folder));
+  new Panel(element.querySelector(".pdcam"), send, detectorOf(folder));
   const address = new URL("camera.css", import.meta.url).href;
   if (document.querySelector(`link[href="${address}"]`)) return;
   const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href: address });
@@ -20,13 +20,13 @@ export async function mount(element, send, { folder }) {
 }
 
 class Panel {
-  constructor(root, send, detectors) {
+  constructor(root, send, detector) {
     this.send = send;
-    this.detectors = detectors;
+    this.detector = detector;
     this.landmarks = null;
     this.run = 0; // number of what is being done: a later one stops it
     const find = (name) => root.querySelector(`.pdcam-${name}`);
-    for (const name of ["open", "body", "choose", "record", "file", "stage", "video", "drawing", "count", "strip", "progress", "begin", "stop", "cancel", "line", "people", "tilt", "lens", "again"])
+    for (const name of ["open", "body", "choose", "record", "file", "stage", "video", "drawing", "count", "strip", "progress", "begin", "stop", "cancel", "line", "tilt", "lens", "again"])
       this[name] = find(name);
     this.root = root;
     this.open.onclick = () => this.toggle();
@@ -144,17 +144,15 @@ class Panel {
     this.show(false);
     this.strip.hidden = false;
     this.say(say("camera.looking"));
-    const wanted = Number(this.people.value);
     const began = performance.now();
-    const landmarks = await analyse(this.video, this.detectors, {
-      people: wanted,
+    const landmarks = await analyse(this.video, this.detector, {
       stopped,
-      each: (done, all, people, count) => {
+      each: (done, all, people) => {
         this.progress.value = done / all;
         drawPeople(this.drawing, people, this.video.videoWidth, this.video.videoHeight);
-        drawSureness(this.strip, done, all, people, count);
+        drawSureness(this.strip, done, all, people);
         const left = ((performance.now() - began) / done) * (all - done) / 1000;
-        this.say(say(count === 2 ? "camera.reading_two" : "camera.reading_one", { done, all }) + (left > 3 ? say("camera.left", { seconds: Math.ceil(left / 5) * 5 }) : ""));
+        this.say(say("camera.reading", { done, all }) + (left > 3 ? say("camera.left", { seconds: Math.ceil(left / 5) * 5 }) : ""));
       },
     });
     if (!landmarks) return;

@@ -2,11 +2,11 @@
 
 const LONGEST_SIDE = 960; // pixels of what is looked at: more costs time and finds nothing more
 
-const shared = new Map(); // two for the page, the second for a second person: each takes a second to load and 100 MB
+const shared = new Map(); // one for the page: it takes a second to load and 100 MB
 
-/** The page's two detectors with MediaPipe's files at an address. */
-export function detectorsOf(folder) {
-  if (!shared.has(folder)) shared.set(folder, [new Detector(folder), new Detector(folder)]);
+/** The page's detector with MediaPipe's files at an address. */
+export function detectorOf(folder) {
+  if (!shared.has(folder)) shared.set(folder, new Detector(folder));
   return shared.get(folder);
 }
 
@@ -19,31 +19,23 @@ export class Detector {
     this.opened = null;
   }
 
-  /**
-   * Loads the network at the first call. Follows as many people from now on and nobody of before; pictures that are
-   * `still` have nothing to do with each other.
-   */
-  async begin(people, { still = false } = {}) {
-    this.opened ??= this._open(people).catch((error) => {
+  /** Loads the network at the first call. Follows one person from now on and nobody of before. */
+  async begin() {
+    this.opened ??= this._open().catch((error) => {
       this.close();
       throw error;
     });
     await this.opened;
-    await this._ask({ job: "begin", people, still });
+    await this._ask({ job: "begin" });
   }
 
-  /** The people in a video's present picture, or in a window [x, y, width, height] of it, at a time in seconds. */
-  async detect(source, time, window = null) {
-    const [all, tall] = [source.videoWidth || source.width, source.videoHeight || source.height];
-    const [x, y, width, height] = (window ?? [0, 0, all, tall]).map(Math.round);
+  /** The people in a video's present picture, none or one, at a time in seconds. */
+  async detect(source, time) {
+    const [width, height] = [source.videoWidth || source.width, source.videoHeight || source.height];
     const scale = Math.min(1, LONGEST_SIDE / Math.max(width, height));
     const size = { resizeWidth: Math.round(width * scale), resizeHeight: Math.round(height * scale) };
-    const picture = await createImageBitmap(source, x, y, width, height, scale < 1 ? size : {});
-    const found = await this._ask({ job: "detect", picture, time: 1000 * time }, [picture]);
-    return found.map((person) => ({
-      ...person,
-      image: person.image.map(([u, v]) => [(x + u * width) / all, (y + v * height) / tall]),
-    }));
+    const picture = await createImageBitmap(source, 0, 0, width, height, scale < 1 ? size : {});
+    return this._ask({ job: "detect", picture, time: 1000 * time }, [picture]);
   }
 
   close() {
@@ -54,7 +46,7 @@ export class Detector {
     this.waiting.clear();
   }
 
-  async _open(people) {
+  async _open() {
     this.worker = new Worker(new URL("pose_worker.js", import.meta.url), { type: "module" });
     this.worker.onmessage = ({ data }) => {
       const { resolve, reject } = this.waiting.get(data.id) ?? {};
@@ -63,7 +55,7 @@ export class Detector {
       else reject?.(new Error(data.error));
     };
     this.worker.onerror = () => this.close();
-    await this._ask({ job: "open", folder: this.folder, people });
+    await this._ask({ job: "open", folder: this.folder });
   }
 
   _ask(message, transfer = []) {

@@ -33,10 +33,10 @@ export function sureness(person) {
   return BODY.reduce((sum, point) => sum + person.seen[point], 0) / BODY.length;
 }
 
-/** Adds a picture to the strip: green where everybody is seen well, grey where somebody is missing. */
-export function drawSureness(canvas, done, all, people, wanted) {
+/** Adds a picture to the strip: green where the person is seen well, grey where nobody is. */
+export function drawSureness(canvas, done, all, people) {
   if (done === 1) canvas.width = all;
-  const sure = people.length < wanted ? 0 : Math.min(...people.map(sureness));
+  const sure = people.length ? sureness(people[0]) : 0;
   const pen = canvas.getContext("2d");
   pen.fillStyle = sure < 0.05 ? "#9ca3af" : `hsl(${Math.round(20 + 130 * Math.max(0, (sure - 0.4) / 0.6))} 65% 45%)`;
   pen.fillRect(done - 1, 0, 1, canvas.height);

@@ -58,11 +58,6 @@ export async function seek(video, time) {
   if (!shown) throw new FilmError(say("camera.broken"));
 }
 
-/** Sees to it that the picture at a time is still shown: a browser may let go of one that is looked at for long. */
-export async function hold(video, time) {
-  if (video.readyState < 2) await seek(video, time);
-}
-
 /** A recording says its length only after its end was looked for. */
 async function findEnd(video) {
   const found = first(video, { durationchange: true }, PATIENCE);

@@ -11,11 +11,10 @@ self.fetch = (resource, options) =>
 // wrongly is dropped by the landmarks' presence.
 const SURE = { minPoseDetectionConfidence: 0.1, minPosePresenceConfidence: 0.3, minTrackingConfidence: 0.3 };
 let landmarker = null;
-let follows = true;
 let latest = 0; // milliseconds: the library wants every time to be later than the one before
 let offset = 0;
 
-async function open({ folder, people }) {
+async function open({ folder }) {
   const { PoseLandmarker } = await import(`${folder}vision_bundle.mjs`);
   const fileset = {
     wasmLoaderPath: `${folder}vision_wasm_module_internal.js`,
@@ -24,24 +23,20 @@ async function open({ folder, people }) {
   landmarker = await PoseLandmarker.createFromOptions(fileset, {
     baseOptions: { modelAssetPath: `${folder}pose_landmarker_lite.task`, delegate: "CPU" },
     runningMode: "VIDEO",
-    numPoses: people,
+    numPoses: 1,
     ...SURE,
   });
 }
 
-/**
- * Forgets whom it followed. From now on it follows as many people, or where it looks at pictures that are `still`,
- * finds them anew in each.
- */
-async function begin({ people, still }) {
-  follows = !still;
-  await landmarker.setOptions({ numPoses: people, runningMode: follows ? "VIDEO" : "IMAGE" });
+/** Forgets whom it followed. */
+async function begin() {
+  await landmarker.setOptions({ numPoses: 1, runningMode: "VIDEO" });
   offset = latest + 1000;
 }
 
 function detect({ picture, time }) {
   latest = Math.max(latest + 1, offset + Math.round(time));
-  const found = follows ? landmarker.detectForVideo(picture, latest) : landmarker.detect(picture);
+  const found = landmarker.detectForVideo(picture, latest);
   picture.close();
   return found.landmarks.map((points, person) => ({
     image: points.map(({ x, y }) => [x, y]),

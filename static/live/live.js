@@ -1,6 +1,6 @@
 // Entry point: a panel in which somebody moves and a partner answers at once.
 
-import { detectorsOf } from "../camera/detector.js";
+import { detectorOf } from "../camera/detector.js";
 import { drawPeople } from "../camera/drawing.js";
 import { FilmError } from "../camera/film.js";
 import { keepLens, lensOf } from "../camera/lens.js";
@@ -144,7 +144,7 @@ class Panel {
   sourceOf(file, player) {
     const chosen = this.source.value;
     if (chosen === "clip") return new Person(player);
-    const [detector] = detectorsOf(this.mediapipe);
+    const detector = detectorOf(this.mediapipe);
     const camera = { lens: Number(this.lens.value), tilt: this.tilt.value === "" ? null : Number(this.tilt.value) };
     return chosen === "video" ? new Video(this.video, detector, camera, file) : new Webcam(this.video, detector, camera);
   }

@@ -21,7 +21,7 @@ class Pictures {
   }
 
   async begin() {
-    await this.detector.begin(1);
+    await this.detector.begin();
     await this.detector.detect(this.video, 0); // the first picture takes seconds
     this.began = performance.now() - 100;
     const count = (now, { presentedFrames, presentationTime, captureTime }) => {

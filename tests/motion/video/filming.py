@@ -12,7 +12,7 @@ from motion import SMPL22
 from motion.kinematics import fit_rotations, forward_kinematics
 from motion.video import Landmarks
 from motion.video.landmarks import LENS, POINTS
-from motion.video.people import LAYOUT
+from motion.video.person import LAYOUT
 from motion.video.place import focal_length
 
 J = {name: i for i, name in enumerate(SMPL22.joint_names)}

@@ -1,7 +1,7 @@
 """A panel that takes an actor from a video or the webcam.
 
-The browser finds the people (``static/camera``) and sends the points on their bodies, never a picture;
-:mod:`motion.video` makes clips of them.
+The browser finds the person (``static/camera``) and sends the points on the body, never a picture; :mod:`motion.video`
+makes a clip of them.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from pydantic import TypeAdapter
 
 from motion import InputError
-from motion.video import people_of, unpack_film
+from motion.video import person_of, unpack_film
 
 from .accepts import Text
 from .actors import Found, Source
@@ -38,7 +38,7 @@ class CameraPanel(Part):
 
 
 def film_source(text: str | None) -> Source:
-    """The people of a film as a source, from what the panel sends.
+    """The person of a film as a source, from what the panel sends.
 
     Raises:
         InputError: where it is damaged, or nobody can be followed in it.
@@ -46,11 +46,10 @@ def film_source(text: str | None) -> Source:
     if not text:
         raise InputError("There is no film yet: choose a video or use the webcam.")
     sent = unpack_film(text)
-    filmed = people_of(sent.landmarks, tilt=sent.tilt, lens=sent.lens, name=sent.name)
+    filmed = person_of(sent.landmarks, tilt=sent.tilt, lens=sent.lens, name=sent.name)
     sure = round(100 * float(filmed.confidence.mean()))
-    count = "two people" if len(filmed.people) == 2 else "one person"
     line = (
-        f"{count} from video, {sure} % of the body seen, camera looks down {filmed.tilt:.0f}° "
+        f"One person from video, {sure} % of the body seen, camera looks down {filmed.tilt:.0f}° "
         f"({'found' if sent.tilt is None else 'given'})"
     )
-    return Source(sent.name, filmed.people, found=Found(line[0].upper() + line[1:], ()), notes=filmed.notes)
+    return Source(sent.name, (filmed.person,), found=Found(line, ()), notes=filmed.notes)

@@ -135,7 +135,7 @@ class SourcePanel(ABC):
             yield from self.load(partial(read_source, path), fresh=True)
 
     def read_film(self, landmarks: str | None) -> Iterator[Updates]:
-        """Takes the people of a film."""
+        """Takes the person of a film."""
         yield from self.load(partial(film_source, landmarks))
 
     def take_result(self, person: str, record: Record | None) -> Iterator[Updates]:

@@ -1,4 +1,5 @@
-"""From landmarks to clips: pose by inverse kinematics, path from the picture, feet on the floor.
+"""From the landmarks of a film to a clip of one person: pose by inverse kinematics, path from the picture, feet on the
+floor.
 
 The network's points are good to two or three centimetres across the line of sight and to about ten along it, so the
 fit trusts a point's place in the picture and lets the bones' lengths correct its depth.
@@ -6,23 +7,21 @@ fit trusts a point's place in the picture and lets the bones' lengths correct it
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion.cleaning import foot_contacts, plant_feet
-from motion.clip import FPS, Clip, Duet
+from motion.clip import FPS, Clip
 from motion.errors import InputError
 from motion.ik import fit_skeleton
 from motion.kinematics import project_to_skeleton
 from motion.skeleton import SMPL22, Layout
 from motion.transforms import resample
 
-from .landmarks import INDEX, LENS, Landmarks
-from .place import body_tilt, centred, focal_length, level, smooth, steady_path, towards, translation, upright
-from .tracks import Track, tracks_of
+from .landmarks import INDEX, LENS, TORSO, Landmarks
+from .place import body_tilt, focal_length, level, smooth, steady_path, towards, translation, upright
 
 Array = NDArray[np.floating]
 
@@ -72,65 +71,46 @@ LAYOUT = _layout()
 
 @dataclass(frozen=True, eq=False)
 class Filmed:
-    """The people of a film.
+    """The person of a film.
 
     Attributes:
-        people: one clip or two, in one world: metres, Y up, floor at 0, +Z towards the camera.
-        confidence: (people, T) 0 to 1: how much of each person was seen in each frame; 0 in a gap.
-        gaps: (start, end) seconds in which somebody was not found; their motion is made up there.
+        person: metres, Y up, floor at 0, +Z towards the camera.
+        confidence: (T,) 0 to 1: how much of the person was seen in each frame; 0 in a gap.
         tilt: degrees by which the camera looked down, found or given.
         notes: sentences about what should have been filmed better.
     """
 
-    people: tuple[Clip, ...]
+    person: Clip
     confidence: Array = field(repr=False)
-    gaps: tuple[tuple[float, float], ...] = ()
     tilt: float = 0.0
     notes: tuple[str, ...] = ()
 
-    @property
-    def motion(self) -> Clip | Duet:
-        """The person, or both."""
-        return Duet(*self.people) if len(self.people) == 2 else self.people[0]
 
-
-def people_of(landmarks: Landmarks, *, lens: float = LENS, tilt: float | None = None, name: str = "Film") -> Filmed:
-    """The people in a film on SMPL22 at 30 frames a second.
+def person_of(landmarks: Landmarks, *, lens: float = LENS, tilt: float | None = None, name: str = "Film") -> Filmed:
+    """The person in a film on SMPL22 at 30 frames a second; of several, who is nearest at first.
 
     Args:
         landmarks: of its pictures.
         lens: degrees that the camera sees from corner to corner; scales motion towards the camera.
-        tilt: degrees by which it looks down; found from the people by default.
-        name: of the clips.
+        tilt: degrees by which it looks down; found from the person by default.
+        name: of the clip.
 
     Raises:
         InputError: where nobody can be followed, or not enough of them is seen.
     """
     check_camera(lens, tilt)
-    tracks = tracks_of(landmarks)
-    if len(tracks[0]) / tracks[0].fps < SHORTEST:
+    track = track_of(landmarks)
+    if len(track) / track.fps < SHORTEST:
         raise InputError("The film shows somebody for less than half a second: film for longer.")
-    for track in tracks:
-        _check_seen(track, landmarks)
-    focal = focal_length(landmarks.width, landmarks.height, lens)
-    seen = [_in_camera(track, landmarks, focal) for track in tracks]
-    fitted = [_fit(points, track) for points, track in zip(seen, tracks, strict=True)]
+    _check_seen(track, landmarks)
+    points = _in_camera(track, landmarks, focal_length(landmarks.width, landmarks.height, lens))
+    fitted = _fit(points, track)
     if tilt is None:
-        lean = [body_tilt(points, track.seen) for points, track in zip(seen, tracks, strict=True)]
-        tilt = float(np.clip(np.degrees(level(fitted, lean, fps=tracks[0].fps)), *TILTS))
-    turned = [positions @ _flipped(np.radians(tilt)).T for positions in fitted]
-    fps = tracks[0].fps
-    people = [_finished(positions, fps) for positions in turned]
-    frames = min(map(len, people))
-    middle = np.mean([person[0, 0] for person in people], axis=0) * [1, 0, 1]
-    confidence = np.stack([_confidence(track, frames) for track in tracks])
-    return Filmed(
-        tuple(Clip(person[:frames] - middle, FPS, name=name) for person in people),
-        confidence,
-        _gaps(confidence),
-        tilt,
-        _notes(tracks, landmarks),
-    )
+        lean = body_tilt(points, track.seen)
+        tilt = float(np.clip(np.degrees(level(fitted, lean, fps=track.fps)), *TILTS))
+    positions = _finished(fitted @ _flipped(np.radians(tilt)).T, track.fps)
+    clip = Clip(positions - positions[0, 0] * [1, 0, 1], FPS, name=name)
+    return Filmed(clip, _confidence(track, len(positions)), tilt, _notes(track, landmarks))
 
 
 def check_camera(lens: float, tilt: float | None) -> None:
@@ -166,7 +146,7 @@ def _legs_seen(track: Track, landmarks: Landmarks) -> NDArray[np.bool_]:
 
 def _in_camera(track: Track, landmarks: Landmarks, focal: float) -> Array:
     """(T, 33, 3) points in metres along the camera's axes: their place in the picture, at the depth of the body."""
-    pixels = centred(track, landmarks.width, landmarks.height)
+    pixels = track.pixels - np.array([landmarks.width, landmarks.height]) / 2
     found = track.found
     world = np.full(track.world.shape, np.nan)
     world[found] = np.einsum("tij,tpj->tpi", towards(pixels[found], focal), track.world[found])
@@ -220,18 +200,114 @@ def _confidence(track: Track, frames: int) -> Array:
     return np.interp(np.arange(frames) / FPS, np.arange(len(track)) / track.fps, shown)
 
 
-def _gaps(confidence: Array) -> tuple[tuple[float, float], ...]:
-    lost = (confidence < 0.05).any(axis=0).astype(np.int8)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], lost, [0]])))
-    return tuple((float(start) / FPS, float(stop) / FPS) for start, stop in edges.reshape(-1, 2))
-
-
-def _notes(tracks: Sequence[Track], landmarks: Landmarks) -> tuple[str, ...]:
+def _notes(track: Track, landmarks: Landmarks) -> tuple[str, ...]:
     notes = []
-    hidden = max(1 - _legs_seen(track, landmarks)[track.found].mean() for track in tracks)
+    hidden = 1 - _legs_seen(track, landmarks)[track.found].mean()
     if hidden > 0.2:
         notes.append(f"The legs are hidden or out of the picture for {100 * hidden:.0f} % of the time: step back.")
-    lost = max(1 - track.found.mean() for track in tracks)
+    lost = 1 - track.found.mean()
     if lost > 0.05:
         notes.append(f"Nobody was found for {100 * lost:.0f} % of the time: the motion is made up there.")
     return tuple(notes)
+
+
+# ---- Who is followed, from picture to picture ------------------------------------------------------------------------
+RATES = (5.0, 30.0)
+"""Frames a second that a track may have."""
+_FAR = 3.0
+"""Torso lengths that a person cannot have moved between two pictures without a doubt."""
+_NOBODY = "Nobody was found in the film: film one person from head to feet, in good light."
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """One person over a film, at even steps of time; NaN where they were not found.
+
+    Attributes:
+        fps: frames a second.
+        start: seconds of the film at the first frame.
+        world: (T, 33, 3) as in :class:`Landmarks`.
+        pixels: (T, 33, 2) from the upper left corner.
+        seen: (T, 33) 0 to 1; 0 where the person was not found.
+    """
+
+    fps: float
+    start: float
+    world: Array = field(repr=False)
+    pixels: Array = field(repr=False)
+    seen: Array = field(repr=False)
+
+    def __len__(self) -> int:
+        return len(self.world)
+
+    @property
+    def found(self) -> NDArray[np.bool_]:
+        """(T,) whether the person was found."""
+        return np.isfinite(self.pixels[:, 0, 0])
+
+
+def track_of(landmarks: Landmarks) -> Track:
+    """The person of a film from where they were first found to where they were last found.
+
+    Of several in the first picture it is the largest, who stands nearest; from then on the pose nearest to the last.
+
+    Raises:
+        InputError: where nobody was found, or for too short a time.
+    """
+    chosen = np.full(len(landmarks.times), -1)
+    latest, missed = -1, 0
+    for frame in range(len(chosen)):
+        poses = np.flatnonzero(landmarks.frames == frame)
+        missed += 1
+        if not len(poses):
+            continue
+        if latest < 0:
+            latest = int(max(poses, key=lambda pose: _torso(landmarks.pixels[pose])))
+        else:  # who was lost for a while may have gone further; a pose that is far away is somebody else's
+            doubts = [_apart(landmarks, latest, int(pose)) / (1 + 0.2 * missed) for pose in poses]
+            if min(doubts) > _FAR:
+                continue
+            latest = int(poses[int(np.argmin(doubts))])
+        missed = 0
+        chosen[frame] = latest
+    seen = np.flatnonzero(chosen >= 0)
+    if not len(seen) or seen[-1] == seen[0]:
+        raise InputError(_NOBODY)
+    return _even(landmarks, chosen, seen[0], seen[-1] + 1)
+
+
+def _torso(points: Array) -> float:
+    """Length of the torso in pixels, at least 1."""
+    left, right, left_hip, right_hip = points[TORSO]
+    return max(float(np.linalg.norm((left + right - left_hip - right_hip) / 2)), 1.0)
+
+
+def _apart(landmarks: Landmarks, one: int, other: int) -> float:
+    """Median distance of two poses' points in torso lengths."""
+    a, b = landmarks.pixels[one], landmarks.pixels[other]
+    return float(np.median(np.linalg.norm(a - b, axis=-1)) / max(_torso(a), _torso(b)))
+
+
+def _even(landmarks: Landmarks, poses: NDArray[np.integer], first: int, last: int) -> Track:
+    """A person's poses at even steps of time: between pictures by straight lines, but not across gaps."""
+    times = landmarks.times
+    step = float(np.median(np.diff(times)))
+    fps = float(np.clip(round(1 / step), *RATES))
+    start, end = times[first], times[last - 1]
+    grid = start + np.arange(max(2, int(np.floor((end - start) * fps + 1e-6)) + 1)) / fps
+    mine = np.flatnonzero(poses >= 0)
+    known = times[mine]
+    after = np.clip(np.searchsorted(known, grid - 1e-9), 0, len(known) - 1)
+    before = np.clip(after - (known[after] > grid + 1e-9), 0, None)
+    gap = known[after] - known[before]
+    share = np.where(gap > 0, (grid - known[before]) / np.where(gap > 0, gap, 1.0), 0.0)
+    away = np.where(gap > 0, gap > 2.5 * max(step, 1 / fps), np.abs(known[after] - grid) > 1.5 / fps)
+
+    def between(values: Array) -> Array:
+        weight = share.reshape(-1, *[1] * (values.ndim - 1))
+        mixed = values[poses[mine[before]]] * (1 - weight) + values[poses[mine[after]]] * weight
+        mixed[away] = np.nan
+        return mixed
+
+    seen = np.nan_to_num(between(landmarks.seen))
+    return Track(fps, float(start), between(landmarks.world), between(landmarks.pixels), seen)
