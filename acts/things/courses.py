@@ -40,12 +40,10 @@ class ThingCourse:
     Args:
         hands: of both people.
         uses: of the thing, in order.
-        mesh: its surface; that of its kind by default.
     """
 
     hands: Hands
     uses: Sequence[Use]
-    mesh: Mesh | None = None
     events: list[dict[str, Any]] = field(default_factory=list)
     tables: list[Thing] = field(default_factory=list)
     holders: list[tuple[int, tuple[int, ...], tuple[int, ...]]] = field(default_factory=list)
@@ -54,10 +52,7 @@ class ThingCourse:
     def __post_init__(self) -> None:
         first = self.uses[0]
         self.kind, self.name = first.kind, first.name
-        self.shown = "own" if self.mesh else self.kind
-        self.surface = self.mesh or shape(self.kind)
-        if first.does == "carries" and self.mesh is None:
-            self.surface = self._carried_shape()
+        self.surface = self._carried_shape() if first.does == "carries" else shape(self.kind)
         self.holder: int | None = None
         self.side = 1
         self.course = Course(self._first(first), self.hands.fps)
@@ -70,7 +65,7 @@ class ThingCourse:
         for use in self.uses:
             getattr(self, f"_{use.does}")(use)
         places, rotations = self.course.places, self.course.rotations
-        return Thing(self.shown, self.surface, places, rotations, self.name)
+        return Thing(self.kind, self.surface, places, rotations, self.name)
 
     # ---- where it begins -------------------------------------------------------------------------------
     def _first(self, use: Use) -> Track:
@@ -349,11 +344,8 @@ class ThingCourse:
         return place, upright_frame(along)
 
 
-def courses(hands: Hands, uses: Iterable[Use], mesh: Mesh | None) -> list[ThingCourse]:
-    """One course a thing: uses of one name follow each other, and two who each hold one have two.
-
-    ``mesh`` is the surface of the first thing, in place of that of its kind.
-    """
+def courses(hands: Hands, uses: Iterable[Use]) -> list[ThingCourse]:
+    """One course a thing: uses of one name follow each other, and two who each hold one have two."""
     several: dict[tuple[str, str], list[Use]] = {}
     for use in uses:
         if use.does in ("sits", "passes", "faces", "opens", "closes", ""):
@@ -367,7 +359,7 @@ def courses(hands: Hands, uses: Iterable[Use], mesh: Mesh | None) -> list[ThingC
     listed: list[ThingCourse] = []
     for each in several.values():
         try:
-            listed.append(ThingCourse(hands, each, None if listed else mesh))
+            listed.append(ThingCourse(hands, each))
         except InputError:  # a size that its kind cannot have
             continue
     return listed

@@ -184,28 +184,6 @@ class GlbFile:
             return rows / float(np.iinfo(dtype).max)
         return rows.copy()
 
-    def numbers(self, accessor: Any, kind: str, most: int, what: str) -> NDArray:
-        """The rows of an accessor of this kind, at most so many."""
-        return self.decoded(self.stored(accessor, kind, most, what), what)
-
-    def corners(self, primitive: Mapping[str, Any], most: int) -> int:
-        """Corners of a primitive's triangles, at most so many, by what it declares; 0 for points and lines."""
-        if primitive.get("mode", 4) != 4:
-            return 0
-        places, indices = primitive["attributes"]["POSITION"], primitive.get("indices")
-        what = (places, "VEC3") if indices is None else (indices, "SCALAR")
-        return self.stored(*what, 3 * most, "corners of triangles").rows
-
-    def triangles(self, primitive: Mapping[str, Any], vertices: int, most: int) -> NDArray[np.int64]:
-        """(F, 3) a primitive's triangles between so many vertices, at most so many."""
-        if (indices := primitive.get("indices")) is None:
-            found = np.arange(vertices)
-        else:
-            found = self.numbers(indices, "SCALAR", 3 * most, "corners of triangles").astype(np.int64)[:, 0]
-        if len(found) % 3 or found.max(initial=0) >= vertices or found.min(initial=0) < 0:
-            self.refuse("its triangles have corners that are not there")
-        return found.reshape(-1, 3)
-
     def _size(self, value: Any) -> int:
         if type(value) is not int or not 0 <= value < 2**31:
             self.refuse("a size in it is no size")
@@ -241,7 +219,8 @@ class GlbFile:
 
     def bind_matrices(self, skin: Any, count: int) -> NDArray[np.floating]:
         """(J, 4, 4) the joints of a skin when the mesh is as it is stored."""
-        stored = self.numbers(skin["inverseBindMatrices"], "MAT4", MOST_JOINTS, "bind matrices")
+        what = "bind matrices"
+        stored = self.decoded(self.stored(skin["inverseBindMatrices"], "MAT4", MOST_JOINTS, what), what)
         if len(stored) < count:
             self.refuse("some of its joints have no bind matrix")
         inverse = stored[:count].astype(np.float64).reshape(-1, 4, 4).swapaxes(1, 2)

@@ -87,7 +87,7 @@ class Thing:
     """One thing and where it is in each frame.
 
     Attributes:
-        kind: what it is, such as "chair"; one of :data:`motion.things.KINDS`, or "own" for an uploaded one.
+        kind: what it is, such as "chair"; one of :data:`motion.things.KINDS`.
         mesh: its surface.
         places: (T, 3) float32 metres of its origin, in the people's world.
         rotations: (T, 3, 3) float32.

@@ -58,9 +58,8 @@ def held(hands: Hands, person: int, side: int, kind: str, mesh: Mesh) -> Track:
 
 
 def takes_both_hands(kind: str, mesh: Mesh) -> bool:
-    """True for a guitar and for what is held before the body; ``kind`` is "own" for an uploaded surface."""
-    wide = kind == "own" and float(mesh.size.min()) > 0.16
-    return kind in ("guitar", "box") or float(mesh.size.max()) > 1.3 or wide
+    """True for a guitar and for what is held before the body."""
+    return kind in ("guitar", "box") or float(mesh.size.max()) > 1.3
 
 
 def _before(hands: Hands, person: int, mesh: Mesh) -> Track:

@@ -42,12 +42,6 @@ def add_generate(commands: Any) -> None:
         action="store_true",
         help="do not read from the words where people go and whether they stand by, sit down or jump",
     )
-    parser.add_argument(
-        "--thing",
-        type=Path,
-        metavar="FILE",
-        help="a .glb, .obj, .stl or .ply whose shape the first thing of the words has",
-    )
     add_sampling(parser, "generate")
     add_tries(parser, GenerateRequest.tries)
     parser.set_defaults(job=generate)
@@ -64,13 +58,7 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
     if options.plan is not None:
         words, fields["acts"] = "", read_plan(options.plan)
     request = GenerateRequest(prompt=words, seconds=options.seconds, **fields)
-    if options.thing is None:
-        return write_result(run(request), options.out)
-    from motion.formats.thing_files import read_thing
-    from webdemo.inference.finish.looks import with_own_thing
-
-    read_thing(options.thing)  # what is wrong with it is said before the run
-    return write_result(with_own_thing(run(request), request, options.thing), options.out)
+    return write_result(run(request), options.out)
 
 
 def read_plan(file: Path) -> Plan:

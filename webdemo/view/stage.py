@@ -68,11 +68,6 @@ class Style:
         trails: whether pelvis and wrists leave a line of their last second.
         names: whether roles stand above the heads.
         theme: "light" or "dark".
-<<<<<<< HEAD
-        body: worn by everybody, such as one of :func:`motion.character.character_body`; a body each by default.
-=======
-        film: whether pictures have the film look, see :mod:`webdemo.view.filming`.
->>>>>>> f6dff37a (People wear the bodies that ship: uploaded characters and glTF rigs of one's own go)
 
     Raises:
         InputError: for another look or theme.
@@ -82,11 +77,6 @@ class Style:
     trails: bool = False
     names: bool = True
     theme: str = "light"
-<<<<<<< HEAD
-    body: Body | None = field(default=None, repr=False)
-=======
-    film: bool = False
->>>>>>> f6dff37a (People wear the bodies that ship: uploaded characters and glTF rigs of one's own go)
 
     def __post_init__(self) -> None:
         if self.look not in LOOKS:

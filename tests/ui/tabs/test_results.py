@@ -11,9 +11,7 @@ from typing import Any
 import av
 import gradio as gr
 import pytest
-import trimesh
 
-from motion import Duet, formats
 from tests.ui.tab_events import built
 from tests.ui.tabs.generating import result_of
 from webdemo.ui.components.exports import KINDS, file_name, for_download, write_files
@@ -109,28 +107,3 @@ def test_runs_that_differ_have_files_that_differ_in_name() -> None:
     manifests = [{"request": asked}, {"request": asked | {"guidance": 3.0}}, {"request": asked, "model": "other"}]
     names = [file_name("hug", manifest) for manifest in manifests]
     assert len(set(names)) == 3 and file_name("hug", dict(manifests[0])) == names[0]
-
-
-def test_an_uploaded_thing_is_in_the_player_and_in_the_files(tab: GenerateTab, tmp_path: Path) -> None:
-    trimesh.creation.box((0.1, 0.2, 0.1)).export(tmp_path / "mine.stl")
-    record = result_of(tab)
-    line, player, *offered = tab.results.bring(str(tmp_path / "mine.stl"), record)
-    assert "mine.stl is in the scene" in line
-    (thing,) = player["value"]["samples"][0]["things"]
-    assert thing["kind"] == "own"
-    files = dict(zip([kind.key for kind in KINDS], offered, strict=True))
-    back = formats.read(files["npz"]["value"])
-    assert isinstance(back, Duet) and [each.kind for each in back.things] == ["own"]
-
-
-@pytest.mark.parametrize("name", ["x.stl", "x.glb", "x.fbx"])
-def test_a_file_that_is_no_thing_is_a_sentence(tab: GenerateTab, tmp_path: Path, name: str) -> None:
-    (tmp_path / name).write_bytes(b"nothing")
-    record = result_of(tab)
-    before = record.result
-    line, *rest = tab.results.bring(str(tmp_path / name), record)
-    assert "pd-error" in line and name in line and record.result is before
-    assert rest == [gr.skip()] * (1 + len(KINDS))
-    assert "pd-error" in tab.results.bring(None, record)[0]
-    trimesh.creation.box((0.1, 0.2, 0.1)).export(tmp_path / "mine.stl")
-    assert "make a motion first" in tab.results.bring(str(tmp_path / "mine.stl"), None)[0]

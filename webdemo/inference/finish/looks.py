@@ -9,10 +9,8 @@ also gives them the things of the acts), or by the looks of the given motion, wh
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, TypeGuard
 
 import numpy as np
@@ -20,13 +18,11 @@ from numpy.typing import NDArray
 
 from acts import Plan
 from acts.things.furnishing import PlanFrames, furnish
-from motion import SMPL22, Clip, Duet, InputError, stacked_positions
-from motion.formats.thing_files import read_thing
+from motion import SMPL22, Clip, Duet, stacked_positions
 from motion.looks import SIZES, UNSAID, grown_up, looks_of, size_of
 from motion.metrics import compare
 from motion.sizes import at_sizes, bones_of, floor_scale, of_adults
 from motion.smoothing import smoothstep
-from motion.things import Mesh
 from webdemo.inference.requests.acting import plans_of
 from webdemo.inference.requests.paths import FloorPath
 from webdemo.inference.requests.predict import PredictRequest, PredictResult, compared
@@ -44,13 +40,12 @@ _A_CHILD = 0.87
 """Length of the legs, as a share of SMPL22's, below which a pose is one of a child."""
 
 
-def furnished(result: Result, plans: Sequence[PlanFrames], mesh: Mesh | None = None, *, given: bool = False) -> Result:
+def furnished(result: Result, plans: Sequence[PlanFrames], *, given: bool = False) -> Result:
     """A result whose people look as their plans say, with the things of the acts, and hands that take shapes.
 
     Args:
         result: of two people on SMPL22; another is returned as it is.
         plans: of the request's words.
-        mesh: the surface that the first thing has, in place of that of its kind.
         given: a part of the motion was given, with adults: nobody is a child.
 
     Returns:
@@ -59,29 +54,10 @@ def furnished(result: Result, plans: Sequence[PlanFrames], mesh: Mesh | None = N
     looks = looks_in(plan for plan, *_ in plans)
     result = _at_their_sizes(result, grown_up(looks) if given else looks)
     lengths = lengths_of(result.manifest)
-    duets = tuple(furnish(each, plans, lengths, mesh) if _is_on_bodies(each) else each for each in result.duets)
+    duets = tuple(furnish(each, plans, lengths) if _is_on_bodies(each) else each for each in result.duets)
     rows = [(each.manifest or {}).get("things") if isinstance(each, Duet) else None for each in duets]
     manifest = {**result.manifest, "things": rows[0] or []} if any(rows) else result.manifest
     return replace(result, duets=duets, manifest=manifest)
-
-
-def with_own_thing(result: Result, request: Any, file: Path) -> Result:
-    """A result in which the first thing of its words, or one beside the people, looks like that of a file.
-
-    Args:
-        result: of two people.
-        request: that it was made from.
-        file: .glb, .obj, .stl or .ply.
-
-    Raises:
-        InputError: if the file cannot be read, or the result has no two people on SMPL22.
-    """
-    given = getattr(request, "motion", None) is not None
-    shaped = furnished(result, list(plans_of(request)), read_thing(file), given=given)
-    if "things" not in shaped.manifest:
-        raise InputError("There are no two people here for whom a thing could be: leave the file out.")
-    named = {"file": file.name[:100], "sha256": hashlib.sha256(file.read_bytes()).hexdigest()}
-    return replace(shaped, manifest={**shaped.manifest, "own_thing": named})
 
 
 def looks_in(plans: Iterable[Plan]) -> tuple[str, str]:

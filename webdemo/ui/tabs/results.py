@@ -23,9 +23,7 @@ from webdemo.ui.components.exports import (
     write_record,
 )
 from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film, make_mesh
-from webdemo.ui.components.own_thing import FILE_TYPES, bring
-from webdemo.ui.components.player import MotionPlayer, show
-from webdemo.ui.components.show import result_payload
+from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.context import PageContext
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say, worded
@@ -130,15 +128,6 @@ class Results:
                 with gr.Row(elem_classes="pd-downloads"):
                     for key in keys:
                         self._download(key)
-                    if RIG in keys:
-                        self.thing = gr.UploadButton(
-                            say("result.thing"),
-                            file_types=FILE_TYPES,
-                            size="sm",
-                            min_width=0,
-                            elem_id=self._id("thing"),
-                            elem_classes="pd-upload",
-                        )
                     if "png" in keys:
                         self.picture = self._button("result.picture", "picture")
                         self.drawn = {key: self._button(key, key.split(".")[1]) for key in DRAWN}
@@ -165,9 +154,6 @@ class Results:
             made.then(None, js=_SAVE % json.dumps(self.saved.elem_id), **QUIET)
         self.picture.click(None, js=_TAKE_PICTURE, **QUIET)
         self.share.click(self.make_link, outputs=[line, self.address], **shown, **QUIET)
-        brought = [line, self.player, *self.downloads]
-        own: dict[str, Any] = {**drawn, "concurrency_id": "thing"}
-        self.thing.upload(self.bring, inputs=[self.thing, record], outputs=brought, **own)
 
     def hand_out(self, event: Any) -> None:
         """Writes the files of a new result after an event, and until then gives none of the result before."""
@@ -175,20 +161,6 @@ class Results:
         event.then(self.withhold, inputs=self.record, outputs=gone, queue=False, **QUIET).then(
             self.export, inputs=self.record, outputs=[self.line, *self.downloads], concurrency_limit=2, **QUIET
         )
-
-    def bring(self, path: str | None, record: Record | None) -> Updates:
-        """Puts an uploaded thing into this result, as the first thing of its words, here and in its files."""
-        try:
-            result = bring(record, path)
-            assert record is not None
-            record.result, record.exported = result, False
-        except Exception as error:
-            return status(error_line(error), tone="error"), *((gr.skip(),) * (1 + len(KINDS)))
-        line, *files = self.export(record)
-        name = Path(str(path)).name[:60]
-        if line == gr.skip():
-            line = status(f"{name} is in the scene, in films and in the files as well.", tone="done")
-        return line, show(result_payload(result, title=record.prompt)), *files
 
     def draw(self, key: str, record: Record | None, shown: str) -> Iterator[Updates]:
         """Draws the last result as the player shows it, as one of :data:`DRAWN`, and hands the file out.
