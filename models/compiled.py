@@ -36,8 +36,8 @@ from motion.cores import usable_cores
 
 log = logging.getLogger(__name__)
 
-Precision = Literal["f32", "bf16", "int8"]
-TOLERANCE: dict[Precision, float] = {"f32": 1e-4, "bf16": 5e-2, "int8": 1e-1}
+Precision = Literal["f32", "bf16"]
+TOLERANCE: dict[Precision, float] = {"f32": 1e-4, "bf16": 5e-2}
 """Largest accepted difference from the plain network, relative to the largest output; measured: 5e-6 in float32."""
 THREADS = min(torch.get_num_threads(), usable_cores(), 8)
 """Threads of a pass: PyTorch's default, up to 8; more do not help with products of a few hundred rows."""
@@ -117,8 +117,7 @@ def compile_network(network: nn.Module, key: str, cache: Path | None = None, *, 
         network: a :class:`Compilable` in eval mode.
         key: names its weights, such as :attr:`models.weights_io.WeightsFolder.digest`.
         cache: where translations are kept; :func:`cache_folder` by default. It need not be writable.
-        precision: of the matrix products. "int8" rounds the weights to 8 bits for each row of a matrix and the inputs
-            of a product as they come; it is fast where the processor has VNNI.
+        precision: of the matrix products.
 
     Returns:
         whether it is compiled. Where OpenVINO is not installed, cannot translate the network or gives other
@@ -246,10 +245,7 @@ def _cached(openvino: Any, network: nn.Module, folder: Path, precision: Precisio
 
 def _translated(openvino: Any, network: nn.Module, folder: Path, precision: Precision) -> Compiled:
     """The network translated, and kept where that can be."""
-    translation = _translate(openvino, network)
-    if precision == "int8":
-        _quantise(translation)
-    model = openvino.Core().compile_model(translation, "CPU", _options(precision))
+    model = openvino.Core().compile_model(_translate(openvino, network), "CPU", _options(precision))
     try:
         _keep(model, folder)
     except (OSError, RuntimeError):  # a folder that cannot be written, a full disk
@@ -277,20 +273,6 @@ def _translate(openvino: Any, network: Any) -> Any:
         for value, axes in zip(example, network.varying.values(), strict=True)
     ]
     return openvino.convert_model(traced, input=inputs)
-
-
-def _quantise(model: Any) -> None:
-    """Replaces the matrices of OpenVINO's model by 8-bit ones with a scale for each row, in place."""
-    opset = importlib.import_module("openvino.opset13")
-    for op in model.get_ordered_ops():
-        matrix = op.input_value(1).get_node() if op.get_type_name() == "MatMul" else None
-        if matrix is None or matrix.get_type_name() != "Constant" or matrix.data.ndim != 2:
-            continue
-        across = 1 if op.get_attributes()["transpose_b"] else 0  # the axis that a product sums over
-        scale = np.abs(matrix.data).max(across, keepdims=True).clip(1e-12) / 127
-        rounded = opset.constant(np.round(matrix.data / scale).astype(np.int8))
-        scaled = opset.multiply(opset.convert(rounded, "f32"), opset.constant(scale.astype(np.float32)))
-        op.input(1).replace_source_output(scaled.output(0))
 
 
 def _keep(model: Any, folder: Path) -> None:

@@ -85,17 +85,14 @@ def without_wrapper(tensors: Mapping[str, Tensor], mark: str) -> dict[str, Tenso
     return dict(tensors)
 
 
-def read_lightning(path: str | Path, *, prefix: str, network: str) -> dict[str, Tensor]:
-    """The tensors of a PyTorch Lightning file whose names start with `prefix`, without the prefix.
-
-    Position tables (``….pe``) are left out: they are computed, not learned. Raises WeightsError as
-    :func:`read_tensors` does, or where the file holds no such tensor.
-    """
-    return with_prefix(read_tensors(path, network=network), prefix, name=Path(path).name, network=network)
-
-
 def with_prefix(tensors: Mapping[str, Tensor], prefix: str, *, name: str, network: str) -> dict[str, Tensor]:
-    """Does what :func:`read_lightning` does with tensors that were read before; ``name`` is the file's."""
+    """The tensors of a PyTorch Lightning file whose names start with a prefix, without it; ``name`` is the file's.
+
+    Position tables (``….pe``) are left out: they are computed, not learned.
+
+    Raises:
+        WeightsError: where the file holds no such tensor.
+    """
     found = {
         key.removeprefix(prefix): tensor
         for key, tensor in tensors.items()

@@ -7,14 +7,12 @@ dropped. Both people stand in one frame: person a's root over the origin, facing
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from .kinematics import fit_rotations
 from .skeleton import FEET
-from .transforms import canonicalize, heading, heading_matrix, put_on_floor, turn
+from .transforms import heading_matrix
 from .vectors import unit
 
 Array = NDArray[np.floating]
@@ -31,34 +29,6 @@ CONTACT_HEIGHTS = np.array([0.12, 0.05, 0.12, 0.05])
 _Z_UP_TO_Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 
-class Canonical(NamedTuple):
-    """One person at the origin facing +Z at the first frame, and where that was.
-
-    Attributes:
-        positions: (T, 22, 3) metres, the lowest joint over all frames at height 0.
-        heading: of the first frame before, radians.
-        root: (3,) position of the first frame's root before, at height 0.
-    """
-
-    positions: Array
-    heading: float
-    root: Array
-
-
-class Placement(NamedTuple):
-    """Place and heading of person b relative to person a at the first frame.
-
-    Attributes:
-        half_angle: half of (heading of a − heading of b), in radians; the release keeps the half angle, as
-            its quaternions do.
-        x, z: b's root in a's frame, metres.
-    """
-
-    half_angle: float
-    x: float
-    z: float
-
-
 def read_raw(raw: Array) -> tuple[Array, Array]:
     """Positions and rotations of the release's raw frames.
 
@@ -72,30 +42,12 @@ def read_raw(raw: Array) -> tuple[Array, Array]:
     return raw[:, :66].reshape(-1, 22, 3) @ _Z_UP_TO_Y_UP.T, raw[:, 66:].reshape(-1, 21, 6)
 
 
-def canonical(positions: Array) -> Canonical:
-    """Puts one person (T, 22, 3) on the floor, at the origin and facing +Z at the first frame."""
-    positions = put_on_floor(np.asarray(positions, dtype=np.float64))
-    angle = float(heading(positions[0]))
-    return Canonical(canonicalize(positions), angle, positions[0, 0] * np.array([1.0, 0.0, 1.0]))
-
-
-def placement(a: Canonical, b: Canonical) -> Placement:
-    """Place and heading of b relative to a."""
-    shift = turn((b.root - a.root)[None], -a.heading)[0]
-    return Placement((a.heading - b.heading) / 2, float(shift[0]), float(shift[2]))
-
-
-def place(positions: Array, where: Placement) -> Array:
-    """Puts a canonical person (T, 22, 3) where b stands relative to a."""
-    return turn(positions, -2 * where.half_angle) + np.array([where.x, 0.0, where.z])
-
-
 def encode_person(positions: Array, rotations: Array | None = None) -> Array:
     """One person's features in the frame that the positions are in.
 
     Args:
         positions: (T, 22, 3) metres, floor at 0, at least two frames.
-        rotations: (T, 21, 6) of joints 1–21, or (T, 22, 3, 3) local ones; fitted to the positions by default.
+        rotations: (T, 21, 6) of joints 1–21; fitted to the positions by default.
 
     Returns:
         (T − 1, 262) float32.
@@ -105,9 +57,7 @@ def encode_person(positions: Array, rotations: Array | None = None) -> Array:
     if frames < 2:
         raise ValueError("The representation holds forward differences: give at least two frames.")
     if rotations is None:
-        rotations = fit_rotations(positions)
-    if rotations.ndim == 4:
-        rotations = to_6d(rotations[:, 1:])
+        rotations = to_6d(fit_rotations(positions)[:, 1:])
     velocities = np.diff(positions, axis=0)
     parts = [
         positions[:-1].reshape(frames - 1, 66),
@@ -125,42 +75,22 @@ def contact_labels(positions: Array) -> Array:
     return ((moved < CONTACT_SQUARED_SPEED) & (feet[:-1, :, 1] < CONTACT_HEIGHTS)).astype(np.float64)
 
 
-def encode_pair(a: Array, b: Array, rotations: tuple[Array | None, Array | None] = (None, None)) -> Array:
-    """Both people's features in a's canonical frame.
-
-    Args:
-        a, b: (T, 22, 3) metres in one world, Y up; each is put on the floor separately, as in the released code.
-        rotations: of each, as in :func:`encode_person`.
-
-    Returns:
-        (T − 1, 524) float32, a's 262 numbers first.
-    """
-    canonical_a, canonical_b = canonical(a), canonical(b)
-    placed = place(canonical_b.positions, placement(canonical_a, canonical_b))
-    return np.concatenate(
-        [encode_person(canonical_a.positions, rotations[0]), encode_person(placed, rotations[1])], axis=-1
-    )
-
-
-def decode_positions(features: Array, *, restore_last: bool = True) -> Array:
+def decode_positions(features: Array) -> Array:
     """World positions from features.
 
     Args:
         features: (T, 262) or (T, 524).
-        restore_last: add the frame that encoding dropped, from the last velocities.
 
     Returns:
-        (T + 1, 22, 3), or (2, T + 1, 22, 3) for a pair; T frames without ``restore_last``.
+        (T + 1, 22, 3), or (2, T + 1, 22, 3) for a pair: the frame that encoding dropped comes from the last velocities.
     """
     features = np.asarray(features)
     if features.ndim != 2 or features.shape[-1] not in (NUM_FEATURES, 2 * NUM_FEATURES):
         raise ValueError(f"Features are (frames, 262) or (frames, 524), not {features.shape}.")
     if features.shape[-1] == 2 * NUM_FEATURES:
         people = np.split(features, 2, axis=-1)
-        return np.stack([decode_positions(person, restore_last=restore_last) for person in people])
+        return np.stack([decode_positions(person) for person in people])
     positions = features[:, POSITIONS].reshape(-1, 22, 3)
-    if not restore_last:
-        return positions
     last = positions[-1] + features[-1, VELOCITIES].reshape(22, 3)
     return np.concatenate([positions, last[None]])
 

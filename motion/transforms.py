@@ -76,11 +76,6 @@ def canonicalize(positions: Array, *, person: int = 0, frame: int = 0, skeleton:
     return turn(positions - root, -float(heading(reference[frame], skeleton)))
 
 
-def put_on_floor(positions: Array) -> Array:
-    """Shifts a scene vertically so that its lowest joint over all frames and people is at height 0."""
-    return positions - np.array([0.0, 1.0, 0.0]) * positions[..., 1].min()
-
-
 def mirrored(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
     """The motion as a mirror in the plane X = 0 shows it: X negated, left and right joints exchanged."""
     return positions[..., list(skeleton.mirror), :] * np.array([-1.0, 1.0, 1.0])

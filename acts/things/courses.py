@@ -97,7 +97,7 @@ class ThingCourse:
 
     def _in_hand(self, who: int, side: int) -> Track:
         self.holder, self.side = who, side
-        return held(self.hands, who, side, self.shown, self.surface)
+        return held(self.hands, who, side, self.kind, self.surface)
 
     def _on_floor(self, who: int, frame: int) -> Track:
         self.holder = None
@@ -127,7 +127,7 @@ class ThingCourse:
 
     def _hold_from(self, frame: int) -> None:
         """Notes who holds it from a frame on."""
-        both = takes_both_hands(self.shown, self.surface)
+        both = takes_both_hands(self.kind, self.surface)
         sides = (0, 1) if both else (self.side,)
         self.holders.append((frame, () if self.holder is None else (self.holder,), sides))
 

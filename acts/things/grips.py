@@ -125,7 +125,7 @@ def _clasps(hands: Hands, metres: float, first: int = 0, last: int | None = None
 def grips_of_things(courses: Iterable[ThingCourse], frames: int) -> Iterator[Grip]:
     """The hands of those who hold things."""
     for course in courses:
-        shapes = _HELD.get(course.shown, ("clasp", "clasp"))
+        shapes = _HELD.get(course.kind, ("clasp", "clasp"))
         ends = [frame for frame, _, _ in course.holders[1:]] + [frames]
         for (start, who, sides), stop in zip(course.holders, ends, strict=True):
             for person, side in product(who, sides) if stop > start else ():

@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import torch
 import torch.nn.functional as F
@@ -24,7 +23,6 @@ from models.compiled import TwoPersonInputs
 from models.diffusion import Guided
 from models.errors import as_tensors, count_layers, load_strictly, shape_of
 from models.layers import FeedForward, TimestepEmbedding, sinusoids
-from models.released import read_lightning
 
 NETWORK = "InterGen"
 RELEASED_HEADS = 8
@@ -276,12 +274,3 @@ def from_released(weights: Mapping[str, Tensor], *, num_heads: int) -> InterGenD
     network = InterGenDenoiser(config)
     load_strictly(network, tensors, network=NETWORK)
     return network
-
-
-def from_checkpoint(path: str | Path) -> InterGenDenoiser:
-    """The denoiser inside the authors' Lightning file (`intergen.ckpt`, names ``model.decoder.net.*``).
-
-    Its text tower is read by `models.text.clip`. Raises WeightsError for any other file.
-    """
-    weights = read_lightning(path, prefix="model.decoder.net.", network=NETWORK)
-    return from_released(weights, num_heads=RELEASED_HEADS)

@@ -20,7 +20,6 @@ import torch
 from torch import Tensor, nn
 
 from models.errors import as_tensors, count_layers, load_strictly, shape_of
-from models.released import read_lightning
 from motion.errors import InputError
 
 if TYPE_CHECKING:
@@ -223,12 +222,6 @@ def from_released(weights: Mapping[str, Tensor]) -> ClipTextEncoder:
     )
     load_strictly(encoder, tensors, network=NETWORK)
     return encoder.requires_grad_(False)
-
-
-def from_checkpoint(path: str | Path) -> ClipTextEncoder:
-    """The text side of the authors' Lightning file; raises WeightsError for any other file."""
-    weights = read_lightning(path, prefix="model.", network="InterGen")
-    return from_released({name: value for name, value in weights.items() if name.startswith(PARTS)})
 
 
 class ClipTower(nn.Module):

@@ -143,13 +143,12 @@ def test_threads_share_a_network(tmp_path: Path) -> None:
     assert not wrong
 
 
-@pytest.mark.parametrize(("precision", "least", "most"), [("bf16", 1e-5, 5e-2), ("int8", 1e-4, 1e-1)])
-def test_coarser_numbers_stay_near(tmp_path: Path, precision: compiled.Precision, least: float, most: float) -> None:
+def test_coarser_numbers_stay_near(tmp_path: Path) -> None:
     plain, coarse = network(), network()
-    if not compile_network(coarse, "coarse", tmp_path, precision=precision):
+    if not compile_network(coarse, "coarse", tmp_path, precision="bf16"):
         assert find_spec("openvino") is None
         pytest.skip("OpenVINO is not installed.")
     given = inputs(plain, 2, 9)
     expected = plain(*given)
     off = (coarse(*given) - expected).abs().max() / expected.abs().max()
-    assert least < off < most  # coarse numbers cannot be exact: they are at work
+    assert 1e-5 < off < 5e-2  # coarse numbers cannot be exact: they are at work

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from motion import SMPL22
-from motion.transforms import canonicalize, heading, mirrored, put_on_floor, resample, turn
+from motion.transforms import canonicalize, heading, mirrored, resample, turn
 from motion.vectors import square_frame, unit, wrapped
 
 from .bodies import FPS, marching
@@ -57,14 +57,6 @@ def test_resampled_motion_runs_through_curves_not_along_chords() -> None:
         return np.stack([times, 2 + 3 * times - 4.9 * times**2, times**3], axis=-1)[:, None]
 
     assert np.allclose(resample(thrown(10), 10, 30), thrown(30), atol=1e-9)
-
-
-def test_floor_is_the_lowest_joint_of_all():
-    positions, _ = marching()
-    people = np.stack([positions + np.array([0, 0.3, 0]), positions - np.array([0, 0.4, 0])])
-    floored = put_on_floor(people)
-    assert floored[..., 1].min() == 0
-    np.testing.assert_allclose(floored[0] - floored[1], people[0] - people[1])
 
 
 def test_a_frame_has_up_as_its_y_and_is_a_rotation() -> None:

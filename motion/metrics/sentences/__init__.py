@@ -5,6 +5,6 @@ and its conditions join the predicates of :mod:`.paths`, :mod:`.poses`, :mod:`.s
 :mod:`.catalogue` judges a motion and keeps the sentences out of the training captions.
 """
 
-from .catalogue import Judgement, Sentence, kept_out, load_sentences, read_sentences, without_sentences
+from .catalogue import Judgement, Sentence, kept_out, load_sentences, read_sentences
 
-__all__ = ["Judgement", "Sentence", "kept_out", "load_sentences", "read_sentences", "without_sentences"]
+__all__ = ["Judgement", "Sentence", "kept_out", "load_sentences", "read_sentences"]

@@ -6,7 +6,7 @@ import json
 import re
 import tomllib
 import zlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -185,11 +185,6 @@ def kept_out(caption: str, path: Path = SENTENCES) -> str | None:
         if 2 * len(words & known) >= ALIKE * (len(words) + len(known)):
             return sentence
     return None
-
-
-def without_sentences(captions: Iterable[str], path: Path = SENTENCES) -> list[str]:
-    """The captions that may be trained on: those that repeat none of a file's sentences."""
-    return [caption for caption in captions if kept_out(caption, path) is None]
 
 
 # ---- scores --------------------------------------------------------------------------------------

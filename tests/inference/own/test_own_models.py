@@ -102,7 +102,7 @@ def test_released_files_become_a_motion_in_the_shell(
         ('method = "intergen"\nfiles = ["a.ckpt", "b.ckpt"]', "two files of one role"),
         ('method = "intergen"\nweights = "a"', "unknown key 'weights'"),
         ("", "give it either `method` with `files`, or `pipeline`"),
-        ('method = "intergen"\nprecision = "int3"', "choose one of auto, float32, bfloat16, int8"),
+        ('method = "intergen"\nprecision = "int3"', "choose one of auto, float32, bfloat16"),
     ],
 )
 def test_a_wrong_table_fails_alone(settings: Path, files: Path, change: str, sentence: str) -> None:

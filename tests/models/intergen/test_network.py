@@ -7,8 +7,9 @@ import torch
 
 from models.diffusion import make_scheduler, sample_steps
 from models.errors import WeightsError
-from models.intergen import InterGenConfig, InterGenDenoiser, from_checkpoint, from_released
+from models.intergen import InterGenConfig, InterGenDenoiser, from_released
 from models.intergen.network import attend
+from models.released import read_tensors, with_prefix
 from tests.models.reference_arrays import Reference, assert_equal
 
 SMALL = InterGenConfig(input_features=9, latent_dim=16, ff_size=24, num_layers=2, num_heads=2, cond_dim=5)
@@ -123,18 +124,6 @@ def test_wrong_weights_are_named(ref):
         from_released({**weights, "out.linear.bias": torch.zeros(3)}, num_heads=4)
 
 
-def test_the_lightning_file_is_read_by_its_prefix(ref, tmp_path):
-    config = InterGenConfig(input_features=6, latent_dim=16, ff_size=8, num_layers=1, cond_dim=5)
-    network = random_network(config)
-    state = {f"model.decoder.net.{k}": v for k, v in network.state_dict().items()}
-    state["model.decoder.net.sequence_pos_encoder.pe"] = torch.zeros(4, 16)
-    state["model.ln_final.weight"] = torch.zeros(5)
-    path = tmp_path / "intergen.ckpt"
-    torch.save({"state_dict": state, "epoch": 3}, path)
-    x, t, cond = random_inputs(config=config)
-    assert torch.equal(from_checkpoint(path)(x, t, cond), network(x, t, cond))
-
-
 class Sneaky:
     """Writes a file when it is unpickled."""
 
@@ -147,14 +136,13 @@ class Sneaky:
 
 def test_bad_checkpoints_are_refused(tmp_path):
     with pytest.raises(WeightsError, match="There is no file"):
-        from_checkpoint(tmp_path / "absent.ckpt")
+        read_tensors(tmp_path / "absent.ckpt", network="InterGen")
     (tmp_path / "text.ckpt").write_text("hello")
     with pytest.raises(WeightsError, match="cannot be read"):
-        from_checkpoint(tmp_path / "text.ckpt")
+        read_tensors(tmp_path / "text.ckpt", network="InterGen")
     torch.save({"state_dict": Sneaky(tmp_path / "written")}, tmp_path / "sneaky.ckpt")
     with pytest.raises(WeightsError, match="cannot be read"):
-        from_checkpoint(tmp_path / "sneaky.ckpt")
+        read_tensors(tmp_path / "sneaky.ckpt", network="InterGen")
     assert not (tmp_path / "written").exists()
-    torch.save({"state_dict": {"a": torch.zeros(1)}}, tmp_path / "other.ckpt")
     with pytest.raises(WeightsError, match=r"holds no model\.decoder\.net"):
-        from_checkpoint(tmp_path / "other.ckpt")
+        with_prefix({"a": torch.zeros(1)}, "model.decoder.net.", name="other.ckpt", network="InterGen")

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from motion import SKELETONS, SMPL22, Clip, Duet, InputError, formats
 from motion.formats.smpl import PELVIS
 from motion.kinematics import forward_kinematics
-from motion.representation import decode_positions, encode_pair
+from motion.representation import decode_positions, encode_person
 from motion.transforms import turn
 from tests.motion.bodies import marching
 
@@ -61,7 +61,7 @@ def test_npy_forms():
     assert isinstance(formats.read(_npy(A[None]), name="a.npy"), Clip)
     duet = formats.read(_npy(DUET.positions), name="a.npy", choices=formats.ImportChoices(fps=25))
     assert isinstance(duet, Duet) and duet.fps == 25
-    features = encode_pair(DUET.a.positions, DUET.b.positions)
+    features = np.concatenate([encode_person(person) for person in DUET.positions], axis=-1)
     np.testing.assert_allclose(
         formats.read(_npy(features), name="a.npy").positions, decode_positions(features), atol=1e-6
     )

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import training.evaluate
-from motion.metrics.sentences import Sentence, kept_out, load_sentences, read_sentences, without_sentences
+from motion.metrics.sentences import Sentence, kept_out, load_sentences, read_sentences
 from motion.metrics.sentences.joints import Motion, longest, stretches
 from motion.metrics.sentences.language import RuleError, check
 from motion.transforms import mirrored
@@ -147,9 +147,8 @@ def test_captions_that_repeat_a_sentence_are_refused() -> None:
         assert kept_out(sentence.words) == sentence.words
         assert kept_out(sentence.words.upper().replace(",", "") + "!") == sentence.words
     assert kept_out("They shake hands and then they turn around and go their separate ways") is not None
-    assert without_sentences(["Two people shake hands.", "walk, shake hands"]) == ["Two people shake hands."]
-    ordinary = [sentence.words for sentence in read_sentences(PATH)]
-    assert without_sentences(ordinary) == ordinary, "none is one of the eighty"
+    assert kept_out("Two people shake hands.") is None
+    assert not any(kept_out(sentence.words) for sentence in read_sentences(PATH)), "none is one of the eighty"
 
 
 @pytest.mark.parametrize("number", range(4))

@@ -24,7 +24,7 @@ SETTINGS_FILE = "pasdedeux.toml"
 ROLES = ("checkpoint", "mean", "std", "vocabulary")
 """What a file of a released network is."""
 KEYS = ("method", "files", "pipeline", "label", "labels", "precision", "schedule")
-PRECISIONS = ("auto", "float32", "bfloat16", "int8")
+PRECISIONS = ("auto", "float32", "bfloat16")
 _NAME = re.compile(r"[a-z0-9][a-z0-9._-]{0,39}")
 _CHECKPOINTS = (".ckpt", ".pt", ".pth", ".tar", ".bin", ".safetensors")
 _VOCABULARIES = (".txt.gz", ".json")

@@ -249,7 +249,7 @@ def precision_of(entry: Entry) -> Precision:
     """The numbers of the matrix products: bfloat16 where it is asked for, or the processor has it."""
     if entry.precision == "auto":
         return "bf16" if has_bfloat16() else "f32"
-    named: dict[str, Precision] = {"float32": "f32", "bfloat16": "bf16", "int8": "int8"}
+    named: dict[str, Precision] = {"float32": "f32", "bfloat16": "bf16"}
     return named[entry.precision]
 
 
