@@ -22,10 +22,10 @@ import sys
 import tempfile
 import threading
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 import torch
@@ -50,30 +50,13 @@ KEPT = 6
 """Translations in the cache folder, of 60 MB each; the least recently used are removed first."""
 
 
-class Compilable(Protocol):
-    """A network that :func:`compile_network` takes."""
-
-    @property
-    def varying(self) -> Mapping[str, tuple[int, ...]]:
-        """For each input of ``forward``, in order: the axes whose sizes differ between calls."""
-        ...
-
-    def filled(self, *args: Any, **kwargs: Any) -> tuple[Tensor, ...]:
-        """The arguments of ``forward`` in the order of ``varying``, with a neutral tensor for each omitted one."""
-        ...
-
-    def example(self) -> tuple[Tensor, ...]:
-        """All arguments of ``forward``, for a batch of two."""
-        ...
-
-
 class TwoPersonInputs(ABC):
-    """The inputs of a denoiser of two people: x (B, T, 2F), t (B,), cond (B, C) and mask (B, T, 2), as
-    :class:`Compilable` asks for them."""
+    """What :func:`compile_network` asks of a denoiser of two people, whose inputs are x (B, T, 2F), t (B,), cond (B, C)
+    and mask (B, T, 2)."""
 
     @property
     def varying(self) -> dict[str, tuple[int, ...]]:
-        """See :class:`Compilable`."""
+        """For each input of ``forward``, in order: the axes whose sizes differ between calls."""
         return {"x": (0, 1), "t": (0,), "cond": (0,), "mask": (0, 1)}
 
     @property
@@ -82,12 +65,12 @@ class TwoPersonInputs(ABC):
         """2F and C."""
 
     def filled(self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None) -> tuple[Tensor, ...]:
-        """See :class:`Compilable`; without a mask, all tokens are real."""
+        """The arguments of ``forward`` in the order of ``varying``; without a mask, all tokens are real."""
         real = torch.ones(*x.shape[:2], 2, dtype=torch.bool) if mask is None else mask != 0
         return x, t, cond, real
 
     def example(self) -> tuple[Tensor, ...]:
-        """See :class:`Compilable`."""
+        """All arguments of ``forward``, for a batch of two."""
         features, width = self.widths
         draw = torch.Generator().manual_seed(0)
         x, cond = torch.randn(2, 12, features, generator=draw), torch.randn(2, width, generator=draw)
@@ -114,7 +97,7 @@ def compile_network(network: nn.Module, key: str, cache: Path | None = None, *, 
     it has no gradients.
 
     Args:
-        network: a :class:`Compilable` in eval mode.
+        network: a network with :class:`TwoPersonInputs` in eval mode.
         key: names its weights, such as :attr:`models.weights_io.WeightsFolder.digest`.
         cache: where translations are kept; :func:`cache_folder` by default. It need not be writable.
         precision: of the matrix products.

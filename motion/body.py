@@ -50,8 +50,8 @@ class Body:
         turns: (22, 3, 3) rotation that takes each bone from the pose of binding to SMPL22's T-pose.
         bones: (V, 4) joints that move each vertex.
         weights: (V, 4) their shares, which sum to 1.
-        fingers: how its hands take shapes; None where they are stiff.
-        eyes: how its eyes turn; None where they do not.
+        fingers: how its hands take shapes.
+        eyes: how its eyes turn.
     """
 
     name: str
@@ -64,8 +64,8 @@ class Body:
     turns: Array = field(repr=False)
     bones: NDArray[np.integer] = field(repr=False)
     weights: Array = field(repr=False)
-    fingers: Fingers | None = field(default=None, repr=False)
-    eyes: Eyes | None = field(default=None, repr=False)
+    fingers: Fingers = field(repr=False)
+    eyes: Eyes = field(repr=False)
 
 
 def in_base64(values: NDArray, kind: str) -> str:
@@ -138,9 +138,8 @@ def skin(body: Body, motion: Clip | Array, hands: Array | None = None, seen: Arr
         placed = (body.vertices[vertex] - body.joints[joint]) @ np.swapaxes(turned[:, joint], -1, -2)
         placed += positions[:, None, joint]
         surface[:, vertex] += (body.weights[vertex, slot, None] * placed).astype(np.float32)
-    if body.fingers is not None:
-        _shape_hands(body, turned, surface, hands)
-    if body.eyes is not None and seen is not None:
+    _shape_hands(body, turned, surface, hands)
+    if seen is not None:
         head = turned[:, _J["head"]]
         place = np.einsum("tji,tj->ti", head, seen - positions[:, _J["head"]]) + body.joints[_J["head"]]
         shift = body.eyes.shift(body.vertices, place)
@@ -150,7 +149,6 @@ def skin(body: Body, motion: Clip | Array, hands: Array | None = None, seen: Arr
 
 def _shape_hands(body: Body, turned: Array, surface: Array, hands: Array | None) -> None:
     """Moves the fingers of a posed surface (T, V, 3); ``turned`` (T, 22, 3, 3) are its bones."""
-    assert body.fingers is not None
     shapes = np.broadcast_to(SHAPES["relaxed"], (len(turned), 2, NUMBERS)) if hands is None else hands
     shift = body.fingers.shift(body.vertices, shapes)
     left = body.vertices[body.fingers.vertices, 0] > 0

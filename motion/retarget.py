@@ -324,11 +324,6 @@ def _level_feet(result: Array, source: dict[str, Array], rest: dict[str, Array] 
         result[:, toe] = result[:, ankle] + length * (np.cos(new_pitch) * horizontal + np.sin(new_pitch) * down)
 
 
-def floor_on_smpl(rig: RigMotion) -> float:
-    """Metres by which :func:`retarget` lowers a rig's motion to put its feet on the floor."""
-    return _floor_height(_on_smpl(rig, rig.fps, leg_scale(rig)))
-
-
 def _floor_height(positions: Array) -> float:
     """Height of the floor: a low quantile of the lower foot, robust to single bad frames."""
     feet = positions[:, [_J["left_foot"], _J["right_foot"], _J["left_ankle"], _J["right_ankle"]], 1]

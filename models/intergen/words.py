@@ -115,19 +115,19 @@ class WordDenoiser(InterGenDenoiser):
 
     @property
     def varying(self) -> dict[str, tuple[int, ...]]:
-        """See :class:`models.compiled.Compilable`."""
+        """See :class:`models.compiled.TwoPersonInputs`."""
         return super().varying | {"cond": (0, 2), "known": (0, 1)}
 
     def filled(
         self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None, known: Tensor | None = None
     ) -> tuple[Tensor, ...]:
-        """See :class:`models.compiled.Compilable`; zeros say that nothing is known."""
+        """See :class:`models.compiled.TwoPersonInputs`; zeros say that nothing is known."""
         if known is None:
             known = x.new_zeros(*x.shape[:2], 2 * self.known_embed.in_features)
         return (*super().filled(x, t, cond, mask), known)
 
     def example(self) -> tuple[Tensor, ...]:
-        """See :class:`models.compiled.Compilable`: the second motion has no words for each and less known."""
+        """See :class:`models.compiled.TwoPersonInputs`: the second motion has no words for each and less known."""
         x, t, cond, mask = super().example()
         draw = torch.Generator().manual_seed(1)
         cond = torch.randn(2, 3, 4, cond.shape[1], generator=draw)

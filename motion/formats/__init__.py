@@ -7,24 +7,10 @@ from pathlib import Path
 from motion import Clip, Duet, InputError
 from motion.retarget import to_smpl
 
-from .bvh_writer import bvh_on_rig
 from .glb_motion import animations_in
 from .importing import import_motion, import_pair
 from .recording import Animation, ImportChoices
-from .registry import (
-    ALONE,
-    FORMATS,
-    GLBS,
-    READABLE,
-    RIGS,
-    Format,
-    can_read,
-    can_write,
-    read_rigs,
-    suffix_of,
-    unknown,
-    with_stem,
-)
+from .registry import ALONE, FORMATS, GLBS, READABLE, RIGS, Format, can_read, can_write, suffix_of, unknown, with_stem
 
 __all__ = [
     "ALONE",
@@ -38,11 +24,8 @@ __all__ = [
     "animation_note",
     "can_read",
     "can_write",
-    "check_rig",
-    "on_rig",
     "read",
     "read_pair",
-    "read_rigs",
     "suffix_of",
     "with_stem",
     "write",
@@ -141,29 +124,3 @@ def write_clip(clip: Clip, path: str | Path) -> list[Path]:
     if known is None or known.alone is None:
         raise InputError(f"{path.name}: one person is written as {', '.join(ALONE[:-1])} or {ALONE[-1]}: choose one.")
     return known.alone(clip, path)
-
-
-def on_rig(clip: Clip, reference: Path) -> bytes:
-    """One person's motion as a BVH file on the reference's rig and in its world.
-
-    Args:
-        clip: on SMPL22, metres.
-        reference: a .bvh of one person.
-
-    Raises:
-        InputError: as :func:`check_rig`, and where the rig cannot be moved.
-    """
-    _check_kind(reference)
-    return bvh_on_rig(clip, reference)
-
-
-def check_rig(reference: Path) -> None:
-    """Raises InputError for a file that is no .bvh of one person, before a partner is made."""
-    _check_kind(reference)
-    if (count := len(read_rigs(reference))) > 1:
-        raise InputError(f"A partner is taken on the rig of one person, and {reference.name} holds {count}.")
-
-
-def _check_kind(reference: Path) -> None:
-    if reference.suffix.lower() != ".bvh":
-        raise InputError(f"A partner is taken on the rig of a BVH file, and {reference.name} is none.")

@@ -79,31 +79,6 @@ def read_bvh_people(
     return _placed(motion, every)
 
 
-def read_rotations(
-    source: str | Path | bytes, *, name: str | None = None, most: int
-) -> tuple[list[Joint], Array, Array]:
-    """The rotation channels of a file's joints.
-
-    Args:
-        source, name: as for :func:`read_bvh`.
-        most: how many of the first frames are read.
-
-    Returns:
-        the joints, their local rotations (T, J, 3, 3), and the frames' numbers (T, channels) as in the file.
-    """
-    joints, motion, _ = _opened(source, name)
-    blocks, count = [], 0
-    for block in motion.blocks():
-        blocks.append(np.array(block[: most - count]))
-        count += len(blocks[-1])
-        if count >= most:
-            break
-    values = np.concatenate(blocks)
-    rotations = np.empty((len(values), len(joints), 3, 3))
-    _turn(joints, values.T, rotations)
-    return joints, rotations, values
-
-
 def _opened(
     source: str | Path | bytes, name: str | None, file_fps: float | None = None
 ) -> tuple[list[Joint], Motion, str]:

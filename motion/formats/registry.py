@@ -8,7 +8,6 @@ from pathlib import Path
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
-from motion.rigs import RigMotion
 
 from .bvh import read_bvh_people
 from .bvh_writer import bvh_text, write_bvh
@@ -20,7 +19,7 @@ from .kinect import read_kinect
 from .markers import read_trc
 from .npz import read_npy, read_npz, write_npy, write_npz
 from .pairs import Source, in_folder, in_zip
-from .recording import Animation, ImportChoices, Recording
+from .recording import ImportChoices, Recording
 from .smpl import smpl_bytes, write_smpl
 from .usd import write_usd
 
@@ -50,18 +49,6 @@ class Format:
     reader: Callable[[bytes, str, ImportChoices], Recording] | None = None
     writer: Callable[[Duet, Path], list[Path]] | None = None
     alone: Callable[[Clip, Path], list[Path]] | None = None
-
-
-def read_rigs(
-    source: str | Path | bytes, *, name: str | None = None, animation: Animation | None = None
-) -> tuple[RigMotion, ...]:
-    """The people in a file of one of :data:`RIGS`, on their own rigs.
-
-    Raises:
-        InputError: one sentence saying what is wrong with the file.
-    """
-    data, label = read_bytes(source, name)
-    return _rigs(data, label, ImportChoices(animation=animation)).people  # type: ignore[return-value]
 
 
 def _rigs(data: bytes, label: str, choices: ImportChoices) -> Recording:

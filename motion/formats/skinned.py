@@ -1,11 +1,9 @@
-"""Two people as formats with skeletons and skins write them: joints, their turns, and the body bound to them; and a
-person's pose on a rig of any make."""
+"""Two people as formats with skeletons and skins write them: joints, their turns, and the body bound to them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +11,9 @@ from numpy.typing import NDArray
 from motion.body import Body, bone_rotations, load_body
 from motion.clip import Clip, Duet
 from motion.hands import FINGERS, SIDES, angles
-from motion.kinematics import local_rotations, swing
+from motion.kinematics import local_rotations
 from motion.looks import BODIES as COLOURS
-from motion.retarget import leg_scale
-from motion.rigs import RigMotion, match_joints
 from motion.skeleton import SMPL22
-from motion.vectors import unit
 
 Array = NDArray[np.floating]
 
@@ -38,7 +33,6 @@ _WRISTS = np.array([SMPL22.index(f"{side}_wrist") for side in SIDES])
 def _bindings(body: Body) -> tuple[NDArray[np.integer], Array]:
     """(V, 4) joints and (V, 4) shares, with the fingers' in place of a part of the wrists'."""
     fingers = body.fingers
-    assert fingers is not None
     count = SMPL22.num_joints
     rows = np.arange(len(fingers.vertices))[:, None]
     dense = np.zeros((len(fingers.vertices), count + 30))
@@ -97,7 +91,6 @@ def skinned(duet: Duet) -> Iterator[Skinned]:
 
 def _skinned(clip: Clip, role: str, body: Body, colours: Mapping[str, str], shapes: Array) -> Skinned:
     turns, own = rigged(clip)
-    assert body.fingers is not None  # those that ship have some
     joints = np.concatenate([body.joints, body.fingers.joints.reshape(30, 3)])
     wrists = np.repeat(body.turns[_WRISTS], 15, axis=0)  # fingers are bound as their wrist is
     bones, weights = _bindings(body)
@@ -133,70 +126,3 @@ def rigged(clip: Clip) -> tuple[Array, Array]:
         bones = (positions[:, joint] - positions[:, parent])[:, None] @ world[:, parent]
         offsets[joint] = bones[:, 0].mean(axis=0)
     return local_rotations(world), offsets
-
-
-# ---- poses on a rig ------------------------------------------------------------------------------
-
-
-_NEXT = {"collar": "shoulder", "shoulder": "elbow", "elbow": "wrist", "hip": "knee", "knee": "ankle", "ankle": "foot"}
-
-
-def posed(
-    rig: RigMotion, bones: Array, clip: Clip, pairs: Mapping[int, int], constants: Mapping[int, Array], usual: Array
-) -> Array:
-    """Rotations of a rig's joints in a person's pose, whose limbs point exactly where the person's do.
-
-    Args:
-        rig: whose joints.
-        bones: (J, 3) from the parent to each joint, in the parent's axes.
-        clip: on SMPL22.
-        pairs: the joint of SMPL22 beside a joint of the rig.
-        constants: (3, 3) rotation of each of those beside the body's.
-        usual: (J, 3, 3) local rotations of the others, such as fingers; a root's counts from the world.
-
-    Returns:
-        (T, J, 3, 3) world rotations, Y up.
-    """
-    positions = clip.positions.astype(np.float64)
-    body = bone_rotations(positions)
-    world = np.empty((len(positions), len(rig.parents), 3, 3))
-    by_name = {SMPL22.joint_names[ours]: joint for joint, ours in pairs.items()}
-    for joint, parent in enumerate(rig.parents):
-        if joint not in pairs:
-            world[:, joint] = world[:, parent] @ usual[joint] if parent >= 0 else usual[joint]
-            continue
-        world[:, joint] = body[:, pairs[joint]] @ constants[joint]
-        side, _, part = SMPL22.joint_names[pairs[joint]].rpartition("_")
-        after = by_name.get(f"{side}_{_NEXT.get(part)}")
-        if after is None or rig.parents[after] != joint or np.linalg.norm(bones[after]) < 1e-4:
-            continue
-        bone = world[:, joint] @ (bones[after] / np.linalg.norm(bones[after]))
-        wanted = unit(positions[:, pairs[after]] - positions[:, pairs[joint]])
-        world[:, joint] = swing(bone, wanted) @ world[:, joint]
-    return world
-
-
-def _placed(rig: RigMotion, bones: Array, world: Array) -> Array:
-    """(T, J, 3) places of the joints with their roots at the origin."""
-    places = np.zeros((len(world), len(rig.parents), 3))
-    for joint, parent in enumerate(rig.parents):
-        if parent >= 0:
-            places[:, joint] = places[:, parent] + world[:, parent] @ bones[joint]
-    return places
-
-
-def root_path(rig: RigMotion, bones: Array, clip: Clip, world: Array, lift: float) -> Array:
-    """(T, 3) metres, Y up, where the root of the body is, so that the hips are where the person's are.
-
-    Args:
-        rig, bones, clip: as for :func:`posed`.
-        world: as it gives them.
-        lift: metres by which the person stands above the floor at 0.
-    """
-    places = _placed(rig, bones, world)
-    parts = match_joints(rig)
-    hips = cast(list[int], [parts.left["hip"], parts.right["hip"]])  # found, or match_joints had raised
-    ours = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
-    middle = clip.positions[:, ours].astype(np.float64).mean(axis=1) + np.array([0.0, lift, 0.0])
-    found: Array = middle / leg_scale(rig) - places[:, hips].mean(axis=1)
-    return found

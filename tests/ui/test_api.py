@@ -21,7 +21,6 @@ from PIL import Image
 from motion.formats import read
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_takes
-from tests.motion.formats.rigs import RIGS, bvh_text
 from webdemo.inference.methods import method
 from webdemo.ui.components import film
 from webdemo.ui.page import build_page, launch_options
@@ -107,20 +106,6 @@ def test_react_takes_a_file_and_gives_files(client: Client, walkers: Path) -> No
     motion = next(Path(path) for path in files if path.endswith(".npz"))
     assert re.fullmatch("reaction-to-walkers-seed0-[0-9a-f]{4}.npz", motion.name)
     np.testing.assert_array_equal(read(motion).a.positions, walking(12.0).b.positions[30:90])
-
-
-def test_react_gives_the_partner_on_the_rig_of_the_file(client: Client, walkers: Path) -> None:
-    positions, rotations = marching(60)
-    robot = walkers.with_name("walk.bvh")
-    robot.write_text(bvh_text(rotations, positions[:, 0], RIGS["mixamo"]), encoding="utf-8")
-    answer, files = client.predict(actor=handle_file(robot), own_rig=True, steps=2, api_name="/react")
-    partner, original = answer["files"]["rig"]
-    assert partner.endswith("-on-your-rig.bvh") and original == "walk.bvh"
-    found = {Path(path).name: Path(path) for path in files}
-    assert found[original].read_bytes() == robot.read_bytes()
-    assert read(found[partner]).num_frames == 60
-    with pytest.raises(AppError, match=r"rig of a BVH file, and walkers\.npz is none"):
-        client.predict(actor=handle_file(walkers), person="a", end=3, own_rig=True, api_name="/react")
 
 
 def test_one_animation_of_several_is_chosen_and_noted(client: Client, walkers: Path) -> None:

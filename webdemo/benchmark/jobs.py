@@ -47,7 +47,7 @@ def _generation(dice: random.Random, steps: int) -> Job:
 def _reaction(dice: random.Random, steps: int) -> Job:
     seed, seconds = dice.randrange(2**32), 2.0
     chosen = (None, "", "a", 0, seconds, "a", seed, 1, 3.0, steps, 0.7, "ddim", "intergen", "offline")
-    data = (*chosen, False, False, "", 0, "", "")
+    data = (*chosen, False, "", 0, "", "")
     return Job("react", data, {"kind": "react", "seed": seed, "steps": steps}, seconds * steps + 10)
 
 

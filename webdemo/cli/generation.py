@@ -11,13 +11,11 @@ from typing import Any
 import numpy as np
 
 from acts.plan import Plan, plan_of
-from motion import FPS, Duet, InputError
-from motion.formats import check_rig, on_rig
+from motion import FPS, InputError
 from webdemo.inference.methods import AUTOMATIC, automatic, methods
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
-from webdemo.inference.run import Result
 
 from .parser import add_reading, add_sampling, add_tries, names_of, reading_choices, sampling_fields, with_notes
 from .running import check_out, run, write_result
@@ -97,11 +95,6 @@ def add_react(commands: Any) -> None:
     parser.add_argument(
         "--stream", action="store_true", help="react online at the actor's pace and print each frame as a line of JSON"
     )
-    parser.add_argument(
-        "--own-rig",
-        action="store_true",
-        help="of a .bvh: also the partner on that file's rig, as NAME_rig.bvh, in its unit and rest pose",
-    )
     add_sampling(parser, "react")
     parser.set_defaults(job=react)
 
@@ -122,30 +115,11 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
         options.model = automatic(options.prompt, options.role, mode).name
     fields = sampling_fields(options) | {"first_pose": pose}
     request = ReactRequest(actor=actor, prompt=options.prompt, role=options.role, mode=mode, **fields)
-    if options.own_rig:
-        check_rig(options.actor)
     if options.stream:
         _stream(request)
     result = run(request)
     written = write_result(result, options.out)
-    if options.own_rig:
-        written["files"] += _on_own_rig(result, request, options)
     return with_notes(written, options.actor, options.animation, actor)
-
-
-def _on_own_rig(result: Result, request: ReactRequest, options: argparse.Namespace) -> list[str]:
-    """Writes the one who was made, of every sample, on the rig of the given file."""
-    from motion.formats.files import write_files
-
-    files: dict[Path, bytes] = {}
-    for i, duet in enumerate(result.duets):
-        number = f"_{i + 1}" if len(result.duets) > 1 else ""
-        assert isinstance(duet, Duet)
-        given_is_a = np.array_equal(duet.a.positions, request.actor.positions)
-        made = duet.b if given_is_a else duet.a
-        name = f"{options.out.stem}{number}_rig{options.actor.suffix.lower()}"
-        files[options.out.with_name(name)] = on_rig(made, options.actor)
-    return [str(path) for path in write_files(files)]
 
 
 def _stream(request: ReactRequest) -> None:

@@ -11,13 +11,13 @@ from typing import Any
 import gradio as gr
 
 from motion import Clip, Duet, InputError
-from motion.formats import ImportChoices, animation_note, check_rig, read
+from motion.formats import ImportChoices, animation_note, read
 from webdemo.inference.methods import AUTOMATIC, methods
 from webdemo.inference.requests import OWN_STEPS, GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.run import Cancelled, Result
-from webdemo.ui.components.exports import RIG, Record, write_files, write_on_rig
+from webdemo.ui.components.exports import write_files
 from webdemo.ui.text.classes import class_method
 from webdemo.ui.text.words import error_line, progress_line
 
@@ -84,25 +84,19 @@ class Endpoint:
         make: Callable[[], SamplingRequest | PredictRequest],
         title: str,
         progress: gr.Progress,
-        rig: Path | None = None,
         given: Given | None = None,
     ) -> Answer:
         """Runs a request and writes its files, called after ``title``; every error is one sentence.
 
-        ``rig`` is the file on whose rig the partner is wanted as well, and ``given`` the one that was read, of which
-        the notes say which animation was taken.
+        ``given`` is the file that was read, of which the notes say which animation was taken.
         """
         try:
             with READING.place() if given is not None else nullcontext():
                 request = make()
                 notes = [animation_note(*given)] if given is not None else []
                 notes += reading_notes(request)
-                if rig is not None:
-                    check_rig(rig)
             result = self._run(request, progress)
             files = write_files(result, self.page.shelf.folder(), prompt=title)
-            if rig is not None:
-                files[RIG] = write_on_rig(Record(result, title, rig=rig), self.page.shelf.folder())
         except Cancelled:
             raise gr.Error("The run was cancelled: send the request again.", print_exception=False) from None
         except Exception as error:
@@ -260,7 +254,6 @@ class ReactEndpoint(Endpoint):
                 gr.Textbox(ReactRequest.model, label=" or ".join([AUTOMATIC, *(m.name for m in methods("react"))])),
                 gr.Textbox(ReactRequest.mode, label=f"offline; or online ({streaming})"),
                 gr.Checkbox(False, label=f"start in the first pose of the other person in the file ({posed})"),
-                gr.Checkbox(False, label="also the new person on the rig of the file: a .bvh or .glb of one person"),
                 gr.Textbox("", label=WHICH),
                 gr.Number(0, label=RATE),
                 gr.Textbox("", label=UP),
@@ -285,7 +278,6 @@ class ReactEndpoint(Endpoint):
         model: str = ReactRequest.model,
         mode: str = ReactRequest.mode,
         keep_start: bool = False,
-        own_rig: bool = False,
         animation: str = "",
         fps: float = 0.0,
         up: str = "",
@@ -296,8 +288,7 @@ class ReactEndpoint(Endpoint):
 
         Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
         two-person .npz, two .bvh, two .smpl.npz, a .usda (and a .glb where the server writes them), a contact sheet
-        .png, and a manifest .json. With own_rig there is also the new person of every sample on the rig of the file,
-        and that file as it is. An error is one sentence that says what to change.
+        .png, and a manifest .json. An error is one sentence that says what to change.
         """
 
         def request() -> ReactRequest:
@@ -328,7 +319,7 @@ class ReactEndpoint(Endpoint):
 
         title = prompt.strip() or f"Reaction to {Path(actor or '').stem}"
         file = Path(actor or "")
-        return self._answer(request, title, progress, file if own_rig and actor else None, (file, animation or None))
+        return self._answer(request, title, progress, given=(file, animation or None))
 
 
 class PredictEndpoint(Endpoint):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import zipfile
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -16,15 +15,11 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
 import gradio as gr
 
-from motion import Clip
 from motion.formats import read
-from tests.motion.bodies import marching
-from tests.motion.formats.rigs import RIGS, bvh_text
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, changes
 from webdemo.inference.requests import ReactRequest
-from webdemo.ui.components.actors import read_source, rig_of
-from webdemo.ui.components.exports import KINDS
+from webdemo.ui.components.actors import read_source
 from webdemo.ui.history import Entry, Kept, Opened, Original, clean_name
 from webdemo.ui.tabs.react import ReactTab
 from webdemo.ui.text.examples import example_clips
@@ -95,46 +90,3 @@ def test_an_upload_is_kept_with_its_run_and_an_example_is_not(
     *_, shown = [changes(LOADED, u) for u in tab.actor.load(lambda: read_source(path, name))]
     tab._keep(replace(record, result=replace(record.result, run="x")), {"source": shown["source"]})
     assert clean_name(written[-1].original.name if written[-1].original else "") == ""
-
-
-def test_a_partner_is_taken_on_the_rig_of_an_uploaded_bvh(tab: ReactTab, tmp_path: Path) -> None:
-    rig = tmp_path / "my rig.bvh"
-    positions, rotations = marching(90)
-    rig.write_text(bvh_text(rotations, positions[:, 0], RIGS["mixamo"]), encoding="utf-8")
-    source = upload(tab, rig)[-1]["source"]
-    *_, last = run(tab, source, end=2.0, samples=2)
-    assert last["record"].rig == rig
-    _, *updates = tab.results.export(last["record"])
-    update = updates[[kind.key for kind in KINDS].index("rig")]
-    assert update["interactive"] and update["visible"]
-    with zipfile.ZipFile(update["value"]) as archive:
-        files = {name: archive.read(name) for name in archive.namelist()}
-    assert files.pop("my rig.bvh") == rig.read_bytes(), "the original stands beside it, untouched"
-    head = rig.read_text().split("MOTION")[0]
-    assert len(files) == 2
-    for content in files.values():
-        assert content.decode().split("MOTION")[0] == head, "units, names and rest pose are those of the rig"
-        made = read(content, name="made.bvh")
-        assert isinstance(made, Clip) and made.num_frames == 60
-    partner = last["record"].result.duets[0].b.positions
-    found = min(np.abs(read(c, name="x.bvh").positions - partner).mean() for c in files.values())
-    assert found < 0.1, "it is the partner, in the rig's own world"
-
-
-def test_only_a_rig_that_was_read_as_it_is_is_offered(tab: ReactTab, walker: Path, walkers: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    assert rig_of(source) == walker
-    assert rig_of(None) is None and rig_of(replace(source, read_with=("z", "auto", None, "auto", None))) is None
-    assert rig_of(upload(tab, walkers)[-1]["source"]) is None
-    *_, last = run(tab, replace(source, path=None), end=2.0)
-    _, *updates = tab.results.export(last["record"])
-    update = updates[[kind.key for kind in KINDS].index("rig")]
-    assert not update["visible"] and update["value"] is None
-
-
-def test_a_rig_that_cannot_be_moved_is_a_sentence_and_the_other_files_are_there(tab: ReactTab, walker: Path) -> None:
-    *_, last = run(tab, upload(tab, walker)[-1]["source"], end=2.0)
-    last["record"].rig = walker.with_name("gone.bvh")
-    line, *updates = tab.results.export(last["record"])
-    assert "not on the rig of your file. gone.bvh cannot be read" in line
-    assert updates[0]["interactive"]

@@ -171,16 +171,6 @@ def offered_animations(source: Source | None) -> Any:
     return animation_list(source.animations, source.read_with[4]) if source else animation_list((), None)
 
 
-def rig_of(source: Source | None) -> Path | None:
-    """The BVH file of one person that a source was read from as it is; None for any other source.
-
-    Where somebody said which axis is up or what the unit is, the file's own world is another, and so are examples.
-    """
-    if source is None or source.path is None or source.path.suffix.lower() != ".bvh" or len(source.people) != 1:
-        return None
-    return source.path if source.read_with[:4] == Source.read_with[:4] else None
-
-
 def kept_file(source: Source, folder: Path) -> str | None:
     """A .npz of one person or two of a source, called after it, for the field that the file was dropped on."""
     if len(source.people) > 2:

@@ -21,12 +21,9 @@ from pathlib import Path
 from typing import Any
 
 from motion import Clip, Duet, InputError, formats
-from motion.formats import ALONE, on_rig
+from motion.formats import ALONE
 from motion.formats.files import safe_cell
-from motion.formats.files import write_files as replace_all
-from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.run import Result
-from webdemo.ui.places import READING
 from webdemo.view.sheet import write_grid_sheet, write_sheet
 from webdemo.view.stage import Style
 
@@ -58,8 +55,6 @@ class Kind:
 
 _PLAIN = ("png", "json", "csv")
 """Kinds that are no motion."""
-RIG = "rig"
-"""The key of the partner on the rig of an uploaded file; its button shows only where there is one."""
 
 ALL = "all"
 """The key of everything in one archive."""
@@ -73,11 +68,10 @@ KINDS = (
     Kind("csv", "Read-outs .csv"),
     Kind("json", "Manifest"),
     Kind("png", "Contact sheet"),
-    Kind(RIG, "On your rig"),
     Kind(ALL, "All files .zip"),
 )
 PURPOSES = {
-    "For Blender / my rig": ("glb", "bvh", "usda", RIG),
+    "For Blender": ("glb", "bvh", "usda"),
     "Numbers": ("npz", "smpl.npz", "csv", "json"),
     "Pictures and film": ("png",),
     "Everything": (ALL,),
@@ -93,19 +87,15 @@ class Record:
         result: what the engine gave.
         prompt: names the files.
         exported: whether its files were written.
-        files: those that were written, by the key of their kind.
         compared: the results of a grid by the names of their cells; ``result`` is the first of them.
         grid: columns, rows, names and title of the grid that they stand in; empty for none.
-        rig: the uploaded .bvh file of one person that the result is a reaction to; None for anything else.
     """
 
     result: Result = field(repr=False)
     prompt: str
     exported: bool = False
-    files: Mapping[str, list[Path]] = field(default_factory=dict, repr=False)
     compared: Mapping[str, Result] = field(default_factory=dict, repr=False)
     grid: Mapping[str, Any] = field(default_factory=dict)
-    rig: Path | None = None
 
 
 class Shelf:
@@ -154,35 +144,6 @@ class Shelf:
                     shutil.rmtree(folder)
             except OSError as error:  # another process may be quicker
                 log.info("Could not remove %s: %s", folder, error)
-
-
-def write_on_rig(record: Record, folder: Path) -> list[Path]:
-    """The partners of a record on the rig of the file that they react to, and that file as it is.
-
-    Returns:
-        one file a sample of every result, then a copy of the file; nothing where there is no rig.
-
-    Raises:
-        InputError: where the rig cannot be moved.
-    """
-    if record.rig is None:
-        return []
-    results = record.compared or {"": record.result}
-    files: dict[Path, bytes] = {}
-    for method, result in results.items():
-        asked = result.manifest.get("request", {})
-        name = file_name(f"{method} {record.prompt}", result.manifest)
-        for i, duet in enumerate(result.duets):
-            if not isinstance(duet, Duet):
-                continue
-            partner = duet.people[1 - ROLES.index(asked.get("role", ROLES[0]))]
-            number = f"-{i + 1}" if len(result.duets) > 1 else ""
-            path = folder / f"{name}{number}-on-your-rig{record.rig.suffix.lower()}"
-            with READING.place():
-                files[path] = on_rig(partner, record.rig)
-    files[folder / record.rig.name] = record.rig.read_bytes()
-    with _writing(folder):
-        return replace_all(files)
 
 
 def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:

@@ -123,10 +123,6 @@ class JobTab(ABC):
         """The fields that are used and kept; raises InputError where two of them cannot be brought together."""
         return fields
 
-    def complete(self, record: Record, fields: Mapping[str, Any]) -> Record:
-        """Adds to a record what its files need beside the result."""
-        return record
-
     def kept_more(self, fields: Mapping[str, Any]) -> dict[str, Any]:
         """Further entries of a run's record, beside the values of the controls."""
         return {}
@@ -253,7 +249,6 @@ class JobTab(ABC):
             for updates in answer(session, fields):
                 record = dict(zip(self.outputs, updates, strict=True))["record"]
                 if isinstance(record, Record):
-                    self.complete(record, fields)
                     self._keep(record, fields)
                 yield updates
         except Cancelled as stopped:

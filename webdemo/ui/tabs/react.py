@@ -13,8 +13,7 @@ from webdemo.inference.methods import AUTOMATIC, variants
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.live import LiveRequest, LiveTake
 from webdemo.inference.run import Result
-from webdemo.ui.components.actors import chosen_actor, live_variant, react_choices, reactor, rig_of, with_method
-from webdemo.ui.components.exports import Record
+from webdemo.ui.components.actors import chosen_actor, live_variant, react_choices, reactor, with_method
 from webdemo.ui.components.live import LivePanel, LiveView, take_of
 from webdemo.ui.components.player import show
 from webdemo.ui.components.settings import looked_up
@@ -60,12 +59,6 @@ class ReactTab(JobTab):
     def title(self, request: ReactRequest) -> str:
         """The words, or whose reaction it is."""
         return request.prompt.strip() or f"Reaction to {request.actor.name}"
-
-    def complete(self, record: Record, fields: Mapping[str, Any]) -> Record:
-        """The rig of an uploaded file, for the partner on it."""
-        if not record.grid:
-            record.rig = rig_of(fields.get("source"))
-        return record
 
     def kinds(self) -> Sequence[Kind]:
         """Also words, and methods."""
@@ -256,7 +249,6 @@ class ReactTab(JobTab):
             fitted[part] = {**fit, "value": kept["value"]} if isinstance(kept, dict) else fit
         given, note = self.actor.opened(run)
         found |= {**fitted, **given, self.method: gr.update(value=method), self.line: found[self.line] + note}
-        self.complete(found[self.record], {"source": given[self.actor.state]})
         return found
 
 

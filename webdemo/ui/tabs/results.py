@@ -6,22 +6,12 @@ import json
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import gradio as gr
 
 from motion import InputError
-from webdemo.ui.components.exports import (
-    KINDS,
-    PURPOSES,
-    RIG,
-    Record,
-    file_name,
-    for_download,
-    write_on_rig,
-    write_record,
-)
+from webdemo.ui.components.exports import KINDS, PURPOSES, Record, file_name, for_download, write_record
 from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film, make_mesh
 from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.context import PageContext
@@ -213,29 +203,12 @@ class Results:
         record.exported = True
         try:
             files = write_record(record, self.page.shelf.folder())
-            name = file_name(record.prompt, record.result.manifest)
-            line, on_rig = self._on_rig(record)
-            record.files = files | ({RIG: on_rig} if on_rig else {})
-            found = for_download(record.files, name)
+            found = for_download(files, file_name(record.prompt, record.result.manifest))
         except Exception as error:
             off = gr.update(value=None, interactive=False)
             return (
                 status(f"The motion is ready, but its files are not. {error_line(error)}", tone="error"),
                 *(off for _ in KINDS),
             )
-        return (line, *(_offered(kind.key, found.get(kind.key)) for kind in KINDS))
-
-    def _on_rig(self, record: Record) -> tuple[Any, list[Path]]:
-        """A change of the status line, and the partner on the uploaded rig; the others of its files do not need it."""
-        try:
-            return gr.skip(), write_on_rig(record, self.page.shelf.folder())
-        except Exception as error:
-            sentence = f"The motion is ready, but not on the rig of your file. {error_line(error)}"
-            return status(sentence, tone="warning"), []
-
-
-def _offered(kind: str, file: Path | None) -> dict[str, Any]:
-    """An update of a download's button; that of the uploaded rig is seen only where there is one."""
-    if kind == RIG:
-        return gr.update(value=file, interactive=file is not None, visible=file is not None)
-    return gr.update(value=file, interactive=file is not None)
+        offered = (found.get(kind.key) for kind in KINDS)
+        return (gr.skip(), *(gr.update(value=file, interactive=file is not None) for file in offered))
