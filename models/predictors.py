@@ -11,7 +11,7 @@ from torch import Tensor, nn
 
 from models.mawgan.network import MAWGANConfig, PredictiveMAWGAN
 from models.motion_mlp import MotionMLP, MotionMLPConfig
-from models.weights_io import WeightsFolder, load_network, save_network
+from models.weights_io import WeightsFolder, load_network
 
 _FADE = 0.7
 """Share of a correction at the seam that is left a frame later."""
@@ -76,19 +76,6 @@ def without_jump(past: Tensor, future: Tensor) -> Tensor:
     return future - fade[:, None, None] * excess[:, None]
 
 
-def save_predictor(folder: Path, network: MotionMLP | PredictiveMAWGAN, *, kind: str, fps: float, **meta: Any) -> None:
-    """Writes a folder that :func:`load_predictor` reads; ``config.json`` comes last.
-
-    Args:
-        folder: made where it is missing.
-        network: what was trained.
-        kind: "mlp" or "mawgan".
-        fps: of the frames it was trained on.
-        meta: more for ``config.json``.
-    """
-    save_network(folder, network, kind=kind, fps=fps, **meta)
-
-
 def load_predictor(folder: Path) -> Predictor:
     """A predictor in float32, eval mode.
 
@@ -97,9 +84,9 @@ def load_predictor(folder: Path) -> Predictor:
     """
     network: MotionMLP | PredictiveMAWGAN
     if WeightsFolder(folder).meta.get("kind") == "mlp":
-        network, source = load_network(folder, _mlp)
+        network, source = load_network(folder, lambda sizes: MotionMLP(MotionMLPConfig(**sizes)))
     else:
-        network, source = load_network(folder, _mawgan)
+        network, source = load_network(folder, lambda sizes: PredictiveMAWGAN(MAWGANConfig.from_dict(sizes)))
     config = network.config
     return Predictor(
         network,
@@ -111,11 +98,3 @@ def load_predictor(folder: Path) -> Predictor:
         source.digest,
         source.meta.get("training"),
     )
-
-
-def _mlp(sizes: dict[str, Any]) -> MotionMLP:
-    return MotionMLP(MotionMLPConfig.from_dict(sizes))
-
-
-def _mawgan(sizes: dict[str, Any]) -> PredictiveMAWGAN:
-    return PredictiveMAWGAN(MAWGANConfig.from_dict(sizes))

@@ -10,7 +10,6 @@ weights. A linear map, which is fitted in closed form, goes before; residual blo
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import torch
 from scipy.fft import dct
@@ -36,11 +35,6 @@ class MotionMLPConfig:
     width: int = 512
     blocks: int = 2
     dropout: float = 0.1
-
-    @classmethod
-    def from_dict(cls, values: dict[str, Any]) -> MotionMLPConfig:
-        """The config that ``config.json`` holds as a dictionary."""
-        return cls(**values)
 
     @property
     def inputs(self) -> int:

@@ -33,29 +33,32 @@ _MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
 _TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 _FARTHEST = 1e6
-_LOOKS = ("KHR_materials", "KHR_texture", "EXT_texture", "KHR_lights")
-"""Beginnings of the names of extensions that change only how things look."""
+_HARMLESS = (
+    "KHR_materials",
+    "KHR_texture",
+    "EXT_texture",
+    "KHR_lights",
+    "KHR_draco_mesh_compression",
+    "KHR_mesh_quantization",
+)
+"""Beginnings of the names of extensions that change only how things look and how meshes are stored."""
 _LISTS = ("nodes", "meshes", "skins", "animations", "accessors", "bufferViews", "buffers")
 
 
 @contextmanager
-def opened(
-    source: str | Path | bytes, name: str | None, purpose: str, *, harmless: Sequence[str] = ()
-) -> Iterator[GlbFile]:
+def opened(source: str | Path | bytes, name: str | None) -> Iterator[GlbFile]:
     """A file whose parts are read in the block; what is wrong with it is one sentence there as well.
 
     Args:
         source: a path, or the file's bytes.
         name: what to call the file in messages; its own name by default.
-        purpose: what it cannot be, such as "read as motion".
-        harmless: beginnings of the names of extensions that it may need.
 
     Raises:
         InputError: one sentence that says what is wrong with the file and what to do.
     """
     data, label = read_bytes(source, name, remedy="reduce its mesh or leave out its pictures")
     try:
-        yield GlbFile(data, label, purpose, harmless)
+        yield GlbFile(data, label)
     except (KeyError, IndexError, TypeError, ValueError, OverflowError, RecursionError, AttributeError) as error:
         if isinstance(error, InputError):
             raise
@@ -93,16 +96,14 @@ class GlbFile:
     Args:
         data: the whole file.
         label: what to call it in messages.
-        purpose: what it cannot be where something is wrong with it.
-        harmless: beginnings of the names of extensions that it may need.
 
     Attributes:
         document: its description.
         blob: its numbers.
     """
 
-    def __init__(self, data: bytes, label: str, purpose: str, harmless: Sequence[str] = ()) -> None:
-        self.label, self.purpose = label, purpose
+    def __init__(self, data: bytes, label: str) -> None:
+        self.label = label
         self.document, self.blob = self._chunks(data)
         for key in _LISTS:
             if not isinstance(self.document.get(key, []), list) or len(self.document.get(key, [])) > MOST_ITEMS:
@@ -113,12 +114,12 @@ class GlbFile:
                 f"export the character alone, with {MOST_SKINS} skins at most",
             )
         needed = [str(each)[:40] for each in list(self.document.get("extensionsRequired", []))]
-        if needed := [each for each in needed if not each.startswith((*_LOOKS, *harmless))]:
+        if needed := [each for each in needed if not each.startswith(_HARMLESS)]:
             self.refuse(f"it needs {', '.join(needed[:3])}", "export it without compression or other extensions")
 
     def refuse(self, what: str, remedy: str = "export it again as glTF binary (.glb) with its skin") -> NoReturn:
         """Raises the sentence."""
-        raise InputError(f"{self.label} cannot be {self.purpose} because {what}: {remedy}.")
+        raise InputError(f"{self.label} cannot be read as motion because {what}: {remedy}.")
 
     def _chunks(self, data: bytes) -> tuple[dict[str, Any], bytes]:
         if len(data) < 20 or struct.unpack_from("<I", data)[0] != _MAGIC:

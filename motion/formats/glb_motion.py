@@ -19,13 +19,10 @@ from .bvh_numbers import MAX_NUMBERS
 from .files import check_duration
 from .glb_file import GlbFile, opened
 from .glb_nodes import Channel, Rig, bind_pose, channels, moves, people, placed, with_those_above
-from .recording import Animation, Animations, check_animation, listed
+from .recording import MAX_PEOPLE, Animation, Animations, check_animation, listed
 
 Array = NDArray[np.floating]
 
-MESHES = ("KHR_draco_mesh_compression", "KHR_mesh_quantization")
-"""Extensions that change only how meshes are stored."""
-MOST_PEOPLE = 6
 _RATES = (10.0, 240.0)
 _RATE = 30.0
 _MOST = 60.0
@@ -53,7 +50,7 @@ def read_glb(
     Raises:
         InputError: one sentence that says what is wrong with the file and what to do.
     """
-    with opened(source, name, "read as motion", harmless=MESHES) as file:
+    with opened(source, name) as file:
         whole = _whole(file)
         nodes = [set(person.nodes) for person in whole]
         taken, animations = chosen(file, nodes, animation)
@@ -72,7 +69,7 @@ def animations_in(
     source: str | Path | bytes, *, name: str | None = None, animation: Animation | None = None
 ) -> Animations:
     """The animations that :func:`read_glb` finds in a file, without their key frames."""
-    with opened(source, name, "read as motion", harmless=MESHES) as file:
+    with opened(source, name) as file:
         return chosen(file, [person.nodes for person in _whole(file)], animation)[1]
 
 
@@ -88,8 +85,8 @@ def _whole(file: GlbFile) -> list[_Person]:
     if not whole:
         assert found[0].problem is not None
         raise found[0].problem
-    if len(whole) > MOST_PEOPLE:
-        file.refuse(f"it holds {len(whole)} people", f"export {MOST_PEOPLE} at most")
+    if len(whole) > MAX_PEOPLE:
+        file.refuse(f"it holds {len(whole)} people", f"export {MAX_PEOPLE} at most")
     return whole
 
 

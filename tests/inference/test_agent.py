@@ -12,7 +12,6 @@ import torch
 
 from models.agent.recogniser import Recogniser, RecogniserConfig
 from models.motion_mlp import MotionMLP, MotionMLPConfig
-from models.predictors import save_predictor
 from models.weights_io import save_network
 from motion.placement import MEDIAN_START_DISTANCE
 from motion.transforms import facing
@@ -32,7 +31,7 @@ def folder(weights: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     shutil.copytree(weights / "intergen", made / "intergen")
     torch.manual_seed(0)
     network = MotionMLP(MotionMLPConfig(width=32, blocks=1))
-    save_predictor(made / "motion-mlp", network, kind="mlp", fps=30.0)
+    save_network(made / "motion-mlp", network, kind="mlp", fps=30.0)
     eye = Recogniser(RecogniserConfig(LABELS, SENTENCES, joint_width=4, latent_dim=16, ff_size=16, num_heads=2))
     save_network(made / "agent", eye)
     return made

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from models.motion_mlp import MotionMLP, MotionMLPConfig
-from models.predictors import save_predictor
+from models.weights_io import save_network
 from motion import SMPL22, Clip, Duet, InputError, stacked_positions
 from motion.formats import read
 from motion.kinematics import forward_kinematics
@@ -43,7 +43,7 @@ def predicting(tmp_path_factory: pytest.TempPathFactory) -> Engine:
         for parameter in network.parameters():
             parameter.normal_(std=0.02)
     folder = tmp_path_factory.mktemp("predictors")
-    save_predictor(folder / "motion-mlp", network, kind="mlp", fps=30.0)
+    save_network(folder / "motion-mlp", network, kind="mlp", fps=30.0)
     return Engine(folder)
 
 

@@ -13,7 +13,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from models.predictors import save_predictor
+from models.weights_io import save_network
 from motion import SMPL22, InputError
 from motion.transforms import mirrored
 from training.core.loop import Loop
@@ -83,7 +83,7 @@ class PredictionTrainer(Loop):
     """
 
     kind: str
-    """Kind of the predictor, as :func:`models.predictors.save_predictor` takes it."""
+    """Kind of the predictor, as :func:`models.predictors.load_predictor` knows it."""
 
     def __init__(self, windows: Windows, settings: Any, out: Path, *, device: str = "cpu") -> None:
         self.windows, self.settings, self.out, self.device = windows, settings, out, device
@@ -103,7 +103,7 @@ class PredictionTrainer(Loop):
         """Writes the averaged network as a predictor's folder."""
         training = {**asdict(self.settings), "steps": self.step}
         windows = self.windows
-        save_predictor(folder, self.ema, kind=self.kind, fps=windows.fps, bones=windows.bones, training=training)
+        save_network(folder, self.ema, kind=self.kind, fps=windows.fps, bones=windows.bones, training=training)
 
 
 def add_predictor_options(parser: argparse.ArgumentParser, settings: type) -> None:

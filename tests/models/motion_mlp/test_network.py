@@ -10,7 +10,8 @@ import torch
 
 from models.mawgan.network import MAWGANConfig, PredictiveMAWGAN
 from models.motion_mlp import MotionMLP, MotionMLPConfig
-from models.predictors import load_predictor, save_predictor, without_jump
+from models.predictors import load_predictor, without_jump
+from models.weights_io import save_network
 
 SMALL = MotionMLPConfig(joints=4, past=10, future=8, past_coefficients=5, future_coefficients=4, width=16, blocks=1)
 
@@ -56,7 +57,7 @@ def test_the_linear_part_predicts_waves() -> None:
 @pytest.mark.parametrize("kind", ["mlp", "mawgan"])
 def test_folder_round_trip(tmp_path: Path, network: MotionMLP, kind: str) -> None:
     made = network if kind == "mlp" else PredictiveMAWGAN(MAWGANConfig(4, 10, 8, fc=64, channels=(8, 8, 4, 4))).eval()
-    save_predictor(tmp_path, made, kind=kind, fps=30.0)
+    save_network(tmp_path, made, kind=kind, fps=30.0)
     read = load_predictor(tmp_path)
     assert (read.past, read.future, read.fps, read.joints) == (10, 8, 30.0, 4)
     past = waves(2, 14)

@@ -11,7 +11,8 @@ import pytest
 import torch
 
 from models.motion_mlp import MotionMLP, MotionMLPConfig
-from models.predictors import load_predictor, save_predictor
+from models.predictors import load_predictor
+from models.weights_io import save_network
 from motion import SMPL22, InputError
 from motion.transforms import heading
 from training.evaluate import prediction as product
@@ -115,7 +116,7 @@ def test_the_page_s_predictions_are_scored(tmp_path: Path) -> None:
     (folder / "index.json").write_text(json.dumps([{"start": 0, "frames": 200, "split": "test"}]))
     page = tmp_path / "page.md"
     tiny = MotionMLP(MotionMLPConfig(width=16, blocks=1))
-    save_predictor(tmp_path / "tiny", tiny, kind="mlp", fps=30.0)
+    save_network(tmp_path / "tiny", tiny, kind="mlp", fps=30.0)
     asked = ["--data", str(folder), "--weights", str(tmp_path), "--model", "tiny", "--windows", "4"]
     assert product.main([*asked, "--table", str(page)]) == 0
     text = page.read_text()
