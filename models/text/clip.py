@@ -3,7 +3,7 @@
 Radford et al. 2021, section 2.4 (the tower: causal transformer, pre-norm, QuickGELU); Liang et al.,
 "InterGen", section 5.1 and figure 5 (per-token features, a 2-layer encoder, read out at the end-of-text
 token). All weights lie in the authors' `intergen.ckpt`; the byte-pair vocabulary does not. It is read from the
-files of the package open-clip-torch, of which nothing is imported, or from a file or folder that the user names.
+files of the package open-clip-torch, of which nothing is imported, or from a file that the user names.
 
 Shapes: B prompts, 77 tokens, C = 768.
 """
@@ -24,7 +24,6 @@ from motion.errors import InputError
 
 if TYPE_CHECKING:
     from tokenizers import Tokenizer
-    from tokenizers.models import BPE
 
 NETWORK = "CLIP text"
 HEAD_WIDTH = 64  # CLIP's towers all have heads of 64 channels
@@ -65,20 +64,15 @@ class ClipTokenizer:
     """Text → (B, 77) token numbers: start, words, end, zeros.
 
     Args:
-        place: CLIP's own ``bpe_simple_vocab_16e6.txt.gz``, or a folder that holds ``tokenizer.json``, or
-            ``vocab.json`` and ``merges.txt``, of any CLIP text model.
+        path: of CLIP's own ``bpe_simple_vocab_16e6.txt.gz``.
 
-    Raises VocabularyError if it is none of these.
+    Raises VocabularyError if it is another file.
     """
 
-    def __init__(self, place: str | Path, *, context_length: int = 77) -> None:
-        place = Path(place)
-        self.tokenizer = _read_merges(place) if place.is_file() else _read_vocabulary(place)
+    def __init__(self, path: Path, *, context_length: int = 77) -> None:
+        self.tokenizer = _read_merges(path)
         self.context_length = context_length
-        start, end = self.tokenizer.token_to_id(START), self.tokenizer.token_to_id(END)
-        if start is None or end is None:
-            raise VocabularyError(f"The vocabulary in {place} is not CLIP's: it has no {START} and {END}.")
-        self.start, self.end = start, end
+        self.start, self.end = self.tokenizer.token_to_id(START), self.tokenizer.token_to_id(END)
 
     def __call__(self, prompts: Sequence[str]) -> Tensor:
         """Longer texts are cut, keeping the end token."""
@@ -89,29 +83,9 @@ class ClipTokenizer:
         return rows
 
 
-def _read_vocabulary(folder: Path) -> Tokenizer:
-    from tokenizers import Tokenizer
-    from tokenizers.models import BPE
-
-    whole, vocabulary, merges = (folder / name for name in ("tokenizer.json", "vocab.json", "merges.txt"))
-    try:
-        if whole.is_file():
-            tokenizer = Tokenizer.from_file(str(whole))
-            tokenizer.no_padding()
-            tokenizer.no_truncation()
-            return tokenizer
-        if vocabulary.is_file() and merges.is_file():
-            return _tokenizer(BPE.from_file(str(vocabulary), str(merges), end_of_word_suffix="</w>", unk_token=END))
-    except Exception as error:  # tokenizers raises plain Exception for a file that it cannot parse
-        raise VocabularyError(f"The vocabulary in {folder} cannot be read: download it again.") from error
-    raise VocabularyError(
-        f"{folder} holds no CLIP vocabulary: put tokenizer.json, or vocab.json and merges.txt, of a CLIP "
-        "text model there (InterGen's checkpoint does not carry it)."
-    )
-
-
 def _read_merges(path: Path) -> Tokenizer:
     """CLIP's own file: a title, then one merge a line; letters, merges and the two marks are the vocabulary."""
+    from tokenizers import Regex, Tokenizer, normalizers, pre_tokenizers
     from tokenizers.models import BPE
     from tokenizers.pre_tokenizers import ByteLevel
 
@@ -122,27 +96,19 @@ def _read_merges(path: Path) -> Tokenizer:
         letters = sorted(ByteLevel.alphabet(), key=_byte_order)
         names = [*letters, *(f"{letter}</w>" for letter in letters), *("".join(merge) for merge in merges)]
         vocabulary = {name: i for i, name in enumerate([*names, START, END])}
-        return _tokenizer(BPE(vocabulary, merges, end_of_word_suffix="</w>", unk_token=END))
+        tokenizer = Tokenizer(BPE(vocabulary, merges, end_of_word_suffix="</w>", unk_token=END))
     except Exception as error:  # gzip, Unicode, a line that is no merge, or what tokenizers raises
         raise VocabularyError(f"{path.name} is not CLIP's vocabulary: download it again.") from error
+    spaces = normalizers.Replace(Regex(r"\s+"), " ")
+    tokenizer.normalizer = normalizers.Sequence([normalizers.NFC(), spaces, normalizers.Lowercase()])
+    words = pre_tokenizers.Split(Regex(WORDS), behavior="removed", invert=True)
+    tokenizer.pre_tokenizer = pre_tokenizers.Sequence([words, ByteLevel(add_prefix_space=False)])
+    return tokenizer
 
 
 def _byte_order(letter: str) -> tuple[bool, int]:
     """CLIP lists the bytes that can be printed as themselves first, then the stand-ins of the others."""
     return ord(letter) > 255, ord(letter)
-
-
-def _tokenizer(bpe: BPE) -> Tokenizer:
-    """CLIP's split into words and letters, in front of its merges."""
-    from tokenizers import Regex, Tokenizer, normalizers, pre_tokenizers
-
-    tokenizer = Tokenizer(bpe)
-    spaces = normalizers.Replace(Regex(r"\s+"), " ")
-    tokenizer.normalizer = normalizers.Sequence([normalizers.NFC(), spaces, normalizers.Lowercase()])
-    words = pre_tokenizers.Split(Regex(WORDS), behavior="removed", invert=True)
-    letters = pre_tokenizers.ByteLevel(add_prefix_space=False)
-    tokenizer.pre_tokenizer = pre_tokenizers.Sequence([words, letters])
-    return tokenizer
 
 
 class ResidualBlock(nn.Module):

@@ -35,32 +35,10 @@ _HEIGHT_PER_CHAIN = 1.7
 _PERSON_HEIGHT = (1.2, 2.2)
 
 
-def read_bvh(source: str | Path | bytes, *, name: str | None = None, fps: float | None = None) -> RigMotion:
-    """Reads a BVH file.
-
-    Args:
-        source: a path, or the file's bytes.
-        name: what to call the file in messages; its own name by default.
-        fps: see :func:`read_bvh_people`.
-
-    Returns:
-        the rig and its motion, lengths in metres, axes as in the file.
-
-    Raises:
-        InputError: one sentence with the line and joint where the file is wrong.
-    """
-    rigs = read_bvh_people(source, name=name, fps=fps)
-    if len(rigs) > 1:
-        raise InputError(
-            f"{rigs[0].name} holds {len(rigs)} people, a ROOT each: choose one on the page, or give one person a file."
-        )
-    return rigs[0]
-
-
-def read_bvh_people(
+def read_bvh(
     source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, file_fps: float | None = None
 ) -> tuple[RigMotion, ...]:
-    """The same for a file of several people, a ROOT each; they share one unit and one world.
+    """Reads a BVH file: the rig and the motion of each person, a ROOT each, who share one unit and one world.
 
     Args:
         source: a path, or the file's bytes.
@@ -70,19 +48,12 @@ def read_bvh_people(
             whole, and so is every file by default.
         file_fps: the file's true rate, where it is not what the file says.
 
+    Returns:
+        lengths in metres, axes as in the file.
+
     Raises:
-        InputError: as :func:`read_bvh`, and for more than six people.
+        InputError: one sentence with the line and joint where the file is wrong, and for more than six people.
     """
-    joints, motion, label = _opened(source, name, file_fps)
-    own = any(_is_own(joints[first:stop]) for first, stop in trees(joints, label))
-    every = 1 if own or fps is None else _stride(motion.fps, fps)
-    return _placed(motion, every)
-
-
-def _opened(
-    source: str | Path | bytes, name: str | None, file_fps: float | None = None
-) -> tuple[list[Joint], Motion, str]:
-    """A file's joints and where its numbers are, and what to call it."""
     data, label = read_bytes(source, name)
     data = ascii_bytes(data, label, "a BVH file")
     if not re.search(rb"^\s*HIERARCHY\b", data[:4096], re.IGNORECASE):
@@ -93,15 +64,14 @@ def _opened(
         if len(data) > _LONGEST_HIERARCHY:
             raise InputError(f"{label} has no MOTION part within its first megabyte: is it of another kind?")
         raise InputError(f"{label} has no MOTION part and may be cut short: export it again.")
-    joints = parse_hierarchy(_decoded(data[: head.start()]), label)
-    return joints, find_motion(data, head.end(), joints, label, file_fps), label
-
-
-def _decoded(hierarchy: bytes) -> str:
     try:
-        return hierarchy.decode("utf-8")
+        hierarchy = data[: head.start()].decode("utf-8")
     except UnicodeDecodeError:
-        return hierarchy.decode("latin-1")
+        hierarchy = data[: head.start()].decode("latin-1")
+    joints = parse_hierarchy(hierarchy, label)
+    motion = find_motion(data, head.end(), joints, label, file_fps)
+    own = any(_is_own(joints[first:stop]) for first, stop in trees(joints, label))
+    return _placed(motion, 1 if own or fps is None else _stride(motion.fps, fps))
 
 
 def _stride(file_fps: float, fps: float) -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 from motion.clip import Clip, Duet
 from motion.errors import InputError
 
-from .bvh import read_bvh_people
+from .bvh import read_bvh
 from .bvh_writer import bvh_text, write_bvh
 from .c3d_points import read_c3d
 from .files import read_bytes, write_files
@@ -57,7 +57,7 @@ def _rigs(data: bytes, label: str, choices: ImportChoices) -> Recording:
         if choices.fps:
             people = tuple(replace(rig, fps=choices.fps / rig.every) for rig in people)
         return Recording(people, animations=animations)
-    return Recording(read_bvh_people(data, name=label, fps=RIG_FPS, file_fps=choices.fps))
+    return Recording(read_bvh(data, name=label, fps=RIG_FPS, file_fps=choices.fps))
 
 
 def _bvh_alone(clip: Clip, path: Path) -> list[Path]:

@@ -182,7 +182,7 @@ def _named(root: Path) -> list[tuple[Described, Array]]:
         with unpacked(root / dataset) as files:
             for path in files:
                 try:
-                    positions = retarget(read_bvh(path), fps=FPS).positions
+                    positions = retarget(read_bvh(path)[0], fps=FPS).positions
                     if len(positions) < 2:
                         raise InputError("It has a single frame.")
                     read.append((describe_source(path.name), positions))
@@ -233,7 +233,7 @@ def _rigs(folder: Path, wanted: set[str]) -> dict[str, RigMotion]:
 def read_upright(path: Path) -> RigMotion:
     """A BVH file of CMU or ACCAD without the T-pose in its first frame; Y is up, which nobody has to guess where a body
     lies or crawls all the time."""
-    rig = read_bvh(path)
+    rig = read_bvh(path)[0]
     return replace(rig, positions=rig.positions[1:], up="y")
 
 

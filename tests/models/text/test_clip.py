@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gzip
-import json
 
 import pytest
 import torch
@@ -62,36 +61,6 @@ def test_the_tower_equals_torch_layers(encoder):
 def test_a_tensor_that_is_missing_is_named():
     with pytest.raises(WeightsError, match=r"token_embedding\.weight is missing"):
         from_released({})
-
-
-def vocabulary(folder, *, specials: bool = True) -> None:
-    """A vocabulary of CLIP's form: letters, letters that end a word, a merge, the two marks."""
-    letters = [chr(c) for c in range(ord("a"), ord("z") + 1)]
-    entries = [*letters, *(letter + "</w>" for letter in letters), "hi</w>"]
-    entries += ["<|startoftext|>", "<|endoftext|>"] if specials else ["<x>"]
-    (folder / "vocab.json").write_text(json.dumps({entry: i for i, entry in enumerate(entries)}))
-    (folder / "merges.txt").write_text("#version: 0.2\nh i</w>\n")
-
-
-def test_tokenizer_json_gives_the_same(tmp_path):
-    vocabulary(tmp_path)
-    first = ClipTokenizer(tmp_path)
-    first.tokenizer.enable_truncation(3)
-    (tmp_path / "json").mkdir()
-    first.tokenizer.save(str(tmp_path / "json" / "tokenizer.json"))
-    prompts = ["hi you two", ""]
-    assert torch.equal(ClipTokenizer(tmp_path / "json")(prompts), ClipTokenizer(tmp_path)(prompts))
-
-
-def test_missing_or_foreign_vocabularies_are_said(tmp_path):
-    with pytest.raises(VocabularyError, match="holds no CLIP vocabulary"):
-        ClipTokenizer(tmp_path)
-    vocabulary(tmp_path, specials=False)
-    with pytest.raises(VocabularyError, match="is not CLIP's"):
-        ClipTokenizer(tmp_path)
-    (tmp_path / "tokenizer.json").write_text("{")
-    with pytest.raises(VocabularyError, match="cannot be read"):
-        ClipTokenizer(tmp_path)
 
 
 def test_clips_own_file_of_merges_is_read(tmp_path):

@@ -24,7 +24,7 @@ WRISTS_AND_ANKLES = [SMPL22.index(f"{s}_{p}") for s in ("left", "right") for p i
 
 @pytest.mark.parametrize("name", RIGS)
 def test_rigs_come_back_as_the_motion_they_were(name):
-    rig = read_bvh(bvh_text(ROTATIONS, ROOT, RIGS[name]).encode())
+    rig = read_bvh(bvh_text(ROTATIONS, ROOT, RIGS[name]).encode())[0]
     clip = retarget(rig, plant=False)
     truth = POSITIONS - np.array([0, np.quantile(POSITIONS[..., 1].min(axis=-1), 0.05), 0])
     error = np.linalg.norm(clip.positions - truth, axis=-1)
@@ -42,15 +42,15 @@ def test_rigs_that_lack_joints(lacking):
     names = {joint: name for joint, name in RIGS["mixamo"].items() if joint not in lacking}
     rotations = ROTATIONS.copy()
     rotations[:, [SMPL22.index(joint) for joint in lacking]] = np.eye(3)
-    truth = retarget(read_bvh(bvh_text(rotations, ROOT, RIGS["mixamo"]).encode()), plant=False).positions
-    found = retarget(read_bvh(bvh_text(rotations, ROOT, names).encode()), plant=False).positions
+    truth = retarget(read_bvh(bvh_text(rotations, ROOT, RIGS["mixamo"]).encode())[0], plant=False).positions
+    found = retarget(read_bvh(bvh_text(rotations, ROOT, names).encode())[0], plant=False).positions
     spared = [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("elbow", "knee", "ankle")]
     assert np.linalg.norm(found - truth, axis=-1)[:, spared].max() < 0.08
 
 
 @pytest.mark.parametrize("unit", [1.0, 100.0, 1000.0, 39.37])
 def test_units_are_found(unit):
-    rig = read_bvh(bvh_text(ROTATIONS, ROOT, unit=unit).encode())
+    rig = read_bvh(bvh_text(ROTATIONS, ROOT, unit=unit).encode())[0]
     assert rig.metres_per_unit == pytest.approx(1 / unit, rel=1e-3)
     np.testing.assert_allclose(rig.positions[:, 0], ROOT, atol=1e-3)
 
@@ -66,8 +66,8 @@ def test_channel_order_positions_and_up_axis(order, positions_everywhere, z_up):
         positions_everywhere=positions_everywhere,
         z_up=z_up,
     )
-    clip = retarget(read_bvh(text.encode()), plant=False)
-    expected = retarget(read_bvh(bvh_text(ROTATIONS, ROOT, RIGS["motionbuilder"]).encode()), plant=False)
+    clip = retarget(read_bvh(text.encode())[0], plant=False)
+    expected = retarget(read_bvh(bvh_text(ROTATIONS, ROOT, RIGS["motionbuilder"]).encode())[0], plant=False)
     # Without a sensible rest pose the neck's lean cannot be measured; the limbs are the same.
     wanted = slice(None) if not positions_everywhere else WRISTS_AND_ANKLES
     np.testing.assert_allclose(clip.positions[:, wanted], expected.positions[:, wanted], atol=0.06)
@@ -131,7 +131,7 @@ def test_a_given_rate_comes_before_what_a_file_says_of_its_own(frame_time):
 def test_encodings_and_line_ends(encoding, newline):
     names = {**RIGS["mixamo"], "spine2": "Rücken"}
     data = bvh_text(ROTATIONS, ROOT, names).replace("\n", newline).encode(encoding)
-    assert read_bvh(data).num_frames == 40
+    assert read_bvh(data)[0].num_frames == 40
 
 
 GOOD = bvh_text(ROTATIONS[:3], ROOT[:3], RIGS["mixamo"])
@@ -142,8 +142,8 @@ FAST = bvh_text(np.repeat(ROTATIONS, 4, axis=0)[2:], np.repeat(ROOT, 4, axis=0)[
 @pytest.mark.parametrize(("file_fps", "every"), [(120, 4), (30, 1), (100, 2)])
 def test_of_a_faster_file_only_the_frames_that_are_needed_are_placed(file_fps, every):
     data = FAST.replace("Frame Time: 0.0333333", f"Frame Time: {1 / file_fps:.7f}").encode()
-    whole = read_bvh(data)
-    rig = read_bvh(data, fps=30.0)
+    whole = read_bvh(data)[0]
+    rig = read_bvh(data, fps=30.0)[0]
     assert (rig.every, rig.fps * rig.every) == (every, file_fps) and whole.fps == file_fps
     np.testing.assert_array_equal(rig.positions, whole.positions[::every])
     assert import_motion(data, name="x.bvh").fps == file_fps

@@ -27,7 +27,7 @@ KEYS = ("method", "files", "pipeline", "label", "labels", "precision", "schedule
 PRECISIONS = ("auto", "float32", "bfloat16")
 _NAME = re.compile(r"[a-z0-9][a-z0-9._-]{0,39}")
 _CHECKPOINTS = (".ckpt", ".pt", ".pth", ".tar", ".bin", ".safetensors")
-_VOCABULARIES = (".txt.gz", ".json")
+_VOCABULARY = ".txt.gz"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,7 +184,7 @@ def _role(path: str) -> str:
         return "checkpoint"
     if name.endswith(".npy"):
         return "mean" if "mean" in name else "std"
-    if name.endswith(_VOCABULARIES):
+    if name.endswith(_VOCABULARY):
         return "vocabulary"
     raise InputError(
         f"it is not clear what the file {name:.60} is: write `files` as {{ checkpoint = …, mean = …, std = … }}."
