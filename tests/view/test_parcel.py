@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from motion import Duet
-from motion.body import load_body
 from motion.transforms import turn
 from tests.motion.bodies import marching
 from webdemo.view import film
@@ -27,7 +26,7 @@ def job(**changed: object) -> Job:
     times = np.arange(4) / 30
     views = cameras([DUET, DUET.a], size=(160, 120), times=times, view="front", follow=True)
     panes = (Pane(DUET, "one"), Pane(DUET.a, ghost=DUET.b, past_until=3))
-    whole = Job(panes, Style(trails=True, body=load_body("man", small=True)), (320, 120), times, views, "“two” ♥")
+    whole = Job(panes, Style(trails=True), (320, 120), times, views, "“two” ♥")
     return dataclasses.replace(whole, **changed)
 
 

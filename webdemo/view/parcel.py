@@ -14,9 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.body import Body, Eyes
 from motion.clip import Clip, Duet
-from motion.hands import Fingers, Grip
+from motion.hands import Grip
 from motion.skeleton import Skeleton
 from motion.things.thing import Mesh, Thing
 
@@ -59,8 +58,7 @@ class Job:
 
 
 KINDS: dict[str, type] = {
-    kind.__name__: kind
-    for kind in (Job, Pane, Style, Body, Clip, Duet, Mesh, Thing, Grip, Eyes, Fingers, Skeleton, Camera)
+    kind.__name__: kind for kind in (Job, Pane, Style, Clip, Duet, Mesh, Thing, Grip, Skeleton, Camera)
 }
 """The classes that a parcel may hold, by name."""
 
