@@ -17,7 +17,7 @@ from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
 from motion.vectors import FLAT
 
-from .landmarks import INDEX, LENS, TORSO, Landmarks
+from .landmarks import INDEX, LENS, Landmarks
 from .person import LAYOUT, TILTS, check_camera, layout_points
 from .place import body_tilt, focal_length, towards, translation, upright
 
@@ -25,8 +25,6 @@ Array = NDArray[np.floating]
 
 MEASURED = 8
 """Pictures with a person that come before the first pose."""
-LOST = 0.5
-"""Seconds without the person after which the person nearest to the middle is followed."""
 _SEEN = 0.5
 """A point that is seen less surely than this counts as hidden."""
 _POSE = (2.5, 3.0)
@@ -97,7 +95,7 @@ class FollowedPerson:
         self._pose, self._path = OneEuro(*_POSE), OneEuro(*_PATH)
         self._low: deque[float] = deque(maxlen=_FLOOR)
         self._origin = np.zeros(3)
-        self._last: tuple[float, Array] | None = None
+        self._last: float | None = None
         self.seen = 0.0
         self.gaze: Gaze | None = None
 
@@ -119,9 +117,9 @@ class FollowedPerson:
         poses = np.flatnonzero(landmarks.frames == picture)
         if not len(poses):
             return None
-        chosen = self._choose(landmarks, poses, time)
-        before = self._last[0] if self._last else time
-        self._last = (time, landmarks.pixels[chosen])
+        chosen = int(poses[0])
+        before = time if self._last is None else self._last
+        self._last = time
         self.seen = float(landmarks.seen[chosen][_LEGS].mean())
         try:
             points, seen = _in_camera(landmarks, chosen, self.lens)
@@ -133,15 +131,6 @@ class FollowedPerson:
             return None
         self.gaze = gaze(points, seen, self._turn @ _UP)
         return pose if np.isfinite(pose).all() else None
-
-    def _choose(self, landmarks: Landmarks, poses: NDArray[np.integer], time: float) -> int:
-        """The pose nearest to where the person was; at first the one nearest to the middle of the picture."""
-        middle = landmarks.pixels[poses][:, TORSO].mean(axis=1)
-        if self._last is None or time - self._last[0] > LOST:
-            goal = np.array([landmarks.width, landmarks.height]) / 2
-        else:
-            goal = self._last[1][TORSO].mean(axis=0)
-        return int(poses[np.linalg.norm(middle - goal, axis=-1).argmin()])
 
     def _measure(self, points: Array, seen: Array) -> None:
         """Keeps a picture for the measuring of body and tilt, and measures once there are enough."""

@@ -1,9 +1,9 @@
 """The 33 points that MediaPipe's pose network finds on a body, and what they say about SMPL22's joints.
 
 The browser sends them (``static/camera/landmarks.js``) as JSON with plain numbers and base64 of little-endian whole
-numbers: ``times`` (uint32, milliseconds), ``counts`` (uint8, poses in each picture), ``world`` (int16, millimetres),
-``image`` (int16, 8000 to the picture's side) and ``seen`` (uint8, 255 is sure); beside them ``name`` of the film, and
-``tilt`` and ``lens`` of the camera in degrees, or null. The text is taken to be hostile.
+numbers: ``times`` (uint32, milliseconds), ``counts`` (uint8, 1 for a picture that shows somebody and 0 for another),
+``world`` (int16, millimetres), ``image`` (int16, 8000 to the picture's side) and ``seen`` (uint8, 255 is sure); beside
+them ``name`` of the film, and ``tilt`` and ``lens`` of the camera in degrees, or null. The text is taken to be hostile.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ LENS = 70.0
 
 @dataclass(frozen=True, eq=False)
 class Landmarks:
-    """The poses found in the pictures of a film, in any order within a picture.
+    """The poses found in the pictures of a film, one in a picture at most.
 
     Attributes:
         width, height: of the film in pixels.
@@ -72,8 +72,6 @@ VERSION = 1
 LONGEST = 61.0
 """Seconds; the page offers 60."""
 MOST_FRAMES = 1900
-MOST_POSES = 3
-"""Poses in a picture."""
 MOST_TEXT = 4_000_000
 """Characters."""
 SIDES = (16, 16384)
@@ -129,11 +127,12 @@ def landmarks_of(fields: dict[str, Any]) -> Landmarks:
     width, height = (_side(fields.get(name)) for name in ("width", "height"))
     times = _numbers(fields.get("times"), "<u4") / 1000.0
     counts = _numbers(fields.get("counts"), "u1")
-    if len(times) != len(counts) or not 1 <= len(times) <= MOST_FRAMES or counts.max() > MOST_POSES:
+    if len(times) != len(counts) or not 1 <= len(times) <= MOST_FRAMES or counts.max() > 1:
         raise InputError(_BROKEN)
     if (np.diff(times) <= 0).any() or times[-1] - times[0] > LONGEST:
         raise InputError(_BROKEN)
-    poses = int(counts.sum())
+    frames = np.flatnonzero(counts)
+    poses = len(frames)
     points = len(POINTS)
     world, image, seen = (
         _numbers(fields.get(name), kind) for name, kind in (("world", "<i2"), ("image", "<i2"), ("seen", "u1"))
@@ -144,7 +143,7 @@ def landmarks_of(fields: dict[str, Any]) -> Landmarks:
         width,
         height,
         times,
-        np.repeat(np.arange(len(counts)), counts),
+        frames,
         world.reshape(poses, points, 3) / 1000.0,
         image.reshape(poses, points, 2) / _IMAGE,
         seen.reshape(poses, points) / 255.0,

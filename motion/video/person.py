@@ -20,7 +20,7 @@ from motion.kinematics import project_to_skeleton
 from motion.skeleton import SMPL22, Layout
 from motion.transforms import resample
 
-from .landmarks import INDEX, LENS, TORSO, Landmarks
+from .landmarks import INDEX, LENS, Landmarks
 from .place import body_tilt, focal_length, level, smooth, steady_path, towards, translation, upright
 
 Array = NDArray[np.floating]
@@ -87,7 +87,7 @@ class Filmed:
 
 
 def person_of(landmarks: Landmarks, *, lens: float = LENS, tilt: float | None = None, name: str = "Film") -> Filmed:
-    """The person in a film on SMPL22 at 30 frames a second; of several, who is nearest at first.
+    """The person in a film on SMPL22 at 30 frames a second.
 
     Args:
         landmarks: of its pictures.
@@ -211,11 +211,9 @@ def _notes(track: Track, landmarks: Landmarks) -> tuple[str, ...]:
     return tuple(notes)
 
 
-# ---- Who is followed, from picture to picture ------------------------------------------------------------------------
+# ---- From picture to picture at even steps ------------------------------------------------------------------------
 RATES = (5.0, 30.0)
 """Frames a second that a track may have."""
-_FAR = 3.0
-"""Torso lengths that a person cannot have moved between two pictures without a doubt."""
 _NOBODY = "Nobody was found in the film: film one person from head to feet, in good light."
 
 
@@ -247,56 +245,18 @@ class Track:
 
 
 def track_of(landmarks: Landmarks) -> Track:
-    """The person of a film from where they were first found to where they were last found.
-
-    Of several in the first picture it is the largest, who stands nearest; from then on the pose nearest to the last.
+    """The person of a film at even steps of time from where they were first to where they were last found: between
+    pictures by straight lines, but not across gaps.
 
     Raises:
         InputError: where nobody was found, or for too short a time.
     """
-    chosen = np.full(len(landmarks.times), -1)
-    latest, missed = -1, 0
-    for frame in range(len(chosen)):
-        poses = np.flatnonzero(landmarks.frames == frame)
-        missed += 1
-        if not len(poses):
-            continue
-        if latest < 0:
-            latest = int(max(poses, key=lambda pose: _torso(landmarks.pixels[pose])))
-        else:  # who was lost for a while may have gone further; a pose that is far away is somebody else's
-            doubts = [_apart(landmarks, latest, int(pose)) / (1 + 0.2 * missed) for pose in poses]
-            if min(doubts) > _FAR:
-                continue
-            latest = int(poses[int(np.argmin(doubts))])
-        missed = 0
-        chosen[frame] = latest
-    seen = np.flatnonzero(chosen >= 0)
-    if not len(seen) or seen[-1] == seen[0]:
+    if len(landmarks.frames) < 2:
         raise InputError(_NOBODY)
-    return _even(landmarks, chosen, seen[0], seen[-1] + 1)
-
-
-def _torso(points: Array) -> float:
-    """Length of the torso in pixels, at least 1."""
-    left, right, left_hip, right_hip = points[TORSO]
-    return max(float(np.linalg.norm((left + right - left_hip - right_hip) / 2)), 1.0)
-
-
-def _apart(landmarks: Landmarks, one: int, other: int) -> float:
-    """Median distance of two poses' points in torso lengths."""
-    a, b = landmarks.pixels[one], landmarks.pixels[other]
-    return float(np.median(np.linalg.norm(a - b, axis=-1)) / max(_torso(a), _torso(b)))
-
-
-def _even(landmarks: Landmarks, poses: NDArray[np.integer], first: int, last: int) -> Track:
-    """A person's poses at even steps of time: between pictures by straight lines, but not across gaps."""
-    times = landmarks.times
-    step = float(np.median(np.diff(times)))
+    step = float(np.median(np.diff(landmarks.times)))
     fps = float(np.clip(round(1 / step), *RATES))
-    start, end = times[first], times[last - 1]
-    grid = start + np.arange(max(2, int(np.floor((end - start) * fps + 1e-6)) + 1)) / fps
-    mine = np.flatnonzero(poses >= 0)
-    known = times[mine]
+    known = landmarks.times[landmarks.frames]
+    grid = known[0] + np.arange(max(2, int(np.floor((known[-1] - known[0]) * fps + 1e-6)) + 1)) / fps
     after = np.clip(np.searchsorted(known, grid - 1e-9), 0, len(known) - 1)
     before = np.clip(after - (known[after] > grid + 1e-9), 0, None)
     gap = known[after] - known[before]
@@ -305,9 +265,9 @@ def _even(landmarks: Landmarks, poses: NDArray[np.integer], first: int, last: in
 
     def between(values: Array) -> Array:
         weight = share.reshape(-1, *[1] * (values.ndim - 1))
-        mixed = values[poses[mine[before]]] * (1 - weight) + values[poses[mine[after]]] * weight
+        mixed = values[before] * (1 - weight) + values[after] * weight
         mixed[away] = np.nan
         return mixed
 
     seen = np.nan_to_num(between(landmarks.seen))
-    return Track(fps, float(start), between(landmarks.world), between(landmarks.pixels), seen)
+    return Track(fps, float(known[0]), between(landmarks.world), between(landmarks.pixels), seen)

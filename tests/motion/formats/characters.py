@@ -1,4 +1,4 @@
-"""Small skinned characters as other programs would write them: a box a bone, in glTF binary."""
+"""Animated characters as other programs would write them, in glTF binary, without their surfaces."""
 
 from __future__ import annotations
 
@@ -13,84 +13,6 @@ from scipy.spatial.transform import Rotation
 from motion import SMPL22
 
 from .rigs import RIGS
-
-_CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (0, 1) for z in (-1, 1)], dtype=float)
-_FACES = np.array([int(corner) for corner in "013032467475045051237276026064157173"]).reshape(-1, 3)
-THICK = 0.04
-"""Half of a box's width in metres."""
-
-
-def glb_character(
-    rig: str = "mixamo",
-    *,
-    places: np.ndarray | None = None,
-    unit: float = 1.0,
-    turn: np.ndarray | None = None,
-    fine: int = 1,
-    **changes: Any,
-) -> bytes:
-    """A character of boxes.
-
-    Args:
-        rig: its names, of RIGS.
-        places: (22, 3) metres of its joints in the pose of binding; the T-pose by default.
-        unit: file units a metre.
-        turn: (3, 3) what everything is turned by.
-        fine: how many copies of the boxes.
-        changes: entries of the file's description that replace those that are right.
-    """
-    places = SMPL22.rest_positions().astype(float) if places is None else places
-    turn = np.eye(3) if turn is None else turn
-    kept = [joint for joint, name in enumerate(SMPL22.joint_names) if name in RIGS[rig]]
-    vertices, faces, slots = [], [], []
-    for slot, joint in enumerate(kept):
-        child = next((c for c in SMPL22.children[joint]), None)
-        bone = np.array([0.0, 0.15, 0.0]) if child is None else places[child] - places[joint]
-        up = bone / np.linalg.norm(bone)
-        side = np.cross(up, [0.0, 0.0, 1.0] if abs(up[2]) < 0.9 else [1.0, 0.0, 0.0])
-        side /= np.linalg.norm(side)
-        frame = np.stack([THICK * side, bone, THICK * np.cross(side, up)])
-        for _ in range(fine):
-            faces.append(_FACES + 8 * len(vertices))
-            vertices.append(places[joint] + _CORNERS @ frame)
-            slots.append(np.tile([slot, 0, 0, 0], (8, 1)))
-    inverse = np.tile(np.eye(4), (len(kept), 1, 1))
-    for slot, joint in enumerate(kept):
-        inverse[slot, :3, 3] = -unit * (turn @ places[joint])
-    weights = np.tile([1.0, 0.0, 0.0, 0.0], (8 * len(vertices), 1))
-    arrays = [
-        (unit * np.concatenate(vertices) @ turn.T, "<f4", "VEC3"),
-        (np.concatenate(slots), "<u1", "VEC4"),
-        (weights, "<f4", "VEC4"),
-        (np.concatenate(faces).reshape(-1, 1), "<u4", "SCALAR"),
-        (inverse.swapaxes(1, 2).reshape(-1, 16), "<f4", "MAT4"),
-    ]
-    blob, views, accessors = b"", [], []
-    for values, kind, shape in arrays:
-        data = np.ascontiguousarray(values).astype(kind).tobytes()
-        component = {"<f4": 5126, "<u1": 5121, "<u4": 5125}[kind]
-        accessors.append({"bufferView": len(views), "componentType": component, "count": len(values), "type": shape})
-        views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(data)})
-        blob += data + bytes(-len(data) % 4)
-    nodes: list[dict[str, Any]] = []
-    for joint in kept:
-        below = [kept.index(other) for other in kept if _above(other, kept) == joint]
-        start = places[above] if (above := _above(joint, kept)) >= 0 else np.zeros(3)
-        offset = unit * turn @ (places[joint] - start)
-        name = RIGS[rig][SMPL22.joint_names[joint]]
-        nodes.append({"name": name, "children": below, "translation": offset.tolist()})
-    nodes.append({"mesh": 0, "skin": 0})
-    attributes = {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}
-    document: dict[str, Any] = {
-        "asset": {"version": "2.0"},
-        "nodes": nodes,
-        "buffers": [{"byteLength": len(blob)}],
-        "bufferViews": views,
-        "accessors": accessors,
-        "meshes": [{"primitives": [{"attributes": attributes, "indices": 3}]}],
-        "skins": [{"joints": list(range(len(kept))), "inverseBindMatrices": 4}],
-    }
-    return packed(document | changes, blob)
 
 
 def glb_motion(
@@ -108,7 +30,7 @@ def glb_motion(
     axes: np.ndarray | None = None,
     **changes: Any,
 ) -> bytes:
-    """An animated character of boxes on SMPL22's bones, as Blender writes Mixamo's: the armature turned and scaled.
+    """An animated character on SMPL22's bones, as Blender writes Mixamo's: the armature turned and scaled.
 
     Args:
         rotations: (T, 22, 3, 3) local rotations.
@@ -128,8 +50,7 @@ def glb_motion(
     names = RIGS[rig] if isinstance(rig, str) else rig
     turn = np.eye(3) if turn is None else turn
     rest = SMPL22.rest_positions().astype(float)
-    document, blob = unpacked(glb_character(places=rest, unit=unit, turn=turn))
-    views, accessors = document["bufferViews"], document["accessors"]
+    blob, views, accessors = b"", [], []
 
     def add(values: np.ndarray, shape: str) -> int:
         nonlocal blob
@@ -185,7 +106,11 @@ def glb_motion(
             skins.append({"joints": list(range(first, first + count)), "inverseBindMatrices": bound})
             nodes.append({"mesh": 0, "skin": person})
             top.append(len(nodes) - 1)
-    document |= {
+    document: dict[str, Any] = {
+        "asset": {"version": "2.0"},
+        "bufferViews": views,
+        "accessors": accessors,
+        "meshes": [{"primitives": []}],
         "nodes": nodes,
         "animations": animations,
         "skins": skins,
@@ -220,13 +145,6 @@ def packed(document: dict[str, Any], blob: bytes) -> bytes:
     text += b" " * (-len(text) % 4)
     chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(blob), 0x004E4942) + blob
     return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
-
-
-def _above(joint: int, kept: list[int]) -> int:
-    while (joint := SMPL22.parents[joint]) >= 0:
-        if joint in kept:
-            return joint
-    return -1
 
 
 def in_a_mirror(data: bytes) -> bytes:

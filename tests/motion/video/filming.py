@@ -52,51 +52,34 @@ def stepping(seconds: float = 3.0, *, speed: float = 0.0, heading: float = 0.0) 
 
 
 def film(
-    people: list[np.ndarray],
-    *,
-    tilt: float = 10.0,
-    distance: float = 4.0,
-    size: tuple[int, int] = SIZE,
-    noise: float = 0.0,
-    order: int = 0,
-    face: float | None = None,
+    person: np.ndarray, *, tilt: float = 10.0, distance: float = 4.0, noise: float = 0.0, face: float | None = None
 ) -> Landmarks:
-    """The landmarks of people (T, 22, 3) about the world's origin, at which the camera looks at hip height.
+    """The landmarks of a person (T, 22, 3) about the world's origin, at which the camera looks at hip height.
 
     Args:
         distance: metres over the floor from the camera to the origin.
         tilt: degrees by which the camera looks down.
         noise: metres by which depth is off, a tenth of that across.
-        order: seed of the order of people in a picture, and of the noise.
-        face: radians from +Z towards +X to which their faces point; by default noses and ears are in one place.
+        face: radians from +Z towards +X to which the face points; by default nose and ears are in one place.
     """
     height = 0.95 + distance * np.tan(np.radians(tilt))
-    rng = np.random.default_rng(order)
-    focal = focal_length(*size, LENS)
+    rng = np.random.default_rng(0)
+    focal = focal_length(*SIZE, LENS)
     sin, cos = np.sin(np.radians(tilt)), np.cos(np.radians(tilt))
     to_camera = np.array([[1, 0, 0], [0, -cos, -sin], [0, sin, -cos]]).T
-    frames = len(people[0])
-    world, image, index = [], [], []
-    for frame in range(frames):
-        for person in rng.permutation(len(people)):
-            points = points_of(people[person][frame])
-            if face is not None:
-                put_face(points, face)
-            seen = (points - [0, height, distance]) @ to_camera.T
-            seen += noise * rng.normal(size=seen.shape) * [0.1, 0.1, 1.0]
-            middle = (seen[23] + seen[24]) / 2
-            sight = middle / np.linalg.norm(middle)
-            world.append((seen - middle) @ onto(sight))
-            image.append((seen[:, :2] / seen[:, 2:] * focal + np.array(size) / 2) / size)
-            index.append(frame)
-    return Landmarks(
-        *size,
-        np.arange(frames) / RATE,
-        np.array(index),
-        np.array(world),
-        np.array(image),
-        np.ones((len(world), len(POINTS))),
-    )
+    frames = len(person)
+    world, image = [], []
+    for pose in person:
+        points = points_of(pose)
+        if face is not None:
+            put_face(points, face)
+        seen = (points - [0, height, distance]) @ to_camera.T
+        seen += noise * rng.normal(size=seen.shape) * [0.1, 0.1, 1.0]
+        middle = (seen[23] + seen[24]) / 2
+        world.append((seen - middle) @ onto(middle / np.linalg.norm(middle)))
+        image.append((seen[:, :2] / seen[:, 2:] * focal + np.array(SIZE) / 2) / SIZE)
+    all_seen = np.ones((frames, len(POINTS)))
+    return Landmarks(*SIZE, np.arange(frames) / RATE, np.arange(frames), np.array(world), np.array(image), all_seen)
 
 
 def onto(sight: np.ndarray) -> np.ndarray:

@@ -29,7 +29,7 @@ def followed(landmarks: Landmarks, **camera: Any) -> tuple[np.ndarray, FollowedP
 )
 def test_pose_path_and_tilt_come_back(tilt: float, turned: float, distance: float, speed: float) -> None:
     true = stepping(3.0, heading=turned, speed=speed)
-    found, person = followed(film([true], tilt=tilt, distance=distance, noise=0.02))
+    found, person = followed(film(true, tilt=tilt, distance=distance, noise=0.02))
     true = true[MEASURED:]
     assert len(found) == len(true)
     assert np.linalg.norm(found - found[:, :1] - true + true[:, :1], axis=-1).mean() < 0.03
@@ -40,7 +40,7 @@ def test_pose_path_and_tilt_come_back(tilt: float, turned: float, distance: floa
 
 
 def test_no_pose_depends_on_later_pictures() -> None:
-    landmarks = film([stepping(2.0)], noise=0.02)
+    landmarks = film(stepping(2.0), noise=0.02)
     found, _ = followed(landmarks)
     changed = replace(landmarks, world=landmarks.world.copy(), image=landmarks.image.copy())
     changed.world[20:] *= 1.5
@@ -55,7 +55,7 @@ def test_what_the_camera_cannot_be_is_refused_and_half_a_person_gets_a_hint() ->
         FollowedPerson(lens=10)
     with pytest.raises(InputError, match="tilt of 80°"):
         FollowedPerson(tilt=80)
-    landmarks = film([stepping(1.0)])
+    landmarks = film(stepping(1.0))
     _, person = followed(landmarks)
     assert person.hint == ""
     hidden = landmarks.seen.copy()
@@ -66,7 +66,7 @@ def test_what_the_camera_cannot_be_is_refused_and_half_a_person_gets_a_hint() ->
 
 def seen(face: float | None, *, tilt: float = 10.0, hidden: bool = False) -> Gaze | None:
     """The gaze of somebody at the origin, whom the camera films from +Z."""
-    landmarks = film([stepping(1.0, heading=0.4)], tilt=tilt, face=face, noise=0.01)
+    landmarks = film(stepping(1.0, heading=0.4), tilt=tilt, face=face, noise=0.01)
     if hidden:
         landmarks = replace(landmarks, seen=landmarks.seen * (np.arange(33) != 0))
     person = FollowedPerson(tilt=tilt)

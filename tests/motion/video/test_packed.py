@@ -15,7 +15,7 @@ from motion.video import unpack_film
 
 from .filming import film, packed, stepping
 
-FILM = film([stepping(0.6)])
+FILM = film(stepping(0.6))
 FIELDS = json.loads(packed(FILM))
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from motion import SMPL22, Duet, InputError
 from motion.metrics import foot_skate
-from motion.transforms import heading, resample
+from motion.transforms import resample
 from motion.video import Landmarks, person_of
 from motion.video.landmarks import INDEX
 from motion.video.place import focal_length, translation
@@ -30,7 +30,7 @@ def misplaced(found: np.ndarray, true: np.ndarray) -> float:
 @pytest.mark.parametrize(("tilt", "turned", "distance"), [(0, 0.3, 4.5), (22, -1.1, 3.2)])
 def test_pose_tilt_and_bones_come_back_from_any_camera(tilt: float, turned: float, distance: float) -> None:
     true = stepping(1.5, heading=turned)
-    filmed = person_of(film([true], tilt=tilt, distance=distance, noise=0.02))
+    filmed = person_of(film(true, tilt=tilt, distance=distance, noise=0.02))
     person = filmed.person
     assert misplaced(person.positions, resample(true, 15.0, 30.0)) < 0.06
     assert filmed.tilt == pytest.approx(tilt, abs=4.0)
@@ -46,22 +46,14 @@ def test_pose_tilt_and_bones_come_back_from_any_camera(tilt: float, turned: floa
 def test_a_walk_across_the_picture_covers_its_way() -> None:
     true = stepping(3.0, speed=1.0, heading=np.pi / 2)
     true[..., 0] -= 1.5
-    person = person_of(film([true], distance=5.0, noise=0.02)).person
+    person = person_of(film(true, distance=5.0, noise=0.02)).person
     way = person.positions[-1, 0] - person.positions[0, 0]
     assert way[0] == pytest.approx(true[-1, 0, 0] - true[0, 0, 0], abs=0.2)
     assert abs(way[2]) < 0.2
 
 
-def test_the_nearest_is_followed_whatever_order_the_network_finds_people_in() -> None:
-    near, far = stepping(2.0, heading=np.pi / 2), stepping(2.0, heading=-np.pi / 2)
-    far[..., [0, 2]] += [1.2, -1.5]
-    person = person_of(film([far, near], order=3)).person
-    assert np.abs(np.diff(person.positions[:, 0], axis=0)).max() < 0.05
-    assert float(heading(person.positions)[0]) == pytest.approx(np.pi / 2, abs=0.2)
-
-
 def test_a_gap_is_marked_and_filled() -> None:
-    landmarks = film([stepping(3.0)])
+    landmarks = film(stepping(3.0))
     kept = (landmarks.frames < 15) | (landmarks.frames > 26)
     landmarks = replace(
         landmarks,
@@ -86,7 +78,7 @@ def hidden(landmarks: Landmarks, *points: str, share: float = 1.0) -> Landmarks:
 
 
 def test_legs_that_are_hidden_for_a_while_are_told() -> None:
-    covered = hidden(film([stepping(1.0)]), "left_ankle", "right_knee", share=0.4)
+    covered = hidden(film(stepping(1.0)), "left_ankle", "right_knee", share=0.4)
     (note,) = person_of(covered).notes
     assert note.startswith("The legs are hidden or out of the picture for 4")
 
@@ -102,7 +94,7 @@ def test_legs_that_are_hidden_for_a_while_are_told() -> None:
     ],
 )
 def test_a_film_that_cannot_be_used_is_refused_in_a_sentence(change: str, sentence: str) -> None:
-    landmarks = film([stepping(0.3 if change == "short" else 1.0)])
+    landmarks = film(stepping(0.3 if change == "short" else 1.0))
     if change == "nobody":
         empty = {name: getattr(landmarks, name)[:0] for name in ("frames", "world", "image", "seen")}
         landmarks = replace(landmarks, **empty)

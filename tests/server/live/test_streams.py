@@ -191,7 +191,7 @@ def test_a_stream_answers_each_frame_once() -> None:
 
 
 def test_landmarks_become_the_persons_poses() -> None:
-    filmed = film([stepping(1.5, heading=0.3)], tilt=0, noise=0.01, face=0.0)
+    filmed = film(stepping(1.5, heading=0.3), tilt=0, noise=0.01, face=0.0)
     one = stream()
     assert one.partner.gaze is None
     answers = []
@@ -290,7 +290,7 @@ def test_a_stream_gets_no_more_frames_than_time_has_passed() -> None:
 
 
 def test_points_that_lie_in_one_place_do_no_harm() -> None:
-    filmed = film([stepping(1.0)])
+    filmed = film(stepping(1.0))
     for part in (
         replace(filmed, image=np.full_like(filmed.image, 0.5), world=np.zeros_like(filmed.world)),
         replace(filmed, seen=np.zeros_like(filmed.seen), image=np.zeros_like(filmed.image)),

@@ -14,7 +14,7 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 import gradio as gr
 
 from motion.skeleton import LAYOUTS
-from tests.motion.formats.characters import glb_character
+from tests.motion.formats.characters import glb_motion
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, changes
 from webdemo.ui.tabs.react import ReactTab
@@ -98,7 +98,11 @@ def test_a_cancelled_upload_changes_nothing_and_a_cleared_file_leaves_no_actor(t
         ("broken.bvh", b"HIERARCHY\nROOT hips\n{", "broken.bvh"),
         ("empty.npz", b"", "empty.npz is empty"),
         ("words.npz", b"PK\x03\x04 nothing", "not a whole .npz"),
-        ("robot.glb", glb_character(), "robot.glb has no animation"),
+        (
+            "robot.glb",
+            glb_motion(np.tile(np.eye(3), (2, 22, 1, 1)), np.zeros((2, 3)), animations=[]),
+            "robot.glb has no animation",
+        ),
         ("movie.mov", b"123", "cannot be read: use .npz, .bvh, .npy, .skeleton, .txt, .glb,"),
     ],
 )
