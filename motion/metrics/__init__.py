@@ -12,9 +12,7 @@ from .interaction import (
     contact_events,
     facing_angle,
     hand_distance,
-    hand_to_body,
     pelvis_distance,
-    readouts,
     response_delay,
     summary,
 )
@@ -34,11 +32,9 @@ __all__ = [
     "facing_angle",
     "foot_skate",
     "hand_distance",
-    "hand_to_body",
     "jerk",
     "pelvis_distance",
     "penetration",
-    "readouts",
     "response_delay",
     "summary",
 ]

@@ -36,21 +36,6 @@ _RADII = {
 }
 """Radius in metres of the capsule of the bone that ends in a joint, by the joint's name without its side."""
 _OTHER = 0.03
-_TRUNK = {
-    "pelvis",
-    "base_of_spine",
-    "spine1",
-    "spine2",
-    "spine3",
-    "middle_of_spine",
-    "spine_shoulder",
-    "torso",
-    "neck",
-    "head",
-    "collar",
-    "hip",
-    "shoulder",
-}
 _HANDS = {"hand", "hand_tip", "thumb"}
 
 
@@ -62,18 +47,16 @@ class Capsules:
         starts: (C,) joint at which each capsule begins.
         ends: (C,) joint at which it ends.
         radii: (C,) metres.
-        trunk: (C,) whether it belongs to torso, neck or head.
     """
 
     starts: NDArray[np.intp]
     ends: NDArray[np.intp]
     radii: Array
-    trunk: NDArray[np.bool_]
 
     def part(self, kept: Sequence[bool] | NDArray[np.bool_]) -> Capsules:
         """Those capsules for which ``kept`` (C,) is true."""
         chosen = np.asarray(kept, dtype=bool)
-        return Capsules(self.starts[chosen], self.ends[chosen], self.radii[chosen], self.trunk[chosen])
+        return Capsules(self.starts[chosen], self.ends[chosen], self.radii[chosen])
 
     def of_size(self, size: float) -> Capsules:
         """The same around bones of another size, as a share of an adult's."""
@@ -96,7 +79,6 @@ def capsules(skeleton: Skeleton) -> Capsules:
         starts=np.array([parent for parent, _ in kept], dtype=np.intp),
         ends=np.array([child for _, child in kept], dtype=np.intp),
         radii=np.array([_RADII.get(names[child], _OTHER) for _, child in kept]),
-        trunk=np.array([names[p] in _TRUNK and names[c] in _TRUNK for p, c in kept], dtype=bool),
     )
 
 

@@ -46,15 +46,6 @@ def hand_distance(duet: Duet) -> Array:
     return hand_gaps(duet).min(axis=(1, 2))
 
 
-def hand_to_body(duet: Duet) -> Array:
-    """(2, T) distance in metres from the nearest hand of a, then of b, to the bones of the other's trunk
-    (torso, neck and head)."""
-    trunk = capsules(duet.skeleton)
-    trunk = trunk.part(trunk.trunk)
-    pairs = ((duet.a, duet.b), (duet.b, duet.a))
-    return np.array([_to_bones(hands(me), other.positions, trunk).min(axis=(1, 2)) for me, other in pairs])
-
-
 def facing_angle(duet: Duet) -> Array:
     """(2, T) angle in degrees between where a person faces and where the other stands; first a, then b.
 
@@ -313,21 +304,12 @@ MEASURES = (
 
 def summary(duet: Duet) -> dict[str, float | None]:
     """One number per measure, None for a delay that cannot be determined; keys and units are those of `MEASURES`."""
-    return readouts(duet)["summary"]
+    return _summary(duet, contact_events(duet))
 
 
-def readouts(duet: Duet) -> dict[str, Any]:
-    """All measurements of a duet, ready for JSON.
-
-    Returns:
-        ``summary``: numbers by the keys of :data:`MEASURES`;
-        ``curves``: ``pelvis_distance``, ``hand_distance``, ``hand_to_body_a``, ``hand_to_body_b``
-        (metres), ``facing_a``, ``facing_b`` (degrees) and ``penetration`` (cm), a list of T numbers each;
-        ``contacts``: dictionaries with ``start``, ``stop`` (frames), ``kind`` and ``label``.
-    """
+def _summary(duet: Duet, contacts: list[Contact]) -> dict[str, float | None]:
     skate, overlap = foot_skate(duet), penetration(duet)
-    distance, hands, body, angles = (pelvis_distance(duet), hand_distance(duet), hand_to_body(duet), facing_angle(duet))
-    contacts = contact_events(duet)
+    distance = pelvis_distance(duet)
     touched = {frame for contact in contacts for frame in range(contact.start, contact.stop)}
     numbers = {
         "foot_skate": skate.speed,
@@ -338,42 +320,28 @@ def readouts(duet: Duet) -> dict[str, Any]:
         "bone_drift": bone_drift(duet),
         "distance": float(distance.mean()),
         "distance_min": float(distance.min()),
-        "hands_min": float(hands.min()),
-        "facing": float(angles.mean()),
+        "hands_min": float(hand_distance(duet).min()),
+        "facing": float(facing_angle(duet).mean()),
         "contact_seconds": len(touched) / duet.fps,
         "response_delay": response_delay(duet),
     }
-    curves = {
-        "pelvis_distance": distance,
-        "hand_distance": hands,
-        "hand_to_body_a": body[0],
-        "hand_to_body_b": body[1],
-        "facing_a": angles[0],
-        "facing_b": angles[1],
-        "penetration": overlap.depth,
-    }
-    return {
-        "summary": {key: None if value is None else round(value, 4) for key, value in numbers.items()},
-        "curves": {key: [round(float(value), 4) for value in curve] for key, curve in curves.items()},
-        "contacts": [contact.to_dict() for contact in contacts],
-    }
+    return {key: None if value is None else round(value, 4) for key, value in numbers.items()}
 
 
 def compare(before: Duet | None, after: Duet) -> dict[str, Any]:
-    """Read-outs of a motion beside those it had before it was corrected.
+    """Measures of a motion beside those it had before it was corrected, ready for JSON.
 
     Args:
         before: the motion as it was, or None if there was nothing to correct.
         after: the motion as it is shown.
 
     Returns:
-        ``before`` (a summary, or None), ``after`` (a summary), and the ``curves`` and ``contacts`` of
-        the motion that is shown.
+        ``before`` (a :func:`summary`, or None), ``after`` (a summary), and the ``contacts`` of the motion that is
+        shown: dictionaries with ``start``, ``stop`` (frames), ``kind`` and ``label``.
     """
-    shown = readouts(after)
+    contacts = contact_events(after)
     return {
         "before": None if before is None else summary(before),
-        "after": shown["summary"],
-        "curves": shown["curves"],
-        "contacts": shown["contacts"],
+        "after": _summary(after, contacts),
+        "contacts": [contact.to_dict() for contact in contacts],
     }

@@ -38,7 +38,7 @@ def story(engine: Engine) -> Result:
 def test_a_scene_has_the_length_of_its_beats_and_says_what_made_it(story: Result) -> None:
     assert positions(story).shape == (2, 180, 22, 3) and np.isfinite(positions(story)).all()
     assert SceneRequest.from_dict(story.manifest["request"]).beats == BEATS
-    assert story.readouts[0]["after"] and len(story.readouts[0]["curves"]["pelvis_distance"]) == 180
+    assert story.readouts[0]["after"]
 
 
 def test_one_beat_is_what_plain_generation_gives(engine: Engine) -> None:

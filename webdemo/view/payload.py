@@ -115,7 +115,7 @@ def sample_payload(
         "curves": [
             {"key": c.key, "label": c.label, "unit": c.unit, "values": np.round(c.values, 4).tolist()} for c in curves
         ],
-        "contacts": [{"start": c.start, "stop": c.stop, "kind": c.kind, "label": c.label} for c in contacts],
+        "contacts": [contact.to_dict() for contact in contacts],
         "ghost": None if ghost is None else pack_positions(stacked_positions(ghost)),
         "past_until": past_until,
     } | _things(motion)

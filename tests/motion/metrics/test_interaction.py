@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, Duet
-from motion.metrics import MEASURES, contact_events, facing_angle, readouts, response_delay, summary
+from motion.metrics import MEASURES, compare, contact_events, facing_angle, response_delay, summary
 from motion.transforms import turn
 
 from .scenes import FPS, duet, face_to_face, put_wrist
@@ -51,11 +51,10 @@ def test_a_kick_is_a_contact_but_standing_toe_to_toe_is_not() -> None:
     assert contact_events(duet(scene)) == []
 
 
-def test_readouts_are_json_with_every_measure_and_curves_of_full_length() -> None:
-    found = json.loads(json.dumps(readouts(duet(face_to_face(2.0))), allow_nan=False))
-    assert list(found["summary"]) == [measure.key for measure in MEASURES]
-    assert all(len(curve) == 60 for curve in found["curves"].values())
-    assert found["summary"]["distance"] == pytest.approx(2.0, abs=1e-3)
+def test_what_is_compared_is_json_with_every_measure() -> None:
+    found = json.loads(json.dumps(compare(None, duet(face_to_face(2.0))), allow_nan=False))
+    assert list(found["after"]) == [measure.key for measure in MEASURES] and found["before"] is None
+    assert found["after"]["distance"] == pytest.approx(2.0, abs=1e-3)
 
 
 def lift(frames: int, begins: int) -> np.ndarray:

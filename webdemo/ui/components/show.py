@@ -8,19 +8,16 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from motion import Clip, Duet
 from motion.formats import read
 from motion.metrics import Contact
 from webdemo.inference.run import Result
-from webdemo.view.payload import Curve, Payload, build_payload, player_payload, sample_payload
+from webdemo.view.payload import Payload, build_payload, player_payload, sample_payload
 
 ROUNDS = 3
 """Rounds that an example plays before it rests, so that a page left open costs nothing."""
 GIVEN, MADE = "given", "generated"
 """Labels of the two people of a reaction, beside their letters."""
-_CURVES = (("pelvis_distance", "Apart", "m"), ("hand_distance", "Hands", "m"))
 
 
 def shown_roles(manifest: Mapping[str, Any]) -> tuple[str, str]:
@@ -37,29 +34,20 @@ def with_shown_roles(motion: Duet | Clip, manifest: Mapping[str, Any]) -> Duet |
 
 
 def result_payload(result: Result, *, title: str = "") -> Payload:
-    """The player's value for a result: every sample with the curves and contacts of its read-outs.
-
-    Samples whose read-outs hold no curves get those that the player measures itself.
-    """
+    """The player's value for a result: every sample with the contacts of its read-outs."""
     samples = [
         sample_payload(
-            with_shown_roles(duet, result.manifest), label=str(i + 1), **_strip(duet, result.readouts[i : i + 1])
+            with_shown_roles(duet, result.manifest), label=str(i + 1), contacts=_contacts(result.readouts[i : i + 1])
         )
         for i, duet in enumerate(result.duets)
     ]
     return build_payload(samples, skeleton=result.duets[0].skeleton, title=title)
 
 
-def _strip(duet: Duet | Clip, readouts: tuple[Mapping[str, Any], ...]) -> dict[str, Any]:
-    if not readouts:
-        return {}
-    curves, contacts = readouts[0].get("curves"), readouts[0].get("contacts")
-    found: dict[str, Any] = {}
-    if curves and all(len(curves.get(key, ())) == duet.num_frames for key, *_ in _CURVES):
-        found["curves"] = [Curve(key, label, unit, np.asarray(curves[key])) for key, label, unit in _CURVES]
-    if contacts is not None:
-        found["contacts"] = [Contact(c["start"], c["stop"], c["kind"], c["label"]) for c in contacts]
-    return found
+def _contacts(readouts: tuple[Mapping[str, Any], ...]) -> list[Contact] | None:
+    """Those of a sample's read-outs, if it has any."""
+    found = readouts[0].get("contacts") if readouts else None
+    return None if found is None else [Contact(**contact) for contact in found]
 
 
 @lru_cache(maxsize=1)
