@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -280,18 +280,13 @@ _SHARED = 0.6
 """Share of a file's names that begin, or end, with a word that is no name of a part."""
 
 
-def joint_keys(names: Sequence[str], glued: Collection[str] = _GLUED) -> list[Key]:
-    """The side and the part of each of a file's names.
-
-    Args:
-        names: of all joints or markers of one person.
-        glued: parts before which a letter alone is a side, as in "lfemur".
-    """
+def joint_keys(names: Sequence[str]) -> list[Key]:
+    """The side and the part of each of the names of all joints of one person."""
     words = [_words(name) for name in names]
     for end in (0, -1):
         while shared := _shared(words, end):
             words = [its[1:] if end == 0 else its[:-1] if its[end:] == [shared] else its for its in words]
-    return [_key(its, glued) for its in words]
+    return [_key(its) for its in words]
 
 
 def without_beginning(names: Sequence[str]) -> tuple[str, ...]:
@@ -322,9 +317,9 @@ def _shared(words: Sequence[list[str]], end: int) -> str:
     return word if count > _SHARED * len(words) and word not in _GLUED else ""
 
 
-def _key(words: Sequence[str], glued: Collection[str]) -> Key:
+def _key(words: Sequence[str]) -> Key:
     sides = [_SIDES[word] for word in words if word in _SIDES]
     rest = "".join(word for word in words if word not in _SIDES and word not in _NOISE)
-    if not sides and rest[:1] in ("l", "r") and rest[1:] in glued:
+    if not sides and rest[:1] in ("l", "r") and rest[1:] in _GLUED:  # as in "lfemur"
         return _SIDES[rest[0]], rest[1:]
     return (sides[0] if sides else "centre"), rest

@@ -19,13 +19,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SamplingStep:
-    """Result of one step of `sample_steps`: `step` of `total` done, x_{t−1} and the predicted x0."""
+    """Result of one step of `sample_steps`: `step` of `total` done, and x_{t−1}."""
 
     step: int
     total: int
-    timestep: int
     sample: Tensor
-    predicted: Tensor
 
 
 def sample_steps(
@@ -33,29 +31,25 @@ def sample_steps(
     noise: Tensor,
     scheduler: Scheduler,
     *,
-    eta: float = 0.0,
     generator: torch.Generator | None = None,
     correct: Callable[[Tensor, int], Tensor] | None = None,
 ) -> Iterator[SamplingStep]:
     """Denoise `noise` (B, …) a step at a time, so that the caller can report progress or stop between.
 
     `predict(xt, t)` is the network, t being (B,) int64. `correct(x0, timestep)` may change the predicted
-    clean sample before the scheduler uses it (constraints, damping). `eta` is DDIM's η; `generator` must be
-    given where the sampler draws noise (η > 0, ddpm) if the result is to be repeated.
+    clean sample before the scheduler uses it (constraints, damping). `generator` must be given where the sampler
+    draws noise (ddpm) if the result is to be repeated.
     The last step's `sample` is the result. Runs without gradients.
     """
-    from diffusers import DDIMScheduler  # already loaded: the scheduler is one of its objects
-
     x, total = noise, len(scheduler.timesteps)
-    options = {"eta": eta} if isinstance(scheduler, DDIMScheduler) else {}
     for i, timestep in enumerate(scheduler.timesteps):
         with torch.no_grad():
             predicted = predict(x, timestep.expand(x.shape[0]))
         if correct is not None:
             predicted = correct(predicted, int(timestep))
         with torch.no_grad():
-            x = scheduler.step(predicted, timestep, x, generator=generator, **options).prev_sample
-        yield SamplingStep(i + 1, total, int(timestep), x, predicted)
+            x = scheduler.step(predicted, timestep, x, generator=generator).prev_sample
+        yield SamplingStep(i + 1, total, x)
 
 
 def denoise(predict: Callable[[Tensor, Tensor], Tensor], noise: Tensor, scheduler: Scheduler, **options: Any) -> Tensor:

@@ -105,8 +105,7 @@ def test_noise_drawn_while_sampling_follows_the_generator():
         return denoise(
             gaussian_denoiser(0, 1),
             torch.ones(2, 1),
-            make_scheduler("ddim", 10),
-            eta=1.0,
+            make_scheduler("ddpm", 10),
             generator=torch.Generator().manual_seed(seed),
         )
 
