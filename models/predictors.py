@@ -49,13 +49,6 @@ class Predictor:
         seen = past[:, -self.past :]
         return without_jump(seen, self.network(seen))
 
-    def recursive(self, past: Tensor, frames: int) -> Tensor:
-        """As many future frames as asked for: each prediction is the past of the next (thesis, 2.5.9)."""
-        whole = past
-        while whole.shape[1] - past.shape[1] < frames:
-            whole = torch.cat([whole, self(whole)], dim=1)
-        return whole[:, past.shape[1] :][:, :frames]
-
 
 def without_jump(past: Tensor, future: Tensor) -> Tensor:
     """A future whose first step is at most the past's largest, as mean distances of joints.

@@ -31,9 +31,7 @@ POINTS = (
 )
 """Names in the network's order (Bazarevsky et al., BlazePose, 2020)."""
 INDEX = {name: index for index, name in enumerate(POINTS)}
-TORSO = [INDEX[f"{side}_{part}"] for part in ("shoulder", "hip") for side in _SIDES]
 LIMBS = [INDEX[f"{side}_{part}"] for part in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for side in _SIDES]
-
 
 LENS = 70.0
 """Degrees from corner to corner of the picture of an ordinary phone's or laptop's camera."""

@@ -62,9 +62,6 @@ def test_folder_round_trip(tmp_path: Path, network: MotionMLP, kind: str) -> Non
     assert (read.past, read.future, read.fps, read.joints) == (10, 8, 30.0, 4)
     past = waves(2, 14)
     assert (read(past) - without_jump(past[:, -10:], made(past[:, -10:]))).abs().max() < 0.05
-    longer = read.recursive(past, 20)
-    assert longer.shape == (2, 20, 4, 3) and torch.equal(longer[:, :8], read(past))
-    assert torch.equal(longer[:, 8:16], read(torch.cat([past, longer[:, :8]], dim=1)))
 
 
 def test_the_first_step_is_no_larger_than_the_past_s_largest() -> None:
