@@ -12,16 +12,15 @@ const PACE = 0.03; // of its side, by which a window moves from picture to pictu
 const LOST = 5; // pictures after which somebody who was not found is looked for everywhere
 
 /**
- * Looks through the film in `video`. `detectors` are two, the second for a second person. `people` is 1, 2, or 0 to
- * find out; `each(done, all, people, wanted)` hears of every picture, and `stopped()` says whether to stop.
+ * Looks through the film in `video`. `detectors` are two, the second for a second person. `each(done, all, people, wanted)` hears of every picture, and `stopped()` says whether to stop.
  *
  * Returns the landmarks, or null where it was stopped; throws a FilmError for a film that cannot be used.
  */
-export async function analyse(video, detectors, { people = 0, each = () => {}, stopped = () => false } = {}) {
+export async function analyse(video, detectors, { each = () => {}, stopped = () => false } = {}) {
   const when = times(video);
-  const seen = people === 1 ? [] : await lookAround(video, detectors[0], when, stopped);
+  const seen = await lookAround(video, detectors[0], when, stopped);
   if (seen === null) return null;
-  const count = people || countOf(seen);
+  const count = countOf(seen);
   const followers = await follow(video, detectors, count, seen);
   const landmarks = new Landmarks(video.videoWidth, video.videoHeight);
   for (const [i, time] of when.entries()) {

@@ -31,40 +31,6 @@ export function decodeBody(stored) {
   };
 }
 
-/** A body with at most `most` vertices, for people who are seen pale: those of one cell of a grid become one. */
-export function coarser(body, most) {
-  const { vertices, faces, faceZones } = body;
-  const count = vertices.length / 3;
-  if (count <= most) return body;
-  let kept, stands; // the vertices that stay, and which of them stands for each
-  for (let cell = 0.01; !kept || kept.length > most; cell *= 1.25) {
-    const numbers = new Map();
-    kept = [];
-    stands = Uint16Array.from({ length: count }, (_, v) => {
-      const key = [0, 1, 2].map((i) => Math.floor(vertices[3 * v + i] / cell)).join();
-      if (!numbers.has(key)) numbers.set(key, kept.push(v) - 1);
-      return numbers.get(key);
-    });
-  }
-  const thinned = (values, width) => values.constructor.from({ length: width * kept.length }, (_, i) => values[width * kept[Math.floor(i / width)] + (i % width)]);
-  const corners = [];
-  const zones = [];
-  for (let f = 0; f < faces.length; f += 3) {
-    const [a, b, c] = [stands[faces[f]], stands[faces[f + 1]], stands[faces[f + 2]]];
-    if (a === b || b === c || c === a) continue;
-    corners.push(a, b, c);
-    zones.push(faceZones[f / 3]);
-  }
-  return {
-    ...body,
-    fingers: null,
-    eyes: null,
-    vertices: thinned(vertices, 3), normals: thinned(body.normals, 3), sky: thinned(body.sky, 1),
-    bones: thinned(body.bones, 4), weights: thinned(body.weights, 4),
-    faces: Uint16Array.from(corners), faceZones: Uint8Array.from(zones),
-  };
-}
-
 /** Unit normals of a surface's vertices. */
 export function normalsOf(vertices, faces) {
   const out = new Float32Array(vertices.length);

@@ -44,7 +44,6 @@ export class Controls {
     this.find(".pdd-speed select").addEventListener("change", (event) => player.actions.setSpeed(Number(event.target.value)));
     attach(this.find(".pdd-touch"), player.orbit, {
       changed: () => player.turned(),
-      hover: (pointer) => player.hover.at(pointer),
       mayScroll: (event) => event.ctrlKey || root.contains(document.activeElement) || document.fullscreenElement === root,
     });
     let pressed = null;
@@ -133,7 +132,6 @@ export class Controls {
       ? say("player.time", { now: (frame / clock.fps).toFixed(2), all: clock.duration.toFixed(2), frame: Math.round(frame) + 1, frames: clock.frames }) : "";
     root.dataset.playing = String(clock.playing);
     if (root.dataset.figure !== clothes.figure) this.find(`.pdd-figure [value=${(root.dataset.figure = clothes.figure)}]`).checked = true;
-    this.find(".pdd-figure label:has([value=character])").hidden = !clothes.character;
     this.find(".pdd-play").setAttribute("aria-label", say(clock.playing ? "player.pause" : "player.play"));
     const speed = this.find(".pdd-speed select");
     if (speed.value !== String(clock.speed)) speed.value = String(clock.speed);
@@ -144,7 +142,6 @@ export class Controls {
     press("ghosts", show.ghosts);
     press("pose", Boolean(posing));
     press("draw", Boolean(directing.drawing?.on));
-    press("touch", Boolean(directing.touching));
     press("fullscreen", document.fullscreenElement === root || root.classList.contains("pdd-full"));
     for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === framing.preset));
     this.showPart(sample, frame);
@@ -157,7 +154,7 @@ export class Controls {
     chip.hidden = !given && !sample?.live;
     if (sample?.live) {
       chip.dataset.part = "live";
-      chip.textContent = [say(sample.live.second ? "player.streaming" : "player.live"), sample.live.text].filter(Boolean).join(" · ");
+      chip.textContent = [say("player.live"), sample.live.text].filter(Boolean).join(" · ");
     } else if (given) {
       chip.dataset.part = frame < given ? "given" : "predicted";
       chip.textContent = say(frame < given ? "player.given" : "player.predicted");

@@ -1,10 +1,9 @@
 // The story under the player: beats as blocks in three lanes, a span, poses, and chips of the paths that are drawn on
 // the stage. Its value is a story.
 
-import { Draft } from "./draft.js";
 import { chips } from "../player/paths/walks.js";
 import * as edits from "./edits.js";
-import { block, drawRuler, drawTicks, node } from "./lanes.js";
+import { block, drawRuler, node } from "./lanes.js";
 import { Pins } from "./pins.js";
 import { say } from "../texts.js";
 
@@ -24,7 +23,6 @@ export class Editor {
     this.story = edits.empty();
     this.selected = 0;
     this.past = new edits.Past();
-    this.draft = new Draft();
     this.note = null; // stands in for the hint until the next change
     this.pins = new Pins(this);
     root.addEventListener("click", (event) => this.press(event));
@@ -50,7 +48,7 @@ export class Editor {
 
   /** What was posed in the player becomes a part of the story, and the time around it is selected. */
   keepPoses(frame, poses) {
-    const motion = this.props.motion?.seconds;
+    const motion = this.props.motion;
     let story = this.story;
     for (const { person, positions } of poses) story = edits.pose(story, person, frame, positions);
     if (motion) story = { ...story, span: edits.spanAround(edits.momentOf(frame), motion) };
@@ -91,24 +89,22 @@ export class Editor {
 
   /** Seconds that the line shows: the story's, or the motion's where that is longer. */
   get total() {
-    return Math.max(edits.edges(this.story).at(-1), this.props.motion?.seconds ?? 0, 1);
+    return Math.max(edits.edges(this.story).at(-1), this.props.motion ?? 0, 1);
   }
 
   /** The value as the server gave it. */
   load(story) {
     if (story === this.given) return;
     this.given = story;
-    const changed = this.draft.given(story);
     const next = edits.read(story);
-    if (plain(next) === this.sent && !changed) {
+    if (plain(next) === this.sent) {
       this.story = { ...this.story, ahead: next.ahead };
       return;
     }
     this.keepPast();
     this.story = next;
     this.bound();
-    if (changed) this.edit(changed);
-    else this.draw();
+    this.draw();
   }
 
   /** The beats, paths and poses that the text over the line gives, unless they were changed since it was written. */
@@ -120,7 +116,6 @@ export class Editor {
     this.hold(edits.read({ ...this.story, ...laid, span: null }));
     this.bound();
     this.draw();
-    this.draft.keep(this.story);
   }
 
   /** The story becomes the component's value. */
@@ -158,7 +153,6 @@ export class Editor {
     this.hold({ ...next, ahead });
     this.bound();
     this.draw();
-    this.draft.keep(this.story);
     this.changed();
   }
 
@@ -336,7 +330,6 @@ export class Editor {
     }
     if (focused) this.find(`[data-key="${focused}"]`)?.focus({ preventScroll: true });
     drawRuler(this.find(".pds-ruler"), total);
-    drawTicks(this.find(".pds-ticks"), this.props.motion?.contacts ?? [], total);
     this.drawSpan(story.span);
     chips(this.find(".pds-walks"), story.paths, (person) => this.keepPath(person, []));
     this.player?.refresh(); // it shows poses

@@ -88,8 +88,6 @@ def test_a_video_and_then_the_webcam_become_an_actor_who_gets_a_partner(
     assert 1.2 < height < 2.2, "an adult who stands on the floor, and may hold up a hand"
     partner(filming)
 
-    filming.click("#react-camera summary")
-    filming.select_option("#react-camera .pdcam-people", "1")  # so that nobody needs to be counted
     filming.click("#react-camera .pdcam-record")
     filming.click("#react-camera .pdcam-begin")
     stop = filming.locator("#react-camera .pdcam-stop")

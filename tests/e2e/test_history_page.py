@@ -112,7 +112,7 @@ def test_a_class_a_reaction_and_a_prediction_open_as_they_were(lab: str, open_pa
     opened("After my walk", "predict-")
     sample = "window.__pasdedeux.player.sample"
     page.wait_for_function(f"{sample}?.past_until === 45 && {sample}.frames === 75 && {sample}.ghost !== null")
-    page.wait_for_selector("#predict-curves .legendtext:has-text('What really followed')")
+    expect(page.locator("#predict-readouts")).to_contain_text("Holding the last pose would have been", timeout=SLOW)
 
 
 def test_a_notebook_is_searched_written_in_and_taken_along(lab: str, open_page: Callable, tmp_path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import runpy
 from itertools import pairwise
 from pathlib import Path
@@ -11,13 +10,9 @@ import numpy as np
 import pytest
 
 from motion.body import load_body, skin
-from motion.character import character_body, packed_body
-from motion.formats.glb_reader import read_character
 from motion.hands import angles
 from motion.looks import UNSAID
 from motion.skeleton import SMPL22
-from tests.motion.formats.characters import a_pose, glb_character
-from webdemo.ui.components.film import READ_PLAYER
 
 from .playing import hook, pause, press, stage_pixels, until
 
@@ -170,61 +165,6 @@ def test_without_bodies_there_are_skeletons(open_page, plain_url, expected_error
     press(page, "load")
     until(page, "window.__pasdedeux.frame > 0")
     assert bones_drawn(page)
-
-
-def test_both_wear_an_uploaded_character_until_the_figure_button_takes_it_off(player):
-    body = character_body(read_character(glb_character("unreal", places=a_pose()), name="x.glb"))
-    page = player()
-    until(page, DRESSED)
-    pause(page)
-    page.evaluate("body => window.__pasdedeux.player.clothes.wear(body)", {"id": "x", **packed_body(body)})
-    page.locator(".pdd-range").fill("93")
-    until(page, "window.__pasdedeux.frame === 93 && window.__pasdedeux.loops === 0")
-    duet = runpy.run_path(str(Path(__file__).with_name("harness.py")))["walking_duet"]()
-    for person in range(2):
-        drawn = page.evaluate(f"[...window.__pasdedeux.player.pane.figures[{person}].vertices]")
-        drawn = np.reshape(drawn, (-1, 3))[:, [1, 2, 0]]
-        assert np.abs(drawn - skin(body, duet.positions[person][93:94])[0]).max() < 0.002
-    assert shown_layers(page)["bodyA"]["triangles"] == len(body.faces)
-    page.locator(".pdd").focus()
-    for state in ("character", "body", "skeleton", "both", "character"):
-        until(page, f"document.querySelector('.pdd').dataset.figure === '{state}'")
-        until(page, "window.__pasdedeux.loops === 0")
-        worn = page.evaluate("window.__pasdedeux.player.pane.figures[0].body.zones.includes('character')")
-        assert worn == (state == "character")
-        _, sent = page.evaluate(f"({READ_PLAYER})(null, '')")
-        assert json.loads(sent)["character"] == worn, "a film shows it, too"
-        page.keyboard.press("s")
-    page.evaluate("window.__pasdedeux.player.clothes.wear(null)")
-    until(page, "document.querySelector('.pdd').dataset.figure !== 'character'")
-
-
-def test_ghosts_of_futures_wear_the_character_that_people_wear(player):
-    body = character_body(read_character(glb_character("unreal", places=a_pose()), name="x.glb"))
-    page = player()
-    until(page, DRESSED)
-    press(page, "futures")
-    zones = "window.__pasdedeux.player.futures.ghosts.flat().map(({ body }) => body.zones[0])"
-    worn = "window.__pasdedeux.player.clothes.character"
-    stock = "window.__pasdedeux.player.clothes.bodies.get('man').zones[0]"
-    until(page, f"({zones}).length === 6 && ({zones}).every((zone) => zone === {stock})")
-    page.evaluate("body => window.__pasdedeux.player.clothes.wear(body)", {"id": "x", **packed_body(body)})
-    until(page, f"({zones}).every((zone) => zone === 'character')")
-    # Other futures come while it is worn; taken off, the ghosts have stock bodies again.
-    page.evaluate("""() => {
-        const { futures, clothes, data } = window.__pasdedeux.player;
-        futures.ghosts = [];
-        futures.load(data);
-        clothes.dressFutures();
-    }""")
-    until(page, f"({zones}).length === 6 && ({zones}).every((zone) => zone === 'character')")
-    pause(page)
-    page.evaluate("window.__pasdedeux.player.seek(100)")
-    until(page, "window.__pasdedeux.frame === 100 && window.__pasdedeux.loops === 0")
-    faces = page.evaluate(f"{worn}.pale.faces.length") // 3
-    assert page.evaluate("window.__pasdedeux.player.scene.objects.futures.triangleCount") == 4 * faces > 0
-    page.evaluate("window.__pasdedeux.player.clothes.wear(null)")
-    until(page, f"({zones}).every((zone) => zone === {stock})")
 
 
 def test_things_and_hands_are_where_python_puts_them(player):

@@ -89,45 +89,12 @@ def test_a_file_that_cannot_be_read_leaves_nothing_and_a_result_is_taken(page: P
     expect(page.locator("#react-status")).to_contain_text("two people walk: 0.0 to 5.0 s")
 
 
-def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
-    page: Page, server: SimpleNamespace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(server.engine, "live_waits_at", 72)  # so that a slow browser sees the run while it goes on
-    (file, _) = write(walking(4.0), tmp_path / "walker.bvh")
-    page.set_input_files("#react-file input[type=file]", file)
-    expect(page.locator("#react-status")).to_contain_text("walker_a.bvh: 0.0 to 4.0")
-    page.click("button#react-stream")
-    expect(page.locator("#react-player .pdd-chip")).to_contain_text("streaming · delay")
-    people(page, 2)
-    known = "(window.__pasdedeux.player.sample.live?.known ?? null)"
-    page.wait_for_function(f"{known} === 72 && window.__pasdedeux?.frame > 20")
-    assert page.evaluate("window.__pasdedeux.frame") < 72, "the actor does not run ahead of the reactor"
-    other = "window.__pasdedeux.player.everybody(15)"
-    apart = page.evaluate(f"(([a, b]) => b[0][1] - a[0][1])({other})")
-    assert abs(apart - 1.0) < 0.01, "the stub's reactor stands a metre aside"
-    expect(page.locator("button#react-generate")).to_be_disabled()
-    server.engine.live_waits_at = None
-    expect(page.locator("#react-status .pd-done")).to_contain_text("longest")
-    page.wait_for_function(f"{known} === null && window.__pasdedeux?.player?.sample.frames === 120")
-    unfold(page, "#react-downloads")
-    expect(page.locator("#react-download-npz")).to_be_enabled()
-
-    server.engine.live_waits_at = 72
-    page.click("button#react-stream")
-    page.wait_for_function(f"{known} >= 18")
-    page.click("button#react-cancel")
-    expect(page.locator("#react-status .pd-warning")).to_contain_text("Cancelled at frame")
-    page.wait_for_function(f"{known} === null && window.__pasdedeux?.player?.sample.frames < 120")
-    people(page, 2)
-
-
 def test_automatic_chooses_by_the_words_and_a_method_greys_those_it_does_not_hear(
     page: Page, server: SimpleNamespace, tmp_path: Path
 ) -> None:
     player = page.locator("#react-player")
     unfold(page, "#react-advanced")
     expect(page.locator("#react-method input")).to_have_value("Automatic")
-    expect(page.locator("#react-live-method")).to_contain_text("Stream always uses ReGenNet, online")
     page.set_input_files("#react-file input[type=file]", write(walking(3.0).a, tmp_path / "walker.npz")[0])
     expect(page.locator("#react-status")).to_contain_text("walker.npz: 0.0 to 3.0")
     assert player.locator(".pdd-label").all_text_contents() == ["A · given"]

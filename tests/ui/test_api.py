@@ -20,7 +20,7 @@ from PIL import Image
 
 from motion.formats import read
 from tests.motion.bodies import marching
-from tests.motion.formats.characters import glb_character, glb_motion, glb_takes
+from tests.motion.formats.characters import glb_motion, glb_takes
 from webdemo.inference.methods import method
 from webdemo.ui.components import film
 from webdemo.ui.page import build_page, launch_options
@@ -147,15 +147,6 @@ def test_render_films_a_motion_file(client: Client, walkers: Path, monkeypatch: 
         assert picture.size == (96, 64) and picture.n_frames == 60
     sheet = client.predict(motion=handle_file(walkers), kind="pdf", look="skeletons", api_name="/render")
     assert Path(sheet).read_bytes().startswith(b"%PDF")
-    robot = walkers.with_name("robot.glb")
-    robot.write_bytes(glb_character())
-    drawn = [
-        Path(client.predict(motion=handle_file(walkers), kind="png", api_name="/render", **worn)).read_bytes()
-        for worn in ({}, {"character": handle_file(robot)})
-    ]
-    assert drawn[0] != drawn[1], "the character is worn"
-    with pytest.raises(AppError, match="no glTF binary file"):
-        client.predict(motion=handle_file(walkers), character=handle_file(walkers), api_name="/render")
     for fields, sentence in (
         ({"kind": "avi"}, "Films end in"),
         ({"width": 5000}, "ask for less"),

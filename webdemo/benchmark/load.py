@@ -27,7 +27,7 @@ from webdemo.inference.requests.actor import read_actor
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
 
 from .attackers import ATTACKERS, attack
-from .jobs import KINDS, NOBODY, SHEET, Job
+from .jobs import KINDS, SHEET, Job
 from .server import ROOT, serving, wait_until
 
 PROBE_EVERY = 1.0
@@ -340,7 +340,6 @@ async def _ask(client: httpx.AsyncClient, cookies: dict[str, str], job: Job) -> 
             if sent.status_code != 200:
                 return "error", f"{sent.status_code} {sent.text}"
             data[data.index(None)] = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}
-        data = [None if value is NOBODY else value for value in data]
         joined = await client.post(call, json={"data": data}, headers=cookies)
         if joined.status_code != 200:
             return "error", f"{joined.status_code} {joined.text}"

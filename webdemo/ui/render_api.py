@@ -1,4 +1,4 @@
-"""``/render``: a motion file → a film, a contact sheet, a figure or a mesh, for programs."""
+"""``/render``: a motion file → a film, a contact sheet or a figure, for programs."""
 
 from __future__ import annotations
 
@@ -7,16 +7,12 @@ from pathlib import Path
 import gradio as gr
 
 from motion import InputError
-from motion.character import character_body
 from motion.formats import read
-from motion.formats.glb_reader import read_character
 from webdemo.ui.components.exports import file_name, without_place
 from webdemo.ui.components.film import LONGEST, in_time
 from webdemo.ui.text.words import error_line
 from webdemo.view.camera import VIEWS
 from webdemo.view.film import FPS, SIZE, write_film
-from webdemo.view.mesh import SUFFIXES as MESHES
-from webdemo.view.mesh import frame_at, write_mesh
 from webdemo.view.plotly_figure import SUFFIX as FIGURE
 from webdemo.view.plotly_figure import write_figure
 from webdemo.view.sheet import SUFFIXES as SHEETS
@@ -29,7 +25,7 @@ from .places import READING
 
 
 class RenderEndpoint:
-    """``/render``: a motion file → a film, a contact sheet, a plotly figure or a mesh.
+    """``/render``: a motion file → a film, a contact sheet or a plotly figure.
 
     Args:
         page: what tabs and endpoints share.
@@ -43,9 +39,7 @@ class RenderEndpoint:
         with gr.Row(visible=False):
             inputs = [
                 gr.File(label="the motion of one person or two: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
-                gr.Textbox(
-                    "mp4", label="film: mp4, webm, gif; contact sheet: png, pdf; plotly figure: html; mesh: ply, obj"
-                ),
+                gr.Textbox("mp4", label="film: mp4, webm, gif; contact sheet: png, pdf; plotly figure: html"),
                 gr.Textbox(Style.look, label=" or ".join(LOOKS)),
                 gr.Textbox(Style.theme, label="light or dark"),
                 gr.Textbox("threequarter", label=" or ".join(VIEWS)),
@@ -53,17 +47,15 @@ class RenderEndpoint:
                 gr.Number(FPS, label="frames a second of a film, 1 to 60"),
                 gr.Number(SIZE[0], label="width in pixels: even, 64 to 1920"),
                 gr.Number(SIZE[1], label="height of a film in pixels: even, 64 to 1080"),
-                gr.File(label="a skinned character for everybody to wear: .glb, up to 50 MB; may be left out"),
                 gr.Textbox("", label=WHICH),
                 gr.Number(0, label=RATE),
-                gr.Number(0, label="second of the motion that a mesh shows"),
                 gr.Textbox("", label=UP),
                 gr.Textbox("", label=ORDER),
             ]
             gr.Button().click(
                 self.render,
                 inputs=inputs,
-                outputs=gr.File(label="the film, sheet, figure or mesh"),
+                outputs=gr.File(label="the film, sheet or figure"),
                 api_name="render",
                 concurrency_limit=1,
                 concurrency_id="film",
@@ -80,14 +72,12 @@ class RenderEndpoint:
         fps: float,
         width: float,
         height: float,
-        character: str | None = None,
         animation: str = "",
         file_fps: float = 0.0,
-        second: float = 0.0,
         up: str = "",
         order: str = "",
     ) -> str:
-        """A film, a contact sheet, a plotly figure or a mesh of a motion file. An error is one sentence."""
+        """A film, a contact sheet or a plotly figure of a motion file. An error is one sentence."""
         folder = self.page.shelf.folder()
         try:
             if not motion:
@@ -101,16 +91,13 @@ class RenderEndpoint:
                 raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
             with READING.place():
                 found = read(Path(motion), choices=reading_choices(animation, file_fps, up, order), longest=LONGEST)
-                body = character_body(read_character(Path(character))) if character else None
             name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
             out = folder / f"{file_name(name, {})}{suffix}"
-            style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS, body=body)
+            style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS)
             if suffix in SHEETS:
                 return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
             if suffix == FIGURE:
                 return str(write_figure(found, out, title=name, theme=theme))
-            if suffix in MESHES:
-                return str(write_mesh(found, out, frame=frame_at(found, second), style=style))
             size = (int(width), int(height))
             film = write_film(
                 [Pane(found)], out, fps=fps, size=size, style=style, view=view, title=name, progress=in_time()

@@ -138,18 +138,6 @@ def test_errors_are_one_sentence_and_the_next_run_works(
     assert "record" in run(tab, source)[-1]
 
 
-def test_the_second_person_can_begin_as_the_files_other_stands(tab: ReactTab, walkers: Path, walker: Path) -> None:
-    source = upload(tab, walkers)[-1]["source"]
-    run(tab, source, method="regennet", person="b", start=1.0, end=3.0, keep=True)
-    asked = tab.page.engine.requests[-1]
-    assert np.allclose(asked.first_pose, walking(12.0).a.positions[30], atol=2e-3)
-    for changed in ({"keep": False}, {"keep": True, "method": "intergen"}):
-        run(tab, source, **{"method": "regennet", "person": "b", "start": 1.0, "end": 3.0, **changed})
-        assert tab.page.engine.requests[-1].first_pose is None
-    alone = upload(tab, walker)[-1]["source"]
-    assert "does not hold two people" in run(tab, alone, method="regennet", keep=True)[-1]["line"]
-
-
 def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, walker: Path) -> None:
     last = upload(tab, walker)[-1]
     assert "22 joints matched, m, Y up, 30 frames a second" in last["found"]

@@ -1,4 +1,4 @@
-"""Files, films and characters of a result, as every tab offers them."""
+"""Files and films of a result, as every tab offers them."""
 
 from __future__ import annotations
 
@@ -11,14 +11,10 @@ from typing import Any
 import av
 import gradio as gr
 import pytest
-import trimesh
 
-from motion import Duet, formats
-from tests.motion.formats.characters import glb_character, unpacked
-from tests.motion.formats.rigs import RIGS
 from tests.ui.tab_events import built
 from tests.ui.tabs.generating import result_of
-from webdemo.ui.components.exports import KINDS, Record, file_name, for_download, write_files
+from webdemo.ui.components.exports import KINDS, file_name, for_download, write_files
 from webdemo.ui.components.film import make_film
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.view.stage import Style
@@ -111,61 +107,3 @@ def test_runs_that_differ_have_files_that_differ_in_name() -> None:
     manifests = [{"request": asked}, {"request": asked | {"guidance": 3.0}}, {"request": asked, "model": "other"}]
     names = [file_name("hug", manifest) for manifest in manifests]
     assert len(set(names)) == 3 and file_name("hug", dict(manifests[0])) == names[0]
-
-
-def test_both_wear_an_uploaded_character_in_this_result_and_the_next(tab: GenerateTab, tmp_path: Path) -> None:
-    file = tmp_path / "robot.glb"
-    file.write_bytes(glb_character("unreal"))
-    line, worn, player, *offered = tab.results.put_on(str(file), None)
-    assert "Both wear robot.glb" in line and worn.body.zones == ("character",) and offered == [gr.skip()] * 3
-    assert player["character"]["zones"] == ["character"] and player["character"]["id"]
-    record = result_of(tab)
-    _, *updates = tab.results.export(record, worn)
-    later = [updates[[kind.key for kind in KINDS].index(key)]["value"] for key in ("glb", "png")]
-    plain = Record(record.result, "two people walk")
-    _, *bare = tab.results.export(Record(record.result, "two people walk"))
-    _, _, _, *offered = tab.results.put_on(str(file), plain)
-    assert all(each["interactive"] for each in offered) and plain.worn is not None
-    sheets = [Path(path).read_bytes() for path in (later[1], offered[1]["value"])]
-    with zipfile.ZipFile(offered[2]["value"]) as archive:
-        assert {Path(name).suffix for name in archive.namelist()} == {".glb", ".png"}
-    with zipfile.ZipFile(updates[[kind.key for kind in KINDS].index("all")]["value"]) as archive:
-        assert {".glb", ".bvh", ".npz", ".png", ".json"} <= {Path(name).suffix for name in archive.namelist()}
-    stock = bare[[kind.key for kind in KINDS].index("png")]["value"]
-    assert sheets[0] == sheets[1] != Path(stock).read_bytes(), "the contact sheet shows it, too"
-    for path in (later[0], offered[0]["value"]):
-        document = unpacked(Path(path).read_bytes())[0]
-        names = [document["nodes"][joint]["name"] for joint in document["skins"][1]["joints"]]
-        assert set(names) == set(RIGS["unreal"].values()), "on the character's own skeleton"
-
-
-@pytest.mark.parametrize("content", [b"no character", glb_character()[:3000], glb_character(skins=[])])
-def test_a_file_that_is_no_character_is_a_sentence(tab: GenerateTab, tmp_path: Path, content: bytes) -> None:
-    (tmp_path / "x.glb").write_bytes(content)
-    line, *rest = tab.results.put_on(str(tmp_path / "x.glb"), None)
-    assert "pd-error" in line and "x.glb" in line and rest == [gr.skip()] * 5
-
-
-def test_an_uploaded_thing_is_in_the_player_and_in_the_files(tab: GenerateTab, tmp_path: Path) -> None:
-    trimesh.creation.box((0.1, 0.2, 0.1)).export(tmp_path / "mine.stl")
-    record = result_of(tab)
-    line, player, *offered = tab.results.bring(str(tmp_path / "mine.stl"), record, None)
-    assert "mine.stl is in the scene" in line
-    (thing,) = player["value"]["samples"][0]["things"]
-    assert thing["kind"] == "own"
-    files = dict(zip([kind.key for kind in KINDS], offered, strict=True))
-    back = formats.read(files["npz"]["value"])
-    assert isinstance(back, Duet) and [each.kind for each in back.things] == ["own"]
-
-
-@pytest.mark.parametrize("name", ["x.stl", "x.glb", "x.fbx"])
-def test_a_file_that_is_no_thing_is_a_sentence(tab: GenerateTab, tmp_path: Path, name: str) -> None:
-    (tmp_path / name).write_bytes(b"nothing")
-    record = result_of(tab)
-    before = record.result
-    line, *rest = tab.results.bring(str(tmp_path / name), record, None)
-    assert "pd-error" in line and name in line and record.result is before
-    assert rest == [gr.skip()] * (1 + len(KINDS))
-    assert "pd-error" in tab.results.bring(None, record, None)[0]
-    trimesh.creation.box((0.1, 0.2, 0.1)).export(tmp_path / "mine.stl")
-    assert "make a motion first" in tab.results.bring(str(tmp_path / "mine.stl"), None, None)[0]

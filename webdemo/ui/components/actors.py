@@ -10,9 +10,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from motion import Clip, Duet, InputError
 from motion.formats import RIGS, write
 from motion.formats.importing import import_motion
@@ -20,7 +17,7 @@ from motion.formats.recording import ImportChoices
 from motion.retarget import to_smpl
 from webdemo.inference.method import SECONDS, Variant
 from webdemo.inference.methods import AUTOMATIC, automatic, installed, variants
-from webdemo.inference.requests.actor import LETTERS, at_30_fps, choose_actor, other_pose
+from webdemo.inference.requests.actor import LETTERS, at_30_fps, choose_actor
 from webdemo.inference.run import Result
 from webdemo.ui.history import Original, clean_name
 from webdemo.ui.places import READING
@@ -59,12 +56,6 @@ def reactor(key: str | None, fields: Mapping[str, Any] | None = None) -> Variant
     if key and key not in known:
         raise InputError(f"There is no method {key!r:.40}: choose one of {', '.join(known)}.")
     return known[key] if key else next(iter(known.values()))
-
-
-def live_variant() -> Variant | None:
-    """The first installed way to react that can stream; None where there is none."""
-    found = (v for method in installed("react") for v in method.variants if v.mode == "online")
-    return next(found, None)
 
 
 @dataclass(frozen=True)
@@ -118,10 +109,6 @@ class Source:
         chosen = person if len(self.people) > 1 else None
         clip = choose_actor(self.people, person=chosen, start=start, end=end, name=self.name)
         return replace(clip, name=self.name)
-
-    def other_pose(self, person: str, start: float) -> NDArray[np.floating]:
-        """(22, 3) metres: how the other of two stands where the actor's part begins."""
-        return other_pose(self.people, person=person, start=start, name=self.name)
 
     def whole(self, longest: float) -> tuple[Clip, ...]:
         """Everybody on SMPL22, or as they are in the file where that is longer than ``longest`` seconds."""
@@ -245,8 +232,8 @@ def with_method(fields: Mapping[str, Any], key: str) -> dict[str, Any]:
 def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     """A request's fields from those of the page.
 
-    ``source``, ``person``, ``start`` and ``end`` become ``actor``, ``method`` becomes ``model`` and ``mode``,
-    and ``keep`` becomes the first pose for a model that takes one. Words are left out if the method takes none.
+    ``source``, ``person``, ``start`` and ``end`` become ``actor``, and ``method`` becomes ``model`` and ``mode``. Words
+    are left out if the method takes none.
 
     Raises:
         InputError: where no source is chosen or the times do not fit.
@@ -254,12 +241,10 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     source: Source | None = fields["source"]
     if source is None:
         raise InputError("There is no actor yet: drop a motion file, or pick an example or a result.")
-    own = ("source", "person", "start", "end", "method", "stream", "keep")
+    own = ("source", "person", "start", "end", "method")
     actor = source.actor(fields["person"], fields["start"], fields["end"])
     chosen = reactor(fields.get("method"), fields)
     kept = {name: value for name, value in fields.items() if name not in own}
     if "words" not in chosen.method.takes:
         kept["prompt"] = ""
-    begins = fields.get("keep") and "first pose" in chosen.method.takes
-    pose = source.other_pose(fields["person"], fields["start"]) if begins else None
-    return {"actor": actor, "model": chosen.method.name, "mode": chosen.mode, "first_pose": pose, **kept}
+    return {"actor": actor, "model": chosen.method.name, "mode": chosen.mode, **kept}

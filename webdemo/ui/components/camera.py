@@ -46,11 +46,8 @@ def film_source(text: str | None) -> Source:
     if not text:
         raise InputError("There is no film yet: choose a video or use the webcam.")
     sent = unpack_film(text)
-    filmed = people_of(sent.landmarks, tilt=sent.tilt, lens=sent.lens, name=sent.name)
+    filmed = people_of(sent.landmarks, name=sent.name)
     sure = round(100 * float(filmed.confidence.mean()))
     count = "two people" if len(filmed.people) == 2 else "one person"
-    line = (
-        f"{count} from video, {sure} % of the body seen, camera looks down {filmed.tilt:.0f}° "
-        f"({'found' if sent.tilt is None else 'given'})"
-    )
+    line = f"{count} from video, {sure} % of the body seen, camera looks down {filmed.tilt:.0f}°"
     return Source(sent.name, filmed.people, found=Found(line[0].upper() + line[1:], ()), notes=filmed.notes)

@@ -14,22 +14,16 @@ import threading
 import time
 import unicodedata
 import zipfile
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from motion import SMPL22, Clip, Duet, InputError, formats
-from motion.body import Body
-from motion.character import character_body
+from motion import Clip, Duet, InputError, formats
 from motion.formats import ALONE, Animation, on_rig
 from motion.formats.files import safe_cell
 from motion.formats.files import write_files as replace_all
-from motion.formats.glb_reader import read_character
-from motion.formats.glb_rig import glb_wearing
 from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.run import Result
 from webdemo.ui.places import READING
@@ -62,10 +56,9 @@ class Kind:
         return self.key in (*_PLAIN, ALL) or formats.can_write(f".{self.key}")
 
 
+_SHEET = Style(names=False)
 _PLAIN = ("png", "json", "csv")
 """Kinds that are no motion."""
-WORN = ("glb", "png")
-"""Kinds that show an uploaded character."""
 RIG = "rig"
 """The key of the partner on the rig of an uploaded file; its button shows only where there is one."""
 
@@ -93,32 +86,6 @@ PURPOSES = {
 """What files are for, the likeliest first, and their kinds."""
 
 
-@dataclass(frozen=True)
-class Worn:
-    """An uploaded character.
-
-    Attributes:
-        body: it on SMPL22, as the player and films draw it.
-        file: a copy of the file, on whose own skeleton both people are exported.
-    """
-
-    body: Body = field(repr=False)
-    file: Path
-
-    @classmethod
-    def read(cls, path: Path, folder: Path) -> Worn:
-        """The character in a .glb file, of which a folder keeps a copy.
-
-        Raises:
-            InputError: for a file that is no character, or one whose skeleton cannot be moved.
-        """
-        with READING.place():
-            body = character_body(read_character(path))
-            still = Clip(SMPL22.rest_positions()[None].astype(np.float32), 30.0)
-            glb_wearing(Duet(still, still), path)
-        return cls(body, Path(shutil.copyfile(path, folder / path.name)))
-
-
 @dataclass
 class Record:
     """A session's last result.
@@ -127,11 +94,8 @@ class Record:
         result: what the engine gave.
         prompt: names the files.
         exported: whether its files were written.
-        files: those that were written, by the key of their kind.
         compared: the results of a grid by the names of their cells; ``result`` is the first of them.
         grid: columns, rows, names and title of the grid that they stand in; empty for none.
-        worn: an uploaded character whom both people wear in the files of :data:`WORN` and in films; None for the
-            bodies that ship.
         rig: the uploaded .bvh or .glb file of one person that the result is a reaction to; None for anything else.
         animation: which of that file's animations it is a reaction to; None for the first.
     """
@@ -139,12 +103,10 @@ class Record:
     result: Result = field(repr=False)
     prompt: str
     exported: bool = False
-    files: Mapping[str, list[Path]] = field(default_factory=dict, repr=False)
     compared: Mapping[str, Result] = field(default_factory=dict, repr=False)
     grid: Mapping[str, Any] = field(default_factory=dict)
     rig: Path | None = None
     animation: Animation | None = None
-    worn: Worn | None = None
 
 
 class Shelf:
@@ -224,45 +186,30 @@ def write_on_rig(record: Record, folder: Path) -> list[Path]:
         return replace_all(files)
 
 
-def write_character(record: Record, folder: Path) -> dict[str, list[Path]]:
-    """The files of a record that show its character, for one that is put on later; see :func:`write_record`."""
-    return write_record(record, folder, leave_out=[kind.key for kind in KINDS if kind.key not in WORN])
-
-
-def write_record(record: Record, folder: Path, *, leave_out: Collection[str] = ()) -> dict[str, list[Path]]:
+def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:
     """:func:`write_files` for all results of a record; names of compared ones begin with their method.
 
     The cells of a grid have one table of read-outs and one contact sheet.
     """
     if not record.compared:
-        return write_files(record.result, folder, prompt=record.prompt, worn=record.worn, leave_out=leave_out)
+        return write_files(record.result, folder, prompt=record.prompt)
     files: dict[str, list[Path]] = {}
     for method, result in record.compared.items():
         prompt = f"{method} {record.prompt}"
-        written = write_files(result, folder, prompt=prompt, leave_out={"csv", "png", *leave_out}, worn=record.worn)
+        written = write_files(result, folder, prompt=prompt, leave_out=("csv", "png"))
         for key, paths in written.items():
             files.setdefault(key, []).extend(paths)
     name = folder / file_name(record.prompt, record.result.manifest)
     with _writing(folder):
-        if "csv" not in leave_out and any(result.readouts for result in record.compared.values()):
+        if any(result.readouts for result in record.compared.values()):
             files["csv"] = [_write_table(record.compared, name.with_suffix(".csv"))]
-        if "png" not in leave_out:
-            motions = {cell: result.duets[0] for cell, result in record.compared.items()}
-            style, path = _sheet_style(record.worn), name.with_suffix(".png")
-            files["png"] = [write_grid_sheet(motions, path, title=record.prompt, style=style)]
+        motions = {cell: result.duets[0] for cell, result in record.compared.items()}
+        files["png"] = [write_grid_sheet(motions, name.with_suffix(".png"), title=record.prompt, style=_SHEET)]
     return files
 
 
-def _sheet_style(worn: Worn | None) -> Style:
-    return Style(names=False, body=worn.body if worn else None)
-
-
-def write_files(
-    result: Result, folder: Path, *, prompt: str, leave_out: Collection[str] = (), worn: Worn | None = None
-) -> dict[str, list[Path]]:
+def write_files(result: Result, folder: Path, *, prompt: str, leave_out: tuple[str, ...] = ()) -> dict[str, list[Path]]:
     """Writes a result in every kind that this installation can write, but for those that are left out.
-
-    ``worn`` is on both people in the kinds of :data:`WORN`.
 
     Returns:
         the files by the key of their kind, in the order of the samples; a BVH pair is two files.
@@ -273,7 +220,7 @@ def write_files(
     name = file_name(prompt, result.manifest)
     with _writing(folder):
         return {
-            kind.key: _write_kind(kind, result, folder, name, prompt, worn)
+            kind.key: _write_kind(kind, result, folder, name, prompt)
             for kind in KINDS
             if kind.offered() and kind.key not in (*leave_out, ALL) and _holds(kind, result)
         }
@@ -297,7 +244,7 @@ def without_place(error: Exception, folder: Path) -> Exception:
     return error
 
 
-def _write_kind(kind: Kind, result: Result, folder: Path, name: str, prompt: str, worn: Worn | None) -> list[Path]:
+def _write_kind(kind: Kind, result: Result, folder: Path, name: str, prompt: str) -> list[Path]:
     if kind.key == "json":
         path = folder / f"{name}.json"
         path.write_text(json.dumps(result.manifest, indent=2, ensure_ascii=False), encoding="utf-8")
@@ -308,7 +255,7 @@ def _write_kind(kind: Kind, result: Result, folder: Path, name: str, prompt: str
     files: list[Path] = []
     for i, duet in enumerate(result.duets):
         path = folder / (f"{name}-{i + 1}.{kind.key}" if several else f"{name}.{kind.key}")
-        files += _write_motion(duet, path, title=prompt, worn=worn)
+        files += _write_motion(duet, path, title=prompt)
     return files
 
 
@@ -341,11 +288,9 @@ def _holds(kind: Kind, result: Result) -> bool:
     return not one or kind.key in _PLAIN or f".{kind.key}" in ALONE
 
 
-def _write_motion(duet: Duet | Clip, path: Path, *, title: str, worn: Worn | None) -> list[Path]:
-    if path.suffix == ".glb" and worn is not None and isinstance(duet, Duet):
-        return replace_all({path: glb_wearing(duet, worn.file)})
+def _write_motion(duet: Duet | Clip, path: Path, *, title: str) -> list[Path]:
     if path.suffix == ".png":
-        return [write_sheet(duet, path, title=title, style=_sheet_style(worn))]
+        return [write_sheet(duet, path, title=title, style=_SHEET)]
     return [Path(written) for written in formats.write(duet, path)]
 
 

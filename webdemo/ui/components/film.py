@@ -1,4 +1,4 @@
-"""What is made of a result as the player shows it: a film, a figure and a mesh, and the address of a link."""
+"""What is made of a result as the player shows it: a film and a figure, and the address of a link."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 from motion import Clip, Duet, InputError
 from webdemo.inference.requests.predict import PredictResult
 from webdemo.inference.run import Result
-from webdemo.view import film, mesh, plotly_figure
+from webdemo.view import film, plotly_figure
 from webdemo.view.camera import VIEWS
 from webdemo.view.stage import LOOKS, Pane, Style
 from webdemo.view.theme import THEMES
@@ -27,8 +27,7 @@ LONGEST = 60.0
 """Seconds of motion that the page films; the shell has no such limit."""
 
 DRAWN_IN = 600.0
-"""Seconds in which a film must be drawn, as others' films wait for it; with a character of many triangles a picture
-takes seconds."""
+"""Seconds in which a film must be drawn, as others' films wait for it."""
 
 READ_PLAYER = """(record, _) => {
   const player = window.__pasdedeux?.player;
@@ -39,7 +38,7 @@ READ_PLAYER = """(record, _) => {
     yaw: orbit.yaw, elevation: orbit.elevation, view: player.framing.preset, follow: orbit.following,
     frame: Math.round(player.clock.shown), distance: orbit.distance,
     trails: Boolean(show.trails), theme: player.themeName, sample: player.sampleIndex,
-    look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons", character: Boolean(show.character),
+    look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons",
   })];
 }"""
 """JavaScript that tells how the player shows the motion: what :func:`make_film` takes."""
@@ -94,7 +93,6 @@ def make_film(record: Record | None, shown: str, folder: Path, progress: Drawn |
         look=_one_of(state, "look", LOOKS, "bodies"),
         trails=state.get("trails") is True,
         theme=_one_of(state, "theme", tuple(THEMES), "light"),
-        body=record.worn.body if record.worn and state.get("character") is True else None,
     )
     try:
         return film.write_film(
@@ -118,33 +116,16 @@ def make_figure(record: Record | None, shown: str, folder: Path, progress: Drawn
 
     Of compared results it is the first.
     """
-    motion, path, style, _ = _shown_motion(record, shown, folder)
-    path = path.with_name(f"{path.name}.html")
-    try:
-        return plotly_figure.write_figure(motion, path, title=record.prompt if record else "", theme=style.theme)
-    except InputError as error:
-        raise without_place(error, folder) from None
-
-
-def make_mesh(record: Record | None, shown: str, folder: Path, progress: Drawn | None = None) -> Path:
-    """The moment that the player shows as a mesh, a .ply; see :func:`make_figure`."""
-    motion, path, style, frame = _shown_motion(record, shown, folder)
-    try:
-        return mesh.write_mesh(motion, path.with_name(f"{path.name}-frame{frame}.ply"), frame=frame, style=style)
-    except InputError as error:
-        raise without_place(error, folder) from None
-
-
-def _shown_motion(record: Record | None, shown: str, folder: Path) -> tuple[Clip | Duet, Path, Style, int]:
-    """The sample that the player shows, the beginning of its files' names, its looks and the frame."""
     if record is None:
         raise InputError("There is no motion to show yet: make one first.")
     state = read_player(shown)
     motion = _pane(record.result, state.get("sample"), "").motion
-    worn = record.worn.body if record.worn and state.get("character") is True else None
-    style = Style(theme=_one_of(state, "theme", tuple(THEMES), "light"), body=worn)
-    frame = int(number_of(state, "frame", 0, motion.num_frames - 1) or 0)
-    return motion, folder / file_name(record.prompt, record.result.manifest), style, frame
+    path = folder / f"{file_name(record.prompt, record.result.manifest)}.html"
+    theme = _one_of(state, "theme", tuple(THEMES), "light")
+    try:
+        return plotly_figure.write_figure(motion, path, title=record.prompt, theme=theme)
+    except InputError as error:
+        raise without_place(error, folder) from None
 
 
 def _pane(result: Result, sample: Any, name: str) -> Pane:

@@ -7,13 +7,10 @@ template, it travels as data and the browser sets it as text.
 
 from __future__ import annotations
 
-import uuid
 from typing import Any, ClassVar
 
 import gradio as gr
 
-from motion.body import Body
-from motion.character import packed_body
 from webdemo.ui.text.texts import TEXTS_FOLDER, TEXTS_JS
 from webdemo.view.payload import Payload, player_payload
 
@@ -46,7 +43,7 @@ class MotionPlayer(Part):
 
     template = PLAYER_FOLDER / "player.html"
     style = "& { min-height: 320px; } .pdd:not(.pdd-styled) { visibility: hidden; }"
-    declared: ClassVar = {"busy": "", "progress": None, "live": None, "character": None}
+    declared: ClassVar = {"busy": "", "progress": None}
     sends = ("object", "motion for the player, or null")
 
     def __init__(
@@ -72,15 +69,4 @@ def show(payload: Payload | None) -> dict[str, Any]:
     return gr.update(value=payload, busy="", progress=None)
 
 
-def stream(message: dict[str, Any]) -> dict[str, Any]:
-    """An update that hands a live payload more of its motion, see :mod:`webdemo.ui.components.live`."""
-    return gr.update(live=message)
-
-
-def wear(body: Body) -> dict[str, Any]:
-    """An update that puts an uploaded character on both people."""
-    packed = packed_body(body)
-    return gr.update(character={"id": uuid.uuid4().hex, **packed})
-
-
-__all__ = ["EMPTY_TEXT", "MotionPlayer", "busy", "player_payload", "show", "stream", "wear"]
+__all__ = ["EMPTY_TEXT", "MotionPlayer", "busy", "player_payload", "show"]

@@ -11,7 +11,7 @@ import gradio as gr
 from motion import InputError
 from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.ui.again import request_of, request_of_unfinished, verdict
-from webdemo.ui.components.exports import KINDS, Record, Worn
+from webdemo.ui.components.exports import KINDS, Record
 from webdemo.ui.components.notebook import Action, NotebookView, shown
 from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
@@ -104,16 +104,14 @@ class HistoryTab:
         for chain in (chosen, compared, address):
             for kind, job in self.jobs.items():
                 handed = [job.line, *job.results.downloads]
-                chain = chain.then(
-                    self._exporter(kind, job), inputs=[record, job.results.worn], outputs=handed, **quick
-                )
+                chain = chain.then(self._exporter(kind, job), inputs=record, outputs=handed, **quick)
 
     def _exporter(self, kind: str, job: JobTab) -> Any:
-        def export(record: Record | None, worn: Worn | None) -> Updates:
+        def export(record: Record | None) -> Updates:
             """Writes the files of an opened run for the tab that shows it."""
             if record is None or record.result.manifest.get("request", {}).get("kind", "generate") != kind:
                 return (gr.skip(),) * (1 + len(KINDS))
-            return job.results.export(record, worn)
+            return job.results.export(record)
 
         return export
 

@@ -17,7 +17,7 @@ from webdemo.inference.requests.predict import LONGEST, PAST_SECONDS, PredictReq
 from webdemo.inference.run import Result
 from webdemo.ui.components.actors import Source, given_again, offered_animations
 from webdemo.ui.components.player import show
-from webdemo.ui.components.prediction_view import curves_figure, error_lines, prediction_payload, without_name
+from webdemo.ui.components.prediction_view import error_lines, prediction_payload, without_name
 from webdemo.ui.components.settings import FittedSlider, looked_up
 from webdemo.ui.components.sweep import Kind, grid_table, real
 from webdemo.ui.components.upload import kept_animation
@@ -156,15 +156,12 @@ class PredictTab(JobTab):
         return {"Method beside method": ("model", "; ".join(listed))}
 
     def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
-        """The errors of all cells over their read-outs; the curves of methods that predict one past share the axes."""
+        """The errors of all cells over their read-outs."""
         results = [result for result in made.values() if isinstance(result, PredictResult)]
         if len(results) < len(made):
-            return {"curves": gr.update(visible=False), "readouts": grid_table(made)}
+            return {"readouts": grid_table(made)}
         lines = prediction_lines(dict(zip(made, error_lines(*results), strict=True)))
-        one_past = len({(result.past_frames, len(result.error)) for result in results}) == 1
-        curves = {"curves": gr.update(visible=True), "plot": curves_figure(*results)}
-        hidden = {"curves": gr.update(visible=False)}
-        return {"readouts": lines + grid_table(made), **(curves if one_past else hidden)}
+        return {"readouts": lines + grid_table(made)}
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -177,8 +174,6 @@ class PredictTab(JobTab):
                     self.past.build_animation()
                     self.build_go(say("predict.go"))
                 self.results.build_readouts()
-                with gr.Column(elem_classes="pd-panel pd-curves", min_width=0, visible=False) as self.curves:
-                    self.plot = gr.Plot(show_label=False, elem_id="predict-curves")
                 self._settings()
             self.results.build_stage(compare=self.grids.build, another=False)
         self.controls = {
@@ -221,10 +216,6 @@ class PredictTab(JobTab):
             about, _ = self._of_method(PredictRequest.model)
             self.about = gr.HTML(about, elem_id="predict-about")
             self.seed = seed_field(self.prefix, "predict.seed_info", visible="hidden")
-
-    def more_outputs(self) -> dict[str, gr.components.Component]:
-        """The curves under the player."""
-        return {"curves": self.curves, "plot": self.plot}
 
     def restored(self) -> Sequence[Any]:
         """The file and its animation."""
@@ -273,16 +264,14 @@ class PredictTab(JobTab):
         }
 
     def shown(self, result: Result, title: str) -> dict[str, Any]:
-        """Also the curves of the error and the speed."""
+        """Also the error in a sentence."""
         shown = super().shown(result, title)
         if not isinstance(result, PredictResult):  # of a history that did not keep what followed
-            return {**shown, "curves": gr.update(visible=False)}
+            return shown
         return {
             **shown,
             "player": show(prediction_payload(result, title=title)),
             "readouts": prediction_lines({"": error_lines(result)[0]}) + str(shown["readouts"]),
-            "curves": gr.update(visible=True),
-            "plot": curves_figure(result),
         }
 
 

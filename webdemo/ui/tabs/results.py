@@ -13,23 +13,17 @@ import gradio as gr
 
 from motion import InputError
 from webdemo.ui.components.exports import (
-    ALL,
     KINDS,
     PURPOSES,
     RIG,
-    WORN,
     Record,
-    Worn,
     file_name,
     for_download,
-    write_character,
     write_on_rig,
     write_record,
 )
-from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film, make_mesh
-from webdemo.ui.components.own_thing import FILE_TYPES, bring
-from webdemo.ui.components.player import MotionPlayer, show, wear
-from webdemo.ui.components.show import result_payload
+from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film
+from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.context import PageContext
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say, worded
@@ -53,10 +47,8 @@ _SAVE = """() => {
   setTimeout(() => button?.disabled === false && button.click(), 50);
 }"""
 """JavaScript that presses a download button that has a file; to be filled with its id as JSON."""
-DRAWN = {"result.film": make_film, "result.figure": make_figure, "result.mesh": make_mesh}
+DRAWN = {"result.film": make_film, "result.figure": make_figure}
 """What is drawn of a result when its button is pressed, by the key of the button's text."""
-_CHANGED = (*WORN, ALL)
-"""The downloads that change when a character is put on."""
 
 Updates = tuple[Any, ...]
 
@@ -128,11 +120,6 @@ class Results:
             label, size="sm", interactive=False, min_width=0, elem_id=self._id(f"download-{name}"), **options
         )
 
-    def _upload(self, text: str, name: str, suffixes: list[str]) -> gr.UploadButton:
-        return gr.UploadButton(
-            say(text), file_types=suffixes, size="sm", min_width=0, elem_id=self._id(name), elem_classes="pd-character"
-        )
-
     def _export(self) -> None:
         """Files of a result, by what they are for."""
         with gr.Accordion(say("result.export"), open=False, elem_id=self._id("downloads"), elem_classes="pd-menu"):
@@ -141,15 +128,11 @@ class Results:
                 with gr.Row(elem_classes="pd-downloads"):
                     for key in keys:
                         self._download(key)
-                    if RIG in keys:
-                        self.character = self._upload("result.character", "character", [".glb", ".vrm"])
-                        self.thing = self._upload("result.thing", "thing", FILE_TYPES)
                     if "png" in keys:
                         self.picture = self._button("result.picture", "picture")
                         self.drawn = {key: self._button(key, key.split(".")[1]) for key in DRAWN}
             self.saved = self._saved(say("files.film"), "drawn", elem_classes="pd-drawn")
             self.player_state = gr.Textbox(visible=False)
-            self.worn = gr.State(None, time_to_live=3600)
 
     def _download(self, key: str) -> None:
         """The button of one kind of file."""
@@ -171,56 +154,13 @@ class Results:
             made.then(None, js=_SAVE % json.dumps(self.saved.elem_id), **QUIET)
         self.picture.click(None, js=_TAKE_PICTURE, **QUIET)
         self.share.click(self.make_link, outputs=[line, self.address], **shown, **QUIET)
-        worn: dict[str, Any] = {**drawn, "concurrency_id": "character"}
-        changed = [line, self.worn, self.player, *(self._buttons[key] for key in _CHANGED)]
-        self.character.upload(self.put_on, inputs=[self.character, record], outputs=changed, **worn)
-        brought = [line, self.player, *self.downloads]
-        self.thing.upload(self.bring, inputs=[self.thing, record, self.worn], outputs=brought, **worn)
 
     def hand_out(self, event: Any) -> None:
         """Writes the files of a new result after an event, and until then gives none of the result before."""
         gone = [*self.handed_out, self.address]
         event.then(self.withhold, inputs=self.record, outputs=gone, queue=False, **QUIET).then(
-            self.export,
-            inputs=[self.record, self.worn],
-            outputs=[self.line, *self.downloads],
-            concurrency_limit=2,
-            **QUIET,
+            self.export, inputs=self.record, outputs=[self.line, *self.downloads], concurrency_limit=2, **QUIET
         )
-
-    def bring(self, path: str | None, record: Record | None, worn: Worn | None) -> Updates:
-        """Puts an uploaded thing into this result, as the first thing of its words, here and in its files."""
-        try:
-            result = bring(record, path)
-            assert record is not None
-            record.result, record.exported = result, False
-        except Exception as error:
-            return status(error_line(error), tone="error"), *((gr.skip(),) * (1 + len(KINDS)))
-        line, *files = self.export(record, worn)
-        name = Path(str(path)).name[:60]
-        if line == gr.skip():
-            line = status(f"{name} is in the scene, in films and in the files as well.", tone="done")
-        return line, show(result_payload(result, title=record.prompt)), *files
-
-    def put_on(self, path: str | None, record: Record | None) -> Updates:
-        """Puts an uploaded character on both people, here and in the files of this result and of later ones."""
-        try:
-            if not path:
-                raise InputError("There is no character: choose a skinned .glb.")
-            worn = Worn.read(Path(path), self.page.shelf.folder())
-            files: dict[str, Path] = {}
-            if record is not None:
-                record.worn = worn
-                record.files = {**record.files, **write_character(record, self.page.shelf.folder())}
-                files = for_download(record.files, file_name(record.prompt, record.result.manifest))
-        except Exception as error:
-            return status(error_line(error), tone="error"), *((gr.skip(),) * (2 + len(_CHANGED)))
-        sentence = (
-            f"Both wear {worn.body.name}, in films, in the .glb and on the contact sheet as well. "
-            "The switch over the stage shows bodies again."
-        )
-        offered = (_offered(key, files[key]) if key in files else gr.skip() for key in _CHANGED)
-        return status(sentence, tone="done"), worn, wear(worn.body), *offered
 
     def draw(self, key: str, record: Record | None, shown: str) -> Iterator[Updates]:
         """Draws the last result as the player shows it, as one of :data:`DRAWN`, and hands the file out.
@@ -265,18 +205,17 @@ class Results:
             return (gr.skip(),) * (len(self.handed_out) + 1)
         return *(gr.update(value=None, interactive=False) for _ in self.handed_out), gr.update(visible=False)
 
-    def export(self, record: Record | None, worn: Worn | None = None) -> Updates:
-        """Writes the files of a new result and hands them to the download buttons; both people wear ``worn``."""
+    def export(self, record: Record | None) -> Updates:
+        """Writes the files of a new result and hands them to the download buttons."""
         unchanged = (gr.skip(),) * (1 + len(KINDS))
         if record is None or record.exported:
             return unchanged
-        record.exported, record.worn = True, worn
+        record.exported = True
         try:
             files = write_record(record, self.page.shelf.folder())
-            name = file_name(record.prompt, record.result.manifest)
             line, on_rig = self._on_rig(record)
-            record.files = files | ({RIG: on_rig} if on_rig else {})
-            found = for_download(record.files, name)
+            files |= {RIG: on_rig} if on_rig else {}
+            found = for_download(files, file_name(record.prompt, record.result.manifest))
         except Exception as error:
             off = gr.update(value=None, interactive=False)
             return (
