@@ -112,7 +112,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             scene: what is known of the motion, and how samples become duets.
             noise: the seed, and the number of samples.
             cancel, timer: as in :meth:`run`.
-            measured: the result has the read-outs of its duets.
+            measured: the result has the read-outs of its duets; otherwise it has what damping moved, as ``damped``.
         """
         layout, given = self.model.layout, scene.given
         x = sample_noise(*noise, (layout.num_tokens(scene.frames), 2 * layout.token_features))
@@ -148,8 +148,12 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         timer.lap("sample")
         yield timer.progress("finish")
         duets = self._duets(x, scene, clean_person if settings.cleanup else _as_is)
-        before = self._duets(uncorrected, scene, _as_is) if measured else ()
-        readouts = tuple(compare(raw, duet) for raw, duet in zip(before, duets, strict=measured))
+        readouts: tuple[dict[str, Any], ...] = ()
+        if measured:
+            before = self._duets(uncorrected, scene, _as_is)
+            readouts = tuple(compare(raw, duet) for raw, duet in zip(before, duets, strict=True))
+        elif damping.moved is not None:
+            readouts = tuple({"damped": metres} for metres in damping.moved.tolist())
         timer.lap("finish")
         yield Result(duets=duets, readouts=readouts, notes=conditioning.notes)
 
