@@ -55,9 +55,7 @@ export class Controls {
       const moved = pressed && Math.hypot(clientX - pressed[0], clientY - pressed[1]);
       if (!(moved < 5)) return;
       const cell = player.grid.at(clientX, clientY);
-      if (cell >= 0) return player.enlarge(cell);
-      const box = player.stage.getBoundingClientRect();
-      player.futures.hit(clientX - box.left, clientY - box.top);
+      if (cell >= 0) player.enlarge(cell);
     });
   }
 
@@ -138,7 +136,6 @@ export class Controls {
     const press = (name, on) => this.find(`[data-act=${name}]`).setAttribute("aria-pressed", String(on));
     press("loop", clock.loop);
     press("follow", orbit.following);
-    press("trails", show.trails);
     press("ghosts", show.ghosts);
     press("pose", Boolean(posing));
     press("draw", Boolean(directing.drawing?.on));

@@ -82,7 +82,7 @@ export function actionFor(event) {
     case "[": return ["sample", -1];
     case "]": return ["sample", 1];
   }
-  const letters = { f: "follow", t: "trails", g: "ghosts", l: "loop", p: "picture", s: "figure", e: "pose", d: "draw" };
+  const letters = { f: "follow", g: "ghosts", l: "loop", p: "picture", s: "figure", e: "pose", d: "draw" };
   const action = letters[event.key.toLowerCase()];
   if (action) return [action];
   const camera = CAMERAS[Number(event.key) - 1];

@@ -27,7 +27,7 @@ export class Player {
     this.controls = new Controls(root);
     this.clock = new Clock();
     this.orbit = new Orbit();
-    this.show = { trails: false, ghosts: false, ...figureAtFirst() };
+    this.show = { ghosts: false, ...figureAtFirst() };
     this.clothes = new Clothes(this);
     this.framing = new Framing(this);
     this.pane = new Pane(this.find(".pdd-pane"));

@@ -8,7 +8,7 @@ import { Pins } from "./pins.js";
 import { say } from "../texts.js";
 
 const LANES = [["words", say("story.both")], ["a", "A"], ["b", "B"]];
-const PIXELS = 44; // a second, at least
+const PIXELS = 16; // a second, at least
 
 const plain = (story) => JSON.stringify({ ...story, ahead: false });
 
@@ -25,6 +25,7 @@ export class Editor {
     this.past = new edits.Past();
     this.note = null; // stands in for the hint until the next change
     this.pins = new Pins(this);
+    this.shown = 0; // seconds of the motion in the player
     root.addEventListener("click", (event) => this.press(event));
     root.addEventListener("change", (event) => this.field(event));
     root.addEventListener("keydown", (event) => this.key(event));
@@ -48,10 +49,9 @@ export class Editor {
 
   /** What was posed in the player becomes a part of the story, and the time around it is selected. */
   keepPoses(frame, poses) {
-    const motion = this.props.motion;
     let story = this.story;
     for (const { person, positions } of poses) story = edits.pose(story, person, frame, positions);
-    if (motion) story = { ...story, span: edits.spanAround(edits.momentOf(frame), motion) };
+    if (this.shown) story = { ...story, span: edits.spanAround(edits.momentOf(frame), this.shown) };
     this.edit(story);
     this.tell(say("story.pinned"));
   }
@@ -87,9 +87,9 @@ export class Editor {
     this.root.closest(".pd-results")?.querySelector(".pd-take")?.click();
   }
 
-  /** Seconds that the line shows: the story's, or the motion's where that is longer. */
+  /** Seconds that the line shows: the story's, or those of the motion in the player where that is longer. */
   get total() {
-    return Math.max(edits.edges(this.story).at(-1), this.props.motion ?? 0, 1);
+    return Math.max(edits.edges(this.story).at(-1), this.shown, 1);
   }
 
   /** The value as the server gave it. */
@@ -194,7 +194,7 @@ export class Editor {
     if (field === "seconds" && story.beats.length) {
       const free = event.target.value === "";
       this.edit(free ? edits.change(story, selected, { seconds: null }) : edits.stretch(story, selected, value));
-    } else if (field === "loop" || field === "planned") this.edit({ ...story, [field]: event.target.checked });
+    } else if (field === "loop") this.edit({ ...story, loop: event.target.checked });
     else if (field === "from" || field === "to") {
       const [from, to] = ["from", "to"].map((name) => Number(this.find(`[data-field=${name}]`).value));
       if (to > from) this.edit({ ...story, span: [from, Math.min(to, this.total)] });
@@ -303,6 +303,11 @@ export class Editor {
     if (!this.root.isConnected) return clearInterval(this.timer);
     const { player } = this;
     if (player && player.director !== this) player.direct(this);
+    const seconds = player?.data ? player.clock.duration : 0;
+    if (seconds !== this.shown && !this.find("textarea")) {
+      this.shown = seconds;
+      this.draw();
+    }
     const frame = player?.frameShown;
     if (frame == null || !this.root.offsetParent) return;
     this.find(".pds-playhead").style.left = `${(100 * frame) / 30 / this.total}%`;
@@ -316,6 +321,7 @@ export class Editor {
     const starts = edits.edges(story);
     const focused = this.root.contains(document.activeElement) && document.activeElement.dataset.key;
     this.find(".pds-line").style.minWidth = `${Math.round(PIXELS * total)}px`;
+    this.player?.root.style.setProperty("--pds-share", (this.shown || total) / total); // its line ends where the motion does
     const lanes = this.find(".pds-lanes");
     lanes.replaceChildren();
     for (const [lane, name] of LANES) {
@@ -335,7 +341,7 @@ export class Editor {
     this.player?.refresh(); // it shows poses
     const beat = story.beats[this.selected];
     this.find("[data-field=seconds]").value = beat ? edits.lengthOf(beat) : "";
-    for (const name of ["loop", "planned"]) this.find(`[data-field=${name}]`).checked = story[name];
+    this.find("[data-field=loop]").checked = story.loop;
     this.find("[data-field=from]").value = story.span?.[0] ?? "";
     this.find("[data-field=to]").value = story.span?.[1] ?? "";
     for (const act of ["split", "left", "right", "again", "delete"]) {

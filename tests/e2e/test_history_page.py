@@ -140,11 +140,11 @@ def test_a_notebook_is_searched_written_in_and_taken_along(lab: str, open_page: 
     first = page.evaluate(drawn)
     page.wait_for_function(f"({drawn}) !== {first!r}")  # it moves
     page.click(".pdn-card >> nth=0 >> summary")
-    for field, value in (("title", "<b>The salute</b>"), ("tags", "paper"), ("note", "Hands late"), ("frame", "40")):
+    for field, value in (("title", "<b>The salute</b>"), ("tags", "paper"), ("note", "Hands late")):
         page.fill(f"[data-field={field}]", value)
     page.click("[data-save]")
     expect(cards.first).to_contain_text("<b>The salute</b>")
-    expect(cards.first).to_contain_text("Frame 40: Hands late")
+    expect(cards.first).to_contain_text("Hands late")
     page.fill("[data-find=words]", "rehearsal late salute")
     expect(cards).to_have_count(1, timeout=SLOW)
     page.fill("[data-find=words]", "rehearsal")

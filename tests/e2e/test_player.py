@@ -116,7 +116,7 @@ def test_keyboard(player):
         seen.append(tuple(round(v, 2) for v in hook(page, "eye")))
     assert len(set(seen)) == 6
     assert page.locator("[data-camera=b]").get_attribute("aria-pressed") == "true"
-    for key, act in (("f", "follow"), ("t", "trails"), ("g", "ghosts"), ("l", "loop")):
+    for key, act in (("f", "follow"), ("g", "ghosts"), ("l", "loop")):
         control = page.locator(f"[data-act={act}]")
         before = control.get_attribute("aria-pressed")
         page.keyboard.press(key)
@@ -163,7 +163,7 @@ def test_everything_has_a_name_and_can_be_reached(player):
     assert {"play", "fullscreen", "help", "pdd-range"} <= reached
 
 
-def test_trails_and_onion_skin_are_drawn(player):
+def test_the_onion_skin_is_drawn(player):
     page = player()
     pause(page)
     page.locator(".pdd-range").fill("60")
@@ -172,15 +172,11 @@ def test_trails_and_onion_skin_are_drawn(player):
     page.keyboard.press("g")
     page.wait_for_timeout(800)
     ghosts = stage_pixels(page)
-    page.keyboard.press("t")
-    page.wait_for_timeout(800)
-    trails = stage_pixels(page)
 
     def changed(a, b):
         return int((np.abs(a[:, :-60] - b[:, :-60]).max(axis=-1) > 24).sum())
 
     assert changed(plain, ghosts) > 1000
-    assert changed(ghosts, trails) > 100
 
 
 def test_meshes_are_drawn_by_shaders_of_our_own(player):

@@ -72,11 +72,11 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.locator('.pds-handle[data-beat="0"]').focus()
     page.keyboard.press("ArrowRight")
     assert page.evaluate("document.querySelector('.pds').editor.total") == before + 0.5
-    # Words that do not become paths: on the line, undone.
-    page.get_by_label("Plan from the words").and_(page.locator(".pds input")).uncheck()
-    assert story(page)["planned"] is False
+    # A story whose end meets its beginning, undone.
+    page.locator(".pds [data-field=loop]").check()
+    assert story(page)["loop"] is True
     page.get_by_role("button", name="Undo", exact=True).click()
-    assert page.locator(".pds [data-field=planned]").is_checked() and story(page)["planned"]
+    assert not page.locator(".pds [data-field=loop]").is_checked() and not story(page)["loop"]
     # A span is selected on the ruler and made again, and three futures follow.
     ruler = page.locator(".pds-ruler").bounding_box()
     page.mouse.move(ruler["x"] + 30, ruler["y"] + 10)

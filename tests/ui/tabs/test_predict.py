@@ -26,7 +26,7 @@ from webdemo.ui.components.prediction_view import error_lines, prediction_payloa
 from webdemo.ui.tabs.predict import PredictTab, predict_choices
 from webdemo.view.payload import unpack_positions
 
-LOADED = ("source", "line", "player", "marker")
+LOADED = ("source", "line", "player", "marker", "go")
 
 
 @pytest.fixture
@@ -80,13 +80,13 @@ def test_a_prediction_marks_the_past_and_shows_the_truth_as_a_ghost(tab: Predict
 def test_the_last_result_is_continued_from_its_end(tab: PredictTab, pair: Path) -> None:
     source = loaded(tab, pair)["source"]
     done = run(tab, {"source": source, "marker": 2.0, "seconds": 1.0, "model": "motion-mlp"})
-    taken = [changes(LOADED, updates) for updates in tab.past.take_result("a", done["record"])][-1]
+    taken = [changes(LOADED, updates) for updates in tab.past.take_result(done["record"])][-1]
     assert taken["marker"]["value"] == 3.0 and taken["source"].seconds == 3.0
     again = run(tab, {"source": taken["source"], "marker": 3.0, "seconds": 1.0, "model": "motion-mlp"})
     (sample,) = again["player"]["value"]["samples"]
     assert (sample["past_until"], sample["frames"], sample["ghost"]) == (90, 120, None)
     assert [curve["key"] for curve in sample["curves"]] == ["speed"]
-    (update,) = ([changes(LOADED, u) for u in tab.past.take_result("a", None)][-1],)
+    (update,) = ([changes(LOADED, u) for u in tab.past.take_result(None)][-1],)
     assert "There is no result yet" in update["line"]
 
 

@@ -77,8 +77,9 @@ def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(tab: ReactTab, 
 @pytest.mark.parametrize("person", ["a", "b"])
 def test_a_person_of_the_last_result_is_taken(tab: ReactTab, walker: Path, person: str) -> None:
     record = run(tab, upload(tab, walker)[-1]["source"])[-1]["record"]
-    last = [changes(LOADED, updates) for updates in tab.actor.take_result(person, record)][-1]
-    assert last["person"] == gr.update(choices=BOTH, visible=True, value=person)
+    reading, last = [changes(LOADED, updates) for updates in tab.actor.take_result(record)]
+    assert (reading["go"]["interactive"], last["go"]["interactive"]) == (False, True), "not before it is read"
+    assert last["person"] == gr.update(choices=BOTH, visible=True, value="a")
     again = run(tab, last["source"], person=person)[-1]["record"].result.duets[0]
     given = record.result.duets[0].people["ab".index(person)]
     assert again.a.positions.tobytes() == given.positions.tobytes()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 from collections.abc import Mapping
 from contextlib import suppress
@@ -11,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from motion import Clip, Duet, InputError
-from motion.formats import RIGS, write
+from motion.formats import RIGS
 from motion.formats.importing import import_motion
 from motion.formats.recording import ImportChoices
 from motion.retarget import to_smpl
@@ -19,7 +18,7 @@ from webdemo.inference.method import SECONDS, Variant
 from webdemo.inference.methods import AUTOMATIC, automatic, installed, variants
 from webdemo.inference.requests.actor import LETTERS, at_30_fps, choose_actor
 from webdemo.inference.run import Result
-from webdemo.ui.history import Original, clean_name
+from webdemo.ui.history import Original
 from webdemo.ui.places import READING
 from webdemo.view.payload import Payload, player_payload
 
@@ -132,14 +131,8 @@ class Source:
         return f"{self.name}, person {person.upper()}" if len(self.people) > 1 else self.name
 
 
-NOT_KEPT = (
-    "The file {!r} was not kept with this run: it was too large, or the run is older than that. A .npz of its motion "
-    "stands in its place."
-)
-
-
-def given_again(source: Source, original: Original | None, folder: Path) -> tuple[Source, str | None, str]:
-    """A source of the history, a file for the field that its own was dropped on, and a sentence where that is another.
+def given_again(source: Source, original: Original | None, folder: Path) -> tuple[Source, str | None]:
+    """A source of the history, and a file for the field that its own was dropped on, where that was kept.
 
     Args:
         source: its people.
@@ -149,8 +142,8 @@ def given_again(source: Source, original: Original | None, folder: Path) -> tupl
     if original is not None:
         with suppress(OSError):
             path = Path(shutil.copyfile(original.path, folder / original.name))
-            return replace(source, path=path, animations=labels_of_file(path)), str(path), ""
-    return (source, kept_file(source, folder), NOT_KEPT.format(source.name[:80]) if clean_name(source.name) else "")
+            return replace(source, path=path, animations=labels_of_file(path)), str(path)
+    return source, None
 
 
 def offered_animations(source: Source | None) -> Any:
@@ -166,15 +159,6 @@ def rig_of(source: Source | None) -> Path | None:
     if source is None or source.path is None or source.path.suffix.lower() not in RIGS or len(source.people) != 1:
         return None
     return source.path if source.read_with[:4] == Source.read_with[:4] else None
-
-
-def kept_file(source: Source, folder: Path) -> str | None:
-    """A .npz of one person or two of a source, called after it, for the field that the file was dropped on."""
-    if len(source.people) > 2:
-        return None
-    motion = Duet(*source.people) if len(source.people) == 2 else source.people[0]
-    name = re.sub(r"[^\w-]+", "-", Path(source.name).stem)[:60].strip("-") or "motion"
-    return str(write(motion, folder / f"{name}.npz")[0])
 
 
 @dataclass(frozen=True)
@@ -211,15 +195,15 @@ def import_choices(
     return ImportChoices(**known, fps=float(fps) if fps else None, animation=animation)
 
 
-def result_source(result: Result, title: str, person: str) -> Source:
-    """A person of a result's first sample, as they were made or given.
+def result_source(result: Result, title: str) -> Source:
+    """The people of a result's first sample, as they were made or given.
 
     It is called after the file that the result began with, or else after its title.
     """
     given = result.manifest.get("request", {}).get("actor", {})
     motion = result.duets[0]
     people = motion.people if isinstance(motion, Duet) else (motion,)
-    return Source(given.get("name") or title, people, person if len(people) > 1 else "a")
+    return Source(given.get("name") or title, people)
 
 
 def with_method(fields: Mapping[str, Any], key: str) -> dict[str, Any]:

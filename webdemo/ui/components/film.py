@@ -37,7 +37,7 @@ READ_PLAYER = """(record, _) => {
   return [record, JSON.stringify({
     yaw: orbit.yaw, elevation: orbit.elevation, view: player.framing.preset, follow: orbit.following,
     frame: Math.round(player.clock.shown), distance: orbit.distance,
-    trails: Boolean(show.trails), theme: player.themeName, sample: player.sampleIndex,
+    theme: player.themeName, sample: player.sampleIndex,
     look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons",
   })];
 }"""
@@ -89,11 +89,7 @@ def make_film(record: Record | None, shown: str, folder: Path, progress: Drawn |
     if max(pane.motion.seconds for pane in panes) > LONGEST:
         raise InputError(f"Films on the page last {LONGEST:g} s at most: use `python -m webdemo render` for more.")
     path = folder / f"{file_name(record.prompt, record.result.manifest)}{suffix()}"
-    style = Style(
-        look=_one_of(state, "look", LOOKS, "bodies"),
-        trails=state.get("trails") is True,
-        theme=_one_of(state, "theme", tuple(THEMES), "light"),
-    )
+    style = Style(look=_one_of(state, "look", LOOKS, "bodies"), theme=_one_of(state, "theme", tuple(THEMES), "light"))
     try:
         return film.write_film(
             panes,

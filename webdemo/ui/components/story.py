@@ -63,14 +63,14 @@ class StoryLine(Part):
     """Shows a story and lets it be changed; every change is an ``input`` event.
 
     Props beside the value: ``lengths``, seconds of the beats as they follow from the words; ``laid``, the ``beats``,
-    ``paths`` and ``poses`` that a changed text gives; ``motion``, the seconds of the motion that the player shows.
+    ``paths`` and ``poses`` that a changed text gives.
     """
 
     accepts = TypeAdapter(SentStory | None)
     template = STORY_FOLDER / "story.html"
     script = on_load(MOUNT, STORY_FOLDER / "main.js")
     style = scoped(STORY_FOLDER / "story.css")
-    declared: ClassVar = {"lengths": None, "laid": None, "motion": None}
+    declared: ClassVar = {"lengths": None, "laid": None}
     sends = ("object", "a story, or null")
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +29,7 @@ from webdemo.view.payload import player_payload
 
 from .grids import methods_kind
 from .job import JobTab
-from .results import QUIET
+from .results import PRESS, QUIET
 from .sampling import seed_field
 from .source import SourcePanel
 
@@ -74,7 +74,6 @@ class PastPanel(SourcePanel):
     """The motion of one person or two that is to go on, and the marker where its past ends."""
 
     named = "predict.file"
-    takes = (("predict.take", "", "a"),)
     take_at_end = True
     marker: FittedSlider
 
@@ -184,7 +183,7 @@ class PredictTab(JobTab):
             "seed": self.seed,
         }
         self.wire([self.go.click], record)
-        self.past.wire(self.record, self.line)
+        self.past.wire(self.record, self.line, self.go)
         self.model.input(
             None,
             inputs=self.model,
@@ -229,15 +228,16 @@ class PredictTab(JobTab):
         Args:
             tab: this one, among ``tabs``.
             tabs: of the page.
-            onwards: buttons of any tab that take the last result here, as a past that is to go on.
+            onwards: buttons of any tab that take the last result here, as a past that goes on at once.
         """
         load = self.past.load_options
         self.past.wire_arrival(tab, self.record, self.label)
         for button in onwards:
-            taken = button.click(partial(self.past.take_result, "a"), inputs=self.record, **load)
+            taken = button.click(self.past.take_result, inputs=self.record, **load)
             taken.then(None, outputs=self.past.file, js="() => null", **QUIET)
             # Only now is the tab opened, which finds the result on it.
-            taken.then(lambda: gr.update(selected=self.label.lower()), outputs=tabs, queue=False, **QUIET)
+            chosen = taken.then(lambda: gr.update(selected=self.label.lower()), outputs=tabs, queue=False, **QUIET)
+            chosen.then(None, js=PRESS % json.dumps(self.go.elem_id), **QUIET)
 
     @staticmethod
     def _of_method(model: str) -> list[Any]:
@@ -254,13 +254,12 @@ class PredictTab(JobTab):
         named = result.manifest.get("request", {}).get("motion", {}).get("name") or run.entry.title
         source = Source(named, given.people if isinstance(given, Duet) else (given,))
         source = replace(source, read_with=(*source.read_with[:4], kept_animation(run.kept.controls)))
-        source, file, note = given_again(source, run.kept.original, self.page.shelf.folder())
+        source, file = given_again(source, run.kept.original, self.page.shelf.folder())
         return found | {
             past.file: file,
             past.animation: offered_animations(source),
             past.state: source,
             past.marker: past.marked(source, result.past_frames / result.duets[0].fps),
-            self.line: found[self.line] + (status(note) if note else ""),
         }
 
     def shown(self, result: Result, title: str) -> dict[str, Any]:

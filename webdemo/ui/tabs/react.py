@@ -102,7 +102,7 @@ class ReactTab(JobTab):
         }
         self.wire([self.go.click, self.prompt.submit], record)
         self.wire_start(self.keep_live, [self.live.submit], more=[self.live])
-        self.actor.wire(self.record, self.line)
+        self.actor.wire(self.record, self.line, self.go)
         # In the browser: a late answer of the server would undo what was set meanwhile.
         fits = {key: self.fit_method(key) for _, key in react_choices()}
         self.method.input(None, inputs=self.method, outputs=self._fitted(), js=looked_up(fits), **QUIET)
@@ -202,7 +202,7 @@ class ReactTab(JobTab):
         for part, fit in fitted.items():
             kept = found.get(part)
             fitted[part] = {**fit, "value": kept["value"]} if isinstance(kept, dict) else fit
-        given, note = self.actor.opened(run)
-        found |= {**fitted, **given, self.method: gr.update(value=method), self.line: found[self.line] + note}
+        given = self.actor.opened(run)
+        found |= {**fitted, **given, self.method: gr.update(value=method)}
         self.complete(found[self.record], {"source": given[self.actor.state]})
         return found

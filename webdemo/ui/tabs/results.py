@@ -47,6 +47,15 @@ _SAVE = """() => {
   setTimeout(() => button?.disabled === false && button.click(), 50);
 }"""
 """JavaScript that presses a download button that has a file; to be filled with its id as JSON."""
+PRESS = """() => {
+  const press = (left) => {
+    const button = document.getElementById(%s);
+    if (button?.offsetParent && !button.disabled) button.click();
+    else if (left) setTimeout(press, 100, left - 1);
+  };
+  press(100);
+}"""
+"""JavaScript that presses a button once it is in view and can be pressed; to be filled with its id as JSON."""
 DRAWN = {"result.film": make_film, "result.figure": make_figure}
 """What is drawn of a result when its button is pressed, by the key of the button's text."""
 

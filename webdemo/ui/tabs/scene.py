@@ -132,18 +132,19 @@ class SceneTab(JobTab):
 
     def _story(self) -> None:
         self.line_up = StoryLine(elem_id=self._id("story"), elem_classes="pd-story")
-        with gr.Column(elem_classes="pd-panel pd-parts", min_width=0):
+        with gr.Row(elem_classes="pd-panel pd-parts"):
             self.words = gr.Textbox(
-                label=say("scene.part"), placeholder=say("scene.part_hint"), elem_id=self._id("part-words")
+                label=say("scene.part"),
+                placeholder=say("scene.part"),
+                show_label=False,
+                container=False,
+                min_width=240,
+                elem_id=self._id("part-words"),
             )
-            with gr.Row(elem_classes="pd-chips"):
-                self.remake = gr.Button(say("scene.remake"), size="sm", min_width=0, elem_id=self._id("remake"))
-                self.futures = gr.Button(
-                    say("scene.futures", count=FUTURES), size="sm", min_width=0, elem_id=self._id("futures")
-                )
-                self.take = gr.Button(
-                    say("scene.take"), size="sm", min_width=0, elem_id=self._id("take"), elem_classes="pd-take"
-                )
+            small: dict[str, Any] = {"size": "sm", "min_width": 0, "scale": 0}
+            self.remake = gr.Button(say("scene.remake"), elem_id=self._id("remake"), **small)
+            self.futures = gr.Button(say("scene.futures", count=FUTURES), elem_id=self._id("futures"), **small)
+            self.take = gr.Button(say("scene.take"), elem_id=self._id("take"), elem_classes="pd-take", **small)
         self.shown_at = gr.Textbox(visible=False)
 
     def more_outputs(self) -> dict[str, Any]:
@@ -173,10 +174,10 @@ class SceneTab(JobTab):
         self.prompt.input(None, inputs=self.line_up, outputs=self.line_up, js=_TYPED, **QUIET)
         self.prompt.blur(written, inputs=[self.prompt, self.line_up], **last)
         player, under, readouts = self.results.player, self.results.under, self.results.readouts
-        changed = [player, self.line, self.record, self.line_up, self.trail]
+        changed = [player, self.line, self.record, self.trail]
         shown = [self.record, self.trail, self.shown_at]
         self.take.click(self.take_shown, inputs=shown, js=_READ_PLACE, outputs=changed, **QUIET)
-        last_shown = [player, self.line, under, readouts, self.line_up]
+        last_shown = [player, self.line, under, readouts]
         self.last.click(self.take_last, inputs=self.record, outputs=last_shown, **QUIET)
 
     def _wire_parts(self) -> None:
@@ -213,17 +214,12 @@ class SceneTab(JobTab):
         result = yield from self.made(session, wanted, watch=partial(self._watch, title))
         verdicts = checked(str(fields["prompt"]), result.manifest) if part is None else None
         shown = self.shown(result, title) | {"reading": gr.update(checked=verdicts)}
-        duet = result.duets[0]
-        assert isinstance(duet, Duet)
-        line_up = gr.update(motion=duet.seconds)
         if part == "futures":
             story = went_on(fields["story"], wanted)
-            line_up = gr.update(value=story, motion=duet.seconds)
-            shown["prompt"] = story_text(story_fields(story)["beats"])
+            shown |= {"story": gr.update(value=story), "prompt": story_text(story_fields(story)["beats"])}
         elif part is None:  # again, as a browser may show only the last of several updates
-            line_up = gr.update(value=fields["story"], motion=duet.seconds)
-            shown |= laid
-        yield self.updates(**shown | {"story": line_up})
+            shown |= {"story": gr.update(value=fields["story"]), **laid}
+        yield self.updates(**shown)
 
     def _starter(self, part: str) -> Callable[..., Iterator[Updates]]:
         """What makes a part of the motion: the selected "span" again, or "futures" from the player's frame on."""
@@ -253,33 +249,27 @@ class SceneTab(JobTab):
     def take_last(self, record: Record | None) -> Updates:
         """Shows the session's last result here, of whichever tab, so that parts of it can be made again."""
         try:
-            duet = shown_duet(record, 0)
+            shown_duet(record, 0)
         except Exception as error:
-            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip(), gr.skip()
+            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip()
         assert record is not None
         shown = self.shown(record.result, record.prompt)
         line = status("Select a span of it, or ask for continuations.")
-        return shown["player"], line, shown["under"], shown["readouts"], gr.update(motion=duet.seconds)
+        return shown["player"], line, shown["under"], shown["readouts"]
 
     def take_shown(self, record: Record | None, trail: list[str], shown: str) -> Updates:
         """Keeps one of several futures as the motion; the choice can be gone back to."""
         try:
             sample = place_of(shown)["sample"]
-            duet = shown_duet(record, sample)
+            shown_duet(record, sample)
         except Exception as error:
-            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip(), gr.skip()
+            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip()
         assert record is not None
         if len(record.result.duets) == 1:
-            return gr.skip(), status("This is the motion already."), gr.skip(), gr.skip(), gr.skip()
+            return gr.skip(), status("This is the motion already."), gr.skip(), gr.skip()
         kept = Record(only_sample(record.result, sample), record.prompt)
         line = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
-        return (
-            self.shown(kept.result, record.prompt)["player"],
-            line,
-            kept,
-            gr.update(motion=duet.seconds),
-            [*trail, record.result.run],
-        )
+        return self.shown(kept.result, record.prompt)["player"], line, kept, [*trail, record.result.run]
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the story that was asked for."""
@@ -293,7 +283,7 @@ class SceneTab(JobTab):
                 story = value_of(request)
             else:
                 story = went_on(whole, request) if request.end is None else whole
-            found[self.line_up] = gr.update(value=story, motion=duet.seconds)
+            found[self.line_up] = gr.update(value=story)
             said = said_of(str(run.kept.controls.get("prompt") or ""), story)
             found[self.prompt] = gr.update(value=said)
             found[self.reading] = gr.update(checked=None if motion is not None else checked(said, run.result.manifest))
