@@ -162,8 +162,8 @@ def test_a_run_without_a_result_is_run_again() -> None:
     lost = replace(entry("lost"), state="interrupted", request={"prompt": "They hug.", "seconds": 2.0, "seed": 9})
     asked: list[Any] = []
 
-    def run(session: str, request: Any, *, alone: bool) -> Iterator[Any]:
-        asked.append((request.prompt, request.seconds, request.seed, alone))
+    def run(session: str, request: Any) -> Iterator[Any]:
+        asked.append((request.prompt, request.seconds, request.seed))
         yield Progress(stage="text")
         yield Result(duets=(), manifest={})
 
@@ -176,7 +176,7 @@ def test_a_run_without_a_result_is_run_again() -> None:
         return list(history.again(who, event))[-1]
 
     assert "its result is in the list" in again("lost")
-    assert asked == [("They hug.", 2.0, 9, True)]
+    assert asked == [("They hug.", 2.0, 9)]
     assert "send the file again" in again("r") and len(asked) == 1
 
 
