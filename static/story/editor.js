@@ -137,7 +137,7 @@ export class Editor {
   measure(lengths) {
     if (!lengths || lengths.length !== this.story.beats.length) return;
     this.story = edits.measured(this.story, lengths);
-    if (!this.find("textarea")) this.draw();
+    this.draw();
   }
 
   /** A change by the user. */
@@ -241,6 +241,7 @@ export class Editor {
       field.remove();
       const before = this.story.beats[index]?.[lane] ?? "";
       if (keep && words !== before) this.edit(edits.change(this.story, index, { [lane]: words }));
+      else if (this.late) this.draw();
       if (focus) this.find(`.pds-cell[data-beat="${index}"][data-lane="${lane}"]`)?.focus();
     };
     field.addEventListener("keydown", (event) => {
@@ -304,7 +305,7 @@ export class Editor {
     const { player } = this;
     if (player && player.director !== this) player.direct(this);
     const seconds = player?.data ? player.clock.duration : 0;
-    if (seconds !== this.shown && !this.find("textarea")) {
+    if (seconds !== this.shown) {
       this.shown = seconds;
       this.draw();
     }
@@ -316,7 +317,8 @@ export class Editor {
   // ---- drawing ---------------------------------------------------------------------------------
 
   draw() {
-    if (this.pins.held) return; // it is drawn when that is over
+    this.late = Boolean(this.pins.held || this.find(".pds-words"));
+    if (this.late) return; // it is drawn when that is over
     const { story, total } = this;
     const starts = edits.edges(story);
     const focused = this.root.contains(document.activeElement) && document.activeElement.dataset.key;
