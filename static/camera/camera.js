@@ -2,9 +2,8 @@
 
 import { analyse } from "./analysis.js";
 import { detectorOf } from "./detector.js";
-import { drawPeople, drawSureness } from "./drawing.js";
+import { drawPeople } from "./drawing.js";
 import { close, FilmError, LONGEST, openFilm } from "./film.js";
-import { keepLens, lensOf } from "./lens.js";
 import { takesTurns, takeTurn } from "./turns.js";
 import { closeWebcam, countDown, openWebcam, record } from "./webcam.js";
 import { say, translate } from "../texts.js";
@@ -23,10 +22,9 @@ class Panel {
   constructor(root, send, detector) {
     this.send = send;
     this.detector = detector;
-    this.landmarks = null;
     this.run = 0; // number of what is being done: a later one stops it
     const find = (name) => root.querySelector(`.pdcam-${name}`);
-    for (const name of ["open", "body", "choose", "record", "file", "stage", "video", "drawing", "count", "strip", "progress", "begin", "stop", "cancel", "line", "tilt", "lens", "again"])
+    for (const name of ["open", "body", "choose", "record", "file", "stage", "video", "drawing", "count", "progress", "begin", "stop", "cancel", "line"])
       this[name] = find(name);
     this.root = root;
     this.open.onclick = () => this.toggle();
@@ -34,9 +32,7 @@ class Panel {
     this.file.onchange = () => {
       const [file] = this.file.files;
       this.file.value = "";
-      if (!file) return;
-      this.of("video");
-      this.attempt(() => this.read(file, file.name));
+      if (file) this.attempt(() => this.read(file, file.name));
     };
     this.record.onclick = () => this.attempt(() => this.prepare());
     this.begin.onclick = () => this.attempt(() => this.film(), false);
@@ -44,17 +40,8 @@ class Panel {
       this.rest();
       this.say(say("camera.cancelled"));
     };
-    this.again.onclick = () => this.hand();
-    this.of("video");
-    this.lens.onchange = () => keepLens(this.lens, this.source);
     takesTurns(this);
     this.open.disabled = false; // before, nobody would hear
-  }
-
-  /** Takes the lens that was last set for a source, "webcam" or "video". */
-  of(source) {
-    this.source = source;
-    this.lens.value = lensOf(source);
   }
 
   toggle() {
@@ -108,11 +95,9 @@ class Panel {
 
   async prepare() {
     this.say(say("camera.opening"));
-    this.of("webcam");
     const run = this.run;
     await openWebcam(this.video);
     if (run !== this.run) return closeWebcam(this.video);
-    this.strip.hidden = true;
     this.show(true);
     this.say(say("camera.step_back", { most: LONGEST }));
     this.state("ready");
@@ -142,7 +127,6 @@ class Panel {
     await openFilm(this.video, file);
     if (stopped()) return;
     this.show(false);
-    this.strip.hidden = false;
     this.say(say("camera.looking"));
     const began = performance.now();
     const landmarks = await analyse(this.video, this.detector, {
@@ -150,24 +134,14 @@ class Panel {
       each: (done, all, people) => {
         this.progress.value = done / all;
         drawPeople(this.drawing, people, this.video.videoWidth, this.video.videoHeight);
-        drawSureness(this.strip, done, all, people);
         const left = ((performance.now() - began) / done) * (all - done) / 1000;
         this.say(say("camera.reading", { done, all }) + (left > 3 ? say("camera.left", { seconds: Math.ceil(left / 5) * 5 }) : ""));
       },
     });
     if (!landmarks) return;
     this.state("idle");
-    this.landmarks = landmarks;
-    this.name = name;
-    this.again.disabled = false;
-    this.hand();
-  }
-
-  /** Sends what was found, with what is known of the camera. */
-  hand() {
-    const value = (input) => (input.value === "" ? null : Number(input.value));
     this.say(say("camera.sent"));
-    this.send(this.landmarks.pack({ name: this.name, tilt: value(this.tilt), lens: value(this.lens) }));
+    this.send(landmarks.pack({ name }));
   }
 
   show(mirrored) {

@@ -13,7 +13,7 @@ export class LiveError extends Error {}
 class Lost extends Error {}
 
 export class Connection {
-  /** `address` is that of the page's live streams; `wanted` what is asked for: partner, lens, tilt. */
+  /** `address` is that of the page's live streams; `wanted` what is asked for: the partner. */
   constructor(address, wanted, { lost = () => {} } = {}) {
     this.address = address;
     this.wanted = wanted;

@@ -3,17 +3,15 @@
 import { detectorOf } from "../camera/detector.js";
 import { drawPeople } from "../camera/drawing.js";
 import { FilmError } from "../camera/film.js";
-import { keepLens, lensOf } from "../camera/lens.js";
 import { takesTurns, takeTurn } from "../camera/turns.js";
 import { Stream } from "../player/stream.js";
 import { Connection, LiveError } from "./connection.js";
-import { Person, Video, Webcam } from "./sources.js";
+import { Person, Webcam } from "./sources.js";
 import { say, translate } from "../texts.js";
 
 const WAITING = 8; // messages that wait for the server; older ones are dropped
 const TOGETHER = 6; // messages that are sent as one
 const FIGURES = 500; // milliseconds between two updates of the figures
-const PARTS = { camera: "live.part_camera", body: "live.part_body", server: "live.part_server", player: "live.part_player" };
 const NAMES = { agent: "agent", regennet: "reactor" };
 
 /**
@@ -35,20 +33,12 @@ class Panel {
     Object.assign(this, { element, hand, address, mediapipe, run: 0, last: null });
     this.root = element.querySelector(".pdlive");
     const find = (name) => this.root.querySelector(`.${name}`);
-    for (const name of ["open", "body", "stage", "video", "drawing", "file", "begin", "stop", "line", "more", "tilt", "lens"]) this[name] = find(`pdcam-${name}`);
+    for (const name of ["open", "body", "stage", "video", "drawing", "begin", "stop", "line"]) this[name] = find(`pdcam-${name}`);
     for (const name of ["source", "partner", "keep", "belief", "text", "chances", "figures"]) this[name] = find(`pdlive-${name}`);
     this.open.onclick = () => this.toggle();
-    this.begin.onclick = () => (this.source.value === "video" ? this.file.click() : this.start());
-    this.file.onchange = () => {
-      const [file] = this.file.files;
-      this.file.value = "";
-      if (file) this.start(file);
-    };
+    this.begin.onclick = () => this.start();
     this.stop.onclick = () => this.rest(`${say("live.stopped")} ${say("live.again")}`);
     this.keep.onclick = () => this.handOver();
-    this.source.onchange = () => this.takeLens();
-    this.lens.onchange = () => keepLens(this.lens, this.source.value);
-    this.takeLens();
     window.addEventListener("pagehide", () => this.rest());
     takesTurns(this);
     this.open.disabled = false; // before, nobody would hear
@@ -62,12 +52,6 @@ class Panel {
   get player() {
     const near = this.element.closest('[role="tabpanel"]') ?? document;
     return near.querySelector(".pdd")?.player ?? null;
-  }
-
-  /** Shows the lens that was last set for the person being filmed; a chosen person was not filmed. */
-  takeLens() {
-    this.more.hidden = this.source.value === "clip";
-    this.lens.value = lensOf(this.source.value);
   }
 
   toggle() {
@@ -85,7 +69,7 @@ class Panel {
     this.root.dataset.state = name;
     this.begin.hidden = name !== "idle";
     this.stop.hidden = name === "idle";
-    for (const input of [this.source, this.partner, this.tilt, this.lens]) input.disabled = name !== "idle";
+    for (const input of [this.source, this.partner]) input.disabled = name !== "idle";
     this.keep.hidden = !this.last?.long;
   }
 
@@ -101,7 +85,7 @@ class Panel {
     this.say(text, tone);
   }
 
-  async start(file = null) {
+  async start() {
     this.last = null;
     this.rest();
     takeTurn(this);
@@ -112,9 +96,9 @@ class Panel {
     try {
       const { player } = this;
       if (!player) throw new FilmError(say("live.no_view"));
-      const source = this.sourceOf(file, player);
+      const source = this.source.value === "clip" ? new Person(player) : new Webcam(this.video, detectorOf(this.mediapipe));
       const partner = this.partner.value;
-      const connection = new Connection(this.address, { partner, ...source.camera }, {
+      const connection = new Connection(this.address, { partner }, {
         lost: (gone) => this.say(say(gone ? "live.lost" : "live.connected"), gone ? "error" : ""),
       });
       this.live = { source, connection, stream: null };
@@ -122,13 +106,12 @@ class Panel {
       await source.begin(); // takes seconds, in which nothing could be sent
       if (over()) return;
       const payload = await connection.open();
-      await source.play?.();
       if (over()) return;
       this.live.stream = this.last = new Stream(player, payload, ["you", NAMES[partner]]);
       this.last.partner = partner;
       if (source.video) {
         this.stage.hidden = false;
-        this.stage.classList.toggle("pdcam-mirror", source.mirrored);
+        this.stage.classList.add("pdcam-mirror");
         drawPeople(this.drawing, [], source.video.videoWidth, source.video.videoHeight);
         this.say(say("live.stand"));
       }
@@ -141,19 +124,11 @@ class Panel {
     }
   }
 
-  sourceOf(file, player) {
-    const chosen = this.source.value;
-    if (chosen === "clip") return new Person(player);
-    const detector = detectorOf(this.mediapipe);
-    const camera = { lens: Number(this.lens.value), tilt: this.tilt.value === "" ? null : Number(this.tilt.value) };
-    return chosen === "video" ? new Video(this.video, detector, camera, file) : new Webcam(this.video, detector, camera);
-  }
-
   /** Looks and sends until the source is at its end. */
   async follow(over) {
     const { source } = this.live;
     const waiting = [];
-    this.tally = { taken: [], delays: [], parts: [], lost: 0, shown: 0 };
+    this.tally = { taken: [], delays: [], lost: 0, shown: 0 };
     let wake = () => {};
     let room = () => {};
     let ended = false;
@@ -214,10 +189,7 @@ class Panel {
     tally.taken.push(...seen.map(({ taken }) => taken));
     if (answer.frames) {
       stream.add(answer.frames, answer.belief.state === "answers" ? "answers" : "", answer);
-      const last = seen.at(-1);
-      const player = (1000 * stream.lag) / 30;
-      tally.delays.push(now - last.taken + player);
-      tally.parts.push({ camera: last.camera, body: last.body, server: answer.milliseconds, player });
+      tally.delays.push(now - seen.at(-1).taken + (1000 * stream.lag) / 30);
     }
     this.keep.hidden = !stream.long;
     this.believe(answer.belief);
@@ -248,21 +220,14 @@ class Panel {
     const { taken, delays } = tally;
     const span = (taken.at(-1) - taken[0]) / 1000;
     const rate = span > 0 ? (taken.length - 1) / span : 0;
-    tally.parts = tally.parts.slice(-30);
     const delay = median(delays);
-    const within = Object.keys(PARTS)
-      .map((part) => [part, median(tally.parts.map((each) => each[part]).filter((ms) => ms !== undefined))])
-      .filter(([, ms]) => ms !== undefined);
     const missed = this.live.source.missed + tally.lost;
     const parts = [
       say("live.rate", { rate: rate.toFixed(0) }),
-      delay === undefined ? "" : say("live.delay", { ms: Math.round(delay), parts: within.map(([part, ms]) => `${say(PARTS[part])} ${Math.round(ms)}`).join(", ") }),
+      delay === undefined ? "" : say("live.delay", { ms: Math.round(delay) }),
       missed ? say("live.missed", { count: missed }) : "",
     ];
     this.figures.textContent = parts.filter(Boolean).join(" · ");
-    this.root.dataset.delay = delay === undefined ? "" : String(Math.round(delay));
-    this.root.dataset.rate = rate.toFixed(1);
-    this.root.dataset.parts = JSON.stringify(Object.fromEntries(within.map(([part, ms]) => [part, Math.round(ms)])));
   }
 }
 

@@ -1,6 +1,6 @@
-// Whom a partner answers: the webcam's picture, a video while it plays, or a person of the player.
+// Whom a partner answers: the webcam's picture, or a person of the player.
 
-import { FilmError, close as closeFilm, openFilm } from "../camera/film.js";
+import { FilmError } from "../camera/film.js";
 import { Landmarks } from "../camera/landmarks.js";
 import { closeWebcam, openWebcam } from "../camera/webcam.js";
 import { say } from "../texts.js";
@@ -9,11 +9,10 @@ const FASTEST = 33; // milliseconds from picture to picture
 const BATCH = 2; // poses of a clip in a message
 const nap = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
-/** Pictures of a video element, looked at as fast as can be. */
-class Pictures {
-  /** `camera` holds what is known of the camera: lens and tilt in degrees. */
-  constructor(video, detector, camera) {
-    Object.assign(this, { video, detector, camera });
+/** The webcam's pictures in a video element, looked at as fast as can be. */
+export class Webcam {
+  constructor(video, detector) {
+    Object.assign(this, { video, detector });
     this.shown = 0;
     this.looked = 0;
     this.latest = -1;
@@ -21,6 +20,8 @@ class Pictures {
   }
 
   async begin() {
+    await openWebcam(this.video);
+    if (this.over) return closeWebcam(this.video);
     await this.detector.begin();
     await this.detector.detect(this.video, 0); // the first picture takes seconds
     this.began = performance.now() - 100;
@@ -42,7 +43,6 @@ class Pictures {
   async next() {
     const { video } = this;
     while (!this.over) {
-      if (video.ended) return null;
       const wait = FASTEST - (performance.now() - (this.at ?? -FASTEST));
       if (wait > 0) await nap(wait);
       if (video.readyState >= 2 && video.currentTime !== this.latest) break;
@@ -54,21 +54,10 @@ class Pictures {
     const time = (this.at - this.began) / 1000;
     const people = await this.detector.detect(video, time);
     if (this.over) return null;
-    const found = performance.now();
     this.looked++;
     const landmarks = new Landmarks(video.videoWidth, video.videoHeight);
     landmarks.add(time, people);
-    return { people, taken: this.at - this.behind, camera: this.behind, body: found - this.at, message: JSON.parse(landmarks.pack()) };
-  }
-}
-
-export class Webcam extends Pictures {
-  mirrored = true;
-
-  async begin() {
-    await openWebcam(this.video);
-    if (this.over) return closeWebcam(this.video);
-    await super.begin();
+    return { people, taken: this.at - this.behind, message: JSON.parse(landmarks.pack()) };
   }
 
   end() {
@@ -77,35 +66,9 @@ export class Webcam extends Pictures {
   }
 }
 
-export class Video extends Pictures {
-  mirrored = false;
-
-  constructor(video, detector, camera, file) {
-    super(video, detector, camera);
-    this.file = file;
-  }
-
-  async begin() {
-    await openFilm(this.video, this.file);
-    this.video.currentTime = 0;
-    await super.begin();
-  }
-
-  async play() {
-    if (!this.over) await this.video.play();
-  }
-
-  end() {
-    this.over = true;
-    this.video.pause();
-    closeFilm(this.video);
-  }
-}
-
 /** A person of the player, pose by pose at the pace of their motion. */
 export class Person {
   waits = true; // for a slow server: of a recording nothing is left out
-  camera = {};
   missed = 0;
 
   constructor(player) {

@@ -92,7 +92,7 @@ export class Notebook {
     for (const tag of entry.tags) tags.append(element("span", "", `#${tag}`));
     text.append(title, facts, tags);
     if (entry.message) text.append(element("p", "pdn-message", entry.message));
-    if (entry.note) text.append(element("p", "pdn-note", entry.frame === null ? entry.note : say("notebook.note_at", { frame: entry.frame + 1, note: entry.note })));
+    if (entry.note) text.append(element("p", "pdn-note", entry.note));
     const more = element("details", "pdn-details");
     more.append(element("summary", "", say("notebook.details")));
     more.addEventListener("toggle", () => more.open && more.children.length === 1 && this.fill(more, entry));
@@ -111,9 +111,7 @@ export class Notebook {
       return line;
     };
     const form = element("div", "pdn-form");
-    const frame = field(say("notebook.frame"), "frame", entry.frame === null ? "" : String(entry.frame + 1));
-    Object.assign(frame.lastElementChild, { type: "number", min: "1" });
-    form.append(field(say("notebook.name"), "title", entry.title), field(say("notebook.tags"), "tags", entry.tags.join(" ")), field(say("notebook.note"), "note", entry.note, "textarea"), frame);
+    form.append(field(say("notebook.name"), "title", entry.title), field(say("notebook.tags"), "tags", entry.tags.join(" ")), field(say("notebook.note"), "note", entry.note, "textarea"));
     const save = Object.assign(element("button", "", say("notebook.save")), { type: "button" });
     save.dataset.save = entry.id;
     form.append(save);
@@ -133,6 +131,10 @@ export class Notebook {
     if (button?.dataset.act) return this.act(button.dataset.act);
     if (event.target.closest(".pdn-details")) return;
     const card = event.target.closest(".pdn-card");
+    if (event.target.closest(".pdn-thumb") && this.entries.get(card.dataset.id).state === "done") {
+      this.choose(card, {});
+      return this.act("open");
+    }
     if (card) this.choose(card, { several: "choose" in event.target.dataset || event.ctrlKey || event.metaKey, range: event.shiftKey });
   }
 
@@ -161,8 +163,7 @@ export class Notebook {
 
   save(form, id) {
     const value = (name) => form.querySelector(`[data-field=${name}]`).value;
-    const frame = Number(value("frame"));
-    this.act("describe", { ids: [id], title: value("title"), tags: value("tags"), note: value("note"), frame: frame >= 1 ? frame - 1 : null });
+    this.act("describe", { ids: [id], title: value("title"), tags: value("tags"), note: value("note") });
   }
 
   /** Brings marks and buttons to what is chosen. */

@@ -1,10 +1,9 @@
-// What buttons and keys ask for, by name: play, step, sample, camera, trails, picture, … (input.js and player.html).
+// What buttons and keys ask for, by name: play, step, sample, camera, picture, … (input.js and player.html).
 
 import { savePicture } from "./picture.js";
 
 const SPEEDS = [0.25, 0.5, 1, 1.5, 2];
 const MOVES = new Set(["play", "step", "first", "last", "sample"]); // to another moment or motion
-const SWITCHES = new Set(["trails", "ghosts"]);
 
 export class Actions {
   constructor(player) {
@@ -21,7 +20,6 @@ export class Actions {
     if (!player.data) return;
     if (action === "pose") return player.directing.togglePosing();
     if (action === "draw") return player.directing.toggleDrawing();
-    if (action === "touch") return player.directing.toggleTouching();
     if (action === "take") return player.futures.take(argument);
     if (MOVES.has(action) && !player.directing.mayLeave()) return;
     if (action === "pause") clock.pause();
@@ -38,7 +36,7 @@ export class Actions {
     else if (action === "picture") this.savePicture();
     else if (action === "follow") player.orbit.following = !player.orbit.following;
     else if (action === "figure") player.clothes.choose(argument);
-    else if (SWITCHES.has(action)) player.show[action] = !player.show[action];
+    else if (action === "ghosts") player.show.ghosts = !player.show.ghosts;
     player.refresh();
   }
 

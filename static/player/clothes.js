@@ -1,5 +1,5 @@
-// What the people of a player wear: the bodies that ship, as each motion says, lighter ones where people are many and
-// small. They stay skeletons where no body can be had.
+// What the people of a player wear: the bodies that ship, as each motion says, and lighter ones where people are many
+// and small. They stay skeletons where no body can be had.
 
 import { loadBody } from "./loader.js";
 import { keepFigure } from "./remember.js";
@@ -47,8 +47,7 @@ export class Clothes {
   /** What the ghosts of futures wear, once it is there: lighter than people. */
   async dressFutures() {
     const { futures } = this.player;
-    if (!this.bodies.size || !futures.samples.length) return;
-    futures.dress(await light(futures.samples[0].looks));
+    if (this.bodies.size && futures.samples.length) futures.dress(await light(futures.samples[0].looks));
   }
 
   /** How people are drawn: "both", "body" or "skeleton". */
@@ -61,7 +60,7 @@ export class Clothes {
   choose(figure) {
     const { show } = this.player;
     const next = figure ?? FIGURES[(FIGURES.indexOf(this.figure) + 1) % FIGURES.length];
-    Object.assign(show, { bodies: next !== "skeleton", skeletons: next === "both" || next === "skeleton" });
+    Object.assign(show, { bodies: next !== "skeleton", skeletons: next !== "body" });
     keepFigure(show);
   }
 }

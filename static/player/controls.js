@@ -44,7 +44,6 @@ export class Controls {
     this.find(".pdd-speed select").addEventListener("change", (event) => player.actions.setSpeed(Number(event.target.value)));
     attach(this.find(".pdd-touch"), player.orbit, {
       changed: () => player.turned(),
-      hover: (pointer) => player.hover.at(pointer),
       mayScroll: (event) => event.ctrlKey || root.contains(document.activeElement) || document.fullscreenElement === root,
     });
     let pressed = null;
@@ -56,9 +55,7 @@ export class Controls {
       const moved = pressed && Math.hypot(clientX - pressed[0], clientY - pressed[1]);
       if (!(moved < 5)) return;
       const cell = player.grid.at(clientX, clientY);
-      if (cell >= 0) return player.enlarge(cell);
-      const box = player.stage.getBoundingClientRect();
-      player.futures.hit(clientX - box.left, clientY - box.top);
+      if (cell >= 0) player.enlarge(cell);
     });
   }
 
@@ -139,11 +136,9 @@ export class Controls {
     const press = (name, on) => this.find(`[data-act=${name}]`).setAttribute("aria-pressed", String(on));
     press("loop", clock.loop);
     press("follow", orbit.following);
-    press("trails", show.trails);
     press("ghosts", show.ghosts);
     press("pose", Boolean(posing));
     press("draw", Boolean(directing.drawing?.on));
-    press("touch", Boolean(directing.touching));
     press("fullscreen", document.fullscreenElement === root || root.classList.contains("pdd-full"));
     for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === framing.preset));
     this.showPart(sample, frame);
@@ -156,7 +151,7 @@ export class Controls {
     chip.hidden = !given && !sample?.live;
     if (sample?.live) {
       chip.dataset.part = "live";
-      chip.textContent = [say(sample.live.second ? "player.streaming" : "player.live"), sample.live.text].filter(Boolean).join(" · ");
+      chip.textContent = [say("player.live"), sample.live.text].filter(Boolean).join(" · ");
     } else if (given) {
       chip.dataset.part = frame < given ? "given" : "predicted";
       chip.textContent = say(frame < given ? "player.given" : "player.predicted");

@@ -60,9 +60,9 @@ const unpackSample = (sample) => ({
 
 /** A payload as the player keeps it. */
 export function decode(payload) {
-  const { id, title, joint_names: names, parents, live, stream, rounds, futures = null, samples } = payload;
+  const { id, title, joint_names: names, parents, stream, rounds, futures = null, samples } = payload;
   return {
-    id, title: title || "", names, parents, live: Boolean(live), stream: Boolean(stream), rounds, futures,
+    id, title: title || "", names, parents, stream: Boolean(stream), rounds, futures,
     samples: samples.map(unpackSample),
   };
 }

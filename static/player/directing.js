@@ -2,14 +2,12 @@
 // has what it can keep:
 //   posesAt(frame): each person's kept pose in world axes, or null; keepPoses(frame, [{ person: "a" or "b", positions }])
 //   takeFuture(index): the continuation that was taken
-//   say(sentence): what was said by pressing a part of a body
 //   paths: [{ person, points }] of the next run, which lasts `seconds`; keepPath(person, points), undo() and mayUndo
 
 import { toScene } from "./decode.js";
 import { Posing } from "./posing.js";
-import { Touching } from "./touching.js";
 
-const TOOLS = { pose: "keepPoses", draw: "keepPath", touch: "say" };
+const TOOLS = { pose: "keepPoses", draw: "keepPath" };
 
 export class Directing {
   constructor(player) {
@@ -17,7 +15,6 @@ export class Directing {
     this.director = null;
     this.posing = null;
     this.drawing = null;
-    this.touching = null;
   }
 
   direct(director) {
@@ -46,7 +43,6 @@ export class Directing {
     const { player } = this;
     if (!this.director?.keepPoses || !player.skeleton?.wears || !this.alone) return;
     this.drawing?.toggle(false);
-    this.endTouching();
     const frame = Math.round(player.clock.shown);
     player.clock.pause();
     player.clock.seek(frame);
@@ -57,25 +53,7 @@ export class Directing {
   /** Begins to draw on the floor, or ends it. */
   toggleDrawing() {
     if (!this.director?.keepPath || !this.mayLeave()) return;
-    this.endTouching();
     this.drawing?.toggle(this.alone && !this.drawing.on);
-  }
-
-  /** Stops and lays dots over the bodies, or takes them away. */
-  toggleTouching() {
-    if (this.touching) return this.endTouching();
-    const { player } = this;
-    if (!this.director?.say || !this.alone || player.sample.roles.length < 2 || !this.mayLeave()) return;
-    this.drawing?.toggle(false);
-    player.clock.pause();
-    this.touching = new Touching(player);
-    player.refresh();
-  }
-
-  endTouching() {
-    this.touching?.close();
-    this.touching = null;
-    if (this.player.data) this.player.refresh();
   }
 
   /** The poses that are kept at a frame: points [x, y, z] in scene axes, or null. */
@@ -92,7 +70,6 @@ export class Directing {
   /** Ends all that was begun, as another motion comes. */
   end() {
     this.endPosing();
-    this.endTouching();
     this.drawing?.toggle(false);
   }
 

@@ -1,4 +1,4 @@
-// From a pose to the lines that the scene draws: bones and joints, trails, ghosts, the grid on the floor.
+// From a pose to the lines that the scene draws: bones and joints, ghosts, the grid on the floor.
 
 import { floorAt, mix, smooth } from "./palette.js";
 import { FIELD_OF_VIEW } from "./orbit.js";
@@ -10,7 +10,6 @@ const LEAST_PX = 1.5;
 const GHOST_BEHIND = 0.25; // metres away from the eye, so that they never cover the figures
 const BODY_BEFORE = 0.25; // metres towards the eye, so that a skeleton is seen over the body around it
 const INK = 0.45; // of black, in limbs on a body of the same hue
-const TRAIL_SECONDS = 1;
 const GHOSTS = 5;
 
 /** Turns metres at a point into CSS pixels for the present view. */
@@ -77,29 +76,6 @@ export function joints(points, skeleton, colors, lens, wide = 1) {
     colors: skeleton.joints.map(({ side }) => colors[side]),
     sizes: points.map((p) => Math.max(lens.pixels(2 * wide * JOINT, p), 2 * LEAST_PX)),
   };
-}
-
-/** The last second of pelvis and wrists, fading into the background. */
-export function trails(poseAt, frame, fps, skeleton, theme) {
-  const out = { points: [], colors: [], sizes: [] };
-  const first = Math.max(0, frame - TRAIL_SECONDS * fps);
-  const count = Math.max(2, Math.ceil(((frame - first) / fps) * 24));
-  const poses = Array.from({ length: count }, (_, i) => poseAt(first + ((frame - first) * i) / (count - 1)));
-  poses[0].forEach((_, person) => {
-    for (const joint of [skeleton.pelvis, ...skeleton.wrists]) {
-      const color = theme.people[person][skeleton.joints[joint].side];
-      poses.forEach((pose, i) => {
-        const t = i / (count - 1);
-        out.points.push(pose[person][joint]);
-        out.colors.push(mix(theme.background, color, t));
-        out.sizes.push(1 + 2.5 * t);
-      });
-      out.points.push(GAP);
-      out.colors.push(theme.background);
-      out.sizes.push(1);
-    }
-  });
-  return out;
 }
 
 /** Pale figures: moments along the way, in which somebody may be missing, and others with their [points, colour]. */

@@ -1,6 +1,6 @@
 // Several continuations from a moment: the samples of such a payload share what came before it. From then on the one
-// that is chosen stands there as ever, and the others as ghosts in tints of their own. A click on a ghost, its number or
-// the number's key takes it, and the player's director hears of it.
+// that is chosen stands there as ever, and the others as ghosts in tints of their own. Its number over it or the
+// number's key takes one, and the player's director hears of it.
 
 import { Figure } from "./body.js";
 import { poseAt } from "./decode.js";
@@ -11,7 +11,6 @@ import { say } from "../texts.js";
 
 const ALPHA = 0.34;
 const TINTED = 0.72; // of a ghost's colours
-const NEAR = 14; // pixels about a bone that still hit the ghost
 const OVER = [0.2, 80]; // metres and pixels from heads to numbers: names lie between
 const APART = 34; // pixels between numbers at least
 
@@ -74,15 +73,12 @@ export class Futures {
   /** Puts the numbers over the heads of their pairs. */
   place(frame, matrix) {
     const { player, samples } = this;
-    this.spots = [];
     this.host.hidden = !samples.length || frame < this.from || Boolean(player.posing);
     if (this.host.hidden) return;
     const { clientWidth: width, clientHeight: height } = player.pane.host;
     const { head } = player.skeleton;
     const wanted = samples.map((sample, index) => {
       const people = poseAt(sample.motion, frame);
-      const spots = people.map((points) => points.map((p) => project(p, matrix, width, height, FIELD_OF_VIEW)));
-      if (index !== player.sampleIndex) this.spots.push({ index, spots });
       const middle = [0, 1, 2].map((i) => people.reduce((sum, points) => sum + points[head][i], 0) / people.length);
       return { index, at: project([middle[0], middle[1], middle[2] + OVER[0]], matrix, width, height, FIELD_OF_VIEW) };
     });
@@ -97,21 +93,6 @@ export class Futures {
       number.style.transform = `translate(${x.toFixed(1)}px, ${Math.max(at[1] - OVER[1], 18).toFixed(1)}px) translate(-50%, -50%)`;
       number.setAttribute("aria-pressed", String(index === player.sampleIndex));
     });
-  }
-
-  /** Takes the ghost under a place in the stage, if there is one; says whether there was. */
-  hit(x, y) {
-    let best = { away: NEAR, index: null };
-    for (const { index, spots } of this.spots ?? []) {
-      for (const person of spots) {
-        for (const { from, to } of this.player.skeleton.bones) {
-          const away = distance([x, y], person[from], person[to]);
-          if (away < best.away) best = { away, index };
-        }
-      }
-    }
-    if (best.index !== null) this.take(best.index);
-    return best.index !== null;
   }
 
   /** What a key asks for: 1, 2, … take a future while there are some. */
@@ -141,12 +122,4 @@ function joined(arrays) {
     at += array.length;
   }
   return out;
-}
-
-/** From a place to a line between two others, in pixels. */
-function distance([x, y], a, b) {
-  const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-  const along = ((x - a[0]) * dx + (y - a[1]) * dy) / (dx * dx + dy * dy || 1);
-  const t = Math.min(Math.max(along, 0), 1);
-  return Math.hypot(a[0] + t * dx - x, a[1] + t * dy - y);
 }

@@ -3,10 +3,10 @@
 const TURN = Math.PI; // radians for a drag as long as the stage is high
 
 /**
- * Listens on `surface`. `orbit` is changed in place; `changed` is called after each change and
- * `hover` with [x, y] or null while nothing is pressed. `mayScroll` says whether the wheel belongs to us.
+ * Listens on `surface`. `orbit` is changed in place; `changed` is called after each change.
+ * `mayScroll` says whether the wheel belongs to us.
  */
-export function attach(surface, orbit, { changed, hover, mayScroll }) {
+export function attach(surface, orbit, { changed, mayScroll }) {
   const pointers = new Map();
   let pinch = null;
 
@@ -23,13 +23,12 @@ export function attach(surface, orbit, { changed, hover, mayScroll }) {
     surface.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, local(event));
     pinch = pointers.size === 2 ? spread() : null;
-    hover(null);
   });
 
   surface.addEventListener("pointermove", (event) => {
     const now = local(event);
     const before = pointers.get(event.pointerId);
-    if (!before) return hover(event.pointerType === "touch" ? null : now);
+    if (!before) return;
     pointers.set(event.pointerId, now);
     const height = surface.clientHeight || 1;
     const [dx, dy] = [(now[0] - before[0]) / height, (now[1] - before[1]) / height];
@@ -49,7 +48,6 @@ export function attach(surface, orbit, { changed, hover, mayScroll }) {
   };
   surface.addEventListener("pointerup", release);
   surface.addEventListener("pointercancel", release);
-  surface.addEventListener("pointerleave", () => hover(null));
   surface.addEventListener("contextmenu", (event) => event.preventDefault());
   surface.addEventListener(
     "wheel",
@@ -84,7 +82,7 @@ export function actionFor(event) {
     case "[": return ["sample", -1];
     case "]": return ["sample", 1];
   }
-  const letters = { f: "follow", t: "trails", g: "ghosts", l: "loop", p: "picture", s: "figure", e: "pose", d: "draw", h: "touch", c: "film" };
+  const letters = { f: "follow", g: "ghosts", l: "loop", p: "picture", s: "figure", e: "pose", d: "draw" };
   const action = letters[event.key.toLowerCase()];
   if (action) return [action];
   const camera = CAMERAS[Number(event.key) - 1];

@@ -55,7 +55,6 @@ export async function mount(element, props, watch, { plotly, empty, styles: addr
   root.player = player; // for what stands about it and follows its clock
   document.dispatchEvent(new Event("pdd-here"));
   let shown;
-  let heard = null;
   let covered = false;
   let opening = true;
   const sync = () => {
@@ -70,16 +69,10 @@ export async function mount(element, props, watch, { plotly, empty, styles: addr
       shown = id;
       player.load(props.value || null);
     }
-    const message = props.live ?? null;
-    const key = message && `${message.id} ${message.start} ${message.stop}`;
-    if (player.scene && key !== heard) {
-      heard = key;
-      if (message) player.arrive(message);
-    }
   };
   player.controls.setEmptyText(say(empty));
   sync();
-  watch(["value", "busy", "progress", "live"], sync);
+  watch(["value", "busy", "progress"], sync);
   try {
     const styles = loadStyles(address ?? new URL("player.css", import.meta.url).href);
     const styled = styles.finally(() => root.classList.add("pdd-styled")); // the empty state is there at once

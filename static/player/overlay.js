@@ -1,8 +1,7 @@
-// Words over the picture: names above heads, and what the joint under the pointer does.
+// Words over the picture: names above heads.
 
 import { say } from "../texts.js";
 
-const REACH_PX = 16;
 const LABEL_PX = 25; // height of a label with room
 const SPACE_PX = 8;
 
@@ -61,59 +60,6 @@ export class Labels {
       label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -100%)`;
       label.style.visibility = depth > 0.1 ? "visible" : "hidden";
       label.style.zIndex = String(1000 - Math.round(10 * Math.min(depth, 99)));
-    });
-  }
-}
-
-export class Tip {
-  constructor(host) {
-    this.host = host;
-  }
-
-  /** Shows the tip for the joint nearest to the pointer: spots[person][joint] are project() results. */
-  show(pointer, spots, describe) {
-    let best = null;
-    spots.forEach((person, p) =>
-      person.forEach(([x, y, depth], j) => {
-        const distance = Math.hypot(x - pointer[0], y - pointer[1]);
-        if (distance < REACH_PX && (!best || distance + 4 * depth < best.score)) best = { p, j, x, y, score: distance + 4 * depth };
-      }),
-    );
-    this.host.hidden = !best;
-    if (!best) return;
-    this.host.textContent = describe(best.p, best.j);
-    this.host.style.transform = `translate(${best.x + 14}px, ${best.y - 14}px)`;
-  }
-
-  hide() {
-    this.host.hidden = true;
-  }
-}
-
-export class Hover {
-  constructor(player) {
-    this.player = player;
-    this.tip = new Tip(player.find(".pdd-tip"));
-    this.pointer = null;
-  }
-
-  /** Where the pointer is over the scene, [x, y], or null. */
-  at(pointer) {
-    this.pointer = pointer;
-    this.show();
-  }
-
-  show() {
-    const { player, pointer } = this;
-    if (!pointer || !player.data || player.posing) return this.tip.hide();
-    const shifted = ({ host, spots }) => spots.map((points) => points.map(([x, y, depth]) => [x + host.offsetLeft, y, depth]));
-    this.tip.show(pointer, player.shown.flatMap(shifted), (person, joint) => {
-      const { clock, data } = player;
-      const [now, soon] = [clock.shown, Math.min(clock.shown + 1, clock.frames - 1)].map((f) => player.everybody(f)[person][joint]);
-      const speed = Math.hypot(...now.map((v, i) => soon[i] - v)) * clock.fps;
-      return say("player.joint", {
-        person: "AB"[person % 2], joint: data.names[joint].replaceAll("_", " "), height: now[2].toFixed(2), speed: speed.toFixed(1),
-      });
     });
   }
 }

@@ -16,10 +16,10 @@ const greyer = (zones) => each(zones, (color) => {
   return mix(color, [grey, grey, grey].map((v) => 0.75 * v + 0.14), 0.72);
 });
 
-function theme({ shade, lamps, bodies, people, given, curve, film, ...plain }) {
+function theme({ shade, lamps, bodies, people, given, curve, ...plain }) {
   const worn = bodies.map((zones) => each(zones, hex));
   return {
-    ...each(plain, hex), shade, lamps, curve, film, reach: REACH,
+    ...each(plain, hex), shade, lamps, curve, reach: REACH,
     bodies: worn, givenBodies: worn.map(greyer),
     people: people.map(limbs), given: given.map(limbs),
   };

@@ -21,7 +21,7 @@ export class Pane {
     this.sample = null;
     this.scene = null;
     this.spots = [];
-    this.painted = { floor: "", trails: false, ghosts: false };
+    this.painted = { floor: "", ghosts: false };
     this.ground = new Ground();
     this.wear = () => null;
     this.made = new Map(); // figures of all looks that have been seen, for A and for B
@@ -147,9 +147,6 @@ export class Pane {
 
   paintExtras(put, lens, { theme, clock, skeleton, show, pinned = [], ghosts = [] }) {
     const { scene, sample, painted } = this;
-    if (show.trails) put("trails", figure.trails((f) => this.poseAt(f), clock.shown, clock.fps, skeleton, theme));
-    else if (painted.trails) scene.hide("trails");
-    painted.trails = show.trails;
     const paired = sample.ghostMotion ? poseAt(sample.ghostMotion, clock.shown) : [];
     const other = paired.map((points) => [points, theme.ghost]);
     for (const { index, people } of ghosts) other.push(...people.map((points) => [points, FUTURES[index % FUTURES.length]]));

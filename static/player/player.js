@@ -9,9 +9,7 @@ import { decode, describe } from "./decode.js";
 import { Directing } from "./directing.js";
 import { Framing } from "./framing.js";
 import { Futures } from "./futures.js";
-import * as live from "./stream.js";
 import { Grid } from "./grid.js";
-import { Hover } from "./overlay.js";
 import { Orbit, reducedMotion } from "./orbit.js";
 import { THEMES, themeName } from "./palette.js";
 import { Pane } from "./pane.js";
@@ -29,7 +27,7 @@ export class Player {
     this.controls = new Controls(root);
     this.clock = new Clock();
     this.orbit = new Orbit();
-    this.show = { trails: false, ghosts: false, ...figureAtFirst() };
+    this.show = { ghosts: false, ...figureAtFirst() };
     this.clothes = new Clothes(this);
     this.framing = new Framing(this);
     this.pane = new Pane(this.find(".pdd-pane"));
@@ -37,7 +35,6 @@ export class Player {
     this.grid = new Grid(this.find(".pdd-grid"), this.pane);
     this.focus = null; // the number of the cell of a grid that is seen large
     this.futures = new Futures(this);
-    this.hover = new Hover(this);
     this.actions = new Actions(this);
     this.strip = new Strip(root, { onSeek: (frame) => this.seek(frame) });
     this.data = null;
@@ -94,39 +91,21 @@ export class Player {
       this.refresh();
       return;
     }
-    const goesOn = Boolean(payload.continues) && payload.continues === this.data?.id;
     this.data = decode(payload);
     this.focus = null;
     if (!payload.rounds && !payload.stream) remember();
-    if (this.data.live) live.begin(this.data.samples[0]);
     this.skeleton = describe(this.data.names, this.data.parents);
     this.root.dataset.state = "ready";
     this.rounds = 0;
-    if (!goesOn) this.clock.frame = Math.min(this.data.samples[0].past_until ?? 0, this.data.samples[0].frames - 1);
+    this.clock.frame = Math.min(this.data.samples[0].past_until ?? 0, this.data.samples[0].frames - 1);
     this.controls.load(this.data);
     this.futures.load(this.data);
     this.select(0);
     this.clothes.change();
     this.root.toggleAttribute("data-first", Boolean(payload.rounds)); // nothing is made yet that could be directed
-    if (!goesOn) this.framing.reset();
-    if (this.sample.live) this.clock.pause();
-    else if (!goesOn && !(payload.rounds && reducedMotion())) this.clock.play();
-    if (!payload.rounds && !payload.stream && !this.sample.live) aim(this);
-    this.refresh();
-  }
-
-  /** A part of a motion that is still being made, see stream.js. */
-  arrive(message) {
-    const { sample } = this;
-    if (!sample?.live || message.id !== this.data.id) return;
-    if (message.stop) live.end(sample);
-    if (message.stop || live.arrive(sample, message)) this.select(this.sampleIndex);
-    const reach = sample.live && live.reach(sample);
-    this.clock.limit = sample.live ? reach ?? 0 : null;
-    if (reach && !sample.live.started) {
-      sample.live.started = true;
-      this.clock.play();
-    }
+    this.framing.reset();
+    if (!(payload.rounds && reducedMotion())) this.clock.play();
+    if (!payload.rounds && !payload.stream) aim(this);
     this.refresh();
   }
 
@@ -300,9 +279,7 @@ export class Player {
     });
     futures.place(clock.shown, orbit.view().matrix);
     this.posing?.place(this.pane.spots);
-    this.directing.touching?.place(this.pane.spots);
     if (pose) drawing?.place(orbit.view());
-    if (pose) this.hover.show();
     this.controls.show(this);
     this.strip.show(clock.shown);
     this.pose = posed ?? pose;

@@ -12,7 +12,7 @@ import { simplify } from "./shaders.js";
 
 const HALF = 60; // metres; a box this wide around the origin makes scene units metres and clips nothing
 const KINDS = {
-  ground: "mesh", floor: "lines", bodyA: "mesh", bodyB: "mesh", things: "mesh", futures: "mesh", ghosts: "lines", trails: "lines", paths: "lines",
+  ground: "mesh", floor: "lines", bodyA: "mesh", bodyB: "mesh", things: "mesh", futures: "mesh", ghosts: "lines", paths: "lines",
   bonesA: "lines", bonesB: "lines", jointsA: "points", jointsB: "points",
 };
 const HOLDERS = { lines: "linePlot", points: "scatterPlot", mesh: "mesh" }; // plotly's names for the drawing objects

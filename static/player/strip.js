@@ -64,10 +64,9 @@ export class Strip {
     this.paint();
   }
 
-  /** Draws the curves, as far as they are known; they share one scale from zero. */
+  /** Draws the curves; they share one scale from zero. */
   paint() {
     const { sample, canvas } = this;
-    this.painted = sample?.curves[0]?.values.length;
     if (!sample || this.box.hidden || !canvas.clientWidth) return;
     const ratio = window.devicePixelRatio || 1;
     const [width, height] = [canvas.clientWidth, canvas.clientHeight];
@@ -101,7 +100,6 @@ export class Strip {
     if (!this.sample) return;
     const { curves } = this.sample;
     const at = Math.min(Math.round(frame), this.sample.frames - 1);
-    if (this.painted !== curves[0]?.values.length) this.paint(); // a live motion grows
     // It is as wide as the strip: to move it by a transform costs no layout, and counts as no shift of one.
     this.playhead.style.transform = `translateX(${(100 * frame) / Math.max(this.sample.frames - 1, 1)}%)`;
     curves.forEach((curve, i) => {

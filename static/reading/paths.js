@@ -2,7 +2,6 @@
 // directs the player, see ../player/directing.js.
 
 import { chips } from "../player/paths/walks.js";
-import { withSentence } from "../player/touching.js";
 import { Past, path } from "../story/edits.js";
 
 const SECONDS = 5; // where the page does not say how long the motion will be
@@ -51,18 +50,6 @@ export class Paths {
   keepPath(person, points) {
     this.past.keep(this.given);
     this.show(path(this.given, person, points));
-  }
-
-  /** Puts a sentence behind those of the prompt, as if it were typed, so that the browser can undo it. */
-  say(sentence) {
-    const prompt = this.root.closest(".pd-ask")?.querySelector("textarea");
-    if (!prompt) return;
-    prompt.focus();
-    prompt.select();
-    const text = withSentence(prompt.value, sentence);
-    if (document.execCommand("insertText", false, text)) return;
-    prompt.value = text;
-    prompt.dispatchEvent(new Event("input", { bubbles: true }));
   }
 
   undo() {

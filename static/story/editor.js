@@ -1,15 +1,14 @@
 // The story under the player: beats as blocks in three lanes, a span, poses, and chips of the paths that are drawn on
 // the stage. Its value is a story.
 
-import { Draft } from "./draft.js";
 import { chips } from "../player/paths/walks.js";
 import * as edits from "./edits.js";
-import { block, drawRuler, drawTicks, node } from "./lanes.js";
+import { block, drawRuler, node } from "./lanes.js";
 import { Pins } from "./pins.js";
 import { say } from "../texts.js";
 
 const LANES = [["words", say("story.both")], ["a", "A"], ["b", "B"]];
-const PIXELS = 44; // a second, at least
+const PIXELS = 16; // a second, at least
 
 const plain = (story) => JSON.stringify({ ...story, ahead: false });
 
@@ -24,9 +23,9 @@ export class Editor {
     this.story = edits.empty();
     this.selected = 0;
     this.past = new edits.Past();
-    this.draft = new Draft();
     this.note = null; // stands in for the hint until the next change
     this.pins = new Pins(this);
+    this.shown = 0; // seconds of the motion in the player
     root.addEventListener("click", (event) => this.press(event));
     root.addEventListener("change", (event) => this.field(event));
     root.addEventListener("keydown", (event) => this.key(event));
@@ -50,10 +49,9 @@ export class Editor {
 
   /** What was posed in the player becomes a part of the story, and the time around it is selected. */
   keepPoses(frame, poses) {
-    const motion = this.props.motion?.seconds;
     let story = this.story;
     for (const { person, positions } of poses) story = edits.pose(story, person, frame, positions);
-    if (motion) story = { ...story, span: edits.spanAround(edits.momentOf(frame), motion) };
+    if (this.shown) story = { ...story, span: edits.spanAround(edits.momentOf(frame), this.shown) };
     this.edit(story);
     this.tell(say("story.pinned"));
   }
@@ -89,26 +87,24 @@ export class Editor {
     this.root.closest(".pd-results")?.querySelector(".pd-take")?.click();
   }
 
-  /** Seconds that the line shows: the story's, or the motion's where that is longer. */
+  /** Seconds that the line shows: the story's, or those of the motion in the player where that is longer. */
   get total() {
-    return Math.max(edits.edges(this.story).at(-1), this.props.motion?.seconds ?? 0, 1);
+    return Math.max(edits.edges(this.story).at(-1), this.shown, 1);
   }
 
   /** The value as the server gave it. */
   load(story) {
     if (story === this.given) return;
     this.given = story;
-    const changed = this.draft.given(story);
     const next = edits.read(story);
-    if (plain(next) === this.sent && !changed) {
+    if (plain(next) === this.sent) {
       this.story = { ...this.story, ahead: next.ahead };
       return;
     }
     this.keepPast();
     this.story = next;
     this.bound();
-    if (changed) this.edit(changed);
-    else this.draw();
+    this.draw();
   }
 
   /** The beats, paths and poses that the text over the line gives, unless they were changed since it was written. */
@@ -120,7 +116,6 @@ export class Editor {
     this.hold(edits.read({ ...this.story, ...laid, span: null }));
     this.bound();
     this.draw();
-    this.draft.keep(this.story);
   }
 
   /** The story becomes the component's value. */
@@ -142,7 +137,7 @@ export class Editor {
   measure(lengths) {
     if (!lengths || lengths.length !== this.story.beats.length) return;
     this.story = edits.measured(this.story, lengths);
-    if (!this.find("textarea")) this.draw();
+    this.draw();
   }
 
   /** A change by the user. */
@@ -158,7 +153,6 @@ export class Editor {
     this.hold({ ...next, ahead });
     this.bound();
     this.draw();
-    this.draft.keep(this.story);
     this.changed();
   }
 
@@ -200,7 +194,7 @@ export class Editor {
     if (field === "seconds" && story.beats.length) {
       const free = event.target.value === "";
       this.edit(free ? edits.change(story, selected, { seconds: null }) : edits.stretch(story, selected, value));
-    } else if (field === "loop" || field === "planned") this.edit({ ...story, [field]: event.target.checked });
+    } else if (field === "loop") this.edit({ ...story, loop: event.target.checked });
     else if (field === "from" || field === "to") {
       const [from, to] = ["from", "to"].map((name) => Number(this.find(`[data-field=${name}]`).value));
       if (to > from) this.edit({ ...story, span: [from, Math.min(to, this.total)] });
@@ -247,6 +241,7 @@ export class Editor {
       field.remove();
       const before = this.story.beats[index]?.[lane] ?? "";
       if (keep && words !== before) this.edit(edits.change(this.story, index, { [lane]: words }));
+      else if (this.late) this.draw();
       if (focus) this.find(`.pds-cell[data-beat="${index}"][data-lane="${lane}"]`)?.focus();
     };
     field.addEventListener("keydown", (event) => {
@@ -309,6 +304,11 @@ export class Editor {
     if (!this.root.isConnected) return clearInterval(this.timer);
     const { player } = this;
     if (player && player.director !== this) player.direct(this);
+    const seconds = player?.data ? player.clock.duration : 0;
+    if (seconds !== this.shown) {
+      this.shown = seconds;
+      this.draw();
+    }
     const frame = player?.frameShown;
     if (frame == null || !this.root.offsetParent) return;
     this.find(".pds-playhead").style.left = `${(100 * frame) / 30 / this.total}%`;
@@ -317,11 +317,13 @@ export class Editor {
   // ---- drawing ---------------------------------------------------------------------------------
 
   draw() {
-    if (this.pins.held) return; // it is drawn when that is over
+    this.late = Boolean(this.pins.held || this.find(".pds-words"));
+    if (this.late) return; // it is drawn when that is over
     const { story, total } = this;
     const starts = edits.edges(story);
     const focused = this.root.contains(document.activeElement) && document.activeElement.dataset.key;
     this.find(".pds-line").style.minWidth = `${Math.round(PIXELS * total)}px`;
+    this.player?.root.style.setProperty("--pds-share", (this.shown || total) / total); // its line ends where the motion does
     const lanes = this.find(".pds-lanes");
     lanes.replaceChildren();
     for (const [lane, name] of LANES) {
@@ -336,13 +338,12 @@ export class Editor {
     }
     if (focused) this.find(`[data-key="${focused}"]`)?.focus({ preventScroll: true });
     drawRuler(this.find(".pds-ruler"), total);
-    drawTicks(this.find(".pds-ticks"), this.props.motion?.contacts ?? [], total);
     this.drawSpan(story.span);
     chips(this.find(".pds-walks"), story.paths, (person) => this.keepPath(person, []));
     this.player?.refresh(); // it shows poses
     const beat = story.beats[this.selected];
     this.find("[data-field=seconds]").value = beat ? edits.lengthOf(beat) : "";
-    for (const name of ["loop", "planned"]) this.find(`[data-field=${name}]`).checked = story[name];
+    this.find("[data-field=loop]").checked = story.loop;
     this.find("[data-field=from]").value = story.span?.[0] ?? "";
     this.find("[data-field=to]").value = story.span?.[1] ?? "";
     for (const act of ["split", "left", "right", "again", "delete"]) {

@@ -1,9 +1,7 @@
-// The parts of the line that show and do nothing else than to be pressed: blocks of beats, the ruler, contacts.
+// The parts of the line that show and do nothing else than to be pressed: blocks of beats, the ruler.
 
 import * as edits from "./edits.js";
 import { say } from "../texts.js";
-
-const MOST_TICKS = 80;
 
 export const node = (name, className, text) => {
   const made = document.createElement(name);
@@ -51,18 +49,5 @@ export function drawRuler(ruler, total) {
     const mark = node("span", "", String(second));
     mark.style.left = `${(100 * second) / total}%`;
     ruler.append(mark);
-  }
-}
-
-/** Contacts of the motion under the ruler. */
-export function drawTicks(ticks, contacts, total) {
-  ticks.replaceChildren();
-  for (const contact of contacts.slice(0, MOST_TICKS)) {
-    const tick = node("span", "");
-    tick.dataset.kind = contact.kind;
-    tick.title = `${contact.label}, ${contact.start.toFixed(1)} s`;
-    tick.style.left = `${(100 * contact.start) / total}%`;
-    tick.style.width = `${(100 * (contact.stop - contact.start)) / total}%`;
-    ticks.append(tick);
   }
 }

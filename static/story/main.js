@@ -14,7 +14,7 @@ export function mount(element, props, watch, trigger) {
     editor.measure(props.lengths);
     editor.draw();
   };
-  watch(["value", "laid", "lengths", "motion"], sync);
+  watch(["value", "laid", "lengths"], sync);
   sync();
   root.editor = editor;
 }

@@ -140,28 +140,3 @@ def test_a_kept_run_brings_its_paths_back(drawing: Page, server: Any) -> None:
     page.click("#history-open")
     expect(chips(page)).to_have_count(1)
     assert [point[1:3] for point in paths(page)[0]["points"]] == [point[1:3] for point in path["points"]]
-
-
-def test_a_part_that_is_pressed_is_touched_in_the_prompt(shared_page: Page) -> None:
-    page, prompt = shared_page, shared_page.locator("#prompt textarea")
-    tool, dots = "#player [data-act=touch]", "#player .pdd-handle-touch"
-    page.get_by_role("tab", name="Generate").click()
-    until(page, "window.__pasdedeux.player?.director?.say && window.__pasdedeux.frame !== null")
-    page.fill("#prompt textarea", "A bows")
-    page.evaluate("() => { const { player } = window.__pasdedeux; player.clock.seek(0); player.refresh(); }")
-    page.click(tool)
-    until(page, f"document.querySelector('{dots}')?.style.transform && window.__pasdedeux.loops === 0")
-    expect(page.locator(dots)).to_have_count(24)
-    dot = page.locator(f"{dots}[data-person='1'][data-part=head]")
-    expect(dot).to_have_attribute("title", "Person A touches person B's head.")
-    dot.evaluate("dot => dot.click()")  # a dot of the other person may lie over it
-    expect(prompt).to_have_value("A bows. Person A touches person B's head.")
-    expect(page.locator(dots)).to_have_count(0)
-    expect(page.locator("#reading .pdr-chip")).to_have_count(2)
-    prompt.press("Control+z")
-    expect(prompt).to_have_value("A bows")
-    page.click(tool)  # the first dot has the focus
-    expect(page.locator(f"{dots}:focus")).to_have_count(1)
-    page.keyboard.press("Escape")
-    expect(page.locator(dots)).to_have_count(0)
-    expect(page.locator(tool)).to_have_attribute("aria-pressed", "false")

@@ -27,30 +27,6 @@ def two_people(page: Page) -> None:
     page.wait_for_function("window.__pasdedeux?.positions?.length === 2", timeout=SLOW)
 
 
-def the_lens_is_remembered(page: Page) -> None:
-    """The webcam's lens and a video's are two; neither is asked for where nobody films."""
-    lens = page.locator(f"{PANEL} .pdcam-lens")
-    expect(lens).to_be_hidden()
-    page.select_option(f"{PANEL} .pdlive-source", "webcam")
-    page.click(f"{PANEL} .pdcam-more summary")
-    expect(lens).to_have_value("70")
-    for typed, taken in (("300", "130"), ("", "70"), ("85", "85")):
-        lens.fill(typed)
-        lens.press("Tab")
-        expect(lens).to_have_value(taken)
-    page.select_option(f"{PANEL} .pdlive-source", "video")
-    expect(lens).to_have_value("70")
-    page.select_option(f"{PANEL} .pdlive-source", "webcam")
-    expect(lens).to_have_value("85")
-    sent = page.evaluate(
-        "name => import(name).then(({ lensOf }) => ['webcam', 'video'].map(lensOf))",
-        page.evaluate(
-            "performance.getEntriesByType('resource').map(({ name }) => name).find((name) => name.endsWith('/lens.js'))"
-        ),
-    )
-    assert sent == [85, 70], "what a stream and a film are opened with"
-
-
 def late(route: Route) -> None:
     """Lets a message reach the server as late as on a busy machine: a recorded person loses nothing by it."""
     time.sleep(1.0)
@@ -82,7 +58,6 @@ def test_a_recorded_person_is_answered_as_they_move(
     page.get_by_role("tab", name="React").click()
     line = page.locator(f"{PANEL} .pdcam-line")
     page.click(f"{PANEL} .pdcam-open")
-    the_lens_is_remembered(page)
 
     for name, sentence in (("NotAllowedError", "The camera may not be used"), ("NotFoundError", "No camera was found")):
         page.evaluate(

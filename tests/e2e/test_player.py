@@ -9,10 +9,6 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from motion import Clip
-from tests.ui.stub_engine import walking
-from webdemo.view.payload import pack_positions, player_payload
-
 from .playing import drag, has_color, hook, pause, press, stage_pixels, until, yaw
 
 pytestmark = pytest.mark.e2e
@@ -120,7 +116,7 @@ def test_keyboard(player):
         seen.append(tuple(round(v, 2) for v in hook(page, "eye")))
     assert len(set(seen)) == 6
     assert page.locator("[data-camera=b]").get_attribute("aria-pressed") == "true"
-    for key, act in (("f", "follow"), ("t", "trails"), ("g", "ghosts"), ("l", "loop")):
+    for key, act in (("f", "follow"), ("g", "ghosts"), ("l", "loop")):
         control = page.locator(f"[data-act={act}]")
         before = control.get_attribute("aria-pressed")
         page.keyboard.press(key)
@@ -167,7 +163,7 @@ def test_everything_has_a_name_and_can_be_reached(player):
     assert {"play", "fullscreen", "help", "pdd-range"} <= reached
 
 
-def test_trails_and_onion_skin_are_drawn(player):
+def test_the_onion_skin_is_drawn(player):
     page = player()
     pause(page)
     page.locator(".pdd-range").fill("60")
@@ -176,15 +172,11 @@ def test_trails_and_onion_skin_are_drawn(player):
     page.keyboard.press("g")
     page.wait_for_timeout(800)
     ghosts = stage_pixels(page)
-    page.keyboard.press("t")
-    page.wait_for_timeout(800)
-    trails = stage_pixels(page)
 
     def changed(a, b):
         return int((np.abs(a[:, :-60] - b[:, :-60]).max(axis=-1) > 24).sum())
 
     assert changed(plain, ghosts) > 1000
-    assert changed(ghosts, trails) > 100
 
 
 def test_meshes_are_drawn_by_shaders_of_our_own(player):
@@ -258,45 +250,3 @@ def test_saves_a_picture(player):
     image = np.asarray(Image.open(download.value.path()).convert("RGB"), dtype=np.int16)
     assert has_color(image, blue=True)
     assert has_color(image, blue=False)
-
-
-def test_the_joint_under_the_pointer_says_where_it_is_and_how_fast(player):
-    page = player()
-    pause(page)
-    page.evaluate("window.__pasdedeux.player.seek(60)")
-    until(page, "window.__pasdedeux.frame === 60 && window.__pasdedeux.loops === 0")
-    x, y = page.evaluate("""() => {
-        const { player } = window.__pasdedeux;
-        const box = player.stage.getBoundingClientRect();
-        const [left, top] = player.pane.spots[0][15];
-        return [box.left + left, box.top + top];
-    }""")
-    page.mouse.move(x, y)
-    tip = page.locator(".pdd-tip")
-    until(page, "document.querySelector('.pdd-tip').innerText.includes('m high')")
-    assert tip.inner_text().startswith("A · head — 1.") and tip.inner_text().endswith(" m/s")
-    page.mouse.move(5, 5)
-    tip.wait_for(state="hidden")
-
-
-def test_the_distance_is_drawn_as_far_as_it_is_known(player):
-    page = player()
-    actor: Clip = walking(4.0).a
-    page.evaluate(
-        "payload => window.__pasdedeux.player.load(payload)", {**player_payload(actor), "id": "one", "live": True}
-    )
-    strip = page.locator(".pdd-strip")
-    assert strip.is_hidden()
-    other = actor.positions + np.float32([0.6, 0.3, 0.8])
-    for start, stop in ((0, 30), (24, 60), (66, 80)):  # the last one follows a message that was missed
-        message = {"id": "one", "start": start, "frames": pack_positions(other[None, start:stop]), "text": ""}
-        page.evaluate("message => window.__pasdedeux.player.arrive(message)", message)
-        known = page.evaluate("window.__pasdedeux.player.sample.curves.map(curve => curve.values)")
-        assert len(known) == 1 and len(known[0]) == stop
-        np.testing.assert_allclose(known[0], 1.0, atol=2e-3)  # over the floor: 0.6 and 0.8
-        until(page, f"window.__pasdedeux.player.strip.painted === {stop}")
-    assert strip.is_visible()
-    assert page.locator(".pdd-values dd").all_text_contents() == ["1.00 m"]
-    page.evaluate("window.__pasdedeux.player.arrive({id: 'one', stop: true})")
-    assert page.evaluate("window.__pasdedeux.player.sample.frames") == 80
-    assert page.locator(".pdd-values dd").all_text_contents() == ["1.00 m"]

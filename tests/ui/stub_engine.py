@@ -16,7 +16,7 @@ from motion.transforms import heading_matrix
 from webdemo.inference.live.partner import Belief
 from webdemo.inference.methods import method
 from webdemo.inference.requests import GenerateRequest, ReactRequest
-from webdemo.inference.requests.live import LiveFrame, LiveProgress, LiveRequest, LiveTake, paced
+from webdemo.inference.requests.live import LiveTake
 from webdemo.inference.requests.predict import PredictRequest, PredictResult, with_people
 from webdemo.inference.run import Cancelled, Progress, Result, StageTimer
 from webdemo.inference.story import SceneProgress, SceneRequest
@@ -114,11 +114,8 @@ class StubEngine:
     """Answers as the real engine does, after ``steps`` pauses of ``pause`` seconds.
 
     A prompt that holds the word "impossible" is refused, one with "crash" raises an error that is no
-    sentence for a user, one with "hang" never ends, and one with "unknown" comes with a note. A live run
-    waits at the frame ``live_waits_at`` until that is another.
+    sentence for a user, one with "hang" never ends, and one with "unknown" comes with a note.
     """
-
-    live_waits_at: int | None = None
 
     def __init__(self, *, pause: float = 0.0, load: float = 0.0, partner_pause: float = 0.0) -> None:
         self.pause, self.partner_pause = pause, partner_pause
@@ -167,9 +164,7 @@ class StubEngine:
         yield Progress(stage="text")
         while "hang" in request.prompt:
             time.sleep(0.1)
-        if isinstance(request, LiveRequest):
-            yield from self._live(request, cancel)
-        for step in range(0 if isinstance(request, LiveRequest) else request.steps):
+        for step in range(request.steps):
             if cancel is not None and cancel.cancelled:
                 raise Cancelled("The run was cancelled.")
             if "crash" in request.prompt and step == 1:
@@ -233,13 +228,3 @@ class StubEngine:
             readouts=tuple(compare(None, duet) for duet in duets),
             timings={"sampling": 0.1},
         )
-
-    def _live(self, request: LiveRequest, cancel: Any) -> Iterator[LiveProgress]:
-        other = beside(request.actor, "a", request.seed).b.positions
-        frames = (LiveFrame(i, frame[None], frame[None], 0.0) for i, frame in enumerate(other))
-        for frame in paced(frames):
-            while frame.index == self.live_waits_at and not (cancel is not None and cancel.cancelled):
-                time.sleep(0.01)
-            if cancel is not None and cancel.cancelled:
-                raise Cancelled("The run was cancelled.")
-            yield LiveProgress(stage="sample", step=frame.index + 1, total=len(other), unit="frame", frame=frame)

@@ -60,7 +60,7 @@ def _prediction(dice: random.Random, steps: int) -> Job:
 def _sheet(dice: random.Random, steps: int) -> Job:
     """A contact sheet, which waits in the queue of events."""
     look = ("png", "bodies", "light", "threequarter", False, 24, dice.choice((480, 640)), 360)
-    return Job(SHEET, (None, *look, "", 0, 0, "", ""), {}, 1.0)
+    return Job(SHEET, (None, *look, "", 0, "", ""), {}, 1.0)
 
 
 KINDS = (_generation, _generation, _generation, _generation, _reaction, _sheet, _prediction)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -51,6 +52,15 @@ ENDPOINTS = (
 )
 """Gradio's client in the browser takes the page's first function for "/predict", so that one comes first."""
 
+_WRITE = """() => {
+  const tab = document.activeElement;
+  const write = () => {
+    const field = document.getElementById(%s)?.querySelector("textarea");
+    if (document.activeElement === tab) field?.focus({ preventScroll: true });
+  };
+  if (!tab?.matches(":focus-visible")) setTimeout(write, 300);
+}"""
+"""JavaScript that makes a field ready for typing where its tab was opened by a pointer; to be filled with its id."""
 _HEADER = f'<div class="pd-brand"><h1>Pas de Deux</h1><p>{say("page.intro")}</p></div>'
 _CACHE = (1800, 7200)
 """Seconds: how often Gradio's copies of downloads are looked through, and how old they may get."""
@@ -158,6 +168,7 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
         for name, job in jobs.items():
             with gr.Tab(say(job.named), id=name) as shown[name]:
                 job.build(demo, record)
+        shown["scene"].select(None, js=_WRITE % json.dumps(jobs["scene"].prefix + "prompt"), **QUIET)
         predict = jobs["predict"]
         assert isinstance(predict, PredictTab)
         react = jobs["react"]

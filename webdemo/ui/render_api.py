@@ -1,4 +1,4 @@
-"""``/render``: a motion file → a film, a contact sheet, a figure or a mesh, for programs."""
+"""``/render``: a motion file → a film, a contact sheet or a figure, for programs."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from webdemo.ui.components.film import LONGEST, in_time
 from webdemo.ui.text.words import error_line
 from webdemo.view.camera import VIEWS
 from webdemo.view.film import FPS, SIZE, write_film
-from webdemo.view.mesh import SUFFIXES as MESHES
-from webdemo.view.mesh import frame_at, write_mesh
 from webdemo.view.plotly_figure import SUFFIX as FIGURE
 from webdemo.view.plotly_figure import write_figure
 from webdemo.view.sheet import SUFFIXES as SHEETS
@@ -27,7 +25,7 @@ from .places import READING
 
 
 class RenderEndpoint:
-    """``/render``: a motion file → a film, a contact sheet, a plotly figure or a mesh.
+    """``/render``: a motion file → a film, a contact sheet or a plotly figure.
 
     Args:
         page: what tabs and endpoints share.
@@ -41,9 +39,7 @@ class RenderEndpoint:
         with gr.Row(visible=False):
             inputs = [
                 gr.File(label="the motion of one person or two: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
-                gr.Textbox(
-                    "mp4", label="film: mp4, webm, gif; contact sheet: png, pdf; plotly figure: html; mesh: ply, obj"
-                ),
+                gr.Textbox("mp4", label="film: mp4, webm, gif; contact sheet: png, pdf; plotly figure: html"),
                 gr.Textbox(Style.look, label=" or ".join(LOOKS)),
                 gr.Textbox(Style.theme, label="light or dark"),
                 gr.Textbox("threequarter", label=" or ".join(VIEWS)),
@@ -53,14 +49,13 @@ class RenderEndpoint:
                 gr.Number(SIZE[1], label="height of a film in pixels: even, 64 to 1080"),
                 gr.Textbox("", label=WHICH),
                 gr.Number(0, label=RATE),
-                gr.Number(0, label="second of the motion that a mesh shows"),
                 gr.Textbox("", label=UP),
                 gr.Textbox("", label=ORDER),
             ]
             gr.Button().click(
                 self.render,
                 inputs=inputs,
-                outputs=gr.File(label="the film, sheet, figure or mesh"),
+                outputs=gr.File(label="the film, sheet or figure"),
                 api_name="render",
                 concurrency_limit=1,
                 concurrency_id="film",
@@ -79,11 +74,10 @@ class RenderEndpoint:
         height: float,
         animation: str = "",
         file_fps: float = 0.0,
-        second: float = 0.0,
         up: str = "",
         order: str = "",
     ) -> str:
-        """A film, a contact sheet, a plotly figure or a mesh of a motion file. An error is one sentence."""
+        """A film, a contact sheet or a plotly figure of a motion file. An error is one sentence."""
         folder = self.page.shelf.folder()
         try:
             if not motion:
@@ -104,8 +98,6 @@ class RenderEndpoint:
                 return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
             if suffix == FIGURE:
                 return str(write_figure(found, out, title=name, theme=theme))
-            if suffix in MESHES:
-                return str(write_mesh(found, out, frame=frame_at(found, second), style=style))
             size = (int(width), int(height))
             film = write_film(
                 [Pane(found)], out, fps=fps, size=size, style=style, view=view, title=name, progress=in_time()

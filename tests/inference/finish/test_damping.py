@@ -150,6 +150,17 @@ def test_an_asked_touch_brings_the_hands_together(model):
     assert gap(model, met) < 0.12
 
 
+def test_it_says_how_far_the_last_step_moved_the_joints(model):
+    x = standing(model, 0.15)
+    damping = Damping(model, 0.7, frames=61, timesteps=[500, 100])
+    damping(x, 500)
+    assert damping.moved is None, "only the last timestep is what is seen"
+    after = damping(x, 100)
+    apart = model.positions(after)[0] - model.positions(x)[0]
+    assert damping.moved.tolist() == pytest.approx([float(apart[:, :, :61].norm(dim=-1).mean())])
+    assert 0.0001 < float(damping.moved) < 0.1
+
+
 def test_without_damping_nothing_is_corrected(model):
     x = standing(model, 0.4)
     asked = {"frames": 61, "timesteps": [999, 501, 0], "touches": [HANDS]}

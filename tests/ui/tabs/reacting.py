@@ -12,7 +12,7 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 from tests.ui.tab_events import changes
 from webdemo.ui.tabs.react import ReactTab
 
-LOADED = ("source", "line", "player", "trim", "person", "start", "end", "found")
+LOADED = ("source", "line", "player", "trim", "person", "start", "end", "found", "go")
 READ = (*LOADED, "up", "unit", "fps", "order", "animation")
 FIELDS = {
     "person": "a",

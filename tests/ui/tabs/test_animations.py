@@ -87,7 +87,7 @@ def test_an_opened_run_was_made_from_its_animation(tab: ReactTab, takes: Path) -
 
 def test_a_past_is_chosen_likewise(tmp_path: Path, takes: Path) -> None:
     tab = built(PredictTab, tmp_path / "files")
-    names = ("source", "line", "player", "marker", "animation")
+    names = ("source", "line", "player", "marker", "go", "animation")
     source = [changes(names[:-1], u) for u in tab.past.upload(str(takes))][-1]["source"]
     assert offered_animations(source) == shown(1)
     *_, again = [changes(names, u) for u in tab.past.read_again(source, 2)]

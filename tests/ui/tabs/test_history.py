@@ -86,7 +86,7 @@ def test_a_card_tells_everything_of_a_run() -> None:
     assert ["Given", "walker.bvh"] in settings(run) and ["The given person", "reacts"] in settings(run)
     assert ["Seed", "12345678"] in settings(run) and ["Guidance", "4.5"] in settings(run)
     (card,) = shown(Found([run], 1), empty="")["entries"]
-    assert (card["favourite"], card["tags"], card["note"], card["frame"]) == (True, ["paper"], "Hands.", 4)
+    assert (card["favourite"], card["tags"], card["note"]) == (True, ["paper"], "Hands.")
     assert facts(replace(run, state="failed", links=0)).endswith("✕ failed")
 
 
@@ -123,7 +123,7 @@ def test_runs_are_kept_named_removed_and_brought_back() -> None:
     history = tab(book)
     assert "Kept" in press(history, "favour", "hug").line
     assert "No longer kept" in press(history, "favour", "wave").line
-    fields = {"title": "Best", "tags": "a b", "note": "n", "frame": 3}
+    fields = {"title": "Best", "tags": "a b", "note": "n"}
     assert "Saved" in press(history, "describe", "hug", **fields).line
     assert ("describe", "hug", fields) in book.done
     gone = press(history, "remove", "hug")
@@ -162,8 +162,8 @@ def test_a_run_without_a_result_is_run_again() -> None:
     lost = replace(entry("lost"), state="interrupted", request={"prompt": "They hug.", "seconds": 2.0, "seed": 9})
     asked: list[Any] = []
 
-    def run(session: str, request: Any, *, alone: bool) -> Iterator[Any]:
-        asked.append((request.prompt, request.seconds, request.seed, alone))
+    def run(session: str, request: Any) -> Iterator[Any]:
+        asked.append((request.prompt, request.seconds, request.seed))
         yield Progress(stage="text")
         yield Result(duets=(), manifest={})
 
@@ -176,7 +176,7 @@ def test_a_run_without_a_result_is_run_again() -> None:
         return list(history.again(who, event))[-1]
 
     assert "its result is in the list" in again("lost")
-    assert asked == [("They hug.", 2.0, 9, True)]
+    assert asked == [("They hug.", 2.0, 9)]
     assert "send the file again" in again("r") and len(asked) == 1
 
 

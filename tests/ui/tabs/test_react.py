@@ -77,8 +77,9 @@ def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(tab: ReactTab, 
 @pytest.mark.parametrize("person", ["a", "b"])
 def test_a_person_of_the_last_result_is_taken(tab: ReactTab, walker: Path, person: str) -> None:
     record = run(tab, upload(tab, walker)[-1]["source"])[-1]["record"]
-    last = [changes(LOADED, updates) for updates in tab.actor.take_result(person, record)][-1]
-    assert last["person"] == gr.update(choices=BOTH, visible=True, value=person)
+    reading, last = [changes(LOADED, updates) for updates in tab.actor.take_result(record)]
+    assert (reading["go"]["interactive"], last["go"]["interactive"]) == (False, True), "not before it is read"
+    assert last["person"] == gr.update(choices=BOTH, visible=True, value="a")
     again = run(tab, last["source"], person=person)[-1]["record"].result.duets[0]
     given = record.result.duets[0].people["ab".index(person)]
     assert again.a.positions.tobytes() == given.positions.tobytes()
@@ -140,18 +141,6 @@ def test_errors_are_one_sentence_and_the_next_run_works(
     assert 'role="alert"' in last["line"]
     assert "record" not in last
     assert "record" in run(tab, source)[-1]
-
-
-def test_the_second_person_can_begin_as_the_files_other_stands(tab: ReactTab, walkers: Path, walker: Path) -> None:
-    source = upload(tab, walkers)[-1]["source"]
-    run(tab, source, method="regennet", person="b", start=1.0, end=3.0, keep=True)
-    asked = tab.page.engine.requests[-1]
-    assert np.allclose(asked.first_pose, walking(12.0).a.positions[30], atol=2e-3)
-    for changed in ({"keep": False}, {"keep": True, "method": "intergen"}):
-        run(tab, source, **{"method": "regennet", "person": "b", "start": 1.0, "end": 3.0, **changed})
-        assert tab.page.engine.requests[-1].first_pose is None
-    alone = upload(tab, walker)[-1]["source"]
-    assert "does not hold two people" in run(tab, alone, method="regennet", keep=True)[-1]["line"]
 
 
 def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, walker: Path) -> None:

@@ -70,19 +70,11 @@ def test_a_film_shows_the_last_result(tab: GenerateTab, monkeypatch: pytest.Monk
 def test_a_film_is_what_the_player_shows(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: dict[str, Any] = {}
     monkeypatch.setattr("webdemo.ui.components.film.film.write_film", lambda *_, **options: asked.update(options))
-    shown = {
-        "yaw": 1.5,
-        "elevation": 9,
-        "view": "top",
-        "follow": False,
-        "trails": True,
-        "look": "both",
-        "theme": "dark",
-    }
+    shown = {"yaw": 1.5, "elevation": 9, "view": "top", "follow": False, "look": "both", "theme": "dark"}
     record = result_of(tab)
     make_film(record, json.dumps(shown), tab.page.shelf.folder())
     assert (asked["yaw"], asked["elevation"], asked["view"], asked["follow"]) == (1.5, 1.5, "top", False)
-    assert asked["style"] == Style(look="both", trails=True, theme="dark")
+    assert asked["style"] == Style(look="both", theme="dark")
     assert asked["title"] == "two people walk"
 
 

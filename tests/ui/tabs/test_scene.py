@@ -7,12 +7,12 @@ import gradio as gr
 import numpy as np
 import pytest
 
-from motion import Duet, InputError
+from motion import InputError
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, sentences
 from webdemo.ui.components.exports import Record, Shelf
 from webdemo.ui.components.scene_parts import part_request
-from webdemo.ui.components.story import motion_marks, story_value
-from webdemo.ui.components.story_words import edited, lay_out, settled, story_text, use_text, written
+from webdemo.ui.components.story import story_value
+from webdemo.ui.components.story_words import edited, lay_out, settled, story_text, written
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Entry, Kept, Opened
 from webdemo.ui.runs import Loader, Runs
@@ -55,10 +55,8 @@ def test_a_sentence_is_laid_out_and_made_beat_by_beat(tab: SceneTab) -> None:
     assert [beat["words"] for beat in laid["beats"]] == ["They meet.", "They hug."]
     lengths = [u["player"]["value"]["samples"][0]["frames"] for u in updates if "value" in u.get("player", {})]
     assert lengths == sorted(lengths) and len(set(lengths)) == 2
-    assert 'words = "They hug."' in next(u["text"] for u in updates if "text" in u)
     record = updates[-1]["record"]
     assert (record.prompt, record.result.manifest["request"]["seed"]) == ("They meet. They hug.", 3)
-    assert updates[-1]["story"]["motion"]["seconds"] == record.result.duets[0].seconds
 
 
 def test_of_the_words_and_the_beats_what_was_changed_last_is_made_and_shown(tab: SceneTab) -> None:
@@ -112,16 +110,16 @@ def test_beats_whose_words_stay_keep_what_was_set_for_them() -> None:
 
 def test_words_that_were_written_are_laid_out(tab: SceneTab) -> None:
     laid = lay_out("They meet. Then they hug.")[1]
-    line_up, text, line, words = written("They meet. Then they bow.", laid, 4)
+    line_up, line, words = written("They meet. Then they bow.", laid)
     assert [beat["words"] for beat in line_up["laid"]["beats"]] == ["They meet.", "They bow."]
     assert set(line_up["laid"]) == {"beats", "paths", "poses"}, "ticks and the span are the line's own"
-    assert "seed = 4" in text and "2 beats" in line and words == gr.skip()
-    nothing = (gr.skip(),) * 4
-    assert written("They meet. Then they hug.", laid, 4) == nothing
-    assert written("They run.", laid | {"ahead": True}, 4) == nothing, "the beats are newer"
-    assert written("", None, 4) == nothing
-    assert written("", laid, 4)[3] == "They meet. They hug."
-    assert "no valid TOML" in written("[[beat]]\nwords = 'x", laid, 4)[2]
+    assert "2 beats" in line and words == gr.skip()
+    nothing = (gr.skip(),) * 3
+    assert written("They meet. Then they hug.", laid) == nothing
+    assert written("They run.", laid | {"ahead": True}) == nothing, "the beats are newer"
+    assert written("", None) == nothing
+    assert written("", laid)[2] == "They meet. They hug."
+    assert "no valid TOML" in written("[[beat]]\nwords = 'x", laid)[1]
 
 
 @pytest.mark.parametrize(
@@ -141,23 +139,14 @@ def test_what_cannot_be_made_is_one_sentence(tab: SceneTab, story: Any, says: st
     assert says in last["line"] and "pd-error" in last["line"]
 
 
-def test_an_edit_gives_lengths_and_text(tab: SceneTab) -> None:
-    line_up, text, line, words = edited({"beats": [{"words": "They dance."}, {"words": "They nod."}]}, 4)
-    assert line_up["lengths"][0] > line_up["lengths"][1] and "seed = 4" in text and line == ""
+def test_an_edit_gives_lengths_and_what_is_wrong(tab: SceneTab) -> None:
+    line_up, line, words = edited({"beats": [{"words": "They dance."}, {"words": "They nod."}]})
+    assert line_up["lengths"][0] > line_up["lengths"][1] and line == ""
     assert words == gr.skip()
     ahead = {"beats": [{"words": "They dance."}, {"words": ""}, {"a": "waves"}], "ahead": True}
-    line_up, text, line, words = edited(ahead, 4)
-    assert text == gr.skip() and "Beat 2 has no words" in line
+    line_up, line, words = edited(ahead)
+    assert "Beat 2 has no words" in line
     assert words == "They dance. One person waves."
-
-
-def test_the_text_becomes_the_line(tab: SceneTab) -> None:
-    text = 'seed = 9\nsteps = 12\nguidance = 5.5\n[[beat]]\nwords = "They bow."\n'
-    story, words, line, *settings = use_text(text)
-    assert (story["beats"][0]["words"], words) == ("They bow.", "They bow.") and "1 beat, " in line
-    assert settings == [9, gr.skip(), 5.5, 12, gr.skip()], "what the text does not name stays"
-    story, words, line, *settings = use_text("[[beat]]\nwrods = 1\n")
-    assert story == words == gr.skip() and "Line 2" in line and settings == 5 * [gr.skip()]
 
 
 def part(tab: SceneTab, which: str, record: Record | None, story: Any, words: str = "") -> dict[str, Any]:
@@ -195,7 +184,7 @@ def test_futures_begin_at_the_playhead_and_one_is_taken(tab: SceneTab) -> None:
     assert [(b["words"], b["seconds"]) for b in beats] == [("They meet.", 2.0), ("They bow.", 3.0)]
     assert last["prompt"] == "They meet. They bow."
     assert last["player"]["value"]["futures"] == 60
-    player, line, kept, _, past = tab.take_shown(last["record"], ["run"], '{"sample": 2}')
+    player, line, kept, past = tab.take_shown(last["record"], ["run"], '{"sample": 2}')
     assert kept.result.duets == found.duets[2:] and "number 3" in line and "futures" not in player["value"]
     assert past == ["run", found.run], "Undo opens the choice again"
 
@@ -253,16 +242,6 @@ def test_a_kept_part_opens_with_the_whole_story(tab: SceneTab) -> None:
         story = found[tab.line_up]["value"]
         assert [beat["words"] or "…" for beat in story["beats"]] == words
         assert [pose["seconds"] for pose in story["poses"]] == [2.0]
-        assert words[-1] == "…" or "[[pose]]" in found[tab.text]
-
-
-def test_contacts_are_marked_in_seconds() -> None:
-    still = np.zeros((2, 60, 22, 3))
-    marks = motion_marks(
-        Duet.from_positions(still, fps=30.0), {"contacts": [{"start": 15, "stop": 30, "kind": "hands", "label": "x"}]}
-    )
-    assert marks["contacts"] == [{"start": 0.5, "stop": 1.0, "kind": "hands", "label": "x"}]
-    assert marks["seconds"] == 2.0
 
 
 def test_a_span_keeps_the_poses_and_the_way_that_fall_into_it(tab: SceneTab) -> None:
@@ -294,7 +273,7 @@ def test_paths_from_the_words_are_switched_on_the_line(tab: SceneTab) -> None:
     line = {"beats": [], "planned": False}  # ticked off before there is a story
     last = generate(tab, story=line)[-1]
     assert last["record"].result.manifest["request"]["planned"] is False
-    assert last["story"]["value"]["planned"] is False and "planned = false" in last["text"]
+    assert last["story"]["value"]["planned"] is False
     # It stays so in parts, with another sentence, with an example and when the run is opened.
     laid = last["story"]["value"]
     for which in ("span", "futures"):
@@ -302,14 +281,14 @@ def test_paths_from_the_words_are_switched_on_the_line(tab: SceneTab) -> None:
         assert made["record"].result.manifest["request"]["planned"] is False
         assert which == "span" or made["story"]["value"]["planned"] is False
     assert generate(tab, "They wave.", laid)[-1]["story"]["value"]["planned"] is False
-    assert "planned = false" in lay_out("They wave.", laid)[2]
-    assert "planned" not in lay_out("They wave.")[2]
+    assert lay_out("They wave.", laid)[1]["planned"] is False
+    assert lay_out("They wave.")[1]["planned"] is True
     entry = Entry(id="x", kind="scene", title="t", state="done", request=last["record"].result.manifest["request"])
     opened = tab.opened(Opened(entry=entry, result=last["record"].result))
-    assert opened[tab.line_up]["value"]["planned"] is False and "planned = false" in opened[tab.text]
+    assert opened[tab.line_up]["value"]["planned"] is False
     # A story as text says it itself.
     text = 'planned = %s\n[[beat]]\nwords = "They bow."\n'
-    assert use_text(text % "false")[0]["planned"] is False
+    assert generate(tab, text % "false", None)[-1]["story"]["value"]["planned"] is False
     assert generate(tab, text % "true", laid)[-1]["story"]["value"]["planned"] is True
 
 
@@ -320,7 +299,7 @@ def test_every_story_of_the_page_is_read_in_limited_time(tab: SceneTab, monkeypa
     words = "They bow. They hug."
     for updates in (generate(tab, words), generate(tab, words, laid)):
         assert said in str(updates[-1]["line"]) and "record" not in updates[-1]
-    assert said in str(use_text(words)[2]) and said in str(written(words, laid, 0)[2])
+    assert said in str(written(words, laid)[1])
     fields = {"record": record, "sample": 0, "frame": 30, "story": laid, "words": words, "part": "futures"}
     for part in ({"part": "futures"}, {"part": "span", "story": {**laid, "span": [0.0, 1.0]}}):
         with pytest.raises(InputError, match=said):

@@ -97,6 +97,10 @@ def test_a_line_says_what_the_settings_did() -> None:
     assert line(None) == "" == line(), "no sentence, no plan"
     assert "fixes all of this motion" in line(0.999) and "The network makes all" in line(0.0, 0.0)
     assert "fixes 62 %" in line(0.62) and "fixes 5 to 62 %" in line(0.62, 0.05)
+    damped = Result(
+        duets=(), manifest={}, readouts=({"planned": 0.5, "damped": 0.01}, {"planned": 0.5, "damped": 0.03})
+    )
+    assert "damping moved the joints by 2.0 cm on average" in effect_line([damped])
     assert "foot skate" in effect_line([result()]) and "→" in effect_line([result()])
 
 

@@ -271,6 +271,8 @@ class Damping:
         self.space, self.frames = space, frames
         self.shares, self.last = shares(threshold, timesteps), timesteps[-1]
         self.frozen, self.touches = frozen, touches
+        self.moved: Tensor | None = None
+        """(B,) metres by which the correction at the last timestep moved the joints, on average; None without one."""
 
     def due(self, timestep: int) -> bool:
         """True if anything is corrected at a timestep of the sampler."""
@@ -295,4 +297,13 @@ class Damping:
             if self.frozen is not None:
                 move = move.masked_fill(self.frozen, 0.0)
             x0 = x0.detach() - move / scale
-        return torch.lerp(before, x0, self.shares[timestep])
+        corrected = torch.lerp(before, x0, self.shares[timestep])
+        if timestep == self.last:
+            self.moved = self._between(before, corrected)
+        return corrected
+
+    def _between(self, x: Tensor, other: Tensor) -> Tensor:
+        """(B,) metres between the joints of two motions (B, tokens, F), on average."""
+        with torch.no_grad():
+            apart = self.space.positions(other)[0] - self.space.positions(x)[0]
+        return torch.linalg.vector_norm(apart[:, :, : self.frames], dim=-1).mean((1, 2, 3))

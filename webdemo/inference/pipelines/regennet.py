@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Generator, Iterator
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -31,7 +31,7 @@ from webdemo.inference.finish.cleanup import FollowingCleanup, clean_person
 from webdemo.inference.finish.damping import Beside, Damping
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import ReactRequest
-from webdemo.inference.requests.live import LiveFrame, LiveProgress, LiveRequest, paced
+from webdemo.inference.requests.live import LiveFrame
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .given import reacted, settle
@@ -190,12 +190,9 @@ class ReGenNetPipeline:
         """Returns (raw, shown), each (samples, T, 22, 3) in the actor's world."""
         total = request.actor.num_frames
         live = []
-        plays = isinstance(request, LiveRequest)
-        frames = self._live(request, condition)
-        for frame in paced(frames) if plays else frames:
+        for frame in self._live(request, condition):
             live.append(frame)
-            done = timer.progress("sample", frame.index + 1, total, "frame")
-            yield LiveProgress(frame=frame, **asdict(done)) if plays else done
+            yield timer.progress("sample", frame.index + 1, total, "frame")
             cancel.raise_if_cancelled()
         delays = [frame.seconds for frame in live]
         timer.stages["delay of a frame, median"] = round(float(np.median(delays)), 4)

@@ -44,11 +44,13 @@ FAR = 6.0
 class Made:
     """The motion of a window: positions (2, frames, 22, 3) in the scene's world, and notes.
 
-    ``planned`` is the share of it that the plan, or given paths and poses, laid out for the network.
+    ``planned`` is the share of it that the plan, or given paths and poses, laid out for the network, and ``damped`` the
+    metres by which damping moved the joints at the last timestep, on average.
     """
 
     positions: Array
     planned: float
+    damped: float
     notes: tuple[str, ...] = ()
 
 
@@ -115,11 +117,12 @@ class SceneMaker:
             )
         steps, done, duets = request.steps * len(listed) * request.samples, 0, []
         made_plans: list[WindowPlan] = []
-        shares: list[float] = []
+        effects: list[dict[str, float]] = []
         planning = kept.notes if kept else notes
         said = [*planning, *_notes(request)]
         for sample in range(request.samples):
-            scene, laid = _blank(request), 0.0
+            scene, effect = _blank(request), {"planned": 0.0, "damped": 0.0}
+            total = sum(window.stop - window.start for window in listed)
             for window in listed:
                 cancel.raise_if_cancelled()
                 setting = Setting.of(request, window, scene, kept.windows[len(made_plans)] if kept else None)
@@ -128,7 +131,9 @@ class SceneMaker:
                 made = yield from self._window(request, sample, setting, cancel, timer, done, steps)
                 scene[:, window.start : window.stop] = made.positions
                 said += made.notes
-                laid += made.planned * made.positions.shape[1]
+                weight = made.positions.shape[1] / total
+                effect["planned"] += made.planned * weight
+                effect["damped"] += made.damped * weight
                 done += request.steps
                 finished = Duet.from_positions(scene[:, : window.stop], fps=FPS, roles=NAMES)
                 yield SceneProgress(
@@ -143,16 +148,14 @@ class SceneMaker:
             if request.loop:
                 _close(request, scene)
             duets.append(_duet(request, scene, sample))
-            shares.append(laid / sum(window.stop - window.start for window in listed))
+            effects.append(effect)
         said += _distance_note(duets, request)
         plan = KeptPlan(request.plans, windows=tuple(made_plans), notes=tuple(planning))
         yield timer.progress("finish")
         yield Result(
             duets=tuple(duets),
             manifest={"plan": replace(plan, finishes=finishes(request)).to_dict()},
-            readouts=tuple(
-                {**compare(None, duet), "planned": share} for duet, share in zip(duets, shares, strict=True)
-            ),
+            readouts=tuple({**compare(None, duet), **effect} for duet, effect in zip(duets, effects, strict=True)),
             notes=tuple(dict.fromkeys(said)),
         )
 
@@ -179,7 +182,7 @@ class SceneMaker:
             if isinstance(event, Result):
                 positions = setting.made(event.duets[0].positions)
                 notes = tuple(_of_beat(note, request, window) for note in event.notes)
-                made = Made(positions, setting.share(self.pipeline), notes)
+                made = Made(positions, setting.share(self.pipeline), event.readouts[0]["damped"], notes)
                 self.parts.keep(key, made)
                 return made
             if event.stage == "sample":

@@ -112,7 +112,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             scene: what is known of the motion, and how samples become duets.
             noise: the seed, and the number of samples.
             cancel, timer: as in :meth:`run`.
-            measured: the result has the read-outs of its duets.
+            measured: the read-outs compare its duets with what they were; all say what damping moved, as ``damped``.
         """
         layout, given = self.model.layout, scene.given
         x = sample_noise(*noise, (layout.num_tokens(scene.frames), 2 * layout.token_features))
@@ -148,10 +148,13 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         timer.lap("sample")
         yield timer.progress("finish")
         duets = self._duets(x, scene, clean_person if settings.cleanup else _as_is)
-        before = self._duets(uncorrected, scene, _as_is) if measured else ()
-        readouts = tuple(compare(raw, duet) for raw, duet in zip(before, duets, strict=measured))
+        moved = [0.0] * len(duets) if damping.moved is None else damping.moved.tolist()
+        readouts: list[dict[str, Any]] = [{"damped": metres} for metres in moved]
+        if measured:
+            before = self._duets(uncorrected, scene, _as_is)
+            readouts = [compare(*pair) | each for *pair, each in zip(before, duets, readouts, strict=True)]
         timer.lap("finish")
-        yield Result(duets=duets, readouts=readouts, notes=conditioning.notes)
+        yield Result(duets=duets, readouts=tuple(readouts), notes=conditioning.notes)
 
     def _duets(self, x: Tensor, scene: Scene, finish: Finish) -> tuple[Duet, ...]:
         with torch.no_grad():

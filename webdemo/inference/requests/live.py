@@ -1,23 +1,22 @@
-"""Live requests: an online reaction to an actor who plays in real time, and a live stream that somebody keeps.
+"""A frame of an online reaction, and a live stream that somebody keeps.
 
 This module does not import torch: the page uses it before any network is loaded.
 """
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import FPS, Clip, Duet, InputError
+from motion import Clip, Duet, InputError
 from motion.metrics import compare
 from webdemo.inference.run import Progress, Result, StageTimer
 
-from .sampling import ReactRequest, clip_facts
+from .sampling import clip_facts
 
 Array = NDArray[np.floating]
 
@@ -37,62 +36,13 @@ class LiveFrame:
         index: its number from 0.
         raw: (samples, 22, 3) metres, the network's output in the actor's world.
         positions: (samples, 22, 3) metres, as shown.
-        seconds: delay after the actor's frame.
+        seconds: that the network took for it.
     """
 
     index: int
     raw: Array
     positions: Array
     seconds: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class LiveRequest(ReactRequest):
-    """An online reaction to an actor who plays in real time; its motion is that of the same ReactRequest.
-
-    The run reports every frame as a :class:`LiveProgress` and lasts as long as the actor's motion.
-
-    Raises:
-        InputError: as a ReactRequest, and for a mode that is not online.
-    """
-
-    mode: str = "online"
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.mode != "online":
-            raise InputError("Only an online reaction can be live: choose the model regennet, mode online.")
-
-
-@dataclass(frozen=True, kw_only=True)
-class LiveProgress(Progress):
-    """A frame of a live reaction, sent as soon as it is generated.
-
-    Attributes:
-        frame: the reaction's frame; its ``seconds`` count from the time when the actor's frame was due, so
-            they grow if the machine cannot keep up.
-    """
-
-    frame: LiveFrame
-
-
-def paced(frames: Iterator[LiveFrame], *, fps: float = FPS) -> Iterator[LiveFrame]:
-    """Requests each frame when the actor's frame is due; the first one immediately.
-
-    Args:
-        frames: generates a frame on request.
-        fps: the actor's frames a second.
-    """
-    began = time.perf_counter()
-    index = 0
-    while True:
-        due = began + index / fps
-        time.sleep(max(0.0, due - time.perf_counter()))
-        frame = next(frames, None)
-        if frame is None:
-            return
-        yield replace(frame, seconds=time.perf_counter() - due)
-        index += 1
 
 
 @dataclass(frozen=True, kw_only=True)

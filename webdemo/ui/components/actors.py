@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 from collections.abc import Mapping
 from contextlib import suppress
@@ -10,19 +9,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from motion import Clip, Duet, InputError
-from motion.formats import write
 from motion.formats.importing import import_motion
 from motion.formats.recording import ImportChoices
 from motion.retarget import to_smpl
 from webdemo.inference.method import SECONDS, Variant
 from webdemo.inference.methods import AUTOMATIC, automatic, installed, variants
-from webdemo.inference.requests.actor import LETTERS, at_30_fps, choose_actor, other_pose
+from webdemo.inference.requests.actor import LETTERS, at_30_fps, choose_actor
 from webdemo.inference.run import Result
-from webdemo.ui.history import Original, clean_name
+from webdemo.ui.history import Original
 from webdemo.ui.places import READING
 from webdemo.view.payload import Payload, player_payload
 
@@ -59,12 +54,6 @@ def reactor(key: str | None, fields: Mapping[str, Any] | None = None) -> Variant
     if key and key not in known:
         raise InputError(f"There is no method {key!r:.40}: choose one of {', '.join(known)}.")
     return known[key] if key else next(iter(known.values()))
-
-
-def live_variant() -> Variant | None:
-    """The first installed way to react that can stream; None where there is none."""
-    found = (v for method in installed("react") for v in method.variants if v.mode == "online")
-    return next(found, None)
 
 
 @dataclass(frozen=True)
@@ -119,10 +108,6 @@ class Source:
         clip = choose_actor(self.people, person=chosen, start=start, end=end, name=self.name)
         return replace(clip, name=self.name)
 
-    def other_pose(self, person: str, start: float) -> NDArray[np.floating]:
-        """(22, 3) metres: how the other of two stands where the actor's part begins."""
-        return other_pose(self.people, person=person, start=start, name=self.name)
-
     def whole(self, longest: float) -> tuple[Clip, ...]:
         """Everybody on SMPL22, or as they are in the file where that is longer than ``longest`` seconds."""
         return self.people if self.seconds > longest else self._on_smpl("whole", self.people)
@@ -145,14 +130,8 @@ class Source:
         return f"{self.name}, person {person.upper()}" if len(self.people) > 1 else self.name
 
 
-NOT_KEPT = (
-    "The file {!r} was not kept with this run: it was too large, or the run is older than that. A .npz of its motion "
-    "stands in its place."
-)
-
-
-def given_again(source: Source, original: Original | None, folder: Path) -> tuple[Source, str | None, str]:
-    """A source of the history, a file for the field that its own was dropped on, and a sentence where that is another.
+def given_again(source: Source, original: Original | None, folder: Path) -> tuple[Source, str | None]:
+    """A source of the history, and a file for the field that its own was dropped on, where that was kept.
 
     Args:
         source: its people.
@@ -162,22 +141,13 @@ def given_again(source: Source, original: Original | None, folder: Path) -> tupl
     if original is not None:
         with suppress(OSError):
             path = Path(shutil.copyfile(original.path, folder / original.name))
-            return replace(source, path=path, animations=labels_of_file(path)), str(path), ""
-    return (source, kept_file(source, folder), NOT_KEPT.format(source.name[:80]) if clean_name(source.name) else "")
+            return replace(source, path=path, animations=labels_of_file(path)), str(path)
+    return source, None
 
 
 def offered_animations(source: Source | None) -> Any:
     """An update of the list of a source's animations."""
     return animation_list(source.animations, source.read_with[4]) if source else animation_list((), None)
-
-
-def kept_file(source: Source, folder: Path) -> str | None:
-    """A .npz of one person or two of a source, called after it, for the field that the file was dropped on."""
-    if len(source.people) > 2:
-        return None
-    motion = Duet(*source.people) if len(source.people) == 2 else source.people[0]
-    name = re.sub(r"[^\w-]+", "-", Path(source.name).stem)[:60].strip("-") or "motion"
-    return str(write(motion, folder / f"{name}.npz")[0])
 
 
 @dataclass(frozen=True)
@@ -214,15 +184,15 @@ def import_choices(
     return ImportChoices(**known, fps=float(fps) if fps else None, animation=animation)
 
 
-def result_source(result: Result, title: str, person: str) -> Source:
-    """A person of a result's first sample, as they were made or given.
+def result_source(result: Result, title: str) -> Source:
+    """The people of a result's first sample, as they were made or given.
 
     It is called after the file that the result began with, or else after its title.
     """
     given = result.manifest.get("request", {}).get("actor", {})
     motion = result.duets[0]
     people = motion.people if isinstance(motion, Duet) else (motion,)
-    return Source(given.get("name") or title, people, person if len(people) > 1 else "a")
+    return Source(given.get("name") or title, people)
 
 
 def with_method(fields: Mapping[str, Any], key: str) -> dict[str, Any]:
@@ -235,8 +205,8 @@ def with_method(fields: Mapping[str, Any], key: str) -> dict[str, Any]:
 def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     """A request's fields from those of the page.
 
-    ``source``, ``person``, ``start`` and ``end`` become ``actor``, ``method`` becomes ``model`` and ``mode``,
-    and ``keep`` becomes the first pose for a model that takes one. Words are left out if the method takes none.
+    ``source``, ``person``, ``start`` and ``end`` become ``actor``, and ``method`` becomes ``model`` and ``mode``. Words
+    are left out if the method takes none.
 
     Raises:
         InputError: where no source is chosen or the times do not fit.
@@ -244,12 +214,10 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     source: Source | None = fields["source"]
     if source is None:
         raise InputError("There is no actor yet: drop a motion file, or pick an example or a result.")
-    own = ("source", "person", "start", "end", "method", "stream", "keep")
+    own = ("source", "person", "start", "end", "method")
     actor = source.actor(fields["person"], fields["start"], fields["end"])
     chosen = reactor(fields.get("method"), fields)
     kept = {name: value for name, value in fields.items() if name not in own}
     if "words" not in chosen.method.takes:
         kept["prompt"] = ""
-    begins = fields.get("keep") and "first pose" in chosen.method.takes
-    pose = source.other_pose(fields["person"], fields["start"]) if begins else None
-    return {"actor": actor, "model": chosen.method.name, "mode": chosen.mode, "first_pose": pose, **kept}
+    return {"actor": actor, "model": chosen.method.name, "mode": chosen.mode, **kept}

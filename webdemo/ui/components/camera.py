@@ -46,10 +46,7 @@ def film_source(text: str | None) -> Source:
     if not text:
         raise InputError("There is no film yet: choose a video or use the webcam.")
     sent = unpack_film(text)
-    filmed = person_of(sent.landmarks, tilt=sent.tilt, lens=sent.lens, name=sent.name)
+    filmed = person_of(sent.landmarks, name=sent.name)
     sure = round(100 * float(filmed.confidence.mean()))
-    line = (
-        f"One person from video, {sure} % of the body seen, camera looks down {filmed.tilt:.0f}° "
-        f"({'found' if sent.tilt is None else 'given'})"
-    )
+    line = f"One person from video, {sure} % of the body seen, camera looks down {filmed.tilt:.0f}°"
     return Source(sent.name, (filmed.person,), found=Found(line, ()), notes=filmed.notes)

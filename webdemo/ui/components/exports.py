@@ -14,7 +14,7 @@ import threading
 import time
 import unicodedata
 import zipfile
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -53,6 +53,7 @@ class Kind:
         return self.key in (*_PLAIN, ALL) or formats.can_write(f".{self.key}")
 
 
+_SHEET = Style(names=False)
 _PLAIN = ("png", "json", "csv")
 """Kinds that are no motion."""
 
@@ -156,7 +157,7 @@ def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:
     files: dict[str, list[Path]] = {}
     for method, result in record.compared.items():
         prompt = f"{method} {record.prompt}"
-        written = write_files(result, folder, prompt=prompt, leave_out={"csv", "png"})
+        written = write_files(result, folder, prompt=prompt, leave_out=("csv", "png"))
         for key, paths in written.items():
             files.setdefault(key, []).extend(paths)
     name = folder / file_name(record.prompt, record.result.manifest)
@@ -168,10 +169,7 @@ def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:
     return files
 
 
-_SHEET = Style(names=False)
-
-
-def write_files(result: Result, folder: Path, *, prompt: str, leave_out: Collection[str] = ()) -> dict[str, list[Path]]:
+def write_files(result: Result, folder: Path, *, prompt: str, leave_out: tuple[str, ...] = ()) -> dict[str, list[Path]]:
     """Writes a result in every kind that this installation can write, but for those that are left out.
 
     Returns:

@@ -1,4 +1,4 @@
-"""What is made of a result as the player shows it: a film, a figure and a mesh, and the address of a link."""
+"""What is made of a result as the player shows it: a film and a figure, and the address of a link."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 from motion import Clip, Duet, InputError
 from webdemo.inference.requests.predict import PredictResult
 from webdemo.inference.run import Result
-from webdemo.view import film, mesh, plotly_figure
+from webdemo.view import film, plotly_figure
 from webdemo.view.camera import VIEWS
 from webdemo.view.stage import LOOKS, Pane, Style
 from webdemo.view.theme import THEMES
@@ -37,7 +37,7 @@ READ_PLAYER = """(record, _) => {
   return [record, JSON.stringify({
     yaw: orbit.yaw, elevation: orbit.elevation, view: player.framing.preset, follow: orbit.following,
     frame: Math.round(player.clock.shown), distance: orbit.distance,
-    trails: Boolean(show.trails), theme: player.themeName, sample: player.sampleIndex,
+    theme: player.themeName, sample: player.sampleIndex,
     look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons",
   })];
 }"""
@@ -89,11 +89,7 @@ def make_film(record: Record | None, shown: str, folder: Path, progress: Drawn |
     if max(pane.motion.seconds for pane in panes) > LONGEST:
         raise InputError(f"Films on the page last {LONGEST:g} s at most: use `python -m webdemo render` for more.")
     path = folder / f"{file_name(record.prompt, record.result.manifest)}{suffix()}"
-    style = Style(
-        look=_one_of(state, "look", LOOKS, "bodies"),
-        trails=state.get("trails") is True,
-        theme=_one_of(state, "theme", tuple(THEMES), "light"),
-    )
+    style = Style(look=_one_of(state, "look", LOOKS, "bodies"), theme=_one_of(state, "theme", tuple(THEMES), "light"))
     try:
         return film.write_film(
             panes,
@@ -116,32 +112,16 @@ def make_figure(record: Record | None, shown: str, folder: Path, progress: Drawn
 
     Of compared results it is the first.
     """
-    motion, path, style, _ = _shown_motion(record, shown, folder)
-    path = path.with_name(f"{path.name}.html")
-    try:
-        return plotly_figure.write_figure(motion, path, title=record.prompt if record else "", theme=style.theme)
-    except InputError as error:
-        raise without_place(error, folder) from None
-
-
-def make_mesh(record: Record | None, shown: str, folder: Path, progress: Drawn | None = None) -> Path:
-    """The moment that the player shows as a mesh, a .ply; see :func:`make_figure`."""
-    motion, path, style, frame = _shown_motion(record, shown, folder)
-    try:
-        return mesh.write_mesh(motion, path.with_name(f"{path.name}-frame{frame}.ply"), frame=frame, style=style)
-    except InputError as error:
-        raise without_place(error, folder) from None
-
-
-def _shown_motion(record: Record | None, shown: str, folder: Path) -> tuple[Clip | Duet, Path, Style, int]:
-    """The sample that the player shows, the beginning of its files' names, its looks and the frame."""
     if record is None:
         raise InputError("There is no motion to show yet: make one first.")
     state = read_player(shown)
     motion = _pane(record.result, state.get("sample"), "").motion
-    style = Style(theme=_one_of(state, "theme", tuple(THEMES), "light"))
-    frame = int(number_of(state, "frame", 0, motion.num_frames - 1) or 0)
-    return motion, folder / file_name(record.prompt, record.result.manifest), style, frame
+    path = folder / f"{file_name(record.prompt, record.result.manifest)}.html"
+    theme = _one_of(state, "theme", tuple(THEMES), "light")
+    try:
+        return plotly_figure.write_figure(motion, path, title=record.prompt, theme=theme)
+    except InputError as error:
+        raise without_place(error, folder) from None
 
 
 def _pane(result: Result, sample: Any, name: str) -> Pane:

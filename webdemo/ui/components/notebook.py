@@ -73,7 +73,6 @@ class SentAction(Sent):
     title: Text | None = None
     tags: Text | None = None
     note: Text | None = None
-    frame: Finite | None = None
 
 
 class NotebookView(Part):
@@ -124,7 +123,6 @@ def _card(entry: Entry) -> dict[str, Any]:
         "links": entry.links,
         "tags": list(entry.tags),
         "note": entry.note,
-        "frame": entry.frame,
         "thumbnail": entry.thumbnail,
         "facts": facts(entry),
         "settings": [list(pair) for pair in settings(entry)],
@@ -179,7 +177,7 @@ class Action:
         act: one of :data:`ACTS`.
         ids: of the chosen runs.
         search: what is searched for.
-        fields: name, tags, note and frame of a run that is described.
+        fields: name, tags and note of a run that is described.
 
     Raises:
         InputError: for anything that the notebook does not send.
@@ -193,11 +191,9 @@ class Action:
         self.act: str = data["act"]
         self.ids = [each for each in ids if isinstance(each, str)]
         self.search = _search(search if isinstance(search, Mapping) else {}, data.get("limit"))
-        frame = data.get("frame")
         self.fields: dict[str, Any] = {
             name: data[name] for name in ("title", "tags", "note") if isinstance(data.get(name), str)
         }
-        self.fields["frame"] = frame if type(frame) is int and 0 <= frame < 10**6 else None
 
     @property
     def one(self) -> str:

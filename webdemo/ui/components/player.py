@@ -43,7 +43,7 @@ class MotionPlayer(Part):
 
     template = PLAYER_FOLDER / "player.html"
     style = "& { min-height: 320px; } .pdd:not(.pdd-styled) { visibility: hidden; }"
-    declared: ClassVar = {"busy": "", "progress": None, "live": None}
+    declared: ClassVar = {"busy": "", "progress": None}
     sends = ("object", "motion for the player, or null")
 
     def __init__(
@@ -69,9 +69,4 @@ def show(payload: Payload | None) -> dict[str, Any]:
     return gr.update(value=payload, busy="", progress=None)
 
 
-def stream(message: dict[str, Any]) -> dict[str, Any]:
-    """An update that hands a live payload more of its motion, see :mod:`webdemo.ui.components.live`."""
-    return gr.update(live=message)
-
-
-__all__ = ["EMPTY_TEXT", "MotionPlayer", "busy", "player_payload", "show", "stream"]
+__all__ = ["EMPTY_TEXT", "MotionPlayer", "busy", "player_payload", "show"]

@@ -1,26 +1,21 @@
-"""A prediction as the player and a plot show it."""
+"""A prediction as the player shows it, and how far off it was."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion import Clip, Duet, stacked_positions
-from webdemo.inference.methods import label_of, methods
+from webdemo.inference.methods import label_of
 from webdemo.inference.requests.predict import PredictResult, with_people
 from webdemo.view.payload import Curve, Payload, build_payload, sample_payload
 
 from .show import with_shown_roles
 
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
-
 Array = NDArray[np.floating]
-_GREY, _ORANGE = "#8e99aa", "#e07a10"
-_METHOD_COLOURS = ("#2468d8", "#8b3fc4", "#1f9d72", "#c2410c", "#64748b")
 _NO_TRUTH = "Nothing follows the marker to compare with."
 
 
@@ -84,62 +79,6 @@ def ghost_of(motion: Clip | Duet, result: PredictResult) -> Clip | Duet | None:
     missing = motion.num_frames - real.shape[1]
     held = np.concatenate([real, np.repeat(real[:, -1:], missing, axis=1)], axis=1)
     return with_people(motion, held)
-
-
-def curves_figure(*results: PredictResult) -> go.Figure:
-    """Error (MPJPE) and speed (MPJS) of each predicted frame, beside holding the last pose and the truth.
-
-    Results of several methods for one past share the axes. Where the motion ends at the marker there is
-    no error, and the speed is drawn alone.
-    """
-    import plotly.graph_objects as go  # 0.1 s, for a page that may never predict
-    from plotly.subplots import make_subplots
-
-    first = results[0]
-    fps = first.duets[0].fps
-    known = len(first.error)
-    times = np.arange(1, len(first.speed) + 1) / fps
-    titles = ["Error, mm", "Speed, m/s"] if known else [f"Speed, m/s. {_NO_TRUTH}"]
-    # One above the other: side by side they are too narrow on a phone.
-    figure = make_subplots(rows=len(titles), cols=1, subplot_titles=titles, vertical_spacing=0.22)
-
-    def line(row: int, values: Array, name: str, colour: str, dash: str | None = None, *, listed: bool = True) -> None:
-        figure.add_trace(
-            go.Scatter(
-                x=times[: len(values)],
-                y=values,
-                name=name,
-                mode="lines",
-                legendgroup=name,
-                showlegend=listed,
-                line={"color": colour, "width": 2, "dash": dash},
-            ),
-            row=row,
-            col=1,
-        )
-
-    metres = fps / 1000
-    for result, colour in zip(results, _METHOD_COLOURS, strict=False):
-        name = method_name(result)
-        if known:
-            line(1, np.asarray(result.error), name, colour)
-        line(len(titles), np.asarray(result.speed) * metres, name, colour, listed=not known)
-    if known:
-        baselines = {method.name for method in methods("predict") if method.weights is None}
-        if all(result.manifest.get("model") not in baselines for result in results):
-            line(1, still_error(first), "Last pose held", _GREY, "dot")
-        line(len(titles), np.asarray(first.true_speed) * metres, "What really followed", _ORANGE)
-    figure.update_xaxes(title_text="s after the marker", rangemode="tozero")
-    figure.update_yaxes(rangemode="tozero")
-    figure.update_layout(
-        height=70 + 190 * len(titles),
-        margin={"l": 48, "r": 12, "t": 36, "b": 44},
-        template="plotly_white",
-        legend={"orientation": "h", "y": -0.16, "yanchor": "top"},
-        paper_bgcolor="rgba(0,0,0,0)",
-        plot_bgcolor="rgba(0,0,0,0)",
-    )
-    return figure
 
 
 def error_lines(*results: PredictResult) -> list[str]:

@@ -12,8 +12,7 @@ from typing import Any, ClassVar
 from pydantic import Field, TypeAdapter
 
 from acts import Act
-from motion import Duet, InputError
-from motion.metrics import compare
+from motion import InputError
 from webdemo.inference.requests.paths import FloorPath, path_of
 from webdemo.inference.story import Beat, Pose, SceneRequest
 from webdemo.inference.story.beats import MOST_BEATS
@@ -64,14 +63,14 @@ class StoryLine(Part):
     """Shows a story and lets it be changed; every change is an ``input`` event.
 
     Props beside the value: ``lengths``, seconds of the beats as they follow from the words; ``laid``, the ``beats``,
-    ``paths`` and ``poses`` that a changed text gives; ``motion``, see :func:`motion_marks`.
+    ``paths`` and ``poses`` that a changed text gives.
     """
 
     accepts = TypeAdapter(SentStory | None)
     template = STORY_FOLDER / "story.html"
     script = on_load(MOUNT, STORY_FOLDER / "main.js")
     style = scoped(STORY_FOLDER / "story.css")
-    declared: ClassVar = {"lengths": None, "laid": None, "motion": None}
+    declared: ClassVar = {"lengths": None, "laid": None}
     sends = ("object", "a story, or null")
 
 
@@ -143,13 +142,3 @@ def span_of(value: Any) -> tuple[float, float] | None:
     if not isinstance(span, list) or len(span) != 2 or not all(isinstance(v, (int, float)) for v in span):
         return None
     return float(span[0]), float(span[1])
-
-
-def motion_marks(duet: Duet, readout: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """The marks of a motion on the line: ``seconds``, its length; ``contacts``, in seconds."""
-    found = (readout or compare(None, duet)).get("contacts") or ()
-    contacts = [
-        {"start": c["start"] / duet.fps, "stop": c["stop"] / duet.fps, "kind": c["kind"], "label": c["label"]}
-        for c in found
-    ]
-    return {"seconds": duet.seconds, "contacts": contacts}

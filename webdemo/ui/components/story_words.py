@@ -10,7 +10,7 @@ import gradio as gr
 import numpy as np
 
 from motion import InputError
-from webdemo.inference.story import Beat, Pose, SceneRequest, in_time, read_words, split_sentence, write_story
+from webdemo.inference.story import Beat, Pose, SceneRequest, in_time, read_words, split_sentence
 from webdemo.inference.story.beats import seconds_of
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.words import error_line
@@ -18,8 +18,6 @@ from webdemo.ui.text.words import error_line
 from .story import story_fields, story_value, ticked
 
 Updates = tuple[Any, ...]
-SETTINGS = ("seed", "samples", "guidance", "steps", "damping")
-"""What a story in TOML may set beside its beats, and the page has a control for."""
 
 
 def story_text(beats: Sequence[Beat]) -> str:
@@ -108,13 +106,11 @@ def _counted(beats: Sequence[Beat]) -> str:
 def lay_out(sentences: str, story: Any = None) -> Updates:
     """A sentence, and the line with its beats; what was ticked on the line stays so."""
     beats = split_sentence(sentences, in_time())
-    ticks = ticked(story)
-    text = write_story(SceneRequest(beats=beats, **ticks))
-    return sentences, story_value(beats, **ticks), text, status(f"{_counted(beats)}: press Generate.")
+    return sentences, story_value(beats, **ticked(story)), status(f"{_counted(beats)}: press Generate.")
 
 
-def edited(story: Any, seed: float | None) -> Updates:
-    """The lengths of the beats, the story's text and its words after a change on the line."""
+def edited(story: Any) -> Updates:
+    """The lengths of the beats and their words after a change on the line, and what is wrong with them."""
     lengths: list[float] | None = None
     words: Any = gr.skip()
     try:
@@ -122,40 +118,26 @@ def edited(story: Any, seed: float | None) -> Updates:
         lengths = [seconds_of(beat.sentence) for beat in fields["beats"]]
         if isinstance(story, Mapping) and story.get("ahead"):
             words = story_text(fields["beats"])
-        text = write_story(SceneRequest(**fields, seed=int(seed or 0)))
+        SceneRequest(**fields)
     except Exception as error:
         line = error_line(error) if isinstance(story, Mapping) and story.get("beats") else ""
-        return (gr.update(lengths=lengths), gr.skip(), status(line, tone="warning") if line else status(), words)
-    return gr.update(lengths=lengths), text, status(), words
+        return (gr.update(lengths=lengths), status(line, tone="warning") if line else status(), words)
+    return gr.update(lengths=lengths), status(), words
 
 
-def written(text: str, story: Any, seed: float | None) -> Updates:
+def written(text: str, story: Any) -> Updates:
     """The line as the words over it say, once they are written."""
-    unchanged = (gr.skip(),) * 4
+    unchanged = (gr.skip(),) * 3
     if isinstance(story, Mapping) and story.get("ahead"):
         return unchanged  # the beats were changed since
     try:
         laid, said = settled(story, text or "")
         if laid is story and said == text:
             return unchanged
-        request = SceneRequest(**story_fields(laid), seed=int(seed or 0))
+        request = SceneRequest(**story_fields(laid))
     except Exception as error:
         empty = not (text or "").strip()
-        return unchanged if empty else (*unchanged[:2], status(error_line(error), tone="warning"), gr.skip())
+        return unchanged if empty else (gr.skip(), status(error_line(error), tone="warning"), gr.skip())
     shown = {name: laid[name] for name in ("beats", "paths", "poses")}
     line = status(f"{_counted(request.beats)}, {request.seconds:g} s: press Generate.")
-    return gr.update(laid=shown), write_story(request), line, gr.skip() if said == text else said
-
-
-def use_text(text: str | None) -> Updates:
-    """The line and its words as the text says, and those of ``SETTINGS`` that it names."""
-    try:
-        fields = read_words(text or "", in_time())
-        request = SceneRequest(**fields)
-    except Exception as error:
-        kept = (gr.skip(),) * len(SETTINGS)
-        return gr.skip(), gr.skip(), status(error_line(error), tone="error"), *kept
-    line = status(f"{_counted(request.beats)}, {request.seconds:g} s: press Generate.")
-    shown = story_value(fields["beats"], request.paths, request.poses, loop=request.loop, planned=request.planned)
-    named = (getattr(request, name) if name in fields else gr.skip() for name in SETTINGS)
-    return shown, story_text(fields["beats"]), line, *named
+    return gr.update(laid=shown), line, gr.skip() if said == text else said

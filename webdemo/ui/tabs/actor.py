@@ -33,7 +33,6 @@ class ActorPanel(SourcePanel):
     """One person of a motion, trimmed."""
 
     named = "react.file"
-    takes = (("react.take_a", "-a", "a"), ("react.take_b", "-b", "b"))
 
     def build_trim(self) -> None:
         """Who is given and which part of their motion; seen once there is a motion."""
@@ -62,7 +61,7 @@ class ActorPanel(SourcePanel):
                 [(_DETECTED, AUTO), *choices], value=AUTO, label=label, elem_id=f"react-{name}", min_width=0
             )
 
-        with gr.Accordion(say("actor.read"), open=False, elem_id="react-import") as self.reading:
+        with gr.Accordion(say("actor.read"), open=False, visible=False, elem_id="react-import") as self.reading:
             with gr.Row(elem_classes="pd-pair"):
                 self.up = choice(say("actor.up"), "up", [(axis, axis) for axis in AXES])
                 self.unit = choice(say("actor.unit"), "unit", [(unit, unit) for unit in UNITS])
@@ -73,17 +72,11 @@ class ActorPanel(SourcePanel):
             self.found = gr.HTML(elem_id="react-found")
         self.known = [self.up, self.unit, self.fps, self.order]
 
-    def wire(self, record: gr.State, line: gr.HTML) -> None:
+    def wire(self, record: gr.State, line: gr.HTML, go: gr.Button) -> None:
         """Also what shows the chosen person and part."""
-        super().wire(record, line)
+        super().wire(record, line, go)
         self.file.upload(lambda: (AUTO, AUTO, None, AUTO), outputs=list(self.known), queue=False, **QUIET)
-        self.state.change(
-            lambda source: gr.update(open=True) if source is not None and source.asks else gr.skip(),
-            inputs=self.state,
-            outputs=self.reading,
-            queue=False,
-            **QUIET,
-        )
+        self.state.change(self.settings_of, inputs=self.state, outputs=self.reading, queue=False, **QUIET)
         gr.on(
             [self.person.input, self.begin.release, self.end.release],
             self.preview,
@@ -94,6 +87,11 @@ class ActorPanel(SourcePanel):
         )
 
     # ---- what is shown ---------------------------------------------------------------------------
+
+    def settings_of(self, source: Source | None) -> dict[str, Any]:
+        """Shows how a file was read where it is somebody's own, opened where something had to be assumed."""
+        own = source is not None and source.path is not None and source.path not in dict(self.examples).values()
+        return gr.update(visible=own, open=own and source is not None and source.asks)
 
     def payload(self, source: Source) -> dict[str, Any]:
         """The chosen person, from the beginning to where they are used at most."""
@@ -144,23 +142,19 @@ class ActorPanel(SourcePanel):
             return status(f"{used} {advice} {longest:g} s or less.", tone="warning")
         return status(" ".join((used, *source.notes)), tone="warning" if source.notes else "quiet")
 
-    def opened(self, run: Opened) -> tuple[dict[Any, Any], str]:
-        """The file that was chosen, who in it and which part; or the given person alone, where that was not kept.
-
-        Returns:
-            updates by component, and a line that says so where another file stands in the place of the chosen one.
-        """
+    def opened(self, run: Opened) -> dict[Any, Any]:
+        """The file that was chosen, who in it and which part; or the given person alone, where that was not kept."""
         controls = run.kept.controls
         source = actor_source(run)
         begin, end = 0.0, round(source.end, 1)
-        file, note = None, ""
+        file = None
         if people := run.kept.people:
             source = replace(source, people=people)
             letters = [letter for _, letter in source.choices]
             source = replace(source, chosen=controls["person"] if controls.get("person") in letters else "a")
             begin, end = float(controls.get("start", 0.0)), float(controls.get("end", end))
             source = replace(source, read_with=_known_choices(controls))
-            source, file, note = given_again(source, run.kept.original, self.results.page.shelf.folder())
+            source, file = given_again(source, run.kept.original, self.results.page.shelf.folder())
         found = {
             self.file: file,
             self.state: source,
@@ -168,7 +162,7 @@ class ActorPanel(SourcePanel):
             **dict(zip(self.known, source.read_with[:4], strict=True)),
             **dict(zip(self.more(), self._chosen(source, begin, end), strict=True)),
         }
-        return found, status(note) if note else ""
+        return found
 
 
 def _known_choices(controls: Mapping[str, Any]) -> ReadWith:
@@ -190,9 +184,7 @@ def _known_choices(controls: Mapping[str, Any]) -> ReadWith:
 
 def _found(source: Source) -> str:
     """Describes as HTML how a source's file was read: one line, then its joints beside SMPL's."""
-    if source.found is None and source.path is not None:
-        return status("Opened from the history. Change a setting here to read the file anew.")
     if source.found is None:
-        return status("Taken from a result or the history, so there was nothing to detect.")
+        return status("Opened from the history. Change a setting here to read the file anew.")
     pairs = " · ".join(f"{text(theirs)} → {text(ours)}" for theirs, ours in source.found.joints)
     return f'{status(source.found.line)}<p class="pd-timings">{pairs}</p>'

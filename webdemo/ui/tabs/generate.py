@@ -30,7 +30,7 @@ from webdemo.ui.text.texts import say, worded
 
 from .grids import SENTENCES, methods_kind
 from .job import JobTab
-from .results import QUIET, Updates
+from .results import PRESS, QUIET, Updates
 from .sampling import Sampling, pace_of
 
 
@@ -141,8 +141,8 @@ class GenerateTab(JobTab):
         self.wire([self.go.click, self.prompt.submit], record)
         self.reading.follow(self.prompt, **QUIET)
         for button, (_, sentence) in zip(self.chips, EXAMPLES, strict=True):
-            focus = "document.querySelector('#prompt textarea').focus();"
-            button.click(None, outputs=self.prompt, js=f"() => {{ {focus} return {json.dumps(sentence)}; }}", **QUIET)
+            filled = button.click(None, outputs=self.prompt, js=f"() => {json.dumps(sentence)}", **QUIET)
+            filled.then(None, js=PRESS % json.dumps(self.go.elem_id), **QUIET)
         self.gallery.fill(self.prompt, self.seconds, self.sampling.seed, self.go, **QUIET)
         asked_by = {name: self.asked_by(name) for _, name in generate_choices()}
         form = self.sampling

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from webdemo.inference.requests.predict import LONGEST, PAST_SECONDS, PredictReq
 from webdemo.inference.run import Result
 from webdemo.ui.components.actors import Source, given_again, offered_animations
 from webdemo.ui.components.player import show
-from webdemo.ui.components.prediction_view import curves_figure, error_lines, prediction_payload, without_name
+from webdemo.ui.components.prediction_view import error_lines, prediction_payload, without_name
 from webdemo.ui.components.settings import FittedSlider, looked_up
 from webdemo.ui.components.sweep import Kind, grid_table, real
 from webdemo.ui.components.upload import kept_animation
@@ -29,7 +29,7 @@ from webdemo.view.payload import player_payload
 
 from .grids import methods_kind
 from .job import JobTab
-from .results import QUIET
+from .results import PRESS, QUIET
 from .sampling import seed_field
 from .source import SourcePanel
 
@@ -74,7 +74,6 @@ class PastPanel(SourcePanel):
     """The motion of one person or two that is to go on, and the marker where its past ends."""
 
     named = "predict.file"
-    takes = (("predict.take", "", "a"),)
     take_at_end = True
     marker: FittedSlider
 
@@ -156,15 +155,12 @@ class PredictTab(JobTab):
         return {"Method beside method": ("model", "; ".join(listed))}
 
     def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
-        """The errors of all cells over their read-outs; the curves of methods that predict one past share the axes."""
+        """The errors of all cells over their read-outs."""
         results = [result for result in made.values() if isinstance(result, PredictResult)]
         if len(results) < len(made):
-            return {"curves": gr.update(visible=False), "readouts": grid_table(made)}
+            return {"readouts": grid_table(made)}
         lines = prediction_lines(dict(zip(made, error_lines(*results), strict=True)))
-        one_past = len({(result.past_frames, len(result.error)) for result in results}) == 1
-        curves = {"curves": gr.update(visible=True), "plot": curves_figure(*results)}
-        hidden = {"curves": gr.update(visible=False)}
-        return {"readouts": lines + grid_table(made), **(curves if one_past else hidden)}
+        return {"readouts": lines + grid_table(made)}
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -177,8 +173,6 @@ class PredictTab(JobTab):
                     self.past.build_animation()
                     self.build_go(say("predict.go"))
                 self.results.build_readouts()
-                with gr.Column(elem_classes="pd-panel pd-curves", min_width=0, visible=False) as self.curves:
-                    self.plot = gr.Plot(show_label=False, elem_id="predict-curves")
                 self._settings()
             self.results.build_stage(compare=self.grids.build, another=False)
         self.controls = {
@@ -189,7 +183,7 @@ class PredictTab(JobTab):
             "seed": self.seed,
         }
         self.wire([self.go.click], record)
-        self.past.wire(self.record, self.line)
+        self.past.wire(self.record, self.line, self.go)
         self.model.input(
             None,
             inputs=self.model,
@@ -222,10 +216,6 @@ class PredictTab(JobTab):
             self.about = gr.HTML(about, elem_id="predict-about")
             self.seed = seed_field(self.prefix, "predict.seed_info", visible="hidden")
 
-    def more_outputs(self) -> dict[str, gr.components.Component]:
-        """The curves under the player."""
-        return {"curves": self.curves, "plot": self.plot}
-
     def restored(self) -> Sequence[Any]:
         """The file and its animation."""
         return [self.past.file, self.past.animation]
@@ -238,15 +228,16 @@ class PredictTab(JobTab):
         Args:
             tab: this one, among ``tabs``.
             tabs: of the page.
-            onwards: buttons of any tab that take the last result here, as a past that is to go on.
+            onwards: buttons of any tab that take the last result here, as a past that goes on at once.
         """
         load = self.past.load_options
         self.past.wire_arrival(tab, self.record, self.label)
         for button in onwards:
-            taken = button.click(partial(self.past.take_result, "a"), inputs=self.record, **load)
+            taken = button.click(self.past.take_result, inputs=self.record, **load)
             taken.then(None, outputs=self.past.file, js="() => null", **QUIET)
             # Only now is the tab opened, which finds the result on it.
-            taken.then(lambda: gr.update(selected=self.label.lower()), outputs=tabs, queue=False, **QUIET)
+            chosen = taken.then(lambda: gr.update(selected=self.label.lower()), outputs=tabs, queue=False, **QUIET)
+            chosen.then(None, js=PRESS % json.dumps(self.go.elem_id), **QUIET)
 
     @staticmethod
     def _of_method(model: str) -> list[Any]:
@@ -263,26 +254,23 @@ class PredictTab(JobTab):
         named = result.manifest.get("request", {}).get("motion", {}).get("name") or run.entry.title
         source = Source(named, given.people if isinstance(given, Duet) else (given,))
         source = replace(source, read_with=(*source.read_with[:4], kept_animation(run.kept.controls)))
-        source, file, note = given_again(source, run.kept.original, self.page.shelf.folder())
+        source, file = given_again(source, run.kept.original, self.page.shelf.folder())
         return found | {
             past.file: file,
             past.animation: offered_animations(source),
             past.state: source,
             past.marker: past.marked(source, result.past_frames / result.duets[0].fps),
-            self.line: found[self.line] + (status(note) if note else ""),
         }
 
     def shown(self, result: Result, title: str) -> dict[str, Any]:
-        """Also the curves of the error and the speed."""
+        """Also the error in a sentence."""
         shown = super().shown(result, title)
         if not isinstance(result, PredictResult):  # of a history that did not keep what followed
-            return {**shown, "curves": gr.update(visible=False)}
+            return shown
         return {
             **shown,
             "player": show(prediction_payload(result, title=title)),
             "readouts": prediction_lines({"": error_lines(result)[0]}) + str(shown["readouts"]),
-            "curves": gr.update(visible=True),
-            "plot": curves_figure(result),
         }
 
 

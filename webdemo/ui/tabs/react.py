@@ -8,22 +8,17 @@ from typing import Any
 
 import gradio as gr
 
-from motion import InputError
 from webdemo.inference.methods import AUTOMATIC, variants
 from webdemo.inference.requests import ReactRequest
-from webdemo.inference.requests.live import LiveRequest, LiveTake
-from webdemo.inference.run import Result
-from webdemo.ui.components.actors import chosen_actor, live_variant, react_choices, reactor, with_method
-from webdemo.ui.components.live import LivePanel, LiveView, take_of
-from webdemo.ui.components.player import show
+from webdemo.ui.components.actors import chosen_actor, react_choices, reactor, with_method
+from webdemo.ui.components.live import LivePanel, take_of
 from webdemo.ui.components.settings import looked_up
-from webdemo.ui.components.show import result_payload
 from webdemo.ui.components.sweep import Kind
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import method_line, notes_lines, status
 from webdemo.ui.text.texts import english, say, worded
-from webdemo.ui.text.words import seconds, text
+from webdemo.ui.text.words import seconds
 
 from .actor import ActorPanel
 from .grids import SENTENCES, methods_kind
@@ -96,19 +91,10 @@ class ReactTab(JobTab):
             "prompt": self.prompt,
             **self.sampling.controls,
             "method": self.method,
-            "keep": self.keep,
         }
         self.wire([self.go.click, self.prompt.submit], record)
-        self.wire_start(self.start_stream, [self.stream.click])
         self.wire_start(self.keep_live, [self.live.submit], more=[self.live])
-        self.actor.wire(self.record, self.line)
-        self.actor.state.change(
-            lambda source: gr.update(visible=source is not None and len(source.people) == 2, value=False),
-            inputs=self.actor.state,
-            outputs=self.keep,
-            queue=False,
-            **QUIET,
-        )
+        self.actor.wire(self.record, self.line, self.go)
         # In the browser: a late answer of the server would undo what was set meanwhile.
         fits = {key: self.fit_method(key) for _, key in react_choices()}
         self.method.input(None, inputs=self.method, outputs=self._fitted(), js=looked_up(fits), **QUIET)
@@ -129,7 +115,7 @@ class ReactTab(JobTab):
                 max_lines=6,
                 elem_id="react-prompt",
             )
-            self.build_go(say("react.go"), self._stream_button)
+            self.build_go(say("react.go"))
             with gr.Accordion(say("react.advanced"), open=False, elem_id="react-advanced", elem_classes="pd-advanced"):
                 self._advanced()
 
@@ -137,7 +123,7 @@ class ReactTab(JobTab):
         self.live = LivePanel(elem_id="react-live")
 
     def _advanced(self) -> None:
-        """The method, what the given person does in the reaction, and where the other begins."""
+        """The method, and what the given person does in the reaction."""
         with gr.Row(elem_classes="pd-rows"):
             self.method = gr.Dropdown(
                 [(worded("way", label), key) for label, key in react_choices()],
@@ -148,25 +134,12 @@ class ReactTab(JobTab):
                 filterable=False,
             )
         self.about = gr.HTML(self.fit_method(AUTOMATIC)[-1], elem_id="react-about")
-        if live := live_variant():
-            line = say("react.stream_uses", method=text(live.label))
-            gr.HTML(f'<p class="pd-method">{line}</p>', elem_id="react-live-method")
         self.role = gr.Radio(
             [(say("react.acts_first"), "a"), (say("react.reacts"), "b")],
             value=ReactRequest.role,
             label=say("react.role"),
             elem_id="react-role",
         )
-        self.keep = gr.Checkbox(False, label=say("react.keep"), elem_id="react-keep", visible=False, min_width=0)
-
-    def _stream_button(self) -> None:
-        self.stream = gr.Button(
-            say("react.stream"), elem_id="react-stream", min_width=0, visible=live_variant() is not None
-        )
-
-    def starts(self) -> dict[str, gr.Button]:
-        """The buttons *React* and *Stream*."""
-        return {**super().starts(), "stream": self.stream}
 
     def restored(self) -> Sequence[Any]:
         """The file, how it was read, and the line on the method."""
@@ -193,46 +166,20 @@ class ReactTab(JobTab):
             method_line(about),
         )
 
-    def start_stream(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
-        """Streams an online reaction while the actor plays; yields updates of the page."""
-        yield from self.run(str(request.session_hash), {**self.fields(values), "stream": True})
-
     def keep_live(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
         """Makes a live stream, as the panel sends it, a result of the history; yields updates of the page."""
         taken = {"source": None, "live": values[self.live]}
         yield from self.run(str(request.session_hash), {**self.fields(values), **taken})
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
-        """Runs a method, streams a reaction, or keeps a live one."""
-        if "live" in fields:
-            yield from self._answer_kept(session, take_of(fields["live"]))
-        elif fields.get("stream"):
-            yield from self._answer_streamed(session, fields)
-        else:
+        """Runs a method, or shows a live stream that is kept as a result."""
+        if "live" not in fields:
             yield from super().answer(session, fields)
-
-    def _answer_kept(self, session: str, take: LiveTake) -> Iterator[Updates]:
-        """Shows a live stream as a result."""
+            return
+        take = take_of(fields["live"])
         result = yield from self.made(session, take)
-        said = f"Kept: {seconds(take.actor.seconds)} live."
-        yield self.updates(**self.shown(result, take.title) | _line(said, result))
-
-    def _answer_streamed(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
-        """Streams one sample of the online method, whatever method is chosen."""
-        live = live_variant()
-        if live is None:
-            raise InputError("No installed method can stream a reaction: choose a method and press React.")
-        wanted = LiveRequest(**chosen_actor({**with_method(fields, live.key), "samples": 1}))
-        title = self.title(wanted)
-        view = LiveView(wanted.actor, title)
-        try:
-            result = yield from self.made(session, wanted, watch=view)
-        except Exception:
-            yield self.updates(player=view.stopped())
-            raise
-        player = show({**result_payload(result, title=title), "continues": view.id})
-        said = f"Streamed by {live.label}: {view.delay}."
-        yield self.updates(**self.shown(result, title) | {"player": player} | _line(said, result))
+        said = status(f"Kept: {seconds(take.actor.seconds)} live.", tone="done")
+        yield self.updates(**self.shown(result, take.title) | {"line": said + notes_lines(result)})
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the method with what it lets be set, and the given person."""
@@ -247,10 +194,6 @@ class ReactTab(JobTab):
         for part, fit in fitted.items():
             kept = found.get(part)
             fitted[part] = {**fit, "value": kept["value"]} if isinstance(kept, dict) else fit
-        given, note = self.actor.opened(run)
-        found |= {**fitted, **given, self.method: gr.update(value=method), self.line: found[self.line] + note}
+        given = self.actor.opened(run)
+        found |= {**fitted, **given, self.method: gr.update(value=method)}
         return found
-
-
-def _line(said: str, result: Result) -> dict[str, str]:
-    return {"line": status(said, tone="done") + notes_lines(result)}

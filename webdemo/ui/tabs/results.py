@@ -12,7 +12,7 @@ import gradio as gr
 
 from motion import InputError
 from webdemo.ui.components.exports import KINDS, PURPOSES, Record, file_name, for_download, write_record
-from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film, make_mesh
+from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film
 from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.context import PageContext
 from webdemo.ui.text.panels import status
@@ -37,7 +37,16 @@ _SAVE = """() => {
   setTimeout(() => button?.disabled === false && button.click(), 50);
 }"""
 """JavaScript that presses a download button that has a file; to be filled with its id as JSON."""
-DRAWN = {"result.film": make_film, "result.figure": make_figure, "result.mesh": make_mesh}
+PRESS = """() => {
+  const press = (left) => {
+    const button = document.getElementById(%s);
+    if (button?.offsetParent && !button.disabled) button.click();
+    else if (left) setTimeout(press, 100, left - 1);
+  };
+  press(100);
+}"""
+"""JavaScript that presses a button once it is in view and can be pressed; to be filled with its id as JSON."""
+DRAWN = {"result.film": make_film, "result.figure": make_figure}
 """What is drawn of a result when its button is pressed, by the key of the button's text."""
 
 Updates = tuple[Any, ...]

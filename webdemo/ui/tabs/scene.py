@@ -10,7 +10,7 @@ import gradio as gr
 
 from motion import Duet
 from webdemo.inference.run import Progress, Result
-from webdemo.inference.story import SceneProgress, SceneRequest, write_story
+from webdemo.inference.story import SceneProgress, SceneRequest
 from webdemo.inference.story.beats import story_title
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import show
@@ -25,8 +25,8 @@ from webdemo.ui.components.scene_parts import (
     went_on,
 )
 from webdemo.ui.components.show import arrival_payload
-from webdemo.ui.components.story import StoryLine, motion_marks, story_fields, value_of
-from webdemo.ui.components.story_words import SETTINGS, edited, lay_out, said_of, settled, story_text, use_text, written
+from webdemo.ui.components.story import StoryLine, story_fields, value_of
+from webdemo.ui.components.story_words import edited, lay_out, said_of, settled, story_text, written
 from webdemo.ui.components.upload import chip
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
@@ -90,7 +90,6 @@ class SceneTab(JobTab):
         request = SceneRequest.from_dict(next(iter(made.values())).manifest["request"])
         return {
             "story": gr.update(value=value_of(request)),
-            "text": write_story(request),
             "prompt": _changed(fields),
             "reading": gr.update(checked=None),
         }
@@ -109,9 +108,6 @@ class SceneTab(JobTab):
                 self.results.build_readouts()
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     self.sampling.build()
-                with gr.Accordion(say("scene.text"), open=False, elem_classes="pd-panel pd-about"):
-                    self.text = gr.Textbox(label=say("scene.toml"), lines=8, max_lines=24, elem_id="scene-text")
-                    self.use = gr.Button(say("scene.use"), size="sm", elem_id="scene-use-text")
             first = arrival_payload(CLIPS / ARRIVAL)
             self.results.build_stage(compare=self.grids.build, below=self._story, first=first)
         self.controls = {"prompt": self.prompt, "story": self.line_up, **self.sampling.controls}
@@ -136,23 +132,24 @@ class SceneTab(JobTab):
 
     def _story(self) -> None:
         self.line_up = StoryLine(elem_id=self._id("story"), elem_classes="pd-story")
-        with gr.Column(elem_classes="pd-panel pd-parts", min_width=0):
+        with gr.Row(elem_classes="pd-panel pd-parts"):
             self.words = gr.Textbox(
-                label=say("scene.part"), placeholder=say("scene.part_hint"), elem_id=self._id("part-words")
+                label=say("scene.part"),
+                placeholder=say("scene.part"),
+                show_label=False,
+                container=False,
+                min_width=240,
+                elem_id=self._id("part-words"),
             )
-            with gr.Row(elem_classes="pd-chips"):
-                self.remake = gr.Button(say("scene.remake"), size="sm", min_width=0, elem_id=self._id("remake"))
-                self.futures = gr.Button(
-                    say("scene.futures", count=FUTURES), size="sm", min_width=0, elem_id=self._id("futures")
-                )
-                self.take = gr.Button(
-                    say("scene.take"), size="sm", min_width=0, elem_id=self._id("take"), elem_classes="pd-take"
-                )
+            small: dict[str, Any] = {"size": "sm", "min_width": 0, "scale": 0}
+            self.remake = gr.Button(say("scene.remake"), elem_id=self._id("remake"), **small)
+            self.futures = gr.Button(say("scene.futures", count=FUTURES), elem_id=self._id("futures"), **small)
+            self.take = gr.Button(say("scene.take"), elem_id=self._id("take"), elem_classes="pd-take", **small)
         self.shown_at = gr.Textbox(visible=False)
 
     def more_outputs(self) -> dict[str, Any]:
-        """The story with its text and its words, and their verdicts."""
-        return {"story": self.line_up, "text": self.text, "prompt": self.prompt, "reading": self.reading}
+        """The story with its words, and their verdicts."""
+        return {"story": self.line_up, "prompt": self.prompt, "reading": self.reading}
 
     def starts(self) -> dict[str, gr.Button]:
         """Also those of parts."""
@@ -165,21 +162,22 @@ class SceneTab(JobTab):
             button.click(
                 partial(lay_out, sentences),
                 inputs=self.line_up,
-                outputs=[self.prompt, self.line_up, self.text, self.line],
+                outputs=[self.prompt, self.line_up, self.line],
                 **QUIET,
             )
-        laid = [self.line_up, self.text, self.line, self.prompt]
-        last: dict[str, Any] = {"outputs": laid, "trigger_mode": "always_last", **QUIET}
-        self.line_up.input(edited, inputs=[self.line_up, self.sampling.seed], **last)
+        last: dict[str, Any] = {
+            "outputs": [self.line_up, self.line, self.prompt],
+            "trigger_mode": "always_last",
+            **QUIET,
+        }
+        self.line_up.input(edited, inputs=self.line_up, **last)
         self.prompt.input(None, inputs=self.line_up, outputs=self.line_up, js=_TYPED, **QUIET)
-        self.prompt.blur(written, inputs=[self.prompt, self.line_up, self.sampling.seed], **last)
-        knobs = [self.controls[name] for name in SETTINGS]
-        self.use.click(use_text, inputs=self.text, outputs=[self.line_up, self.prompt, self.line, *knobs], **QUIET)
+        self.prompt.blur(written, inputs=[self.prompt, self.line_up], **last)
         player, under, readouts = self.results.player, self.results.under, self.results.readouts
-        changed = [player, self.line, self.record, self.line_up, self.trail]
+        changed = [player, self.line, self.record, self.trail]
         shown = [self.record, self.trail, self.shown_at]
         self.take.click(self.take_shown, inputs=shown, js=_READ_PLACE, outputs=changed, **QUIET)
-        last_shown = [player, self.line, under, readouts, self.line_up]
+        last_shown = [player, self.line, under, readouts]
         self.last.click(self.take_last, inputs=self.record, outputs=last_shown, **QUIET)
 
     def _wire_parts(self) -> None:
@@ -209,25 +207,19 @@ class SceneTab(JobTab):
             wanted = part_request(fields)
         else:
             wanted = self.request(fields)
-            laid = {"text": write_story(wanted), "prompt": _changed(fields)}
+            laid = {"prompt": _changed(fields)}
             # Not the story itself: Gradio's page would change it in place into the update after it.
             yield self.updates(**laid, story=gr.update(value=fields["story"]))
         title = fields["record"].prompt if part is not None else self.title(wanted)
         result = yield from self.made(session, wanted, watch=partial(self._watch, title))
         verdicts = checked(str(fields["prompt"]), result.manifest) if part is None else None
         shown = self.shown(result, title) | {"reading": gr.update(checked=verdicts)}
-        duet = result.duets[0]
-        assert isinstance(duet, Duet)
-        marks = motion_marks(duet, result.readouts[0])
-        line_up = gr.update(motion=marks)
         if part == "futures":
             story = went_on(fields["story"], wanted)
-            line_up = gr.update(value=story, motion=marks)
-            shown["prompt"] = story_text(story_fields(story)["beats"])
+            shown |= {"story": gr.update(value=story), "prompt": story_text(story_fields(story)["beats"])}
         elif part is None:  # again, as a browser may show only the last of several updates
-            line_up = gr.update(value=fields["story"], motion=marks)
-            shown |= laid
-        yield self.updates(**shown | {"story": line_up})
+            shown |= {"story": gr.update(value=fields["story"]), **laid}
+        yield self.updates(**shown)
 
     def _starter(self, part: str) -> Callable[..., Iterator[Updates]]:
         """What makes a part of the motion: the selected "span" again, or "futures" from the player's frame on."""
@@ -257,33 +249,27 @@ class SceneTab(JobTab):
     def take_last(self, record: Record | None) -> Updates:
         """Shows the session's last result here, of whichever tab, so that parts of it can be made again."""
         try:
-            duet = shown_duet(record, 0)
+            shown_duet(record, 0)
         except Exception as error:
-            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip(), gr.skip()
+            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip()
         assert record is not None
         shown = self.shown(record.result, record.prompt)
         line = status("Select a span of it, or ask for continuations.")
-        return shown["player"], line, shown["under"], shown["readouts"], gr.update(motion=motion_marks(duet))
+        return shown["player"], line, shown["under"], shown["readouts"]
 
     def take_shown(self, record: Record | None, trail: list[str], shown: str) -> Updates:
         """Keeps one of several futures as the motion; the choice can be gone back to."""
         try:
             sample = place_of(shown)["sample"]
-            duet = shown_duet(record, sample)
+            shown_duet(record, sample)
         except Exception as error:
-            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip(), gr.skip()
+            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip()
         assert record is not None
         if len(record.result.duets) == 1:
-            return gr.skip(), status("This is the motion already."), gr.skip(), gr.skip(), gr.skip()
+            return gr.skip(), status("This is the motion already."), gr.skip(), gr.skip()
         kept = Record(only_sample(record.result, sample), record.prompt)
         line = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
-        return (
-            self.shown(kept.result, record.prompt)["player"],
-            line,
-            kept,
-            gr.update(motion=motion_marks(duet)),
-            [*trail, record.result.run],
-        )
+        return self.shown(kept.result, record.prompt)["player"], line, kept, [*trail, record.result.run]
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the story that was asked for."""
@@ -294,12 +280,10 @@ class SceneTab(JobTab):
             request = SceneRequest.from_dict(asked, motion)
             whole = run.kept.controls.get("story")  # a part's own request knows nothing of what is around it
             if motion is None or not whole:
-                story, text = value_of(request), write_story(request)
+                story = value_of(request)
             else:
                 story = went_on(whole, request) if request.end is None else whole
-                text = edited(story, request.seed)[1]
-            found[self.line_up] = gr.update(value=story, motion=motion_marks(duet))
-            found[self.text] = text
+            found[self.line_up] = gr.update(value=story)
             said = said_of(str(run.kept.controls.get("prompt") or ""), story)
             found[self.prompt] = gr.update(value=said)
             found[self.reading] = gr.update(checked=None if motion is not None else checked(said, run.result.manifest))

@@ -36,8 +36,6 @@ class SourcePanel(ABC):
 
     named: str
     """Key of the text of the field for a file."""
-    takes: Sequence[tuple[str, str, str]]
-    """Buttons that take the last result: the key of the text, the end of the id, and the person in front."""
     take_at_end = False
     """Whether a result is taken as a past, up to its end."""
     known: Sequence[Any] = ()
@@ -68,12 +66,11 @@ class SourcePanel(ABC):
     # ---- layout ----------------------------------------------------------------------------------
 
     def build(self, cameras: Callable[[], None] = lambda: None) -> None:
-        """Lays out the field and its chips; ``cameras`` lays out more beside the camera's panel."""
+        """Lays out where a motion can come from; ``cameras`` lays out more beside the camera's panel."""
         self.file = file_field(self.named, elem_id=f"{self.prefix}file")
-        with gr.Row(elem_classes="pd-chips"):
+        with gr.Row(elem_classes="pd-chips pd-sources"):
             self.chips = example_chips(self.examples)
-            self.take = {person: chip(say(key), elem_id=f"{self.prefix}take{end}") for key, end, person in self.takes}
-        with gr.Row(elem_classes="pd-cameras"):
+            self.take = chip(say("source.take"), elem_id=f"{self.prefix}take")
             self.camera = CameraPanel(elem_id=f"{self.prefix}camera")
             cameras()
         self.state = gr.State(None, time_to_live=3600)
@@ -82,9 +79,12 @@ class SourcePanel(ABC):
         """The list of a file's animations."""
         self.animation = animation_field(f"{self.prefix}animation")
 
-    def wire(self, record: gr.State, line: gr.HTML) -> None:
-        """Wires what a motion can be taken from: also the result in ``record``; ``line`` says what was taken."""
-        self.shown = [self.state, line, self.results.player, *self.more()]
+    def wire(self, record: gr.State, line: gr.HTML, go: gr.Button) -> None:
+        """Wires what a motion can be taken from: also the result in ``record``; ``line`` says what was taken.
+
+        While it is read, ``go``, which runs something on it, cannot be pressed.
+        """
+        self.shown = [self.state, line, self.results.player, *self.more(), go]
         self.load_options: dict[str, Any] = {
             "outputs": self.shown,
             "concurrency_limit": 2,
@@ -96,9 +96,8 @@ class SourcePanel(ABC):
         self.camera.submit(self.read_film, inputs=self.camera, **load)
         for button, (name, path) in zip(self.chips, self.examples, strict=True):
             button.click(partial(self.load, partial(read_source, path, name)), **load)
-        for person, button in self.take.items():
-            button.click(partial(self.take_result, person), inputs=record, **load)
-        others = [self.camera.submit, *(button.click for button in (*self.chips, *self.take.values()))]
+        self.take.click(self.take_result, inputs=record, **load)
+        others = [self.camera.submit, *(button.click for button in (*self.chips, self.take))]
         gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
         self.state.change(offered_animations, inputs=self.state, outputs=self.animation, queue=False, **QUIET)
         self.file.clear(self.forget, outputs=self.shown, queue=False, **QUIET)
@@ -114,17 +113,20 @@ class SourcePanel(ABC):
         )
 
     def wire_arrival(self, tab: gr.Tab, record: gr.State, kind: str) -> None:
-        """Lets the tab, which makes results of a kind, begin with the first example where nothing is on it."""
+        """Lets the tab, which makes results of a kind, begin with the last result of another, or an example."""
         arrive = partial(self.arrive, kind.lower())
         tab.select(arrive, inputs=[self.state, record], **self.load_options)
 
     # ---- events ----------------------------------------------------------------------------------
 
     def arrive(self, kind: str, source: Source | None, record: Record | None) -> Updates:
-        """Shows the first example where there is nothing else to show; it plays and then rests."""
+        """Shows the last result of another kind, or else the first example, which plays and then rests."""
         made = record is not None and record.result.manifest.get("request", {}).get("kind") == kind
-        if source is not None or made or not self.examples:
+        if source is not None or made or not (record or self.examples):
             return (gr.skip(),) * len(self.shown)
+        if record is not None:
+            *_, taken = self.take_result(record)
+            return taken
         name, path = self.examples[0]
         *_, (state, line, player, *more) = self.load(partial(read_source, path, name))
         return state, line, {**player, "value": {**player["value"], "rounds": ROUNDS}}, *more
@@ -138,36 +140,37 @@ class SourcePanel(ABC):
         """Takes the person of a film."""
         yield from self.load(partial(film_source, landmarks))
 
-    def take_result(self, person: str, record: Record | None) -> Iterator[Updates]:
-        """Takes the session's last result, with this person in front."""
+    def take_result(self, record: Record | None) -> Iterator[Updates]:
+        """Takes the session's last result."""
 
         def read() -> Source:
             if record is None:
                 raise InputError("There is no result yet: generate one first.")
-            return result_source(record.result, record.prompt, person)
+            return result_source(record.result, record.prompt)
 
         yield from self.load(read, at_end=self.take_at_end)
 
     def load(self, read: Callable[[], Source], *, at_end: bool = False, fresh: bool = False) -> Iterator[Updates]:
-        """Updates of the state, the line, the player and :meth:`more` while a motion is read.
+        """Updates of the state, the line, the player, :meth:`more` and the button while a motion is read.
 
         Where it is ``fresh`` and cannot be read, an earlier motion is forgotten.
         """
         rest = [gr.skip() for _ in self.more()]
-        yield gr.skip(), status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *rest
+        wait, ready = gr.update(interactive=False), gr.update(interactive=True)
+        yield gr.skip(), status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *rest, wait
         try:
             source = read()
             payload = self.payload(source)
         except Exception as error:
             note = status(error_line(error), tone="error")
-            yield (None, note, show(None), *self.gone()) if fresh else (gr.skip(), note, busy(""), *rest)
+            yield (None, note, show(None), *self.gone(), ready) if fresh else (gr.skip(), note, busy(""), *rest, ready)
             return
         line, updates = self.described(source, at_end=at_end)
-        yield source, line, show(payload), *updates
+        yield source, line, show(payload), *updates, ready
 
     def forget(self) -> Updates:
         """The tab without a motion; a result stays in the downloads."""
-        return None, status(), show(None), *self.gone()
+        return None, status(), show(None), *self.gone(), gr.skip()
 
     def read_again(self, source: Source | None, *chosen: Any) -> Iterator[Updates]:
         """Reads the source's file anew as its settings and its animation are, or takes those back where it cannot."""

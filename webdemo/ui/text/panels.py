@@ -52,7 +52,7 @@ def notes_lines(result: Result) -> str:
 
 
 def effect_line(results: Iterable[Result]) -> str:
-    """What the settings did: what share of sentences' motion the plan fixes, and what damping changed of the first.
+    """What the settings did: what share of sentences' motion the plan fixes, and what damping moved and changed.
 
     "" where no result says either.
     """
@@ -65,6 +65,8 @@ def effect_line(results: Iterable[Result]) -> str:
         said = f"The plan fixes {share} % of this motion; the settings here change the rest."
         said = "The plan fixes all of this motion: the settings here change little." if least == "100" else said
         said = "The network makes all of this motion." if most == "0" else said
+    if moved := [100 * each["damped"] for each in readouts if each.get("damped")]:
+        said += f" At the last step damping moved the joints by {sum(moved) / len(moved):.1f} cm on average."
     before, after = sides(readouts[0]) if readouts else (None, {})
     pairs = [(measure, _value(measure, before or {}), _value(measure, after)) for measure in QUALITY]
     changed = [f"{m.label.lower()} {old} → {new} {m.unit}".strip() for m, old, new in pairs if old not in ("–", new)]
