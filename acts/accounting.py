@@ -9,7 +9,7 @@ act than the words name. Words of grammar and of the two people count for nothin
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -22,6 +22,7 @@ from .reading import wordnet
 from .reading.parses import Parse, parses
 from .reading.people import A_NAME, B_NAME
 from .reading.spelling import Speller
+from .reading.syntax import is_likeness
 from .reading.vocabulary import vocabulary
 from .reading.wording import prepared
 from .shapes import Go
@@ -45,9 +46,9 @@ _SCENERY = frozenset(
     ["floor", "ground", "room", "place", "spot", "air", "direction", "body", "scene", "person", "people"]
 )
 """What is there in every scene."""
-_KINDS = ("begins", "ends", "light", "causes", "tried", "pretended", "wished", "offered", "not", "seems", "sees")
+_KINDS = ("begins", "ends", "light", "causes", "tried", "pretended", "wished", "offered", "not", "seems")
 """Verbs about other verbs, which the acts' modality, polarity and order stand for."""
-_STATES = frozenset(("be", "have", "stand", "stay", "remain", "keep", "do", "go", "come"))
+_STATES = frozenset(("be", "have", "stand", "stay", "remain", "keep", "do", "go", "come", "use"))
 _PLACES_TEXT = "behind beside past across between under through near opposite along front next"
 _PLACES = frozenset(_PLACES_TEXT.split())
 """Words of where somebody is to the other or to a thing, before what they name."""
@@ -114,10 +115,12 @@ def _account(plan: Plan, known: Lexicon) -> Account:
                     taken.append((spans[verb.i][0], own.stop))
                     others[act.id] = plan.sentence[spans[verb.i][0] : own.stop].strip(" ,;.")
         left = [(i, j) for i, j in left if not any(i < stop and start < j for start, stop in taken)]
+        left += [each for each in parsed.text.left_out() if not any(i < each[1] and each[0] < j for i, j in whole)]
+        names = {word.lower() for person in plan.people for word in person.words}
         for token in parsed.doc:
             start, stop = spans[token.i]
             told = any(first <= start and stop <= last for first, last in (*whole, *taken))
-            if told or not _counts(token, parsed):
+            if told or not _counts(token, parsed, names):
                 continue
             by = _read_by(token, start, stop, plan, known, parsed)
             if by is None:
@@ -176,8 +179,8 @@ def shown_caption(act: Act, entry: Entry) -> str:
     return naming(act, entry, caption_of(act, entry))
 
 
-def _counts(token: Token, parsed: Parse) -> bool:
-    """True for a word that says something of what is done."""
+def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
+    """True for a word that says something of what is done, and is none of the people's names."""
     lemma, words = _lemma(token, parsed), vocabulary()
     if _is_place(token) or _is_target(token) or token.lower_ == "half":
         return True
@@ -189,12 +192,14 @@ def _counts(token: Token, parsed: Parse) -> bool:
         return False
     if token.pos_ in ("VERB", "AUX") and (lemma in _STATES or any(lemma in words.verbs[kind] for kind in _KINDS)):
         return False
-    if token.dep_ in ("prt", "aux", "auxpass", "neg", "mark") or token.lower_ in words.both:
+    if token.dep_ in ("prt", "aux", "auxpass", "neg", "mark") or (
+        token.lower_ in words.both and token.dep_ != "nummod"
+    ):
         return False
     if token.pos_ in ("NOUN", "PROPN") and (words.is_person(lemma) or words.is_person(token.lower_)):
-        return False
-    if token.pos_ == "PROPN" and token.dep_ in ("nsubj", "compound", "dobj", "pobj", "poss"):
-        return token.text.islower()  # a name
+        return is_likeness(token)  # "acts like a king"
+    if token.pos_ == "PROPN" and not token.text.islower():
+        return names.isdisjoint((lemma, token.lower_, token.head.lower_))
     if token.pos_ in ("NUM", "ADJ") and words.is_person(_lemma(token.head, parsed)):
         return not (token.pos_ == "NUM" or words.age(lemma))
     return True
@@ -229,6 +234,8 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return not any(c.lower_.endswith(("self", "selves")) for c in token.children)
     if any(forms & each for each in (said_words(entry.caption), set(act.manner))):
         return True
+    if words.likeness.get(lemma) in act.manner:
+        return True
     if (text in _BESIDE and said_words(entry.caption) & _BESIDE) or (text == "behind" and FROM_BEHIND in act.manner):
         return True
     if token.pos_ in ("VERB", "NOUN") and _alike(lemma, _verbs(entry.caption), entry.synsets):
@@ -242,8 +249,10 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return True
     if (way is not None and way == act.direction) or (text == "both" and act.side == "both"):
         return True
-    if text in words.numbers or text.isdigit():
-        return any(value is not None for value in (act.times, act.seconds, act.distance))
+    if text in words.numbers or token.like_num:
+        of = _lemma(token.head, parsed)
+        measured = (act.seconds is not None and of in words.seconds) or (act.distance and of in words.metres)
+        return bool(measured) or text == str(act.times) or (text in words.numbers and words.numbers[text] == act.times)
     return (lemma in words.metres and act.distance is not None) or (lemma in words.seconds and act.seconds is not None)
 
 

@@ -129,6 +129,8 @@ class Frame:
             if isinstance(ref, Ref):
                 if element.slot == "b.part" and len(agents) == 2 and _is_own(ref):
                     score -= _OWN
+                elif element.slot == "b.part" and ref.bare and not ref.who and "b" not in bound:
+                    score -= _OPEN
                 name = element.slot.partition(".")[2] or element.slot
                 if name not in bound or element.slot == "b.part":  # "a hand on his shoulder" is about the shoulder
                     bound[name] = ref
@@ -199,6 +201,9 @@ class Frame:
 
 _OWN = 2.5
 """What it costs that "the arm" or "their arms" of two who do something should be the other's."""
+
+_OPEN = 0.5
+"""What it costs that "the wrist" should be the other's, where nothing names them: it is rather one's own."""
 
 
 def _is_own(ref: Ref) -> bool:

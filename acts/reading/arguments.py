@@ -59,7 +59,11 @@ class Arguments:
             bare = all(c.dep_ not in ("poss", "det") for c in child.children)
             if child.dep_ == "aux" and child.lower_ in ("come", "comes", "came"):  # "comes running"
                 event.words.append("come")
-            elif child.dep_ in ("dobj", "obj") and child.lower_ in self._words.directions and bare:
+            elif (
+                child.dep_ in ("dobj", "obj")
+                and bare
+                and (child.lower_ in self._words.directions or child.pos_ == "ADV")
+            ):
                 self._modifier(child, event)
             elif child.dep_ in ("dobj", "obj") and self._is_measure(child, event):  # "walk a few steps"
                 self._measured(child, who, event)

@@ -77,7 +77,7 @@ def _attempts(text: str, known: Lexicon) -> Iterator[tuple[float, Plan]]:
     for parsed in parses(prepared(text, speller), speller):
         reader = Reader(parsed.doc, known, parsed.lemmas, speller.forms)
         events = reader.read()
-        planner = _Planner(text, parsed.text, known, events, list(spans(parsed.doc, events)), reader)
+        planner = _Planner(text, parsed.text, known, events, spans(parsed.doc, events), reader)
         plan = planner.plan()
         yield planner.cost + parsed.cost, plan
         if planner.cost == 0:
@@ -93,11 +93,11 @@ class _Planner:
         prepared_text: Text,
         known: Lexicon,
         events: Sequence[Event],
-        clauses: Sequence[tuple[int, int]],
+        clauses: Iterable[tuple[int, int]],
         reader: Reader,
     ) -> None:
         self._text, self._prepared, self._known = text, prepared_text, known
-        self._events, self._clauses, self._reader = events, clauses, reader
+        self._events, self._clauses, self._reader = events, list(clauses), reader
         self._matcher = matcher(known)
         self._acts: list[Act] = []
         self._unread: list[Unread] = []
@@ -148,7 +148,7 @@ class _Planner:
 
     def _event(self, number: int, event: Event) -> None:
         inner = [i for i, other in enumerate(self._events) if other.beside == number and other.joint == "comp"]
-        if self._in_turn(number, event) or self._repeated(number, event, bool(inner)):
+        if self._in_turn(number, event) or self._with_hand(number, event) or self._repeated(number, event, bool(inner)):
             return
         found = self._matcher.find(event)
         if (theirs := of_the_last(event, self._acts)) is not None and (other := self._matcher.find(theirs)) is not None:
@@ -236,6 +236,17 @@ class _Planner:
         self._in_turns |= done
         return bool(done)
 
+    def _with_hand(self, number: int, event: Event) -> bool:
+        """Passes the hand of "uses the left hand to throw" on to what is done with it; False for other verbs."""
+        hand = event.object
+        done = [i for i, other in enumerate(self._events) if other.beside == number and other.joint != "after"]
+        if event.lemma != "use" or hand is None or hand.kind != "part" or not done:
+            return False
+        for i in done:
+            self._events[i].prepositions.append(("with", replace(hand, who="")))
+            self._clauses[i] = (self._clauses[number][0], self._clauses[i][1])
+        return True
+
     def _formations(self, number: int) -> list[str]:
         """The ways to move together that the clause of an event names."""
         span = self._span(number)
@@ -292,6 +303,8 @@ class _Planner:
     def _add(
         self, number: int, event: Event, name: str, frame: Frame, match: Match, beside: Relation | None = None
     ) -> None:
+        if name == "take-from" and self._reader.cast.alone:
+            name = "grab-thing"  # from nobody
         if name == "follow" and event.lemma in vocabulary().verbs["goes"] and self._rests(match.patient):
             name = "come-behind"  # "B lies down. A walks behind B."
         number_of = str(len(self._acts) + 1)

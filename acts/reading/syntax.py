@@ -93,8 +93,8 @@ _ABOUT = frozenset(("around", "round", "about"))
 def is_ongoing(token: Token, lemma: str) -> bool:
     """True if a verb's act goes on when its clause begins: "is sitting", "stays seated", "the sleeping child"."""
     children = {child.lower_ for child in token.children}
-    if lemma in _GOES_ON and any(child.dep_ == "acomp" for child in token.children):  # "stays seated"
-        return True
+    if lemma in _GOES_ON and any(c.dep_ in ("acomp", "oprd") or c.tag_ == "VBN" for c in token.children):
+        return True  # "stays seated"
     being = any(child.dep_ == "aux" and child.lemma_ == "be" for child in token.children)
     if "down" in children:
         return lemma == "lie" and being

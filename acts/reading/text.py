@@ -72,6 +72,14 @@ class Text:
             if start <= first and last <= stop and (name := known.get(_words_of(self.original[first:last]))):
                 yield name
 
+    def left_out(self) -> Iterator[tuple[int, int]]:
+        """Stretches of the original that are not parsed, such as what is said in quotation marks, with their words."""
+        stops = [stop for _, _, stop in self._pieces]
+        starts = [start for _, start, _ in self._pieces[1:]]
+        for stop, start in zip(stops, [*starts, len(self.original)], strict=True):
+            if words := re.search(r"\w(?:.*\w)?", self.original[stop:start], re.DOTALL):
+                yield stop + words.start(), stop + words.end()
+
     def span(self, first: int, last: int) -> tuple[int, int]:
         """The offsets in the original of a stretch of what was parsed."""
         i = max(bisect.bisect_right(self._starts, first) - 1, 0)

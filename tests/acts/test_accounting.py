@@ -23,6 +23,10 @@ from webdemo.inference.engine.tries import note
         ("They circle each other clockwise.", ("clockwise",)),
         ("A hands B a heavy box, and B puts it on the floor.", ("heavy",)),
         ("A waves and zorbles.", ("zorbles",)),
+        ("A bows like a wizard.", ("like a wizard",)),
+        ("A claps (slowly, at the window) and B bows.", ("slowly, at the window",)),
+        ("A taps B with two fingers three times.", ("two",)),
+        ("They dance on Sunday.", ("on Sunday",)),
     ],
 )
 def test_words_that_are_in_no_act_are_reported(sentence: str, unread: tuple[str, ...]) -> None:

@@ -56,13 +56,18 @@ def mostly(m: Motion, mask: Mask, share: float = 0.6) -> bool:
 @condition
 def times(m: Motion, mask: Mask, count: int) -> bool:
     """It holds in ``count`` stretches or more."""
-    return len([1 for i, j in stretches(mask, m.fps, pause=0.1) if j - i >= 2]) >= count
+    return _times(m, mask) >= count
 
 
 @condition
 def exactly(m: Motion, mask: Mask, count: int) -> bool:
     """It holds in ``count`` stretches, no more and no fewer."""
-    return len([1 for i, j in stretches(mask, m.fps, pause=0.1) if j - i >= 2]) == count
+    return _times(m, mask) == count
+
+
+def _times(m: Motion, mask: Mask) -> int:
+    """In how many stretches it holds."""
+    return len([1 for i, j in stretches(mask, m.fps, pause=0.1) if j - i >= 2])
 
 
 @condition
@@ -134,12 +139,17 @@ def measured(rule: str, motion: Motion, *, lacking: bool = False) -> str:
     Args:
         rule: as for :func:`check`.
         motion: of two people.
-        lacking: of the first that holds in no frame, with what it asks for: "hands 12 cm apart, 5 cm needed".
+        lacking: of what is missing: how often it is done, if that is wrong, "done 1 time, not 3"; else the first that
+            holds in no frame, with what it asks for: "hands 12 cm apart, 5 cm needed".
 
     Raises:
         RuleError: as :func:`check`.
     """
     for node in _calls(ast.parse(rule, mode="eval").body):
+        if lacking and _name(node.func) in ("times", "exactly"):
+            mask, count = (_value(argument, motion) for argument in node.args)
+            if 0 < (seen := _times(motion, mask)) != count:
+                return f"done {seen} time{'s' * (seen != 1)}, not {count}"
         if _name(node.func) in MEASURES and not (lacking and np.any(_value(node, motion))):
             said, limit = str(_call(node, motion, MEASURES)), _limit(node, motion) if lacking else ""
             return said + limit * (("°" in said) == ("°" in limit))

@@ -48,6 +48,21 @@ from tests.acts.reading.reading import told
         ("person 2 tails person 1 down the street", [("follow", "b", "a")]),
         ("Tom helps Jerry up off the ground.", [("help-up", "a", "b")]),
         ("The one on the left waves, and the one on the right bows.", [("wave", "a", "b"), ("bow", "b", None)]),
+        # what the two do to each other's hands, to things, and with one's own body
+        ("They clap hands with each other.", [("clap-each-other", "ab", None)]),
+        ("Two girls play pat-a-cake.", [("clap-each-other", "ab", None)]),
+        ("They clap their hands.", [("clap", "ab", None)]),
+        ("They pull a big cart.", [("pull-thing", "ab", None)]),
+        ("The two men push a car.", [("push-thing", "ab", None)]),
+        ("A touches the left wrist.", [("touch-own", "a", None)]),
+        ("B squeezes the right elbow.", [("touch-own", "b", None)]),
+        ("A touches B's left wrist.", [("touch", "a", "b")]),
+        ("A taps B and touches the left wrist.", [("pat", "a", "b"), ("touch-own", "a", None)]),
+        ("a person grabs something with both hands", [("grab-thing", "a", None)]),
+        ("a man touches something in front of him", [("touch-thing", "a", None)]),
+        ("a person moves objects on a shelf", [("move-thing", "a", None)]),
+        ("a person loses his balance", [("stumble", "a", None)]),
+        ("a person returns to a standing position", [("stand-still", "a", None)]),
     ],
 )
 def test_a_sentence_is_read(text: str, acts: list[tuple[str, str, str | None]]) -> None:
@@ -220,3 +235,12 @@ def test_a_side_is_of_whom_the_words_say(text: str, side: str | None, part_side:
 
 def test_a_letter_before_is_is_a_name() -> None:
     assert told("A is kneeling.") == [("kneel", "a", None)]
+
+
+def test_what_the_hand_is_used_for_is_done_with_it() -> None:
+    acts = [*read("a person uses the left hand to throw a ball").acts, only("The man uses his left hand to wave.")]
+    assert [(act.act, act.side) for act in acts] == [("throw-ball", "left"), ("wave", "left")]
+
+
+def test_who_remains_seated_sits_from_the_start() -> None:
+    assert only("a person remains seated").already
