@@ -73,6 +73,7 @@ def test_a_motion_plays_first_and_then_that_of_a_sentence(page: Page, server: Si
     expect(page.locator("#downloads")).to_be_hidden()
     page.click("button.pd-chip >> nth=0")
     expect(page.locator("#prompt textarea")).to_have_value("Two people walk up to each other and shake hands.")
+    assert status(page, "done").startswith("Made in"), "an example is made at once"
     for keys in ("Enter", "Control+Enter"):
         expect(page.locator("button#generate")).to_be_enabled()
         page.fill("#prompt textarea", f"two people walk, says {keys}")

@@ -47,6 +47,11 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.wait_for_selector(".pds-cell")
     assert page.locator(".pds-lane-words .pds-cell").all_inner_texts() == ["They meet.", "They hug.", "They bow."]
 
+    # The player's clock stands over the story's line, and both are as long.
+    page.wait_for_function("document.querySelector('.pds').editor.shown === window.__pasdedeux.player.clock.duration")
+    clock, line = (page.locator(part).bounding_box() for part in (".pdd-range:visible", ".pds-line"))
+    assert clock and line and abs(clock["x"] + 7 - line["x"]) < 3 and abs(clock["width"] - 14 - line["width"]) < 4
+
     def words() -> list[str]:
         return [beat["words"] for beat in story(page)["beats"]]
 
