@@ -100,7 +100,7 @@ def test_automatic_is_the_best_of_the_table_for_what_is_given(monkeypatch: pytes
     assert automatic("", "b").name == methods("react")[0].name, "the others answer; they do not act first"
     rows = [
         line.split("|")[1:3]
-        for line in (Path(__file__).resolve().parents[3] / "docs/reactions.md").read_text().splitlines()
+        for line in (Path(__file__).resolve().parents[2] / "docs/reactions.md").read_text().splitlines()
         if line.startswith("|") and "±" in line
     ]
     known = {"ReGenNet, offline": "regennet", "InterGen, person to person": "intergen", "Virtual agent": "agent"}
@@ -114,7 +114,7 @@ def test_automatic_is_the_best_of_the_table_for_what_is_given(monkeypatch: pytes
 
 
 def test_every_method_is_listed_in_the_documents_and_has_a_card() -> None:
-    root = Path(__file__).resolve().parents[3]
+    root = Path(__file__).resolve().parents[2]
     listed = (root / "docs" / "README.md").read_text()
     for found in methods():
         if found.weights:
