@@ -9,7 +9,6 @@ import socket
 import subprocess
 import sys
 import time
-import tomllib
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
@@ -22,7 +21,6 @@ from webdemo import cli
 from webdemo.inference import Engine, GenerateRequest
 from webdemo.inference.methods import failed, method, methods, register_settings
 from webdemo.inference.own import entries
-from webdemo.inference.own.classes import method_of_class
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENT = ROOT / "docs" / "own-model.md"
@@ -97,16 +95,6 @@ def test_the_tables_of_the_document_are_read(folder: Path) -> None:
         assert not wrong
         named |= {entry.method for entry in found.values()}
     assert named == {"", "intergen", "regennet", "interformer", "bigraphdiff"}
-
-
-def test_the_entry_point_of_the_document_is_a_class(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (text,) = [text for kind, text in BLOCKS if kind == "toml" and "entry-points" in text]
-    point = tomllib.loads(text)["project"]["entry-points"]["pasdedeux.methods"]["toy"]
-    monkeypatch.syspath_prepend(str(folder))
-    module, name = point.split(":")
-    found = method_of_class(getattr(__import__(module), name), name="by-entry")
-    assert found.tasks == ("generate", "react") and found.defaults == {"steps": 10}
-    sys.modules.pop(module)
 
 
 RUN = "    def run(self, request, cancel, timer):\n"

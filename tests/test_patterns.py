@@ -63,7 +63,7 @@ def patterns() -> dict[tuple[str, Any, int], Pattern]:
     try:
         for package in PACKAGES:
             for module in pkgutil.walk_packages([str(ROOT / package)], f"{package}."):
-                if not module.name.endswith(("__main__", ".migrations.env")):  # those run
+                if not module.name.endswith("__main__"):  # which runs
                     importlib.import_module(module.name)
     finally:
         re._compile = original  # type: ignore[attr-defined]

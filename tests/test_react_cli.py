@@ -105,31 +105,6 @@ def test_the_other_person_of_a_file_says_where_to_begin(
     assert code == 2 and "does not hold two people" in said
 
 
-def test_a_stream_prints_every_frame_before_the_answer(
-    pair: Path,
-    tmp_path: Path,
-    asked: list[ReactRequest],
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    from webdemo.inference.engine import Engine
-    from webdemo.inference.requests.live import LiveFrame
-
-    def live(self: Engine, request: ReactRequest) -> Any:
-        for index, frame in enumerate(request.actor.positions):
-            yield LiveFrame(index, frame[None], frame[None] + 1, 0.004)
-
-    monkeypatch.setattr(Engine, "live", live)
-    words = ["--actor", pair, "--person", "a", "--end", 1, "--model", "regennet", "--stream"]
-    code, said, _ = react(capsys, *words, "--out", tmp_path / "x.npz")
-    assert code == 0
-    *frames, answer = map(json.loads, said.splitlines())
-    assert [frame["frame"] for frame in frames] == list(range(30))
-    assert frames[3]["milliseconds"] == 4.0
-    np.testing.assert_allclose(frames[3]["positions"], standing(120).positions[3] + 1, atol=1e-4)
-    assert answer["manifest"]["request"]["mode"] == "online"
-
-
 @pytest.mark.parametrize(
     ("words", "says"),
     [
@@ -138,7 +113,6 @@ def test_a_stream_prints_every_frame_before_the_answer(
         (["--person", "a", "--end", "0.5"], "0.50 s: give 1 s or more"),
         (["--person", "a", "--start", "9"], "after the end of the motion"),
         (["--person", "a", "--model", "intergen", "--mode", "online"], "choose offline"),
-        (["--person", "a", "--model", "intergen", "--stream"], "choose offline"),
         (["--person", "a", "--model", "regennet", "--sampler", "dpm++"], "does not sample with dpm++: choose ddim"),
         (["--person", "a", "--role", "x"], "Role 'x'"),
         (["--person", "a", "--steps", "0"], "DDIM steps"),

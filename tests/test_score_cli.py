@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from motion.metrics.sentences import load_sentences
-from webdemo.cli.judging import Scoring, _folder
+from webdemo.cli.scoring import Scoring, _folder
 from webdemo.inference import GenerateRequest
 from webdemo.inference.story.sentences import as_scene
 

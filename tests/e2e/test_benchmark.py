@@ -28,8 +28,7 @@ def test_page_and_player_are_measured(chromium: object, tmp_path: Path, monkeypa
     """``chromium`` says whether there is a browser; the benchmark starts one of its own."""
     (tmp_path / "app.py").write_text(STUB_APP)
     monkeypatch.setattr(server, "ROOT", tmp_path)
-    for name, seconds in (("WATCHED", 1.0), ("GIVE_BACK_EVERY", -2.0), ("LONGEST_SETTLING", 5.0)):
-        monkeypatch.setattr(benchmark_browser, name, seconds)
+    monkeypatch.setattr(benchmark_browser, "WATCHED", 1.0)
     with ThreadPoolExecutor(1) as thread:  # Playwright takes one browser a thread, and the fixture has one
         figures = thread.submit(benchmark_browser.measure_browser).result()
     print(f"\n{figures}")
@@ -41,13 +40,7 @@ def test_page_and_player_are_measured(chromium: object, tmp_path: Path, monkeypa
     assert figures["page_request_seconds"] > 0.1
     assert 0 <= figures["page_result_to_body_seconds"] <= figures["page_result_to_motion_seconds"] < 30
     assert figures["player_pixels"] == "960x640"
-    assert figures["player_fps_still"] > 1
-    assert figures["player_fps_turning"] > 1
-    assert figures["player_fps_bodies"] > 1
-    assert figures["player_fps_skeletons"] > 1
-    for state in ("idle", "paused"):
-        assert 0 <= figures[f"browser_cores_{state}"] < 4, "cores, not seconds"
-    assert figures["browser_cores_paused"] < 0.5
+    assert figures["player_fps"] > 1
 
 
 def test_no_chromium_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:

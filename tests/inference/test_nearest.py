@@ -8,7 +8,7 @@ import pytest
 from motion import Duet, InputError
 from motion.formats import write
 from webdemo.inference import Engine, ReactRequest, Result
-from webdemo.inference.methods.nearest import FOLDER_VARIABLE
+from webdemo.inference.built_in import REACTIONS_VARIABLE
 
 from .people import waver
 
@@ -32,7 +32,7 @@ def reaction(engine: Engine, **fields: object) -> Duet:
 def test_an_actor_who_is_in_the_folder_gets_the_recorded_answer(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(FOLDER_VARIABLE, str(folder_of(tmp_path)))
+    monkeypatch.setenv(REACTIONS_VARIABLE, str(folder_of(tmp_path)))
     engine, expected = Engine(), np.add(waver().positions, [0.5, 0.2, 1.5])
     np.testing.assert_allclose(reaction(engine).b.positions, expected, atol=0.06)
     second = reaction(engine, samples=2)  # the next nearest
@@ -53,6 +53,6 @@ def test_a_longer_actor_is_answered_part_by_part_without_a_jump() -> None:
 
 
 def test_a_folder_without_pairs_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path))
+    monkeypatch.setenv(REACTIONS_VARIABLE, str(tmp_path))
     with pytest.raises(InputError, match=r"holds no \.npz of two people"):
         Engine().pipeline("nearest")

@@ -89,7 +89,7 @@ class Process:
         return self.history().search("local", Search()).entries
 
     def history(self) -> Notebook:
-        return Notebook(Database(f"sqlite:///{self.data / 'history.db'}"), self.data / "motions")
+        return Notebook(Database(self.data / "history.db"), self.data / "motions")
 
 
 @pytest.fixture

@@ -59,15 +59,6 @@ def test_a_gif_moves_and_goes_round(tmp_path):
         assert picture.info["duration"] == 40 and picture.info["loop"] == 0
 
 
-def test_processes_draw_what_one_draws(tmp_path, monkeypatch):
-    paths = []
-    for few in (1, 100):
-        monkeypatch.setattr(film, "_FEW", few)
-        monkeypatch.setattr(film.os, "sched_getaffinity", lambda _: {0, 1}, raising=False)
-        paths.append(film.write_film([Pane(DUET)], tmp_path / f"{few}.gif", size=SMALL))
-    assert paths[0].read_bytes() == paths[1].read_bytes()
-
-
 def test_panes_stand_side_by_side_under_their_captions(tmp_path):
     near = Duet(DUET.a, DUET.b.with_positions(DUET.b.positions + np.array([0, 0, 0.5])))
     one, two = (

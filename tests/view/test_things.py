@@ -11,7 +11,6 @@ from PIL import Image
 from motion import SMPL22, Duet
 from motion.things import KINDS, Thing, shape
 from webdemo.view.camera import cameras
-from webdemo.view.parcel import KINDS as SENT
 from webdemo.view.payload import player_payload
 from webdemo.view.sheet import write_sheet
 from webdemo.view.stage import Pane, Stage, Style
@@ -43,10 +42,6 @@ def test_a_film_shows_things_with_every_look(look):
 def test_sheets_show_things(tmp_path):
     paths = [write_sheet(d, tmp_path / f"{i}.png", frames=1, width=400) for i, d in enumerate((PEOPLE, WITH_BALL))]
     assert red(np.asarray(Image.open(paths[0]))) < 50 < red(np.asarray(Image.open(paths[1])))
-
-
-def test_a_process_that_draws_is_sent_things():
-    assert SENT["Thing"] is Thing
 
 
 @pytest.mark.parametrize("kind", KINDS)

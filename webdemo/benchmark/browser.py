@@ -10,7 +10,7 @@ import shutil
 import statistics
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -32,12 +32,7 @@ STAGE = (960, 640)
 LONGEST_START = 120.0
 LONGEST_RUN = 120.0
 WATCHED = 3.0
-"""Seconds over which frames a second and processor time are read."""
-GIVE_BACK_EVERY = 5.0
-"""Seconds after which a server at rest has given memory back, see :mod:`webdemo.server.app`."""
-LONGEST_SETTLING = 15.0
-"""Seconds that a page gets to draw what it owes, such as the finer picture of a motion just paused."""
-
+"""Seconds over which frames a second are read."""
 _STAGE_STYLE = """#player .pdd-stage {{ width: {0}px !important; min-width: {0}px !important;
 height: {1}px !important; min-height: {1}px !important; flex: none !important }}"""
 _PLAYED = "window.__pasdedeux?.open && !window.__pasdedeux.playing"
@@ -84,13 +79,8 @@ def measure_browser() -> dict[str, Any]:
         text or picture, ``page_layout_shift`` (Chromium's sum, without unit) and ``page_megabytes`` over the network,
         all until the first motion has played; ``page_request_seconds`` from the button to the end of a
         run of 4 s of motion; ``page_result_to_body_seconds`` and ``page_result_to_motion_seconds``, from there to
-        the first picture of bodies and to the first that moves; ``player_fps_still`` and
-        ``player_fps_turning`` (the camera at rest, and dragged) while bodies with their skeletons play, as at first,
-        ``player_fps_bodies``, ``player_fps_skeletons`` and ``player_pixels``. ``browser_cores_idle`` and
-        ``browser_cores_paused`` are what all of the browser's processes took of a core while the page was left alone,
-        and while a motion was paused. ``page_memory_mb`` is the
-        memory of the page's process at rest after these runs, ``page_memory_mb_own`` without libraries and mapped
-        files, in megabytes (Linux).
+        the first picture of bodies and to the first that moves; ``player_fps`` while bodies with their skeletons play,
+        as at first, and ``player_pixels``.
 
     Raises:
         InputError: where Playwright, Chromium or the model's weights are missing, or the page does not come.
@@ -108,15 +98,7 @@ def measure_browser() -> dict[str, Any]:
             figures["page_model_ready_seconds"] = time.perf_counter() - began
             page.wait_for_function(_PLAYED, timeout=1000 * LONGEST_RUN)
             figures |= page.evaluate(_FIRST_VIEW)
-            page.wait_for_timeout(1000)
-            figures["browser_cores_idle"] = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
-            figures |= _follow_a_run(page) | _frame_rates(page)
-            if page.evaluate("window.__pasdedeux.playing"):
-                page.locator("#player .pdd-play").click()
-            _let_settle(page, browser)
-            figures["browser_cores_paused"] = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
-            page.wait_for_timeout(1000 * (GIVE_BACK_EVERY + 2))
-            figures |= _memory(server.pid)
+            figures |= _follow_a_run(page) | _frame_rate(page)
             page.close()  # a server waits for pages that listen before it ends
             return figures
 
@@ -141,15 +123,6 @@ def _chromium() -> Iterator[Any]:
             browser.close()
 
 
-def _memory(process: int) -> dict[str, float]:
-    """Megabytes in memory of a process, and the part that is no file's; nothing where the system does not tell."""
-    with contextlib.suppress(OSError):
-        lines = Path(f"/proc/{process}/smaps_rollup").read_text().splitlines()[1:]
-        sizes = {name: int(rest.split()[0]) / 1024 for name, rest in (line.split(":") for line in lines)}
-        return {"page_memory_mb": sizes["Rss"], "page_memory_mb_own": sizes["Anonymous"]}
-    return {}
-
-
 def _wait_for_model(page: Any) -> None:
     from playwright.sync_api import TimeoutError as TookTooLong
 
@@ -161,27 +134,6 @@ def _wait_for_model(page: Any) -> None:
         raise InputError(
             f"The page's model did not load (it says {mark.inner_text()!r}): run `python -m webdemo info`."
         )
-
-
-def _cores(browser: Any, act: Callable[[], Any]) -> float:
-    """Of a core, what all of the browser's processes took by their own clocks while ``act()`` went on."""
-    session = browser.new_browser_cdp_session()
-
-    def spent() -> float:
-        return sum(p["cpuTime"] for p in session.send("SystemInfo.getProcessInfo")["processInfo"])
-
-    before, began = spent(), time.perf_counter()
-    act()
-    share = (spent() - before) / (time.perf_counter() - began)
-    session.detach()
-    return share
-
-
-def _let_settle(page: Any, browser: Any) -> None:
-    """Waits for half a second in which the browser takes little, or until it has had its time."""
-    until = time.monotonic() + LONGEST_SETTLING
-    while time.monotonic() < until and _cores(browser, lambda: page.wait_for_timeout(500)) > 0.2:
-        pass
 
 
 def _follow_a_run(page: Any) -> dict[str, float]:
@@ -204,44 +156,19 @@ def _follow_a_run(page: Any) -> dict[str, float]:
     }
 
 
-def _frame_rates(page: Any) -> dict[str, Any]:
-    """Frames a second while the motion plays, with the camera at rest and with it dragged about."""
+def _frame_rate(page: Any) -> dict[str, Any]:
+    """The median of the player's own count of frames a second while the motion plays."""
     page.add_style_tag(content=_STAGE_STYLE.format(*STAGE))
-    stage = page.locator("#player .pdd-stage")
-    stage.scroll_into_view_if_needed()
+    page.locator("#player .pdd-stage").scroll_into_view_if_needed()
     if not page.evaluate("window.__pasdedeux.playing"):
         page.locator("#player .pdd-play").click()
     page.wait_for_timeout(1500)  # the scene is laid out anew
-    still = _read_fps(page, lambda i: page.wait_for_timeout(50))
-    box = stage.bounding_box()
-    x, y = box["x"] + 0.3 * box["width"], box["y"] + 0.4 * box["height"]
-    page.mouse.move(x, y)
-    page.mouse.down()
-    turning = _read_fps(page, lambda i: page.mouse.move(x + 8 * (i % 40), y))
-    page.mouse.up()
-    alone = []
-    for _ in ("bodies", "skeletons"):
-        page.evaluate("window.__pasdedeux.player.act('figure')")
-        page.wait_for_timeout(1500)
-        alone.append(_read_fps(page, lambda i: page.wait_for_timeout(50)))
+    counts, until = [], time.monotonic() + WATCHED
+    while time.monotonic() < until:
+        page.wait_for_timeout(50)
+        if until - time.monotonic() < WATCHED / 2:  # the count looks back over a while
+            counts.append(page.evaluate("window.__pasdedeux.fps"))
     width, height = page.evaluate(
         "(({ clientWidth, clientHeight }) => [clientWidth, clientHeight])(window.__pasdedeux.player.stage)"
     )
-    return {
-        "player_pixels": f"{width}x{height}",
-        "player_fps_still": still,
-        "player_fps_turning": turning,
-        "player_fps_bodies": alone[0],
-        "player_fps_skeletons": alone[1],
-    }
-
-
-def _read_fps(page: Any, act: Any) -> float:
-    """The median of the player's own count while ``act(i)`` is done again and again."""
-    counts, i, until = [], 0, time.monotonic() + WATCHED
-    while time.monotonic() < until:
-        act(i)
-        i += 1
-        if until - time.monotonic() < WATCHED / 2:  # the count looks back over a while
-            counts.append(page.evaluate("window.__pasdedeux.fps"))
-    return statistics.median(counts)
+    return {"player_pixels": f"{width}x{height}", "player_fps": statistics.median(counts)}

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
-import time
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from acts.plan import Plan, plan_of
-from motion import FPS, InputError
+from motion import InputError
 from webdemo.inference.methods import AUTOMATIC, automatic, methods
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.actor import read_actor
@@ -92,9 +89,6 @@ def add_react(commands: Any) -> None:
     )
     parser.add_argument("--role", default=ReactRequest.role, help="whether the given person acts (a) or reacts (b)")
     parser.add_argument("--mode", help="offline sees the whole motion; online (regennet) sees the frames so far")
-    parser.add_argument(
-        "--stream", action="store_true", help="react online at the actor's pace and print each frame as a line of JSON"
-    )
     add_sampling(parser, "react")
     parser.set_defaults(job=react)
 
@@ -110,35 +104,14 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
         keep_start=options.keep_start,
         choices=reading_choices(options),
     )
-    mode = options.mode or ("online" if options.stream else ReactRequest.mode)
+    mode = options.mode or ReactRequest.mode
     if options.model == AUTOMATIC:
         options.model = automatic(options.prompt, options.role, mode).name
     fields = sampling_fields(options) | {"first_pose": pose}
     request = ReactRequest(actor=actor, prompt=options.prompt, role=options.role, mode=mode, **fields)
-    if options.stream:
-        _stream(request)
     result = run(request)
     written = write_result(result, options.out)
     return with_notes(written, options.actor, options.animation, actor)
-
-
-def _stream(request: ReactRequest) -> None:
-    """Plays the actor at 30 frames a second and prints each frame of the reaction as it is made.
-
-    A line is ``{"frame", "milliseconds", "positions": [22 × [x, y, z]]}``, the first sample's, in metres.
-    """
-    from webdemo.inference.engine import Engine
-
-    frames = Engine().live(request)
-    began = time.perf_counter()
-    for frame in frames:
-        line = {
-            "frame": frame.index,
-            "milliseconds": round(1000 * frame.seconds, 2),
-            "positions": np.round(frame.positions[0], 4).tolist(),
-        }
-        print(json.dumps(line), flush=True)
-        time.sleep(max(0.0, began + (frame.index + 1) / FPS - time.perf_counter()))
 
 
 def add_predict(commands: Any) -> None:

@@ -1,13 +1,64 @@
-"""The command ``score``: the judge's figures of any model on sentences."""
+"""The command ``score``: makes the motions of sentences with any model and judges them."""
 
 from __future__ import annotations
 
 import argparse
+import hashlib
+import json
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from webdemo.inference.methods import methods
-from webdemo.inference.requests import SamplingRequest
+import numpy as np
+
+from motion import Duet, InputError
+from motion.formats.files import write_text
+from motion.metrics.sentences import Sentence, load_sentences, read_sentences
+from motion.metrics.sentences.catalogue import ALL, Motions, score, table
+from webdemo.inference.method import Method
+from webdemo.inference.methods import method, methods
+from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
+from webdemo.inference.run import Result
+
+SEEDS = (1, 16)
+_VERSION = 2
+"""Of how a sentence becomes a motion: motions that were kept are not those of another version."""
+
+
+@dataclass(frozen=True)
+class Scoring:
+    """The settings of the requests to a model.
+
+    Attributes:
+        model: its name.
+        steps, guidance, damping: as in :class:`SamplingRequest`.
+        plain: sentences are given to the network as they are, neither split nor planned.
+        zeros: the network's predictions are zeros, see :func:`silence`.
+    """
+
+    model: str
+    steps: int
+    guidance: float
+    damping: float
+    plain: bool = False
+    zeros: bool = False
+
+    def request(self, sentence: Sentence, seed: int, actor: Duet | None) -> GenerateRequest | ReactRequest:
+        """The request for both people, or for the partner of an actor."""
+        found = method(self.model)
+        fields: dict[str, Any] = asdict(self) | {"seed": seed}
+        plain, _ = fields.pop("plain"), fields.pop("zeros")
+        if actor is None:
+            shortest, longest = found.seconds
+            seconds = min(max(sentence.seconds, shortest), longest)
+            fields |= {"split": not plain, "planned": not plain}
+            return GenerateRequest(prompt=sentence.words, seconds=seconds, **fields)
+        sampler = SamplingRequest.sampler if "ddim" in found.samplers else found.samplers[0]
+        heard = sentence.words if "words" in found.takes else ""
+        return ReactRequest(actor=actor.a, prompt=heard, sampler=sampler, **fields)
 
 
 def add_score(commands: Any) -> None:
@@ -33,11 +84,125 @@ def add_score(commands: Any) -> None:
     )
     parser.add_argument("--motions", type=Path, help="folder that keeps the motions, so that a run can go on")
     parser.add_argument("--out", type=Path, help="JSON file for all verdicts")
-    parser.set_defaults(job=score)
+    parser.set_defaults(job=score_model)
 
 
-def score(options: argparse.Namespace) -> dict[str, Any]:
-    """Runs :func:`webdemo.cli.judging.score_model`, which loads what the other commands do without."""
-    from .judging import score_model
+def score_model(options: argparse.Namespace) -> dict[str, Any]:
+    """Makes the motions that are missing, judges all of them and prints a table."""
+    found = method(options.model)
+    scoring = Scoring(
+        found.name,
+        found.steps if options.steps is None else options.steps,
+        found.default("guidance", SamplingRequest.guidance) if options.guidance is None else options.guidance,
+        options.damping,
+        options.plain,
+        options.zeros,
+    )
+    sentences = _chosen(options)
+    if not SEEDS[0] <= options.seeds <= SEEDS[1]:
+        raise InputError(f"--seeds must be from {SEEDS[0]} to {SEEDS[1]}, not {options.seeds}.")
+    _check(found)
+    from webdemo.inference.engine import Engine
 
-    return score_model(options)
+    engine = Engine()
+    digest = engine.pipeline(found.name).digest
+    if options.zeros:
+        silence(engine.pipeline(found.name))
+    kept = _folder(options.motions, scoring, digest)
+    duets = [[_motion(engine, scoring, s, seed, kept) for seed in range(options.seeds)] for s in sentences]
+    print(file=sys.stderr)
+    ruled = [i for i, sentence in enumerate(sentences) if sentence.rule]
+    scores = score([sentences[i] for i in ruled], [duets[i] for i in ruled])
+    if len(ruled) < len(sentences):  # the others are measured, not judged
+        from motion.metrics.quality import physical
+
+        scores["physical"] = physical([duet for drawn in duets for duet in drawn])
+    weights = digest[:12] or "none"
+    scores["about"] = (
+        f"{found.label}: {len(sentences)} sentences, {len(ruled)} of them with a rule, seeds 0 to "
+        f"{options.seeds - 1}; {scoring.steps} steps, guidance {scoring.guidance:g}, "
+        f"damping {scoring.damping:g}, weights {weights}"
+        f"{'; sentences neither split nor planned' if scoring.plain else ''}"
+        f"{'; zeros in place of the network' if scoring.zeros else ''}."
+    )
+    print(table(scores))
+    if options.out is not None:
+        write_text(options.out, json.dumps(scores, indent=1, ensure_ascii=False) + "\n")
+    passed, count = scores["tags"][ALL]
+    return {
+        "model": found.name,
+        "sentences": len(sentences),
+        "motions": sum(map(len, duets)),
+        "passed": passed,
+        "judged": count,
+        "tags": scores["tags"],
+        "any": scores["any"],
+        "conditions": scores["conditions"],
+        "physical": scores["physical"],
+        "files": [] if options.out is None else [str(options.out)],
+    }
+
+
+def silence(pipeline: Any) -> None:
+    """Puts zeros, a network's mean pose, in the place of all that a diffusion network predicts from now on.
+
+    Raises:
+        InputError: for a method that has none.
+    """
+    network: Any = getattr(model := getattr(pipeline, "model", None), "denoiser", model)
+    if network is None or not hasattr(network, "guided"):
+        raise InputError(f"{pipeline.name} has no network that denoises: leave --zeros out.")
+    network.guided = lambda x, *_, **__: x.new_zeros(x.shape)
+
+
+def _chosen(options: argparse.Namespace) -> Sequence[Sentence]:
+    sentences = load_sentences() if options.sentences is None else read_sentences(options.sentences)
+    wanted = set(options.only)
+    kept = [s for s in sentences if not wanted or {s.id, *s.tags} & wanted]
+    if not kept:
+        raise InputError(f"No sentence has the name or tag {', '.join(options.only)}: leave --only out.")
+    if len({s.id for s in kept}) < len(kept):
+        raise InputError("Two sentences have the same id: give each one of its own.")
+    return kept
+
+
+def _check(found: Method) -> None:
+    """Raises InputError for a method that sentences cannot be asked of."""
+    if "class" in found.takes:
+        raise InputError(f"{found.label} takes the name of a class, not a sentence: choose another model.")
+    if not {"generate", "react"} & set(found.tasks):
+        raise InputError(f"{found.label} predicts and takes no sentence: choose a model that generates or reacts.")
+
+
+def _folder(folder: Path | None, scoring: Scoring, digest: str) -> Motions | None:
+    if folder is None:
+        return None
+    state = json.dumps(asdict(scoring) | {"weights": digest, "version": _VERSION}, sort_keys=True)
+    return Motions(folder / f"{scoring.model}-{hashlib.sha256(state.encode()).hexdigest()[:12]}")
+
+
+def _motion(engine: Any, scoring: Scoring, sentence: Sentence, seed: int, kept: Motions | None) -> Duet:
+    """The motion of a sentence and a seed, made unless it was kept."""
+    if kept is not None and kept.path(sentence, seed).is_file():
+        return kept.read(sentence, seed)
+    began = time.perf_counter()
+    found, actor = method(scoring.model), None
+    if "generate" not in found.tasks:  # the actor is person a of the default model's motion of the sentence
+        default = Scoring(
+            SamplingRequest.model, method(SamplingRequest.model).steps, SamplingRequest.guidance, scoring.damping
+        )
+        actor = _made(engine, default.request(sentence, seed, None))
+    duet = _made(engine, scoring.request(sentence, seed, actor))
+    if kept is not None:
+        kept.write(sentence, seed, duet)
+    took = time.perf_counter() - began
+    print(f"\r\033[K{sentence.id}, seed {seed}: {took:.1f} s", end="", file=sys.stderr, flush=True)
+    return duet
+
+
+def _made(engine: Any, request: GenerateRequest | ReactRequest) -> Duet:
+    *_, result = engine.run(request)
+    assert isinstance(result, Result) and isinstance(result.duets[0], Duet)
+    if not np.isfinite(result.duets[0].positions).all():
+        raise InputError(f"{request.model} gave positions that are not finite: it cannot be judged.")
+    return result.duets[0]

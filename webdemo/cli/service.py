@@ -39,9 +39,9 @@ def add_service(commands: Any) -> None:
     serve_parser.add_argument("--port", type=int, help="port to listen on (7860)")
     serve_parser.add_argument("--print-settings", action="store_true", help="print all settings and exit")
     serve_parser.set_defaults(job=serve)
-    user_parser = commands.add_parser("user", help="accounts: add, remove, list")
-    user_parser.add_argument("action", choices=("add", "remove", "list"))
-    user_parser.add_argument("name", nargs="?", help="name of the account; not for list")
+    user_parser = commands.add_parser("user", help="add an account, or change its password")
+    user_parser.add_argument("action", choices=("add",))
+    user_parser.add_argument("name", help="name of the account")
     user_parser.add_argument("--users", type=Path, help="file of accounts; PASDEDEUX_USERS by default")
     user_parser.set_defaults(job=user)
 
@@ -119,53 +119,34 @@ def serve(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def user(options: argparse.Namespace) -> dict[str, Any]:
-    """Adds, removes or lists accounts; a password is asked for, or read from a pipe.
-
-    An account of the lab that the settings name is removed with everything that is its person's.
-    """
+    """Adds an account or changes its password, which is asked for, or read from a pipe."""
     import getpass
 
     from webdemo.server.accounts.users import Users
-    from webdemo.server.lab import administration_of
     from webdemo.server.settings import read_settings
-    from webdemo.server.store.database import Database, sentences
 
-    settings = read_settings()
-    path = options.users or settings.users
+    path = options.users or read_settings().users
     if path is None:
         raise InputError("Name the file of accounts: give --users FILE, or set PASDEDEUX_USERS.")
-    users = Users(path)
-    if options.action == "list":
-        return {"users": users.names}
-    if not options.name:
-        raise InputError(f"Give a name: `user {options.action} NAME`.")
-    if options.action == "remove":
-        if path == settings.users and (settings.database or (settings.data / "history.db").is_file()):
-            with closing(Database(settings.database_url)) as database, sentences():
-                administration_of(settings, database, users).delete(options.name)
-        else:
-            users.remove(options.name)
-        return {"removed": options.name}
     terminal = sys.stdin.isatty()
     password = getpass.getpass("Password: ") if terminal else sys.stdin.readline().rstrip("\n")
     if terminal and getpass.getpass("Once more: ") != password:
         raise InputError("The two passwords differ: try again.")
-    done = "added" if users.add(options.name, password) else "changed"
+    done = "added" if Users(path).add(options.name, password) else "changed"
     return {done: options.name}
 
 
 # ---- people of a lab, backups --------------------------------------------------------------------
 
 
-_ACTIONS = ("list", "make-admin", "end-admin", "room", "suspend", "let-in", "sign-out", "delete")
+_ACTIONS = ("list", "make-admin", "end-admin", "suspend", "let-in", "delete")
 
 
 def add_admin(commands: Any) -> None:
     """Adds ``admin`` to the shell's commands."""
-    parser = commands.add_parser("admin", help="people's use, rooms and roles; suspend, sign out, delete")
+    parser = commands.add_parser("admin", help="people's use and roles; suspend, delete")
     parser.add_argument("action", choices=_ACTIONS)
     parser.add_argument("name", nargs="?", help="of the account; not for list")
-    parser.add_argument("--megabytes", type=float, help="with room: the person's room; without it, everybody's")
     parser.set_defaults(job=admin)
 
 
@@ -181,18 +162,14 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
         raise InputError("There are no accounts: set PASDEDEUX_USERS to their file.")
     if action != "list" and not name:
         raise InputError(f"Name the account: `admin {action} NAME`.")
-    with closing(Database(settings.database_url)) as database, sentences():
+    with closing(Database(settings.database)) as database, sentences():
         acts = administration_of(settings, database, Users(settings.users) if settings.users else None)
         if action == "list":
             return {"people": [asdict(row) for row in acts.rows()]}
         if action in ("make-admin", "end-admin"):
             acts.set_role(name, admin=action == "make-admin")
-        elif action == "room":
-            acts.set_room(name, options.megabytes)
         elif action in ("suspend", "let-in"):
             acts.suspend(name, suspended=action == "suspend")
-        elif action == "sign-out":
-            acts.sign_out(name)
         else:
             acts.delete(name)
     return {"done": action, "name": name}
@@ -217,7 +194,7 @@ def backup(options: argparse.Namespace) -> dict[str, Any]:
     settings = settings_of_history()
     if options.keep < 0:
         raise InputError("Give --keep 1 or more, or leave it out to keep all.")
-    lab = Lab(settings.database_url, settings.data, settings.users)
+    lab = Lab(settings.data, settings.users)
     made = back_up(lab, options.folder, keep=options.keep)
     print(f"The backup is in {made}.")
     return {"backup": str(made)}
@@ -226,14 +203,14 @@ def backup(options: argparse.Namespace) -> dict[str, Any]:
 def restore(options: argparse.Namespace) -> dict[str, Any]:
     """Restores a backup into the empty data folder that the settings name."""
     from webdemo.server.settings import read_settings
-    from webdemo.server.store.backup import SUMS, Lab, backups, restore
+    from webdemo.server.store.backup import DATABASE, Lab, backups, restore
 
     chosen = options.backup
-    if not (chosen / SUMS).is_file():
+    if not (chosen / DATABASE).is_file():
         if not (all_of_them := backups(chosen)):
             raise InputError(f"There is no backup in {chosen}: name a folder that `backup` made.")
         chosen = all_of_them[-1]
     settings = read_settings()
-    files = restore(chosen, Lab(settings.database_url, settings.data, settings.users))
+    restore(chosen, Lab(settings.data, settings.users))
     print(f"{chosen} was restored to {settings.data}.")
-    return {"backup": str(chosen), "files": files}
+    return {"backup": str(chosen)}

@@ -95,10 +95,10 @@ def create_app(settings: Settings, *, engine: EngineLike | None = None, scratch:
     app.include_router(study_routes(settings, lab.studies))
     app.include_router(public_routes(settings, lab.publishing))
     if lab.sign_ins is not None:
-        app.include_router(login_routes(settings, lab.sign_ins, visitors))
-        app.include_router(account_routes(settings, lab.sign_ins, visitors))
+        app.include_router(login_routes(settings, lab.sign_ins))
+        app.include_router(account_routes(settings, lab.sign_ins))
     if lab.administration is not None:
-        app.include_router(admin_routes(lab))
+        app.include_router(admin_routes(settings.root_path, lab.administration))
     app.add_middleware(CORSMiddleware)  # no other site may read anything; Gradio's own would let some
     app.add_middleware(PageCache)
     app.add_middleware(
@@ -163,7 +163,6 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         asyncio.create_task(_every(CLEAN_EVERY, lab.publishing.clean)),
         asyncio.create_task(_every(TIDY_EVERY, app.state.tidy)),
         asyncio.create_task(_every(GIVE_BACK_EVERY, lambda: give_back(resting=not lab.busy))),
-        asyncio.create_task(_every(GIVE_BACK_EVERY, lab.history.settle)),
         asyncio.create_task(_every(SWEEP_EVERY, lab.streams.sweep)),
     ]
     if lab.settings.exit_when_stuck:

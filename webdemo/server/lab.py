@@ -31,27 +31,8 @@ from .settings import Settings
 
 log = logging.getLogger(__name__)
 
-ENDED = "The person who runs this server ended this."
 ANSWER_SECONDS = 5.0
 """Least seconds allowed for sending results of finished runs, even with a shorter grace period."""
-
-
-@dataclass(frozen=True)
-class Item:
-    """A run or a live stream.
-
-    Attributes:
-        person: its owner, as the queue identifies them.
-        what: "live stream", or the model of a run.
-        state: "runs", "waits" or "open".
-        since: when that state began, by :func:`time.monotonic`.
-    """
-
-    id: str
-    person: str
-    what: str
-    state: str
-    since: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,18 +60,6 @@ class Lab:
         """True while anything runs on the networks."""
         return bool(self.queue.running or self.streams.count)
 
-    def work(self) -> list[Item]:
-        """Everything that runs, waits or is open."""
-        runs = [
-            Item(job.id, job.person, job.group, "runs" if begun else "waits", job.started if begun else job.came)
-            for job, begun in self.queue.jobs()
-        ]
-        return runs + [Item(s.id, s.person, "live stream", "open", s.began) for s in self.streams.opened()]
-
-    def end(self, key: str) -> bool:
-        """Ends a run or a live stream; its person is told so. False if there is none of that id."""
-        return self.queue.end(key, ENDED) or self.streams.end(key, ENDED)
-
     def stop(self) -> None:
         """Accepts no more runs and waits for running ones, at most for the grace period of the settings."""
         until = time.monotonic() + self.settings.grace_seconds
@@ -116,7 +85,7 @@ def make_lab(settings: Settings, engine: EngineLike, scratch: Scratch | None = N
         InputError: if the accounts, the database or the data folder cannot be used.
     """
     users = Users(settings.users) if settings.users is not None else None
-    database = Database(settings.database_url)
+    database = Database(settings.database)
     figures, quotas = Figures(), Quotas.of(settings)
     wants: dict[str, Callable[[], Any]] = {
         "database": database.check,
@@ -160,14 +129,12 @@ def make_lab(settings: Settings, engine: EngineLike, scratch: Scratch | None = N
 
 def administration_of(settings: Settings, database: Database, users: Users | None) -> Administration:
     """The acts of administrators of a lab."""
-    elsewhere = bool(settings.proxy_user)
-    return Administration(database, users, settings.data, settings.person_bytes, elsewhere=elsewhere)
+    return Administration(database, users, settings.data, elsewhere=bool(settings.proxy_user))
 
 
 def storage_of(settings: Settings, database: Database, scratch: Scratch | None = None) -> Storage:
     """The room that people have in a lab."""
-    rooms, bytes_of = Quotas.of(settings).rooms, People(database).bytes_of
-    return Storage(database, settings.motions, rooms, scratch=scratch, bytes_of=bytes_of)
+    return Storage(database, settings.motions, Quotas.of(settings).rooms, scratch=scratch)
 
 
 def history_of(settings: Settings, storage: Storage) -> Notebook:
@@ -177,7 +144,6 @@ def history_of(settings: Settings, storage: Storage) -> Notebook:
         settings.motions,
         storage=storage,
         keep_days=settings.keep_days,
-        keep_favourites=settings.keep_favourites,
         link_days=settings.link_days,
         free_bytes=settings.free_megabytes * 2**20,
     )

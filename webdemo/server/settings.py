@@ -83,13 +83,6 @@ class Settings(BaseSettings):
         pattern=r"^[A-Za-z0-9-]*$",
         description="header by which a trusted proxy says who signed in there, as X-Remote-User; empty: none",
     )
-    proxy_groups: str = Field(
-        "", pattern=r"^[A-Za-z0-9-]*$", description="header by which it lists the person's groups"
-    )
-    groups: list[str] = Field([], description="groups, of which a person must be in one; empty: anybody may sign in")
-    admin_groups: list[str] = Field(
-        [], description="groups whose members are administrators; empty: administrators are made by hand"
-    )
     open: bool = Field(default_factory=on_a_space, description="serve other machines without accounts")
     session_hours: float = Field(24 * 14, gt=0, le=24 * 365, description="how long a sign-in lasts")
     metrics_token: str = Field(
@@ -98,7 +91,6 @@ class Settings(BaseSettings):
 
     # ---- what is kept
     data: Path = Field(default_factory=_data_folder, description="folder that holds the history")
-    database: str = Field("", description="SQLAlchemy URL; empty: SQLite in the data folder")
     keep_days: float = Field(30, gt=0, description="age in days at which a run is removed unless it is a favourite")
     keep_megabytes: float = Field(
         2000, gt=0, description="total size of all people's runs and studies; none is removed for another person's"
@@ -109,7 +101,6 @@ class Settings(BaseSettings):
         description="room of one person for runs, studies, uploads and downloads together; by default an eighth of "
         "keep_megabytes and scratch_megabytes, or all of it where there is one history",
     )
-    keep_favourites: int = Field(200, ge=0, description="favourites per person")
     link_days: float = Field(30, gt=0, le=3650, description="days for which a link opens a run for others")
     publish_days: float = Field(
         30, ge=0, le=3650, description="days for which a public page lasts at most; 0: no public pages"
@@ -213,9 +204,9 @@ class Settings(BaseSettings):
         return f"http://{f'[{host}]' if ':' in host else host}:{self.port}{self.root_path}/"
 
     @property
-    def database_url(self) -> str:
-        """The database's SQLAlchemy URL."""
-        return self.database or f"sqlite:///{self.data / 'history.db'}"
+    def database(self) -> Path:
+        """The database's file."""
+        return self.data / "history.db"
 
     @property
     def motions(self) -> Path:
@@ -229,9 +220,6 @@ class Settings(BaseSettings):
                 f"With {PREFIX}PROXY_USER, {PREFIX}PROXIES cannot be *, or anybody could claim to be anybody: name the "
                 "addresses of the proxies."
             )
-        if (self.groups or self.admin_groups) and self.proxy_user and not self.proxy_groups:
-            name = "GROUPS" if self.groups else "ADMIN_GROUPS"
-            raise InputError(f"{PREFIX}{name} needs the header that lists them: set {PREFIX}PROXY_GROUPS.")
         if not self.local and not self.accounts and not self.open:
             raise InputError(
                 f"{self.host} can be reached from other machines and there are no accounts: make some with "
@@ -241,7 +229,6 @@ class Settings(BaseSettings):
     def shown(self) -> dict[str, Any]:
         """The settings as plain values, secrets left out."""
         plain = self.model_dump(mode="json")
-        plain["database"] = _without_password(self.database_url)
         plain["person_megabytes"] = self.person_bytes / 2**20
         plain["metrics_token"] = "set" if self.metrics_token else ""
         return plain
@@ -276,16 +263,6 @@ def read_settings(**given: Any) -> Settings:
 def settings_of_history() -> Settings:
     """The settings in force; raises InputError where they name no lab that has been started."""
     settings = read_settings()
-    if not settings.database and not (settings.data / "history.db").is_file():
+    if not settings.database.is_file():
         raise InputError(f"There is no lab's history in {settings.data}: name its folder with {PREFIX}DATA.")
     return settings
-
-
-def _without_password(url: str) -> str:
-    from sqlalchemy.engine import make_url
-    from sqlalchemy.exc import ArgumentError
-
-    try:
-        return make_url(url).render_as_string(hide_password=True)
-    except ArgumentError:
-        return "(not a database URL)"

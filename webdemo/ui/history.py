@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
 from motion import Clip
-from motion.formats import can_read
 from webdemo.inference.run import Result
 
 from .visitor import Visitor
@@ -116,29 +114,6 @@ class Usage:
         return self.runs + self.favourites + self.studies + self.temporary
 
 
-_LONGEST_NAME = 100
-
-
-def clean_name(name: str) -> str:
-    """A file's name without folders and without signs that mean something to a system; "" for no motion's name."""
-    last = Path(name.replace("\\", "/").rsplit("/", 1)[-1])
-    stem = re.sub(r"[^\w .()+-]", "-", last.stem)[:_LONGEST_NAME].strip(" .-")
-    return f"{stem or 'motion'}{last.suffix.lower()}" if can_read(last.suffix) else ""
-
-
-@dataclass(frozen=True)
-class Original:
-    """A file that somebody uploaded, as it was.
-
-    Attributes:
-        path: where its bytes are.
-        name: what its owner calls it.
-    """
-
-    path: Path
-    name: str
-
-
 @dataclass(frozen=True, kw_only=True)
 class Kept:
     """The settings of a tab when a run was made, beside its request.
@@ -147,13 +122,11 @@ class Kept:
         controls: values of the tab's controls, by name.
         people: everybody in the file that was chosen.
         compared: ids of the runs that stood beside it.
-        original: the file that the people were read from; None where there was none or it is not kept.
     """
 
     controls: Mapping[str, Any] = field(default_factory=dict)
     people: tuple[Clip, ...] = field(default=(), repr=False)
     compared: tuple[str, ...] = ()
-    original: Original | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -249,9 +222,9 @@ class SharingLike(Protocol):
     """Public pages. Every method raises InputError with a sentence where it cannot."""
 
     days: float
-    """For how many days a page lasts where nothing else is said; also the most."""
+    """For how many days a page lasts."""
 
-    def publish(self, owner: str, run: str, *, days: float | None = None) -> PublicPage:
+    def publish(self, owner: str, run: str) -> PublicPage:
         """Makes a page of one of the owner's runs."""
 
     def pages(self, owner: str) -> Sequence[PublicPage]:

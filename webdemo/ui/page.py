@@ -58,9 +58,9 @@ _WRITE = """() => {
     const field = document.getElementById(%s)?.querySelector("textarea");
     if (document.activeElement === tab) field?.focus({ preventScroll: true });
   };
-  if (!tab?.matches(":focus-visible")) setTimeout(write, 300);
+  if (!tab?.matches(":focus-visible") && matchMedia("(pointer: fine)").matches) setTimeout(write, 300);
 }"""
-"""JavaScript that makes a field ready for typing where its tab was opened by a pointer; to be filled with its id."""
+"""JavaScript that makes a field ready for typing where its tab was opened by a mouse; to be filled with its id."""
 _HEADER = f'<div class="pd-brand"><h1>Pas de Deux</h1><p>{say("page.intro")}</p></div>'
 _CACHE = (1800, 7200)
 """Seconds: how often Gradio's copies of downloads are looked through, and how old they may get."""

@@ -1,31 +1,25 @@
 """Films of what the player shows: MP4, WebM and GIF, drawn off screen.
 
-Pictures are drawn by this process or, for more than a second or two, by one child process a core; PyAV (FFmpeg's
-libraries) packs them as H.264 or VP9, Pillow as GIF.
+PyAV (FFmpeg's libraries) packs the pictures as H.264 or VP9, Pillow as GIF.
 """
 
 from __future__ import annotations
 
-import contextlib
-import math
-import os
-import subprocess
-import sys
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from importlib.util import find_spec
 from pathlib import Path
 from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
-from motion.cores import usable_cores
 from motion.errors import InputError
 from motion.formats.files import replacing
 
-from .camera import cameras
-from .parcel import Job, packed, unpacked
+from .camera import Camera, cameras
 from .stage import Pane, Picture, Stage, Style, paste, words
 
 SUFFIXES = (".mp4", ".webm", ".gif")
@@ -37,14 +31,33 @@ _GIF_FPS = 25.0
 """GIF counts in hundredths of a second and browsers slow down what is shown for one: 25 is its best rate."""
 MOST_GIF = 400_000_000
 """Pixels of a GIF's pictures together, a byte each: all are held until the last."""
-_FEW = 45
-"""Frames up to which starting other processes costs more than it saves."""
 _PLANES = "yuv420p"
-"""Pixels of the videos, in FFmpeg's words: a plane of light, and two of colour of half the height and width."""
+"""Pixels of the videos, in FFmpeg's words."""
 _CODECS = {
     ".mp4": ("libx264", {"preset": "veryfast", "crf": "19", "movflags": "+faststart"}),
     ".webm": ("libvpx-vp9", {"deadline": "realtime", "cpu-used": "8", "crf": "31", "b": "0", "row-mt": "1"}),
 }
+
+
+@dataclass(frozen=True)
+class _Job:
+    """A film to be drawn.
+
+    Attributes:
+        panes: the motions, from left to right and from top to bottom.
+        style: how people are drawn.
+        size: width and height of the whole picture in pixels.
+        times: (N,) the moments in seconds.
+        views: the cameras of each pane, one a moment.
+        title: stands at the lower edge, with the time.
+    """
+
+    panes: Sequence[Pane]
+    style: Style
+    size: tuple[int, int]
+    times: NDArray[np.floating]
+    views: list[list[Camera]]
+    title: str
 
 
 def can_write(suffix: str) -> bool:
@@ -105,9 +118,9 @@ def write_film(
         yaw=yaw,
         elevation=elevation,
     )
-    job = Job(tuple(panes), style, size, times, views, title, planar=suffix != ".gif")
-    with replacing(path) as temporary, contextlib.closing(_pictures(job)) as pictures:
-        counted = _counted(pictures, len(times), progress)
+    job = _Job(panes, style, size, times, views, title)
+    with replacing(path) as temporary:
+        counted = _counted(_draw(job), len(times), progress)
         if suffix == ".gif":
             _write_gif(counted, temporary, rate)
         else:
@@ -144,8 +157,8 @@ def _cell(size: tuple[int, int], panes: int) -> tuple[int, int]:
     return size[0] // columns, size[1] // rows
 
 
-def _draw(job: Job) -> Iterator[Picture]:
-    """The pictures of a job, of its shape."""
+def _draw(job: _Job) -> Iterator[Picture]:
+    """The pictures (height, width, 4) of a film."""
     size = _cell(job.size, len(job.panes))
     stages = [
         Stage(pane, job.style, size).pictures(job.times, views)
@@ -154,18 +167,10 @@ def _draw(job: Job) -> Iterator[Picture]:
     for seconds, shown in zip(job.times, zip(*stages, strict=True), strict=True):
         whole = _joined(job, shown)
         _caption(job, whole, float(seconds))
-        yield _planes(whole) if job.planar else whole
+        yield whole
 
 
-def _planes(whole: Picture) -> Picture:
-    """A picture (height, width, 4) as a video's planes (3/2 height, width)."""
-    import av
-
-    frame = av.VideoFrame.from_ndarray(whole, format="rgba").reformat(format=_PLANES)
-    return cast(Picture, frame.to_ndarray())
-
-
-def _joined(job: Job, shown: Sequence[Picture]) -> Picture:
+def _joined(job: _Job, shown: Sequence[Picture]) -> Picture:
     """The panes in their columns and rows; what is left over is as the last one's edge."""
     if len(shown) == 1:
         return shown[0]
@@ -178,7 +183,7 @@ def _joined(job: Job, shown: Sequence[Picture]) -> Picture:
     return np.pad(whole, ((0, missing[0]), (0, missing[1]), (0, 0)), mode="edge")
 
 
-def _caption(job: Job, whole: Picture, seconds: float) -> None:
+def _caption(job: _Job, whole: Picture, seconds: float) -> None:
     height, ink = job.size[1], job.style.colours.ink
     small = max(round(height / 48), 9)
     (width, tall), (columns, rows) = _cell(job.size, len(job.panes)), _shape(len(job.panes))
@@ -195,64 +200,6 @@ def _caption(job: Job, whole: Picture, seconds: float) -> None:
         whole[tall * row, :, :3] = line_ink
     line = f"{job.title}  ·  {seconds:.2f} s" if job.title else f"{seconds:.2f} s"
     paste(whole, words(line, ink, small), small, height - 2 * small)
-
-
-def _pictures(job: Job) -> Generator[Picture, None, None]:
-    """All pictures in their order, drawn here or by one process a core."""
-    workers = min(usable_cores(), 4)
-    if workers < 2 or len(job.times) <= _FEW:
-        yield from _draw(job)
-        return
-    count = math.prod(job.shape)
-    with contextlib.ExitStack() as running:
-        outputs = []
-        for number in range(workers):
-            worker = running.enter_context(_worker())
-            assert worker.stdin is not None and worker.stdout is not None
-            worker.stdin.write(packed(job.part(number, workers)))
-            worker.stdin.close()
-            outputs.append(worker.stdout)
-        for frame in range(len(job.times)):
-            # Frames go round the workers, so that each draws the next while the others are read.
-            data = outputs[frame % workers].read(count)
-            if len(data) < count:
-                raise InputError("The film could not be drawn: a process that draws it ended early. Try again.")
-            yield np.frombuffer(data, np.uint8).reshape(job.shape)
-
-
-@contextlib.contextmanager
-def _worker() -> Iterator[subprocess.Popen[bytes]]:
-    """A Python process that draws what it reads; it is ended with the block."""
-    environment = os.environ | {
-        "PYTHONPATH": os.pathsep.join(place for place in sys.path if place),
-        "OMP_NUM_THREADS": "1",
-        "OPENBLAS_NUM_THREADS": "1",
-    }
-    process = subprocess.Popen(
-        [sys.executable, "-c", "from webdemo.view.film import draw_for_parent; draw_for_parent()"],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        env=environment,
-    )
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.wait()
-        for pipe in (process.stdin, process.stdout):
-            if pipe is not None:
-                pipe.close()
-
-
-def draw_for_parent() -> None:
-    """Draws the job on standard input and writes raw pictures to standard output.
-
-    Only :func:`_pictures` starts this, in a child process whose input is a pipe from it.
-    """
-    job = unpacked(sys.stdin.buffer.read())
-    for picture in _draw(job):
-        sys.stdout.buffer.write(np.ascontiguousarray(picture).data)
-    sys.stdout.buffer.flush()
 
 
 def _counted(pictures: Iterator[Picture], total: int, progress: Callable[[int, int], None] | None) -> Iterator[Picture]:
@@ -272,7 +219,7 @@ def _write_video(pictures: Iterator[Picture], path: Path, suffix: str, fps: floa
         stream.width, stream.height = size
         stream.pix_fmt = _PLANES
         for picture in pictures:
-            film.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format=_PLANES)))
+            film.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgba").reformat(format=_PLANES)))
         film.mux(stream.encode(None))
 
 

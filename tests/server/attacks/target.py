@@ -155,7 +155,7 @@ class Target:
 
     def publish(self, owner: str, run: str) -> str:
         """Makes a public page of somebody's run; returns its key."""
-        database = Database(f"sqlite:///{self.data / 'history.db'}")
+        database = Database(self.data / "history.db")
         try:
             return Publishing(Notebook(database, self.data / "motions")).publish(owner, run).key
         finally:

@@ -39,7 +39,7 @@ class Victim:
         join = {**open_call, "fn_index": 1, "session_hash": "adas own"}
         target.ask("ada", "POST", f"{API}/queue/join", json=join).raise_for_status()
         walking = stub_module().walking
-        database = Database(f"sqlite:///{target.data / 'history.db'}")
+        database = Database(target.data / "history.db")
         study = Studies(database, target.data / "studies").create(
             self.owner, "Which is longer?", (SECRET, f"{SECRET} damped"), [Pair(walking(0.5), walking(0.5))]
         )

@@ -18,15 +18,7 @@ from tests.server.lab import stub_module
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.live import stream as stream_module
 from webdemo.server.live import streams as streams_module
-from webdemo.server.live.stream import (
-    MOST_BYTES,
-    MOST_FRAMES,
-    MOST_PICTURES,
-    LiveStream,
-    Message,
-    Resampled,
-    read_message,
-)
+from webdemo.server.live.stream import MOST_BYTES, MOST_FRAMES, MOST_PICTURES, LiveStream, Resampled, read_message
 from webdemo.server.live.streams import StreamEnded, StreamRefused, Streams, StreamUnknown
 from webdemo.ui.visitor import Visitor
 from webdemo.view.payload import unpack_positions
@@ -46,7 +38,7 @@ class Clock:
 
 def streams(most: int = 3, address: int = 2) -> Streams:
     quota = Quota("live streams", 1, address, most)
-    return Streams(STUB.StubEngine(), quota, clock=Clock(), processor=Clock())
+    return Streams(STUB.StubEngine(), quota, clock=Clock())
 
 
 def poses(times: list[float], metres: float = 0.0) -> bytes:
@@ -57,7 +49,7 @@ def poses(times: list[float], metres: float = 0.0) -> bytes:
     return json.dumps({"times": times, "poses": data}).encode()
 
 
-def answered(one: LiveStream, message: Message) -> dict[str, Any]:
+def answered(one: LiveStream, message: Any) -> dict[str, Any]:
     """A stream's answer, with all its steps done at once."""
     steps = one.answer(message)
     while True:
@@ -106,29 +98,6 @@ def test_one_address_cannot_take_all_places() -> None:
     with pytest.raises(StreamRefused, match="your network have 2 live streams"):
         some.open(Visitor("c", "c", address="203.0.113.9"), "agent")
     assert some.open(Visitor("d", "d", address="203.0.113.10"), "agent")
-
-
-@pytest.mark.parametrize("pictures", [1, 15])
-def test_a_busy_server_takes_nobody_else_in(pictures: int) -> None:
-    some = streams()
-
-    class Slow(STUB.Mirror):
-        def step(self, pose: np.ndarray) -> np.ndarray:
-            some.processor.now += 0.02  # 0.6 seconds a second: one who floods keeps no second one out
-            return super().step(pose)
-
-    some.engine.partner = lambda name, seed=0: Slow()
-    stream = some.open(ADA, "agent")
-    for frame in range(60):
-        body = poses([(frame + (picture + 1) / pictures) / 30 for picture in range(pictures)])
-        some.answer(stream.id, ADA, body).result(20)
-    assert some.pace == pytest.approx(0.02, rel=0.05)
-    assert some.open(EVE, "agent")
-    third = Visitor("c", "c")
-    with pytest.raises(StreamRefused, match="too busy for another live partner beside 2"):
-        some.open(third, "agent")
-    some.close(some.find(stream.id, ADA))
-    assert some.open(third, "agent")
 
 
 def test_idle_and_old_streams_are_closed() -> None:
@@ -187,7 +156,7 @@ def test_a_stream_answers_each_frame_once() -> None:
     assert first["belief"]["text"] == "The stub watches."
     assert first["belief"]["chances"] == [["wave", 0.75], ["bow", 0.2]]
     assert answered(one, read_message(b"{}"))["frames"] is None
-    assert one.counts.frames == one.counts.pictures == 4
+    assert one.counts.frames == 4
 
 
 def test_landmarks_become_the_persons_poses() -> None:
@@ -252,8 +221,6 @@ def test_a_stream_that_ends_stops_in_the_middle_of_a_message() -> None:
         b"{" * 5000,
         b"\xff",
         b" " * (MOST_BYTES + 1),
-        b'{"dropped": -1}',
-        b'{"dropped": true}',
         b'{"poses": "", "times": []}',
         b'{"poses": "AAAA", "times": [0]}',
         b'{"poses": "%%%", "times": [0]}',

@@ -13,6 +13,6 @@ from webdemo.server.store.notebook import Notebook
 
 @pytest.fixture
 def notebook(tmp_path: Path) -> Iterator[Notebook]:
-    database = Database(f"sqlite:///{tmp_path / 'h.db'}")
+    database = Database(tmp_path / "h.db")
     yield Notebook(database, tmp_path / "motions")
     database.close()

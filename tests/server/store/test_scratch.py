@@ -42,7 +42,7 @@ def test_what_is_old_goes_then_the_oldest_of_who_has_too_much(tmp_path: Path) ->
     ada = [put(scratch.uploads / "ada", str(i), age=1000 - i) for i in range(4)]
     used = put(scratch.uploads / "ada", "used", age=0)
     eve = [put(scratch.uploads / "eve", str(i), age=2000 - i) for i in range(3)]
-    assert scratch.clean([str(own)], lambda person: 3.5 * MB) == 3
+    assert scratch.clean([str(own)], 3.5 * MB) == 3
     assert [path.exists() for path in (old, own, *ada, used, *eve)] == [
         False,
         True,

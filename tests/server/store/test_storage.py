@@ -28,7 +28,7 @@ PEOPLE = ("user ada", "user eve", "user bob")
 
 @pytest.fixture
 def notebook(tmp_path: Path) -> Iterator[Notebook]:
-    database = Database(f"sqlite:///{tmp_path / 'h.db'}")
+    database = Database(tmp_path / "h.db")
     scratch = Scratch(tmp_path / "s", 3e6)
     storage = Storage(database, tmp_path / "motions", Rooms(person=8e5, everybody=1.6e6), scratch=scratch)
     yield Notebook(database, tmp_path / "motions", storage=storage)

@@ -24,7 +24,7 @@ walking = stub_module().walking
 
 @pytest.fixture
 def studies(tmp_path: Path) -> Iterator[Studies]:
-    database = Database(f"sqlite:///{tmp_path / 'h.db'}")
+    database = Database(tmp_path / "h.db")
     yield Studies(database, tmp_path / "studies", clock=lambda: 1000.0)
     database.close()
 
@@ -147,7 +147,7 @@ def test_what_makes_no_study_is_a_sentence_and_leaves_nothing(studies: Studies) 
 
 
 def test_a_full_disk_leaves_no_half_study(tmp_path: Path) -> None:
-    studies = Studies(Database(f"sqlite:///{tmp_path / 'h.db'}"), tmp_path / "studies")
+    studies = Studies(Database(tmp_path / "h.db"), tmp_path / "studies")
     many = [Pair(walking(0.2), walking(0.2), "They walk. " * 9)] * 80
     with no_room(studies.database), pytest.raises(InputError, match="disk is full"):
         studies.create(ME, "Which?", RUNS, many)

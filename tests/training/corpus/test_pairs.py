@@ -1,6 +1,7 @@
 """Recorded pairs: readers undo the files' scaling, repairs a Kinect's errors, and scenes come out."""
 
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from motion.skeleton import K3HI15, LAYOUTS, SBU15, SMPL22, Skeleton
 from motion.transforms import heading_matrix
 from training.corpus.kinect import KinectPair, read_release, unswap
 from training.corpus.pairs import build_scene, load_pairs
+from training.evaluate.strict_pairs import CACHE, label_of, strict_pairs
 
 
 def standing(frames: int, place: tuple[float, float], heading: float, reach: np.ndarray | None = None) -> np.ndarray:
@@ -140,10 +142,26 @@ def test_who_walks_is_the_actor_of_an_approach() -> None:
     assert together is not None and together.family == "meet"
 
 
-def test_pairs_are_fitted_once(data_dir: Path, tmp_path: Path) -> None:
+def test_pairs_are_fitted_once_and_the_thesis_lists_take_every_listed_clip(data_dir: Path, tmp_path: Path) -> None:
     cache = tmp_path / "cache"
     first, second = load_pairs(data_dir, cache), load_pairs(tmp_path / "nowhere", cache)
     assert {scene.split for scene in first} == {"train", "benchmark"}
     for one, other in zip(first, second, strict=True):
         np.testing.assert_array_equal(one.positions, other.positions)
         assert (one.family, one.captions, one.events) == (other.family, other.captions, other.events)
+    strict, again = strict_pairs(data_dir, cache), strict_pairs(tmp_path / "nowhere", cache)
+    assert [(one.dataset, one.label, one.test) for one in strict] == [
+        ("sbu", "handshake", False),
+        ("sbu", "handshake", False),
+        ("sbu", "handshake", True),
+        ("k3hi", "handshake", False),
+    ]
+    for one, other in zip(strict, again, strict=True):
+        np.testing.assert_array_equal(one.positions, other.positions)
+    assert sorted(path.name for path in cache.iterdir())[1:] == [CACHE]
+
+
+def test_approaching_and_departing_are_one_class_of_sbu_alone() -> None:
+    walk = pair(handshake(8), family="approach")
+    assert label_of(walk) == label_of(replace(walk, family="depart")) == "walking"
+    assert label_of(replace(walk, dataset="k3hi")) == "approach"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +18,10 @@ from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_motion, glb_takes
 from tests.ui.tab_events import built, changes
 from webdemo.ui.components.actors import offered_animations
-from webdemo.ui.history import Entry, Kept, Opened, Original
 from webdemo.ui.tabs.predict import PredictTab
 from webdemo.ui.tabs.react import ReactTab
 
-from .reacting import READ, run, upload
+from .reacting import READ, upload
 
 POSITIONS, ROTATIONS = marching(90)
 LABELS = ("1 · <b>walk</b>", "2 · glide", "3")
@@ -68,21 +66,6 @@ def test_another_is_read_when_it_is_chosen(tab: ReactTab, takes: Path) -> None:
     assert np.abs(again["source"].people[0].positions - source.people[0].positions).max() > 0.1
     *_, wrong = [changes(READ, u) for u in tab.actor.read_again(again["source"], "auto", "auto", None, "auto", 9)]
     assert "takes.glb has no such animation" in wrong["line"] and wrong["animation"] == shown(2)
-
-
-def test_an_opened_run_was_made_from_its_animation(tab: ReactTab, takes: Path) -> None:
-    source = replace(upload(tab, takes)[-1]["source"], read_with=("auto", "auto", None, "auto", 3))
-    *_, last = run(tab, source, end=2.0)
-    result = last["record"].result
-    entry = Entry(id="x", kind="react", title="t", state="done", request=result.manifest["request"])
-    controls = {"animation": 3.0, "up": "auto"}
-    kept = Kept(controls=controls, people=source.people, original=Original(takes, "takes.glb"))
-    found = tab.opened(Opened(entry=entry, result=result, kept=kept))
-    assert found[tab.actor.animation] == shown(3) and found[tab.actor.state].read_with[4] == 3
-    gone = tab.opened(Opened(entry=entry, result=result, kept=replace(kept, original=None)))
-    assert gone[tab.actor.animation] == HIDDEN
-    by_hand = replace(kept, controls={"animation": "9" * 400})
-    assert tab.opened(Opened(entry=entry, result=result, kept=by_hand))[tab.actor.animation] == shown(1)
 
 
 def test_a_past_is_chosen_likewise(tmp_path: Path, takes: Path) -> None:

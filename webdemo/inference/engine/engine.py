@@ -25,7 +25,6 @@ from webdemo.inference.finish.looks import as_given, enlarged, furnished
 from webdemo.inference.live.partner import LivePartner
 from webdemo.inference.method import Pipeline
 from webdemo.inference.methods import WEIGHTS
-from webdemo.inference.own.classes import fenced
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.requests.acting import plans_of, with_plan
 from webdemo.inference.requests.live import PARTNERS, LiveFrame, LiveTake
@@ -164,8 +163,7 @@ class Engine:
             if name not in self._pipelines:
                 parts = [self.pipeline(needed) for needed in found.needs]
                 _take_threads()
-                made = found.load(self.weights / (found.weights or name), *parts)
-                self._pipelines[name] = made if found in methods.BUILT_IN else fenced(made, name)
+                self._pipelines[name] = found.load(self.weights / (found.weights or name), *parts)
             return self._pipelines[name]
 
 

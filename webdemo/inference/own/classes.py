@@ -133,13 +133,6 @@ def _load(found: Any, name: str, folder: Path) -> Pipeline:
         raise InputError(f"The model {name} cannot be loaded: it raised {_named(error)}.") from error
 
 
-def fenced(pipeline: Any, name: str) -> Pipeline:
-    """A pipeline behind :class:`Fenced`, unless it is one of this project's."""
-    ours = type(pipeline).__module__.startswith("webdemo.")
-    made: Pipeline = pipeline if ours else Fenced(pipeline, name)
-    return made
-
-
 class Fenced:
     """A pipeline of a lab's own: what it raises or gives wrongly ends its run with one sentence.
 

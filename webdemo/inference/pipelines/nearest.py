@@ -22,8 +22,8 @@ from motion import FPS, SMPL22, Clip, Duet, InputError
 from motion.formats import read
 from motion.placement import Placement
 from motion.transforms import resample
+from webdemo.inference.built_in import REACTIONS_VARIABLE
 from webdemo.inference.finish.cleanup import clean_person
-from webdemo.inference.methods.nearest import FOLDER_VARIABLE
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
@@ -99,13 +99,13 @@ def read_bank(folder: Path) -> Bank:
 
 
 class NearestPipeline:
-    """Answers from the shipped bank, or from that of :data:`FOLDER_VARIABLE`.
+    """Answers from the shipped bank, or from that of :data:`REACTIONS_VARIABLE`.
 
     Raises WeightsError or InputError where files are missing, altered or of something else.
     """
 
     def __init__(self, folder: Path) -> None:
-        self.name, own = folder.name, os.environ.get(FOLDER_VARIABLE)
+        self.name, own = folder.name, os.environ.get(REACTIONS_VARIABLE)
         source = WeightsFolder(folder)
         for name in source.files:
             source.read(name)  # as its checksums say

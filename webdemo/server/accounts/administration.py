@@ -25,8 +25,6 @@ class Row:
     Attributes:
         runs: kept in the history.
         megabytes: of runs and studies.
-        room: of megabytes altogether.
-        own_room: the room was set for this person.
     """
 
     name: str
@@ -34,8 +32,6 @@ class Row:
     suspended: bool
     runs: int
     megabytes: float
-    room: float
-    own_room: bool
 
 
 class Administration:
@@ -45,14 +41,11 @@ class Administration:
         database: of the lab.
         users: the accounts; None where people sign in elsewhere alone.
         data: the data folder.
-        person_bytes: room of a person for whom none is set.
         elsewhere: people may sign in elsewhere, so that not everybody is among the accounts.
     """
 
-    def __init__(
-        self, database: Database, users: Users | None, data: Path, person_bytes: float, *, elsewhere: bool = False
-    ) -> None:
-        self.database, self.users, self.data, self.person_bytes = database, users, data, person_bytes
+    def __init__(self, database: Database, users: Users | None, data: Path, *, elsewhere: bool = False) -> None:
+        self.database, self.users, self.data = database, users, data
         self.people, self.elsewhere = People(database), elsewhere
 
     def _names(self, known: Collection[str]) -> list[str]:
@@ -77,9 +70,8 @@ class Administration:
         for name in self._names(known):
             key = self.key(name)
             owner, person = f"user {key}", known.get(key) or self.people.of(key)
-            room = self.person_bytes / 2**20 if person.megabytes is None else person.megabytes
-            used, own = sizes.get(owner, 0.0) / 2**20, person.megabytes is not None
-            found.append(Row(name, person.role, person.suspended, counts.get(owner, 0), used, room, own))
+            used = sizes.get(owner, 0.0) / 2**20
+            found.append(Row(name, person.role, person.suspended, counts.get(owner, 0), used))
         return found
 
     def set_role(self, name: str, *, admin: bool) -> None:
@@ -87,25 +79,12 @@ class Administration:
         self.people.set(self._known(name), role=ADMIN if admin else "")
         audit("admin-role", target=name, role=ADMIN if admin else "none")
 
-    def set_room(self, name: str, megabytes: float | None) -> None:
-        """Sets a person's room; None lifts it."""
-        if megabytes is not None and not 1 <= megabytes <= 1e9:
-            raise InputError("Give a room of 1 MB or more, or none to lift it.")
-        self.people.set(self._known(name), megabytes=megabytes)
-        audit("admin-room", target=name, megabytes=megabytes)
-
     def suspend(self, name: str, *, suspended: bool) -> None:
         """Signs a person out and keeps them out, or lets them in again."""
         self.people.set(self._known(name), suspended=suspended)
         if suspended:
             self.people.sign_out(self.key(name))
         audit("admin-suspend" if suspended else "admin-let-in", target=name)
-
-    def sign_out(self, name: str) -> int:
-        """Ends all of a person's sessions; returns how many there were."""
-        ended = self.people.sign_out(self._known(name))
-        audit("admin-sign-out", target=name, sessions=ended)
-        return ended
 
     def delete(self, name: str) -> int:
         """Deletes an account with its runs, studies and files; returns the number of runs."""

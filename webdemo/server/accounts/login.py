@@ -20,7 +20,7 @@ from webdemo.server.settings import Settings
 from webdemo.ui.visitor import visitor_of
 
 from .users import SignIns, Suspended, TooManyTries
-from .visitors import KNOWN_COOKIE, NO_ACCOUNTS, SESSION_COOKIE, Visitors, set_cookie
+from .visitors import KNOWN_COOKIE, NO_ACCOUNTS, SESSION_COOKIE, set_cookie
 
 AT_ONCE = 2
 """Passwords that are checked at a time; further tries wait without holding a thread."""
@@ -29,14 +29,14 @@ KNOWN_SECONDS = 365 * 86_400
 """How long a browser is remembered as one in which somebody has signed in."""
 
 
-def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> APIRouter:
+def login_routes(settings: Settings, sign_ins: SignIns) -> APIRouter:
     """``/login`` (the page, and POST for it and for gradio_client) and ``/logout``."""
     router = APIRouter()
     root = settings.root_path
     places = asyncio.Semaphore(AT_ONCE)
 
     def page(wanted: str, *, name: str = "", error: str = "", status: int = 200) -> HTMLResponse:
-        body = _card(settings, wanted, name, error)
+        body = sign_in_card(action=f"{root}/login", wanted=wanted, name=name[:40], error=error)
         return never_kept(body, status)
 
     keep = partial(_keep, root)
@@ -82,18 +82,12 @@ def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> A
     async def sign_out(request: Request) -> Response:
         if token := request.cookies.get(SESSION_COOKIE, ""):
             await run_in_threadpool(sign_ins.end, token)
-            visitors.forget(token)
             audit("sign-out")
         response = RedirectResponse(f"{root}/login", status_code=303)
         keep(response, request, SESSION_COOKIE, "", 0)
         return response
 
     return router
-
-
-def _card(settings: Settings, wanted: str, name: str, error: str) -> str:
-    """The sign-in page's HTML."""
-    return sign_in_card(action=f"{settings.root_path}/login", wanted=wanted, name=name[:40], error=error)
 
 
 def _note(sign_ins: SignIns, name: str, token: str | None, status: int) -> None:
@@ -126,7 +120,7 @@ _WRONG = "The password that you have now is another one: try again."
 _CHANGED = "Your password is changed, and you are signed out everywhere else."
 
 
-def account_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> APIRouter:
+def account_routes(settings: Settings, sign_ins: SignIns) -> APIRouter:
     """``/account`` (the page), and POST to ``/account/password`` and ``/account/sign-out``."""
     router = APIRouter()
     root = settings.root_path
@@ -158,7 +152,6 @@ def account_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) ->
         audit("password-changed", ok=token is not None, person=name)
         if token is None:
             return page(request, error=_WRONG, status=401)
-        visitors.forget_person(name)
         response = page(request, done=_CHANGED)
         _keep(root, response, request, SESSION_COOKIE, token, sign_ins.seconds)
         return response
@@ -167,7 +160,6 @@ def account_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) ->
     async def sign_out(request: Request) -> Response:
         name = _account(request)
         count = await run_in_threadpool(sign_ins.end_all, name)
-        visitors.forget_person(name)
         audit("sign-out-everywhere", person=name, count=count)
         response = RedirectResponse(f"{root}/login", status_code=303)
         _keep(root, response, request, SESSION_COOKIE, "", 0)

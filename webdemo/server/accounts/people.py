@@ -1,4 +1,4 @@
-"""What is set for each account: roles, rooms and suspensions."""
+"""What is set for each account: roles and suspensions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ADMIN = "admin"
 
 
 class People:
-    """Roles, rooms and suspensions.
+    """Roles and suspensions.
 
     Args:
         database: holds them.
@@ -25,7 +25,7 @@ class People:
     def of(self, key: str) -> Person:
         """What is set for an account."""
         with self.database.session() as session:
-            return session.get(Person, key) or Person(key=key, role="", suspended=False, megabytes=None)
+            return session.get(Person, key) or Person(key=key, role="", suspended=False)
 
     def all(self) -> dict[str, Person]:
         """All accounts for which anything is set."""
@@ -42,29 +42,13 @@ class People:
             for field, value in values.items():
                 setattr(row, field, value)
 
-    def arrive(self, key: str, *, admin: bool | None = None) -> bool:
-        """Notes a person signing in elsewhere, so that administrators see them.
-
-        Args:
-            key: theirs.
-            admin: whether their groups make them an administrator; None where groups do not decide that.
-
-        Returns:
-            False if they are suspended.
-        """
-        values = {} if admin is None else {"role": ADMIN if admin else ""}
+    def arrive(self, key: str) -> bool:
+        """Notes a person signing in elsewhere, so that administrators see them; False if they are suspended."""
         try:
-            self.set(key, **values)
+            self.set(key)
         except IntegrityError:  # they came by two requests at once
-            self.set(key, **values)
+            self.set(key)
         return not self.of(key).suspended
-
-    def bytes_of(self, owner: str) -> float | None:
-        """The room of a history's owner in bytes, where it is not everybody's."""
-        if not owner.startswith("user "):
-            return None
-        megabytes = self.of(owner.removeprefix("user ")).megabytes
-        return None if megabytes is None else megabytes * 2**20
 
     def sign_out(self, key: str) -> int:
         """Ends all sessions of an account; returns how many there were."""

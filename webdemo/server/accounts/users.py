@@ -101,7 +101,7 @@ class Users:
         """Removes a person; raises InputError if there is none of that name."""
         entries = self._entries()
         if name not in entries:
-            raise InputError(f"There is no account {name!r:.60} in {self.path}: see `user list`.")
+            raise InputError(f"There is no account {name!r:.60} in {self.path}: see `admin list`.")
         self._write({other: entry for other, entry in entries.items() if other != name})
 
     def knows(self, name: str, password: str) -> bool:

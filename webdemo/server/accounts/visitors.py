@@ -7,7 +7,6 @@ import ipaddress
 import re
 import secrets
 import threading
-import time
 from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 
@@ -27,8 +26,6 @@ from .users import SUSPENDED, SignIns
 SESSION_COOKIE = "pasdedeux_session"
 VISITOR_COOKIE = "pasdedeux_visitor"
 KNOWN_COOKIE = "pasdedeux_known"
-_REMEMBERED = 10.0
-"""Seconds for which a sign-in is not looked up anew."""
 _MOST = 20_000
 NO_ACCOUNTS = "The server's accounts cannot be read: tell the person who runs it."
 
@@ -44,18 +41,9 @@ class Visitors:
 
     def __init__(self, settings: Settings, sign_ins: SignIns | None, people: People) -> None:
         self.settings, self.sign_ins, self.people = settings, sign_ins, people
-        self._lock = threading.Lock()
-        self._known: OrderedDict[str, tuple[str | None, float]] = OrderedDict()
 
     def of(
-        self,
-        cookies: Mapping[str, str],
-        address: str,
-        *,
-        reference: str,
-        base: str,
-        by_proxy: str = "",
-        admin: bool | None = None,
+        self, cookies: Mapping[str, str], address: str, *, reference: str, base: str, by_proxy: str = ""
     ) -> Visitor | None:
         """The visitor, or None if they must sign in first.
 
@@ -65,7 +53,6 @@ class Visitors:
             reference: names the request.
             base: address of the page.
             by_proxy: the name that a trusted proxy gives.
-            admin: whether the groups that it gives make an administrator; None where they do not decide that.
 
         Raises:
             Refused: if a request from elsewhere arrives at a server that is not open, or at one whose people sign in
@@ -73,7 +60,8 @@ class Visitors:
         """
         if by_proxy:
             owner = self._owner(by_proxy)
-            self._arrive(owner.removeprefix("user "), admin)
+            if not self.people.arrive(owner.removeprefix("user ")):
+                raise Refused(403, SUSPENDED, "suspended")
             return Visitor(owner, owner, reference, base, by_proxy)
         if self.sign_ins is None and self.settings.proxy_user:
             raise not_by_proxy()
@@ -105,48 +93,13 @@ class Visitors:
             raise Refused(503, NO_ACCOUNTS, "accounts") from None
         return f"user {key or name}"
 
-    def forget(self, token: str) -> None:
-        """Drops a signed-out session from the cache."""
-        with self._lock:
-            self._known.pop(digest(token), None)
-
-    def forget_person(self, name: str) -> None:
-        """Drops all sessions of an account from the cache."""
-        with self._lock:
-            for key in [key for key, (person, _) in self._known.items() if person == name]:
-                del self._known[key]
-
-    def _arrive(self, person: str, admin: bool | None) -> None:
-        """Notes a person named by a proxy, by their key; raises Refused if they are suspended."""
-        key, now = f"proxy {admin} {person}", time.monotonic()
-        with self._lock:
-            known = self._known.get(key)
-        if known is None or known[1] <= now:
-            known = (person if self.people.arrive(person, admin=admin) else None, now + _REMEMBERED)
-            self._remember(key, known)
-        if known[0] is None:
-            raise Refused(403, SUSPENDED, "suspended")
-
-    def _remember(self, key: str, known: tuple[str | None, float]) -> None:
-        with self._lock:
-            self._known[key] = known
-            while len(self._known) > _MOST:
-                self._known.popitem(last=False)
-
     def _signed_in(self, token: str) -> str | None:
         if not token or self.sign_ins is None:
             return None
-        key, now = digest(token), time.monotonic()
-        with self._lock:
-            known = self._known.get(key)
-        if known is not None and known[1] > now:
-            return known[0]
         try:
-            person = self.sign_ins.person(token)
+            return self.sign_ins.person(token)
         except InputError:
             raise Refused(503, NO_ACCOUNTS, "accounts") from None
-        self._remember(key, (person, now + _REMEMBERED))
-        return person
 
 
 class Bindings:
@@ -240,7 +193,6 @@ NAME = re.compile(r"\A[a-z0-9][a-z0-9._@+-]{0,79}\Z")
 """Names of people who sign in elsewhere, in lower case: also addresses of mail."""
 _NOT_BY_PROXY = "This lab is reached through its proxy, where you sign in: open its usual address."
 _BAD_NAME = "The proxy's name for you cannot be used here: tell the person who runs this server."
-_NOT_ALLOWED = "You belong to none of the groups that may use this lab: ask the person who runs it."
 
 
 class PeerNoted:
@@ -275,8 +227,8 @@ def person_by_proxy(settings: Settings, scope: Scope) -> str:
     """The name that a trusted proxy gives the sender of a request; "" where it gives none.
 
     Raises:
-        Refused: for a request that did not come through a trusted proxy and bears the header, a name that cannot be
-            used, and a person of none of the allowed groups.
+        Refused: for a request that did not come through a trusted proxy and bears the header, and for a name that
+            cannot be used.
     """
     names = _values(scope, settings.proxy_user)
     if not names or not settings.proxy_user:
@@ -288,21 +240,7 @@ def person_by_proxy(settings: Settings, scope: Scope) -> str:
         return ""
     if len(names) > 1 or not NAME.match(name):
         raise Refused(403, _BAD_NAME, "proxy")
-    if settings.groups and not set(groups_of(_values(scope, settings.proxy_groups))) & set(settings.groups):
-        raise Refused(403, _NOT_ALLOWED, "proxy")
     return name
-
-
-def admin_by_proxy(settings: Settings, scope: Scope) -> bool | None:
-    """True if the sender's groups make them an administrator; None where groups do not decide that."""
-    if not settings.admin_groups:
-        return None
-    return bool(set(groups_of(_values(scope, settings.proxy_groups))) & set(settings.admin_groups))
-
-
-def groups_of(values: Sequence[str]) -> list[str]:
-    """The groups that are listed, with commas, semicolons or bars between them."""
-    return [group.strip() for value in values for group in re.split("[,;|]", value) if group.strip()]
 
 
 def not_by_proxy() -> Refused:

@@ -28,7 +28,6 @@ from webdemo.server.accounts.visitors import (
     VISITOR_COOKIE,
     Bindings,
     Visitors,
-    admin_by_proxy,
     new_token,
     person_by_proxy,
     read_cookies,
@@ -244,7 +243,6 @@ class Guard:
                 reference=exchange.reference,
                 base=base,
                 by_proxy=person_by_proxy(self.settings, scope),
-                admin=admin_by_proxy(self.settings, scope),
             )  # which looks into the database where people have accounts
             visitor = await run_in_threadpool(find) if self.settings.accounts else find()
         except (Refused, SQLAlchemyError) as error:

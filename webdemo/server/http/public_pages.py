@@ -5,8 +5,6 @@ Nothing here looks at who asks, and nothing is changed.
 
 from __future__ import annotations
 
-import threading
-from collections import OrderedDict
 from urllib.parse import quote
 
 from fastapi import APIRouter, Request
@@ -21,8 +19,6 @@ from webdemo.view.payload import Payload
 
 from .routes import Refused
 
-KEPT = 32
-"""Motions that are kept as the player takes them, the last ones asked for."""
 _FILE_HEADERS = {"Cache-Control": "public, max-age=600", "Access-Control-Allow-Origin": "*"}
 """A frame with a sandbox has no origin of its own, and the files are the same for everybody."""
 _NOTHING = "There is nothing here."
@@ -60,8 +56,6 @@ class _Pages:
 
     def __init__(self, root: str, publishing: Publishing) -> None:
         self.root, self.publishing = root, publishing
-        self._payloads: OrderedDict[str, Payload] = OrderedDict()
-        self._lock = threading.Lock()
 
     def whole(self, key: str, base: str) -> Response:
         """The page of a result."""
@@ -75,21 +69,11 @@ class _Pages:
         return _sent(embed_html(shown.entry, payload, Place(files=f"{self.root}/shown/")))
 
     def _read(self, key: str) -> tuple[Shown, Payload]:
-        """The state that a page shows, and its motion; raises Refused where it shows nothing, kept or not."""
+        """The state that a page shows, and its motion; raises Refused where it shows nothing."""
         try:
-            shown = self.publishing.shown(key)
-            with self._lock:
-                if (kept := self._payloads.get(shown.entry.id)) is not None:
-                    self._payloads.move_to_end(shown.entry.id)
-                    return shown, kept
-            payload = payload_of(self.publishing.open(key))
+            return self.publishing.shown(key), payload_of(self.publishing.open(key))
         except InputError as error:
             raise Refused(404, str(error), "public") from None
-        with self._lock:
-            self._payloads[shown.entry.id] = payload
-            while len(self._payloads) > KEPT:
-                self._payloads.popitem(last=False)
-        return shown, payload
 
 
 def _sent(page: str) -> Response:

@@ -46,20 +46,12 @@ class Counts:
     """A stream's work so far.
 
     Attributes:
-        pictures: that arrived.
         frames: that were answered.
-        dropped: pictures that the page could not send in time.
         seconds: of computing, for all frames together.
-        longest: seconds of the slowest message.
-        partner: processor time in seconds of the partner's steps, a frame each.
     """
 
-    pictures: int = 0
     frames: int = 0
-    dropped: int = 0
     seconds: float = 0.0
-    longest: float = 0.0
-    partner: float = 0.0
 
     @property
     def milliseconds(self) -> float:
@@ -100,7 +92,6 @@ class LiveStream:
         address: where they come from, where that limits them.
         partner: answers.
         clock: gives the time; seconds.
-        processor: gives the processor time of the thread that computes; seconds.
         counts: what has been done.
         ended: why there is no more, for the page; empty while it runs.
     """
@@ -112,7 +103,6 @@ class LiveStream:
     lens: float | None = None
     tilt: float | None = None
     clock: Callable[[], float] = time.monotonic
-    processor: Callable[[], float] = time.thread_time
     counts: Counts = field(default_factory=Counts)
     ended: str = ""
 
@@ -123,14 +113,14 @@ class LiveStream:
         self._shown_things: tuple[Thing, ...] = ()
         self.began = self.heard = self.found = self.clock()
 
-    def answer(self, message: Message) -> Steps:
+    def answer(self, content: Landmarks | Poses | None) -> Steps:
         """Computes the answer to a message, a frame a step: both people's new frames, and what is to be said.
 
         Raises:
             StreamEnded: if the stream has ended, also between two steps.
         """
         frames: list[Array] = []
-        spent, made = 0.0, self._frames(message)
+        spent, made = 0.0, self._frames(content)
         while True:
             if self.ended:
                 raise StreamEnded(self.ended)
@@ -145,10 +135,7 @@ class LiveStream:
             yield
         self.heard = self.clock()
         counts = self.counts
-        counts.dropped += message.dropped
-        if frames:
-            counts.seconds += spent
-            counts.longest = max(counts.longest, spent)
+        counts.seconds += spent
         start, counts.frames = counts.frames, counts.frames + len(frames)
         return {
             "start": start,
@@ -174,16 +161,12 @@ class LiveStream:
         ]
         return {"moved": [[i, *_pose(now[i])] for i in moved]} if moved else {}
 
-    def _frames(self, message: Message) -> Iterator[Array]:
+    def _frames(self, content: Landmarks | Poses | None) -> Iterator[Array]:
         """(2, 22, 3) the person and the partner, for each frame at 30 fps that a message completes."""
         made = 0
-        for time_, pose in self._poses(message.content):
-            self.counts.pictures += 1
+        for time_, pose in self._poses(content):
             for given in self._even.add(time_, pose):
-                began = self.processor()
-                answer = self.partner.step(given)
-                self.counts.partner += self.processor() - began
-                yield np.stack([given, answer])
+                yield np.stack([given, self.partner.step(given)])
                 made += 1
             if made >= MOST_FRAMES:
                 return
@@ -249,35 +232,19 @@ class Poses:
     positions: Array
 
 
-@dataclass(frozen=True)
-class Message:
-    """A message to a stream.
-
-    Attributes:
-        content: what came; None for a message that only says that somebody is there.
-        dropped: pictures that the page could not send since its last message.
-    """
-
-    content: Landmarks | Poses | None
-    dropped: int = 0
-
-
-def read_message(body: bytes) -> Message:
-    """The message in a request's body.
+def read_message(body: bytes) -> Landmarks | Poses | None:
+    """What a request's body brings; None where it only says that somebody is there.
 
     Raises:
         InputError: where it is not what the page sends.
     """
     fields = read_fields(body)
-    dropped = fields.get("dropped", 0)
-    if type(dropped) is not int or not 0 <= dropped <= 10_000:
-        raise InputError(_BROKEN)
     if "landmarks" in fields:
         landmarks = landmarks_of(fields)
         if len(landmarks.times) > MOST_PICTURES:
             raise InputError(_BROKEN)
-        return Message(landmarks, dropped)
-    return Message(_poses(fields) if "poses" in fields else None, dropped)
+        return landmarks
+    return _poses(fields) if "poses" in fields else None
 
 
 def read_fields(body: bytes) -> dict[str, Any]:

@@ -36,12 +36,6 @@ IDLE = 20.0
 """Seconds without a message after which a stream is closed."""
 LONGEST = 600.0
 """Seconds that a stream may last."""
-BUSIEST = 0.9
-"""Processor time that the partners of all streams may take of one core: with more, none would answer in time. A tenth
-is left for following cameras. A clock on the wall would also count the runs beside the streams: with a few of them, the
-first person to be live would keep everybody else out. Two are always let in, for the same reason: each gets half."""
-_PACE = 0.1
-"""Share of the latest message in the mean processor time of a frame."""
 KEPT = 256
 """Ended streams whose reason is kept for their page."""
 OTHER_TAB = "Another live stream of yours has begun, so this one ended: press Start to go on here."
@@ -75,26 +69,14 @@ class Streams:
         engine: has the partners.
         quota: of streams.
         clock: gives the time; seconds.
-        processor: gives the processor time of the thread that computes; seconds.
 
     Attributes:
         turns: answers messages.
-        pace: recent processor time of a partner's frame in seconds. How many pictures a page sends for a frame does
-            not count, so nobody can make the server look slower or faster to the next person.
     """
 
-    def __init__(
-        self,
-        engine: Partners,
-        quota: Quota,
-        *,
-        clock: Callable[[], float] = time.monotonic,
-        processor: Callable[[], float] = time.thread_time,
-    ) -> None:
+    def __init__(self, engine: Partners, quota: Quota, *, clock: Callable[[], float] = time.monotonic) -> None:
         self.engine, self.quota, self.clock = engine, quota, clock
-        self.processor = processor
         self.turns, self._doors = StepTurns("live"), StepTurns("live-open")
-        self.pace = 0.0
         self._lock = threading.Lock()
         self._open: dict[str, LiveStream] = {}
         self._ended: dict[str, str] = {}
@@ -129,7 +111,7 @@ class Streams:
         try:
             made = self.engine.partner(partner, seed=seed)
             stream = LiveStream(
-                secrets.token_urlsafe(16), visitor.person, visitor.address, made, lens, tilt, self.clock, self.processor
+                secrets.token_urlsafe(16), visitor.person, visitor.address, made, lens, tilt, self.clock
             )
             with self._lock:
                 self._open[stream.id] = stream
@@ -152,11 +134,6 @@ class Streams:
             self.quota.check(visitor.person, visitor.address, held)
         except OverQuota as over:
             raise StreamRefused(str(over)) from None
-        count = len(held)
-        if count > 1 and (count + 1) * FPS * self.pace > BUSIEST:
-            raise StreamRefused(
-                f"The server is too busy for another live partner beside {count}: try again in a few minutes."
-            )
 
     def find(self, key: str, visitor: Visitor) -> LiveStream:
         """A person's stream.
@@ -197,33 +174,12 @@ class Streams:
         """
         stream = self.find(key, visitor)
         stream.heard = self.clock()
-        return self.turns.submit(stream, partial(self._answer, stream, body))
-
-    def _answer(self, stream: LiveStream, body: bytes) -> Steps:
-        counts = stream.counts
-        frames, seconds = counts.frames, counts.partner
-        answer = yield from stream.answer(read_message(body))
-        if made := counts.frames - frames:
-            self.pace += _PACE * ((counts.partner - seconds) / made - self.pace)
-        return answer
+        return self.turns.submit(stream, lambda: stream.answer(read_message(body)))
 
     def close(self, stream: LiveStream) -> None:
         """Ends a stream that its person has stopped."""
         with self._lock:
             self._end(stream, UNKNOWN)
-
-    def opened(self) -> list[LiveStream]:
-        """All open streams."""
-        with self._lock:
-            return list(self._open.values())
-
-    def end(self, key: str, reason: str) -> bool:
-        """Ends the stream of an id; its person is told why. False if there is none."""
-        with self._lock:
-            stream = self._open.get(key)
-            if stream is not None:
-                self._end(stream, reason)
-        return stream is not None
 
     def sweep(self) -> None:
         """Ends streams that are idle or too old."""
@@ -252,18 +208,7 @@ class Streams:
         self._ended[stream.id] = reason
         while len(self._ended) > KEPT:
             del self._ended[next(iter(self._ended))]
-        counts = stream.counts
-        log.info("live", extra=_figures(counts))
-
-
-def _figures(counts: Any) -> dict[str, Any]:
-    return {
-        "frames": counts.frames,
-        "pictures": counts.pictures,
-        "dropped": counts.dropped,
-        "milliseconds_per_frame": round(counts.milliseconds, 2),
-        "longest_milliseconds": round(1000 * counts.longest),
-    }
+        log.info("live", extra={"frames": stream.counts.frames, "milliseconds": round(stream.counts.milliseconds, 2)})
 
 
 # ---- the addresses of live streams ---------------------------------------------------------------

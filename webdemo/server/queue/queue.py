@@ -94,22 +94,6 @@ class FairQueue:
                 self._change.notify_all()
         return token is not None
 
-    def jobs(self) -> list[tuple[Job, bool]]:
-        """All runs here, and whether each has begun."""
-        with self._change:
-            return [(job, True) for job in self._running] + [(job, False) for job in self._waiting]
-
-    def end(self, key: str, sentence: str) -> bool:
-        """Ends the run of an id; its person is told the sentence. False if there is none."""
-        with self._change:
-            for job in (*self._running, *self._waiting):
-                if job.id == key:
-                    job.ended = sentence
-                    job.token.cancel()
-                    self._change.notify_all()
-                    return True
-        return False
-
     def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
         """Runs a request; yields its place in the queue, its progress and its result.
 
@@ -198,8 +182,6 @@ class FairQueue:
                 event = job.events.get(timeout=TICK)
             except queue.Empty:
                 event = None
-            if job.ended:
-                raise InputError(job.ended)
             if isinstance(event, Exception):
                 raise event
             if not isinstance(event, Result) or job.token.cancelled:  # a result that is there is not too late

@@ -9,7 +9,6 @@ from dataclasses import replace
 from typing import Any
 
 from motion import InputError
-from webdemo.inference.methods import methods
 from webdemo.inference.requests.live import live_title
 from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.inference.story.beats import story_title
@@ -97,19 +96,12 @@ class Recorder:
 
 
 def title_of(asked: Mapping[str, Any]) -> str:
-    """Title of a run from its request's dictionary: the words that its method hears, or the name of its input."""
+    """Title of a run from its request's dictionary: its words, or the name of its input."""
     if asked.get("live"):
         return live_title(str(asked.get("model")))
-    words = str(asked.get("prompt", "")).strip()
-    if words and _hears(str(asked.get("model", ""))):
+    if words := str(asked.get("prompt", "")).strip():
         return words
     if beats := asked.get("beats"):
         return story_title(beats)
     given = asked.get("actor") or asked.get("motion") or {}
     return f"{'Reaction to' if 'actor' in asked else 'After'} {given.get('name') or 'a motion'}"
-
-
-def _hears(model: str) -> bool:
-    """True if a method takes words or a class; one that is no longer registered may have."""
-    known = {found.name: found for found in methods()}
-    return model not in known or bool({"words", "class"} & known[model].takes)

@@ -8,7 +8,6 @@ runs.
 from __future__ import annotations
 
 import queue
-import secrets
 import time
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -40,8 +39,6 @@ class Job:
         cost: its work, in units.
         events: progress, then a result or an error; read by the caller.
         moved: when it last began or made progress.
-        ended: the sentence with which an administrator has ended it.
-        id: names it for administrators.
     """
 
     person: str
@@ -54,8 +51,6 @@ class Job:
     came: float = field(default_factory=time.monotonic)
     started: float = 0.0
     moved: float = 0.0
-    ended: str = ""
-    id: str = field(default_factory=lambda: secrets.token_hex(6))
 
 
 class Accounts:

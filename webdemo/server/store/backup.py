@@ -1,14 +1,13 @@
 """Backups of a lab: its database and its motions together, made while people work, and put back elsewhere.
 
-A backup is a folder: ``history.db`` (SQLite's online backup), ``motions``, ``studies``, the accounts, and
-``SHA256SUMS`` of all of them. The database is copied first and the files after it. A finished run has its files before
-its row, and loses its row before its files, so what is missing then was deleted meanwhile: its row is left out.
+A backup is a folder: ``history.db`` (SQLite's online backup), ``motions``, ``studies`` and the accounts. The database
+is copied first and the files after it. A finished run has its files before its row, and loses its row before its
+files, so what is missing then was deleted meanwhile: its row is left out.
 """
 
 from __future__ import annotations
 
 import fcntl
-import hashlib
 import os
 import shutil
 import sqlite3
@@ -18,15 +17,13 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from sqlalchemy import make_url
-
 from motion import InputError
 from webdemo.server.audit import audit
 
 from .database import Database
 
 PREFIX = "pas-de-deux-"
-DATABASE, SUMS, ACCOUNTS = "history.db", "SHA256SUMS", "users"
+DATABASE, ACCOUNTS = "history.db", "users"
 _FOLDERS = {"motions": "SELECT id FROM runs WHERE state = 'done'", "studies": "SELECT id FROM studies"}
 """Folders, and the rows that have a folder in each."""
 
@@ -36,28 +33,17 @@ class Lab:
     """The places that a backup is made of, and restored to.
 
     Attributes:
-        url: of the database.
         data: the data folder.
         users: the file of accounts; None without accounts.
     """
 
-    url: str
     data: Path
     users: Path | None
 
     @property
     def database(self) -> Path:
-        """SQLite's file.
-
-        Raises:
-            InputError: for another database.
-        """
-        url = make_url(self.url)
-        if url.get_backend_name() != "sqlite" or not url.database:
-            raise InputError(
-                "Only SQLite is backed up here: use your database's own command, and copy the data folder after it."
-            )
-        return Path(url.database)
+        """SQLite's file."""
+        return self.data / DATABASE
 
 
 def back_up(lab: Lab, folder: Path, *, keep: int = 0) -> Path:
@@ -74,7 +60,7 @@ def back_up(lab: Lab, folder: Path, *, keep: int = 0) -> Path:
     Raises:
         InputError: if the folder cannot be written, or another process makes a backup there.
     """
-    source, name = lab.database, PREFIX + time.strftime("%Y-%m-%dT%H%M%SZ", time.gmtime())
+    name = PREFIX + time.strftime("%Y-%m-%dT%H%M%SZ", time.gmtime())
     half = folder / f".{name}"
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -82,7 +68,7 @@ def back_up(lab: Lab, folder: Path, *, keep: int = 0) -> Path:
             shutil.rmtree(half, ignore_errors=True)
             try:
                 half.mkdir(mode=0o700)
-                _write(source, lab, half)
+                _write(lab, half)
                 os.replace(half, folder / name)
             finally:
                 shutil.rmtree(half, ignore_errors=True)
@@ -99,41 +85,54 @@ def back_up(lab: Lab, folder: Path, *, keep: int = 0) -> Path:
 
 def backups(folder: Path) -> list[Path]:
     """All finished backups in a folder, the oldest first."""
-    return sorted(path for path in folder.glob(f"{PREFIX}*") if (path / SUMS).is_file())
+    return sorted(path for path in folder.glob(f"{PREFIX}*") if (path / DATABASE).is_file())
 
 
-def restore(backup: Path, lab: Lab) -> int:
-    """Puts a backup into an empty data folder, and migrates it to this version; returns the number of files.
+def restore(backup: Path, lab: Lab) -> None:
+    """Puts a backup into an empty data folder.
 
     Raises:
-        InputError: if the backup is damaged or newer than this version, or there is anything where it would go. Then
+        InputError: if the backup is damaged or another version's, or there is anything where it would go. Then
             nothing is written.
     """
-    files = _checked(backup)
+    accounts = [backup / ACCOUNTS] if lab.users is not None and (backup / ACCOUNTS).is_file() else []
     taken = [lab.database, *(lab.data / name for name in _FOLDERS if any((lab.data / name).glob("*")))]
-    taken += [lab.users] if lab.users is not None and (backup / ACCOUNTS).is_file() else []
+    taken += [lab.users] if lab.users is not None and accounts else []
     if there := [str(path) for path in taken if path.exists()]:
         raise InputError(f"There is {' and '.join(there)} already: restore into an empty folder, and switch over then.")
     half = lab.database.with_name(".restored")
     try:
         half.mkdir(mode=0o700, parents=True, exist_ok=True)
-        shutil.copyfile(backup / DATABASE, half / DATABASE)
-        Database(f"sqlite:///{half / DATABASE}").close()  # migrates it, or refuses a newer one
-        os.replace(half / DATABASE, lab.database)
+        for path in (backup / DATABASE, *accounts):
+            shutil.copyfile(path, half / path.name)
+        for name in _FOLDERS:
+            shutil.copytree(backup / name, half / name)
+        Database(half / DATABASE).close()  # refuses a damaged one, and that of another version
+        _check(half)
+        for name in (DATABASE, *_FOLDERS):
+            shutil.rmtree(lab.data / name, ignore_errors=True)  # an empty folder
+            os.replace(half / name, lab.data / name)
+        if lab.users is not None and accounts:
+            shutil.copyfile(half / ACCOUNTS, lab.users)
+            os.chmod(lab.users, 0o600)
+    except OSError as error:
+        raise InputError(f"{backup} cannot be restored ({error.strerror}): name a folder that `backup` made.") from None
     finally:
         shutil.rmtree(half, ignore_errors=True)
-    for name in _FOLDERS:
-        if (backup / name).is_dir():
-            shutil.copytree(backup / name, lab.data / name, dirs_exist_ok=True)
-    if lab.users is not None and (backup / ACCOUNTS).is_file():
-        shutil.copyfile(backup / ACCOUNTS, lab.users)
-        os.chmod(lab.users, 0o600)
-    return files
 
 
-def _write(source: Path, lab: Lab, half: Path) -> None:
+def _check(folder: Path) -> None:
+    """Raises InputError for a row whose files are missing."""
+    with closing(sqlite3.connect(folder / DATABASE)) as database:
+        for name, rows in _FOLDERS.items():
+            for (key,) in database.execute(rows):
+                if not any((folder / name / key).glob("*.npz")):
+                    raise InputError(f"The backup is damaged: {name}/{key} is missing. Take another one.")
+
+
+def _write(lab: Lab, half: Path) -> None:
     """Writes all of a backup."""
-    with closing(sqlite3.connect(source)) as live, closing(sqlite3.connect(half / DATABASE)) as copy:
+    with closing(sqlite3.connect(lab.database)) as live, closing(sqlite3.connect(half / DATABASE)) as copy:
         live.backup(copy)
         copy.execute("PRAGMA foreign_keys=ON")
         for name, rows in _FOLDERS.items():
@@ -146,9 +145,6 @@ def _write(source: Path, lab: Lab, half: Path) -> None:
     if lab.users is not None and lab.users.exists():
         shutil.copyfile(lab.users, half / ACCOUNTS)
         os.chmod(half / ACCOUNTS, 0o600)
-    files = sorted(path for path in half.rglob("*") if path.is_file())
-    sums = "".join(f"{_sha256(path)}  {path.relative_to(half).as_posix()}\n" for path in files)
-    (half / SUMS).write_text(sums, encoding="utf-8")
 
 
 def _copy(source: Path, target: Path) -> None:
@@ -163,19 +159,6 @@ def _copy(source: Path, target: Path) -> None:
             shutil.rmtree(target / path.name, ignore_errors=True)
 
 
-def _checked(backup: Path) -> int:
-    """The number of a backup's files; raises InputError unless all are there and unchanged."""
-    try:
-        lines = (backup / SUMS).read_text(encoding="utf-8").splitlines()
-    except OSError:
-        raise InputError(f"{backup} is no backup: name a folder that `backup` made.") from None
-    for line in lines:
-        digest, _, name = line.partition("  ")
-        if not (backup / name).is_file() or _sha256(backup / name) != digest:
-            raise InputError(f"The backup is damaged: {name} is missing or has changed. Take another one.")
-    return len(lines)
-
-
 @contextmanager
 def _alone(folder: Path) -> Iterator[None]:
     """Holds a folder of backups; raises InputError if another process does."""
@@ -185,8 +168,3 @@ def _alone(folder: Path) -> Iterator[None]:
         except BlockingIOError:
             raise InputError(f"Another process is making a backup in {folder}: wait for it.") from None
         yield
-
-
-def _sha256(path: Path) -> str:
-    with open(path, "rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,7 +1,4 @@
-"""The tables: runs, what is written on them, the links that open them for others, studies, people and sign-ins.
-
-A change of a table needs a file in ``migrations/versions`` as well.
-"""
+"""The tables, in one SQLite file: runs, what is written on them, links to them, studies, people and sign-ins."""
 
 from __future__ import annotations
 
@@ -13,17 +10,17 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Engine, ForeignKey, Text, create_engine, event, select, text
-from sqlalchemy.exc import ArgumentError, DatabaseError, NoSuchModuleError, SQLAlchemyError
+from sqlalchemy import Engine, ForeignKey, Text, create_engine, event, inspect, select
+from sqlalchemy.exc import DatabaseError, SQLAlchemyError
 from sqlalchemy.orm import DeclarativeBase, Mapped, Session, mapped_column, relationship, sessionmaker
 
 from motion import InputError
 from webdemo.ui.history import Entry
 
-from .migrations import upgrade
-
 log = logging.getLogger(__name__)
 
+SCHEMA = 1
+"""Number of the tables' schema, which the file keeps (``PRAGMA user_version``); a change of a table changes it."""
 BUSY_SECONDS = 15
 """Time that SQLite waits for another writer."""
 SOUND_SECONDS = 30.0
@@ -44,8 +41,7 @@ class Run(Table):
         request: as JSON, without motion.
         outcome: manifest, timings and notes as JSON; empty until done.
         message: what went wrong, as one sentence.
-        created: what the clock showed then.
-        stored: when it came here, by which it grows old.
+        created: when it was asked for, by which it grows old.
         size: bytes of its files and of what is written about it.
         address: a hash of the address that it came from; empty where people are known by more than a cookie.
     """
@@ -61,7 +57,6 @@ class Run(Table):
     outcome: Mapped[str] = mapped_column(Text, default="")
     message: Mapped[str] = mapped_column(Text, default="")
     created: Mapped[float] = mapped_column(default=time.time, index=True)
-    stored: Mapped[float] = mapped_column(default=time.time, index=True)
     size: Mapped[int] = mapped_column(default=0)
     address: Mapped[str] = mapped_column(default="", index=True)
     favourite: Mapped[bool] = mapped_column(default=False)
@@ -142,13 +137,12 @@ class SignIn(Table):
 
 
 class Person(Table):
-    """An account's role and limits; a person without a row has the ordinary ones.
+    """An account's role; a person without a row has the ordinary one.
 
     Attributes:
         key: of the account, or the name that a proxy gives.
         role: "admin" or empty.
         suspended: cannot sign in.
-        megabytes: room of their own; None: as everybody.
     """
 
     __tablename__ = "people"
@@ -156,7 +150,6 @@ class Person(Table):
     key: Mapped[str] = mapped_column(primary_key=True)
     role: Mapped[str] = mapped_column(default="")
     suspended: Mapped[bool] = mapped_column(default=False)
-    megabytes: Mapped[float | None] = mapped_column(default=None)
 
 
 class Study(Table):
@@ -208,29 +201,44 @@ class Vote(Table):
 
 
 class Database:
-    """A connection to the tables, which are made or migrated where that is needed (:mod:`.migrations`).
+    """A connection to the tables, which are made in an empty file.
 
     Args:
-        url: as SQLAlchemy takes it.
+        file: SQLite's.
 
     Raises:
-        InputError: if the URL is none, its driver is missing or the database cannot be opened.
+        InputError: if it cannot be opened, or another version of the program has made it.
     """
 
-    def __init__(self, url: str) -> None:
-        with opening():
-            self.engine = engine_of(url)
-            upgrade(self.engine, Table.metadata)
+    def __init__(self, file: Path) -> None:
+        with _opening(file):
+            self.engine = _engine_of(file)
+            self._make_tables()
             self.session = sessionmaker(self.engine, expire_on_commit=False)
             self._sound_until = 0.0
             self.check()  # rather than in the middle of a start
+
+    def _make_tables(self) -> None:
+        with self.engine.connect() as connection:
+            connection.exec_driver_sql("BEGIN IMMEDIATE")  # another process may open it as well
+            found = connection.exec_driver_sql("PRAGMA user_version").scalar()
+            if found == SCHEMA:
+                return
+            if inspect(connection).get_table_names():
+                raise InputError(
+                    f"The database was made by another version of Pas de Deux (schema {found}; this one knows "
+                    f"{SCHEMA}): install that version."
+                )
+            Table.metadata.create_all(connection)
+            connection.exec_driver_sql(f"PRAGMA user_version = {SCHEMA}")
+            connection.commit()
 
     def check(self) -> None:
         """Raises SQLAlchemyError if the database does not answer, or what people need cannot be read."""
         with self.engine.connect() as connection:
             for table in Table.metadata.sorted_tables:
                 connection.execute(select(table).limit(1)).first()
-            if self.engine.dialect.name == "sqlite" and time.monotonic() > self._sound_until:
+            if time.monotonic() > self._sound_until:
                 (found,) = connection.exec_driver_sql("PRAGMA quick_check(1)").one()
                 if found != "ok":
                     raise DatabaseError("PRAGMA quick_check", None, ValueError(found))
@@ -247,36 +255,18 @@ def locked(session: Session) -> None:
     Args:
         session: that has not read or written anything yet.
     """
-    if session.get_bind().dialect.name == "sqlite":
-        session.connection().exec_driver_sql("BEGIN IMMEDIATE")
-    else:
-        session.execute(text("LOCK TABLE runs IN SHARE ROW EXCLUSIVE MODE"))
-
-
-def engine_of(url: str) -> Engine:
-    """Connections to a database as it is; raises what SQLAlchemy does where the URL is none."""
-    engine = create_engine(url, pool_pre_ping=True)
-    if engine.dialect.name == "sqlite":
-        _prepare_sqlite(engine)
-    return engine
+    session.connection().exec_driver_sql("BEGIN IMMEDIATE")
 
 
 @contextmanager
-def opening() -> Iterator[None]:
+def _opening(file: Path) -> Iterator[None]:
     """Turns what fails when a database is opened into an InputError with one sentence."""
     try:
         yield
-    except (ArgumentError, NoSuchModuleError):
-        raise InputError(
-            "The database's URL is not understood: write it as sqlite:///FILE or postgresql+psycopg://…"
-        ) from None
-    except ModuleNotFoundError as error:
-        raise InputError(f"The database needs the Python package {error.name}: install it, or use SQLite.") from None
     except (SQLAlchemyError, OSError) as error:
         reason = str(getattr(error, "orig", None) or error).partition("\n")[0]
         raise InputError(
-            f"The database cannot be opened ({reason}): check its URL, or move the damaged file away "
-            "and restore a backup."
+            f"The database {file.name} cannot be opened ({reason}): move the damaged file away and restore a backup."
         ) from None
 
 
@@ -304,10 +294,10 @@ def is_full(error: BaseException) -> bool:
     return isinstance(error, SQLAlchemyError) and "full" in str(getattr(error, "orig", ""))
 
 
-def _prepare_sqlite(engine: Engine) -> None:
-    """Turns on write-ahead logging: readers never wait, and a killed process leaves an intact file."""
-    if (file := engine.url.database) and file != ":memory:":
-        Path(file).parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+def _engine_of(file: Path) -> Engine:
+    """Connections with write-ahead logging: readers never wait, and a killed process leaves an intact file."""
+    file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    engine = create_engine(f"sqlite:///{file}")
 
     @event.listens_for(engine, "connect")
     def set_up(connection: Any, _: Any) -> None:
@@ -316,6 +306,8 @@ def _prepare_sqlite(engine: Engine) -> None:
         cursor.execute("PRAGMA journal_mode=WAL")
         cursor.execute("PRAGMA foreign_keys=ON")
         cursor.close()
+
+    return engine
 
 
 # ---- rows as the page takes them ---------------------------------------------------------------------

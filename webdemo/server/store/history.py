@@ -56,32 +56,6 @@ _KEY = re.compile(r"\A[A-Za-z0-9_-]{16,64}\Z")
 _MISSING = "There is no such run, or its link has expired: ask the person who sent it for a new one."
 
 
-def _uptime() -> float:
-    """Seconds that the machine has been up, asleep as well where the system counts them."""
-    return time.clock_gettime(time.CLOCK_BOOTTIME) if hasattr(time, "CLOCK_BOOTTIME") else time.monotonic()
-
-
-class Clock:
-    """The machine's clock, which anybody may set, beside its uptime, which always moves on at the same speed.
-
-    Args:
-        wall: gives the clock's time; seconds since 1970.
-        uptime: seconds.
-    """
-
-    def __init__(self, wall: Callable[[], float] = time.time, uptime: Callable[[], float] = _uptime) -> None:
-        self.wall, self.uptime = wall, uptime
-        self._began, self._since = wall() - uptime(), uptime()
-
-    def steady(self) -> bool:
-        """True if the clock has not jumped by more than a day for :data:`STEADY_SECONDS`."""
-        now, began = self.uptime(), self.wall() - self.uptime()
-        if abs(began - self._began) > DAY:
-            log.warning("The clock has jumped: nothing is removed because of its age until it has been steady.")
-            self._began, self._since = began, now
-        return now - self._since >= STEADY_SECONDS
-
-
 class History:
     """Keeps runs.
 
@@ -90,10 +64,9 @@ class History:
         folder: holds a folder a run.
         storage: counts what people store, and makes room; by default with no limit for one person.
         keep_days: age in days at which a run is removed unless it is a favourite.
-        keep_favourites: favourites that one owner may have.
         link_days: how long a link lasts.
         free_bytes: free disk space below which nothing is begun.
-        clock: says whether runs may be removed because of their age.
+        clock: gives seconds since 1970.
     """
 
     def __init__(
@@ -102,18 +75,16 @@ class History:
         folder: Path,
         *,
         storage: Storage | None = None,
-        clock: Clock | None = None,
+        clock: Callable[[], float] = time.time,
         keep_days: float = 30,
-        keep_favourites: int = 200,
         link_days: float = 30,
         free_bytes: float = 0,
     ) -> None:
         self.database, self.folder = database, folder
         self.storage = storage or Storage(database, folder)
-        self.clock = clock or Clock()
-        self.keep_days, self.keep_favourites = keep_days, keep_favourites
-        self.link_days, self.free_bytes = link_days, free_bytes
-        self._owed: dict[str, tuple[str, str]] = {}
+        self.clock = clock
+        self._began, self._since = clock() - time.monotonic(), time.monotonic()
+        self.keep_days, self.link_days, self.free_bytes = keep_days, link_days, free_bytes
         try:
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError as error:
@@ -145,7 +116,7 @@ class History:
             kind=asked.get("kind", "generate"),
             title=title,
             request=text,
-            stored=self.clock.wall(),
+            created=self.clock(),
             address=digest(address) if address else "",
             size=ROW_BYTES + len(text),
         )
@@ -205,21 +176,13 @@ class History:
         return True, gone
 
     def end(self, run: str, state: str, message: str = "") -> None:
-        """Marks a run that has no result; where that cannot be written, :meth:`settle` does it later."""
-        self._owed[run] = (state, message)
-        self.settle()
-
-    def settle(self) -> None:
-        """Writes down the ends of runs that ended while the disk was full."""
-        for run, (state, message) in list(self._owed.items()):
-            ended = update(Run).where(Run.id == run).values(state=state, message=message)
-            try:
-                with self.database.session.begin() as session:
-                    session.execute(ended)
-            except SQLAlchemyError as error:
-                log.warning("The end of a run could not be written down (%s).", type(error).__name__)
-                return
-            self._owed.pop(run, None)
+        """Marks a run that has no result; one whose end cannot be written is interrupted at the next start."""
+        ended = update(Run).where(Run.id == run).values(state=state, message=message)
+        try:
+            with self.database.session.begin() as session:
+                session.execute(ended)
+        except SQLAlchemyError as error:
+            log.warning("The end of a run could not be written down (%s).", type(error).__name__)
 
     def recover(self) -> int:
         """Marks the runs that an earlier process left unfinished, and removes its half-written files.
@@ -298,18 +261,26 @@ class History:
 
     # ---- expiry ----------------------------------------------------------------------------------
 
+    def is_steady(self) -> bool:
+        """False for an hour after the start, and after the clock has jumped by more than a day."""
+        began, now = self.clock() - time.monotonic(), time.monotonic()
+        if abs(began - self._began) > DAY:
+            log.warning("The clock has jumped: nothing is removed because of its age until it has been steady.")
+            self._began, self._since = began, now
+        return now - self._since >= STEADY_SECONDS
+
     def clean(self) -> int:
         """Removes runs by age; favourites stay. Returns how many.
 
         While the clock cannot be trusted, nothing is removed because of its age.
         """
-        trusted, now = self.clock.steady(), self.clock.wall()
+        now = self.clock()
         with self.database.session.begin() as session:
             locked(session)
             gone = list(session.scalars(select(Note.run_id).where(Note.removed < now - UNDO_SECONDS)))
-            if trusted:
+            if self.is_steady():
                 session.execute(delete(Link).where(Link.until < now))
-                old = Run.stored < now - self.keep_days * DAY
+                old = Run.created < now - self.keep_days * DAY
                 gone += session.scalars(select(Run.id).where(old, ~Run.favourite, Run.state != "running"))
             gone = [run for run in dict.fromkeys(gone) if forget(session, run)]
         self.storage.drop(gone)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import shutil
 import zipfile
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -22,7 +20,7 @@ from webdemo.inference.run import Result
 from webdemo.inference.story import SceneRequest
 from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit
-from webdemo.ui.history import Entry, Found, Kept, Opened, Original, Search, Usage, clean_name
+from webdemo.ui.history import Entry, Found, Kept, Opened, Search, Usage
 from webdemo.ui.visitor import Visitor
 
 from .database import Note, Run, entry_of, fields_of, locked, note_of, sentences
@@ -40,12 +38,6 @@ MOST_TAKEN = 100
 _KINDS = ("generate", "scene", "react", "predict")
 LARGEST_KEPT = 20_000
 """Characters of the settings of a tab."""
-ORIGINAL = "original"
-"""Name of the file in the folder of its run."""
-LARGEST_ORIGINAL = 20 * 2**20
-"""Bytes of a file that is kept with a run."""
-LARGEST_SHARE = 0.5
-"""Share of a person's room for runs and studies up to which it may grow by such files."""
 
 
 class Notebook(History):
@@ -99,38 +91,27 @@ class Notebook(History):
         for other in kept.get("compared", ())[:MOST_BESIDE]:
             with suppress(InputError):  # it was removed meanwhile
                 beside.append(super().open(str(other), whose))
-        found = Kept(
-            controls=kept.get("controls", {}),
-            people=tuple(people),
-            compared=tuple(kept.get("compared", ())),
-            original=_kept_original(kept.get("file"), self.folder / opened.entry.id) if mine else None,
-        )
+        found = Kept(controls=kept.get("controls", {}), people=tuple(people), compared=tuple(kept.get("compared", ())))
         return replace(opened, kept=found, beside=tuple(beside))
 
     # ---- writing ---------------------------------------------------------------------------------
 
     @sentences()
     def keep(self, run: str, owner: str, kept: Kept) -> None:
-        """Writes down how the tab was set; people of a file too long to react to are left out.
-
-        The file itself is copied beside the run where it is not too large and its owner's runs leave room.
-        """
+        """Writes down how the tab was set; people of a file too long to react to are left out."""
         record: dict[str, Any] = {"controls": dict(kept.controls), "compared": list(kept.compared)}
         if len(json.dumps(record)) > LARGEST_KEPT:
             return
         with self.database.session() as session:
             self._own(session, run, owner)
         folder = self.folder / run
-        if kept.original is not None:
-            room = self.storage.spare(owner, LARGEST_SHARE)
-            record["file"] = _keep_original(kept.original, folder, room)
-        added = [folder / ORIGINAL, *self._keep_people(kept, folder)]
+        added = self._keep_people(kept, folder)
         try:
             gone = self._note_kept(run, owner, record, kept.compared[:MOST_BESIDE])
         except InputError:  # the files alone are left out
             for path in added:
                 path.unlink(missing_ok=True)
-            gone = self._note_kept(run, owner, record | {"file": ""}, kept.compared[:MOST_BESIDE])
+            gone = self._note_kept(run, owner, record, kept.compared[:MOST_BESIDE])
         self.storage.drop(gone)
 
     def _note_kept(self, run: str, owner: str, record: Mapping[str, Any], beside: Sequence[str]) -> list[str]:
@@ -190,7 +171,7 @@ class Notebook(History):
     @sentences()
     def remove(self, runs: Sequence[str], owner: str) -> int:
         """Takes runs out of the history, with their links; :meth:`restore` brings them back for a while."""
-        now = self.clock.wall()
+        now = self.clock()
         with self.database.session.begin() as session:
             for run in runs:
                 found = self._own(session, run, owner)
@@ -203,13 +184,9 @@ class Notebook(History):
 
     @sentences()
     def favour(self, run: str, owner: str, *, favourite: bool) -> None:
-        """Marks a run as one to keep, or no longer, with the parts of its grid; InputError if there are too many."""
+        """Marks a run as one to keep, or no longer, with the parts of its grid."""
         with self.database.session.begin() as session:
             found = self._own(session, run, owner)
-            if favourite and not found.favourite:
-                count = session.scalar(select(func.count()).select_from(Run).where(Run.owner == owner, Run.favourite))
-                if (count or 0) >= self.keep_favourites:
-                    raise InputError(f"You already keep {count} favourites: stop keeping one first.")
             found.favourite = favourite
             parts = select(Note.run_id).where(Note.part_of == run)
             session.execute(update(Run).where(Run.id.in_(parts), Run.owner == owner).values(favourite=favourite))
@@ -344,34 +321,3 @@ def _conditions(wanted: Search) -> list[ColumnElement[bool]]:
 
 def _tags(text: str) -> list[str]:
     return [tag.strip("#") for tag in text.replace(",", " ").split() if tag.strip("#")]
-
-
-def _keep_original(original: Original, folder: Path, room: float) -> str:
-    """Copies an uploaded file into the folder of its run.
-
-    Args:
-        original: the file.
-        folder: of the run.
-        room: bytes that it may have.
-
-    Returns:
-        the name to keep; "" where the file is gone or too large.
-    """
-    name = clean_name(original.name)
-    half = folder / f".{ORIGINAL}"
-    try:
-        if not name or original.path.is_symlink() or original.path.stat().st_size > min(room, LARGEST_ORIGINAL):
-            return ""
-        shutil.copyfile(original.path, half)
-        os.replace(half, folder / ORIGINAL)
-    except OSError:
-        half.unlink(missing_ok=True)
-        return ""
-    return name
-
-
-def _kept_original(name: object, folder: Path) -> Original | None:
-    """The file of a run, where one was kept."""
-    plain = clean_name(name) if isinstance(name, str) else ""
-    path = folder / ORIGINAL
-    return Original(path, plain) if plain and path.is_file() else None

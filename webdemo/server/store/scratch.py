@@ -6,7 +6,7 @@ import math
 import os
 import shutil
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection, Iterator
 from contextvars import ContextVar
 from pathlib import Path
 
@@ -88,12 +88,12 @@ class Scratch:
                 "smaller file, remove runs of the history, or wait until the older ones are gone."
             )
 
-    def clean(self, keep: Collection[str] = (), allowed: Callable[[str], float] = lambda person: math.inf) -> int:
+    def clean(self, keep: Collection[str] = (), allowed: float = math.inf) -> int:
         """Removes files that are too old, then the oldest of each person who has too many; returns their number.
 
         Args:
             keep: paths that stay.
-            allowed: gives the bytes that a person may have, by the name of their folder.
+            allowed: bytes that a person may have.
         """
         now = time.time()
         gone = sum(
@@ -102,7 +102,7 @@ class Scratch:
             if now - made > KEPT_SECONDS and path not in keep
         )
         for folder in list(self.uploads.iterdir()):
-            if (missing := self.used(folder.name) - allowed(folder.name)) > 0:
+            if (missing := self.used(folder.name) - allowed) > 0:
                 gone += self._remove_oldest(folder, missing, keep)[0]
         self._addresses = {name: home for name, home in self._addresses.items() if (self.uploads / name).exists()}
         self._drop_empty_folders(now)

@@ -1,15 +1,15 @@
 """The room that each person has, and what makes way where it is used up: always something of their own.
 
 Everything that is stored counts: runs with the files that they were made from, imported ones and favourites, studies,
-uploads, films and other files for download. A part of a person's room is set aside for the latter, which are soon
-removed, so that an upload never costs a run.
+uploads, films and other files for download. A part of a person's room is for the latter, which are soon removed, so
+that an upload never costs a run.
 """
 
 from __future__ import annotations
 
 import math
 import shutil
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any, cast
 
@@ -26,7 +26,7 @@ from .database import Database, Note, Run, Study, sentences
 from .scratch import Scratch
 
 SET_ASIDE = 0.25
-"""Share of a person's room that runs and studies leave to uploads and files for download."""
+"""Share of a person's room that is for uploads and files for download."""
 ROW_BYTES = 4096
 """What a run weighs beside its files, its request and its outcome: its row, its note and its thumbnail."""
 RUN_BYTES = 2**18
@@ -42,30 +42,23 @@ class Storage:
         motions: folder of the runs' files.
         rooms: how much may be stored.
         scratch: uploads and files for download; None where they are not counted.
-        bytes_of: a person's own room, where it is not everybody's.
     """
 
     def __init__(
-        self,
-        database: Database,
-        motions: Path,
-        rooms: Rooms | None = None,
-        *,
-        scratch: Scratch | None = None,
-        bytes_of: Callable[[str], float | None] = lambda owner: None,
+        self, database: Database, motions: Path, rooms: Rooms | None = None, *, scratch: Scratch | None = None
     ) -> None:
-        self.bytes_of = bytes_of
         self.database, self.motions, self.scratch = database, motions, scratch
         self.rooms = rooms or Rooms()
 
-    def room(self, owner: str) -> float:
-        """A person's room altogether."""
-        own = self.bytes_of(owner)
-        return self.rooms.person if own is None else own
-
-    def kept_bytes(self, owner: str) -> float:
+    @property
+    def kept_bytes(self) -> float:
         """A person's room for runs and studies."""
-        return (1 - SET_ASIDE) * self.room(owner)
+        return (1 - SET_ASIDE) * self.rooms.person
+
+    @property
+    def scratch_bytes(self) -> float:
+        """A person's room for uploads and files for download."""
+        return SET_ASIDE * self.rooms.person
 
     # ---- what there is ---------------------------------------------------------------------------
 
@@ -83,15 +76,9 @@ class Storage:
             favourites=sizes.get(True, 0),
             studies=studies,
             temporary=self.scratch.used(digest(who.person)) if self.scratch else 0,
-            allowed=room if math.isfinite(room := self.room(who.owner)) else self.rooms.everybody,
-            kept=min(self.kept_bytes(who.owner), self.rooms.everybody),
+            allowed=self.rooms.person if math.isfinite(self.rooms.person) else self.rooms.everybody,
+            kept=min(self.kept_bytes, self.rooms.everybody),
         )
-
-    def spare(self, owner: str, share: float) -> float:
-        """Bytes that are left of a share of a person's room for runs and studies."""
-        with self.database.session() as session:
-            own = _sum(session, Run, Run.owner == owner) + _sum(session, Study, Study.owner == owner)
-        return share * min(self.kept_bytes(owner), self.rooms.everybody) - own
 
     def importable(self, owner: str, address: str) -> float:
         """Bytes that a person may import: what is free, and what they have removed themselves."""
@@ -102,7 +89,7 @@ class Storage:
     def _left(self, session: Session, owner: str, address: str) -> list[tuple[float, str]]:
         """The room left under each limit that holds for a person, and the sentence where it is too little."""
         own = _sum(session, Run, Run.owner == owner) + _sum(session, Study, Study.owner == owner)
-        kept = self.kept_bytes(owner)
+        kept = self.kept_bytes
         left = [
             (
                 kept - own,
@@ -190,31 +177,13 @@ class Storage:
         Raises:
             InputError: if there is too little room.
         """
-        if self.scratch is None:
-            return
-        with sentences(), self.database.session() as session:
-            kept = _sum(session, Run, Run.owner == who.owner) + _sum(session, Study, Study.owner == who.owner)
-        self.scratch.admit(
-            digest(who.person), who.address, size, self._aside(kept if who.owner else 0.0, self.room(who.owner))
-        )
+        if self.scratch is not None:
+            self.scratch.admit(digest(who.person), who.address, size, self.scratch_bytes)
 
     def tidy(self, keep: Collection[str] = ()) -> None:
         """Removes the uploads and files for download that are too old or too many for their owner; ``keep`` stays."""
-        if self.scratch is None:
-            return
-        kept: dict[str, float] = {}
-        rooms: dict[str, float] = {}
-        with self.database.session() as session:
-            for table in (Run, Study):
-                sizes = select(table.owner, func.sum(table.size)).group_by(table.owner)
-                for owner, size in session.execute(sizes):
-                    kept[digest(owner)] = kept.get(digest(owner), 0.0) + (size or 0)
-                    rooms[digest(owner)] = self.room(owner)
-        self.scratch.clean(keep, lambda p: self._aside(kept.get(p, 0.0), rooms.get(p, self.rooms.person)))
-
-    @staticmethod
-    def _aside(kept: float, room: float) -> float:
-        return max(room - kept, SET_ASIDE * room)
+        if self.scratch is not None:
+            self.scratch.clean(keep, self.scratch_bytes)
 
 
 def weight_of(run: Run, folder: Path) -> int:
@@ -233,7 +202,7 @@ def _evictable(session: Session, owner: str, spare: Collection[str]) -> list[tup
         select(Run.id, Run.size, Run.favourite, Note.removed)
         .outerjoin(Note)
         .where(Run.owner == owner, Run.owner != "", Run.state != "running")
-        .order_by(Run.stored, Run.id)
+        .order_by(Run.created, Run.id)
     )
     found = [
         (run, size, removed is not None)

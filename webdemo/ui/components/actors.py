@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -17,18 +15,15 @@ from webdemo.inference.method import SECONDS, Variant
 from webdemo.inference.methods import AUTOMATIC, automatic, installed, variants
 from webdemo.inference.requests.actor import LETTERS, at_30_fps, choose_actor
 from webdemo.inference.run import Result
-from webdemo.ui.history import Original
 from webdemo.ui.places import READING
 from webdemo.view.payload import Payload, player_payload
 
 from .show import GIVEN
-from .upload import animation_labels, animation_list, labels_of_file
+from .upload import animation_labels, animation_list
 
 AUTO = "auto"
 ReadWith = tuple[str, str, float | None, str, int | None]
 """Up axis, unit, frames a second, order of joints and number of the animation, as the page's controls give them."""
-READ_WITH = ("up", "unit", "fps", "order", "animation")
-"""The names of these controls."""
 
 
 def react_choices(weights: Path | None = None) -> list[tuple[str, str]]:
@@ -128,21 +123,6 @@ class Source:
     def describe(self, person: str) -> str:
         """The name, and which person of two."""
         return f"{self.name}, person {person.upper()}" if len(self.people) > 1 else self.name
-
-
-def given_again(source: Source, original: Original | None, folder: Path) -> tuple[Source, str | None]:
-    """A source of the history, and a file for the field that its own was dropped on, where that was kept.
-
-    Args:
-        source: its people.
-        original: the file that they were read from, where it was kept.
-        folder: for the file.
-    """
-    if original is not None:
-        with suppress(OSError):
-            path = Path(shutil.copyfile(original.path, folder / original.name))
-            return replace(source, path=path, animations=labels_of_file(path)), str(path)
-    return source, None
 
 
 def offered_animations(source: Source | None) -> Any:

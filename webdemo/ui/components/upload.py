@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import gradio as gr
 
-from motion import InputError
-from motion.formats import GLBS, READABLE, RIGS
-from motion.formats.glb_motion import animations_in
+from motion.formats import READABLE, RIGS
 from motion.formats.recording import Animations
 from webdemo.ui.text.texts import say, worded
 
@@ -52,22 +49,8 @@ def animation_labels(animations: Animations | None) -> tuple[str, ...]:
     )
 
 
-def labels_of_file(path: Path) -> tuple[str, ...]:
-    """The labels of the animations in a file; none for one that is no .glb or cannot be read."""
-    if path.suffix.lower() in GLBS:
-        with suppress(InputError):
-            return animation_labels(animations_in(path))
-    return ()
-
-
 def animation_list(labels: tuple[str, ...], chosen: int | None) -> Any:
     """An update of the list: these labels, with the chosen number, which is the first by default."""
     value = (chosen if chosen in range(1, len(labels) + 1) else 1) if labels else None
     choices = [(label, number) for number, label in enumerate(labels, 1)]
     return gr.update(choices=choices, value=value, visible=bool(labels))
-
-
-def kept_animation(controls: Mapping[str, Any]) -> int | None:
-    """The number of the animation that a kept run was made from; None for the first."""
-    number = controls.get("animation")
-    return int(number) if isinstance(number, (int, float)) and number >= 1 else None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -12,10 +11,9 @@ from motion.formats.recording import AXES, ORDERS, UNITS
 from webdemo.inference.method import SECONDS
 from webdemo.inference.methods import methods
 from webdemo.ui.again import actor_source
-from webdemo.ui.components.actors import AUTO, ReadWith, Source, given_again, offered_animations
+from webdemo.ui.components.actors import AUTO, Source, offered_animations
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.settings import FittedSlider
-from webdemo.ui.components.upload import kept_animation
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
@@ -143,48 +141,27 @@ class ActorPanel(SourcePanel):
         return status(" ".join((used, *source.notes)), tone="warning" if source.notes else "quiet")
 
     def opened(self, run: Opened) -> dict[Any, Any]:
-        """The file that was chosen, who in it and which part; or the given person alone, where that was not kept."""
+        """Updates by component: who of the people of the chosen file and which part; or the given person alone."""
         controls = run.kept.controls
         source = actor_source(run)
         begin, end = 0.0, round(source.end, 1)
-        file = None
         if people := run.kept.people:
             source = replace(source, people=people)
             letters = [letter for _, letter in source.choices]
             source = replace(source, chosen=controls["person"] if controls.get("person") in letters else "a")
             begin, end = float(controls.get("start", 0.0)), float(controls.get("end", end))
-            source = replace(source, read_with=_known_choices(controls))
-            source, file = given_again(source, run.kept.original, self.results.page.shelf.folder())
-        found = {
-            self.file: file,
+        return {
+            self.file: None,
             self.state: source,
             self.animation: offered_animations(source),
             **dict(zip(self.known, source.read_with[:4], strict=True)),
             **dict(zip(self.more(), self._chosen(source, begin, end), strict=True)),
         }
-        return found
-
-
-def _known_choices(controls: Mapping[str, Any]) -> ReadWith:
-    """The settings with which a kept run's file was read; what its control does not offer is found anew."""
-
-    def offered(name: str, values: Collection[str]) -> str:
-        value = controls.get(name)
-        return value if isinstance(value, str) and value in values else AUTO
-
-    fps = controls.get("fps")
-    return (
-        offered("up", AXES),
-        offered("unit", UNITS),
-        float(fps) if isinstance(fps, (int, float)) else None,
-        offered("order", ORDERS),
-        kept_animation(controls),
-    )
 
 
 def _found(source: Source) -> str:
     """Describes as HTML how a source's file was read: one line, then its joints beside SMPL's."""
     if source.found is None:
-        return status("Opened from the history. Change a setting here to read the file anew.")
+        return status("Taken from a result or the history, so there was nothing to detect.")
     pairs = " · ".join(f"{text(theirs)} → {text(ours)}" for theirs, ours in source.found.joints)
     return f'{status(source.found.line)}<p class="pd-timings">{pairs}</p>'

@@ -19,12 +19,11 @@ import gradio as gr
 from motion import InputError
 from webdemo.inference.requests import MAX_SEED
 from webdemo.inference.run import Cancelled, Progress, Result
-from webdemo.ui.components.actors import READ_WITH
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.context import PageContext
-from webdemo.ui.history import Kept, Opened, Original
+from webdemo.ui.history import Kept, Opened
 from webdemo.ui.text.panels import effect_line, made_line, notes_lines, readout_panel, status
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line
@@ -382,15 +381,10 @@ class JobTab(ABC):
             return
         source = fields.get("source")
         controls = {name: fields.get(name) for name in self._knobs()}
-        original = None
-        if source is not None:
-            controls |= dict(zip(READ_WITH, source.read_with, strict=True))
-            original = Original(source.path, source.name) if source.path is not None else None
         kept = Kept(
             controls=controls | self.kept_more(fields) | ({"grid": dict(record.grid)} if record.grid else {}),
             people=source.people if source is not None else (),
             compared=tuple(result.run for result in record.compared.values())[1:],
-            original=original,
         )
         try:
             self.page.history.keep(record.result.run, visitor().owner, kept)

@@ -15,12 +15,11 @@ from motion import FPS, Clip, Duet, InputError
 from webdemo.inference.methods import installed, method
 from webdemo.inference.requests.predict import LONGEST, PAST_SECONDS, PredictRequest, PredictResult
 from webdemo.inference.run import Result
-from webdemo.ui.components.actors import Source, given_again, offered_animations
+from webdemo.ui.components.actors import Source, offered_animations
 from webdemo.ui.components.player import show
 from webdemo.ui.components.prediction_view import error_lines, prediction_payload, without_name
 from webdemo.ui.components.settings import FittedSlider, looked_up
 from webdemo.ui.components.sweep import Kind, grid_table, real
-from webdemo.ui.components.upload import kept_animation
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import method_line, prediction_lines, status
@@ -253,10 +252,8 @@ class PredictTab(JobTab):
         given = result.given
         named = result.manifest.get("request", {}).get("motion", {}).get("name") or run.entry.title
         source = Source(named, given.people if isinstance(given, Duet) else (given,))
-        source = replace(source, read_with=(*source.read_with[:4], kept_animation(run.kept.controls)))
-        source, file = given_again(source, run.kept.original, self.page.shelf.folder())
         return found | {
-            past.file: file,
+            past.file: None,
             past.animation: offered_animations(source),
             past.state: source,
             past.marker: past.marked(source, result.past_frames / result.duets[0].fps),

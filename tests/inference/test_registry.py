@@ -3,87 +3,50 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from motion import InputError
+from motion import SMPL22, Duet, InputError
 from motion.formats import read
 from webdemo import cli
 from webdemo.inference import Engine, GenerateRequest, PredictRequest, ReactRequest
-from webdemo.inference.methods import (
-    AUTOMATIC,
-    BUILT_IN,
-    automatic,
-    failed,
-    label_of,
-    method,
-    methods,
-    register,
-    register_path,
-    unregister,
-    variants,
-)
+from webdemo.inference import methods as registry
+from webdemo.inference.methods import AUTOMATIC, automatic, label_of, method, methods, register, variants
+from webdemo.inference.own.classes import method_of_class
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.ui.api import GenerateEndpoint
 from webdemo.ui.components.actors import react_choices
 from webdemo.ui.components.notebook import method_label
 from webdemo.ui.tabs.generate import generate_choices
 
-TOY_METHOD = """
-from webdemo.inference.method import Method
-
-
-def load(folder):
-    from toy_pipeline import Toy
-
-    return Toy()
-
-
-METHOD = Method(
-    name="toy", label="Toy twins", summary="Two people who sway.", tasks=("generate", "react"),
-    takes=frozenset({"words", "actor"}), defaults={"steps": 3}, load=load,
-)
-"""
-TOY_PIPELINE = """
-
-import numpy as np
-
-from motion import SMPL22, Duet
-from webdemo.inference import GenerateRequest, Result
-
 
 class Toy:
-    name, digest = "toy", ""
+    """Two people who sway."""
 
-    def run(self, request, cancel, timer):
-        generated = isinstance(request, GenerateRequest)
-        frames = round(request.seconds * 30) if generated else request.actor.num_frames
+    digest = ""
+    label, tasks, takes, defaults = "Toy twins", ("generate", "react"), ("words", "actor"), {"steps": 3}
+
+    def run(self, request: GenerateRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         rest = SMPL22.rest_positions()
         rest = rest - [0, rest[:, 1].min(), 0]
-        sway = 0.1 * np.sin(np.arange(frames) / 10)[:, None, None] * [1.0, 0.0, 0.0]
+        sway = 0.1 * np.sin(np.arange(round(request.seconds * 30)) / 10)[:, None, None] * [1.0, 0.0, 0.0]
         pair = np.stack([rest + sway, rest + sway + [0.0, 0.0, 1.0]])
         yield timer.progress("sample", request.steps, request.steps)
         yield Result(duets=(Duet.from_positions(pair, fps=30.0, roles=("actor", "reactor")),), manifest={})
-"""
 
 
 @pytest.fixture
-def toy(tmp_path: Path) -> Iterator[Path]:
-    """Two files of somebody's own in a folder."""
-    folder = tmp_path / "own"
-    folder.mkdir()
-    (folder / "toy.py").write_text(TOY_METHOD)
-    (folder / "toy_pipeline.py").write_text(TOY_PIPELINE)
-    register_path(folder)
-    yield folder
-    unregister("toy")
-    sys.path.remove(str(folder))
-    sys.modules.pop("toy_pipeline", None)
+def toy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A method of somebody's own."""
+    methods()
+    monkeypatch.setattr(registry, "_registered", dict(registry._registered))
+    register(method_of_class(Toy))
 
 
-def test_a_method_of_two_files_is_everywhere(toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_method_is_everywhere(toy: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     # on the page
     assert ("Toy twins", "toy") in generate_choices()
     assert ("Toy twins", "toy") in react_choices()
@@ -121,21 +84,9 @@ def test_without_it_the_toy_is_nowhere() -> None:
         GenerateRequest(prompt="Sway.", model="toy")
 
 
-def test_a_broken_method_fails_alone(tmp_path: Path, toy: Path) -> None:
-    (tmp_path / "broken.py").write_text("METHOD = 1 / 0\n")
-    register_path(tmp_path / "broken.py")
-    register_path(tmp_path / "nowhere.py")
-    register_path(toy / "toy.py")  # its name is taken by now
-    reasons = failed()
-    assert "division by zero" in reasons[str(tmp_path / "broken.py")]
-    assert "no file or folder" in reasons[str(tmp_path / "nowhere.py")]
-    assert "choose another name" in reasons[str(toy / "toy.py")]
-    assert method("toy").label == "Toy twins" and method("intergen") is BUILT_IN[0]
-
-
-def test_what_is_no_method_is_refused() -> None:
-    with pytest.raises(InputError, match="METHOD is not a"):
-        register("intergen")  # type: ignore[arg-type]
+def test_a_name_is_taken_once(toy: None) -> None:
+    with pytest.raises(InputError, match="choose another name"):
+        register(method("toy"))
 
 
 def test_the_defaults_of_the_requests_are_the_first_methods() -> None:
@@ -149,7 +100,7 @@ def test_automatic_is_the_best_of_the_table_for_what_is_given(monkeypatch: pytes
     assert automatic("", "b").name == methods("react")[0].name, "the others answer; they do not act first"
     rows = [
         line.split("|")[1:3]
-        for line in (Path(__file__).resolve().parents[3] / "docs/reactions.md").read_text().splitlines()
+        for line in (Path(__file__).resolve().parents[2] / "docs/reactions.md").read_text().splitlines()
         if line.startswith("|") and "±" in line
     ]
     known = {"ReGenNet, offline": "regennet", "InterGen, person to person": "intergen", "Virtual agent": "agent"}
@@ -163,7 +114,7 @@ def test_automatic_is_the_best_of_the_table_for_what_is_given(monkeypatch: pytes
 
 
 def test_every_method_is_listed_in_the_documents_and_has_a_card() -> None:
-    root = Path(__file__).resolve().parents[3]
+    root = Path(__file__).resolve().parents[2]
     listed = (root / "docs" / "README.md").read_text()
     for found in methods():
         if found.weights:

@@ -1,49 +1,23 @@
 """The registry of methods: the one list that everything else reads.
 
-A module of this package exports ``METHOD``. Models of a lab's own enter by a table ``[models.NAME]`` of the settings
-(:mod:`webdemo.inference.own`), by an entry point of the group ``pasdedeux.methods``, or by a path in the environment
-variable ``PASDEDEUX_METHODS`` (files or folders, separated as in ``PATH``). An entry point names a ``METHOD`` or a
-class with the ``Pipeline`` protocol; a file exports ``METHOD``. Importing this package imports no torch.
+Those that ship are in :mod:`.built_in`; models of a lab's own enter by a table ``[models.NAME]`` of the settings
+(:mod:`webdemo.inference.own`). Importing this module imports no torch.
 """
 
 from __future__ import annotations
 
-import importlib.util
 import logging
 import os
-import sys
 import threading
-from importlib.metadata import entry_points
 from pathlib import Path
-from types import ModuleType
 
 from motion import InputError
+from webdemo.inference.built_in import BUILT_IN, REACTIONS_VARIABLE
 from webdemo.inference.method import WEIGHTS, Method, Task, Variant
 from webdemo.inference.own import method_of, read_entries
-from webdemo.inference.own.classes import method_of_class
-
-from . import agent, bigraphdiff, interformer, intergen, intergen_together, mawgan, motion_mlp, nearest, regennet, still
 
 log = logging.getLogger(__name__)
 
-BUILT_IN = tuple(
-    module.METHOD
-    for module in (
-        intergen,
-        bigraphdiff,
-        regennet,
-        interformer,
-        nearest,
-        agent,
-        motion_mlp,
-        mawgan,
-        intergen_together,
-        still,
-    )
-)
-"""In the order in which the page offers them; the first one for a task is that task's default."""
-PATHS_VARIABLE = "PASDEDEUX_METHODS"
-ENTRY_POINTS = "pasdedeux.methods"
 AUTOMATIC = "automatic"
 """Stands for a model in a request for a reaction: :func:`automatic` chooses it."""
 
@@ -89,7 +63,7 @@ def automatic(prompt: str, role: str, mode: str = "offline") -> Method:
         return next((m for m in found if mode in m.modes), found[0])
     if prompt.strip() or role != "a":
         return found[0]
-    best = nearest.METHOD if os.environ.get(nearest.FOLDER_VARIABLE) else regennet.METHOD
+    best = method("nearest" if os.environ.get(REACTIONS_VARIABLE) else "regennet")
     return best if best.installed(WEIGHTS) else found[0]
 
 
@@ -111,54 +85,21 @@ def installed(task: Task, weights: Path | None = None) -> tuple[Method, ...]:
 
 
 def failed() -> dict[str, str]:
-    """Models that cannot be used: the name in the settings, or the place of a module → one sentence on why."""
+    """Models that cannot be used: the name in the settings → one sentence on why."""
     _register_all()
     return dict(_failed)
 
 
-def register(found: Method | type) -> None:
-    """Adds a method of a lab's own, or a class with the ``Pipeline`` protocol.
+def register(found: Method) -> None:
+    """Adds a method of a lab's own.
 
     Raises:
-        InputError: if it is neither, or its name is taken.
+        InputError: if its name is taken.
     """
     _register_all()
-    if isinstance(found, type):
-        found = method_of_class(found)
-    if not isinstance(found, Method):
-        raise InputError("METHOD is not a webdemo.inference.method.Method.")
     if found.name in _registered:
         raise InputError(f"There is a method named {found.name} already: choose another name.")
     _registered[found.name] = found
-
-
-def unregister(name: str) -> None:
-    """Removes a method that :func:`register` added."""
-    if name not in {m.name for m in BUILT_IN}:
-        _registered.pop(name, None)
-
-
-def register_path(path: Path) -> None:
-    """Adds the methods of a Python file, or of every file in a folder that exports ``METHOD``.
-
-    The folder is put on ``sys.path``, so that a method's file can import its pipeline from another one. A file
-    that fails is reported by :func:`failed` and leaves the others as they are.
-    """
-    _register_all()
-    if not path.exists():
-        _failed[str(path)] = f"There is no file or folder {path}: correct {PATHS_VARIABLE}."
-        return
-    folder = path if path.is_dir() else path.parent
-    if str(folder) not in sys.path:
-        sys.path.append(str(folder))
-    for file in sorted(folder.glob("*.py")) if path.is_dir() else [path]:
-        # A folder may hold pipelines, too, which import torch: only files that name METHOD are imported.
-        if path.is_dir() and "METHOD" not in file.read_text(errors="replace"):
-            continue
-        try:
-            register(_import(file).METHOD)
-        except Exception as error:
-            _fail(str(file), error)
 
 
 def register_settings() -> None:
@@ -191,25 +132,4 @@ def _register_all() -> None:
         _complete = True
         for found in BUILT_IN:
             register(found)
-        for entry in entry_points(group=ENTRY_POINTS):
-            try:
-                register(entry.load())
-            except Exception as error:
-                _fail(entry.value, error)
-        for path in filter(None, os.environ.get(PATHS_VARIABLE, "").split(os.pathsep)):
-            register_path(Path(path))
         register_settings()
-
-
-def _import(file: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(f"pasdedeux_method_{file.stem}", file)
-    if spec is None or spec.loader is None:
-        raise InputError(f"{file.name} is not a Python file.")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def _fail(where: str, error: Exception) -> None:
-    _failed[where] = f"The method in {where} cannot be used: {type(error).__name__}: {error}"
-    log.warning("%s", _failed[where])
