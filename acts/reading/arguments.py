@@ -221,7 +221,14 @@ class Arguments:
         if preposition.lower_ in ("for", "within", "after", "over") and lemma in self._words.seconds:
             event.seconds = self._amount(noun) * self._words.seconds[lemma]
             return True
-        if preposition.lower_ in ("to", "on", "towards", "with") and lemma in ("left", "right"):
+        words = {child.lower_ for child in noun.children}
+        if (
+            lemma in ("direction", "side")
+            and preposition.lower_ in ("in", "to", "toward", "towards")
+            and len(words) < 4
+        ):
+            lemma = next((word for word in ("left", "right") if word in words), lemma)  # "in the right direction"
+        if preposition.lower_ in ("in", "to", "on", "toward", "towards", "with") and lemma in ("left", "right"):
             event.side = lemma  # "mirrors her with the right" leaves the hand out
             event.direction = event.direction if preposition.lower_ == "with" else lemma
             event.words.append(lemma)

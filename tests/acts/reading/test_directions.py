@@ -123,3 +123,12 @@ def test_a_headline_is_done_by_both(text: str, act: str) -> None:
 
 def test_a_pronoun_makes_no_headline() -> None:
     assert [(each.agents, each.act) for each in read("He jumps.").acts] == [(("a",), "jump")]
+
+
+@pytest.mark.parametrize(
+    "words", ["in the right direction", "in right direction", "to the right side", "towards the right"]
+)
+def test_the_right_direction_is_a_way(words: str) -> None:
+    (act,) = read(f"a person walks {words}").acts
+    assert act.direction == "right" or act.act == "step-aside"
+    assert act.side == "right"
