@@ -154,6 +154,24 @@ def relative_orientation_loss(pred: Tensor, true: Tensor, mask: Tensor | None = 
     return masked_mean(error, _pair_mask(mask))
 
 
+def released_orientation_loss(pred: Tensor, true: Tensor, mask: Tensor | None = None) -> Tensor:
+    """The orientation term as the released code computes it → scalar, over all samples, never damped.
+
+    O is (w, y) of the quaternion between the two facings. It jumps in sign where people face each other, and
+    its cross product runs along the first axis of length 3, which is not the coordinates where B or T is 3.
+    Kept to reproduce reported losses; train with `relative_orientation_loss`.
+    """
+
+    def quaternion(positions: Tensor) -> Tensor:
+        a, b = facing(positions).unbind(2)
+        w = 1 + (a * b).sum(-1, keepdim=True)
+        return F.normalize(torch.cat([w, torch.linalg.cross(a, b, dim=a.shape.index(3))], -1), dim=-1)
+
+    error = (quaternion(pred) - quaternion(true))[..., [0, 2]].square().mean(-1)
+    mask = _pair_mask(mask)
+    return error.mean() if mask is None else (error * mask).sum() / (mask.sum() + EPSILON)
+
+
 def damped_mean(values: Tensor, t: Tensor, t_bar: int) -> Tensor:
     """Mean of a term's (B,) or (B, 2) values over the samples with t ≤ t̄, people summed → scalar.
 
@@ -187,6 +205,7 @@ class InterGenLoss:
         weights: λ of each term.
         t_bar: the damping threshold t̄ as a timestep: all terms but *simple* count only where t ≤ t̄.
         near_by: see `distance_map_loss`.
+        released_orientation: use `released_orientation_loss` for the orientation term.
     """
 
     def __init__(
@@ -195,14 +214,16 @@ class InterGenLoss:
         *,
         t_bar: int = 700,
         near_by: Literal["prediction", "truth"] = "prediction",
+        released_orientation: bool = False,
     ) -> None:
         self.weights = weights or LossWeights()
         self.t_bar = t_bar
         self.near_by: Literal["prediction", "truth"] = near_by
+        self.released_orientation = released_orientation
 
     def regularizers(self, pred: Tensor, true: Tensor, t: Tensor, mask: Tensor | None = None) -> dict[str, Tensor]:
         """Every term but *simple*, weighted and damped: positions (B, T, 2, J, 3), t (B,) → scalars."""
-        pred, true = pred.float(), true.float()
+        pred, true, w = pred.float(), true.float(), self.weights
         damped: dict[str, Callable[[], Tensor]] = {
             "velocity": lambda: velocity_loss(pred, true, mask),
             "foot_contact": lambda: foot_contact_loss(pred, mask),
@@ -210,13 +231,43 @@ class InterGenLoss:
             "distance_map": lambda: distance_map_loss(pred, true, mask, near_by=self.near_by),
             "joint_affinity": lambda: joint_affinity_loss(pred, true, mask),
             "contact": lambda: contact_loss(pred, true, mask),
-            "relative_orientation": lambda: relative_orientation_loss(pred, true, mask),
         }
-        return {
+        terms = {
             name: weight * damped_mean(term(), t, self.t_bar)
             for name, term in damped.items()
-            if (weight := getattr(self.weights, name))
+            if (weight := getattr(w, name))
         }
+        if self.released_orientation:
+            orientation = released_orientation_loss(pred, true, mask)
+        else:
+            orientation = damped_mean(relative_orientation_loss(pred, true, mask), t, self.t_bar)
+        return terms | {"relative_orientation": w.relative_orientation * orientation}
+
+    def __call__(
+        self,
+        pred: Tensor,
+        true: Tensor,
+        t: Tensor,
+        mask: Tensor | None = None,
+        *,
+        denormalize: Callable[[Tensor], Tensor] | None = None,
+    ) -> dict[str, Tensor]:
+        """All terms of the 262-number representation.
+
+        Args:
+            pred, true: (B, T, 2, 262) features, normalised as the network sees them.
+            t: (B,) timesteps.
+            mask: (B, T) or (B, T, 2), nonzero where real.
+            denormalize: gives features in metres; the features are taken to be in metres where absent.
+
+        Returns:
+            weighted scalars by name, and their sum under ``total``.
+        """
+        terms = {"simple": self.weights.simple * simple_loss(pred, true, mask)}
+        if denormalize is not None:
+            pred, true = denormalize(pred), denormalize(true)
+        terms |= self.regularizers(_positions(pred), _positions(true), t, mask)
+        return terms | {"total": torch.stack(list(terms.values())).sum()}
 
 
 def simple_loss(pred: Tensor, true: Tensor, mask: Tensor | None = None) -> Tensor:
@@ -227,3 +278,8 @@ def simple_loss(pred: Tensor, true: Tensor, mask: Tensor | None = None) -> Tenso
         return error.mean()
     real = (mask != 0).to(error.dtype)
     return (error * real).sum() / (real.sum() + EPSILON)
+
+
+def _positions(features: Tensor) -> Tensor:
+    """The joint positions that open the 262-number representation: (B, T, 2, F) → (B, T, 2, J, 3)."""
+    return features[..., : 3 * NUM_JOINTS].unflatten(-1, (NUM_JOINTS, 3))

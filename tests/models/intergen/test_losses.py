@@ -33,15 +33,22 @@ def close(found, expected) -> bool:
 
 
 def test_all_terms_equal_the_reference(ref):
-    """But for how people are turned: where they face each other, the release's term jumps."""
     t, mask = ref["timesteps"], ref["mask"][..., 0]
-    pred, true = (ref[name][..., :66].unflatten(-1, (22, 3)) for name in ("prediction", "target"))
-    terms = InterGenLoss(t_bar=int(ref["t_bar"])).regularizers(pred, true, t, mask)
-    assert close(losses.simple_loss(ref["prediction"], ref["target"], mask), ref["inter/simple"])
-    for short, name in {"DM": "distance_map", "JA": "joint_affinity"}.items():
+    loss = InterGenLoss(t_bar=int(ref["t_bar"]), released_orientation=True)
+    terms = loss(ref["prediction"], ref["target"], t, mask)
+    names = {"simple": "simple", "DM": "distance_map", "JA": "joint_affinity", "RO": "relative_orientation"}
+    for short, name in names.items():
         assert close(terms[name], ref[f"inter/{short}"]), name
     for short, name in {"VEL": "velocity", "FC": "foot_contact", "BL": "bone_length"}.items():
         assert close(terms[name], ref[f"geometric/{short}_A"] + ref[f"geometric/{short}_B"]), name
+    assert close(terms["total"], ref["inter/total"] + ref["geometric/A"] + ref["geometric/B"])
+
+
+def test_the_default_orientation_is_the_only_difference_to_the_release(ref):
+    inputs = ref["prediction"], ref["target"], ref["timesteps"], ref["mask"][..., 0]
+    ours, theirs = InterGenLoss()(*inputs), InterGenLoss(released_orientation=True)(*inputs)
+    differing = {name for name in ours if not torch.equal(ours[name], theirs[name])}
+    assert differing == {"relative_orientation", "total"}
 
 
 def test_damping_leaves_out_samples_above_the_threshold():
@@ -98,3 +105,12 @@ def test_gradients_are_finite_where_bones_and_distances_vanish():
     terms = InterGenLoss().regularizers(pred, scene(batch=2), torch.zeros(2))
     sum(terms.values()).backward()
     assert torch.isfinite(pred.grad).all()
+
+
+def test_denormalizing_reaches_the_positions_but_not_the_simple_term(ref):
+    pred, true = ref["prediction"], ref["target"]
+    t = torch.zeros(3)
+    plain = InterGenLoss()(pred, true, t)
+    scaled = InterGenLoss()(pred / 2, true / 2, t, denormalize=lambda x: 2 * x)
+    assert torch.allclose(scaled["simple"], plain["simple"] / 4)
+    assert torch.allclose(scaled["velocity"], plain["velocity"])
