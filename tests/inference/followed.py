@@ -38,7 +38,7 @@ class Follower:
         """One result: upright people at the given places, in the given poses where whole legs are given."""
         self.settings.append(given)
         people = np.stack([followed(given, person) for person in (0, 1)])
-        yield Result(duets=(Duet.from_positions(people, fps=FPS),))
+        yield Result(duets=(Duet.from_positions(people, fps=FPS),), readouts=({"damped": 0.0},))
 
     def scene(self, request: SceneRequest) -> Result:
         """A scene's result; ``settings`` are those of its windows."""

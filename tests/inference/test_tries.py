@@ -19,7 +19,17 @@ from webdemo.inference.run import StageTimer
 from webdemo.inference.story import Beat
 
 SENTENCE = "A raises the left arm and turns around."
-UP = put("left_wrist", (0.2, 0.9, 0.0))
+
+
+def raise_first(both: np.ndarray) -> None:
+    """The left arm is up for the first third."""
+    hanging = both.copy()
+    put("left_wrist", (0.2, 0.9, 0.0))(both)
+    later = both.shape[1] // 3
+    both[:, later:] = hanging[:, later:]
+
+
+UP = raise_first
 STILL, ONE, ALL = duet(), duet(UP), duet(UP, spin(170))
 
 

@@ -10,18 +10,20 @@ import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from motion import Duet, InputError
 from motion.formats.files import write_text
-from motion.metrics.sentences import Sentence, load_sentences, read_sentences
-from motion.metrics.sentences.catalogue import ALL, Motions, score, table
 from webdemo.inference.method import Method
 from webdemo.inference.methods import method, methods
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.run import Result
+
+if TYPE_CHECKING:
+    from motion.metrics.sentences import Sentence
+    from motion.metrics.sentences.catalogue import Motions
 
 SEEDS = (1, 16)
 _VERSION = 2
@@ -102,6 +104,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
     if not SEEDS[0] <= options.seeds <= SEEDS[1]:
         raise InputError(f"--seeds must be from {SEEDS[0]} to {SEEDS[1]}, not {options.seeds}.")
     _check(found)
+    from motion.metrics.sentences.catalogue import ALL, score, table
     from webdemo.inference.engine import Engine
 
     engine = Engine()
@@ -156,6 +159,8 @@ def silence(pipeline: Any) -> None:
 
 
 def _chosen(options: argparse.Namespace) -> Sequence[Sentence]:
+    from motion.metrics.sentences import load_sentences, read_sentences
+
     sentences = load_sentences() if options.sentences is None else read_sentences(options.sentences)
     wanted = set(options.only)
     kept = [s for s in sentences if not wanted or {s.id, *s.tags} & wanted]
@@ -178,6 +183,8 @@ def _folder(folder: Path | None, scoring: Scoring, digest: str) -> Motions | Non
     if folder is None:
         return None
     state = json.dumps(asdict(scoring) | {"weights": digest, "version": _VERSION}, sort_keys=True)
+    from motion.metrics.sentences.catalogue import Motions
+
     return Motions(folder / f"{scoring.model}-{hashlib.sha256(state.encode()).hexdigest()[:12]}")
 
 

@@ -45,7 +45,7 @@ ACTION = {
     "limit": None,
     "search": {"words": "", "kind": "", "model": "", "tag": "", "starred": False},
 }
-DESCRIBED = ACTION | {"act": "describe", "title": "A bow", "tags": "x, y", "note": "", "frame": 3}
+DESCRIBED = ACTION | {"act": "describe", "title": "A bow", "tags": "x, y", "note": ""}
 TYPICAL: dict[type, Any] = {
     gr.Textbox: "They bow.",
     gr.Number: 3,

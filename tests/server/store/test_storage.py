@@ -53,7 +53,7 @@ def test_nobody_s_deeds_remove_what_is_another_s(notebook: Notebook, tmp_path: P
     file = notebook.folder / kept(notebook, "user z") / "1.npz"
     walk = stub_module().walking(1.0)
     draw, evicted, refused = random.Random(1), 0, 0
-    for number in range(150):
+    for number in range(200):
         owner = draw.choice(PEOPLE)
         who = Visitor(owner, owner)
         before = {each: runs_of(notebook, each) for each in (*PEOPLE, "user z")}
