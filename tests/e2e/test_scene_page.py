@@ -132,7 +132,7 @@ def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any)
     assert story(page)["span"] == [1.0, 3.0]
     # Its pin is dragged, the drag given up, moved with the keys, undone.
     pin = page.locator(".pds-lane-a .pds-pin")
-    box = pin.bounding_box()
+    box = settled_box(pin, handles=False)
     page.mouse.move(box["x"] + 13, box["y"] + 15)
     page.mouse.down()
     page.mouse.move(box["x"] + 113, box["y"] + 15, steps=4)
