@@ -226,8 +226,8 @@ class Database:
                 return
             if inspect(connection).get_table_names():
                 raise InputError(
-                    f"The database was made by another version of Pas de Deux (schema {found}; this one knows "
-                    f"{SCHEMA}): install that version."
+                    f"{self.engine.url.database} was made by another version of Pas de Deux (schema {found}; this one "
+                    f"knows {SCHEMA}): move its folder away to begin anew, or install that version."
                 )
             Table.metadata.create_all(connection)
             connection.exec_driver_sql(f"PRAGMA user_version = {SCHEMA}")
