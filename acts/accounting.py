@@ -192,10 +192,11 @@ def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
         return False
     if token.pos_ in ("VERB", "AUX") and (lemma in _STATES or any(lemma in words.verbs[kind] for kind in _KINDS)):
         return False
-    if token.dep_ in ("prt", "aux", "auxpass", "neg", "mark") or (
-        token.lower_ in words.both and token.dep_ != "nummod"
-    ):
+    if token.dep_ in ("prt", "aux", "auxpass", "neg", "mark"):
         return False
+    if token.lower_ in words.both:  # "two people", but not "two fingers"
+        head = token.head
+        return token.dep_ == "nummod" and head.lower_ not in words.both and not words.is_person(_lemma(head, parsed))
     if token.pos_ in ("NOUN", "PROPN") and (words.is_person(lemma) or words.is_person(token.lower_)):
         return is_likeness(token)  # "acts like a king"
     if token.pos_ == "PROPN" and not token.text.islower():

@@ -176,7 +176,7 @@ def _too_early(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Map
     moments = [i if begins else _middle((i, j), motion) for i, j in mine]
     for other in told:
         theirs = min((each for mask in _seen(other, known) for each in _stretches(mask, motion)[:1]), default=None)
-        if theirs is None or last is None:
+        if theirs is None or last is None or _is_all_along(theirs, motion):
             continue
         first = theirs[0] if _is_attitude(known.entries[other.act]) else _middle(theirs, motion)
         goes_on = not begins and last >= theirs[1] + motion.fps
@@ -191,6 +191,12 @@ def _too_early(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Map
 
 def _stretches(mask: str, motion: Motion) -> list[tuple[int, int]]:
     return stretches(mask_of(mask, motion), motion.fps)
+
+
+def _is_all_along(stretch: tuple[int, int], motion: Motion) -> bool:
+    """True for what is so from the first frame to the last: whatever is done is done in it."""
+    edge = _LATER * motion.fps
+    return stretch[0] <= edge and stretch[1] >= len(motion.positions[0]) - 1 - edge
 
 
 def _middle(stretch: tuple[int, int], motion: Motion) -> float:

@@ -27,6 +27,8 @@ from webdemo.inference.engine.tries import note
         ("A claps (slowly, at the window) and B bows.", ("slowly, at the window",)),
         ("A taps B with two fingers three times.", ("two",)),
         ("They dance on Sunday.", ("on Sunday",)),
+        ("Two people sit down, and one of them waves.", ()),
+        ("There are two people who dance.", ()),
     ],
 )
 def test_words_that_are_in_no_act_are_reported(sentence: str, unread: tuple[str, ...]) -> None:

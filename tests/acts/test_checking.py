@@ -239,6 +239,8 @@ def test_what_is_done_at_the_same_time_is_in_no_order() -> None:
     assert verdicts("A raises an arm and then lifts a leg.", both) == [True, False]
     assert verdicts("A raises an arm while he lifts a leg.", both) == [True, True]
     assert verdicts("A raises an arm and then lifts a leg.", arm_then_leg()) == [True, True]
+    all_along = apply(apply(duet(), WAVES_UP), put("right_ankle", (-0.1, -0.5, 0.0)), frames=slice(10, 50))
+    assert verdicts("A raises an arm and then lifts a leg.", all_along) == [True, True]
 
 
 def sits(*frames: slice) -> Motion:
