@@ -58,7 +58,8 @@ _WRITE = """() => {
     const field = document.getElementById(%s)?.querySelector("textarea");
     if (document.activeElement === tab) field?.focus({ preventScroll: true });
   };
-  if (!tab?.matches(":focus-visible") && matchMedia("(pointer: fine)").matches) setTimeout(write, 300);
+  const pressed = tab.matches("body, [role=tab]:not(:focus-visible)"); // not a control that the search has gone to
+  if (pressed && matchMedia("(pointer: fine)").matches) setTimeout(write, 300);
 }"""
 """JavaScript that makes a field ready for typing where its tab was opened by a mouse; to be filled with its id."""
 _HEADER = f'<div class="pd-brand"><h1>Pas de Deux</h1><p>{say("page.intro")}</p></div>'
