@@ -21,7 +21,6 @@ Settings = TypeVar("Settings")
 _FOLDER, _NEEDED = {"type": Path}, {"type": Path, "required": True}
 OPTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     "cache": ("--cache", _FOLDER | {"help": "folder of the fitted pairs; --data by default"}),
-    "cmu": ("--data", _NEEDED | {"help": "folder of skeleton.json, train and test"}),
     "corpus": ("--corpus", _NEEDED | {"help": "what `python -m training.corpus` wrote"}),
     "damping": ("--damping", {"type": float, "default": 0.7}),
     "device": ("--device", {"help": "of torch: cuda where there is one, else cpu"}),

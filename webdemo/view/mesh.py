@@ -72,17 +72,6 @@ def write_mesh(motion: Clip | Duet, path: str | Path, *, frame: int, style: Styl
     return path
 
 
-def frame_at(motion: Clip | Duet, second: float) -> int:
-    """The frame that shows a second of the motion.
-
-    Raises:
-        InputError: for a time outside it.
-    """
-    if not 0.0 <= second <= motion.seconds:
-        raise InputError(f"The motion lasts {motion.seconds:.1f} s: choose a second of it, not {second:g}.")
-    return min(round(second * motion.fps), motion.num_frames - 1)
-
-
 def _zone_of_vertices(body: Body) -> np.ndarray:
     """(V,) a zone of each vertex: that of the last face that has it."""
     zones = np.zeros(len(body.vertices), dtype=np.int64)
