@@ -10,9 +10,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +18,6 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from models.diffusion import denoise, make_scheduler, sample_noise
-from models.intergen.words import join_conditions
 from models.motion_tokens import decode
 from models.text import MiniLM
 from motion import Duet, InputError
@@ -36,71 +32,31 @@ from motion.metrics.generation import (
 from training.core.shell import add_options, exit_code, write_scores
 from training.evaluate.extractor import Extractor, load_extractor
 from training.prepare import Scenes, load
-from webdemo.inference.finish.cleanup import clean_person
-from webdemo.inference.finish.damping import Damping
-from webdemo.inference.method import WEIGHTS
-from webdemo.inference.pipelines.intergen import InterGenPipeline
+from webdemo.inference import Engine, GenerateRequest, Result
 
 Array = NDArray[np.floating]
 Task = tuple[str, int]
 """A caption, and frames at 30 fps."""
-Draw = Callable[[Sequence[Task], int], Iterator[tuple[int, Duet]]]
-"""(tasks, seed) → (index of the task, its duet), see :func:`draw`."""
+Draw = Callable[[Sequence[Task], int], list[Duet]]
+"""(tasks, seed) → a duet of each task, see :func:`draw`."""
 
-BATCH = 12
-"""Captions of one length that share a network pass."""
 POOL = 32
 MEASURES = ("R-precision top 1", "top 2", "top 3", "FID", "MM distance", "diversity", "multimodality")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Sampling:
-    """Sampling settings; the names are those of :class:`webdemo.inference.GenerateRequest`."""
+def draw(engine: Engine, tasks: Sequence[Task], seed: int, **sampling: Any) -> list[Duet]:
+    """A duet of each task with the seed ``seed`` + its place, by the network alone: captions are not split or planned.
 
-    steps: int = 25
-    guidance: float = 4.3
-    damping: float = 0.7
-
-
-def draw(
-    generator: InterGenPipeline, tasks: Sequence[Task], sampling: Sampling, seed: int
-) -> Iterator[tuple[int, Duet]]:
-    """(index of the task, its duet), with the seed ``seed`` + index.
-
-    The network alone: DDIM, damping and the clean-up, without a plan. Lengths are to the next whole second.
-
-    Raises:
-        InputError: if a motion is not finite.
+    Lengths are to the next whole second.
     """
-    model = generator.model
-    lengths: dict[int, list[int]] = defaultdict(list)
-    for i, (_, frames) in enumerate(tasks):
-        lengths[int(np.clip(30 * round(frames / 30), 30, 300))].append(i)
-    for frames, places in lengths.items():
-        for start in range(0, len(places), BATCH):
-            group = places[start : start + BATCH]
-            shape = (model.layout.num_tokens(frames), 2 * model.layout.token_features)
-            noise = torch.cat([sample_noise(seed + i, 1, shape) for i in group])
-            condition = join_conditions([generator.condition(tasks[i][0])[0] for i in group])
-            scheduler = make_scheduler("ddim", sampling.steps, spacing="top")
-            damping = Damping(
-                model,
-                sampling.damping,
-                frames=frames,
-                timesteps=scheduler.timesteps.tolist(),
-                touches=model.touches(condition),
-            )
-
-            def predict(x: torch.Tensor, t: torch.Tensor, told: Any = condition) -> torch.Tensor:
-                return model.denoiser.guided(x, t, told, scale=sampling.guidance)
-
-            sample = denoise(predict, noise, scheduler, correct=damping)
-            with torch.no_grad():
-                positions = model.positions(sample)[0][:, :, :frames].numpy()
-            if not np.isfinite(positions).all():
-                raise InputError("The motion diverged: lower the guidance scale or take more steps.")
-            for i, pair in zip(group, positions, strict=True):
-                yield i, Duet.from_positions(np.stack([clean_person(one) for one in pair]), fps=30.0)
+    duets = []
+    for i, (caption, frames) in enumerate(tasks):
+        seconds = float(np.clip(round(frames / 30), 1, 10))
+        request = GenerateRequest(
+            prompt=caption, seconds=seconds, seed=seed + i, split=False, planned=False, **sampling
+        )
+        duets += next(event.duets for event in engine.run(request) if isinstance(event, Result))
+    return duets
 
 
 def real_duet(scenes: Scenes, row: dict[str, Any]) -> Duet:
@@ -131,7 +87,7 @@ class Features:
 def measure(
     scenes: Scenes,
     extractor: Extractor,
-    draw: Draw | None,
+    draw: Draw,
     *,
     prompts: int = 256,
     repeats: int = 3,
@@ -139,7 +95,7 @@ def measure(
     many: int = 8,
     seed: int = 0,
 ) -> dict[str, dict[str, list[float]]]:
-    """Every measure of real and, with ``draw``, of generated motion.
+    """Every measure of real and of generated motion.
 
     Args:
         prompts: test scenes in a repeat, at most.
@@ -162,30 +118,27 @@ def measure(
     others = [train[i] for i in rng.permutation(len(train))[: len(rows)]]
     other = features.motion([real_duet(scenes, row) for row in others])
 
-    found: dict[str, list[list[float]]] = {"real": [], "generated": []}
+    found: dict[str, dict[str, list[float]]] = {kind: {name: [] for name in MEASURES} for kind in ("real", "generated")}
+
+    def add(kind: str, motion: Array, text: Array, **more: float) -> None:
+        precision = zip(MEASURES, r_precision(motion, text, rng=rng, pool=POOL), strict=False)
+        distances = {"MM distance": multimodal_distance(motion, text), "diversity": diversity(motion, rng=rng)}
+        for name, value in (dict(precision) | distances | more).items():
+            found[kind][name].append(value)
+
     for repeat in range(max(repeats, 20)):
         tasks = [_task(scenes, row, rng) for row in rows]
         text = features.text([caption for caption, _ in tasks])
-        found["real"].append([*_scores(real, text, rng), frechet_distance(other, real), np.nan])
-        if draw is None or repeat >= repeats:
-            continue
-        drawn = dict(draw(tasks, seed + 1000 * repeat))
-        made = features.motion([drawn[i] for i in range(len(tasks))])
-        several = [task for task in tasks[:many] for _ in range(samples)]
-        again = dict(draw(several, seed + 1000 * repeat + 500))
-        spread = features.motion([again[i] for i in range(len(several))]).reshape(many, samples, -1)
-        found["generated"].append([*_scores(made, text, rng), frechet_distance(made, real), multimodality(spread)])
-    result: dict[str, dict[str, list[float]]] = {}
-    for kind, lines in found.items():
-        if lines:
-            r1, r2, r3, mm, spread, fid, multi = zip(*lines, strict=True)
-            columns = (r1, r2, r3, fid, mm, spread, multi)
-            result[kind] = {
-                name: [round(v, 4) for v in interval(column)]
-                for name, column in zip(MEASURES, columns, strict=True)
-                if not np.isnan(column[0])
-            }
-    return result
+        add("real", real, text, FID=frechet_distance(other, real))
+        if repeat < repeats:
+            made = features.motion(draw(tasks, seed + 1000 * repeat))
+            several = [task for task in tasks[:many] for _ in range(samples)]
+            spread = features.motion(draw(several, seed + 1000 * repeat + 500)).reshape(many, samples, -1)
+            add("generated", made, text, FID=frechet_distance(made, real), multimodality=multimodality(spread))
+    return {
+        kind: {name: [round(v, 4) for v in interval(values)] for name, values in own.items() if values}
+        for kind, own in found.items()
+    }
 
 
 def _task(scenes: Scenes, row: dict[str, Any], rng: np.random.Generator) -> Task:
@@ -193,21 +146,11 @@ def _task(scenes: Scenes, row: dict[str, Any], rng: np.random.Generator) -> Task
     return caption, scenes.layout.num_frames(row["tokens"])
 
 
-def _scores(motion: Array, text: Array, rng: np.random.Generator) -> list[float]:
-    return [
-        *r_precision(motion, text, rng=rng, pool=POOL),
-        multimodal_distance(motion, text),
-        diversity(motion, rng=rng),
-    ]
-
-
 def table(found: dict[str, dict[str, list[float]]]) -> str:
     """The measures as Markdown."""
-    made = found.get("generated")
     lines = ["| Measure (95 % interval) | Generated | Real motion |", "|---|---|---|"]
     for name in MEASURES:
-        cells = [_cell(kind.get(name)) if kind else "–" for kind in (made, found["real"])]
-        lines.append(f"| {name} | {cells[0]} | {cells[1]} |")
+        lines.append(f"| {name} | {_cell(found['generated'][name])} | {_cell(found['real'].get(name))} |")
     return "\n".join(lines) + "\n"
 
 
@@ -222,32 +165,23 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m training.evaluate", description="Measure a generator on captions of the test split."
     )
-    add_options(parser, "scenes", "out", "table", "seed", "steps", "guidance", "damping")
+    add_options(parser, "scenes", "out", "table", "seed", "steps", "guidance", "damping", "weights")
     parser.add_argument("--extractor", type=Path, required=True, help="of training.evaluate.extractor")
-    parser.add_argument("--weights", type=Path, default=WEIGHTS / "intergen", help="its folder")
     parser.add_argument("--repeats", type=int, default=3, help="of all measures (3)")
     parser.add_argument("--prompts", type=int, default=256, help="test scenes in a repeat, at most (256)")
-    parser.add_argument("--real-only", action="store_true", help="only the recorded motion; needs no weights")
     options = parser.parse_args(argv)
 
     def job() -> None:
         scenes, extractor = load(options.scenes), load_extractor(options.extractor)
-        generator = None if options.real_only else InterGenPipeline(options.weights)
-        sampling = Sampling(steps=options.steps, guidance=options.guidance, damping=options.damping)
+        engine = Engine(options.weights)
+        sampling = {name: getattr(options, name) for name in ("steps", "guidance", "damping")}
 
-        def drawn(tasks: Sequence[Task], seed: int) -> Iterator[tuple[int, Duet]]:
-            assert generator is not None
+        def drawn(tasks: Sequence[Task], seed: int) -> list[Duet]:
             print(f"{len(tasks)} captions, seed {seed}", file=sys.stderr, flush=True)
-            return draw(generator, tasks, sampling, seed)
+            return draw(engine, tasks, seed, **sampling)
 
-        found = measure(
-            scenes,
-            extractor,
-            drawn if generator else None,
-            prompts=options.prompts,
-            repeats=options.repeats,
-            seed=options.seed,
-        )
+        sizes = {name: getattr(options, name) for name in ("prompts", "repeats", "seed")}
+        found = measure(scenes, extractor, drawn, **sizes)
         write_scores(options, found, table(found))
 
     return exit_code(job)

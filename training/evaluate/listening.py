@@ -35,11 +35,14 @@ def apart(first: Array, second: Array) -> float:
     return 100 * float(np.linalg.norm(first[:, :frames] - second[:, :frames], axis=-1).mean())
 
 
-def listening(motions: Sequence[Sequence[Array]]) -> dict[str, float | None]:
-    """Medians over pairs: "seeds" of one sentence and "sentences" of one seed, in centimetres; None without pairs.
+def listening(motions: Sequence[Sequence[Array]]) -> tuple[float, float]:
+    """Medians in centimetres over pairs of seeds of one sentence, and over pairs of sentences of one seed.
 
     Args:
         motions: positions (2, T, 22, 3) of each sentence and seed.
+
+    Raises:
+        InputError: if there are no such pairs.
     """
     held = [[poses(motion) for motion in each] for each in motions]
     seeds = [apart(*pair) for each in held for pair in itertools.combinations(each, 2)]
@@ -48,19 +51,9 @@ def listening(motions: Sequence[Sequence[Array]]) -> dict[str, float | None]:
         for one, other in itertools.combinations(held, 2)
         for first, second in zip(one, other, strict=False)
     ]
-    pairs = {"seeds": seeds, "sentences": sentences}
-    return {name: float(np.median(found)) if found else None for name, found in pairs.items()}
-
-
-def said(found: dict[str, float | None]) -> str:
-    """The figures of :func:`listening` in a sentence, or nothing."""
-    seeds, sentences = found["seeds"], found["sentences"]
-    if not seeds or sentences is None:
-        return ""
-    return (
-        f" Poses of two seeds of a sentence are {seeds:.1f} cm apart, of two sentences of a seed {sentences:.1f} cm, "
-        f"{sentences / seeds:.1f} times as far."
-    )
+    if not seeds or not sentences:
+        raise InputError("There are no two seeds of two sentences: score with --seeds 2.")
+    return float(np.median(seeds)), float(np.median(sentences))
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -73,10 +66,10 @@ def main(argv: list[str] | None = None) -> int:
         kept: dict[str, list[Array]] = defaultdict(list)
         for path in sorted(options.motions.rglob("*.npy")):
             kept[path.stem.rpartition("-")[0]].append(np.load(path, allow_pickle=False).astype(np.float64))
-        text = said(listening(list(kept.values())))
-        if not text:
-            raise InputError(f"{options.motions} holds no two seeds of two sentences: score with --seeds 2.")
-        print(text.strip())
+        seeds, sentences = listening(list(kept.values()))
+        print(
+            f"Poses of two seeds of a sentence are {seeds:.1f} cm apart, of two sentences of a seed {sentences:.1f} cm."
+        )
 
     return exit_code(job)
 

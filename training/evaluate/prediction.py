@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from motion.cleaning import foot_contacts
 from motion.formats.files import write_text
+from motion.skeleton import FEET
 from training.core.shell import add_options, exit_code
 from training.trainers.prediction import Windows
 from webdemo.inference.pipelines.predictor import PredictorPipeline
@@ -30,8 +31,6 @@ PAST, FUTURE = FPS, 4 * FPS
 TRUTH = "what really followed"
 AHEAD = (2, 5, 10, 15, 30, 60, 90, 120)
 """Predicted frames that are scored."""
-_FEET = (7, 10, 8, 11)
-"""Ankle and toe of the left and the right foot, in the order of :func:`foot_contacts`."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ def glide(positions: Array) -> float:
         positions: (T, 22, 3) metres.
     """
     stands = foot_contacts(positions, FPS)
-    moves = np.linalg.norm(np.diff(positions[:, _FEET][..., [0, 2]], axis=0), axis=-1)
+    moves = np.linalg.norm(np.diff(positions[:, list(FEET)][..., [0, 2]], axis=0), axis=-1)
     both = stands[1:] & stands[:-1]
     return float(100 * FPS * moves[both].mean()) if both.any() else 0.0
 

@@ -9,12 +9,10 @@ import torch
 from models.motion_tokens import TokenLayout, encode, foot_contacts
 from motion import SMPL22, InputError
 from training.evaluate import captions, extractor
-from training.evaluate.captions import Sampling, draw, real_duet
+from training.evaluate.captions import draw, real_duet
 from training.evaluate.extractor import Settings, contrast, fit, load_extractor
 from training.prepare import Scenes, save
-from webdemo.inference import GenerateRequest
-from webdemo.inference.method import WEIGHTS
-from webdemo.inference.pipelines.intergen import InterGenPipeline
+from webdemo.inference import Engine
 
 SETTINGS = Settings(
     width=32, num_layers=1, num_heads=2, features=16, batch=16, steps=100, learning_rate=2e-3, dropout=0.0
@@ -87,10 +85,10 @@ def test_measures_of_recorded_and_of_wrong_motion(
     real = {row["captions"][0]: real_duet(scenes, row) for row in scenes.rows}
 
     def same(tasks, seed):
-        yield from ((i, real[caption]) for i, (caption, _) in enumerate(tasks))
+        return [real[caption] for caption, _ in tasks]
 
     def still(tasks, seed):
-        yield from ((i, real["Two people walk."]) for i, _ in enumerate(tasks))
+        return [real["Two people walk."] for _ in tasks]
 
     good = captions.measure(scenes, trained, same, repeats=2, many=2, samples=2)
     bad = captions.measure(scenes, trained, still, repeats=2, many=2, samples=2)
@@ -104,7 +102,7 @@ def test_measures_of_recorded_and_of_wrong_motion(
 
 def test_too_few_test_scenes(scenes: Scenes, trained: extractor.Extractor) -> None:
     with pytest.raises(InputError, match="16 test scenes are fewer than the 32"):
-        captions.measure(scenes, trained, None)
+        captions.measure(scenes, trained, lambda tasks, seed: [])
 
 
 def test_command(scenes: Scenes, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -116,16 +114,10 @@ def test_command(scenes: Scenes, tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "python -m training.prepare" in "".join(capsys.readouterr())
 
 
-def test_captions_of_several_lengths_are_drawn_at_once_and_each_by_its_own_seed() -> None:
-    generator = InterGenPipeline(WEIGHTS / "intergen")
-    tasks = [("Two people hug.", 60), ("One person bows.", 95), ("Two people hug.", 62)]
-    found = dict(draw(generator, tasks, Sampling(steps=2), 5))
-    assert [found[i].num_frames for i in range(3)] == [60, 90, 60]
-    assert np.abs(found[0].positions - found[2].positions).max() > 1e-3
-    (alone,) = (duet for _, duet in draw(generator, tasks[:1], Sampling(steps=2), 5))
-    np.testing.assert_allclose(alone.positions, found[0].positions, atol=1e-4)
-
-
-def test_sampling_is_the_products_default() -> None:
-    request = GenerateRequest(prompt="x")
-    assert (Sampling().guidance, Sampling().damping) == (request.guidance, request.damping)
+def test_the_network_alone_makes_a_caption_in_whole_seconds_and_each_by_its_own_seed() -> None:
+    tasks = [("Two people hug.", 62), ("Two people hug.", 58)]
+    first, second = draw(Engine(), tasks, 5, steps=2)
+    assert first.num_frames == second.num_frames == 60
+    assert np.abs(first.positions - second.positions).max() > 1e-3
+    (alone,) = draw(Engine(), tasks[1:], 6, steps=2)
+    np.testing.assert_allclose(alone.positions, second.positions, atol=1e-4)
