@@ -73,12 +73,11 @@ def load_corpus(folder: Path) -> tuple[np.ndarray, list[dict[str, Any]]]:
         raise InputError(
             f"{folder} holds no readable corpus ({error}): build one with `python -m training.corpus`."
         ) from error
-    scenes = index.get("scenes") if isinstance(index, dict) else index
-    if motions.shape[1:] != (2, 22, 3) or not isinstance(scenes, list):
+    if motions.shape[1:] != (2, 22, 3) or not isinstance(index, list):
         raise InputError(f"{folder} holds another kind of data: build it with `python -m training.corpus`.")
-    if any(scene["start"] + scene["frames"] > len(motions) for scene in scenes):
+    if any(scene["start"] + scene["frames"] > len(motions) for scene in index):
         raise InputError(f"The index in {folder} names more frames than there are: build the corpus again.")
-    return motions, scenes
+    return motions, index
 
 
 def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0, captions: int | None = None) -> Scenes:
@@ -107,7 +106,7 @@ def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0, captio
         if captions and row["split"] == "train":
             lists = [row["captions"], *(row["alone"] or ())]
             row["captions"], *row["alone"] = [rng.sample(s, min(captions, len(s))) for s in lists]
-        row["label"] = _label(row["label"], frames)
+        row["label"] = Label.of_row(row["label"]).cut(frames).row() if row["label"] else None
         row["beats"] = [b | {"end": min(b["end"], frames)} for b in row["beats"] or () if b["start"] < frames]
         if captions and row["split"] == "train":
             for beat in row["beats"]:
@@ -117,11 +116,6 @@ def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0, captio
     if not rows:
         raise InputError(f"The corpus in {folder} has no scene of a second or more.")
     return Scenes(torch.cat(parts), rows, layout)
-
-
-def _label(row: dict[str, Any] | None, frames: int) -> dict[str, Any] | None:
-    """A scene's label in the frames that are left of it."""
-    return Label.of_row(row).cut(frames).row() if row else None
 
 
 def joined(parts: Sequence[Scenes]) -> Scenes:
@@ -175,8 +169,6 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Turn a corpus into the tensors that training reads.")
     parser.add_argument("--corpus", type=Path, required=True, nargs="+", help="folders with motions.npy and index.json")
     parser.add_argument("--out", type=Path, required=True, help="the .safetensors file to write")
-    parser.add_argument("--frames-per-knot", type=int, default=4)
-    parser.add_argument("--knots-per-token", type=int, default=2)
     parser.add_argument(
         "--captions", type=int, help="sentences to keep a training scene (all); fewer are sooner encoded"
     )
@@ -185,10 +177,10 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> None:
-    layout = TokenLayout(options.frames_per_knot, options.knots_per_token)
+    layout = TokenLayout()
     scenes = joined([prepare(folder, layout, captions=options.captions) for folder in options.corpus])
     save(scenes, options.out)
-    seconds = len(scenes.control) * options.frames_per_knot / 30
+    seconds = len(scenes.control) * layout.frames_per_knot / 30
     print(f"{len(scenes.rows)} scenes, {seconds / 3600:.2f} hours, {options.out.stat().st_size / 1e6:.1f} MB")
 
 

@@ -21,7 +21,6 @@ Settings = TypeVar("Settings")
 _FOLDER, _NEEDED = {"type": Path}, {"type": Path, "required": True}
 OPTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     "cache": ("--cache", _FOLDER | {"help": "folder of the fitted pairs; --data by default"}),
-    "corpus": ("--corpus", _NEEDED | {"help": "what `python -m training.corpus` wrote"}),
     "damping": ("--damping", {"type": float, "default": 0.7}),
     "device": ("--device", {"help": "of torch: cuda where there is one, else cpu"}),
     "export": ("--export", _FOLDER | {"help": "folder that the trained network is also written to, as it is shipped"}),
