@@ -23,12 +23,10 @@ def leading_hand(positions: NDArray[np.floating], events: Mapping[str, Any] | No
 
     Args:
         positions: (2, T, 22, 3) metres.
-        events: the scene's, see :class:`training.corpus.cues.Scene`: a touch by one limb, or a side that
-            is noted, decides; else the wrist that moves much further than the other.
+        events: the scene's, see :class:`training.corpus.cues.Scene`: a touch by one limb decides; else the wrist that
+            moves much further than the other.
     """
-    events = events or {}
-    noted = {touch["a"].partition("_")[0] for touch in events.get("contact") or ()}
-    noted = noted or {(events.get("side") or {}).get("a")} - {None}
+    noted = {touch["a"].partition("_")[0] for touch in (events or {}).get("contact") or ()}
     if noted:
         return noted.pop() if len(noted) == 1 and noted <= {"left", "right"} else None
     return leading_wrist(positions[0])

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from training.core.shell import add_options, exit_code
 
-from .build import build, save
+from .build import build, counted, save
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -23,9 +23,9 @@ def main(arguments: list[str] | None = None) -> int:
     logging.basicConfig(level=logging.WARNING, format="%(message)s")
 
     def job() -> None:
-        scenes, tally = build(options.data, hours=options.hours, seed=options.seed, cache=options.cache)
+        scenes, rejected = build(options.data, hours=options.hours, seed=options.seed, cache=options.cache)
         save(scenes, options.out)
-        print(*tally.lines(), f"{len(scenes)} scenes -> {options.out}", sep="\n")
+        print(*counted(scenes, rejected), f"{len(scenes)} scenes -> {options.out}", sep="\n")
 
     return exit_code(job)
 

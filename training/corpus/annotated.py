@@ -15,10 +15,8 @@ Lists of names in ``split/train.txt``, ``val.txt`` and ``test.txt`` (or beside t
 from __future__ import annotations
 
 import argparse
-import re
 import sys
-from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -39,76 +37,54 @@ SPLITS = {"train.txt": "train", "val.txt": "validation", "test.txt": "test"}
 _MOST_SENTENCES = 20
 
 
-@dataclass(frozen=True)
-class Motion:
-    """The files of a motion: of both people, the actor first where that is known, and of its sentences."""
-
-    name: str
-    people: tuple[Path, Path]
-    sentences: Path
-    source: str
-
-
-def motions_in(data: Path, second_acts: Collection[str] = ()) -> list[Motion]:
-    """The motions of a data set's folder.
-
-    Args:
-        data: the folder.
-        second_acts: names of the motions whose second person acts.
+def motions_in(data: Path) -> Iterator[tuple[str, tuple[Path, Path], Path]]:
+    """Each motion of a data set's folder: its source, such as "interhuman/7", the files of P1 and P2, and that of its
+    sentences.
 
     Raises:
         InputError: if the folder holds no motions of two people.
     """
     human = data / "motions_processed" if (data / "motions_processed").is_dir() else data
-    found = [
-        (path.stem, (path, human / "person2" / path.name), data / "annots", "interhuman")
-        for path in sorted((human / "person1").glob("*.npy"), key=lambda path: _number(path.stem))
-    ] or [
-        (path.parent.name, (path, path.with_name("P2.npz")), data / "texts", "interx")
-        for path in sorted((data / "motions").glob("*/P1.npz"))
-    ]
-    if not found:
+    first = sorted((human / "person1").glob("*.npy")) or sorted((data / "motions").glob("*/P1.npz"))
+    if not first:
         raise InputError(
             f"{data} holds neither motions_processed/person1/*.npy nor motions/*/P1.npz: give the folder of "
             "InterHuman or of Inter-X."
         )
-    return [
-        Motion(name, people[::-1] if name in second_acts else people, texts / f"{name}.txt", f"{kind}/{name}")
-        for name, people, texts, kind in found
-    ]
+    for path in first:
+        if path.suffix == ".npy":
+            yield f"interhuman/{path.stem}", (path, human / "person2" / path.name), data / "annots" / f"{path.stem}.txt"
+        else:
+            name = path.parent.name
+            yield f"interx/{name}", (path, path.with_name("P2.npz")), data / "texts" / f"{name}.txt"
 
 
-def read_annotated(data: Path, *, fps: float | None = None, second_acts: Collection[str] = ()) -> Iterator[Scene]:
+def read_annotated(data: Path, second_acts: Collection[str] = ()) -> Iterator[Scene]:
     """Every motion with a sentence, on SMPL22's own bones; what cannot be read is reported and left out.
 
     Args:
         data: the data set's folder.
-        fps: frames a second of its files; by default what they say, or :data:`FPS`.
         second_acts: names of the motions whose second person acts.
     """
     splits = _splits(data)
-    for motion in motions_in(data, second_acts):
-        sentences = _sentences(motion.sentences)
+    for source, files, text in motions_in(data):
+        name = source.partition("/")[2]
         try:
-            told = fps or (FPS if motion.people[0].suffix == ".npy" else None)
-            duet = read_pair(*motion.people, choices=ImportChoices(fps=told))
+            choices = ImportChoices(fps=FPS if files[0].suffix == ".npy" else None)
+            duet = read_pair(*(files[::-1] if name in second_acts else files), choices=choices)
         except InputError as error:
-            print(f"left out: {motion.name}: {error}", file=sys.stderr)
+            print(f"left out: {name}: {error}", file=sys.stderr)
             continue
         people = np.stack(
             [project_to_skeleton(resample(person.astype(np.float64), duet.fps, FPS))[0] for person in duet.positions]
         )
+        lines = text.read_text(encoding="utf-8", errors="replace").splitlines() if text.is_file() else []
+        sentences = [line.strip() for line in lines if line.strip()][:_MOST_SENTENCES]
         if sentences and people.shape[1] >= SHORTEST:
-            split = splits.get(motion.name, "train")
-            yield Scene(canonicalize(people), "annotated", (motion.source,), split, captions=sentences)
+            yield Scene(canonicalize(people), "annotated", (source,), splits.get(name, "train"), captions=sentences)
 
 
-def _number(name: str) -> tuple[int, str]:
-    digits = re.match(r"\d+", name)
-    return (int(digits[0]) if digits else sys.maxsize, name)
-
-
-def _splits(data: Path) -> Mapping[str, str]:
+def _splits(data: Path) -> dict[str, str]:
     """The split of each motion that a list names."""
     found: dict[str, str] = {}
     for folder in (data, data / "split", data / "splits"):
@@ -118,26 +94,17 @@ def _splits(data: Path) -> Mapping[str, str]:
     return found
 
 
-def _sentences(path: Path) -> list[str]:
-    """The sentences of a motion; none where it has no file."""
-    if not path.is_file():
-        return []
-    lines = (line.strip() for line in path.read_text(encoding="utf-8", errors="replace").splitlines())
-    return [line for line in lines if line][:_MOST_SENTENCES]
-
-
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(prog="python -m training.corpus.annotated", description=__doc__)
     parser.add_argument("--data", type=Path, required=True, help="folder of InterHuman or Inter-X")
     parser.add_argument("--out", type=Path, required=True, help="folder of the corpus")
-    parser.add_argument("--fps", type=float, help="frames a second of the files, where they do not say it (30)")
     parser.add_argument("--second-acts", type=Path, help="text file of the motions in which the second person acts")
     options = parser.parse_args(argv)
 
     def job() -> None:
         names = options.second_acts.read_text(encoding="utf-8").split() if options.second_acts else ()
-        scenes = list(read_annotated(options.data, fps=options.fps, second_acts=set(names)))
+        scenes = list(read_annotated(options.data, set(names)))
         options.out.mkdir(parents=True, exist_ok=True)
         save(scenes, options.out)
         seconds = sum(scene.positions.shape[1] for scene in scenes) / FPS

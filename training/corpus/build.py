@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 import logging
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,7 @@ from .compose import FPS
 from .cues import Scene
 from .duets import load_duets
 from .library import Library
-from .pairs import load_pairs
+from .pairs import load_pairs, scenes_of
 from .sources import load_sources
 
 logger = logging.getLogger(__name__)
@@ -31,30 +30,12 @@ TRIES = 30
 """Scenes in a row that may be turned away before no more are composed."""
 
 
-@dataclass
-class Tally:
-    """Counts of a build: frames and scenes by kind, and rejected scenes by kind and reason."""
+def draw(rng: np.random.Generator, library: Library, frames: int, rejected: Counter[str]) -> list[Scene]:
+    """Checked scenes of beats of ``frames`` frames in all; fewer, with a warning, where none passes any more.
 
-    frames: Counter[str] = field(default_factory=Counter)
-    scenes: Counter[str] = field(default_factory=Counter)
-    rejected: Counter[tuple[str, str]] = field(default_factory=Counter)
-
-    def add(self, kind: str, scene: Scene) -> None:
-        """Counts a scene."""
-        self.frames[kind] += scene.positions.shape[1]
-        self.scenes[kind] += 1
-
-    def lines(self) -> list[str]:
-        """One line a kind, and one a reason."""
-        lines = [
-            f"{name}: {self.scenes[name]} scenes, {self.frames[name] / FPS / 60:.1f} min"
-            for name in sorted(self.frames)
-        ]
-        return lines + [f"rejected {count}: {name}: {why}" for (name, why), count in self.rejected.most_common()]
-
-
-def draw(rng: np.random.Generator, library: Library, frames: int, tally: Tally) -> list[Scene]:
-    """Checked scenes of beats of ``frames`` frames in all; fewer, with a warning, where none passes any more."""
+    Args:
+        rejected: counts the scenes that are turned away, by reason.
+    """
     scenes: list[Scene] = []
     made = failures = 0
     while library.has(*NEEDS) and made < frames and failures < TRIES:
@@ -64,22 +45,23 @@ def draw(rng: np.random.Generator, library: Library, frames: int, tally: Tally) 
         except LookupError as error:
             why = str(error)
         if why:
-            tally.rejected["beats", why] += 1
+            rejected[f"beats: {why}"] += 1
             failures += 1
             if failures == TRIES:
                 logger.warning("No more scenes for the %s split: %s", library.split, why)
             continue
         failures = 0
         made += scene.positions.shape[1]
-        tally.add("beats", scene)
         scenes.append(scene)
     return scenes
 
 
 def build(
     data_dir: str | Path, *, hours: float = 5.0, seed: int = 0, cache: Path | None = None
-) -> tuple[list[Scene], Tally]:
-    """All scenes of a corpus; recorded pairs and real duets join where their data are there.
+) -> tuple[list[Scene], Counter[str]]:
+    """All scenes of a corpus, and how many were turned away for each reason.
+
+    Recorded pairs and real duets join where their data are there, without the published test lists.
 
     Args:
         data_dir: the unpacked or packed data sets; see :func:`training.corpus.sources.load_sources`.
@@ -93,26 +75,25 @@ def build(
     if not 0 < hours <= 200:
         raise InputError(f"{hours} hours cannot be built: give a number above 0 and up to 200.")
     clips = load_sources(data_dir)
-    tally, scenes = Tally(), []
+    scenes, rejected = [], Counter[str]()
     for number, (split, share) in enumerate((("train", 1 - TEST_SHARE), ("test", TEST_SHARE))):
         rng = np.random.default_rng([seed, number])
-        scenes += draw(rng, Library(clips, split), int(hours * share * 3600 * FPS), tally)
-    return scenes + recorded(data_dir, tally, cache), tally
-
-
-def recorded(data_dir: str | Path, tally: Tally, cache: Path | None) -> list[Scene]:
-    """The real duets and the recorded pairs, without the benchmark's test sets."""
-    left_out: Counter[str] = Counter()
-    kept = load_duets(data_dir, left_out)
+        scenes += draw(rng, Library(clips, split), int(hours * share * 3600 * FPS), rejected)
+    scenes += load_duets(data_dir, rejected)
     try:
-        kept += [scene for scene in load_pairs(data_dir, cache) if scene.split != "benchmark"]
+        scenes += scenes_of(load_pairs(data_dir, cache), rejected)
     except InputError as error:
         logger.warning("No recorded pairs: %s", error)
-    for scene in kept:
-        tally.add(f"recorded {scene.family}", scene)
-    for why, count in left_out.items():
-        tally.rejected["real duets", why] += count
-    return kept
+    return scenes, rejected
+
+
+def counted(scenes: Sequence[Scene], rejected: Counter[str]) -> list[str]:
+    """One line for each family of scenes, and one for each reason."""
+    frames: dict[str, list[int]] = defaultdict(list)
+    for scene in scenes:
+        frames[scene.family].append(scene.positions.shape[1])
+    made = [f"{name}: {len(own)} scenes, {sum(own) / FPS / 60:.1f} min" for name, own in sorted(frames.items())]
+    return made + [f"rejected {count}: {why}" for why, count in rejected.most_common()]
 
 
 def save(scenes: Sequence[Scene], folder: Path) -> None:

@@ -2,19 +2,17 @@
 
 The files, their scaling and the split are those of the InterFormer paper's release: every clip is a pair
 ``skeleton_A.mat``, ``skeleton_B.mat`` with ``curve_B`` of (45, frames); ``Train.txt`` and ``Test.txt`` list
-the clips, the actor's file first. A third of K3HI's "approaching" and "departing" clips stand in neither list.
+the clips, the actor's file first. A third of K3HI's "approaching" and "departing" clips stand in neither list and are
+not read, since nobody says who acts.
 
-A Kinect's errors are corrected here: lean, sides, spikes, open trunks. :mod:`training.corpus.pairs` then drops clips
-that fit no body or do not show their class.
+A Kinect's errors are corrected here: lean, sides, spikes, open trunks.
 """
 
 from __future__ import annotations
 
-import tarfile
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from io import BytesIO
-from pathlib import Path, PurePosixPath
+from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +26,8 @@ from motion.skeleton import K3HI15, SBU15, SMPL22, Skeleton
 from motion.transforms import heading_matrix, resample
 from motion.vectors import wrapped
 
+from .sources import unpacked
+
 Array = NDArray[np.floating]
 
 
@@ -36,7 +36,7 @@ class Release:
     """A data set.
 
     Attributes:
-        archive, top: its packed file, and its folder of clips.
+        top: its folder of clips.
         skeleton: names and order of the joints.
         fps: frames a second. A walking step of SBU takes 8 frames (0.53 s) and walking covers 0.06 m a frame (0.9 m/s);
             K3HI's classes take about twice SBU's frames, and walking covers 0.028 m a frame (0.84 m/s).
@@ -44,7 +44,6 @@ class Release:
         classes: the folders' names and the corpus' family of each; SBU's 06 (hug) is not in the release.
     """
 
-    archive: str
     top: str
     skeleton: Skeleton
     fps: float
@@ -72,8 +71,8 @@ _K3HI = {
     "shaking": "handshake",
 }
 RELEASES = {
-    "sbu": Release("skeletons_check.tar.xz", "Skeletons_Check", SBU15, 15.0, 6.5, _SBU),
-    "k3hi": Release("skeletons.tar.xz", "Skeletons", K3HI15, 30.0, 5.5, _K3HI),
+    "sbu": Release("Skeletons_Check", SBU15, 15.0, 6.5, _SBU),
+    "k3hi": Release("Skeletons", K3HI15, 30.0, 5.5, _K3HI),
 }
 
 
@@ -86,28 +85,24 @@ class KinectPair:
             camera (right-handed); the actor first.
         family: the corpus' name of the class.
         name: the clip's folder, e.g. "s01s02/01/001".
-        split: "train", "benchmark" (the published test list, never trained on), or "unlisted" (in neither
-            list, so who acts is not known).
+        test: True in the published test list, on which nothing is trained.
         dataset: "sbu" or "k3hi".
-        skeleton, fps, pitch: see :class:`Release`.
     """
 
     positions: Array = field(repr=False)
     family: str
     name: str
-    split: str
+    test: bool
     dataset: str
-    skeleton: Skeleton
-    fps: float
-    pitch: float
 
-    def swapped(self) -> KinectPair:
-        """The same clip with the other person as the actor."""
-        return replace(self, positions=self.positions[::-1])
+    @property
+    def release(self) -> Release:
+        """The data set."""
+        return RELEASES[self.dataset]
 
 
 def read_pairs(data_dir: str | Path) -> list[KinectPair]:
-    """All clips of both sets, unrepaired, each set in the order of the clips' names.
+    """All listed clips of both sets, unrepaired, each set in the order of the clips' names.
 
     Args:
         data_dir: the folder that holds ``sbu`` and ``k3hi``, each unpacked or with its archive.
@@ -119,42 +114,25 @@ def read_pairs(data_dir: str | Path) -> list[KinectPair]:
 
 
 def read_release(data_dir: str | Path, dataset: str) -> list[KinectPair]:
-    """All clips of "sbu" or "k3hi"; ``data_dir`` may also be the folder of the set itself."""
-    release = RELEASES[dataset]
-    files = _files(Path(data_dir), dataset, release)
-    order: dict[str, tuple[str, str, str]] = {}
-    for listing, split in (("Train.txt", "train"), ("Test.txt", "benchmark")):
-        for line in filter(str.strip, files[listing].decode().split("\n")):
-            actor, reactor = line.split()[:2]
-            order[str(PurePosixPath(actor).parent)] = (actor, reactor, split)
+    """The listed clips of "sbu" or "k3hi"; ``data_dir`` may also be the folder of the set itself."""
+    release, folder = RELEASES[dataset], Path(data_dir)
     pairs = []
-    for folder in sorted({str(PurePosixPath(name).parent) for name in files if name.endswith(".mat")}):
-        name = folder.removeprefix(f"{release.top}/")
-        actor, reactor, split = order.get(folder, (f"{folder}/skeleton_A.mat", f"{folder}/skeleton_B.mat", "unlisted"))
-        family = next(release.classes[part] for part in name.split("/") if part in release.classes)
-        both = np.stack([_metres(files[actor]), _metres(files[reactor])])
-        pairs.append(KinectPair(both, family, name, split, dataset, release.skeleton, release.fps, release.pitch))
-    return pairs
+    with unpacked(folder / dataset if (folder / dataset).is_dir() else folder, "T*.txt") as lists:
+        for path in lists:
+            for line in filter(str.strip, path.read_text().splitlines()):
+                actor, reactor = (path.parent / word for word in line.split()[:2])
+                name = actor.parent.relative_to(path.parent / release.top)
+                family = next(release.classes[part] for part in name.parts if part in release.classes)
+                both = np.stack([_metres(actor), _metres(reactor)])
+                pairs.append(KinectPair(both, family, str(name), path.name == "Test.txt", dataset))
+    if not pairs:
+        raise InputError(f"No {dataset} data in {folder}: give the folder that holds {release.top}, or its archive.")
+    return sorted(pairs, key=lambda pair: pair.name)
 
 
-def _files(folder: Path, dataset: str, release: Release) -> dict[str, bytes]:
-    """The release's files by their path below its folder, from the folder or from its archive."""
-    for place in (folder, folder / dataset):
-        if (place / release.top).is_dir():
-            found = [*place.glob("T*.txt"), *(place / release.top).rglob("*.mat")]
-            return {path.relative_to(place).as_posix(): path.read_bytes() for path in found}
-        if (place / release.archive).is_file():
-            with tarfile.open(place / release.archive) as tar:
-                contents = {
-                    member.name.removeprefix("./"): tar.extractfile(member) for member in tar if member.isfile()
-                }
-                return {name: stream.read() for name, stream in contents.items() if stream is not None}
-    raise InputError(f"No {dataset} data in {folder}: give the folder that holds {release.top} or {release.archive}.")
-
-
-def _metres(content: bytes) -> Array:
+def _metres(path: Path) -> Array:
     """(T, 15, 3) metres from a file's (45, T): 15 x, 15 y, 15 z in the image's and the sensor's units."""
-    curve = loadmat(BytesIO(content))["curve_B"].astype(np.float64)
+    curve = loadmat(path)["curve_B"].astype(np.float64)
     x, y, z = curve.reshape(3, 15, -1).transpose(0, 2, 1)
     return np.stack([(1280 - 2560 * x) / 1000, (960 - 1920 * y) / 1000, 10 * z / 7.8125], axis=-1)
 
@@ -175,33 +153,33 @@ def fit_pair(pair: KinectPair) -> tuple[Array, float]:
     Returns:
         (2, T, 22, 3) metres in a level frame, and the larger of the two fit errors in metres.
     """
+    skeleton, fps = pair.release.skeleton, pair.release.fps
     repaired, weights = zip(*(_repair(pair, person) for person in (0, 1)), strict=True)
-    sizes = [body_scale(person, pair.skeleton) for person in repaired]
+    sizes = [body_scale(person, skeleton) for person in repaired]
     scale = float(np.mean(sizes))
     fits = [
-        fit_skeleton(person, pair.skeleton, weights=weight, fps=pair.fps, noise=_NOISE, scale=scale)
+        fit_skeleton(person, skeleton, weights=weight, fps=fps, noise=_NOISE, scale=scale)
         for person, weight in zip(repaired, weights, strict=True)
     ]
     people = [
-        project_to_skeleton(resample(fit.positions, pair.fps, FPS))[0] if pair.fps != FPS else fit.positions
-        for fit in fits
+        project_to_skeleton(resample(fit.positions, fps, FPS))[0] if fps != FPS else fit.positions for fit in fits
     ]
     return np.stack(people), max(fit.error for fit in fits)
 
 
 def _repair(pair: KinectPair, person: int) -> tuple[Array, Array]:
     """(T, 15, 3) level positions over the floor with sides and spikes mended, and (T, 15, 3) weights."""
-    skeleton = pair.skeleton
-    level = upright(pair.positions, pair.pitch)
+    skeleton, fps = pair.release.skeleton, pair.release.fps
+    level = upright(pair.positions, pair.release.pitch)
     own, other = level[person], level[1 - person]
     for parts in (("shoulder", "elbow", "wrist", "hip", "knee", "foot"), ("knee", "foot"), ("foot",)):
-        own, _ = unswap(own, skeleton, parts, pair.fps)
+        own = unswap(own, skeleton, parts, fps)
     ahead = _ahead(own, other, pair)
     if ahead is not None:
         if np.mean(np.cos(_deviation(own, ahead, skeleton))) < -0.3:
-            own = exchanged(own, skeleton)  # the tracker took the back for the front
+            own = own[:, list(skeleton.mirror)]  # the tracker took the back for the front
         own = _turned_trunk(own, ahead, skeleton)
-    own = without_spikes(without_sideways_lean(own, skeleton), pair.fps)
+    own = without_spikes(without_sideways_lean(own, skeleton), fps)
     feet = own[:, [skeleton.index("left_foot"), skeleton.index("right_foot")]]
     # Depth noise lifts and sinks feet; the lower fifth of heights is where they stand.
     own = own - np.array([0.0, np.nanpercentile(feet[..., 1], 20) - ANKLE, 0.0])
@@ -214,7 +192,7 @@ def _ahead(own: Array, other: Array, pair: KinectPair) -> Array | None:
 
     ``None`` where nothing can be expected: of a person who stands while the other leaves, or who points at something.
     """
-    torso = pair.skeleton.index("torso")
+    torso = pair.release.skeleton.index("torso")
     middle = own[:, torso][:, [0, 2]]
     walk = middle[-1] - middle[0]
     if pair.family in ("approach", "depart") and np.linalg.norm(walk) > 0.5:
@@ -281,7 +259,7 @@ def without_sideways_lean(positions: Array, skeleton: Skeleton) -> Array:
     return result
 
 
-def unswap(positions: Array, skeleton: Skeleton, parts: Sequence[str], fps: float) -> tuple[Array, int]:
+def unswap(positions: Array, skeleton: Skeleton, parts: Sequence[str], fps: float) -> Array:
     """Undoes exchanges of left and right that a tracker makes in the middle of a clip.
 
     For every frame "as recorded" or "exchanged" is chosen by dynamic programming: what moves the parts
@@ -290,9 +268,6 @@ def unswap(positions: Array, skeleton: Skeleton, parts: Sequence[str], fps: floa
     Args:
         positions: (T, 15, 3) metres.
         parts: the joints that are exchanged together, without their side, from the body outwards.
-
-    Returns:
-        the repaired positions and how many frames were exchanged.
     """
     left = [skeleton.index(f"left_{part}") for part in parts]
     right = [skeleton.index(f"right_{part}") for part in parts]
@@ -317,12 +292,7 @@ def unswap(positions: Array, skeleton: Skeleton, parts: Sequence[str], fps: floa
         chosen = 1 - chosen
     repaired = positions.copy()
     repaired[:, left + right] = states[chosen, np.arange(len(positions))]
-    return repaired, int(chosen.sum())
-
-
-def exchanged(positions: Array, skeleton: Skeleton) -> Array:
-    """The whole clip with left and right joints exchanged, for a body that was taken for its back."""
-    return positions[..., list(skeleton.mirror), :]
+    return repaired
 
 
 def without_spikes(positions: Array, fps: float, *, threshold: float = 0.15) -> Array:

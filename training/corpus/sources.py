@@ -16,7 +16,6 @@ import os
 import re
 import tarfile
 import tomllib
-import zipfile
 from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -32,15 +31,15 @@ from scipy.spatial.transform import Rotation, Slerp
 from motion import InputError
 from motion.cleaning import foot_contacts, plant_feet
 from motion.formats.bvh import read_bvh
-from motion.formats.files import replacing
 from motion.formats.glb_motion import animations_in, read_glb
-from motion.kinematics import project_to_skeleton
+from motion.kinematics import forward_kinematics, project_to_skeleton
 from motion.retarget import retarget
 from motion.rigs import RigMotion
-from motion.skeleton import SMPL22
+from motion.skeleton import SMPL22, Skeleton
 from motion.transforms import canonicalize, resample
 
 from .cues import SourceClip
+from .kept import kept
 
 Array = NDArray[np.floating]
 Described = tuple[str, str, str | None, str, str]
@@ -51,7 +50,7 @@ FPS = 30.0
 MAX_FRAMES = 600
 TEST_SHARE = 0.08
 MIN_CLIPS_FOR_TEST = 6
-_CACHE_VERSION = 9  # raise when the reader or the retargeting changes its results
+_CACHE_VERSION = 10  # raise when the reader or the retargeting changes its results
 
 NAMED = ("bandai-namco", "reactidle")
 ANIMATED = "mesh2motion"
@@ -113,23 +112,20 @@ def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -
     files = [path for folder in sets for path in _files(folder) or sorted(folder.glob("*.tar.xz"))]
     if not files:
         raise InputError(f"{root} holds no motion recordings: put {' or '.join(NAMED)} there, or their .tar.xz.")
-    cache = _cache_path(root, files, cache_dir)
-    if cache.exists():
-        try:
-            return _load_cache(cache)
-        except (zipfile.BadZipFile, EOFError, OSError, ValueError, KeyError):
-            logger.warning("The cache %s is damaged; the recordings are read again.", cache)
+    return kept(_cache_path(root, files, cache_dir), SourceClip, lambda: _read(root))
+
+
+def _read(root: Path) -> list[SourceClip]:
+    """All usable recordings below a data folder."""
     read = sorted([*_named(root), *_cut(root)], key=lambda item: item[0][3])
     if not read:
         raise InputError(f"No recording in {root} can be read: unpack its archives again.")
     splits = _splits([described for described, _ in read])
-    clips = [
+    return [
         SourceClip(canonicalize(piece).astype(np.float32), *described, splits[described[3]])
         for described, positions in read
         for piece in np.array_split(positions, -(-len(positions) // MAX_FRAMES))
     ]
-    _save_cache(cache, clips)
-    return clips
 
 
 def describe_source(name: str) -> Described:
@@ -151,19 +147,22 @@ def describe_source(name: str) -> Described:
     return action, style, side, stem, f"bandai-namco-{match[1]}"
 
 
-def _files(folder: Path) -> list[Path]:
+def _files(folder: Path, pattern: str | None = None) -> list[Path]:
     """The files of a data set's unpacked folder."""
-    return sorted(folder.rglob(FILES.get(folder.name, "*.bvh")))
+    return sorted(folder.rglob(pattern or FILES.get(folder.name, "*.bvh")))
 
 
 @contextmanager
-def unpacked(folder: Path) -> Iterator[list[Path]]:
+def unpacked(folder: Path, pattern: str | None = None) -> Iterator[list[Path]]:
     """The files of a data set's folder, or of its ``.tar.xz`` archives for as long as they are read.
+
+    Args:
+        pattern: of the files' names, if not the one of :data:`FILES`.
 
     Raises:
         InputError: where an archive is damaged.
     """
-    archives = [] if _files(folder) else sorted(folder.glob("*.tar.xz"))
+    archives = [] if _files(folder, pattern) else sorted(folder.glob("*.tar.xz"))
     with TemporaryDirectory() as place:
         there = Path(place) / folder.name if archives else folder
         for archive in archives:
@@ -172,7 +171,7 @@ def unpacked(folder: Path) -> Iterator[list[Path]]:
                     packed.extractall(there, filter="data")
             except (tarfile.TarError, lzma.LZMAError, EOFError, OSError) as error:
                 raise InputError(f"The archive {archive} is damaged ({error}): download it again.") from None
-        yield _files(there)
+        yield _files(there, pattern)
 
 
 def _named(root: Path) -> list[tuple[Described, Array]]:
@@ -276,26 +275,6 @@ def _cache_path(root: Path, files: list[Path], cache_dir: str | Path | None) -> 
     return folder / f"sources-{digest}.npz"
 
 
-def _save_cache(path: Path, clips: list[SourceClip]) -> None:
-    rows = [[c.action, c.style, c.side, c.source, c.dataset, c.split, c.num_frames] for c in clips]
-    positions = np.concatenate([clip.positions for clip in clips])
-    try:
-        with replacing(path) as temporary, open(temporary, "wb") as file:
-            np.savez(file, rows=np.array(json.dumps(rows)), positions=positions)
-    except InputError as error:
-        logger.warning("The recordings are read again next time: %s", error)
-
-
-def _load_cache(path: Path) -> list[SourceClip]:
-    with np.load(path, allow_pickle=False) as stored:
-        rows, positions = json.loads(str(stored["rows"])), stored["positions"]
-    clips, start = [], 0
-    for *described, frames in rows:
-        clips.append(SourceClip(positions[start : start + frames], *described))
-        start += frames
-    return clips
-
-
 # ---- DeepMimic's clips (Peng et al. 2018): JSON rows of a root path and joint rotations ----------
 
 # Name, parent, offset in metres (X ahead, Y up, Z to the right) and width in numbers of each joint, in the
@@ -352,17 +331,9 @@ def read_deepmimic(data: bytes, *, name: str = "", fps: float = 30.0) -> RigMoti
         )
         turns.append(Slerp(times, turn)(grid).as_matrix())
         column += width
-    joints = [(n, p, o) for n, p, o, _ in _JOINTS] + list(_ENDS)
-    places = np.empty((len(grid), len(joints), 3))
-    world: list[Array] = []
-    for index, (_, parent, offset) in enumerate(joints):
-        if parent < 0:
-            places[:, index] = root
-        else:
-            places[:, index] = places[:, parent] + world[parent] @ np.array(offset)
-        own = turns[index] if index < len(turns) else np.eye(3)
-        world.append(own if parent < 0 else world[parent] @ own)
-    offsets = np.array([offset for _, _, offset in joints])
-    return RigMotion(
-        tuple(n for n, _, _ in joints), tuple(p for _, p, _ in joints), offsets, places, None, fps, name=name, up="y"
-    )
+    names, parents, offsets = zip(*(joint[:3] for joint in (*_JOINTS, *_ENDS)), strict=True)
+    body = Skeleton("deepmimic", names, parents, np.array(offsets))
+    rotations = np.tile(np.eye(3), (len(grid), len(names), 1, 1))
+    rotations[:, : len(turns)] = np.stack(turns, axis=1)
+    places = forward_kinematics(rotations, root, body)
+    return RigMotion(names, parents, body.offsets, places, None, fps, name=name, up="y")

@@ -3,13 +3,10 @@
 The thesis' table (Chopin, Tables 3.2–3.3) on SBU and K3HI: classification accuracy, FVD and diversity of the
 reacting person, for recorded motion, zero velocity and the reaction models of the engine. The classifiers
 (:mod:`training.evaluate.deep_gru`) are trained on recorded reactions of the published training lists and judge those
-to the actors of the test lists, which no model was trained on. The nearest recorded reaction
-knows the same recorded pairs.
+to the actors of the test lists, which no model was trained on. All of the lists' clips count, in the data sets' own
+classes. The nearest recorded reaction knows the same recorded pairs.
 
 Methods whose name ends in *class told* get the sentence of the clip's class (:data:`SENTENCES`), the others no words.
-
-With ``--strict`` the clips are those of :mod:`training.evaluate.strict_pairs`: all of the lists, in the data sets' own
-classes.
 """
 
 from __future__ import annotations
@@ -28,9 +25,8 @@ from motion import Clip, Duet, InputError
 from motion.metrics import summary
 from motion.metrics.generation import frechet_distance, interval
 from training.core.shell import add_options, exit_code, write_scores
-from training.corpus.pairs import load_pairs
+from training.corpus.pairs import Pair, load_pairs
 from training.evaluate.deep_gru import accuracy, deep_features, fit, measured
-from training.evaluate.strict_pairs import strict_pairs
 from webdemo.inference import Engine, ReactRequest, Result
 from webdemo.inference.method import WEIGHTS
 from webdemo.inference.pipelines.nearest import Bank
@@ -61,17 +57,17 @@ SENTENCES = {
     "exchange": "Two people exchange something.",
     "handshake": "Two people shake hands.",
     "kick": "One person kicks the other.",
-    "meet": "Two people walk up to each other.",
-    "part": "Two people walk away from each other.",
     "point": "One person points at the other.",
     "punch": "One person punches the other.",
     "push": "One person pushes the other.",
     "walking": "One person walks and the other stands still.",
 }
-"""What the actor, named first, and the reactor do, by class. *Meet* and *part* are of the filtered pairs."""
+"""What the actor, named first, and the reactor do, by class."""
 CLASS_TOLD = {f"{name}, class told": chosen for name, chosen in METHODS.items() if chosen["model"] == "regennet"}
 """Request fields of ReGenNet with the sentence of a clip's class, at the page's guidance scale."""
 DATASETS = {"sbu": "SBU", "k3hi": "K3HI"}
+WALKING = "walking"
+"""SBU's approaching and departing are one class in the thesis (section 3.4.1)."""
 STRIDE = 2
 """The classifier sees every second frame, 15 a second, as SBU was recorded."""
 SHORTEST = 31
@@ -128,31 +124,19 @@ def seen(person: Array) -> Array:
     return person[::STRIDE].reshape(-1, 66)
 
 
-def recorded(data: Path, cache: Path | None, dataset: str) -> tuple[list[Reaction], list[Reaction], list[str]]:
-    """Training and test pairs of a data set, and its classes."""
-    scenes = [
-        scene
-        for scene in load_pairs(data, cache)
-        if scene.sources[0].startswith(dataset) and scene.positions.shape[1] >= SHORTEST
-    ]
-    trained = [scene for scene in scenes if scene.split == "train"]
-    classes = sorted({scene.family for scene in trained})
-    kinds: dict[bool, list[Reaction]] = {True: [], False: []}
-    for scene in scenes:
-        if scene.family in classes:
-            kinds[scene.split == "train"].append(Reaction(scene.positions, classes.index(scene.family)))
-    if not kinds[False]:
-        raise InputError(f"{data} holds no test clips of {DATASETS[dataset]}: give the whole release.")
-    return kinds[True], kinds[False], classes
+def label_of(pair: Pair) -> str:
+    """The class of a clip in the thesis."""
+    return WALKING if pair.dataset == "sbu" and pair.family in ("approach", "depart") else pair.family
 
 
-def strictly(data: Path, cache: Path | None, dataset: str) -> tuple[list[Reaction], list[Reaction], list[str]]:
-    """Every listed training and test pair of a data set, and its classes."""
-    pairs = [pair for pair in strict_pairs(data, cache) if pair.dataset == dataset]
-    classes = sorted({pair.label for pair in pairs})
+def recorded(pairs: Sequence[Pair]) -> tuple[list[Reaction], list[Reaction], list[str]]:
+    """The training and the test pairs of a data set, and its classes."""
+    classes = sorted({label_of(pair) for pair in pairs})
     kinds: dict[bool, list[Reaction]] = {True: [], False: []}
     for pair in pairs:
-        kinds[pair.test].append(Reaction(pair.positions, classes.index(pair.label)))
+        kinds[pair.test].append(Reaction(pair.positions, classes.index(label_of(pair))))
+    if not kinds[True]:
+        raise InputError("There are no test clips: give the whole release.")
     return kinds[False], kinds[True], classes
 
 
@@ -258,7 +242,6 @@ def main(argv: list[str] | None = None) -> int:
     add_options(parser, "pairs", "cache", "out", "table", "weights")
     parser.add_argument("--datasets", nargs="+", choices=list(DATASETS), default=list(DATASETS))
     parser.add_argument("--methods", nargs="*", choices=list(offered), default=installed(offered))
-    parser.add_argument("--strict", action="store_true", help="the thesis' lists and classes, unfiltered")
     parser.add_argument("--seeds", type=int, default=3, help="classifiers, each with a seed of its own")
     parser.add_argument("--samples", type=int, default=3, help="reactions to every actor")
     options = parser.parse_args(argv)
@@ -266,10 +249,9 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> None:
-    engine, scores = Engine(options.weights), {}
+    engine, scores, pairs = Engine(options.weights), {}, load_pairs(options.data, options.cache)
     for dataset in options.datasets:
-        read = strictly if options.strict else recorded
-        train, test, classes = read(options.data, options.cache, dataset)
+        train, test, classes = recorded([pair for pair in pairs if pair.dataset == dataset])
         made = {"Zero velocity": [[zero_velocity(reaction) for reaction in test]]}
         bank = Bank([reaction.people for reaction in train])
         made["Nearest recorded reaction"] = [[nearest(bank, reaction.people) for reaction in test]]

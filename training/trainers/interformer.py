@@ -19,7 +19,6 @@ Everything random is drawn from the seed and the step number, so an interrupted 
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
@@ -36,16 +35,15 @@ from models.intergen.losses import masked_mean
 from models.weights_io import save_network
 from motion import InputError
 from motion.skeleton import SBU15
-from motion.transforms import canonicalize, mirrored, turn
+from motion.transforms import canonicalize, mirrored, resample, turn
 from training.core.loop import Loop, adamw
 from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.corpus.pairs import load_pairs
+from training.trainers.regennet import distance_loss
 
 Array = NDArray[np.floating]
 
 RECORDED_FPS = 30.0
-NEAR = 1.0
-"""Metres: the loss on distances counts joints of the two people that are nearer than this."""
 SHORTEST = 9
 """Fewest frames of a training window."""
 _IMPORTANCE = {"wrist": 2.0, "elbow": 1.5, "foot": 1.5}
@@ -59,7 +57,7 @@ class Settings:
     in these; the network learns from the nearest one. drift: metres of drift at the end of a recorded past in the
     other batches. jitter: metres of noise on the actor. crop: share of clips that are cut at the beginning. turn
     (degrees), size and speed (shares): largest augmentation of a scene. rounds and ridge: number of solutions of
-    the linear part, and their penalty. hold: number of held-out clips.
+    the linear part, and their penalty.
     """
 
     joint_width: int = 8
@@ -88,7 +86,6 @@ class Settings:
     interaction: float = 0.5
     rounds: int = 3
     ridge: float = 1e-4
-    hold: int = 24
     seed: int = 0
 
 
@@ -109,18 +106,10 @@ def varied(people: Array, settings: Settings, rng: np.random.Generator) -> Array
     latest = people.shape[1] - 2 * SHORTEST
     if latest > 1 and rng.random() < settings.crop:
         first = int(rng.integers(1, latest))
-    speed = RECORDED_FPS / FPS * (1 + settings.speed * rng.uniform(-1, 1))
-    length = min(settings.window, int((people.shape[1] - 1 - first) / speed) + 1)
-    people = _between(people, first + speed * np.arange(length))
+    fps = FPS / (1 + settings.speed * rng.uniform(-1, 1))
+    people = np.stack([resample(person[first:], RECORDED_FPS, fps) for person in people])[:, : settings.window]
     people = canonicalize(people) * (1 + settings.size * rng.uniform(-1, 1))
     return turn(people, math.radians(settings.turn) * rng.uniform(-1, 1), np.zeros(3))
-
-
-def _between(people: Array, times: Array) -> Array:
-    """Frames at fractional times."""
-    below = np.minimum(times.astype(int), people.shape[1] - 2)
-    share = (times - below)[None, :, None, None]
-    return (1 - share) * people[:, below] + share * people[:, below + 1]
 
 
 def collate(scenes: Sequence[Array]) -> Batch:
@@ -142,14 +131,12 @@ class Trainer(Loop):
     """
 
     def __init__(self, scenes: Sequence[Array], settings: Settings, out: Path) -> None:
-        if len(scenes) <= settings.hold:
-            raise InputError(f"{len(scenes)} training pairs are too few to keep {settings.hold}: lower --hold.")
+        if not scenes:
+            raise InputError("There are no training pairs: give the whole release.")
         self.settings, self.out = settings, out
         out.mkdir(parents=True, exist_ok=True)
         torch.manual_seed(settings.seed)
-        order = np.random.default_rng(settings.seed).permutation(len(scenes))
-        self.held = [scenes[i] for i in order[: settings.hold]]
-        self.scenes = [scenes[i] for i in order[settings.hold :]]
+        self.scenes = scenes
         names = {f.name for f in fields(CompactInterFormerConfig)}
         sizes = {k: v for k, v in asdict(settings).items() if k in names}
         self.model = CompactInterFormer(CompactInterFormerConfig(**sizes))
@@ -180,7 +167,7 @@ class Trainer(Loop):
             getattr(self.model, f"{name}_std").copy_(joined.std(0).clamp_min(0.02))
         self.model.step_std.copy_(torch.cat(steps).std(0).clamp_min(0.005))
         # The medoid of the recorded first poses: their mean would be no valid pose.
-        poses = np.stack([_standing(scene[1, 0]) for scene in self.scenes])
+        poses = np.concatenate([canonicalize(scene[1:, :1])[0] for scene in self.scenes])  # over the origin, facing +Z
         distances = np.linalg.norm(poses[:, None] - poses[None], axis=-1).sum((1, 2))
         self.model.stance.copy_(torch.from_numpy(poses[int(distances.argmin())]).float())
 
@@ -264,14 +251,12 @@ class Trainer(Loop):
 
         moved, due = made - past, batch.reactor.diff(dim=1)
         first = ((moved - due)[:, 0].square().sum(-1) * self.importance).mean()
-        near = torch.cdist(true, batch.actor[:, 1:])
-        gap = (torch.cdist(made, batch.actor[:, 1:]) - near).square() * (near < NEAR)
-        gap = gap.sum((-1, -2)) / (near < NEAR).sum((-1, -2)).clamp_min(1)
+        gap = distance_loss(made, true, batch.actor[:, 1:], mask)
         return {
             "sequence": mean((made - true).square().sum(-1)),
             "velocity": s.velocity * mean((moved - due).square().sum(-1)),
             "first_frame": 100 * s.first_frame * first,
-            "interaction": 100 * s.interaction * masked_mean(gap, mask).mean(),
+            "interaction": 100 * s.interaction * gap.mean(),
         }
 
     def train_step(self) -> dict[str, float]:
@@ -283,33 +268,6 @@ class Trainer(Loop):
         terms = self.terms(batch, torch.Generator().manual_seed(s.seed * 999_983 + self.step))
         return self.step_on(terms)
 
-    @torch.no_grad()
-    def tried(self) -> dict[str, float]:
-        """Evaluates reactions to the held-out actors.
-
-        ``error`` is the mean joint distance divided by that of standing still, ``moves`` the path length of the joints
-        divided by the recorded one.
-        """
-        if not self.held:
-            return {}
-        batch = collate([scene[:, ::2][:, : self.settings.window] for scene in self.held])
-        noise = torch.randn(len(self.held), self.ema.config.noise, generator=torch.Generator().manual_seed(1))
-        made = self.ema.react(batch.actor, batch.reactor[:, 0], noise, batch.mask)
-
-        def distance(people: Tensor) -> Tensor:
-            return masked_mean((people - batch.reactor).norm(dim=-1).mean(-1), batch.mask).mean()
-
-        def path(people: Tensor) -> Tensor:
-            return (people.diff(dim=-3).norm(dim=-1).mean(-1) * batch.mask[:, 1:]).sum()
-
-        still = distance(batch.reactor[:, :1].expand_as(batch.reactor))
-        return {"error": float(distance(made) / still), "moves": float(path(made) / path(batch.reactor))}
-
-
-def _standing(pose: Array) -> Array:
-    """A pose (22, 3) over the origin, facing +Z."""
-    return canonicalize(pose[None, None])[0, 0]
-
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
@@ -320,10 +278,9 @@ def main(argv: list[str] | None = None) -> int:
 
     def job() -> None:
         pairs = load_pairs(options.data, options.cache)
-        learned = [pair.positions for pair in pairs if pair.split == "train"]
+        learned = [pair.positions for pair in pairs if not pair.test and pair.positions.shape[1] >= 2 * SHORTEST]
         trainer = Trainer(learned, chosen(options, Settings), options.out)
         trainer.run_logged(minutes=options.minutes)
-        print(json.dumps({name: round(value, 3) for name, value in trainer.tried().items()}))
         if options.export:
             save_network(options.export, trainer.ema, trained_steps=trainer.step)
 

@@ -27,7 +27,6 @@ def test_a_touch_tells_more_than_the_movement():
     touch = {"a": "right_wrist", "b": "left_shoulder", "start": 3, "end": 9}
     assert leading_hand(waving("left"), {"contact": [touch]}) == "right"
     assert leading_hand(waving("left"), {"contact": [touch, touch | {"a": "left_wrist"}]}) is None
-    assert leading_hand(waving("left"), {"side": {"a": "both"}}) is None
 
 
 def test_a_sentence_without_a_side_gets_the_right_hand():

@@ -1,17 +1,14 @@
-"""Files of InterHuman and Inter-X become a corpus on which the trainer runs, stops and goes on."""
+"""Files of InterHuman and Inter-X become a corpus."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-import torch
 
 from motion.transforms import canonicalize
 from tests.motion.bodies import marching
-from tests.training.trainers.runs import SETTINGS, begin, take
 from training import prepare
 from training.corpus import annotated
 
@@ -50,22 +47,6 @@ def test_a_motion_keeps_its_people_and_its_sentences(corpus: Path) -> None:
     assert row["split"] == "train" and row["sources"] == ["interhuman/7"] and row["frames"] == 60
     wanted = canonicalize(np.stack([POSITIONS, OTHER]))
     np.testing.assert_allclose(np.asarray(motions).swapaxes(0, 1), wanted, atol=0.002)
-
-
-def test_ten_steps_on_two_files_and_on_from_where_it_stopped(corpus: Path, tmp_path: Path) -> None:
-    scenes = tmp_path / "scenes.safetensors"
-    assert prepare.main(["--corpus", str(corpus), "--out", str(scenes)]) == 0
-    settings = replace(SETTINGS, batch=1, steps=10)
-    whole = take(begin(scenes, tmp_path / "whole", settings), 10)
-    take(begin(scenes, tmp_path / "halves", settings), 4)
-    again = begin(scenes, tmp_path / "halves", settings)
-    assert again.step == 4
-    take(again, 6)
-    assert again.step == whole.step == 10
-    for a, b in zip(whole.model.parameters(), again.model.parameters(), strict=True):
-        torch.testing.assert_close(a, b)
-    fresh = begin(scenes, tmp_path / "fresh", settings)
-    assert any(not torch.equal(a, b) for a, b in zip(fresh.model.parameters(), whole.model.parameters(), strict=True))
 
 
 def test_lists_give_the_split_and_what_is_damaged_is_left_out(

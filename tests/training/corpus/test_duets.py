@@ -15,7 +15,7 @@ from tests.motion.bodies import marching
 from tests.motion.formats.rigs import RIGS, bvh_text
 from training.corpus import duets
 from training.corpus.cues import Label
-from training.corpus.duets import HELD_OUT, SECONDS, Take, dance_beats, danced, handshake_beats, read_takes, windows
+from training.corpus.duets import HELD_OUT, SECONDS, dance_beats, danced, read_takes, windows
 
 J = SMPL22.index
 REST = SMPL22.rest_positions() + np.array([0, 0.98, 0])
@@ -52,11 +52,11 @@ def test_a_turn_under_a_raised_arm_is_a_twirl(degrees: float, height: float, twi
         assert dance_beats(people[::-1])[0].acts == ("", "twirl")
 
 
-def test_a_handshake_is_come_up_shake_and_part() -> None:
-    people = joined(couple(75), 20, 50, 1.1)
-    people[1, 20:50, J("right_wrist")] = people[1, 20:50, J("left_wrist")]
-    found = [(beat.acts[0], beat.start, beat.end) for beat in handshake_beats(people)]
-    assert found == [("walk-up", 0, 20), ("shake-hands", 20, 50), ("part", 50, 75)]
+def test_the_dance_goes_on_before_and_after_a_turn() -> None:
+    still, turning = couple(60), joined(couple(60, turned=360), 0, 60, 1.9)
+    found = told(np.concatenate([still, turning, still], axis=1))
+    assert [acts for acts, *_ in found] == [("dance", "dance"), ("twirl", ""), ("dance", "dance")]
+    assert all(a < b for _, a, b in found) and [a for _, a, _ in found][1:] == [b for _, _, b in found][:-1]
 
 
 def texts(frames: int) -> tuple[str, str]:
@@ -72,17 +72,14 @@ def texts(frames: int) -> tuple[str, str]:
 
 @pytest.fixture(scope="module")
 def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take in the training split and a held-out one, in folders, and a handshake in an archive."""
+    """An archive of a take for training, a held-out one, and one half of a third."""
     root = tmp_path_factory.mktemp("data")
-    (root / "cmu-salsa" / "bvh").mkdir(parents=True)
-    (root / "cmu-handshake").mkdir()
-    names = ("01", HELD_OUT[0].partition("/")[2])
-    for name, frames in zip(names, (700, 150), strict=True):
-        for who, text in zip("ab", texts(frames), strict=True):
-            (root / "cmu-salsa" / "bvh" / f"{name}_{who}.bvh").write_text(text)
-    (root / "cmu-salsa" / "bvh" / "02_a.bvh").write_text(texts(20)[0])
-    with tarfile.open(root / "cmu-handshake" / "bvh.tar.xz", "w:xz") as packed:
-        for name, text in zip(("18_01_a", "19_01_b"), texts(75), strict=True):
+    (root / "cmu-salsa").mkdir()
+    files = {"02_a": texts(20)[0]}
+    for name, frames in (("01", 700), (HELD_OUT[0], 150)):
+        files |= {f"{name}_{who}": text for who, text in zip("ab", texts(frames), strict=True)}
+    with tarfile.open(root / "cmu-salsa" / "bvh.tar.xz", "w:xz") as packed:
+        for name, text in files.items():
             entry = tarfile.TarInfo(f"bvh/{name}.bvh")
             entry.size = len(text.encode())
             packed.addfile(entry, io.BytesIO(text.encode()))
@@ -90,9 +87,9 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_takes_share_one_world_and_lose_their_first_frame(data: Path) -> None:
-    takes = {take.name: take.people for take in read_takes(data)}
-    assert set(takes) == {"cmu-salsa/01", HELD_OUT[0], "cmu-handshake/18_01"}
-    people = takes["cmu-salsa/01"]
+    takes = dict(read_takes(data))
+    assert set(takes) == {"01", HELD_OUT[0]}
+    people = takes["01"]
     assert people.shape == (2, 700, 22, 3)
     gap = np.linalg.norm(people[0, :, 0] - people[1, :, 0], axis=-1)
     np.testing.assert_allclose(gap, 0.8, atol=0.03)
@@ -107,7 +104,7 @@ def dancers(frames: int) -> np.ndarray:
 
 
 def test_windows_have_all_lengths_and_training_never_sees_a_test_frame() -> None:
-    scenes = list(windows(Take("cmu-salsa/01", dancers(900))))
+    scenes = list(windows("01", dancers(900)))
     lengths = {round(seconds * 30) for seconds in SECONDS}
     assert {scene.positions.shape[1] for scene in scenes if scene.split == "train"} == lengths
     first, last = danced(dancers(900))
@@ -116,13 +113,13 @@ def test_windows_have_all_lengths_and_training_never_sees_a_test_frame() -> None
     assert ends and all(scene.positions.shape[1] <= tail for scene in ends)
     assert {scene.sources for scene in ends} == {("cmu-salsa/01-end",)}
     assert {scene.sources for scene in scenes if scene.split == "train"} == {("cmu-salsa/01",)}
-    held_out = list(windows(Take(HELD_OUT[1], dancers(300))))
+    held_out = list(windows(HELD_OUT[1], dancers(300)))
     assert {scene.split for scene in held_out} == {"test"}
 
 
 def test_scenes_are_canonical_and_told_on_several_levels() -> None:
     people = turn(dancers(400), 1.0) + np.array([3.0, 0, 4.0])
-    for scene in windows(Take("cmu-salsa/01", people)):
+    for scene in windows("01", people):
         np.testing.assert_allclose(scene.positions[0, 0, 0, [0, 2]], 0, atol=1e-5)
         assert abs(float(heading(scene.positions[0])[0])) < 0.05
         assert scene.label is not None and scene.label.plan.acts
@@ -130,5 +127,5 @@ def test_scenes_are_canonical_and_told_on_several_levels() -> None:
         assert all(0 <= a < b <= scene.positions.shape[1] for a, b in known.spans.values())
         assert len(scene.captions) >= 3 and all(scene.alone)
         assert not any("waltz" in text for text in [*scene.captions, *scene.alone[0], *scene.alone[1]])
-    again = [scene.captions for scene in windows(Take("cmu-salsa/01", people))]
-    assert again == [scene.captions for scene in windows(Take("cmu-salsa/01", people))]
+    again = [scene.captions for scene in windows("01", people)]
+    assert again == [scene.captions for scene in windows("01", people)]

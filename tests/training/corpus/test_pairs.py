@@ -1,7 +1,6 @@
 """Recorded pairs: readers undo the files' scaling, repairs a Kinect's errors, and scenes come out."""
 
 from collections import Counter
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +11,8 @@ from scipy.spatial.transform import Rotation
 from motion.kinematics import forward_kinematics
 from motion.skeleton import K3HI15, LAYOUTS, SBU15, SMPL22, Skeleton
 from motion.transforms import heading_matrix
-from training.corpus.kinect import KinectPair, read_release, unswap
-from training.corpus.pairs import build_scene, load_pairs
-from training.evaluate.strict_pairs import CACHE, label_of, strict_pairs
+from training.corpus.kinect import read_release, unswap
+from training.corpus.pairs import Pair, as_seen, load_pairs, scenes_of
 
 
 def standing(frames: int, place: tuple[float, float], heading: float, reach: np.ndarray | None = None) -> np.ndarray:
@@ -41,10 +39,6 @@ def handshake(frames: int = 30) -> np.ndarray:
     return np.stack(
         [standing(frames, (-0.5, 1.78), np.pi / 2, reach), standing(frames, (0.5, 2.22), -np.pi / 2, reach)]
     )
-
-
-def pair(positions: np.ndarray, family: str = "handshake", split: str = "train", fps: float = 15.0) -> KinectPair:
-    return KinectPair(positions, family, "s01s02/05/001", split, "sbu", SBU15, fps, 0.0)
 
 
 def write_release(folder: Path, top: str, clips: dict[str, np.ndarray], train: list[str], test: list[str]) -> None:
@@ -76,13 +70,13 @@ def data_dir(tmp_path: Path) -> Path:
 
 def test_readers_give_metres_roles_and_splits(data_dir: Path) -> None:
     clips = {clip.name: clip for clip in read_release(data_dir, "sbu")}
-    assert [clips[n].split for n in ("s01s02/05/001", "s02s06/05/001")] == ["train", "benchmark"]
+    assert [clips[n].test for n in ("s01s02/05/001", "s02s06/05/001")] == [False, True]
     assert clips["s01s02/05/001"].family == "handshake"
     np.testing.assert_allclose(clips["s01s02/05/001"].positions, handshake(), atol=1e-9)
     np.testing.assert_allclose(clips["s01s03/05/001"].positions, handshake()[::-1], atol=1e-9)  # B acts
-    listed, unlisted = read_release(data_dir / "k3hi", "k3hi")
-    assert (listed.split, unlisted.split, listed.fps) == ("train", "unlisted", 30.0)
-    wrist = listed.skeleton.index("right_wrist")
+    (listed,) = read_release(data_dir / "k3hi", "k3hi")  # in neither list, nobody knows who acts
+    assert (listed.name, listed.test, listed.release.fps) == ("shaking/1", False, 30.0)
+    wrist = listed.release.skeleton.index("right_wrist")
     np.testing.assert_allclose(listed.positions[:, :, wrist], handshake()[:, :, SBU15.index("right_wrist")], atol=1e-9)
 
 
@@ -91,15 +85,22 @@ def test_exchanged_legs_are_put_back() -> None:
     spoilt = true.copy()
     left, right = ([SBU15.index(f"{side}_{part}") for part in ("knee", "foot")] for side in ("left", "right"))
     spoilt[10:14, left], spoilt[10:14, right] = true[10:14, right], true[10:14, left]
-    mended, frames = unswap(spoilt, SBU15, ("knee", "foot"), 15.0)
-    assert frames == 4
-    np.testing.assert_array_equal(mended, true)
-    assert unswap(true, SBU15, ("knee", "foot"), 15.0)[1] == 0
+    for seen in (spoilt, true):
+        np.testing.assert_array_equal(unswap(seen, SBU15, ("knee", "foot"), 15.0), true)
 
 
-def test_a_handshake_becomes_a_scene() -> None:
-    scene = build_scene(pair(handshake()), Counter())
-    assert scene is not None
+def test_listed_pairs_are_fitted_once_and_become_scenes(data_dir: Path, tmp_path: Path) -> None:
+    cache = tmp_path / "cache"
+    first, second = load_pairs(data_dir, cache), load_pairs(tmp_path / "nowhere", cache)
+    listed = [("sbu", False), ("sbu", False), ("sbu", True), ("k3hi", False)]
+    for pairs in (first, second):
+        assert [(one.dataset, one.test) for one in pairs] == listed
+        assert all(one.family == "handshake" and one.error < 0.05 for one in pairs)
+    for one, other in zip(first, second, strict=True):
+        np.testing.assert_array_equal(one.positions, other.positions)
+    scenes = scenes_of(second, Counter())
+    assert [scene.sources for scene in scenes] == [("sbu/s01s02/05/001",), ("sbu/s01s03/05/001",), ("k3hi/shaking/1",)]
+    scene = scenes[0]
     a, b = scene.positions.astype(np.float64)
     assert len(a) == 59  # 30 frames at 15 fps
     lengths = np.linalg.norm(scene.positions[:, :, 1:] - scene.positions[:, :, list(SMPL22.parents[1:])], axis=-1)
@@ -108,60 +109,26 @@ def test_a_handshake_becomes_a_scene() -> None:
     assert scene.positions[..., 1].min() > -0.01
     contact = scene.events["contact"][0]
     assert (contact["a"], contact["b"]) == ("right_wrist", "right_wrist")
-    middle = (contact["start"] + contact["end"]) // 2
-    wrist = SMPL22.index("right_wrist")
+    middle, wrist = (contact["start"] + contact["end"]) // 2, SMPL22.index("right_wrist")
     assert np.linalg.norm(a[middle, wrist] - b[middle, wrist]) == pytest.approx(0.10, abs=0.02)
     assert scene.captions and len(set(scene.captions)) == len(scene.captions)
     feet = scene.positions[:, :, [SMPL22.index("left_foot"), SMPL22.index("right_foot")]][..., [0, 2]]
     assert np.linalg.norm(np.diff(feet, axis=1), axis=-1).max() * 30 < 0.05
 
 
-def test_bad_clips_are_counted_with_their_reason() -> None:
-    left_out: Counter[str] = Counter()
-    people = handshake()
-    far = people + np.array([[[[-0.5, 0, 0]]], [[[0.5, 0, 0]]]])
-    assert build_scene(pair(far), left_out) is None
-    assert build_scene(pair(people[:, :8]), left_out) is None
-    assert build_scene(pair(people, split="unlisted"), left_out) is None
-    assert sorted(reason.split(": ")[1] for reason in left_out) == [
-        "shorter than 0.8 s",
-        "the hands do not meet",
-        "who acts is not known",
-    ]
+def test_bad_clips_are_counted_with_their_reason(data_dir: Path) -> None:
+    good = load_pairs(data_dir)[0].positions
+    apart = good + np.array([[[[0, 0, -0.5]]], [[[0, 0, 0.5]]]], dtype=np.float32)
+    clips, rejected = ((apart, 0.0), (good[:, :20], 0.0), (good, 0.2)), Counter[str]()
+    assert not scenes_of([Pair(people, "handshake", "sbu", "x", False, error) for people, error in clips], rejected)
+    reasons = ("the hands do not meet", "shorter than 0.8 s", "fit further than 90 mm from the joints")
+    assert rejected == {f"sbu handshake: {reason}": 1 for reason in reasons}
 
 
 def test_who_walks_is_the_actor_of_an_approach() -> None:
-    people = handshake(frames=20)
-    people = np.stack([people[0], people[1] + np.linspace(0.8, 0, 20)[:, None, None] * [1.0, 0, 0]])
-    scene = build_scene(pair(people, family="approach"), Counter())
-    assert scene is not None and scene.family == "approach"
-    path = scene.positions[:, :, 0]
-    assert np.linalg.norm(path[0, -1] - path[0, 0]) > 0.7 > 0.1 > np.linalg.norm(path[1, -1] - path[1, 0])
-    both = people + np.stack([-np.linspace(0.8, 0, 20), np.zeros(20)])[:, :, None, None] * [1.0, 0, 0]
-    together = build_scene(pair(both, family="approach"), Counter())
-    assert together is not None and together.family == "meet"
-
-
-def test_pairs_are_fitted_once_and_the_thesis_lists_take_every_listed_clip(data_dir: Path, tmp_path: Path) -> None:
-    cache = tmp_path / "cache"
-    first, second = load_pairs(data_dir, cache), load_pairs(tmp_path / "nowhere", cache)
-    assert {scene.split for scene in first} == {"train", "benchmark"}
-    for one, other in zip(first, second, strict=True):
-        np.testing.assert_array_equal(one.positions, other.positions)
-        assert (one.family, one.captions, one.events) == (other.family, other.captions, other.events)
-    strict, again = strict_pairs(data_dir, cache), strict_pairs(tmp_path / "nowhere", cache)
-    assert [(one.dataset, one.label, one.test) for one in strict] == [
-        ("sbu", "handshake", False),
-        ("sbu", "handshake", False),
-        ("sbu", "handshake", True),
-        ("k3hi", "handshake", False),
-    ]
-    for one, other in zip(strict, again, strict=True):
-        np.testing.assert_array_equal(one.positions, other.positions)
-    assert sorted(path.name for path in cache.iterdir())[1:] == [CACHE]
-
-
-def test_approaching_and_departing_are_one_class_of_sbu_alone() -> None:
-    walk = pair(handshake(8), family="approach")
-    assert label_of(walk) == label_of(replace(walk, family="depart")) == "walking"
-    assert label_of(replace(walk, dataset="k3hi")) == "approach"
+    still = np.zeros((40, 22, 3))
+    way = still + np.linspace(0, 0.8, 40)[:, None, None] * np.array([0.0, 0.0, 1.0])
+    family, people = as_seen("approach", np.stack([still, way]))
+    assert family == "approach" and np.array_equal(people, np.stack([way, still]))
+    assert as_seen("approach", np.stack([way, -way]))[0] == "meet"
+    assert as_seen("push", np.stack([still, way]))[0] == "push"

@@ -8,15 +8,18 @@ import pytest
 from motion import SMPL22, Duet
 from motion.metrics import summary
 from tests.motion.bodies import marching
+from training.corpus.pairs import Pair
 from training.evaluate.deep_gru import accuracy, deep_features, diversity_score, fit
 from training.evaluate.reactions import (
     METHODS,
     Reaction,
+    label_of,
     long_enough,
     nearest,
     react,
     reacted,
     readouts,
+    recorded,
     score,
     table,
     zero_velocity,
@@ -151,3 +154,14 @@ def test_person_a_stays_as_recorded(duet: Duet) -> None:
         made = react(Engine(), duet, 3, chosen | {"steps": 2}, prompt="They hug.")
         np.testing.assert_allclose(made.a.positions, duet.a.positions, atol=1e-5, err_msg=method)
         assert made.b.positions.shape == duet.b.positions.shape
+
+
+def test_all_listed_clips_count_and_approaching_and_departing_are_one_class_of_sbu_alone() -> None:
+    people = np.zeros((2, 9, 22, 3))
+    pairs = [
+        Pair(people, family, "sbu", "x", test, 0.0) for family in ("approach", "depart", "kick") for test in (0, 1)
+    ]
+    train, test, classes = recorded(pairs)
+    assert classes == ["kick", "walking"] and [len(train), len(test)] == [3, 3]
+    assert [reaction.label for reaction in test] == [1, 1, 0]
+    assert label_of(Pair(people, "approach", "k3hi", "x", False, 0.0)) == "approach"

@@ -11,11 +11,11 @@ from safetensors.torch import load_file
 from models.interformer.compact import load_folder
 from motion import SMPL22
 from motion.transforms import heading
-from training.corpus.cues import Scene
+from training.corpus.pairs import Pair
 from training.trainers import interformer
 from training.trainers.interformer import Settings, Trainer, varied
 
-SETTINGS = Settings(joint_width=4, ff_size=16, batch=4, steps=6, warmup=2, rounds=2, hold=2, own_past=0.5)
+SETTINGS = Settings(joint_width=4, ff_size=16, batch=4, steps=6, warmup=2, rounds=2, own_past=0.5)
 
 
 @pytest.fixture(scope="module")
@@ -70,15 +70,13 @@ def test_a_varied_scene_is_of_the_networks_rate_and_seen_from_the_actor(scenes) 
 
 
 def test_benchmark_clips_stay_out_and_weights_are_written(scenes, tmp_path: Path, monkeypatch, capsys) -> None:
-    pairs = [
-        Scene(people, "push", (f"sbu/{i}",), "benchmark" if i == 9 else "train") for i, people in enumerate(scenes)
-    ]
+    pairs = [Pair(people, "push", "sbu", str(i), i == 9, 0.0) for i, people in enumerate(scenes)]
     monkeypatch.setattr(interformer, "load_pairs", lambda *_: pairs)
     seen = []
     monkeypatch.setattr(interformer, "Trainer", lambda given, *rest: seen.append(given) or Trainer(given, *rest))
     sizes = [
         word
-        for name in ("joint_width", "ff_size", "batch", "warmup", "rounds", "hold")
+        for name in ("joint_width", "ff_size", "batch", "warmup", "rounds")
         for word in ("--" + name.replace("_", "-"), str(getattr(SETTINGS, name)))
     ]
     command = ["--data", "x", "--out", str(tmp_path / "run"), "--export", str(tmp_path / "w"), *sizes]
