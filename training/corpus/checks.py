@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,42 +31,6 @@ def allowed_skate(scene: Scene) -> float:
     return 0.3 if acts & FLYING or scene.family == "salsa" else 0.15
 
 
-@dataclass(frozen=True)
-class Measures:
-    """Numbers on one scene.
-
-    Attributes:
-        bone_drift: largest difference of a bone from the skeleton's length in metres.
-        trunk_gap: least distance between the two trunks in metres.
-        skate: mean speed of the foot that carries the body, metres a second.
-        acceleration: largest acceleration of a joint, metres a second squared.
-        floor: lowest joint over the scene, metres.
-    """
-
-    bone_drift: float
-    trunk_gap: float
-    skate: float
-    acceleration: float
-    floor: float
-
-
-def measure(positions: Array) -> Measures:
-    """Measures a scene (2, T, 22, 3) in metres at 30 fps."""
-    positions = np.asarray(positions, dtype=np.float64)
-    parents = list(SMPL22.parents[1:])
-    lengths = np.linalg.norm(positions[..., 1:, :] - positions[..., parents, :], axis=-1)
-    trunks = positions[:, :, list(TRUNK)]
-    gaps = np.linalg.norm(trunks[0, :, :, None] - trunks[1, :, None], axis=-1)
-    acceleration = np.linalg.norm(np.diff(positions, n=2, axis=1), axis=-1).max() * FPS**2
-    return Measures(
-        float(np.abs(lengths - SMPL22.bone_lengths[1:]).max()),
-        float(gaps.min()),
-        max(foot_skate(person) for person in positions),
-        float(acceleration),
-        float(positions[..., 1].min()),
-    )
-
-
 def foot_skate(positions: Array) -> float:
     """Mean speed over the ground, in metres a second, of the slower foot joint of a person (T, 22, 3).
 
@@ -88,15 +51,17 @@ def fault(scene: Scene) -> str | None:
         return "too short or too long"
     if len(scene.captions) < 3:
         return "too few captions"
-    found = measure(scene.positions)
-    if found.bone_drift > 1e-3:
+    people = np.asarray(scene.positions, dtype=np.float64)
+    lengths = np.linalg.norm(people[..., 1:, :] - people[..., list(SMPL22.parents[1:]), :], axis=-1)
+    if np.abs(lengths - SMPL22.bone_lengths[1:]).max() > 1e-3:
         return "bones drift"
-    if found.trunk_gap < 0.12:
+    trunks = people[:, :, list(TRUNK)]
+    if np.linalg.norm(trunks[0, :, :, None] - trunks[1, :, None], axis=-1).min() < 0.12:
         return "trunks overlap"
-    if found.skate > allowed_skate(scene):
+    if max(foot_skate(person) for person in people) > allowed_skate(scene):
         return "feet slide"
-    if found.acceleration > 260:
+    if np.linalg.norm(np.diff(people, n=2, axis=1), axis=-1).max() * FPS**2 > 260:
         return "a joint jumps"
-    if found.floor < -0.12:
+    if people[..., 1].min() < -0.12:
         return "below the floor"
     return None

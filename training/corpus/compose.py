@@ -1,8 +1,7 @@
 """Building blocks that turn real single-person clips into longer motion on constant bones.
 
-Everything works on a :class:`Motion`: local rotations, a root path and which foot is planted when. Bones
-stay constant because only rotations are blended; feet stay where they are planted because
-:func:`realise` solves the legs after all blending (see ``feet.py``).
+Everything works on a :class:`Motion`: local rotations and a root path. Bones stay constant because only rotations are
+blended; feet step and stay where they stand because :func:`realise` solves the legs after all blending.
 Headings are radians about Y, 0 along +Z and positive towards +X, as in ``motion.transforms``.
 """
 
@@ -15,17 +14,22 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
+from motion.cleaning import foot_contacts, plant_feet
+from motion.footsteps import pivoting, stepping
 from motion.kinematics import fit_rotations, forward_kinematics, global_rotations
 from motion.skeleton import SMPL22
+from motion.smoothing import minimum_jerk
 from motion.transforms import heading_matrix
 from motion.vectors import wrapped
 
-from .feet import FPS, Array, ease, plant_feet, planted, slerp
-
+Array = NDArray[np.floating]
+FPS = 30
 ARMS = {
     side: tuple(SMPL22.index(f"{side}_{joint}") for joint in ("collar", "shoulder", "elbow", "wrist"))
     for side in ("left", "right")
 }
+GLIDES = 0.6
+"""Metres a second of a foot that stands, at most."""
 _MIRROR = np.diag([-1.0, 1.0, 1.0])
 _GAZE = {"spine2": 0.12, "spine3": 0.18, "neck": 0.5}
 
@@ -37,20 +41,18 @@ class Motion:
     Attributes:
         rotations: (T, 22, 3, 3) local rotations, the root's against the world.
         root: (T, 3) root path in metres.
-        contacts: (T, 2) True where the left and the right foot are planted.
         sources: the files it comes from.
     """
 
     rotations: Array = field(repr=False)
     root: Array = field(repr=False)
-    contacts: NDArray[np.bool_] = field(repr=False)
     sources: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.root)
 
     def __getitem__(self, frames: slice) -> Motion:
-        return replace(self, rotations=self.rotations[frames], root=self.root[frames], contacts=self.contacts[frames])
+        return replace(self, rotations=self.rotations[frames], root=self.root[frames])
 
     @property
     def headings(self) -> Array:
@@ -59,20 +61,30 @@ class Motion:
         return np.unwrap(np.arctan2(-across[:, 2], across[:, 0]))
 
 
+def slerp(first: Array, second: Array, weight: Array) -> Array:
+    """Rotations (…, 3, 3) a share ``weight`` (broadcast over the leading axes) of the way to ``second``."""
+    relative = (np.swapaxes(first, -1, -2) @ second).reshape(-1, 3, 3)
+    share = np.broadcast_to(weight, first.shape[:-2]).reshape(-1, 1)
+    part = Rotation.from_rotvec(share * Rotation.from_matrix(relative).as_rotvec()).as_matrix()
+    return first @ part.reshape(first.shape)
+
+
+def ease(steps: int) -> Array:
+    """(steps,) from just above 0 to just below 1 with zero slope and curvature at both ends."""
+    return minimum_jerk((np.arange(steps) + 1.0) / (steps + 1.0))
+
+
 def motion_from_positions(positions: Array, *, sources: tuple[str, ...] = ()) -> Motion:
     """A :class:`Motion` from (T, 22, 3) positions in metres with the floor at 0."""
     positions = np.asarray(positions, dtype=np.float64)
-    return Motion(fit_rotations(positions), positions[:, 0].copy(), planted(positions), sources)
+    return Motion(fit_rotations(positions), positions[:, 0].copy(), sources)
 
 
 def mirror(motion: Motion) -> Motion:
     """The motion as a mirror in the plane X = 0 shows it: left and right exchanged."""
     swap = list(SMPL22.mirror)
     return replace(
-        motion,
-        rotations=_MIRROR @ motion.rotations[:, swap] @ _MIRROR,
-        root=motion.root * np.array([-1.0, 1.0, 1.0]),
-        contacts=motion.contacts[:, ::-1],
+        motion, rotations=_MIRROR @ motion.rotations[:, swap] @ _MIRROR, root=motion.root * np.array([-1.0, 1.0, 1.0])
     )
 
 
@@ -115,12 +127,7 @@ def time_warp(motion: Motion, rate: float) -> Motion:
     low = np.minimum(times.astype(int), len(motion) - 2)
     share = times - low
     root = motion.root[low] + share[:, None] * (motion.root[low + 1] - motion.root[low])
-    return replace(
-        motion,
-        rotations=slerp(motion.rotations[low], motion.rotations[low + 1], share[:, None]),
-        root=root,
-        contacts=motion.contacts[np.round(times).astype(int)],
-    )
+    return replace(motion, rotations=slerp(motion.rotations[low], motion.rotations[low + 1], share[:, None]), root=root)
 
 
 def join(first: Motion, second: Motion, *, blend: int = 12, turn: float = 0.0) -> Motion:
@@ -137,11 +144,9 @@ def join(first: Motion, second: Motion, *, blend: int = 12, turn: float = 0.0) -
     tail, head = slice(len(first) - blend, None), slice(0, blend)
     rotations = slerp(first.rotations[tail], second.rotations[head], weight[:, None])
     root = first.root[tail] * (1 - weight[:, None]) + second.root[head] * weight[:, None]
-    contacts = np.where(weight[:, None] < 0.5, first.contacts[tail], second.contacts[head])
     return Motion(
         np.concatenate([first.rotations[:-blend], rotations, second.rotations[blend:]]),
         np.concatenate([first.root[:-blend], root, second.root[blend:]]),
-        np.concatenate([first.contacts[:-blend], contacts, second.contacts[blend:]]),
         tuple(dict.fromkeys(first.sources + second.sources)),
     )
 
@@ -157,7 +162,7 @@ def steer(motion: Motion, extra: Array) -> Motion:
 
 
 def drift(motion: Motion, offset: Array) -> Motion:
-    """Adds (T, 3) metres to the root path, e.g. a weight shift; the planted feet stay."""
+    """Adds (T, 3) metres to the root path, e.g. a weight shift; feet that stand stay."""
     return replace(motion, root=motion.root + offset)
 
 
@@ -201,8 +206,13 @@ def look_at(motion: Motion, target: Array, *, amount: float = 0.8) -> Motion:
 
 
 def realise(motion: Motion) -> Array:
-    """(T, 22, 3) positions with planted feet: forward kinematics, then :func:`plant_feet`."""
-    return plant_feet(forward_kinematics(motion.rotations, motion.root), motion.contacts)
+    """(T, 22, 3) positions of a person who steps where they glide or turn, and whose feet stay where they stand.
+
+    Standing feet glide where a way was bent or scaled, so more speed is allowed them than in a recording.
+    """
+    positions = forward_kinematics(motion.rotations, motion.root)
+    positions = pivoting(stepping(positions, FPS), FPS)
+    return plant_feet(positions, foot_contacts(positions, FPS, speed=GLIDES))
 
 
 def blend_for(first: Motion, second: Motion) -> int:

@@ -1,20 +1,19 @@
 """Contact: arms that reach for the other person, hands that meet, bodies that recoil.
 
-Everything works on the (T, 22, 3) positions of a person whose feet are already planted. Bones keep their
-length: arms are solved by two-bone IK, the spine and the neck bend as rigid parts, and where the hips move
-the legs are solved again so that the feet stay. A reach starts from the arm's current pose and
-follows a minimum-jerk course (Flash and Hogan 1985), so nothing jumps.
+Everything works on the (T, 22, 3) positions of a person whose feet are already planted. Bones keep their length: arms
+and legs are solved by :mod:`motion.limbs`, and the spine and the neck bend as rigid parts. A reach starts from the
+arm's current pose and follows a minimum-jerk course (Flash and Hogan 1985), so nothing jumps.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
-from motion.limbs import solve_two_bones
+from motion.limbs import limb_length, solve_two_bones
 from motion.skeleton import LEGS, SMPL22
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading
@@ -29,6 +28,8 @@ ELBOW_DOWN = (0.45, -1.0, -0.25)
 """Direction of an elbow in its owner's frame: outwards, up, forwards."""
 FULL_REACH = 0.93
 """Share of its length that an arm extends before the trunk leans to help."""
+SOFT = 0.06
+"""Share of its length, at its end, over which an arm that reaches far straightens ever more slowly."""
 
 
 def _below(joint: int) -> list[int]:
@@ -177,10 +178,12 @@ def reach(
     def trunk(share: float) -> Array:
         return np.cross(UP, direction[0]) * (lean * share) + UP * (turn * share)
 
-    share, lacking = _least_trunk(positions[still], goals, trunk)
+    shares = np.linspace(0, 1, 6)
+    missing = [_missing(bend(positions[still], trunk(share)[None]), goals) for share in shares]
+    share = float(np.interp(0.0, -np.minimum.accumulate(missing), shares))
     if share > 0:
-        left_over = min(lacking * 1.2, shift)
-        if left_over > 0.005:
+        left_over = min(max(missing[-1], 0.0) * 1.2, shift)
+        if share == 1 and left_over > 0.005:
             positions = shift_hips(positions, direction * left_over * weight[:, None])
         positions = bend(positions, trunk(share)[None] * weight[:, None])
     for side, target in targets.items():
@@ -188,79 +191,35 @@ def reach(
     return positions
 
 
-def _least_trunk(pose: Array, goals: Mapping[str, Array], trunk: Callable[[float], Array]) -> tuple[float, float]:
-    """Finds how far the trunk must help the arms reach their goals at one pose.
-
-    Args:
-        pose: (1, 22, 3) the person.
-        goals: "left" and/or "right" to (1, 3).
-        trunk: the rotation vector (3,) of the trunk for a share of its most, 0 to 1.
-
-    Returns:
-        the least share with which the goals are in reach, and the metres missing at the most share (0 if none).
-    """
-
-    def missing(body: Array) -> float:
-        return max(
-            float(np.linalg.norm(goal - body[:, ARMS[side][1]], axis=-1)[0]) - FULL_REACH * _arm_length(body, side)
-            for side, goal in goals.items()
-        )
-
-    shares = np.linspace(0, 1, 6)
-    lacking = [missing(bend(pose, trunk(share)[None])) for share in shares]
-    enough = np.flatnonzero(np.array(lacking) <= 0)
-    if not len(enough):
-        return 1.0, lacking[-1]
-    high = int(enough[0])
-    if high == 0:
-        return float(shares[0]), 0.0
-    # Between the last share too little and the first enough.
-    share = shares[high - 1] + shares[1] * lacking[high - 1] / (lacking[high - 1] - lacking[high])
-    return float(share), 0.0
-
-
-def _arm_length(positions: Array, side: str) -> float:
-    _, shoulder, elbow, wrist = ARMS[side]
-    points = positions[0, [shoulder, elbow, wrist]]
-    return float(np.linalg.norm(np.diff(points, axis=0), axis=-1).sum())
+def _missing(pose: Array, goals: Mapping[str, Array]) -> float:
+    """Metres by which the arms of a person (1, 22, 3) are too short for goals: "left" and/or "right" to (1, 3)."""
+    return max(
+        float(np.linalg.norm(goal - pose[:, ARMS[side][1]], axis=-1)[0])
+        - FULL_REACH * float(limb_length(pose, ARMS[side][1:])[0])
+        for side, goal in goals.items()
+    )
 
 
 def reach_arm(
     positions: Array, side: str, target: Array, weight: Array, *, elbow: tuple[float, float, float] = ELBOW_DOWN
 ) -> Array:
-    """Two-bone IK of one arm towards ``target`` (T, 3) by ``weight`` (T,); nothing but the arm moves."""
-    _, shoulder, middle, wrist = ARMS[side]
-    root, old = positions[:, shoulder], positions[:, wrist] - positions[:, shoulder]
-    upper = np.linalg.norm(positions[:, middle] - root, axis=-1, keepdims=True)
-    lower = np.linalg.norm(positions[:, wrist] - positions[:, middle], axis=-1, keepdims=True)
+    """Brings a wrist to ``target`` (T, 3) by ``weight`` (T,), and the elbow to its side; nothing but the arm moves."""
+    _, *arm = ARMS[side]
+    root, middle, end = (positions[:, joint] for joint in arm)
     share = weight[:, None]
-    gap = old * (1 - share) + (target - root) * share
-    distance = np.linalg.norm(gap, axis=-1, keepdims=True)
-    along = gap / np.maximum(distance, 1e-6)
-    distance = _soft_limit(distance, upper + lower)
-    # The limits act only as far as the reach does, so that an untouched frame stays as it was.
-    distance = np.linalg.norm(old, axis=-1, keepdims=True) * (share == 0) + distance * (share > 0)
-    distance = np.clip(distance, np.abs(upper - lower) + 0.02, upper + lower - 1e-4)
-
     to_left, forward = axes(positions)
     outwards = to_left if side == "left" else -to_left
     pole = unit(elbow[0] * outwards + elbow[1] * UP + elbow[2] * forward)
-    pole = unit(pole - np.sum(pole * along, axis=-1, keepdims=True) * along)
-    was = unit(old)
-    offset = positions[:, middle] - root
-    offset = offset - np.sum(offset * was, axis=-1, keepdims=True) * was
-    carried = _carry(offset + 0.02 * pole, was, along)
-    # A straight arm has no bend to keep; its elbow turns to the pole as soon as it folds.
-    side_of = unit(unit(carried) * (1 - share) + pole * share)
-    side_of = unit(side_of - np.sum(side_of * along, axis=-1, keepdims=True) * along)
-
-    cosine = (upper**2 + distance**2 - lower**2) / (2 * distance)
-    height = np.sqrt(np.maximum(upper**2 - cosine**2, 0))
+    # An elbow that is bent turns to its side before the arm goes.
+    line = unit(end - root)
+    aside = middle - root - np.sum((middle - root) * line, axis=-1, keepdims=True) * line
+    length = np.linalg.norm(aside, axis=-1, keepdims=True)
+    side_of = aside * (1 - share) + length * share * (pole - np.sum(pole * line, axis=-1, keepdims=True) * line)
+    turned = middle - aside + length * unit(side_of)
+    goal = end * (1 - share) + target * share
     solved = positions.copy()
-    solved[:, middle] = root + along * cosine + side_of * height
-    solved[:, wrist] = root + along * distance
-    untouched = weight <= 0
-    solved[untouched] = positions[untouched]
+    solved[:, arm[1]], solved[:, arm[2]] = solve_two_bones(root, turned, end, goal, pole, soft=SOFT * share)
+    solved[weight <= 0] = positions[weight <= 0]
     return solved
 
 
@@ -292,43 +251,6 @@ def settle(
         reach_arm(a, sides[0], middle - line + off[0], both, elbow=elbow),
         reach_arm(b, sides[1], middle + line + off[1], both, elbow=elbow),
     )
-
-
-def pose_arm(positions: Array, side: str, upper: Array, lower: Array, weight: Array) -> Array:
-    """Turns upper arm and forearm towards ``upper`` and ``lower`` (T, 3) by ``weight`` (T,)."""
-    _, shoulder, elbow, wrist = ARMS[side]
-    posed = positions.copy()
-    start = positions[:, shoulder]
-    for end, begin, direction in ((elbow, shoulder, upper), (wrist, elbow, lower)):
-        bone = positions[:, end] - positions[:, begin]
-        length = np.linalg.norm(bone, axis=-1, keepdims=True)
-        posed[:, end] = start + length * _between(unit(bone), unit(direction), weight[:, None])
-        start = posed[:, end]
-    return posed
-
-
-def _between(first: Array, second: Array, share: Array) -> Array:
-    """Unit vectors on the great circle from ``first`` to ``second``."""
-    axis = np.cross(first, second)
-    sine = np.linalg.norm(axis, axis=-1, keepdims=True)
-    angle = np.arctan2(sine, np.sum(first * second, axis=-1, keepdims=True))
-    axis = axis / np.maximum(sine, 1e-9)
-    turned = Rotation.from_rotvec(axis * angle * share).apply(first)
-    return turned
-
-
-def _carry(vector: Array, start: Array, end: Array) -> Array:
-    """``vector`` turned by the smallest rotation that takes the unit vector ``start`` to ``end``."""
-    axis = np.cross(start, end)
-    cosine = np.sum(start * end, axis=-1, keepdims=True)
-    turned = vector * cosine + np.cross(axis, vector)
-    return turned + axis * np.sum(axis * vector, axis=-1, keepdims=True) / np.maximum(1 + cosine, 1e-3)
-
-
-def _soft_limit(distance: Array, length: Array) -> Array:
-    """Distances that approach the arm's length smoothly and never pass it."""
-    knee, room = 0.94 * length, 0.055 * length
-    return np.where(distance > knee, knee + room * (1 - np.exp(-(distance - knee) / room)), distance)
 
 
 def shaking(frames: int, start: int, stop: int, *, hertz: float, size: float) -> Array:

@@ -42,12 +42,11 @@ STYLES = {
     "tired": "tiredly",
     "youthful": "youthfully",
     "slow": "slowly",
-    "fast": "quickly",
     "brisk": "briskly",
 }
 """The manner of a recording's style; other styles are told without one."""
-SPEEDS = {"slow": 0.7, "fast": 1.4, "brisk": 1.2}
-"""Speed of a style or pace against the usual one."""
+SPEEDS = {"slow": 0.7, "brisk": 1.2}
+"""Speed of a style against the usual one."""
 Step = tuple[str, str | None, str | None, bool]
 """An act of a cue: entry, part of the body, side, whether it is only offered."""
 Groups = tuple[tuple[Step, ...], ...]
@@ -65,7 +64,7 @@ class Beat:
         relation: "reply" (the second answers the first), "while" (at the same time) or "order".
         sides, styles: of a and b, "left", "right", "both" or None; a style's name.
         minor: a transition that a caption may leave out.
-        more: "direction" and "speed" ("slow" or "fast"), where they are known.
+        direction: "clockwise" or "counterclockwise", where one walks round the other.
     """
 
     acts: tuple[str, str]
@@ -76,29 +75,7 @@ class Beat:
     sides: tuple[str | None, str | None] = (None, None)
     styles: tuple[str | None, str | None] = ("normal", "normal")
     minor: bool = False
-    more: dict[str, Any] = field(default_factory=dict)
-
-    def row(self, frames: int, captions: list[str]) -> dict[str, Any]:
-        """The beat as the index has it, cut to the scene's ``frames``."""
-        return {
-            "start": int(self.start),
-            "end": int(min(self.end, frames)),
-            "acts": list(self.acts),
-            "first": self.first,
-            "minor": self.minor,
-            "relation": self.relation,
-            "sides": list(self.sides),
-            "styles": list(self.styles),
-            **self.more,
-            "captions": captions,
-        }
-
-    @classmethod
-    def of_row(cls, row: Mapping[str, Any]) -> Beat:
-        """The beat that a row of the index describes."""
-        own = {key: row[key] for key in ("start", "end", "first", "relation", "minor")}
-        more = {key: row[key] for key in ("direction", "speed") if key in row}
-        return cls(**own, **{key: tuple(row[key]) for key in ("acts", "sides", "styles")}, more=more)
+    direction: str | None = None
 
     def swapped(self) -> Beat:
         """The same with the two people exchanged."""
@@ -239,8 +216,7 @@ class _Writer:
     def _add(self, beat: Beat, people: tuple[int, ...], step: Step, order: tuple[Relation, ...]) -> str:
         name, part, side, offered = step
         style = beat.styles[people[0]] or "normal"
-        pace = beat.more.get("speed") or style
-        adverb = STYLES.get(style) or STYLES.get(pace)
+        adverb = STYLES.get(style)
         made = str(len(self.acts) + 1)
         act = Act(
             id=made,
@@ -256,8 +232,8 @@ class _Writer:
                 update={
                     "side": side or beat.sides[people[0]],
                     "manner": () if adverb is None else (adverb,),
-                    "speed": SPEEDS.get(pace, 1.0),
-                    "direction": beat.more.get("direction"),
+                    "speed": SPEEDS.get(style, 1.0),
+                    "direction": beat.direction,
                 }
             )
         self.acts.append(act)
@@ -321,11 +297,6 @@ class SourceClip:
     dataset: str
     split: str = "train"
 
-    @property
-    def num_frames(self) -> int:
-        """Length in frames."""
-        return len(self.positions)
-
 
 @dataclass(eq=False)
 class Scene:
@@ -336,17 +307,13 @@ class Scene:
         family: its kind: "beats-2", "salsa", or a recorded interaction such as "handshake".
         sources: the files the motion comes from.
         split: "train" or "test".
-        events: what a person would check, each key only where it applies:
-            "contact": [{"a": joint or None, "b": joint, "start": frame, "end": frame}, …] joints that touch;
-            "side": {"a": "left"} the hand that the caption names, by person;
-            "distance": "approach" | "part";
-            "facing": True where the two face each other in the middle of the motion.
+        events: "contact": [{"a": joint, "b": joint, "start": frame, "end": frame}, …] joints that touch, if any do.
         played: the beats that were played, from which the label and the captions come.
         label: the plan of the scene, with the frames of its acts.
         captions: different sentences that are all true of the motion.
         alone: sentences on what a does and on what b does, each without the other's part.
-        beats: what happens when: {"start", "end" (frames, end exclusive), "acts" of a and b, "first" 0 or 1
-            (who begins), "minor" (a transition that captions may leave out), "captions"}.
+        beats: what happens when: {"start", "end" (frames, end exclusive), "acts" of a and b, "minor" (a transition that
+            captions may leave out), "captions"}.
     """
 
     positions: Array = field(repr=False)

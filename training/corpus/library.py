@@ -116,14 +116,10 @@ class Library:
             aim=-chosen.aim if flip else chosen.aim,
         )
 
-    def idle(self, rng: np.random.Generator, frames: int, *, at_ease: float = 0.75) -> Motion:
-        """``frames`` frames of a real person who stands and waits.
-
-        Args:
-            at_ease: the share of people whose arms hang; the others fold them or rest them on the hips.
-        """
+    def idle(self, rng: np.random.Generator, frames: int) -> Motion:
+        """``frames`` frames of a real person who stands and waits; nine of ten let their arms hang."""
         takes = self._load("idle") or self._load("wave")
-        if rng.random() < at_ease:
+        if rng.random() < 0.9:
             takes = [take for take in takes if take.style == "at ease"] or takes
         motion = pick(rng, takes).motion
         if rng.random() < 0.5:
@@ -136,7 +132,7 @@ class Library:
     def _load_action(self, action: str) -> list[Take]:
         takes = []
         for clip in self._clips.get(action, ()):
-            if clip.num_frames < 16:
+            if len(clip.positions) < 16:
                 continue
             motion = motion_from_positions(clip.positions, sources=(clip.source,))
             if action in STRIKES:

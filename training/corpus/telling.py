@@ -43,30 +43,25 @@ _WHERE = _PLACES.split(", ")
 """Where and when it may happen, which the motion does not show."""
 
 
-def describe(rng: Rng, scene: Scene, *, sides: bool = True) -> Scene:
-    """The scene with its label and captions, from the beats that were played.
-
-    Args:
-        sides: every caption names the sides of a scene whose events name one.
-    """
+def describe(rng: Rng, scene: Scene) -> Scene:
+    """The scene with its label and captions, from the beats that were played."""
     frames = scene.positions.shape[1]
     scene.label = label(scene.played, frames)
-    teller = Teller(rng, scene.label, scene.split, sides=sides and "side" in scene.events)
+    teller = Teller(rng, scene.label, scene.split)
     scene.captions = teller.scene()
-    _keep_named_sides(scene)
     scene.alone = (teller.alone("a"), teller.alone("b"))
     if scene.family.startswith("beats"):
         scene.beats = [
-            beat.row(frames, teller.beat(ids)) for beat, ids in zip(scene.played, scene.label.beats, strict=True)
+            {
+                "start": int(beat.start),
+                "end": int(min(beat.end, frames)),
+                "acts": list(beat.acts),
+                "minor": beat.minor,
+                "captions": teller.beat(ids),
+            }
+            for beat, ids in zip(scene.played, scene.label.beats, strict=True)
         ]
     return scene
-
-
-def _keep_named_sides(scene: Scene) -> None:
-    """Takes the sides that not every caption names out of the scene's events, which a judge would ask for."""
-    sides = {side for side in (scene.events.get("side") or {}).values() if side}
-    if not all(re.search(rf"\b{side}\b", text) for side in sides for text in scene.captions):
-        scene.events = {key: value for key, value in scene.events.items() if key != "side"}
 
 
 class Teller:
@@ -74,11 +69,10 @@ class Teller:
 
     Args:
         split: "train" or "test": a test caption uses a phrase or names that no training caption uses.
-        sides: whether every side that the label knows is told.
     """
 
-    def __init__(self, rng: Rng, label: Label, split: str, *, sides: bool = False) -> None:
-        self.rng, self.label, self.split, self.sides = rng, label, split, sides
+    def __init__(self, rng: Rng, label: Label, split: str) -> None:
+        self.rng, self.label, self.split = rng, label, split
 
     @cached_property
     def _groups(self) -> list[list[Act]]:
@@ -103,7 +97,7 @@ class Teller:
             if not groups:
                 break
             cast = draw_cast(self.rng, joint=len(groups[0][0].agents) == 2)
-            writer = _Writer(self.rng, cast, self.split, self.sides, alone=len(people) == 1)
+            writer = _Writer(self.rng, cast, self.split, alone=len(people) == 1)
             text = writer.write(groups)
             if writer.test != (self.split == "test") or len(text) > LONGEST or kept_out(text):
                 continue
@@ -148,8 +142,8 @@ class _Writer:
         going: whether it says what the people are doing, as in "is waving".
     """
 
-    def __init__(self, rng: Rng, cast: Cast, split: str, sides: bool, *, alone: bool) -> None:
-        self.rng, self.split, self.sides, self.alone = rng, split, sides, alone
+    def __init__(self, rng: Rng, cast: Cast, split: str, *, alone: bool) -> None:
+        self.rng, self.split, self.alone = rng, split, alone
         self.names = Names(rng, cast)
         self.test = held_out(cast.first[0] + cast.first[1])
         self.going = False
@@ -205,7 +199,7 @@ class _Writer:
         return " while ".join([first, *others])
 
     def _phrase(self, act: Act, form: str) -> str:
-        sided = act.side is not None and (self.sides or self.rng.random() < 0.5)
+        sided = act.side is not None and self.rng.random() < 0.5
         phrases = fitting(act, sided=sided)
         usual = [text for text in phrases if text in entry(act.act).caption]
         phrase = self._pick(usual if usual and self.rng.random() < 0.5 else phrases)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from motion.skeleton import SMPL22
+from motion.vectors import unit
 
 from .compose import ARMS, Array
 from .contact import (
@@ -23,7 +24,6 @@ from .contact import (
     meeting,
     nod,
     on_body,
-    pose_arm,
     reach,
     reach_arm,
     settle,
@@ -175,8 +175,11 @@ def elbow_bump(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -
     for body in (a, b):
         left, forward = axes(body)
         out = left if side == "left" else -left
-        upper = middle - on_body(body, f"{side}_shoulder", 0, 0, 0)
-        solved.append(pose_arm(body, side, upper, -0.75 * out + 0.5 * UP + 0.25 * forward, weight))
+        _, shoulder, elbow, wrist = ARMS[side]
+        upper, lower = SMPL22.bone_lengths[[elbow, wrist]]
+        bent = body[:, shoulder] + upper * unit(middle - body[:, shoulder])
+        hand = bent + lower * unit(-0.75 * out + 0.5 * UP + 0.25 * forward)
+        solved.append(reach_arm(body, side, hand, weight, elbow=(0.5, -0.4, 1.0)))
     joint = f"{side}_elbow"
     return solved[0], solved[1], [(joint, joint, hit, stop)]
 
@@ -348,9 +351,9 @@ def help_up(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> T
     return a, b, [(wrist, wrist, grasp, leave)]
 
 
-def chosen_side(rng: Rng) -> tuple[str, bool]:
-    """The hand that acts, mostly the right one, and whether the captions name it."""
-    return ("right" if rng.random() < 0.75 else "left"), bool(rng.random() < 0.6)
+def chosen_side(rng: Rng) -> str:
+    """The hand that acts, mostly the right one."""
+    return "right" if rng.random() < 0.75 else "left"
 
 
 TOUCHES: dict[str, Touch] = {

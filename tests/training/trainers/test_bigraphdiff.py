@@ -33,7 +33,7 @@ def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
         row["label"] = label([Beat((cue, cue), 0, row["frames"], relation="while")], row["frames"]).row()
         row["beats"] = []
         if i == 4:
-            beat = Beat((cue, cue), 0, row["frames"]).row(row["frames"], ["They wave."])
+            beat = {"start": 0, "end": row["frames"], "acts": [cue, cue], "minor": False, "captions": ["They wave."]}
             row["beats"] = [beat, beat]
     (corpus / "index.json").write_text(json.dumps(rows))
     out = folder / "scenes.safetensors"

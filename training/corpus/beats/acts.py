@@ -49,11 +49,14 @@ def bow(play: Play, i: int) -> Done:
     return perform(play, i, Take(deepened(take.motion, play.rng.uniform(0.27, 0.42)), "bow", take.style))
 
 
+def spoken(play: Play) -> list[str]:
+    """Source actions of people who talk with their hands."""
+    return [name for name in ("guide", "respond", "talking") if play.library.has(name)]
+
+
 def talk(play: Play, i: int) -> Done:
     """Talks with the hands."""
-    rng = play.rng
-    action = pick(rng, [name for name in ("guide", "respond", "talking") if play.library.has(name)])
-    return taken(action, (50, 100))(play, i)
+    return taken(pick(play.rng, spoken(play)), (50, 100))(play, i)
 
 
 def dance(play: Play, i: int) -> Done:

@@ -22,13 +22,13 @@ def arm_around_beat(play: Play, i: int) -> None:
     _, side = side_by_side(play, i, rng.uniform(0.43, 0.5))
     start = play.sync()
     if start - begun > 30:
-        play.beats_before(begun, start, i)
+        play.note(("join-side", STILL), begun, end=start, i=1 - i, minor=True)
     length = play.seconds(1.8, 3.0)
     for person in play.people:
         person.hold(length + 20)
     hand, own_rng = "left" if side > 0 else "right", np.random.default_rng(rng.integers(2**32))
     play.effect(start, start + length + 36, lambda a, b: arm_around(own_rng, a, b, 2, length, hand), i=i)
-    play.note(("arm-around", STILL), start, i=i, relation="while", sides=(hand, None))
+    play.note(("arm-around", STILL), start, i=i, sides=(hand, None))
 
 
 def _held(sides: tuple[str, str], height: float, start: int, arrive: int, leave: int) -> Effect:
@@ -47,7 +47,7 @@ def hand_in_hand(play: Play, i: int) -> None:
     rng = play.rng
     begun = play.sync()
     gap = rng.uniform(0.55, 0.66)
-    if play.wish[0] == "hold-hands" if play.wish else rng.random() < 0.25:
+    if rng.random() < 0.25:
         _, side = side_by_side(play, i, gap)
         start = play.sync()
         for person in play.people:
@@ -57,14 +57,14 @@ def hand_in_hand(play: Play, i: int) -> None:
         start, stop, _, side = abreast(play, i, gap, (2.0, 2.8 if play.brisk else 4.2))
         name = "walk-hand-in-hand"
     if start - begun > 35:
-        play.beats_before(begun, start - 14, i)
+        play.note(("join-side", STILL), begun, end=start - 14, i=1 - i, minor=True)
     hand = "left" if side > 0 else "right"
     taken = max(start - 14, begun)
     letting = play.frames - (0 if rng.random() < 0.5 else 8)
     play.effect(
         taken, letting + 22, _held((hand, opposite(hand)), rng.uniform(0.78, 0.86), taken, taken + 16, letting), i=i
     )
-    play.note((name, name), taken, i=i, relation="while")
+    play.note((name, name), taken, i=i)
     for k in (0, 1):
         play.look(k, start, stop, float(rng.uniform(0, 0.5)))
 
@@ -99,7 +99,7 @@ def carousel(play: Play, i: int) -> None:
         return a, b, [(f"{own}_wrist", f"{to}_wrist", 18, last - 6) for own, to in pairs]
 
     play.effect(start, stop + 14, effect, i=i)
-    play.note(("ring", "ring"), start, i=i, relation="while")
+    play.note(("ring", "ring"), start, i=i)
 
 
 def walk_past(play: Play, i: int) -> None:
@@ -115,7 +115,7 @@ def walk_past(play: Play, i: int) -> None:
         target = goal + aside * leftwards(way) + rng.uniform(0.3, 0.8) * ahead(way)
         # Each keeps to their own side from the middle on.
         styles.append(person.go(target, None, stop=False).style)
-    play.note(("walk-past", "walk-past"), start, i=i, relation="while", styles=tuple(styles))
+    play.note(("walk-past", "walk-past"), start, i=i, styles=tuple(styles))
 
 
 def skip_past(play: Play, i: int) -> None:
@@ -127,4 +127,4 @@ def skip_past(play: Play, i: int) -> None:
     aside = pick(rng, (-1, 1)) * rng.uniform(0.8, 1.1)
     target = other.spot + aside * leftwards(way) + rng.uniform(0.4, 1.2) * ahead(way)
     own.go(target, None, action="skip", stop=False)
-    play.note(("skip", STILL), start, i=i, relation="while")
+    play.note(("skip", STILL), start, i=i)

@@ -6,12 +6,11 @@ import numpy as np
 
 from motion.vectors import wrapped
 
-from ..compose import Array, Motion, steer, tempo
+from ..compose import Array, ease, steer, tempo
 from ..cues import STILL
-from ..feet import ease
 from ..library import Take, pick, stride
-from .acts import ACTS, arms_over
-from .play import Performer, Play, bearing
+from .acts import ACTS, arms_over, spoken
+from .play import Play, bearing
 
 
 def ahead(angle: float) -> Array:
@@ -24,17 +23,12 @@ def leftwards(angle: float) -> Array:
     return np.array([np.cos(angle), -np.sin(angle)])
 
 
-def gait(play: Play, *, fast: float = 0.15) -> tuple[str, str]:
-    """(source action, name in the phrase book) of a way to go."""
+def gait(play: Play, *, fast: float = 0.15) -> str:
+    """The source action of a way to go: "run", as often as ``fast``, "sneak" or "walk"."""
     rng = play.rng
-    wish = play.wish[0].split("-")[0].replace("creep", "sneak") if play.wish else ""
-    if wish in ("walk", "run", "sneak") and play.library.has(wish):
-        return wish, wish
     if play.library.has("run") and rng.random() < fast:
-        return "run", "run"
-    if play.library.has("sneak") and rng.random() < 0.05:
-        return "sneak", "sneak"
-    return "walk", "walk"
+        return "run"
+    return "sneak" if play.library.has("sneak") and rng.random() < 0.05 else "walk"
 
 
 def close_in(play: Play, i: int, distance: float, *, both: bool = False, action: str = "walk") -> Take | None:
@@ -76,38 +70,21 @@ def come(play: Play, i: int, distance: float) -> int:
     take = close_in(play, i, distance, both=both)
     if far > 0.5:
         acts = ("walk-up", "walk-up") if both else ("walk-up", STILL)
-        play.note_span(
-            acts,
-            start,
-            play.frames,
-            i=i,
-            relation="while",
-            styles=(take.style if take else "normal", "normal"),
-            minor=bool(play.wish) or bool(play.rng.random() < 0.4),
-        )
+        style = take.style if take else "normal"
+        play.note(acts, start, i=i, styles=(style, "normal"), minor=bool(play.rng.random() < 0.4))
     return play.sync()
-
-
-def make_room(play: Play, i: int, room: float) -> None:
-    """i steps back where the two stand too close for what comes next."""
-    if play.gap >= room:
-        return
-    start = play.sync()
-    steps = stride(play.rng, play.library, "walk-back", max(room - play.gap, 0.4))
-    play.people[i].perform(steps.motion)
-    play.note(("step-back", STILL), start, i=i, relation="while", minor=True)
 
 
 def walk_up(play: Play, i: int) -> None:
     """i comes up to the other, who stands; or both do."""
     rng = play.rng
     start = play.sync()
-    action, name = gait(play, fast=0.25)
-    both = play.wish == ("walk-up", "walk-up") if play.wish else rng.random() < 0.25
+    action = gait(play, fast=0.25)
+    both = rng.random() < 0.25
     take = close_in(play, i, rng.uniform(0.8, 1.3), both=both, action=action)
     style = take.style if take else "normal"
-    acts = ("walk-up", "walk-up") if both else ("creep-up" if name == "sneak" else f"{name}-up", STILL)
-    play.note(acts, start, i=i, relation="while", styles=(style, "normal"))
+    acts = ("walk-up", "walk-up") if both else ("creep-up" if action == "sneak" else f"{action}-up", STILL)
+    play.note(acts, start, i=i, styles=(style, "normal"))
 
 
 def leave(play: Play, i: int) -> None:
@@ -115,9 +92,9 @@ def leave(play: Play, i: int) -> None:
     rng = play.rng
     start = play.sync()
     own = play.people[i]
-    action, name = gait(play)
+    action = gait(play)
     way = own.angle + np.pi + rng.normal(0, 0.35) if abs(play.off(i)) < 1.2 else own.angle
-    answer = play.wanted((STILL, STILL, "wave", "wave", "beckon", "turn-away", "shake-head", "shrug", "point"), 1)
+    answer = pick(rng, (STILL, STILL, "wave", "wave", "beckon", "turn-away", "shake-head", "shrug", "point"))
     if answer in ACTS and not play.library.has(*ACTS[answer].needs):
         answer = STILL
     take = own.go(own.spot + rng.uniform(1.6, 3.0) * ahead(way), None, action=action, stop=rng.random() < 0.6)
@@ -128,7 +105,7 @@ def leave(play: Play, i: int) -> None:
         play.people[1 - i].hold(play.seconds(0.3, 0.9))
         done = ACTS[answer].make(play, 1 - i)
         side, style = done.side, done.style
-    play.note((f"{name}-away", answer), start, i=i, relation="while", styles=(take.style, style), sides=(None, side))
+    play.note((f"{action}-away", answer), start, i=i, styles=(take.style, style), sides=(None, side))
 
 
 def _turn_off(play: Play, i: int, start: int) -> None:
@@ -150,14 +127,14 @@ def part(play: Play, i: int) -> None:
         if k != i:
             person.hold(int(rng.integers(0, 15)))
         take = person.go(person.spot + rng.uniform(1.6, 2.6) * ahead(way), None, stop=rng.random() < 0.5)
-    play.note(("part", "part"), start, i=i, relation="while", styles=(take.style, take.style) if take else None)
+    play.note(("part", "part"), start, i=i, styles=(take.style, take.style) if take else None)
 
 
 def turn_away(play: Play, i: int) -> None:
     """A turns away from B."""
     start = play.sync()
     _turn_off(play, i, start)
-    play.note(("turn-away", STILL), start, i=i, relation="while")
+    play.note(("turn-away", STILL), start, i=i)
 
 
 def turn_to(play: Play, i: int) -> None:
@@ -165,23 +142,22 @@ def turn_to(play: Play, i: int) -> None:
     start = play.sync()
     play.people[i].hold(6)
     play.people[i].turn(play.off(i))
-    play.note(("turn-to", STILL), start, i=i, relation="while")
+    play.note(("turn-to", STILL), start, i=i)
 
 
 def step_back(play: Play, i: int) -> None:
     """i goes up a step and the other backs away; or i only steps back."""
     rng = play.rng
     start = play.sync()
-    alone = play.wish[0] == "step-back" if play.wish else play.gap < 1.6 or rng.random() < 0.5
-    if alone:
+    if play.gap < 1.6 or rng.random() < 0.5:
         walk = stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.2))
         play.people[i].perform(walk.motion)
-        play.note(("step-back", STILL), start, i=i, relation="while", styles=(walk.style, "normal"))
+        play.note(("step-back", STILL), start, i=i, styles=(walk.style, "normal"))
         return
     close_in(play, i, max(play.gap - rng.uniform(0.5, 0.8), 0.7))
     walk = stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.2))
     play.people[1 - i].perform(walk.motion)
-    play.note(("step-forward", "step-back"), start, i=i, styles=("normal", walk.style))
+    play.note(("step-forward", "step-back"), start, i=i, relation="reply", styles=("normal", walk.style))
 
 
 def step_aside(play: Play, i: int) -> None:
@@ -193,7 +169,7 @@ def step_aside(play: Play, i: int) -> None:
     step = walk.motion.root[-1] - walk.motion.root[0]
     course = wrapped(float(np.arctan2(step[0], step[2]) - walk.motion.headings.mean()))
     play.people[i].perform(walk.motion, aim=course - (1 if side == "left" else -1) * np.pi / 2)
-    play.note(("step-aside", STILL), start, i=i, relation="while", sides=(side, None))
+    play.note(("step-aside", STILL), start, i=i, sides=(side, None))
 
 
 def circle(play: Play, i: int) -> None:
@@ -207,28 +183,17 @@ def circle(play: Play, i: int) -> None:
         close_in(play, i, radius)
     own.turn(wrapped(bearing(other.spot - own.spot) - side * np.pi / 2 - own.angle))
     arc = rng.uniform(0.55, 1.05) * 2 * np.pi
-    take, walk = curve(own, radius * arc, side / radius)
-    own.append(walk)
-    follows = play.wanted((STILL, "turn-to"), 1) == "turn-to"
+    take = stride(rng, play.library, "walk", radius * arc, style=own.style)
+    steps = np.linalg.norm(np.diff(take.motion.root[:, [0, 2]], axis=0), axis=-1)
+    own.append(steer(take.motion, side / radius * np.concatenate([[0.0], np.cumsum(steps)])))
+    follows = pick(rng, (False, True))
     if follows:
         other.hold_until(start + (len(own) - start) // 5)
         other.hold(int((len(own) - len(other)) * 0.9), turn=side * arc * 0.85)
     direction = "counterclockwise" if side > 0 else "clockwise"
     play.note(
-        ("walk-around", "turn-to" if follows else STILL),
-        start,
-        i=i,
-        relation="while",
-        styles=(take.style, "normal"),
-        more={"direction": direction},
+        ("walk-around", "turn-to" if follows else STILL), start, i=i, styles=(take.style, "normal"), direction=direction
     )
-
-
-def curve(person: Performer, length: float, bend: float) -> tuple[Take, Motion]:
-    """A walk of ``length`` metres that turns by ``bend`` radians a metre (positive: to the left)."""
-    take = stride(person.rng, person.library, "walk", length, style=person.style)
-    steps = np.linalg.norm(np.diff(take.motion.root[:, [0, 2]], axis=0), axis=-1)
-    return take, steer(take.motion, bend * np.concatenate([[0.0], np.cumsum(steps)]))
 
 
 def pace_about(play: Play, i: int) -> None:
@@ -240,7 +205,7 @@ def pace_about(play: Play, i: int) -> None:
     home = person.spot
     take = person.go(home + rng.uniform(1.0, 1.5) * ahead(angle), None, stop=False)
     person.go(home, None, stop=True)
-    play.note(("pace", STILL), start, i=i, relation="while", styles=(take.style, "normal"))
+    play.note(("pace", STILL), start, i=i, styles=(take.style, "normal"))
 
 
 def follow(play: Play, i: int) -> None:
@@ -248,8 +213,7 @@ def follow(play: Play, i: int) -> None:
     rng = play.rng
     start = play.sync()
     own, other = play.people[i], play.people[1 - i]
-    runs = play.wish[1] == "chase" if play.wish else rng.random() < 0.25
-    runs &= play.library.has("run")
+    runs = rng.random() < 0.25 and play.library.has("run")
     action = "run" if runs else "walk"
     way = own.angle + np.pi + rng.normal(0, 0.3) if abs(play.off(i)) < 1.2 else own.angle
     far = rng.uniform(2.6, 4.0) if runs else rng.uniform(2.0, 3.0)
@@ -257,7 +221,7 @@ def follow(play: Play, i: int) -> None:
     other.hold(play.seconds(0.1, 0.5))
     other.go(own.spot - rng.uniform(0.9, 1.3) * ahead(way), None, action=action, stop=False)
     acts = ("run-away", "chase") if runs else ("walk-away", "follow")
-    play.note(acts, start, i=i, relation="while", styles=(take.style, "normal"))
+    play.note(acts, start, i=i, styles=(take.style, "normal"))
 
 
 def side_by_side(play: Play, i: int, gap: float) -> tuple[float, int]:
@@ -297,35 +261,28 @@ def walk_together(play: Play, i: int) -> None:
     """Side by side, with or without talk; or one stops while the other goes on."""
     rng = play.rng
     begun = play.sync()
-    far = (3.2, 4.2) if play.wish and play.wish[0] == STILL else (2.2, 3.2 if play.brisk else 4.0)
-    start, stop, take, _ = abreast(play, i, rng.uniform(0.65, 0.95), far)
+    start, stop, take, _ = abreast(play, i, rng.uniform(0.65, 0.95), (2.2, 3.2 if play.brisk else 4.0))
     own, other = play.people[i], play.people[1 - i]
     style = (take.style, take.style)
     if start - begun > 35:
-        play.beats_before(begun, start, i)
-    kind = {STILL: 0.0, "walk-together+talk": 0.5, "walk-together": 0.9}.get(
-        play.wish[0] if play.wish else "", rng.random()
-    )
+        play.note(("join-side", STILL), begun, end=start, i=1 - i, minor=True)
+    kind = rng.random()
     if kind < 0.3 and stop - start > 66:  # i stops, the other goes on
         cut = start + int((stop - start) * rng.uniform(0.4, 0.6))
         own.motion = own.motion[: cut + 8]
-        play.note_span(("walk-together", "walk-together"), start, cut, i=i, relation="while", styles=style)
+        play.note(("walk-together", "walk-together"), start, end=cut, i=i, styles=style)
         own.hold_until(len(other))
-        play.note((STILL, "walk-ahead"), cut, i=i, relation="while", styles=style)
+        play.note((STILL, "walk-ahead"), cut, i=i, styles=style)
         return
     if kind < 0.65 and play.library.has("guide"):  # talking while strolling
-        who = i if play.wish or rng.random() < 0.6 else 1 - i
+        who = i if rng.random() < 0.6 else 1 - i
         speaker = play.people[who]
-        speaker.motion, _ = arms_over(play.library, rng, speaker.motion, pick(rng, _spoken(play)), start + 12, None)
+        speaker.motion, _ = arms_over(play.library, rng, speaker.motion, pick(rng, spoken(play)), start + 12, None)
         play.look(who, start, stop, 0.6)
         acts = ("walk-together+talk", "walk-together") if who == i else ("walk-together", "walk-together+talk")
-        play.note(acts, start, i=i, relation="while", styles=style)
+        play.note(acts, start, i=i, styles=style)
         return
-    play.note(("walk-together", "walk-together"), start, i=i, relation="while", styles=style)
-
-
-def _spoken(play: Play) -> list[str]:
-    return [name for name in ("guide", "respond", "talking") if play.library.has(name)]
+    play.note(("walk-together", "walk-together"), start, i=i, styles=style)
 
 
 _SAID = {"wave": "wave", "bye": "wave", "raise-hand": "raise-arm"}
@@ -338,12 +295,8 @@ def walk_and(play: Play, i: int) -> None:
     start = play.sync()
     own, other = play.people[i], play.people[1 - i]
     ways = [n for n in ("wave", "wave", "bye", "raise-hand") if play.library.has(n)]
-    wish = play.wish[0] if play.wish else ""
-    wished = {"raise-arm": "raise-hand"}.get(wish.partition("+")[2], wish.partition("+")[2])
-    over = wished if wish else pick(rng, ways)
-    up = wish.startswith("walk-up") if wish else play.gap > 2.2
-    if over not in ways:
-        raise LookupError("no arms for it")
+    over = pick(rng, ways)
+    up = play.gap > 2.2
     side = pick(rng, ("left", "right")) if over != "bye" else None
     if up:
         axis = (own.spot - other.spot) / max(play.gap, 1e-6)
@@ -359,7 +312,6 @@ def walk_and(play: Play, i: int) -> None:
         (f"{'walk-up' if up else 'step-back'}+{_SAID[over]}", STILL),
         start,
         i=i,
-        relation="while",
         sides=(gesture.side, None),
         styles=(take.style, "normal"),
     )

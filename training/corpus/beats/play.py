@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+import copy
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,8 @@ import numpy as np
 from motion.transforms import canonicalize
 from motion.vectors import wrapped
 
-from ..compose import FPS, Array, Motion, blend_for, drift, facing_at, join, look_at, place, realise, steer, tempo
-from ..cues import STILL, Beat
-from ..feet import ease
+from ..compose import FPS, Array, Motion, blend_for, drift, ease, facing_at, join, look_at, place, realise, steer, tempo
+from ..cues import Beat
 from ..library import Library, Take, stride
 from ..touches import Touches
 
@@ -51,18 +51,10 @@ class Performer:
         style: str | None = None,
     ) -> None:
         self.rng, self.library, self.style = rng, library, style
-        self._rest = library.idle(rng, 420, at_ease=0.9)
+        self._rest = library.idle(rng, 420)
         self._used = 4
         self._calm = True
         self.motion = place(self._rest[:4], *spot, angle)
-
-    def state(self) -> tuple[Motion, int, bool]:
-        """The state that :meth:`restore` goes back to."""
-        return self.motion, self._used, self._calm
-
-    def restore(self, state: tuple[Motion, int, bool]) -> None:
-        """Goes back to a state that ``state`` gave."""
-        self.motion, self._used, self._calm = state
 
     def __len__(self) -> int:
         return len(self.motion)
@@ -225,14 +217,7 @@ class Play:
         self.beats: list[Beat] = []
         self.effects: list[_Timed] = []
         self.looks: list[tuple[int, int, int, float]] = []
-        self.wish: tuple[str, str] | None = None
         self.brisk = False
-
-    def wanted(self, options: Sequence[str], role: int = 0) -> str:
-        """One of ``options``; the act wished of the first person (0) or of the other (1), if it is one of them."""
-        if self.wish and self.wish[role] in options:
-            return self.wish[role]
-        return options[int(self.rng.integers(len(options)))]
 
     # ---- where they are ---------------------------------------------------------------------------------
     @property
@@ -261,21 +246,16 @@ class Play:
             person.hold_until(self.frames)
         return self.frames
 
-    def note(self, acts: tuple[str, str], start: int, *, i: int = 0, **known: Any) -> Beat:
-        """Writes a beat down that began at ``start`` and ends now; acts, sides, styles are of i and the other."""
-        beat = Beat(acts, start, self.sync(), **known)
-        beat = replace(beat, first=0) if i == 0 else beat.swapped()
-        self.beats.append(beat)
-        return beat
+    def note(self, acts: tuple[str, str], start: int, *, i: int = 0, end: int | None = None, **known: Any) -> None:
+        """Writes a beat down that began at ``start``.
 
-    def note_span(self, acts: tuple[str, str], start: int, end: int, *, i: int = 0, **known: Any) -> None:
-        """Writes down a beat that is already over."""
-        beat = Beat(acts, start, end, **known)
+        Args:
+            acts: the cues of person i and of the other; sides and styles are in the same order.
+            end: the frame at which it is over; now, if it is not given, when the shorter timeline waits.
+            known: other fields of :class:`Beat`; the two act at the same time where no relation is given.
+        """
+        beat = Beat(acts, start, self.sync() if end is None else end, **({"relation": "while"} | known))
         self.beats.append(beat if i == 0 else beat.swapped())
-
-    def beats_before(self, start: int, end: int, i: int) -> None:
-        """Writes down that the other has come to i's side."""
-        self.note_span(("join-side", STILL), start, end, i=1 - i, relation="while", minor=True)
 
     def effect(self, start: int, stop: int, effect: Effect, *, i: int = 0) -> None:
         """Has ``effect`` change the positions of (person i, the other) from ``start`` to ``stop``."""
@@ -285,16 +265,12 @@ class Play:
         """Sets how much person ``i`` looks at the other between two frames (0.7 by default)."""
         self.looks.append((i, start, stop, amount))
 
-    def snapshot(self) -> tuple[Any, ...]:
-        """The state that :meth:`restore` goes back to."""
-        kept = (list(self.beats), list(self.effects), list(self.looks))
-        return [person.state() for person in self.people], *kept
-
-    def restore(self, state: tuple[Any, ...]) -> None:
-        """Goes back to a state that ``state`` gave."""
-        people, self.beats, self.effects, self.looks = state[0], *map(list, state[1:])
-        for person, one in zip(self.people, people, strict=True):
-            person.restore(one)
+    def copied(self) -> Play:
+        """The same scene so far, to which a beat may be added that turns out too long."""
+        other = copy.copy(self)
+        other.people = tuple(copy.copy(person) for person in self.people)
+        other.beats, other.effects, other.looks = list(self.beats), list(self.effects), list(self.looks)
+        return other
 
     # ---- the end ----------------------------------------------------------------------------------------
     def finish(self, most: int) -> tuple[Array, list[dict[str, Any]]]:

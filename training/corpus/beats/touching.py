@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from motion.skeleton import SMPL22
+from motion.kinematics import project_to_skeleton
 from motion.vectors import wrapped
 
 from ..compose import Array
@@ -33,7 +33,7 @@ def push(play: Play, i: int) -> None:
     own.hold(hit + 34)
     other.hold(hit + 6)
     falls = play.library.has("fall", "get-up-back")
-    answer = play.wanted(("stumble", "stumble", FALL), 1) if falls else "stumble"
+    answer = pick(rng, ("stumble", "stumble", FALL)) if falls else "stumble"
     if answer == FALL:
         ACTS[FALL].make(play, 1 - i)
     else:
@@ -60,7 +60,7 @@ def push(play: Play, i: int) -> None:
         return a, b, [(f"{side}_wrist", "spine3", hit - 2, hit + 3) for side in ("left", "right")]
 
     play.effect(start, start + hit + 36, effect, i=i)
-    play.note(("push", answer), start, i=i, sides=("both", None))
+    play.note(("push", answer), start, i=i, relation="reply", sides=("both", None))
 
 
 def blow_at(name: str) -> Callable[[Play, int], None]:
@@ -71,14 +71,14 @@ def blow_at(name: str) -> Callable[[Play, int], None]:
         take = blow(rng, play.library, name, most=1)
         start = play.sync()
         answers = {"punch": ("dodge", "flinch", "step-back", FALL), "kick": ("step-back", "flinch", FALL)}
-        answer = play.wanted(answers[name], 1)
+        answer = pick(rng, answers[name])
         if answer == FALL and not play.library.has("fall", "get-up-back"):
             answer = "flinch"
         far = play.gap
         close_in(play, i, reach_of(take) + rng.uniform(0.1, 0.25))
         begun = play.sync()
         if far - play.gap > 0.6:
-            play.note_span(("walk-up", STILL), start, begun, i=i, relation="while", minor=True)
+            play.note(("walk-up", STILL), start, end=begun, i=i, minor=True)
         own, other = play.people[i], play.people[1 - i]
         first, _ = own.perform(take.motion, aim=take.aim)
         hit = first + take.peaks[0]
@@ -91,7 +91,7 @@ def blow_at(name: str) -> Callable[[Play, int], None]:
         else:
             other.hold_until(max(len(own), hit + 34))
             other.motion = (dodge if answer == "dodge" else recoil)(rng, other.motion, hit)
-        play.note((name, answer), begun, i=i, sides=(take.side, None))
+        play.note((name, answer), begun, i=i, relation="reply", sides=(take.side, None))
 
     return make
 
@@ -115,14 +115,13 @@ _REFUSALS = (STILL, "shake-head", "turn-away", "step-back", "fold-arms", "stop-h
 def refused(play: Play, i: int) -> None:
     """i offers a hand, a high five, a thing or a hug, and the other does not take it."""
     rng = play.rng
-    offer = play.wanted(tuple(_OFFERS))
+    offer = pick(rng, tuple(_OFFERS))
     distance, (out, up, front) = _OFFERS[offer]
     start = come(play, i, rng.uniform(distance, distance + 0.15))
-    side, _ = chosen_side(rng)
+    side = chosen_side(rng)
     sides = ("left", "right") if offer == "hug?" else (side,)
     answers = [*_REFUSALS, "wave-off"] if play.library.has("reject") else list(_REFUSALS)
-    wish = play.wish[1] if play.wish else ""
-    answer = wish if wish in answers else pick(rng, answers)
+    answer = pick(rng, answers)
     other = play.people[1 - i]
     other.hold(play.seconds(0.7, 1.2))
     if answer == "turn-away":
@@ -144,7 +143,7 @@ def refused(play: Play, i: int) -> None:
         return a, b, []
 
     play.effect(start, stop, effect, i=i)
-    play.note((offer, answer), start, i=i, sides=(None if len(sides) > 1 else side, None))
+    play.note((offer, answer), start, i=i, relation="reply", sides=(None if len(sides) > 1 else side, None))
 
 
 def throw_catch(play: Play, i: int) -> None:
@@ -170,7 +169,7 @@ def throw_catch(play: Play, i: int) -> None:
 
     stop = play.sync()
     play.effect(start, stop, effect, i=i)
-    play.note(("throw-ball", "catch-thing"), start, i=i, sides=(take.side, None))
+    play.note(("throw-ball", "catch-thing"), start, i=i, relation="reply", sides=(take.side, None))
 
 
 # ---- touches -----------------------------------------------------------------------------------------
@@ -191,7 +190,7 @@ def face_to_face(name: str) -> Callable[[Play, int], None]:
         touch = TOUCHES["high-ten" if both else name]
         start = come(play, i, rng.uniform(*touch.distance))
         length = play.seconds(touch.hold[0], min(touch.hold[1], 2.4))
-        side, _ = chosen_side(rng)
+        side = chosen_side(rng)
         for person in play.people:
             person.hold(length + 16)
         own_rng = np.random.default_rng(rng.integers(2**32))
@@ -199,7 +198,7 @@ def face_to_face(name: str) -> Callable[[Play, int], None]:
         cue = _CUES.get(name, name)
         answer = {"hand-over": "take-from", "pat-shoulder": STILL, "hand-on-shoulder": STILL}.get(name, cue)
         sides = ("both",) * 2 if both else (side, side if answer == cue else None)
-        play.note((cue, answer), start, i=i, relation="while", sides=sides)
+        play.note((cue, answer), start, i=i, sides=sides)
 
     return make
 
@@ -214,7 +213,7 @@ def _hug(play: Play, i: int) -> None:
     for k in (0, 1):
         play.look(k, start, start + length + 20, 0.3)
     play.effect(start - 6, start + length + 34, lambda a, b: hug(own_rng, a, b, 12, length, over), i=i)
-    play.note(("hug", "hug"), start, i=i, relation="while")
+    play.note(("hug", "hug"), start, i=i)
     if play.gap < 0.7:  # nobody stays that close
         walk = stride(rng, play.library, "walk-back", rng.uniform(0.4, 0.7))
         play.people[pick(rng, (i, 1 - i))].perform(walk.motion)
@@ -228,7 +227,7 @@ def _from_the_side(make: Callable, name: str, answer: str) -> Callable[[Play, in
         rng = play.rng
         begun = play.sync()
         own, other = play.people[i], play.people[1 - i]
-        side, _ = chosen_side(rng)
+        side = chosen_side(rng)
         sign = 1.0 if side == "right" else -1.0
         # Where i must stand so that the other is ahead and a little to the other side, half turned away.
         turn = sign * rng.uniform(1.0, 1.4)
@@ -240,14 +239,14 @@ def _from_the_side(make: Callable, name: str, answer: str) -> Callable[[Play, in
         own.hold(12, turn=wrapped(way - own.angle), shift=spot - own.spot)
         start = play.sync()
         if not near:
-            play.note_span(("walk-up", STILL), begun, start, i=i, relation="while", minor=True)
+            play.note(("walk-up", STILL), begun, end=start, i=i, minor=True)
         length = play.seconds(1.6, 2.4)
         for person in play.people:
             person.hold(length + 22)
         own_rng = np.random.default_rng(rng.integers(2**32))
         play.effect(start, start + length + 40, lambda a, b: make(own_rng, a, b, 2, length, side), i=i)
         play.look(1 - i, start, start + length, 0.3)
-        play.note((name, answer), start, i=i, relation="while", sides=(side, None))
+        play.note((name, answer), start, i=i, sides=(side, None))
 
     return beat
 
@@ -261,7 +260,7 @@ def _help_up(play: Play, i: int) -> None:
     length = 100
     for person in play.people:
         person.hold(length)
-    side, own_rng = chosen_side(rng)[0], np.random.default_rng(rng.integers(2**32))
+    side, own_rng = chosen_side(rng), np.random.default_rng(rng.integers(2**32))
     down = max(begun, start - 45)
 
     def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
@@ -269,22 +268,10 @@ def _help_up(play: Play, i: int) -> None:
         # The other goes down at first, if the scene has begun before.
         rise = envelope(len(b), 0, 30, len(b), len(b) + 1)[:, None, None] if down > 0 else 1.0
         mixed = b + (helped[1] - b) * rise
-        return helped[0], _on_bones(mixed, b), helped[2]
+        return helped[0], project_to_skeleton(mixed)[0], helped[2]
 
     play.effect(down, start + length + 24, effect, i=i)
-    play.note(("help-up", "stand-up"), begun, i=i, sides=(side, None))
-
-
-def _on_bones(positions: Array, like: Array) -> Array:
-    """Positions whose bones are as long as ``like``'s."""
-    result = positions.copy()
-    for parent, joint in SMPL22.bones:
-        bone = positions[:, joint] - positions[:, parent]
-        length = np.linalg.norm(like[:, joint] - like[:, parent], axis=-1, keepdims=True)
-        result[:, joint] = result[:, parent] + bone * length / np.maximum(
-            np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9
-        )
-    return result
+    play.note(("help-up", "stand-up"), begun, i=i, relation="reply", sides=(side, None))
 
 
 def _tap_turn(play: Play, i: int) -> None:
@@ -292,7 +279,7 @@ def _tap_turn(play: Play, i: int) -> None:
     rng = play.rng
     begun = play.sync()
     own, other = play.people[i], play.people[1 - i]
-    side, _ = chosen_side(rng)
+    side = chosen_side(rng)
     sign = 1.0 if side == "right" else -1.0
     if abs(play.off(1 - i)) < 2.0:  # the other turns away first
         other.turn(wrapped(np.pi - abs(play.off(1 - i))) * pick(rng, (-1, 1)))
@@ -304,7 +291,7 @@ def _tap_turn(play: Play, i: int) -> None:
     own.hold(10, turn=wrapped(way - own.angle), shift=spot - own.spot)
     start = play.sync()
     if start - begun > 30:
-        play.note_span(("come-behind", STILL), begun, start, i=i, relation="while", minor=True)
+        play.note(("come-behind", STILL), begun, end=start, i=i, minor=True)
     arrive = int(rng.integers(14, 20))
     leave = arrive + int(rng.integers(14, 22))
     own.hold(leave + 40)
@@ -321,7 +308,7 @@ def _tap_turn(play: Play, i: int) -> None:
         return a, b, [(f"{side}_wrist", f"{side}_shoulder", arrive, leave - 4)]
 
     play.effect(start, start + leave + 24, effect, i=i)
-    play.note(("pat:shoulder", "turn-to"), start, i=i, sides=(side, None))
+    play.note(("pat:shoulder", "turn-to"), start, i=i, relation="reply", sides=(side, None))
 
 
 TOUCH_BEATS: dict[str, tuple[Callable[[Play, int], None], float, tuple[str, ...]]] = {

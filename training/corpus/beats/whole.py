@@ -43,7 +43,7 @@ def plain(play: Play, *actions: str) -> list[Motion]:
 def frozen(motion: Motion, frames: int) -> Motion:
     """The last pose held for ``frames`` frames."""
     last = [len(motion) - 1] * frames
-    return Motion(motion.rotations[last], motion.root[last], motion.contacts[last], motion.sources)
+    return Motion(motion.rotations[last], motion.root[last], motion.sources)
 
 
 def looped(motion: Motion, frames: int, *, blend: int = 8) -> Motion:
