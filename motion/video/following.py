@@ -17,8 +17,8 @@ from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
 from motion.vectors import FLAT
 
-from .landmarks import INDEX, LENS, Landmarks
-from .person import LAYOUT, TILTS, check_camera, layout_points
+from .landmarks import INDEX, Landmarks
+from .person import LAYOUT, TILTS, layout_points
 from .place import body_tilt, focal_length, towards, translation, upright
 
 Array = NDArray[np.floating]
@@ -76,18 +76,11 @@ class FollowedPerson:
 
     Attributes:
         gaze: of the last picture with a pose; None where the points do not tell.
-
-    Args:
-        lens: degrees that the camera sees from corner to corner.
-        tilt: degrees by which it looks down; found from the first pictures by default.
-
-    Raises:
-        InputError: for a lens or tilt that is not possible.
+        tilt: degrees by which the camera looks down, as the first pictures say.
     """
 
-    def __init__(self, *, lens: float = LENS, tilt: float | None = None) -> None:
-        check_camera(lens, tilt)
-        self.lens, self.tilt = lens, tilt
+    def __init__(self) -> None:
+        self.tilt = 0.0
         self._measured: list[tuple[Array, Array]] = []
         self._turn: Array | None = None
         self._body = SMPL22
@@ -122,7 +115,7 @@ class FollowedPerson:
         self._last = time
         self.seen = float(landmarks.seen[chosen][_LEGS].mean())
         try:
-            points, seen = _in_camera(landmarks, chosen, self.lens)
+            points, seen = _in_camera(landmarks, chosen)
             if self._turn is None:
                 self._measure(points, seen)
                 return None
@@ -138,8 +131,7 @@ class FollowedPerson:
         if len(self._measured) < MEASURED:
             return
         stack, trust = (np.stack(values) for values in zip(*self._measured, strict=True))
-        if self.tilt is None:
-            self.tilt = float(np.clip(np.degrees(body_tilt(stack, trust)), *TILTS))
+        self.tilt = float(np.clip(np.degrees(body_tilt(stack, trust)), *TILTS))
         self._turn = upright(np.radians(self.tilt)) @ _UP
         chosen, _ = layout_points(stack, trust)
         _, root, self._body, self._size = pose_bodies(chosen, LAYOUT)
@@ -158,10 +150,10 @@ class FollowedPerson:
         return posed
 
 
-def _in_camera(landmarks: Landmarks, pose: int, lens: float) -> tuple[Array, Array]:
+def _in_camera(landmarks: Landmarks, pose: int) -> tuple[Array, Array]:
     """(33, 3) points in metres along the camera's axes, and (33,) how surely they are seen."""
     size = np.array([landmarks.width, landmarks.height])
-    focal = focal_length(landmarks.width, landmarks.height, lens)
+    focal = focal_length(landmarks.width, landmarks.height)
     pixels = (landmarks.pixels[pose] - size / 2)[None]
     seen = landmarks.seen[pose][None]
     world = np.einsum("tij,tpj->tpi", towards(pixels, focal), landmarks.world[pose][None])

@@ -3,7 +3,7 @@
 The browser sends them (``static/camera/landmarks.js``) as JSON with plain numbers and base64 of little-endian whole
 numbers: ``times`` (uint32, milliseconds), ``counts`` (uint8, 1 for a picture that shows somebody and 0 for another),
 ``world`` (int16, millimetres), ``image`` (int16, 8000 to the picture's side) and ``seen`` (uint8, 255 is sure); beside
-them ``name`` of the film, and ``tilt`` and ``lens`` of the camera in degrees, or null. The text is taken to be hostile.
+them ``name`` of the film. The text is taken to be hostile.
 """
 
 from __future__ import annotations
@@ -32,9 +32,6 @@ POINTS = (
 """Names in the network's order (Bazarevsky et al., BlazePose, 2020)."""
 INDEX = {name: index for index, name in enumerate(POINTS)}
 LIMBS = [INDEX[f"{side}_{part}"] for part in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for side in _SIDES]
-
-LENS = 70.0
-"""Degrees from corner to corner of the picture of an ordinary phone's or laptop's camera."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,28 +72,12 @@ MOST_TEXT = 4_000_000
 SIDES = (16, 16384)
 """Pixels: the smallest and the largest width and height."""
 _IMAGE = 8000.0
+_UNNAMED = "Film"
 _BROKEN = "The landmarks of the film are damaged: reload the page and choose the film again."
 
 
-@dataclass(frozen=True)
-class Sent:
-    """A film as the page sends it.
-
-    Attributes:
-        landmarks: of its pictures.
-        name: of the film.
-        tilt: degrees by which the camera looked down, None where it is to be found.
-        lens: degrees that it saw from corner to corner.
-    """
-
-    landmarks: Landmarks
-    name: str = "Film"
-    tilt: float | None = None
-    lens: float = LENS
-
-
-def unpack_film(text: str) -> Sent:
-    """The landmarks in a text, and what it says of the camera.
+def unpack_film(text: str) -> tuple[Landmarks, str]:
+    """The landmarks in a text, and the name of the film.
 
     Raises:
         InputError: where it is not what the page sends.
@@ -109,9 +90,7 @@ def unpack_film(text: str) -> Sent:
         raise InputError(_BROKEN) from None
     if not isinstance(fields, dict):
         raise InputError(_BROKEN)
-    lens = camera_number(fields.get("lens"))
-    tilt = camera_number(fields.get("tilt"))
-    return Sent(landmarks_of(fields), _name(fields.get("name")), tilt, LENS if lens is None else lens)
+    return landmarks_of(fields), _name(fields.get("name"))
 
 
 def landmarks_of(fields: dict[str, Any]) -> Landmarks:
@@ -148,25 +127,12 @@ def landmarks_of(fields: dict[str, Any]) -> Landmarks:
     )
 
 
-def camera_number(value: Any) -> float | None:
-    """A number of degrees, or None where it is not known.
-
-    Raises:
-        InputError: where it is neither.
-    """
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= 1e12:
-        raise InputError(_BROKEN)
-    return float(value)
-
-
 def _name(value: Any) -> str:
     """A film's name without what cannot be shown, at most 80 characters."""
     if not isinstance(value, str):
-        return Sent.name
+        return _UNNAMED
     shown = "".join(letter for letter in value[:80] if letter.isprintable() and letter not in "/\\")
-    return shown.strip() or Sent.name
+    return shown.strip() or _UNNAMED
 
 
 def _side(value: Any) -> int:

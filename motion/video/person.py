@@ -20,15 +20,13 @@ from motion.kinematics import project_to_skeleton
 from motion.skeleton import SMPL22, Layout
 from motion.transforms import resample
 
-from .landmarks import INDEX, LENS, Landmarks
+from .landmarks import INDEX, Landmarks
 from .place import body_tilt, focal_length, level, smooth, steady_path, towards, translation, upright
 
 Array = NDArray[np.floating]
 
 TILTS = (-45.0, 60.0)
 """Degrees by which a camera may look down, at least and at most."""
-LENSES = (40.0, 130.0)
-"""Degrees from corner to corner of the picture."""
 SHORTEST = 0.5
 """Seconds."""
 _NOISE = 0.03
@@ -76,7 +74,7 @@ class Filmed:
     Attributes:
         person: metres, Y up, floor at 0, +Z towards the camera.
         confidence: (T,) 0 to 1: how much of the person was seen in each frame; 0 in a gap.
-        tilt: degrees by which the camera looked down, found or given.
+        tilt: degrees by which the camera looked down.
         notes: sentences about what should have been filmed better.
     """
 
@@ -86,39 +84,27 @@ class Filmed:
     notes: tuple[str, ...] = ()
 
 
-def person_of(landmarks: Landmarks, *, lens: float = LENS, tilt: float | None = None, name: str = "Film") -> Filmed:
+def person_of(landmarks: Landmarks, *, name: str = "Film") -> Filmed:
     """The person in a film on SMPL22 at 30 frames a second.
 
     Args:
         landmarks: of its pictures.
-        lens: degrees that the camera sees from corner to corner; scales motion towards the camera.
-        tilt: degrees by which it looks down; found from the person by default.
         name: of the clip.
 
     Raises:
         InputError: where nobody can be followed, or not enough of them is seen.
     """
-    check_camera(lens, tilt)
     track = track_of(landmarks)
     if len(track) / track.fps < SHORTEST:
         raise InputError("The film shows somebody for less than half a second: film for longer.")
     _check_seen(track, landmarks)
-    points = _in_camera(track, landmarks, focal_length(landmarks.width, landmarks.height, lens))
+    points = _in_camera(track, landmarks, focal_length(landmarks.width, landmarks.height))
     fitted = _fit(points, track)
-    if tilt is None:
-        lean = body_tilt(points, track.seen)
-        tilt = float(np.clip(np.degrees(level(fitted, lean, fps=track.fps)), *TILTS))
+    lean = body_tilt(points, track.seen)
+    tilt = float(np.clip(np.degrees(level(fitted, lean, fps=track.fps)), *TILTS))
     positions = _finished(fitted @ _flipped(np.radians(tilt)).T, track.fps)
     clip = Clip(positions - positions[0, 0] * [1, 0, 1], FPS, name=name)
     return Filmed(clip, _confidence(track, len(positions)), tilt, _notes(track, landmarks))
-
-
-def check_camera(lens: float, tilt: float | None) -> None:
-    """Raises InputError for a lens or a tilt, in degrees, that is not possible."""
-    if not LENSES[0] <= lens <= LENSES[1]:
-        raise InputError(f"A lens of {lens:g}° is not possible: give {LENSES[0]:g} to {LENSES[1]:g}.")
-    if tilt is not None and not TILTS[0] <= tilt <= TILTS[1]:
-        raise InputError(f"A tilt of {tilt:g}° is not possible: give {TILTS[0]:g} to {TILTS[1]:g}.")
 
 
 def _check_seen(track: Track, landmarks: Landmarks) -> None:

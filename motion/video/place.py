@@ -11,19 +11,21 @@ from numpy.typing import NDArray
 
 from motion.skeleton import SMPL22
 
-from .landmarks import INDEX, LENS, LIMBS
+from .landmarks import INDEX, LIMBS
 
 Array = NDArray[np.floating]
 
+LENS = 70.0
+"""Degrees from corner to corner of the picture of an ordinary phone's or laptop's camera."""
 _NEAREST = 0.3
 """Metres."""
 _ROBUST = 0.05
 """A point that is this share of the distance to the person off counts half."""
 
 
-def focal_length(width: int, height: int, lens: float = LENS) -> float:
-    """Pixels of a metre at a metre's distance, for a lens that sees ``lens`` degrees from corner to corner."""
-    return float(np.hypot(width, height) / 2 / np.tan(np.radians(lens) / 2))
+def focal_length(width: int, height: int) -> float:
+    """Pixels of a metre at a metre's distance, for a lens of :data:`LENS`."""
+    return float(np.hypot(width, height) / 2 / np.tan(np.radians(LENS) / 2))
 
 
 def towards(pixels: Array, focal: float) -> Array:
@@ -70,17 +72,15 @@ def translation(world: Array, pixels: Array, seen: Array, focal: float) -> Array
     return found
 
 
-def smooth(values: Array, fps: float, *, seconds: float, weights: Array | None = None) -> Array:
+def smooth(values: Array, fps: float, *, seconds: float) -> Array:
     """Whittaker's smoother (1923) without lag: the path that is near ``values`` and accelerates little.
 
     Args:
         values: (T, D); not finite where unknown.
         fps: frames a second.
         seconds: about the time over which is smoothed.
-        weights: (T,) trust in each frame; 1 by default.
     """
     known = np.asarray(np.isfinite(values).all(axis=-1))
-    trust = np.asarray(known * (1.0 if weights is None else weights))
     frames = len(values)
     if frames < 3:
         return np.where(known[:, None], values, 0.0)
@@ -91,8 +91,8 @@ def smooth(values: Array, fps: float, *, seconds: float, weights: Array | None =
         for i in range(3):
             for j in range(i + 1):
                 bands[i - j, row + j] += strength * second[i] * second[j]
-    bands[0] += trust + 1e-9
-    right = np.where(known[:, None], values, 0.0) * trust[:, None]
+    bands[0] += known + 1e-9
+    right = np.where(known[:, None], values, 0.0)
     return scipy.linalg.solveh_banded(bands, right, lower=True)
 
 

@@ -1,4 +1,4 @@
-"""The command ``render``: films, contact sheets, figures and meshes of any motion file."""
+"""The command ``render``: films, contact sheets and figures of any motion file."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from .parser import add_reading, reading_choices, with_notes
 
 def add_render(commands: Any) -> None:
     """Adds ``render`` to the shell's commands."""
-    parser = commands.add_parser("render", help="draw a film, a contact sheet, a figure or a mesh of any motion file")
+    parser = commands.add_parser("render", help="draw a film, a contact sheet or a figure of any motion file")
     parser.add_argument("file", type=Path, help="motion file: .npz, .bvh, .glb …")
     parser.add_argument("second", type=Path, nargs="?", help="the other person, if each has a file")
     add_reading(parser, "the file")
     parser.add_argument(
         "--out",
         type=Path,
-        help="film: .mp4, .webm or .gif; contact sheet: .png or .pdf; plotly figure: .html; mesh: .ply or .obj; "
+        help="film: .mp4, .webm or .gif; contact sheet: .png or .pdf; plotly figure: .html; "
         "a .png beside the file by default",
     )
     parser.add_argument("--beside", type=Path, action="append", default=[], help="film: a motion to show beside it")
@@ -36,14 +36,13 @@ def add_render(commands: Any) -> None:
     parser.add_argument(
         "--frames", default="8", help="contact sheet: how many moments, 1 to 24, or which, as in 0,30,75"
     )
-    parser.add_argument("--frame", type=int, help="mesh: which frame; the middle one by default")
     parser.add_argument("--width", type=int, default=1600, help="contact sheet: pixels")
     parser.set_defaults(job=render)
 
 
 def render(options: argparse.Namespace) -> dict[str, Any]:
     """Draws a motion file; two people with a file each may be given as two files, by the first, or as a folder."""
-    from webdemo.view import film, mesh, plotly_figure, sheet
+    from webdemo.view import film, plotly_figure, sheet
     from webdemo.view.stage import Pane, Style
 
     motion = _motion(options.file, options.second, reading_choices(options))
@@ -82,13 +81,9 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
     elif suffix == plotly_figure.SUFFIX:
         fps = min(options.fps, plotly_figure.FPS)
         plotly_figure.write_figure(motion, out, title=title, theme=options.theme, fps=fps)
-    elif suffix in mesh.SUFFIXES:
-        frame = motion.num_frames // 2 if options.frame is None else options.frame
-        mesh.write_mesh(motion, out, frame=frame, style=style)
     else:
         raise InputError(
-            f"{out.name} cannot be rendered: give --out a name that ends in .mp4, .webm, .gif, .png, .pdf, "
-            ".html, .ply or .obj."
+            f"{out.name} cannot be rendered: give --out a name that ends in .mp4, .webm, .gif, .png, .pdf or .html."
         )
     written = {"files": [str(out)], "frames": motion.num_frames, "fps": motion.fps, "seconds": motion.seconds}
     return with_notes(written, options.file, options.animation, motion)

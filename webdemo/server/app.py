@@ -21,7 +21,7 @@ from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Mount
 
 from acts.lexicon import lexicon
-from webdemo.server.accounts.login import account_routes, login_routes
+from webdemo.server.accounts.login import login_routes
 from webdemo.server.accounts.visitors import Visitors
 from webdemo.server.http.admin_pages import admin_routes
 from webdemo.server.http.guard import Guard, may_read_figures
@@ -96,7 +96,6 @@ def create_app(settings: Settings, *, engine: EngineLike | None = None, scratch:
     app.include_router(public_routes(settings, lab.publishing))
     if lab.sign_ins is not None:
         app.include_router(login_routes(settings, lab.sign_ins))
-        app.include_router(account_routes(settings, lab.sign_ins))
     if lab.administration is not None:
         app.include_router(admin_routes(settings.root_path, lab.administration))
     app.add_middleware(CORSMiddleware)  # no other site may read anything; Gradio's own would let some

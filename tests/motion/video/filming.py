@@ -11,7 +11,7 @@ import numpy as np
 from motion import SMPL22
 from motion.kinematics import fit_rotations, forward_kinematics
 from motion.video import Landmarks
-from motion.video.landmarks import LENS, POINTS
+from motion.video.landmarks import POINTS
 from motion.video.person import LAYOUT
 from motion.video.place import focal_length
 
@@ -64,7 +64,7 @@ def film(
     """
     height = 0.95 + distance * np.tan(np.radians(tilt))
     rng = np.random.default_rng(0)
-    focal = focal_length(*SIZE, LENS)
+    focal = focal_length(*SIZE)
     sin, cos = np.sin(np.radians(tilt)), np.cos(np.radians(tilt))
     to_camera = np.array([[1, 0, 0], [0, -cos, -sin], [0, sin, -cos]]).T
     frames = len(person)

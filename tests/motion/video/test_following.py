@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 
-from motion import InputError
 from motion.video import Landmarks
 from motion.video.following import HIDDEN, MEASURED, FollowedPerson, Gaze
 
 from .filming import film, stepping
 
 
-def followed(landmarks: Landmarks, **camera: Any) -> tuple[np.ndarray, FollowedPerson]:
+def followed(landmarks: Landmarks) -> tuple[np.ndarray, FollowedPerson]:
     """The poses (T, 22, 3) of the pictures after the measured ones."""
-    person = FollowedPerson(**camera)
+    person = FollowedPerson()
     poses = [person.add(landmarks, picture) for picture in range(len(landmarks.times))]
     assert all(pose is None for pose in poses[:MEASURED])
     return np.stack([pose for pose in poses[MEASURED:] if pose is not None]), person
@@ -50,11 +48,7 @@ def test_no_pose_depends_on_later_pictures() -> None:
     assert not np.array_equal(found[20 - MEASURED], other[20 - MEASURED])
 
 
-def test_what_the_camera_cannot_be_is_refused_and_half_a_person_gets_a_hint() -> None:
-    with pytest.raises(InputError, match="lens of 10°"):
-        FollowedPerson(lens=10)
-    with pytest.raises(InputError, match="tilt of 80°"):
-        FollowedPerson(tilt=80)
+def test_half_a_person_gets_a_hint() -> None:
     landmarks = film(stepping(1.0))
     _, person = followed(landmarks)
     assert person.hint == ""
@@ -69,7 +63,7 @@ def seen(face: float | None, *, tilt: float = 10.0, hidden: bool = False) -> Gaz
     landmarks = film(stepping(1.0, heading=0.4), tilt=tilt, face=face, noise=0.01)
     if hidden:
         landmarks = replace(landmarks, seen=landmarks.seen * (np.arange(33) != 0))
-    person = FollowedPerson(tilt=tilt)
+    person = FollowedPerson()
     assert person.gaze is None
     poses = [person.add(landmarks, picture) for picture in range(MEASURED + 4)]
     assert poses[-1] is not None

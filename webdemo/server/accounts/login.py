@@ -1,10 +1,9 @@
-"""Signing in and out: one small page, and the same address for programs; and a person's own account."""
+"""Signing in and out: one small page, and the same address for programs."""
 
 from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
-from functools import partial
 from urllib.parse import urlsplit
 
 from fastapi import APIRouter, Form, Request
@@ -14,10 +13,9 @@ from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Re
 from motion import InputError
 from webdemo.server.accounts.quotas import network_of
 from webdemo.server.audit import audit
-from webdemo.server.http.error_pages import account_card, never_kept, sign_in_card
+from webdemo.server.http.error_pages import never_kept, sign_in_card
 from webdemo.server.http.routes import Refused
 from webdemo.server.settings import Settings
-from webdemo.ui.visitor import visitor_of
 
 from .users import SignIns, Suspended, TooManyTries
 from .visitors import KNOWN_COOKIE, NO_ACCOUNTS, SESSION_COOKIE, set_cookie
@@ -39,7 +37,9 @@ def login_routes(settings: Settings, sign_ins: SignIns) -> APIRouter:
         body = sign_in_card(action=f"{root}/login", wanted=wanted, name=name[:40], error=error)
         return never_kept(body, status)
 
-    keep = partial(_keep, root)
+    def keep(response: Response, request: Request, cookie: str, value: str, seconds: float) -> None:
+        secure = request.url.scheme == "https"
+        set_cookie(response, cookie, value, seconds=seconds, root=root, secure=secure)
 
     @router.get("/login")
     def ask(next: str = "/") -> Response:
@@ -100,76 +100,8 @@ def _note(sign_ins: SignIns, name: str, token: str | None, status: int) -> None:
     audit("sign-in", ok=token is not None, person=name if known else "(unknown)", how="password", reason=why)
 
 
-def _keep(root: str, response: Response, request: Request, cookie: str, value: str, seconds: float) -> None:
-    secure = request.url.scheme == "https"
-    set_cookie(response, cookie, value, seconds=seconds, root=root, secure=secure)
-
-
 def _own_path(wanted: str) -> str:
     """A path on this server: an address of another host, or a header's line break, becomes the page."""
     parts = urlsplit(wanted)
     plain = wanted.isprintable() and wanted.isascii() and not any(c in wanted for c in "\\ \"'<>")
     return wanted if plain and wanted.startswith("/") and not wanted.startswith("//") and not parts.netloc else "/"
-
-
-# ---- a person's own account -------------------------------------------------------------------------
-
-
-_DIFFER = "The two new passwords differ: type them again."
-_WRONG = "The password that you have now is another one: try again."
-_CHANGED = "Your password is changed, and you are signed out everywhere else."
-
-
-def account_routes(settings: Settings, sign_ins: SignIns) -> APIRouter:
-    """``/account`` (the page), and POST to ``/account/password`` and ``/account/sign-out``."""
-    router = APIRouter()
-    root = settings.root_path
-
-    def page(request: Request, *, error: str = "", done: str = "", status: int = 200) -> HTMLResponse:
-        body = account_card(home=f"{root}/", name=_account(request), error=error, done=done)
-        return never_kept(body, status)
-
-    @router.get("/account")
-    def account(request: Request) -> Response:
-        return page(request)
-
-    @router.post("/account/password")
-    async def change(
-        request: Request,
-        now: str = Form("", max_length=1000),
-        new: str = Form("", max_length=1000),
-        again: str = Form("", max_length=1000),
-    ) -> Response:
-        name, address = _account(request), network_of(request.client.host if request.client else "")
-        if new != again:
-            return page(request, error=_DIFFER, status=422)
-        try:
-            token = await run_in_threadpool(sign_ins.change, name, now, new, address)
-        except TooManyTries as reason:
-            return page(request, error=str(reason), status=429)
-        except InputError as error:
-            return page(request, error=str(error), status=422)
-        audit("password-changed", ok=token is not None, person=name)
-        if token is None:
-            return page(request, error=_WRONG, status=401)
-        response = page(request, done=_CHANGED)
-        _keep(root, response, request, SESSION_COOKIE, token, sign_ins.seconds)
-        return response
-
-    @router.post("/account/sign-out")
-    async def sign_out(request: Request) -> Response:
-        name = _account(request)
-        count = await run_in_threadpool(sign_ins.end_all, name)
-        audit("sign-out-everywhere", person=name, count=count)
-        response = RedirectResponse(f"{root}/login", status_code=303)
-        _keep(root, response, request, SESSION_COOKIE, "", 0)
-        return response
-
-    return router
-
-
-def _account(request: Request) -> str:
-    account = visitor_of(request).account
-    if not account:
-        raise Refused(503, NO_ACCOUNTS, "accounts")
-    return account

@@ -210,7 +210,11 @@ class SignIns:
         key = self.users.key(name) or ""
         if self.people.of(key).suspended:
             raise Suspended(SUSPENDED)
-        return self._begin(key, entry)
+        token, now = secrets.token_urlsafe(32), time.time()
+        with self.database.session.begin() as session:
+            session.execute(delete(SignIn).where(SignIn.until < now))
+            session.add(SignIn(digest=_digest(token), person=key, entry=entry, until=now + self.seconds))
+        return token
 
     def person(self, token: str) -> str | None:
         """The name of a session's owner; None if it is unknown, has expired, or belongs to an earlier password.
@@ -227,43 +231,6 @@ class SignIns:
         name = found.person.partition("#")[0]
         same = self.users.key(name) == found.person and found.entry == self.users.entry(name)
         return name if same and not self.people.of(found.person).suspended else None
-
-    def _begin(self, key: str, entry: str) -> str:
-        token, now = secrets.token_urlsafe(32), time.time()
-        with self.database.session.begin() as session:
-            session.execute(delete(SignIn).where(SignIn.until < now))
-            session.add(SignIn(digest=_digest(token), person=key, entry=entry, until=now + self.seconds))
-        return token
-
-    def change(self, name: str, password: str, new: str, address: str) -> str | None:
-        """Gives an account another password, which ends all its sessions; returns a new session's token.
-
-        Args:
-            name: of the account.
-            password: that it has now.
-            new: the one that it gets.
-            address: where the try comes from.
-
-        Returns:
-            None if ``password`` is not the account's.
-
-        Raises:
-            TooManyTries: after too many wrong passwords.
-            InputError: if the new password is too short or too long, or the accounts cannot be read or written.
-        """
-        with self._lock:
-            self._throttle.take(name, address)
-        if not self.users.knows(name, password):
-            return None
-        with self._lock:
-            self._throttle.give_back(name, address)
-        self.users.add(name, new)
-        self.end_all(name)
-        return self.begin(name, new, address)
-
-    def end_all(self, name: str) -> int:
-        """Ends all sessions of an account; returns how many there were."""
-        return self.people.sign_out(self.users.key(name) or name)
 
     def end(self, token: str) -> None:
         """Signs a session out."""

@@ -45,44 +45,12 @@ def never_kept(page: str, status: int = 200) -> HTMLResponse:
     return HTMLResponse(page, status_code=status, headers={"Cache-Control": "no-store"})
 
 
-def _alert(error: str) -> str:
-    return f'<p role="alert">{html.escape(error)}</p>' if error else ""
-
-
 def message_card(sentence: str, *, home: str, reference: str) -> str:
     """A page with one sentence, a link to the lab, and the request's id for a search in the log."""
     return card(
         f'<p role="alert">{html.escape(sentence)}</p>'
         f'<p><a href="{html.escape(home, quote=True)}">Open the lab</a></p>'
         f"<p><small>Request {html.escape(reference)}</small></p>"
-    )
-
-
-def account_card(*, home: str, name: str, error: str = "", done: str = "") -> str:
-    """A person's own page.
-
-    Args:
-        home: address of the lab.
-        name: of the account.
-        error: what went wrong.
-        done: what was done.
-    """
-    said = _alert(error)
-    said += f'<p role="status">{html.escape(done)}</p>' if done else ""
-    fields = "".join(
-        f'<label>{label}<input name="{key}" type="password" autocomplete="{kind}" required></label>'
-        for label, key, kind in (
-            ("Password now", "now", "current-password"),
-            ("New password", "new", "new-password"),
-            ("New password again", "again", "new-password"),
-        )
-    )
-    action = html.escape(f"{home}account", quote=True)
-    return card(
-        f'<p>Signed in as {html.escape(name)}. <a href="{html.escape(home, quote=True)}">Open the lab</a></p>{said}'
-        f'<form method="post" action="{action}/password">{fields}<button>Change the password</button></form>'
-        f'<form method="post" action="{action}/sign-out"><button>Sign out everywhere</button></form>'
-        "<p><small>A new password signs you out in every other browser as well.</small></p>"
     )
 
 
@@ -95,7 +63,7 @@ def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "") -
         name: who tried before.
         error: what went wrong then.
     """
-    alert = _alert(error)
+    alert = f'<p role="alert">{html.escape(error)}</p>' if error else ""
     why = (
         "to see the motion that you were sent"
         if wanted.startswith("/?run=")

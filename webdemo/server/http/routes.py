@@ -30,7 +30,6 @@ _ROUTES = frozenset(
         "logout",
         "study",
         "share",
-        "account",
         "embed",
         "shown",
         "healthz",

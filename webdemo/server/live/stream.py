@@ -100,15 +100,12 @@ class LiveStream:
     person: str
     address: str
     partner: LivePartner
-    lens: float | None = None
-    tilt: float | None = None
     clock: Callable[[], float] = time.monotonic
     counts: Counts = field(default_factory=Counts)
     ended: str = ""
 
     def __post_init__(self) -> None:
-        camera = {name: value for name in ("lens", "tilt") if (value := getattr(self, name)) is not None}
-        self._camera = FollowedPerson(**camera)
+        self._camera = FollowedPerson()
         self._even = Resampled()
         self._shown_things: tuple[Thing, ...] = ()
         self.began = self.heard = self.found = self.clock()

@@ -20,7 +20,6 @@ from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
 from motion import FPS, SMPL22, Clip, InputError
-from motion.video.landmarks import camera_number
 from webdemo.inference.live.partner import LivePartner
 from webdemo.inference.requests.live import PARTNERS
 from webdemo.server.accounts.quotas import OverQuota, Quota
@@ -93,14 +92,12 @@ class Streams:
         """Number of open streams."""
         return len(self._open)
 
-    def open(
-        self, visitor: Visitor, partner: str, *, seed: int = 0, lens: float | None = None, tilt: float | None = None
-    ) -> LiveStream:
+    def open(self, visitor: Visitor, partner: str, *, seed: int = 0) -> LiveStream:
         """A new stream; the networks may have to be loaded first.
 
         Raises:
             StreamRefused: if there are too many.
-            InputError: for a partner, lens or tilt that is not known.
+            InputError: for a partner that is not known.
         """
         if partner not in PARTNERS:
             raise InputError(f"There is no live partner {partner!r:.40}: choose {' or '.join(PARTNERS)}.")
@@ -110,9 +107,7 @@ class Streams:
             self._coming += 1
         try:
             made = self.engine.partner(partner, seed=seed)
-            stream = LiveStream(
-                secrets.token_urlsafe(16), visitor.person, visitor.address, made, lens, tilt, self.clock
-            )
+            stream = LiveStream(secrets.token_urlsafe(16), visitor.person, visitor.address, made, self.clock)
             with self._lock:
                 self._open[stream.id] = stream
         finally:
@@ -258,11 +253,10 @@ async def _answered(request: Request, job: Callable[[], dict[str, Any] | Future[
 
 def _begin(streams: Streams, visitor: Visitor, body: bytes) -> dict[str, Any]:
     fields = read_fields(body)
-    lens, tilt = (camera_number(fields.get(name)) for name in ("lens", "tilt"))
     seed = fields.get("seed", 0)
     if type(seed) is not int or not 0 <= seed < 2**32:
         raise InputError("The seed of a live stream is a whole number from 0 to 4294967295.")
-    stream = streams.open(visitor, str(fields.get("partner", "")), seed=seed, lens=lens, tilt=tilt)
+    stream = streams.open(visitor, str(fields.get("partner", "")), seed=seed)
     rest = SMPL22.rest_positions()[None]
     empty = player_payload(Clip(rest - [0, rest[..., 1].min(), 0], FPS, SMPL22, name="you"), title="Live")
     return {"id": stream.id, "payload": {**empty, "id": f"stream-{stream.id}"}}

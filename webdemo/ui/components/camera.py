@@ -45,8 +45,8 @@ def film_source(text: str | None) -> Source:
     """
     if not text:
         raise InputError("There is no film yet: choose a video or use the webcam.")
-    sent = unpack_film(text)
-    filmed = person_of(sent.landmarks, name=sent.name)
+    landmarks, name = unpack_film(text)
+    filmed = person_of(landmarks, name=name)
     sure = round(100 * float(filmed.confidence.mean()))
     line = f"One person from video, {sure} % of the body seen, camera looks down {filmed.tilt:.0f}°"
-    return Source(sent.name, (filmed.person,), found=Found(line, ()), notes=filmed.notes)
+    return Source(name, (filmed.person,), found=Found(line, ()), notes=filmed.notes)

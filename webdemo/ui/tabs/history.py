@@ -300,8 +300,7 @@ def _signed_in(who: Visitor) -> str:
         return ""
     return (
         f'<form class="pd-status pd-account" method="post" action="{text(who.base)}logout">'
-        f"{text(f'Signed in as {who.account}')} ·\u2002<button>Sign out</button>"
-        f'\u2002<a href="{text(who.base)}account">Your account</a></form>'
+        f"{text(f'Signed in as {who.account}')} ·\u2002<button>Sign out</button></form>"
     )
 
 
