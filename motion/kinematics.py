@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from .skeleton import SMPL22, Skeleton
 from .vectors import unit
@@ -90,68 +91,58 @@ def fit_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
     return local_rotations(np.moveaxis(world, 0, -3), skeleton.bones)
 
 
-def followed_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
+def followed_rotations(positions: Array) -> Array:
     """Rotations against the world as unit quaternions that go on from frame to frame, to smooth or to interpolate.
 
     Where one bone leaves the twist open, it is the least from frame to frame rather than from the parent, so a limb
     that passes the rest pose's opposite does not flip; signs are chosen so that neighbours are close.
 
     Args:
-        positions: (T, J, 3) metres.
+        positions: (T, 22, 3) metres.
 
     Returns:
-        (T, J, 4) quaternions, the real part last. A joint without bones has the identity.
+        (T, 22, 4) quaternions, the real part last. A joint without bones has the identity.
     """
     world = np.zeros((*positions.shape[:2], 3, 3)) + np.eye(3)
-    single = [(joint, children[0]) for joint, children in enumerate(skeleton.children) if len(children) == 1]
-    for joint, children in enumerate(skeleton.children):
+    single = [(joint, children[0]) for joint, children in enumerate(SMPL22.children) if len(children) == 1]
+    for joint, children in enumerate(SMPL22.children):
         if len(children) > 1:
             bones = positions[:, list(children)] - positions[:, joint, None]
-            world[:, joint] = _kabsch(skeleton.offsets[list(children)], bones)
+            world[:, joint] = _kabsch(SMPL22.offsets[list(children)], bones)
     if single:
         joints, ends = np.array(single).T
         bones = positions[:, ends] - positions[:, joints]
         turns = swing(bones[:-1], bones[1:])
         for frame, turn in enumerate(turns, start=1):
             world[frame, joints] = turn @ world[frame - 1, joints]
-    found = _quaternions(world)
+    return quaternions(world)
+
+
+def quaternions(rotations: Array) -> Array:
+    """(T, …, 4) unit quaternions x y z w of (T, …, 3, 3), of two signs the one nearer to the frame before."""
+    found = np.asarray(Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_quat()).reshape(*rotations.shape[:-2], 4)
     flips = np.where(np.sum(found[1:] * found[:-1], axis=-1) < 0, -1.0, 1.0)
     found[1:] *= np.cumprod(flips, axis=0)[..., None]
     return found
 
 
-def _quaternions(rotations: Array) -> Array:
-    """(…, 4) unit quaternions, the real part last, of rotations (…, 3, 3): the main axis of Bar-Itzhack's matrix."""
-    across = rotations + np.swapaxes(rotations, -1, -2)
-    trace = np.trace(rotations, axis1=-2, axis2=-1)[..., None]
-    axial = rotations[..., [2, 0, 1], [1, 2, 0]] - rotations[..., [1, 2, 0], [2, 0, 1]]
-    matrix = np.empty((*rotations.shape[:-2], 4, 4))
-    matrix[..., :3, :3] = across - trace[..., None] * np.eye(3)
-    matrix[..., :3, 3] = matrix[..., 3, :3] = axial
-    matrix[..., 3, 3] = trace[..., 0]
-    return np.linalg.eigh(matrix)[1][..., -1]
-
-
 def rotation_matrices(quaternions: Array) -> Array:
-    """(…, 3, 3) rotations of quaternions (…, 4) of any length but 0, the real part last."""
-    x, y, z, w = np.moveaxis(unit(quaternions), -1, 0)
-    axial = np.zeros((*x.shape, 3, 3))
-    axial[..., 0, 1], axial[..., 0, 2], axial[..., 1, 2] = -z, y, -x
-    axial -= np.swapaxes(axial, -1, -2)
-    return np.eye(3) + 2 * (w[..., None, None] * axial + axial @ axial)
+    """(…, 3, 3) rotations of quaternions (…, 4), x y z w, of any length but 0."""
+    turns = Rotation.from_quat(quaternions.reshape(-1, 4)).as_matrix()
+    return np.asarray(turns).reshape(*quaternions.shape[:-1], 3, 3)
 
 
-def project_to_skeleton(positions: Array, skeleton: Skeleton = SMPL22) -> tuple[Array, Array]:
-    """The nearest motion with the skeleton's own bone lengths: the same root path and bone directions.
+def project_to_skeleton(positions: Array) -> tuple[Array, Array]:
+    """The nearest motion with SMPL22's own bone lengths: the same root path and bone directions.
 
     Args:
-        positions: (…, J, 3) metres.
+        positions: (…, 22, 3) metres.
 
     Returns:
-        positions (…, J, 3) with constant bones, and local rotations (…, J, 3, 3).
+        positions (…, 22, 3) with constant bones, and local rotations (…, 22, 3, 3).
     """
-    rotations = fit_rotations(positions, skeleton)
-    return forward_kinematics(rotations, np.asarray(positions)[..., 0, :], skeleton), rotations
+    rotations = fit_rotations(positions)
+    return forward_kinematics(rotations, np.asarray(positions)[..., 0, :]), rotations
 
 
 def _kabsch(rest: Array, observed: Array) -> Array:

@@ -67,9 +67,7 @@ def retarget(rig: RigMotion, *, fps: float = 30.0, plant: bool = True) -> Clip:
     return replace(_finished(positions, fps, rig.name, plant), notes=rig.notes)
 
 
-def retarget_duet(
-    a: RigMotion, b: RigMotion, *, fps: float = 30.0, plant: bool = True, roles: tuple[str, str] = ("a", "b")
-) -> Duet:
+def retarget_duet(a: RigMotion, b: RigMotion, *, fps: float = 30.0) -> Duet:
     """Brings two rigs that share one world onto SMPL22: one scale, one floor, the shorter one's length.
 
     Raises:
@@ -80,10 +78,10 @@ def retarget_duet(
     frames = min(len(person) for person in people)
     floor = min(_floor_height(person) for person in people)
     clips = [
-        replace(_finished(person[:frames] - np.array([0.0, floor, 0.0]), fps, rig.name, plant), notes=rig.notes)
+        replace(_finished(person[:frames] - np.array([0.0, floor, 0.0]), fps, rig.name), notes=rig.notes)
         for person, rig in zip(people, (a, b), strict=True)
     ]
-    return Duet(clips[0], clips[1], roles)
+    return Duet(clips[0], clips[1])
 
 
 @overload
@@ -111,7 +109,7 @@ def to_smpl(motion: Clip | Duet) -> Clip | Duet:
     fitted = [fit_skeleton(source, motion.skeleton, fps=motion.fps, scale=scale).positions for source in sources]
     floor = min(_floor_height(person) for person in fitted)
     clips = [
-        replace(_finished(person - np.array([0.0, floor, 0.0]), motion.fps, clip.name, True), notes=clip.notes)
+        replace(_finished(person - np.array([0.0, floor, 0.0]), motion.fps, clip.name), notes=clip.notes)
         for person, clip in zip(fitted, people, strict=True)
     ]
     return Duet(clips[0], clips[1], motion.roles, motion.manifest) if isinstance(motion, Duet) else clips[0]
@@ -150,7 +148,7 @@ def _on_bones(positions: Array) -> tuple[Array, Array]:
     return places, rotations
 
 
-def _finished(positions: Array, fps: float, name: str, plant: bool) -> Clip:
+def _finished(positions: Array, fps: float, name: str, plant: bool = True) -> Clip:
     if plant:
         positions = plant_feet(positions, foot_contacts(positions, fps, speed=_CONTACT_SPEED))
     positions, rotations = _on_bones(positions)

@@ -36,17 +36,17 @@ def least_jerk(values: Array, weights: Array) -> Array:
     return np.asarray(found + middle).reshape(np.shape(values))
 
 
-def led(values: Array, fixed: NDArray[np.bool_], *, reach: int = REACH, slack: float = _SLACK) -> Array:
+def led(values: Array, fixed: NDArray[np.bool_]) -> Array:
     """A path (T, …) that stays where it is at ``fixed`` (T,) frames and leads there without a jolt.
 
-    Only frames within ``reach`` of a fixed one move, and the nearer they are, the freer they are.
+    Only frames within :data:`REACH` of a fixed one move, and the nearer they are, the freer they are.
     """
     if not fixed.any() or fixed.all():
         return np.array(values, dtype=np.float64)
     away = frames_from(fixed)
-    weights = np.where(fixed | (away > reach), _FIXED, slack ** (1 - away / (reach + 1)))
-    found = least_jerk(values, weights)
-    found[fixed | (away > reach)] = values[fixed | (away > reach)]
+    stays = fixed | (away > REACH)
+    found = least_jerk(values, np.where(stays, _FIXED, _SLACK ** (1 - away / (REACH + 1))))
+    found[stays] = values[stays]
     return found
 
 

@@ -60,20 +60,19 @@ def turn(positions: Array, angle: float, centre: Array | None = None) -> Array:
     return (positions - centre) @ matrix.T + centre
 
 
-def canonicalize(positions: Array, *, person: int = 0, frame: int = 0, skeleton: Skeleton = SMPL22) -> Array:
-    """Moves a scene so that one person stands at the origin facing +Z at one frame.
+def canonicalize(positions: Array, *, frame: int = 0) -> Array:
+    """Moves a scene so that the first person stands at the origin facing +Z at one frame.
 
     Args:
-        positions: (P, T, J, 3) people of one scene, or (T, J, 3) for one person.
-        person: whose frame becomes the world's.
+        positions: (P, T, 22, 3) people of one scene, or (T, 22, 3) for one person.
         frame: at which frame.
 
     Returns:
         the same shape, with that person's root at XZ = 0, facing +Z. Heights do not change.
     """
-    reference = positions[person] if positions.ndim == 4 else positions
+    reference = positions[0] if positions.ndim == 4 else positions
     root = reference[frame, 0] * np.array([1.0, 0.0, 1.0])
-    return turn(positions - root, -float(heading(reference[frame], skeleton)))
+    return turn(positions - root, -float(heading(reference[frame])))
 
 
 def mirrored(positions: Array, skeleton: Skeleton = SMPL22) -> Array:

@@ -38,7 +38,6 @@ def read(
     *,
     name: str | None = None,
     choices: ImportChoices | None = None,
-    keep_skeleton: bool = False,
     longest: float | None = None,
 ) -> Clip | Duet:
     """Reads one motion file.
@@ -48,7 +47,6 @@ def read(
             its suffix.
         name: the file's name in messages, if not its own.
         choices: what is known of the file.
-        keep_skeleton: keep the joints of arrays in other layouts (Kinect's, CMU's).
         longest: seconds; a longer motion is refused before its joints are fitted, which takes about 5 ms a
             frame and person.
 
@@ -69,7 +67,7 @@ def read(
     motion = Duet(first, found.people[1], **found.beside) if count == 2 else first
     if longest is not None and motion.seconds > longest:
         raise InputError(f"{label} lasts {motion.seconds:.0f} s: cut it to {longest:g} s or less.")
-    return motion if keep_skeleton else to_smpl(motion)
+    return to_smpl(motion)
 
 
 def animation_note(path: str | Path, animation: Animation | None = None) -> str:

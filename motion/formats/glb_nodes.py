@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.kinematics import rotation_matrices
+from motion.kinematics import quaternions, rotation_matrices
 from motion.vectors import unit
 
 from .glb_file import MOST_JOINTS, GlbFile, Stored, in_order
@@ -265,13 +265,3 @@ def _split(linear: Array) -> tuple[Array, Array]:
     flips[:, 2] = np.linalg.det(left @ right)
     turn = (left * flips[:, None]) @ right
     return turn, np.einsum("tji,tji->ti", turn, linear)
-
-
-def quaternions(rotations: Array) -> Array:
-    """(T, 4) x y z w of (T, 3, 3), without flips of sign between frames."""
-    from scipy.spatial.transform import Rotation
-
-    found = Rotation.from_matrix(rotations).as_quat()
-    flips = np.sum(found[1:] * found[:-1], axis=-1) < 0
-    signs = np.where(np.concatenate([[0], np.cumsum(flips)]) % 2, -1.0, 1.0)
-    return found * signs[:, None]

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 
 from motion.body import vertex_normals
 from motion.clip import Duet
+from motion.kinematics import quaternions
 from motion.looks import hex_of, linear
 from motion.skeleton import SMPL22
 from motion.things.thing import Thing
 
 from .files import check_smpl, write_files
 from .glb_file import packed
-from .glb_nodes import quaternions
 from .skinned import ABOVE, JOINTS, Skinned, skinned
 
 _CHILDREN = [[joint for joint, above in enumerate(ABOVE) if above == parent] for parent in range(len(JOINTS))]

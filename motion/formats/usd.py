@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.clip import Duet
+from motion.kinematics import quaternions
 from motion.looks import hex_of, linear
 from motion.things.thing import Thing
 
 from .files import check_smpl, write_files
-from .glb_nodes import quaternions
 from .glb_writer import ROUGH, names_of, unit_normals
 from .skinned import ABOVE, JOINTS, Skinned, skinned
 

@@ -20,11 +20,10 @@ _SHARP = np.deg2rad(40)
 """Angle between two triangles from which their edge is sharp."""
 
 
-def box(size: Sequence[float], at: Sequence[float], colour: str, *, lean: float = 0.0, yaw: float = 0.0) -> Part:
-    """A box of ``size`` (3,) with its middle ``at`` (3,), turned about X by ``lean`` and then about Y by ``yaw``."""
+def box(size: Sequence[float], at: Sequence[float], colour: str, *, lean: float = 0.0) -> Part:
+    """A box of ``size`` (3,) with its middle ``at`` (3,), turned about X by ``lean``."""
     made = trimesh.creation.box(size)
     made.apply_transform(trimesh.transformations.rotation_matrix(lean, [1, 0, 0]))
-    made.apply_transform(trimesh.transformations.rotation_matrix(yaw, [0, 1, 0]))
     made.apply_translation(at)
     return made, colour
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from motion import SMPL22
+from motion import SMPL22, Clip, Duet
+from motion.formats.importing import import_motion
 from motion.kinematics import forward_kinematics
 
 FPS = 30.0
@@ -53,3 +56,9 @@ def gliding(frames: int = 90, *, speed: float = 0.1, sink: float = 0.02) -> np.n
     pose[:, 1] -= pose[:, 1].min()
     time = np.arange(frames)[:, None, None] / FPS
     return pose + time * np.array([speed, 0, 0]) - np.array([0, sink, 0])
+
+
+def as_stored(source: Path | bytes, name: str | None = None) -> Clip | Duet:
+    """The one or two people of a file on the file's own joints, before they are brought onto SMPL22."""
+    people = import_motion(source, name=name).people
+    return Duet(people[0], people[1]) if len(people) == 2 else people[0]

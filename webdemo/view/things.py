@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from motion.body import in_base64
 from motion.clip import Clip, Duet
 from motion.hands import angles
+from motion.kinematics import quaternions
 from motion.looks import hex_of
 from motion.things import FIXTURES
 from motion.things.thing import Mesh, Thing
@@ -75,9 +75,7 @@ def thing_payload(thing: Thing) -> dict[str, Any]:
     mesh = thing.mesh
     palette, which = mesh.by_colour(255)
     frames = thing.num_frames if thing.moves else 1
-    turns = Rotation.from_matrix(thing.rotations[:frames].astype(np.float64)).as_quat()
-    flips = np.sign(np.einsum("ti,ti->t", turns[1:], turns[:-1]) + 1e-9)
-    turns[1:] *= np.cumprod(flips)[:, None]  # of two signs the one nearer to the frame before
+    turns = quaternions(thing.rotations[:frames].astype(np.float64))
     return {
         "kind": thing.kind,
         "name": thing.name,

@@ -246,30 +246,21 @@ def _count(tally: dict[str, list[int]], sentence: Sentence, flags: Sequence[bool
         entry[1] += len(flags)
 
 
-def table(scores: Mapping[str, Any], beside: Mapping[str, Any] | None = None) -> str:
-    """The scores as Markdown, with a column of other weights' scores where they are given."""
-    heads = ["Sentences", "Obey (95 % interval)", *(["Before"] if beside else []), "Motion of other sentences"]
-    lines = [scores["about"], "", f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+def table(scores: Mapping[str, Any]) -> str:
+    """The scores as Markdown."""
+    lines = [scores["about"], "", "| Sentences | Obey (95 % interval) | Motion of other sentences |", "|---|---|---|"]
     order = [ALL, *sorted(set(scores["tags"]) - {ALL})]
     for tag in order:
         passed, count = scores["tags"][tag]
         strange, strangers = scores["other"].get(tag, [0, 0])
-        cells = [tag.replace("_", " "), share(passed, count)]
-        cells += [share(*beside["tags"].get(tag, (0, 0)))] if beside else []
-        cells += [f"{100 * strange / strangers:.0f} %" if strangers else "–"]
-        lines.append(f"| {' | '.join(cells)} |")
-    columns = [found["conditions"] for found in (scores, beside) if found]
-    shown = [share(*column) for column in columns]
-    lines.append(f"| single conditions of the rules | {' | '.join(shown)} | – |")
-    columns = [found.get("any", (0, 0)) for found in (scores, beside) if found]
-    shown = [share(*column) for column in columns]
-    lines.append(f"| sentences that one of their motions obeys | {' | '.join(shown)} | – |")
-    heads = ["Measure", "Generated", *(["Before"] if beside else [])]
-    lines += ["", f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+        chance = f"{100 * strange / strangers:.0f} %" if strangers else "–"
+        lines.append(f"| {tag.replace('_', ' ')} | {share(passed, count)} | {chance} |")
+    lines.append(f"| single conditions of the rules | {share(*scores['conditions'])} | – |")
+    lines.append(f"| sentences that one of their motions obeys | {share(*scores['any'])} | – |")
+    lines += ["", "| Measure | Generated |", "|---|---|"]
     for key, (label, unit) in PHYSICAL.items():
-        columns = [found["physical"].get(key) for found in (scores, beside) if found]
-        shown = ["–" if value is None else f"{value:.3g}" for value in columns]
-        lines.append(f"| {label}, {unit} | {' | '.join(shown)} |")
+        value = scores["physical"].get(key)
+        lines.append(f"| {label}, {unit} | {'–' if value is None else f'{value:.3g}'} |")
     return "\n".join(lines) + "\n"
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from motion import SKELETONS, Duet, InputError
 from motion.formats import read
+from tests.motion.bodies import as_stored
 
 
 def skeleton_text(people: np.ndarray, missing: dict[int, set[int]] | None = None) -> str:
@@ -30,17 +31,17 @@ def bodies() -> np.ndarray:
 
 
 def test_skeleton_files_hold_their_two_people(bodies: np.ndarray) -> None:
-    duet = read(skeleton_text(bodies).encode(), name="S001.skeleton", keep_skeleton=True)
+    duet = as_stored(skeleton_text(bodies).encode(), name="S001.skeleton")
     assert isinstance(duet, Duet)
     assert duet.fps == 30
     np.testing.assert_allclose(duet.positions, bodies, atol=1e-5)
 
 
 def test_frames_without_a_body_are_interpolated_and_ghosts_left_out(bodies: np.ndarray) -> None:
-    duet = read(skeleton_text(bodies, {1: {0, 5}}).encode(), name="x.skeleton", keep_skeleton=True)
+    duet = as_stored(skeleton_text(bodies, {1: {0, 5}}).encode(), name="x.skeleton")
     np.testing.assert_allclose(duet.b.positions[5], (bodies[1, 4] + bodies[1, 6]) / 2, atol=1e-5)
     np.testing.assert_allclose(duet.b.positions[0], bodies[1, 1], atol=1e-5)
-    alone = read(skeleton_text(bodies, {1: set(range(3, 12))}).encode(), name="x.skeleton", keep_skeleton=True)
+    alone = as_stored(skeleton_text(bodies, {1: set(range(3, 12))}).encode(), name="x.skeleton")
     np.testing.assert_allclose(alone.positions, bodies[0], atol=1e-5)
 
 
@@ -48,17 +49,17 @@ def test_a_body_that_is_found_again_is_the_same_one_and_a_gap_is_said() -> None:
     body = np.random.default_rng(3).normal(scale=0.3, size=(1, 60, 25, 3)).round(4)
     three = np.concatenate([body, body + 1.0, body + 1.0])
     lost = {1: set(range(20, 60)), 2: set(range(35))}
-    duet = read(skeleton_text(three, lost).encode(), name="x.skeleton", keep_skeleton=True)
+    duet = as_stored(skeleton_text(three, lost).encode(), name="x.skeleton")
     assert isinstance(duet, Duet)
     np.testing.assert_allclose(duet.b.positions[[5, 50]], three[1, [5, 50]], atol=1e-5)
     assert duet.b.notes == ("x.skeleton: person B is not seen from 0.7 to 1.2 s and is interpolated there.",)
-    end = read(skeleton_text(three[:2], {1: set(range(35, 60))}).encode(), name="x.skeleton", keep_skeleton=True)
+    end = as_stored(skeleton_text(three[:2], {1: set(range(35, 60))}).encode(), name="x.skeleton")
     assert isinstance(end, Duet) and "from 1.2 to 2.0 s and is held still" in end.b.notes[0]
 
 
 def test_sbu_numbers_become_metres() -> None:
     raw = np.random.default_rng(1).uniform(0.1, 0.9, size=(9, 90)).round(6)
-    duet = read(sbu_text(raw).encode(), name="skeleton_pos.txt", keep_skeleton=True)
+    duet = as_stored(sbu_text(raw).encode(), name="skeleton_pos.txt")
     assert duet.fps == 15
     assert duet.skeleton is SKELETONS["sbu15"]
     x, y, z = raw[4, 45:48]  # the second person's head

@@ -11,7 +11,7 @@ import pytest
 from motion import SMPL22, Clip, InputError, formats
 from motion.formats.markers import people_of
 from motion.skeleton import POINTS17
-from tests.motion.bodies import marching
+from tests.motion.bodies import as_stored, marching
 
 c3d = pytest.importorskip("c3d")
 
@@ -74,7 +74,7 @@ def error_of(found: Clip) -> float:
 
 @pytest.mark.parametrize(("unit", "scale"), [("m", 1.0), ("mm", 1000.0), ("cm", 100.0)])
 def test_key_points_of_a_trc_are_the_joints(unit: str, scale: float) -> None:
-    clip = formats.read(trc_text(keypoints(), unit=unit, scale=scale).encode(), name="walk.trc", keep_skeleton=True)
+    clip = as_stored(trc_text(keypoints(), unit=unit, scale=scale).encode(), name="walk.trc")
     assert isinstance(clip, Clip) and clip.fps == 30 and clip.notes == ()
     assert error_of(clip) < 1e-4
 
@@ -84,7 +84,7 @@ def test_zeros_are_a_marker_that_was_not_seen(kind: str) -> None:
     points = {name: np.array(place) for name, place in keypoints().items()}
     points["RKnee"][7:9] = 0.0
     data = trc_text(points).encode() if kind == "trc" else c3d_bytes(points)
-    clip = formats.read(data, name=f"x.{kind}", keep_skeleton=True)
+    clip = as_stored(data, name=f"x.{kind}")
     assert np.abs(clip.positions[7:9, POINTS17.index("right_knee")] - JOINT["right_knee"][7:9]).max() < 0.1
 
 
@@ -111,7 +111,7 @@ def test_gaps_are_interpolated_and_long_ones_are_said(kind: str) -> None:
     points["LWrist"] = points["LWrist"].copy()
     points["LWrist"][5:15] = np.nan
     data = trc_text(points).encode() if kind == "trc" else c3d_bytes(points)
-    clip = formats.read(data, name=f"gap.{kind}", keep_skeleton=True)
+    clip = as_stored(data, name=f"gap.{kind}")
     assert clip.notes == ("Interpolated, as their markers were often not seen: left wrist.",)
     wrist = clip.positions[:, POINTS17.index("left_wrist")]
     middle = points["LWrist"][4] + 0.5 * (points["LWrist"][15] - points["LWrist"][4])

@@ -16,7 +16,7 @@ from motion.formats.smpl import PELVIS
 from motion.kinematics import forward_kinematics
 from motion.representation import decode_positions, encode_person
 from motion.transforms import turn
-from tests.motion.bodies import marching
+from tests.motion.bodies import as_stored, marching
 
 A, ROTATIONS = marching(20)
 B = turn(marching(20, seed=1)[0], np.pi) + np.array([0, 0, 2.0])
@@ -53,7 +53,7 @@ def test_other_skeletons_come_back(skeleton, tmp_path):
         np.random.default_rng(0).normal(size=(2, 4, skeleton.num_joints, 3)), fps=15, skeleton=skeleton
     )
     (path,) = formats.write(duet, tmp_path / "x.npz")
-    assert formats.read(path, keep_skeleton=True).skeleton is skeleton
+    assert as_stored(path).skeleton is skeleton
 
 
 def test_npy_forms():
