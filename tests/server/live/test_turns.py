@@ -5,103 +5,111 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Iterator
+from typing import Any
 
 import httpx
+import numpy as np
 import pytest
 
 from motion import InputError
 from tests.server.attacks.target import Target
 from webdemo.server.live.stream import MOST_FRAMES
-from webdemo.server.live.turns import Replaced, Steps, StepTurns
+from webdemo.server.live.streams import Replaced
+from webdemo.ui.visitor import Visitor
 
-from .test_streams import poses
+from .test_streams import STUB, poses, streams
 
 FLOOD = 200
 """Messages that one stream sends at once."""
 
 
-class Gate:
-    """Jobs whose steps are written down, and which wait until they may begin."""
+class Noted(STUB.Mirror):
+    """A partner whose frames are written down, and wait until they may be computed."""
 
-    def __init__(self) -> None:
-        self.done: list[str] = []
-        self.began, self.open = threading.Event(), threading.Event()
+    done: list[str]
+    gate: threading.Event
 
-    def job(self, name: str, steps: int) -> Steps:
-        self.began.set()
-        for _ in range(steps):
-            assert self.open.wait(20)
-            self.done.append(name)
-            yield
-        return {"name": name}
+    def __init__(self, name: str, done: list[str], gate: threading.Event) -> None:
+        super().__init__()
+        self.name, self.done, self.gate = name, done, gate
 
-
-@pytest.fixture
-def turns() -> Iterator[StepTurns]:
-    turns = StepTurns("test")
-    yield turns
-    turns.stop()
+    def step(self, pose: np.ndarray) -> np.ndarray:
+        assert self.gate.wait(20)
+        self.done.append(self.name)
+        return super().step(pose)
 
 
-def test_owners_take_turns_step_by_step(turns: StepTurns) -> None:
-    gate = Gate()
-    answers = [turns.submit(name, lambda name=name, n=n: gate.job(name, n)) for name, n in (("a", 30), ("b", 2))]
-    gate.open.set()
-    assert [answer.result(20)["name"] for answer in answers] == ["a", "b"]
-    assert gate.done[:5] == ["a", "b", "a", "b", "a"] and len(gate.done) == 32
+class Live:
+    """Streams of people called by letters, whose frames are in ``done``."""
+
+    def __init__(self, people: str) -> None:
+        self.streams, self.done, self.gate = streams(), [], threading.Event()
+        self.keys: dict[str, str] = {}
+        for name in people:
+            self.streams.engine.partner = lambda _, seed=0, name=name: Noted(name, self.done, self.gate)
+            self.keys[name] = self.streams.open(Visitor(name, name), "agent").id
+
+    def sends(self, name: str, *times: float) -> asyncio.Task[dict[str, Any]]:
+        return asyncio.create_task(self.streams.answer(self.keys[name], Visitor(name, name), poses(list(times))))
 
 
-def test_a_newer_message_replaces_the_one_that_waits(turns: StepTurns) -> None:
-    gate = Gate()
-    first = turns.submit("a", lambda: gate.job("a0", 3))
-    assert gate.began.wait(20)
-    others = [turns.submit("a", lambda i=i: gate.job(f"a{i}", 1)) for i in range(1, FLOOD)]
-    late = turns.submit("b", lambda: gate.job("b", 1))
-    for other in others[:-1]:
-        with pytest.raises(Replaced, match="newer message"):
-            other.result(20)
-    gate.open.set()
-    assert first.result(20) == {"name": "a0"} and others[-1].result(20) == {"name": f"a{FLOOD - 1}"}
-    assert late.result(20) == {"name": "b"}
-    assert gate.done == ["a0", "b", "a0", "a0", f"a{FLOOD - 1}"]
+def test_streams_take_turns_frame_by_frame() -> None:
+    live = Live("ab")
+
+    async def both() -> None:
+        answers = [live.sends("a", 0.0, 0.5), live.sends("b", 0.0, 0.1)]
+        live.gate.set()
+        await asyncio.gather(*answers)
+
+    asyncio.run(both())
+    assert live.done[:6] == ["a", "b", "a", "b", "a", "b"] and live.done.count("a") == 16
 
 
-def test_an_error_ends_its_own_job_alone(turns: StepTurns) -> None:
-    def broken() -> Steps:
-        yield
-        raise RuntimeError("broken")
+def test_a_newer_message_replaces_those_that_wait() -> None:
+    live = Live("ab")
 
-    gate = Gate()
-    gate.open.set()
-    bad, good = turns.submit("a", broken), turns.submit("b", lambda: gate.job("b", 2))
-    with pytest.raises(RuntimeError, match="broken"):
-        bad.result(20)
-    assert good.result(20) == {"name": "b"}
-    assert turns.submit("a", lambda: gate.job("a", 1)).result(20) == {"name": "a"}
-    turns.stop()
-    with pytest.raises(InputError, match="stopping"):
-        turns.submit("a", lambda: gate.job("a", 1))
+    async def flood() -> list[Any]:
+        sent = [live.sends("a", i / 10) for i in range(FLOOD)]
+        await asyncio.sleep(0)
+        sent.append(live.sends("b", 0.0))
+        live.gate.set()
+        return await asyncio.gather(*sent, return_exceptions=True)
+
+    first, *others, last, late = asyncio.run(flood())
+    assert first["frames"] and last["frames"] and late["frames"]
+    assert len(others) == FLOOD - 2 and all(isinstance(other, Replaced) for other in others)
 
 
-def test_how_long_a_step_takes_is_known() -> None:
-    now, gate = [100.0], Gate()
-    turns = StepTurns("test", clock=lambda: now[0])
-    began = threading.Event()
+def test_an_error_ends_its_own_message_alone() -> None:
+    live = Live("ab")
+    live.gate.set()
 
-    def job() -> Steps:
-        began.set()
-        gate.open.wait(20)
-        return {}
-        yield
+    async def broken() -> tuple[Any, Any, Any]:
+        both = await asyncio.gather(
+            live.streams.answer(live.keys["a"], Visitor("a", "a"), b"[1]"), live.sends("b", 0.0), return_exceptions=True
+        )
+        return *both, await live.sends("a", 0.0)
 
-    assert turns.stuck == 0
-    answer = turns.submit("a", job)
-    assert began.wait(20)
-    now[0] += 50
-    assert turns.stuck == 50
-    gate.open.set()
-    answer.result(20)
-    turns.stop()
+    bad, good, after = asyncio.run(broken())
+    assert isinstance(bad, InputError) and good["frames"] and after["frames"]
+
+
+def test_how_long_a_frame_takes_is_known() -> None:
+    live = Live("a")
+
+    async def wait() -> None:
+        answer = live.sends("a", 0.0)
+        while not live.streams._began:
+            await asyncio.sleep(0.01)
+        await asyncio.sleep(0.05)
+        live.streams.clock.now += 50  # type: ignore[attr-defined]
+        assert live.streams.stuck == 50
+        live.gate.set()
+        await answer
+
+    assert live.streams.stuck == 0
+    asyncio.run(wait())
+    assert live.streams.stuck == 0
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import base64
 import binascii
 import json
@@ -22,8 +23,6 @@ from motion.video.landmarks import landmarks_of
 from webdemo.inference.live.partner import Belief, LivePartner
 from webdemo.view.payload import pack_positions
 from webdemo.view.things import thing_payload
-
-from .turns import Steps
 
 Array = NDArray[np.floating]
 
@@ -94,6 +93,8 @@ class LiveStream:
         clock: gives the time; seconds.
         counts: what has been done.
         ended: why there is no more, for the page; empty while it runs.
+        one: is held by the message that is answered; others wait for it.
+        newest: stands for the last message that came.
     """
 
     id: str
@@ -103,6 +104,8 @@ class LiveStream:
     clock: Callable[[], float] = time.monotonic
     counts: Counts = field(default_factory=Counts)
     ended: str = ""
+    one: asyncio.Lock = field(default_factory=asyncio.Lock)
+    newest: object = None
 
     def __post_init__(self) -> None:
         self._camera = FollowedPerson()
@@ -110,8 +113,8 @@ class LiveStream:
         self._shown_things: tuple[Thing, ...] = ()
         self.began = self.heard = self.found = self.clock()
 
-    def answer(self, content: Landmarks | Poses | None) -> Steps:
-        """Computes the answer to a message, a frame a step: both people's new frames, and what is to be said.
+    def answer(self, content: Landmarks | Poses | None) -> Iterator[dict[str, Any] | None]:
+        """Computes the answer to a message: None after each frame, at last both people's new ones and what is said.
 
         Raises:
             StreamEnded: if the stream has ended, also between two steps.
@@ -129,12 +132,12 @@ class LiveStream:
             if frame is None:
                 break
             frames.append(frame)
-            yield
+            yield None
         self.heard = self.clock()
         counts = self.counts
         counts.seconds += spent
         start, counts.frames = counts.frames, counts.frames + len(frames)
-        return {
+        yield {
             "start": start,
             "frames": pack_positions(np.stack(frames, axis=1)) if frames else None,
             **(self._things() if frames else {}),

@@ -11,12 +11,12 @@ import logging
 import secrets
 import threading
 import time
-from collections.abc import Callable
-from concurrent.futures import Future
+from collections.abc import Awaitable, Callable
 from functools import partial
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from fastapi import APIRouter, Request
+from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
 
 from motion import FPS, SMPL22, Clip, InputError
@@ -27,9 +27,9 @@ from webdemo.ui.visitor import Visitor, visitor_of
 from webdemo.view.payload import player_payload
 
 from .stream import LiveStream, StreamEnded, read_fields, read_message
-from .turns import STOPPING, Replaced, Steps, StepTurns
 
 log = logging.getLogger(__name__)
+Answer = TypeVar("Answer")
 
 IDLE = 20.0
 """Seconds without a message after which a stream is closed."""
@@ -40,6 +40,8 @@ KEPT = 256
 OTHER_TAB = "Another live stream of yours has begun, so this one ended: press Start to go on here."
 TOO_LONG = f"A live stream lasts {LONGEST / 60:.0f} minutes at most: press Start to go on."
 SILENT = f"Nothing came for {IDLE:.0f} seconds, so the live stream was closed: press Start to go on."
+REPLACED = "A newer message of this live stream took this one's place: send one after the other."
+STOPPING = "The server is stopping: press Start again in a minute."
 UNKNOWN = "The server does not know this live stream any more: press Start to go on."
 
 
@@ -49,6 +51,10 @@ class StreamRefused(InputError):
 
 class StreamUnknown(InputError):
     """There is no such live stream: it is another person's, or the server was started anew."""
+
+
+class Replaced(InputError):
+    """A newer message of the same stream took the place of one that waited."""
 
 
 class Partners(Protocol):
@@ -61,21 +67,20 @@ class Partners(Protocol):
 class Streams:
     """Opens streams, finds them again and closes those that are idle.
 
-    Each person may have one: opening another ends the first. One thread computes a frame of each stream in turn, and
-    another one opens streams, whose networks may have to be loaded first; see :class:`StepTurns`.
+    Each person may have one: opening another ends the first. One thread at a time computes, a frame of each stream in
+    turn, as several would wait for Python's interpreter lock; a stream's message waits until the one before is
+    answered, and a newer one takes its place. Streams are opened beside that, as networks may have to be loaded first.
 
     Args:
         engine: has the partners.
         quota: of streams.
         clock: gives the time; seconds.
-
-    Attributes:
-        turns: answers messages.
     """
 
     def __init__(self, engine: Partners, quota: Quota, *, clock: Callable[[], float] = time.monotonic) -> None:
         self.engine, self.quota, self.clock = engine, quota, clock
-        self.turns, self._doors = StepTurns("live"), StepTurns("live-open")
+        self._computing, self._opening = asyncio.Lock(), asyncio.Lock()  # whoever waits longest goes first
+        self._began: dict[asyncio.Lock, float] = {}
         self._lock = threading.Lock()
         self._open: dict[str, LiveStream] = {}
         self._ended: dict[str, str] = {}
@@ -85,7 +90,7 @@ class Streams:
     @property
     def stuck(self) -> float:
         """Seconds for which a frame, or the opening of a stream, has taken."""
-        return max(self.turns.stuck, self._doors.stuck)
+        return max((self.clock() - began for began in list(self._began.values())), default=0.0)
 
     @property
     def count(self) -> int:
@@ -145,31 +150,35 @@ class Streams:
                 raise StreamUnknown(UNKNOWN) if reason is None else StreamEnded(reason)
         return stream
 
-    def opening(self, person: str, open_: Callable[[], dict[str, Any]]) -> Future[dict[str, Any]]:
-        """Calls a function that opens a stream, when it is the person's turn.
+    async def opened(self, job: Callable[[], Answer]) -> Answer:
+        """Calls a function that opens a stream, in a thread, when it is its turn."""
+        return await self._in_turn(self._opening, job)
+
+    async def answer(self, key: str, visitor: Visitor, body: bytes) -> dict[str, Any]:
+        """The answer of a person's stream to a message.
 
         Raises:
-            StreamRefused: if the server is stopping.
-        """
-        if self._stopping:
-            raise StreamRefused(STOPPING)
-
-        def steps() -> Steps:
-            return open_()
-            yield  # one step
-
-        return self._doors.submit(person, steps)
-
-    def answer(self, key: str, visitor: Visitor, body: bytes) -> Future[dict[str, Any]]:
-        """The answer of a person's stream to a message; the next message replaces one that still waits.
-
-        Raises:
-            InputError: as :meth:`find`; the answer may raise :class:`Replaced`, StreamEnded, or InputError for a
-                message that cannot be read.
+            InputError: as :meth:`find`; :class:`Replaced`; StreamEnded; and for a message that cannot be read.
         """
         stream = self.find(key, visitor)
         stream.heard = self.clock()
-        return self.turns.submit(stream, lambda: stream.answer(read_message(body)))
+        stream.newest = mine = object()
+        async with stream.one:
+            if stream.newest is not mine:
+                raise Replaced(REPLACED)
+            steps = stream.answer(await self._in_turn(self._computing, partial(read_message, body)))
+            answer = None
+            while answer is None:
+                answer = await self._in_turn(self._computing, partial(next, steps))
+            return answer
+
+    async def _in_turn(self, turns: asyncio.Lock, job: Callable[[], Answer]) -> Answer:
+        async with turns:
+            self._began[turns] = self.clock()
+            try:
+                return await run_in_threadpool(job)
+            finally:
+                del self._began[turns]
 
     def close(self, stream: LiveStream) -> None:
         """Ends a stream that its person has stopped."""
@@ -192,8 +201,6 @@ class Streams:
             self._stopping = True
             for stream in list(self._open.values()):
                 self._end(stream, STOPPING)
-        self.turns.stop()
-        self._doors.stop()
 
     def _end(self, stream: LiveStream, reason: str) -> None:
         """The caller holds the lock."""
@@ -215,29 +222,26 @@ def live_routes(streams: Streams) -> APIRouter:
 
     @router.post("/live")
     async def begin(request: Request) -> Response:
-        visitor, body = visitor_of(request), await request.body()
-        return await _answered(
-            request, lambda: streams.opening(visitor.person, partial(_begin, streams, visitor, body))
-        )
+        body = await request.body()
+        return await _answered(streams.opened(partial(_begin, streams, visitor_of(request), body)))
 
     @router.post("/live/{key}")
     async def frames(key: str, request: Request) -> Response:
         body = await request.body()
-        return await _answered(request, lambda: streams.answer(key, visitor_of(request), body))
+        return await _answered(streams.answer(key, visitor_of(request), body))
 
     @router.delete("/live/{key}")
     async def end(key: str, request: Request) -> Response:
-        return await _answered(request, lambda: _end(streams, key, visitor_of(request)))
+        return await _answered(run_in_threadpool(_end, streams, key, visitor_of(request)))
 
     return router
 
 
-async def _answered(request: Request, job: Callable[[], dict[str, Any] | Future[dict[str, Any]]]) -> Response:
+async def _answered(job: Awaitable[dict[str, Any]]) -> Response:
     """The answer to a message, once it is there; errors are sentences."""
     status, answer = 200, {}
     try:
-        found = job()
-        answer = await asyncio.wrap_future(found) if isinstance(found, Future) else found
+        answer = await job
     except StreamRefused as error:
         status, answer = 503, {"detail": str(error)}
     except StreamUnknown as error:
