@@ -14,7 +14,7 @@ from motion.errors import InputError
 from motion.formats.files import replacing
 
 from .camera import Camera, cameras
-from .stage import Pane, Stage, Style, paste, words
+from .stage import Pane, Picture, Stage, Style, paste, words
 
 Array = NDArray[np.floating]
 
@@ -81,15 +81,15 @@ def write_sheet(
         raise InputError(f"Contact sheets end in .png or .pdf, not in {suffix or 'nothing'}.")
     if not WIDTHS[0] <= width <= WIDTHS[1]:
         raise InputError(f"A width of {width} is not possible: give {WIDTHS[0]} to {WIDTHS[1]}.")
-    moments = chosen_frames(motion, frames)
-    columns = min(len(moments), _COLUMNS)
+    times = np.array(chosen_frames(motion, frames)) / motion.fps
+    columns = min(len(times), _COLUMNS)
     tile = (width // columns, round(width / columns * _TALL))
-    times = np.arange(motion.num_frames) / motion.fps
-    (views,) = cameras([motion], size=tile, times=times[moments], view=view, around=0.0)
-    with replacing(path) as temporary:
-        _sheet(motion, style, moments, views, tile, title).save(
-            temporary, format=suffix[1:].upper(), resolution=_DPI, quality=95
-        )
+    (views,) = cameras([motion], size=tile, times=times, view=view, around=0.0)
+    rows = []
+    for first in range(0, len(times), columns):
+        part = slice(first, first + columns)
+        rows.append(_row(Stage(Pane(motion), style, tile), times[part], views[part], columns))
+    _save(rows, path, style, title)
     return path
 
 
@@ -115,59 +115,48 @@ def write_grid_sheet(
     tile = (WIDTH // _IN_ROW, round(WIDTH / _IN_ROW * _TALL))
     times = np.linspace(0.0, max((m.num_frames - 1) / m.fps for m in motions.values()), _IN_ROW)
     ways = cameras(list(motions.values()), size=tile, times=times, follow=False)
-    rows = [_row(motion, name, style, times, own) for (name, motion), own in zip(motions.items(), ways, strict=True)]
-    small = _text_size(tile)
-    head = np.full((2 * small if title else 0, rows[0].shape[1], 4), 255, dtype=np.uint8)
-    head[..., :3] = [round(255 * c) for c in style.colours.horizon]
-    sheet = np.concatenate([head, *rows])
-    if title:
-        paste(sheet, words(title, style.colours.ink, small), small // 2, small // 4)
-    with replacing(path) as temporary:
-        Image.fromarray(sheet).convert("RGB").save(temporary, format="PNG")
+    rows = []
+    for (name, motion), views in zip(motions.items(), ways, strict=True):
+        rows += [_line([(0, name)], tile, _IN_ROW, style)]
+        rows += [_row(Stage(Pane(motion), style, tile), times, views, _IN_ROW)]
+    _save(rows, path, style, title)
     return path
 
 
-def _row(motion: Clip | Duet, name: str, style: Style, times: Array, views: Sequence[Camera]) -> NDArray[np.uint8]:
-    """Pictures of a motion beside each other, its name above and the times below."""
-    tile, ink = views[0].size, style.colours.ink
-    small = _text_size(tile)
-    row = np.full((tile[1] + 4 * small, tile[0] * len(times), 4), 255, dtype=np.uint8)
-    row[..., :3] = [round(255 * c) for c in style.colours.horizon]
-    paste(row, words(name, ink, small), small // 2, small // 4)
-    for place, picture in enumerate(Stage(Pane(motion), style, tile).pictures(times, views)):
-        left = place * tile[0]
-        row[2 * small : 2 * small + tile[1], left : left + tile[0]] = picture
-        paste(row, words(f"{times[place]:.2f} s", ink, small), left + small // 2, tile[1] + 2 * small + small // 4)
-    return row
+def _row(stage: Stage, times: Array, views: Sequence[Camera], columns: int) -> Picture:
+    """Pictures beside each other at moments in seconds, room for ``columns`` of them, the times below."""
+    (wide, tall), style = stage.size, stage.style
+    row = _blank(tall, wide * columns, style)
+    for column, picture in enumerate(stage.pictures(times, views)):
+        row[:, wide * column : wide * (column + 1)] = picture
+    below = [(wide * column, f"{seconds:.2f} s") for column, seconds in enumerate(times)]
+    return np.concatenate([row, _line(below, stage.size, columns, style)])
 
 
-def _places(count: int, tile: tuple[int, int], head: int) -> list[tuple[int, int]]:
-    """The upper left corner of each picture; under each row is a line for the times."""
-    foot = _text_size(tile) * 2
-    return [(tile[0] * (i % _COLUMNS), head + (tile[1] + foot) * (i // _COLUMNS)) for i in range(count)]
+def _line(texts: Sequence[tuple[int, str]], tile: tuple[int, int], columns: int, style: Style) -> Picture:
+    """A line of texts, each with the pixel at which it begins, as wide as so many pictures."""
+    small = max(tile[0] // 16, 9)
+    line = _blank(2 * small, tile[0] * columns, style)
+    for x, text in texts:
+        paste(line, words(text, style.colours.ink, small), x + small // 2, small // 4)
+    return line
 
 
-def _text_size(tile: tuple[int, int]) -> int:
-    return max(tile[0] // 16, 9)
+def _blank(height: int, width: int, style: Style) -> Picture:
+    picture = np.full((height, width, 4), 255, dtype=np.uint8)
+    picture[..., :3] = [round(255 * part) for part in style.colours.horizon]
+    return picture
 
 
-def _whole(count: int, tile: tuple[int, int], head: int) -> tuple[int, int]:
-    rows = -(-count // _COLUMNS)
-    return tile[0] * min(count, _COLUMNS), head + rows * (tile[1] + _text_size(tile) * 2)
-
-
-def _sheet(
-    motion: Clip | Duet, style: Style, moments: list[int], views: list[Camera], tile: tuple[int, int], title: str
-) -> Image.Image:
-    small, ink = _text_size(tile), style.colours.ink
-    head = 2 * small if title else 0
-    width, height = _whole(len(moments), tile, head)
-    sheet = np.full((height, width, 4), 255, dtype=np.uint8)
-    sheet[..., :3] = [round(255 * c) for c in style.colours.horizon]
-    pictures = Stage(Pane(motion), style, tile).pictures(np.array(moments) / motion.fps, views)
-    for frame, (x, y), picture in zip(moments, _places(len(moments), tile, head), pictures, strict=True):
-        sheet[y : y + tile[1], x : x + tile[0]] = picture
-        paste(sheet, words(f"{frame / motion.fps:.2f} s", ink, small), x + small // 2, y + tile[1] + small // 4)
+def _save(rows: list[Picture], path: Path, style: Style, title: str) -> None:
+    """Writes rows of one width under each other, a title above, as the path's suffix says."""
+    whole = np.concatenate(rows)
     if title:
-        paste(sheet, words(title, ink, small), small // 2, small // 4)
-    return Image.fromarray(sheet).convert("RGB")
+        small = max(whole.shape[1] // 100, 9)
+        head = _blank(2 * small, whole.shape[1], style)
+        paste(head, words(title, style.colours.ink, small), small // 2, small // 4)
+        whole = np.concatenate([head, whole])
+    with replacing(path) as temporary:
+        Image.fromarray(whole).convert("RGB").save(
+            temporary, format=path.suffix[1:].upper(), resolution=_DPI, quality=95
+        )
