@@ -109,9 +109,6 @@ def serve(options: argparse.Namespace) -> dict[str, Any]:
         for name, value in settings.shown().items():
             print(f"{name} = {json.dumps(value)}  # {Settings.model_fields[name].description}")
         return settings.shown()
-    from webdemo.server.process import put_off_collection
-
-    put_off_collection()  # before Gradio is imported
     from webdemo.server.serve import serve as run
 
     run(settings)

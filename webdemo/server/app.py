@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import gc
 import logging
-import time
 from collections.abc import AsyncIterator, Callable
 from functools import partial
 from pathlib import Path
@@ -39,7 +39,7 @@ from webdemo.ui.places import READING
 from webdemo.ui.runs import EngineLike, Loader
 from webdemo.ui.visitor import visitor
 
-from .process import collect_again, give_back, watch
+from .process import give_back, watch
 from .settings import Settings
 
 log = logging.getLogger(__name__)
@@ -56,8 +56,6 @@ PAGES = 256
 """Most sessions whose state is kept; Gradio's default of 10,000 would take gigabytes."""
 WARM_UP_AFTER = 0.5
 """Seconds between the start and the loading of the networks, to answer a waiting browser first."""
-LONGEST_LOAD = 60.0
-"""Seconds after which Python looks for garbage again, even if the networks do not load."""
 
 
 def create_app(settings: Settings, *, engine: EngineLike | None = None, scratch: Scratch | None = None) -> FastAPI:
@@ -151,13 +149,13 @@ def _add_routes(app: FastAPI, lab: Lab) -> None:
 @contextlib.asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     lab: Lab = app.state.lab
+    gc.freeze()  # modules stay, so nobody looks for garbage among them
     lost = await run_in_threadpool(lab.history.recover)
     if lost:
         log.warning("%d runs were interrupted when the server last stopped.", lost)
     tasks = [
         asyncio.create_task(_later(WARM_UP_AFTER, lab.health.probe)),
         asyncio.create_task(_later(WARM_UP_AFTER, lexicon)),
-        asyncio.create_task(_collect_when_loaded(lab)),
         asyncio.create_task(_every(CLEAN_EVERY, lab.history.clean)),
         asyncio.create_task(_every(CLEAN_EVERY, lab.publishing.clean)),
         asyncio.create_task(_every(TIDY_EVERY, app.state.tidy)),
@@ -180,13 +178,6 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
 async def _later(seconds: float, job: Callable[[], Any]) -> None:
     await asyncio.sleep(seconds)
     await run_in_threadpool(job)
-
-
-async def _collect_when_loaded(lab: Lab) -> None:
-    until = time.monotonic() + LONGEST_LOAD
-    while not lab.health.ready and time.monotonic() < until:
-        await asyncio.sleep(0.5)
-    collect_again()
 
 
 async def _every(seconds: float, job: Callable[[], Any]) -> None:

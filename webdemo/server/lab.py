@@ -106,8 +106,15 @@ def make_lab(settings: Settings, engine: EngineLike, scratch: Scratch | None = N
         ready=lambda: health.ready,
         live=lambda: streams.count,
     )
-    storage = storage_of(settings, database, scratch)
-    history = history_of(settings, storage)
+    storage = Storage(database, settings.motions, quotas.rooms, scratch=scratch)
+    history = Notebook(
+        database,
+        settings.motions,
+        storage=storage,
+        keep_days=settings.keep_days,
+        link_days=settings.link_days,
+        free_bytes=settings.free_megabytes * 2**20,
+    )
     return Lab(
         settings=settings,
         database=database,
@@ -130,23 +137,6 @@ def make_lab(settings: Settings, engine: EngineLike, scratch: Scratch | None = N
 def administration_of(settings: Settings, database: Database, users: Users | None) -> Administration:
     """The acts of administrators of a lab."""
     return Administration(database, users, settings.data, elsewhere=bool(settings.proxy_user))
-
-
-def storage_of(settings: Settings, database: Database, scratch: Scratch | None = None) -> Storage:
-    """The room that people have in a lab."""
-    return Storage(database, settings.motions, Quotas.of(settings).rooms, scratch=scratch)
-
-
-def history_of(settings: Settings, storage: Storage) -> Notebook:
-    """The history of a lab."""
-    return Notebook(
-        storage.database,
-        settings.motions,
-        storage=storage,
-        keep_days=settings.keep_days,
-        link_days=settings.link_days,
-        free_bytes=settings.free_megabytes * 2**20,
-    )
 
 
 def engine_of(settings: Settings) -> EngineLike:

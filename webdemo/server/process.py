@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import ctypes
 import faulthandler
-import gc
 import logging
 import os
 import socket
@@ -73,19 +72,6 @@ def share_heaps() -> None:
     """Limits the heaps that the C library's threads use; call it before any thread starts."""
     if mallopt := getattr(ctypes.CDLL(None), "mallopt", None):
         mallopt(_M_ARENA_MAX, ARENAS)
-
-
-def put_off_collection() -> None:
-    """Keeps Python from looking for garbage while a server starts: it would walk through all modules again and again,
-    a fifth of the start."""
-    gc.disable()
-
-
-def collect_again() -> None:
-    """Ends :func:`put_off_collection`; what is there by now, modules above all, is left out from then on."""
-    if not gc.isenabled():
-        gc.freeze()
-        gc.enable()
 
 
 def give_back(*, resting: bool = False) -> None:

@@ -27,8 +27,6 @@ from webdemo.inference.methods import methods
 from webdemo.inference.requests import SamplingRequest
 from webdemo.inference.run import CancelToken, Progress, Result
 
-from .ray_messages import Began
-
 if TYPE_CHECKING:  # imported when first needed, so that the page is up before Ray is
     from ray.serve.handle import DeploymentHandle
 
@@ -89,10 +87,8 @@ class RayEngine:
                 "Ray is not installed: `pip install -r requirements-ray.txt`, or set PASDEDEUX_ENGINE=local."
             )
         self.address, self.replicas, self.cores, self.weights = address, replicas, cores, weights
-        self.at_work: dict[int, int] = {}
-        """Number of this process's runs on each replica, by the replica's process id."""
         self._handles: dict[str, DeploymentHandle] = {}
-        self._lock, self._counting = threading.Lock(), threading.Lock()
+        self._lock = threading.Lock()
         self._cluster: threading.Thread | None = None
         self._closing = threading.Event()
 
@@ -159,7 +155,6 @@ class RayEngine:
                 arrived.put((error,))
 
         threading.Thread(target=read, name="ray stream", daemon=True).start()
-        pid = 0
         try:
             while True:
                 cancel.raise_if_cancelled()
@@ -170,23 +165,11 @@ class RayEngine:
                 for event in events:
                     if isinstance(event, BaseException):
                         raise event
-                    if isinstance(event, Began):
-                        pid = event.pid
-                        self._count(pid, 1)
-                        continue
                     yield event
                     if isinstance(event, Result):
                         return
         finally:
             stream.cancel()  # no effect on a stream that has ended
-            if pid:
-                self._count(pid, -1)
-
-    def _count(self, pid: int, change: int) -> None:
-        with self._counting:
-            self.at_work[pid] = self.at_work.get(pid, 0) + change
-            if not self.at_work[pid]:
-                del self.at_work[pid]
 
     # ---- the cluster -----------------------------------------------------------------------------
 

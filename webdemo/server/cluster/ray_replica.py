@@ -16,12 +16,14 @@ from webdemo.inference.run import Cancelled, CancelToken, Progress, Result
 from webdemo.server.logs import set_up_logs
 from webdemo.ui.lazy import LazyEngine
 
-from .ray_messages import Began, ReplicaError
-
 log = logging.getLogger(__name__)
 Event = Progress | Result | Exception
 HEARTBEAT = 0.25
 """Seconds without an event after which a stream sends a heartbeat."""
+
+
+class ReplicaError(Exception):
+    """A run ended with an internal error; the message names its type and the process whose log has it."""
 
 
 class ModelReplica:
@@ -41,14 +43,13 @@ class ModelReplica:
         if model == SamplingRequest.model:
             self._engine.warm_up()
 
-    async def run(self, request: Any) -> AsyncIterator[tuple[Began | Event, ...]]:
+    async def run(self, request: Any) -> AsyncIterator[tuple[Event, ...]]:
         """Yields a request's events in tuples; an empty tuple is a heartbeat.
 
         The last event is a Result or the exception that ended the run. Closing the stream stops the run
         within one denoising step.
         """
         token = CancelToken()
-        yield (Began(os.getpid()),)
         try:
             async for events in in_thread(lambda: self._engine.run(request, cancel=token)):
                 yield tuple(events)

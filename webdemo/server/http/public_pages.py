@@ -27,15 +27,25 @@ _NOTHING = "There is nothing here."
 def public_routes(settings: Settings, publishing: Publishing) -> APIRouter:
     """The routes of public pages."""
     router = APIRouter()
-    pages = _Pages(settings.root_path, publishing)
+    files = f"{settings.root_path}/shown/"
+
+    def read(key: str) -> tuple[Shown, Payload]:
+        """The state that a page shows, and its motion; raises Refused where it shows nothing."""
+        try:
+            return publishing.shown(key), payload_of(publishing.open(key))
+        except InputError as error:
+            raise Refused(404, str(error), "public") from None
 
     @router.get("/share/{key}")
     def share(key: str, request: Request) -> Response:
-        return pages.whole(key, visitor_of(request).base)
+        shown, payload = read(key)
+        place = Place(files=files, embed=f"{visitor_of(request).base}embed/{quote(key)}")
+        return _sent(player_html(shown.entry, payload, place, until=shown.until))
 
     @router.get("/embed/{key}")
     def embed(key: str) -> Response:
-        return pages.player(key)
+        shown, payload = read(key)
+        return _sent(embed_html(shown.entry, payload, Place(files=files)))
 
     @router.get("/shown/{name:path}")
     def file(name: str) -> Response:
@@ -44,36 +54,6 @@ def public_routes(settings: Settings, publishing: Publishing) -> APIRouter:
         return FileResponse(FILES[name], headers=_FILE_HEADERS)
 
     return router
-
-
-class _Pages:
-    """Makes the pages.
-
-    Args:
-        root: path under which the lab is.
-        publishing: keeps what they show.
-    """
-
-    def __init__(self, root: str, publishing: Publishing) -> None:
-        self.root, self.publishing = root, publishing
-
-    def whole(self, key: str, base: str) -> Response:
-        """The page of a result."""
-        shown, payload = self._read(key)
-        place = Place(files=f"{self.root}/shown/", embed=f"{base}embed/{quote(key)}")
-        return _sent(player_html(shown.entry, payload, place, until=shown.until))
-
-    def player(self, key: str) -> Response:
-        """The player alone."""
-        shown, payload = self._read(key)
-        return _sent(embed_html(shown.entry, payload, Place(files=f"{self.root}/shown/")))
-
-    def _read(self, key: str) -> tuple[Shown, Payload]:
-        """The state that a page shows, and its motion; raises Refused where it shows nothing."""
-        try:
-            return self.publishing.shown(key), payload_of(self.publishing.open(key))
-        except InputError as error:
-            raise Refused(404, str(error), "public") from None
 
 
 def _sent(page: str) -> Response:
