@@ -18,7 +18,6 @@ from motion.vectors import unit
 from .clip import Clip
 from .rigs import RigMotion, match_joints
 from .skeleton import LAYOUTS, SMPL22
-from .transforms import axis_to_y
 
 Array = NDArray[np.floating]
 Places = Mapping[str, Array]
@@ -57,7 +56,12 @@ def places_of(motion: Clip | RigMotion) -> dict[str, Array]:
 
 def turn_of(up: str) -> Array:
     """(3, 3) rotation that turns an axis of :data:`AXES` to Y."""
-    return axis_to_y("xyz".index(up[-1]), -1.0 if up[0] == "-" else 1.0)
+    sign = -1.0 if up[0] == "-" else 1.0
+    if up[-1] == "y":
+        return np.diag([1.0, sign, sign])
+    if up[-1] == "z":
+        return np.array([[1.0, 0, 0], [0, 0, sign], [0, -sign, 0]])
+    return np.array([[0, -sign, 0], [sign, 0, 0], [0, 0, 1.0]])
 
 
 def find_up(people: Sequence[Places], usual: str, *, firm: bool = False) -> str:

@@ -25,6 +25,7 @@ from .errors import InputError
 from .ik_solver import MIN_NOISE, solve
 from .kinematics import fit_rotations, forward_kinematics
 from .skeleton import SMPL22, Layout, Skeleton, find_layout
+from .smoothing import filled
 
 Array = NDArray[np.floating]
 
@@ -79,7 +80,7 @@ def fit_skeleton(
     trust = np.broadcast_to(1.0 if weights is None else weights, positions.shape)[:, layout.columns]
     target = positions[:, layout.columns]
     trust = np.where(np.isfinite(target), trust, 0.0)
-    target = _fill(target)
+    target = filled(target)
 
     stretch = _noise(target, layout)
     body = _measured_body(target, layout, stretch)
@@ -136,7 +137,7 @@ def body_scale(positions: Array, joints: Layout | Skeleton | str | Sequence[str]
         positions: (T, J, 3) metres in the layout's order.
     """
     layout = find_layout(joints)
-    target = _fill(np.asarray(positions, dtype=np.float64)[:, layout.columns])
+    target = filled(np.asarray(positions, dtype=np.float64)[:, layout.columns])
     body = _measured_body(target, layout, _noise(target, layout))
     return _leg_length(body.offsets) / _leg_length(SMPL22.offsets)
 
@@ -145,20 +146,6 @@ def _leg_length(offsets: Array) -> float:
     """From the pelvis down to the ankles, standing straight."""
     chain = [SMPL22.index(n) for n in ("left_hip", "left_knee", "left_ankle")]
     return float(-offsets[chain[0], 1] + np.linalg.norm(offsets[chain[1:]], axis=-1).sum())
-
-
-def _fill(target: Array) -> Array:
-    """Joints that are not finite take a value interpolated in time (their weight is 0)."""
-    if np.isfinite(target).all():
-        return target
-    filled = target.copy().reshape(len(target), -1)
-    times = np.arange(len(filled))
-    for column in filled.T:
-        good = np.isfinite(column)
-        if not good.any():
-            raise InputError("A joint is missing in every frame: leave it out of the list of joints.")
-        column[~good] = np.interp(times[~good], times[good], column[good])
-    return filled.reshape(target.shape)
 
 
 def _segments(layout: Layout) -> list[tuple[int, int, int, int, list[int]]]:

@@ -131,7 +131,7 @@ def leg_scale(rig: RigMotion) -> float:
 def _on_smpl(rig: RigMotion, fps: float, scale: float) -> Array:
     """(T, 22, 3) Y-up positions on SMPL22's bones at the new frame rate; the floor is the file's, scaled."""
     parts = match_joints(rig)
-    source = _bodies(rig.positions, rig, parts, up_rotation(rig))
+    source = _bodies(rig.positions, rig, parts, turn_of(up_axis(rig)))
     positions = _transfer(source, _standing_rest(rig, parts), scale)
     if rig.fps == fps:
         return positions
@@ -164,11 +164,6 @@ def up_axis(*rigs: RigMotion) -> str:
     if first.up is not None:
         return first.up
     return find_up([places_of(rig) for rig in rigs], rest_axis(first) or "y", firm=first.y_up)
-
-
-def up_rotation(rig: RigMotion) -> Array:
-    """(3, 3) rotation that turns the file's up axis to Y."""
-    return turn_of(up_axis(rig))
 
 
 def rest_axis(rig: RigMotion) -> str:

@@ -11,6 +11,8 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import ArrayLike, NDArray
 
+from .errors import InputError
+
 Array = NDArray[np.floating]
 
 _FIXED = 1e7
@@ -47,6 +49,25 @@ def led(values: Array, fixed: NDArray[np.bool_]) -> Array:
     stays = fixed | (away > REACH)
     found = least_jerk(values, np.where(stays, _FIXED, _SLACK ** (1 - away / (REACH + 1))))
     found[stays] = values[stays]
+    return found
+
+
+def filled(positions: Array, label: str = "The motion") -> Array:
+    """(T, J, 3) in which joints that are not finite are interpolated over time, and held at the ends.
+
+    Raises:
+        InputError: for a joint that is never there, which ``label`` holds.
+    """
+    lost = np.asarray(~np.isfinite(positions).all(axis=-1))
+    if not lost.any():
+        return positions
+    if lost.all(axis=0).any():
+        raise InputError(f"{label} holds a joint that is missing in every frame: export it again.")
+    found, times = np.array(positions), np.arange(len(positions))
+    for joint in np.flatnonzero(lost.any(axis=0)):
+        seen = np.flatnonzero(~lost[:, joint])
+        for axis in range(3):
+            found[:, joint, axis] = np.interp(times, seen, positions[seen, joint, axis])
     return found
 
 

@@ -23,15 +23,6 @@ def heading_matrix(angle: float | Array) -> Array:
     return np.stack(rows, axis=-1).reshape(*angle.shape, 3, 3)
 
 
-def axis_to_y(axis: int, sign: float = 1.0) -> Array:
-    """(3, 3) the quarter or half turn that takes a signed coordinate axis to +Y."""
-    if axis == 1:
-        return np.diag([1.0, sign, sign])
-    if axis == 2:
-        return np.array([[1.0, 0, 0], [0, 0, sign], [0, -sign, 0]])
-    return np.array([[0, -sign, 0], [sign, 0, 0], [0, 0, 1.0]])
-
-
 def facing(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
     """(…, T, 3) unit vector in the XZ plane that the body faces: Y × (left → right reversed).
 

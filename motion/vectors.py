@@ -20,6 +20,11 @@ def unit(vectors: NDArray[Real]) -> NDArray[Real]:
     return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12))
 
 
+def left_of(way: Array) -> Array:
+    """(…, 3) what is to the left of level ways (…, 3), as long as they are."""
+    return np.stack([way[..., 2], np.zeros(way.shape[:-1]), -way[..., 0]], axis=-1)
+
+
 def square_frame(up: Array, across: Array) -> Array:
     """(…, 3, 3) rotation whose Y column is ``up`` and whose X column is ``across`` made square to it; both (…, 3)."""
     y = unit(up)

@@ -132,25 +132,6 @@ def frame_rate(stored: Array | None, given: float | None, label: str, *, usual: 
     return rate
 
 
-def filled(positions: Array, label: str) -> Array:
-    """(T, J, 3) in which joints that are NaN are interpolated over time, and held at the ends.
-
-    Raises:
-        InputError: for a joint that is never there.
-    """
-    lost = np.asarray(~np.isfinite(positions).all(axis=-1))
-    if not lost.any():
-        return positions
-    if lost.all(axis=0).any():
-        raise InputError(f"{label} holds a joint that is NaN in every frame: export it again.")
-    found, times = np.array(positions), np.arange(len(positions))
-    for joint in np.flatnonzero(lost.any(axis=0)):
-        seen = np.flatnonzero(~lost[:, joint])
-        for axis in range(3):
-            found[:, joint, axis] = np.interp(times, seen, positions[seen, joint, axis])
-    return found
-
-
 def no_rate(label: str, assumed: float) -> str:
     """The note on a file without a frame rate."""
     return _NO_RATE.format(label, assumed)

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from motion.clip import Clip
 from motion.errors import InputError
 from motion.skeleton import NTU25, SBU15
+from motion.smoothing import filled
 
-from .arrays import filled
 from .files import MAX_FRAMES, MAX_SECONDS, check_duration, decode_text
 from .recording import ImportChoices, Recording
 

@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 from motion.clip import Clip
 from motion.errors import InputError
 from motion.skeleton import POINTS17
+from motion.smoothing import filled
 from motion.vectors import unit
 
-from .arrays import filled
 from .files import MAX_FRAMES, MAX_NUMBERS, MAX_SECONDS, check_duration, decode_text
 from .recording import ImportChoices, Recording
 

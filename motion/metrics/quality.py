@@ -12,7 +12,7 @@ from motion import SMPL22, Duet
 from motion.cleaning import ANKLE_HEIGHT, TOE_HEIGHT
 from motion.looks import size_of
 from motion.transforms import facing
-from motion.vectors import wrapped
+from motion.vectors import left_of, wrapped
 
 from .bodies import capsules, depths, sideless
 
@@ -218,8 +218,7 @@ def mirror_gap(positions: Array) -> float:
     The plane goes through the pelvis, upright, along the way that the hips face. Two arms that do the same at the same
     time have 0.
     """
-    forward = facing(positions)
-    left = np.stack([forward[:, 2], np.zeros(len(forward)), -forward[:, 0]], axis=-1)
+    left = left_of(facing(positions))
     one, other = (positions[:, wrist] - positions[:, 0] for wrist in _WRISTS)
     image = other - 2 * np.sum(other * left, axis=-1, keepdims=True) * left
     return float(100 * np.linalg.norm(one - image, axis=-1).mean())

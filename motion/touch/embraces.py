@@ -14,11 +14,12 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
+from motion.kinematics import swing
 from motion.limbs import HIPS, UPPER, across, bent_towards, over_planted_feet
 from motion.skeleton import ARMS, LEGS, SMPL22
 from motion.smoothing import eased_marks, without_flicker
 from motion.transforms import facing
-from motion.vectors import FLAT, rotations_by
+from motion.vectors import FLAT, left_of, unit
 
 from .arms import grips_of_hands
 
@@ -98,7 +99,7 @@ def _around(own: Array, other: Array, least: float = _AROUND[0]) -> NDArray[np.b
     """(T, side) hands that are ``least`` metres past the other's spine, at the height of their trunk."""
     spine = other[:, _SPINE]
     way = _way(own, other)
-    across = _left(way)
+    across = left_of(way)
     low, high = other[:, 0, 1], other[:, SMPL22.index("neck"), 1] + 0.05
     found = []
     for *_, wrist in ARMS:
@@ -150,7 +151,7 @@ def _drawn(
     way = _way(own, other)
     gap = np.linalg.norm((other[:, _SPINE] - own[:, _SPINE]) * FLAT, axis=-1)
     metres = share * weight * np.maximum(gap - close, 0.0)
-    ahead = metres[:, None] * way + (aside * weight)[:, None] * _left(way)
+    ahead = metres[:, None] * way + (aside * weight)[:, None] * left_of(way)
     shift = _SHARE * ahead
     result = own.copy()
     result[:, UPPER] = (_leaned(own, ahead - shift) + shift[:, None])[:, UPPER]
@@ -161,13 +162,7 @@ def _drawn(
 def _leaned(own: Array, ahead: Array) -> Array:
     """A person (T, 22, 3) whose trunk turns about the pelvis and takes the chest ``ahead`` by (T, 3) metres."""
     arm = own[:, _SPINE] - own[:, 0]
-    goal = arm + ahead
-    size = np.linalg.norm(arm, axis=-1, keepdims=True)
-    goal = goal * size / np.maximum(np.linalg.norm(goal, axis=-1, keepdims=True), 1e-9)
-    axis = np.cross(arm, goal)
-    sine = np.linalg.norm(axis, axis=-1, keepdims=True)
-    angle = np.arctan2(sine, np.sum(arm * goal, axis=-1, keepdims=True))
-    turn = rotations_by(axis / np.maximum(sine, 1e-9) * angle)
+    turn = swing(arm, arm + ahead)
     return own[:, :1] + np.einsum("tij,tkj->tki", turn, own - own[:, :1])
 
 
@@ -177,7 +172,7 @@ def _wrapped(own: Array, spine: Array, way: Array, hands: Hands, weight: Array) 
     On their way there and back the arms open to the sides, and go round the other instead of through them.
     """
     result = own.copy()
-    left, up = _left(way), np.array([0.0, 1.0, 0.0])
+    left, up = left_of(way), np.array([0.0, 1.0, 0.0])
     w = weight[:, None]
     for (shoulder, elbow, wrist), side, (past, beside, height, hang) in zip(ARMS, (1.0, -1.0), hands, strict=True):
         goal = spine + past * way + beside * side * left + height * up
@@ -194,14 +189,4 @@ def _wrapped(own: Array, spine: Array, way: Array, hands: Hands, weight: Array) 
 
 def _way(own: Array, other: Array) -> Array:
     """(T, 3) the level way from one person's spine to the other's."""
-    return _level(other[:, _SPINE] - own[:, _SPINE])
-
-
-def _left(way: Array) -> Array:
-    """(T, 3) what is to the left of a level way (T, 3)."""
-    return np.stack([way[:, 2], np.zeros(len(way)), -way[:, 0]], axis=-1)
-
-
-def _level(way: Array) -> Array:
-    flat = way * FLAT
-    return np.asarray(flat / np.maximum(np.linalg.norm(flat, axis=-1, keepdims=True), 1e-6))
+    return unit((other[:, _SPINE] - own[:, _SPINE]) * FLAT)

@@ -25,7 +25,7 @@ from motion.limbs import HIPS, UPPER, across, bent_towards, drawn_in, limb_lengt
 from motion.skeleton import ARMS, SMPL22
 from motion.smoothing import eased_marks, without_flicker
 from motion.transforms import facing
-from motion.vectors import FLAT, rotations_by, unit
+from motion.vectors import FLAT, left_of, rotations_by, unit
 
 Array = NDArray[np.floating]
 
@@ -150,8 +150,7 @@ def _aside(way: Array, mine: Arm, theirs: Arm) -> Array:
     """(T, 3) where the other's palm lies from one's own in a handshake; above it, where a right hand holds a left."""
     if mine != theirs:
         return np.tile([0.0, 1.0, 0.0], (len(way), 1))
-    left = np.stack([way[:, 2], np.zeros(len(way)), -way[:, 0]], axis=-1)
-    return left if mine == ARMS[1] else -left
+    return left_of(way) if mine == ARMS[1] else -left_of(way)
 
 
 def _met(pair: Array, mine: Arm, theirs: Arm, share: Array, apart: Array, palm: float) -> Array:

@@ -21,6 +21,7 @@ from motion.looks import size_of
 from motion.sizes import at_sizes
 from motion.things import Thing, shape
 from webdemo.ui.components.player import MotionPlayer, busy, player_payload, show
+from webdemo.view.payload import build_payload, sample_payload
 
 FPS = 30.0
 HOSTILE = ('<img src=x onerror="window.__hacked=1">', "${window.__hacked=2}{{value}}")
@@ -119,6 +120,12 @@ def apart_duet(seconds: float = 4.0) -> Duet:
     return Duet.from_positions(positions, fps=FPS)
 
 
+def samples(*duets: Duet, title: str = "", **more: Any) -> dict[str, Any]:
+    """Several motions of one request, as tabs of the player."""
+    made = [sample_payload(duet, label=str(i), **more) for i, duet in enumerate(duets, 1)]
+    return build_payload(made, skeleton=SMPL22, title=title)
+
+
 def ask_nobody() -> dict[str, object]:
     """A short motion that plays twice and then rests, as the one that is there before anything is asked."""
     return {**player_payload(walking_duet(1.0)), "rounds": 2}
@@ -126,12 +133,12 @@ def ask_nobody() -> dict[str, object]:
 
 UPDATES: dict[str, Callable[[], dict[str, Any]]] = {
     "load": lambda: show(player_payload(walking_duet(), title="two people walk up to each other and shake hands")),
-    "several": lambda: show(player_payload([walking_duet(phase=0.8 * i) for i in range(4)], title="four takes")),
+    "several": lambda: show(samples(*(walking_duet(phase=0.8 * i) for i in range(4)), title="four takes")),
     "futures": lambda: show(
-        {**player_payload([walking_duet(4.0), apart_duet(4.0), walking_duet(4.0, phase=1.0)]), "futures": 30}
+        {**samples(walking_duet(4.0), apart_duet(4.0), walking_duet(4.0, phase=1.0)), "futures": 30}
     ),
     "hostile": lambda: show(player_payload(walking_duet(roles=HOSTILE), title=" ".join(HOSTILE))),
-    "predicted": lambda: show(player_payload(walking_duet(), ghost=walking_duet(phase=0.5), past_until=60)),
+    "predicted": lambda: show(samples(walking_duet(), ghost=walking_duet(phase=0.5), past_until=60)),
     "busy": lambda: busy("Step 12 of 50 ${1+1}", progress=0.24),
     "clear": lambda: show(None),
     "far": lambda: show(player_payload(apart_duet())),

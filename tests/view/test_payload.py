@@ -60,10 +60,7 @@ def test_ten_seconds_are_small_and_plain_json():
     assert json.loads(text) == payload
 
 
-def test_several_samples_and_one_person():
-    payload = player_payload([duet(20), duet(30)])
-    assert [s["label"] for s in payload["samples"]] == ["1", "2"]
-    assert [s["frames"] for s in payload["samples"]] == [20, 30]
+def test_one_person_has_no_curves():
     alone = player_payload(Clip(standing()[0], 30.0, name="solo"))
     assert alone["samples"][0]["positions"]["shape"] == [1, 30, 22, 3]
     assert alone["samples"][0]["curves"] == alone["samples"][0]["contacts"] == []
@@ -94,10 +91,11 @@ def test_looks_are_sent_where_the_words_say_something():
         lambda: pack_positions(np.zeros((2, 0, 22, 3))),
         lambda: pack_positions(np.zeros((4, 22, 3))),
         lambda: pack_positions(np.full((1, 2, 3, 3), np.nan)),
-        lambda: player_payload([]),
         lambda: sample_payload(duet(4), curves=[Curve("k", "L", "m", np.zeros(3))]),
         lambda: sample_payload(duet(4), past_until=5),
-        lambda: player_payload([duet(), Clip(np.zeros((3, 15, 3)), 30.0, SKELETONS["sbu15"])]),
+        lambda: sample_payload(
+            duet(), ghost=Duet.from_positions(np.zeros((2, 3, 15, 3)), fps=30, skeleton=SKELETONS["sbu15"])
+        ),
     ],
 )
 def test_refuses_in_one_sentence(make):

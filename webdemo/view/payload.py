@@ -185,37 +185,9 @@ def grid_sample(cells: Sequence[dict[str, Any]], columns: Sequence[str], rows: S
     }
 
 
-def player_payload(
-    motions: Duet | Clip | Sequence[Duet | Clip],
-    *,
-    title: str = "",
-    ghost: Duet | None = None,
-    past_until: int | None = None,
-) -> Payload:
-    """Turns what was made into what the player shows.
-
-    Args:
-        motions: one motion, or several samples of one request (they become tabs with one clock).
-        title: such as the prompt.
-        ghost: drawn pale beside every sample.
-        past_until: the first predicted frame of every sample.
-
-    Returns:
-        The value of a :class:`~webdemo.ui.components.player.MotionPlayer`.
-
-    Raises:
-        InputError: for no motion, or motions whose skeletons differ.
-    """
-    several = [motions] if isinstance(motions, (Duet, Clip)) else list(motions)
-    if not several:
-        raise InputError("There is no motion to show: give at least one sample.")
-    skeletons = [m.skeleton for m in several]
-    if any(s.joint_names != skeletons[0].joint_names for s in skeletons):
-        raise InputError("Samples shown together must have the same joints: retarget them first.")
-    samples = [
-        sample_payload(motion, label=str(i + 1), ghost=ghost, past_until=past_until) for i, motion in enumerate(several)
-    ]
-    return build_payload(samples, skeleton=skeletons[0], title=title)
+def player_payload(motion: Duet | Clip, *, title: str = "") -> Payload:
+    """One motion as the value of a :class:`~webdemo.ui.components.player.MotionPlayer`; ``title`` stands above it."""
+    return build_payload([sample_payload(motion, label="1")], skeleton=motion.skeleton, title=title)
 
 
 # ---- curves --------------------------------------------------------------------------------------

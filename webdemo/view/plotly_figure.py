@@ -62,11 +62,15 @@ def figure(motion: Clip | Duet, *, title: str = "", theme: str = "light", fps: f
     people = stacked_positions(motion).astype(np.float64)
     names = motion.roles if isinstance(motion, Duet) else (motion.name,)
     colours, moving = THEMES[theme], list(range(1, 1 + 4 * len(people)))
+    still = _tracks(people[:, moments[0]], motion.skeleton)
     made = go.Figure(
-        data=[_floor(people, colours), *_people(people[:, moments[0]], motion.skeleton, names, colours)],
+        data=[
+            _floor(people, colours),
+            *(go.Scatter3d(**track, **style) for track, style in zip(still, _styles(names, colours), strict=True)),
+        ],
         frames=[
             go.Frame(
-                data=_people(people[:, moment], motion.skeleton, names, colours, only_places=True),
+                data=[go.Scatter3d(**track) for track in _tracks(people[:, moment], motion.skeleton)],
                 traces=moving,
                 name=f"{moment / motion.fps:.2f}",
             )
@@ -106,43 +110,26 @@ def _moments(motion: Clip | Duet, fps: float) -> list[int]:
     return np.unique(np.rint(times * motion.fps).astype(int)).tolist()
 
 
-def _people(
-    places: Array, skeleton: Skeleton, names: tuple[str, ...], colours: Theme, *, only_places: bool = False
-) -> list[Any]:
-    """Four traces of each person at one moment; ``places`` is (people, J, 3)."""
-    from plotly import graph_objects as go
+def _tracks(places: Array, skeleton: Skeleton) -> list[dict[str, Array]]:
+    """Where four traces of each person are at one moment; ``places`` is (people, J, 3)."""
+    found = []
+    for joints in places:
+        found += [_lines(joints, skeleton, limb) for limb in LIMBS]
+        found.append(joints[[np.argmax(joints[:, 1])]] + np.array([0.0, _ABOVE_HEAD, 0.0]))
+    return [dict(zip("xyz", track.T, strict=True)) for track in found]
 
-    traces: list[Any] = []
-    for person, (joints, name) in enumerate(zip(places, names, strict=True)):
-        shade = colours.people[person % len(colours.people)]
-        for limb, colour in zip(LIMBS, shade, strict=True):
-            x, y, z = _lines(joints, skeleton, limb).T
-            looks: dict[str, Any] = (
-                {}
-                if only_places
-                else {
-                    "mode": "lines+markers",
-                    "line": {"color": _css(colour), "width": 7},
-                    "marker": {"color": _css(colour), "size": 3},
-                    "hoverinfo": "skip",
-                    "showlegend": False,
-                }
-            )
-            traces.append(go.Scatter3d(x=x, y=y, z=z, connectgaps=False, **looks))
-        x, y, z = joints[np.argmax(joints[:, 1])] + np.array([0.0, _ABOVE_HEAD, 0.0])
-        looks = (
-            {}
-            if only_places
-            else {
-                "mode": "text",
-                "text": [html.escape(str(name)[:40])],
-                "hoverinfo": "skip",
-                "showlegend": False,
-                "textfont": {"color": _css(shade[0]), "size": 15},
-            }
-        )
-        traces.append(go.Scatter3d(x=[x], y=[y], z=[z], **looks))
-    return traces
+
+def _styles(names: tuple[str, ...], colours: Theme) -> list[dict[str, Any]]:
+    """How these traces look: three limbs and a name."""
+    found: list[dict[str, Any]] = []
+    for person, name in enumerate(names):
+        shade = [_css(colour) for colour in colours.people[person % len(colours.people)]]
+        for colour in shade:
+            bone, joint = {"color": colour, "width": 7}, {"color": colour, "size": 3}
+            found.append({"mode": "lines+markers", "line": bone, "marker": joint})
+        text = [html.escape(str(name)[:40])]
+        found.append({"mode": "text", "text": text, "textfont": {"color": shade[0], "size": 15}})
+    return [{**style, "hoverinfo": "skip", "showlegend": False} for style in found]
 
 
 def _lines(joints: Array, skeleton: Skeleton, limb: str) -> Array:
