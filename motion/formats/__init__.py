@@ -7,29 +7,22 @@ from pathlib import Path
 from motion import Clip, Duet, InputError
 from motion.retarget import to_smpl
 
-from .glb_motion import animations_in
 from .importing import import_motion, import_pair
-from .recording import Animation, ImportChoices
-from .registry import ALONE, FORMATS, GLBS, READABLE, RIGS, Format, can_read, can_write, suffix_of, unknown, with_stem
+from .recording import ImportChoices
+from .registry import ALONE, FORMATS, READABLE, RIGS, can_write, suffix_of, unknown, with_stem
 
 __all__ = [
     "ALONE",
     "FORMATS",
-    "GLBS",
     "READABLE",
     "RIGS",
-    "Animation",
-    "Format",
     "ImportChoices",
-    "animation_note",
-    "can_read",
     "can_write",
     "read",
     "read_pair",
     "suffix_of",
     "with_stem",
     "write",
-    "write_clip",
 ]
 
 
@@ -63,16 +56,9 @@ def read(
         raise InputError(
             f"{Path(label).name} holds {count} people: choose one on the React tab, or save one or two of them."
         )
-    first = found.people[0]
-    motion = Duet(first, found.people[1], **found.beside) if count == 2 else first
-    if longest is not None and motion.seconds > longest:
-        raise InputError(f"{label} lasts {motion.seconds:.0f} s: cut it to {longest:g} s or less.")
-    return to_smpl(motion)
-
-
-def animation_note(path: str | Path, animation: Animation | None = None) -> str:
-    """A sentence on which animation of a file :func:`read` takes and which not; empty where there is no choice."""
-    return animations_in(path, animation=animation).note if Path(path).suffix.lower() in GLBS else ""
+    if longest is not None and (seconds := found.people[0].seconds) > longest:
+        raise InputError(f"{label} lasts {seconds:.0f} s: cut it to {longest:g} s or less.")
+    return found.motion
 
 
 def read_pair(
@@ -89,36 +75,25 @@ def read_pair(
     return to_smpl(Duet(first, second, roles))
 
 
-def write(duet: Duet | Clip, path: str | Path) -> list[Path]:
-    """Writes two people, or one, in the format of the path's suffix.
+def write(motion: Duet | Clip, path: str | Path) -> list[Path]:
+    """Writes two people, or one, in the format of the path's suffix, as :func:`read` reads them.
+
+    A .npz of one person holds positions (T, J, 3) float32, fps, joint_names and parents; a .npy the positions alone.
 
     Returns:
-        the files written; BVH gives two, ``NAME_a.bvh`` and ``NAME_b.bvh``.
+        the files written; two people's BVH gives two, ``NAME_a.bvh`` and ``NAME_b.bvh``.
 
     Raises:
-        InputError: for an unknown suffix, a full disk or a folder that cannot be written; nothing is left.
+        InputError: for an unknown suffix, or one that holds two people only, a full disk or a folder that cannot be
+            written; nothing is left.
     """
     path = Path(path)
     suffix = suffix_of(path)
     known = FORMATS.get(suffix)
     if known is None or known.writer is None:
         raise InputError(unknown(suffix, "written", [f.suffix for f in FORMATS.values() if f.writer]))
-    return write_clip(duet, path) if isinstance(duet, Clip) else known.writer(duet, path)
-
-
-def write_clip(clip: Clip, path: str | Path) -> list[Path]:
-    """Writes one person in the format of the path's suffix, as :func:`read` reads them.
-
-    A .npz holds positions (T, J, 3) float32, fps, joint_names and parents; a .npy the positions alone.
-
-    Returns:
-        the one path.
-
-    Raises:
-        InputError: for a suffix that holds two people only, or where the file cannot be written.
-    """
-    path = Path(path)
-    known = FORMATS.get(suffix_of(path))
-    if known is None or known.alone is None:
+    if isinstance(motion, Duet):
+        return known.writer(motion, path)
+    if known.alone is None:
         raise InputError(f"{path.name}: one person is written as {', '.join(ALONE[:-1])} or {ALONE[-1]}: choose one.")
-    return known.alone(clip, path)
+    return known.alone(motion, path)

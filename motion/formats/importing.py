@@ -66,13 +66,12 @@ class Imported:
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on how well the file could be read, and on which animation was taken."""
-        chosen = (self.animations.note,) if self.animations and self.animations.note else ()
-        return (*chosen, *dict.fromkeys(note for person in self.people for note in person.notes))
+        return tuple(dict.fromkeys(note for person in self.people for note in person.notes))
 
     @cached_property
     def motion(self) -> Clip | Duet:
         """The person, or the first two, on SMPL22; fitting takes about 5 ms a frame and person."""
-        return to_smpl(Duet(self.people[0], self.people[1]) if len(self.people) > 1 else self.people[0])
+        return to_smpl(Duet(*self.people[:2], **self.beside) if len(self.people) > 1 else self.people[0])
 
     def describe(self) -> str:
         """One line, such as "22 joints matched, cm, Z up, 120 frames a second"."""

@@ -56,6 +56,8 @@ def _rigs(data: bytes, label: str, choices: ImportChoices) -> Recording:
         people, animations = read_glb(data, name=label, animation=choices.animation)
         if choices.fps:
             people = tuple(replace(rig, fps=choices.fps / rig.every) for rig in people)
+        if animations.note:
+            people = tuple(replace(rig, notes=(animations.note,)) for rig in people)
         return Recording(people, animations=animations)
     return Recording(read_bvh(data, name=label, fps=RIG_FPS, file_fps=choices.fps))
 
@@ -132,11 +134,6 @@ def with_stem(path: Path, added: str) -> Path:
     """The path with something added to its name before its suffix."""
     suffix = suffix_of(path)
     return path.with_name(f"{path.name[: len(path.name) - len(suffix)]}{added}{path.name[-len(suffix) :]}")
-
-
-def can_read(suffix: str) -> bool:
-    """True if files with this suffix (with its dot) are understood."""
-    return suffix.lower() in FORMATS and FORMATS[suffix.lower()].reader is not None
 
 
 def can_write(suffix: str) -> bool:

@@ -111,7 +111,7 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
     request = ReactRequest(actor=actor, prompt=options.prompt, role=options.role, mode=mode, **fields)
     result = run(request)
     written = write_result(result, options.out)
-    return with_notes(written, options.actor, options.animation, actor)
+    return with_notes(written, actor)
 
 
 def add_predict(commands: Any) -> None:
@@ -142,4 +142,4 @@ def predict(options: argparse.Namespace) -> dict[str, Any]:
     result = run(request)
     assert isinstance(result, PredictResult)
     figures = {name: getattr(result, name) for name in ("past_frames", "error", "speed", "true_speed")}
-    return with_notes(write_result(result, options.out) | figures, options.past, options.animation, request.motion)
+    return with_notes(write_result(result, options.out) | figures, request.motion)

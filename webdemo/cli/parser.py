@@ -56,17 +56,12 @@ def reading_choices(options: argparse.Namespace) -> ImportChoices:
     return ImportChoices(options.file_up, None, options.file_fps, options.file_order, options.animation)
 
 
-def with_notes(
-    written: dict[str, Any], path: Path, animation: str | None, motion: Clip | Duet | None = None
-) -> dict[str, Any]:
+def with_notes(written: dict[str, Any], motion: Clip | Duet) -> dict[str, Any]:
     """A report with notes on how a file was read, also on stderr: which of several animations was taken, and so on."""
-    from motion.formats import animation_note
-
-    people = motion.people if isinstance(motion, Duet) else () if motion is None else (motion,)
-    notes = dict.fromkeys([animation_note(path, animation), *(n for person in people for n in person.notes)])
-    if found := [note for note in notes if note]:
-        print("\n".join(found), file=sys.stderr)
-        written["notes"] = [*found, *written.get("notes", ())]
+    people = motion.people if isinstance(motion, Duet) else (motion,)
+    if notes := list(dict.fromkeys(note for person in people for note in person.notes)):
+        print("\n".join(notes), file=sys.stderr)
+        written["notes"] = [*notes, *written.get("notes", ())]
     return written
 
 

@@ -86,7 +86,7 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
             f"{out.name} cannot be rendered: give --out a name that ends in .mp4, .webm, .gif, .png, .pdf or .html."
         )
     written = {"files": [str(out)], "frames": motion.num_frames, "fps": motion.fps, "seconds": motion.seconds}
-    return with_notes(written, options.file, options.animation, motion)
+    return with_notes(written, motion)
 
 
 def _motion(file: Path, second: Path | None, choices: ImportChoices | None = None) -> Clip | Duet:

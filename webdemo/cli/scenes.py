@@ -62,7 +62,7 @@ def scene(options: argparse.Namespace) -> dict[str, Any]:
     motion = _motion(options.motion, choices) if options.motion is not None else None
     request = SceneRequest(**asked, motion=motion, start=options.start, end=options.end)
     written = write_result(run(request), options.out)
-    return written if options.motion is None else with_notes(written, options.motion, options.animation)
+    return written if motion is None else with_notes(written, motion)
 
 
 def _story(options: argparse.Namespace) -> dict[str, Any]:

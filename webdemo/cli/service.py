@@ -50,7 +50,7 @@ def info(options: argparse.Namespace) -> dict[str, Any]:
     """Versions, formats and the model card."""
     from importlib.metadata import version
 
-    from motion.formats import FORMATS, can_read, can_write
+    from motion.formats import FORMATS
     from webdemo.inference.engine import Engine
 
     engine, known = Engine(), lexicon()
@@ -69,7 +69,7 @@ def info(options: argparse.Namespace) -> dict[str, Any]:
         "failed": failed(),
         "acts": {"all": len(known.entries), "own": sorted(known.own)},
         "weights": sorted({file.parent.name for file in engine.weights.glob("*/*.safetensors")}),
-        "formats": {s: {"read": can_read(s), "write": can_write(s)} for s in FORMATS},
+        "formats": {f.suffix: {"read": f.reader is not None, "write": f.writer is not None} for f in FORMATS.values()},
         "versions": {name: version(name) for name in ("gradio", "torch", "numpy", "plotly", "diffusers")},
     }
     print(f"{card['name']}: {card.get('summary', '')}")

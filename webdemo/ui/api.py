@@ -11,7 +11,7 @@ from typing import Any
 import gradio as gr
 
 from motion import Clip, Duet, InputError
-from motion.formats import ImportChoices, animation_note, read
+from motion.formats import ImportChoices, read
 from webdemo.inference.methods import AUTOMATIC, methods
 from webdemo.inference.requests import OWN_STEPS, GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.requests.actor import read_actor
@@ -25,8 +25,6 @@ from .context import PageContext
 from .places import READING
 
 Answer = tuple[dict[str, Any], list[str]]
-Given = tuple[Path, str | None]
-"""A file that was sent, and which of its animations is wanted."""
 RATE = "true frames a second of a file that gives none or a wrong one; 0 for its own or the usual rate of its kind"
 UP = "what points up in the file: x, y, z, -x, -y or -z; empty to find it"
 ORDER = "order of joints without names, such as h36m17; empty to find it"
@@ -84,17 +82,15 @@ class Endpoint:
         make: Callable[[], SamplingRequest | PredictRequest],
         title: str,
         progress: gr.Progress,
-        given: Given | None = None,
+        reads: bool = False,
     ) -> Answer:
         """Runs a request and writes its files, called after ``title``; every error is one sentence.
 
-        ``given`` is the file that was read, of which the notes say which animation was taken.
+        ``reads`` says that a motion file is read for it, which takes one of the places for that.
         """
         try:
-            with READING.place() if given is not None else nullcontext():
+            with READING.place() if reads else nullcontext():
                 request = make()
-                notes = [animation_note(*given)] if given is not None else []
-                notes += reading_notes(request)
             result = self._run(request, progress)
             files = write_files(result, self.page.shelf.folder(), prompt=title)
         except Cancelled:
@@ -105,7 +101,7 @@ class Endpoint:
             "manifest": result.manifest,
             "readouts": list(result.readouts),
             "timings": result.timings,
-            "notes": [*filter(None, notes), *result.notes],
+            "notes": [*reading_notes(request), *result.notes],
             "files": {key: [path.name for path in paths] for key, paths in files.items()},
         }
         if isinstance(result, PredictResult):
@@ -318,8 +314,7 @@ class ReactEndpoint(Endpoint):
             )
 
         title = prompt.strip() or f"Reaction to {Path(actor or '').stem}"
-        file = Path(actor or "")
-        return self._answer(request, title, progress, given=(file, animation or None))
+        return self._answer(request, title, progress, reads=True)
 
 
 class PredictEndpoint(Endpoint):
@@ -372,5 +367,4 @@ class PredictEndpoint(Endpoint):
                 model=model,
             )
 
-        file = Path(past or "")
-        return self._answer(request, f"After {file.stem}", progress, given=(file, animation or None))
+        return self._answer(request, f"After {Path(past or '').stem}", progress, reads=True)

@@ -62,8 +62,7 @@ class SceneEndpoint(Endpoint):
             given = _two_people(motion, reading_choices(animation, fps, up, order)) if motion else None
             return SceneRequest(**fields, motion=given, start=start or None, end=end or None)
 
-        given = (Path(motion), animation or None) if motion else None
-        return self._answer(request, story.split("\n", 1)[0][:80] or "A scene", progress, given=given)
+        return self._answer(request, story.split("\n", 1)[0][:80] or "A scene", progress, reads=bool(motion))
 
 
 def _two_people(path: str, choices: ImportChoices) -> Duet:
