@@ -71,7 +71,7 @@ class Imported:
     @cached_property
     def motion(self) -> Clip | Duet:
         """The person, or the first two, on SMPL22; fitting takes about 5 ms a frame and person."""
-        return to_smpl(Duet(*self.people[:2], **self.beside) if len(self.people) > 1 else self.people[0])
+        return to_smpl(Duet(self.people[0], self.people[1], **self.beside) if len(self.people) > 1 else self.people[0])
 
     def describe(self) -> str:
         """One line, such as "22 joints matched, cm, Z up, 120 frames a second"."""

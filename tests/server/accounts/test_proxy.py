@@ -12,7 +12,7 @@ import pytest
 from motion import InputError
 from tests.server.attacks.target import Target
 from webdemo.server.accounts.people import ADMIN, People
-from webdemo.server.accounts.visitors import PEER, is_among, person_by_proxy
+from webdemo.server.accounts.visitors import PEER, person_by_proxy, trusted_hosts
 from webdemo.server.http.routes import Refused
 from webdemo.server.settings import Settings
 from webdemo.server.store.database import Database
@@ -95,8 +95,9 @@ def test_administrators_see_and_suspend_whoever_came(lab: Target) -> None:
 
 
 def test_addresses_and_networks_are_read() -> None:
-    assert is_among("10.1.2.3", ["10.0.0.0/8"]) and is_among("::1", ["::1"])
-    assert not is_among("10.1.2.3", ["proxy.example", "*", "192.168.0.0/16"]) and not is_among("", ["0.0.0.0/0"])
+    assert "10.1.2.3" in trusted_hosts(("10.0.0.0/8",)) and "::1" in trusted_hosts(("::1",))
+    assert "10.1.2.3" not in trusted_hosts(("proxy.example", "*", "192.168.0.0/16"))
+    assert "" not in trusted_hosts(("0.0.0.0/0",))
 
 
 def test_without_a_noted_peer_no_header_counts(tmp_path: Path) -> None:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import hashlib
-import ipaddress
 import re
 import secrets
 import threading
 from collections import OrderedDict
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any, cast
 
+from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from motion import InputError
 from webdemo.server.accounts.quotas import network_of
@@ -64,7 +67,7 @@ class Visitors:
                 raise Refused(403, SUSPENDED, "suspended")
             return Visitor(owner, owner, reference, base, by_proxy)
         if self.sign_ins is None and self.settings.proxy_user:
-            raise not_by_proxy()
+            raise Refused(401, _NOT_BY_PROXY, "proxy")
         if self.sign_ins is not None:
             person = self._signed_in(cookies.get(SESSION_COOKIE, ""))
             if person is None:
@@ -208,19 +211,10 @@ class PeerNoted:
         await self.app(scope, receive, send)
 
 
-def is_among(address: str, networks: Sequence[str]) -> bool:
-    """True if an address is one of these addresses and networks; a name among them is no address."""
-    try:
-        found = ipaddress.ip_address(address)
-    except ValueError:
-        return False
-    for network in networks:
-        try:
-            if found in ipaddress.ip_network(network, strict=False):
-                return True
-        except ValueError:
-            continue
-    return False
+@lru_cache(maxsize=8)
+def trusted_hosts(proxies: tuple[str, ...]) -> Any:
+    """uvicorn's reading of addresses and networks: what it trusts to forward is also what may name people."""
+    return cast(Any, ProxyHeadersMiddleware)(None, trusted_hosts=list(proxies)).trusted_hosts
 
 
 def person_by_proxy(settings: Settings, scope: Scope) -> str:
@@ -230,10 +224,10 @@ def person_by_proxy(settings: Settings, scope: Scope) -> str:
         Refused: for a request that did not come through a trusted proxy and bears the header, and for a name that
             cannot be used.
     """
-    names = _values(scope, settings.proxy_user)
-    if not names or not settings.proxy_user:
+    names = Headers(scope=scope).getlist(settings.proxy_user) if settings.proxy_user else []
+    if not names:
         return ""
-    if not is_among(scope.get(PEER, ""), settings.proxies):
+    if scope.get(PEER, "") not in trusted_hosts(tuple(settings.proxies)):
         raise Refused(403, _NOT_BY_PROXY, "proxy")
     name = names[0].strip().lower()
     if not name:
@@ -241,14 +235,3 @@ def person_by_proxy(settings: Settings, scope: Scope) -> str:
     if len(names) > 1 or not NAME.match(name):
         raise Refused(403, _BAD_NAME, "proxy")
     return name
-
-
-def not_by_proxy() -> Refused:
-    """The refusal of a person whom no proxy has named, where there is no other way to sign in."""
-    return Refused(401, _NOT_BY_PROXY, "proxy")
-
-
-def _values(scope: Mapping[str, object], header: str) -> list[str]:
-    wanted = header.lower().encode("latin-1")
-    headers: Sequence[tuple[bytes, bytes]] = scope.get("headers", ())  # type: ignore[assignment]
-    return [value.decode("latin-1") for name, value in headers if name == wanted] if wanted else []

@@ -6,12 +6,12 @@ import asyncio
 import socket
 import struct
 from collections import Counter
-from typing import Any, cast
+from typing import Any
 
-from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from webdemo.server.accounts.quotas import Quota, network_of
+from webdemo.server.accounts.visitors import trusted_hosts
 from webdemo.server.settings import Settings
 
 
@@ -26,7 +26,7 @@ def bounded_protocol(settings: Settings, quota: Quota) -> type[H11Protocol]:
         quota: of connections.
     """
     counts: Counter[str] = Counter()
-    trusted = cast(Any, ProxyHeadersMiddleware)(None, trusted_hosts=settings.proxies).trusted_hosts
+    trusted = trusted_hosts(tuple(settings.proxies))
 
     class Bounded(H11Protocol):
         address: str | None = None
