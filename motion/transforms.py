@@ -37,9 +37,9 @@ def facing(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
     return np.where(length > 1e-6, forward / np.maximum(length, 1e-6), np.array([0.0, 0.0, 1.0]))
 
 
-def heading(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
+def heading(positions: Array) -> Array:
     """(…, T) heading of the body in radians, 0 along +Z and positive towards +X."""
-    forward = facing(positions, skeleton)
+    forward = facing(positions)
     return np.arctan2(forward[..., 0], forward[..., 2])
 
 

@@ -65,12 +65,10 @@ def read_glb(
         ), animations
 
 
-def animations_in(
-    source: str | Path | bytes, *, name: str | None = None, animation: Animation | None = None
-) -> Animations:
+def animations_in(source: str | Path | bytes) -> Animations:
     """The animations that :func:`read_glb` finds in a file, without their key frames."""
-    with opened(source, name) as file:
-        return chosen(file, [person.nodes for person in _whole(file)], animation)[1]
+    with opened(source, None) as file:
+        return chosen(file, [person.nodes for person in _whole(file)], None)[1]
 
 
 def _whole(file: GlbFile) -> list[_Person]:
