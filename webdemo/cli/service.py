@@ -149,8 +149,8 @@ def add_admin(commands: Any) -> None:
 
 def admin(options: argparse.Namespace) -> dict[str, Any]:
     """Does one act in the lab that the settings name; a running server heeds it at once."""
+    from webdemo.server.accounts.administration import Administration
     from webdemo.server.accounts.users import Users
-    from webdemo.server.lab import administration_of
     from webdemo.server.settings import read_settings
     from webdemo.server.store.database import Database, sentences
 
@@ -160,7 +160,7 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
     if action != "list" and not name:
         raise InputError(f"Name the account: `admin {action} NAME`.")
     with closing(Database(settings.database)) as database, sentences():
-        acts = administration_of(settings, database, Users(settings.users) if settings.users else None)
+        acts = Administration(database, Users(settings.users) if settings.users else None, settings)
         if action == "list":
             return {"people": [asdict(row) for row in acts.rows()]}
         if action in ("make-admin", "end-admin"):
@@ -186,13 +186,12 @@ def add_upkeep(commands: Any) -> None:
 def backup(options: argparse.Namespace) -> dict[str, Any]:
     """Makes a backup of the lab that the settings name."""
     from webdemo.server.settings import settings_of_history
-    from webdemo.server.store.backup import Lab, back_up
+    from webdemo.server.store.backup import back_up
 
     settings = settings_of_history()
     if options.keep < 0:
         raise InputError("Give --keep 1 or more, or leave it out to keep all.")
-    lab = Lab(settings.data, settings.users)
-    made = back_up(lab, options.folder, keep=options.keep)
+    made = back_up(settings, options.folder, keep=options.keep)
     print(f"The backup is in {made}.")
     return {"backup": str(made)}
 
@@ -200,7 +199,7 @@ def backup(options: argparse.Namespace) -> dict[str, Any]:
 def restore(options: argparse.Namespace) -> dict[str, Any]:
     """Restores a backup into the empty data folder that the settings name."""
     from webdemo.server.settings import read_settings
-    from webdemo.server.store.backup import DATABASE, Lab, backups, restore
+    from webdemo.server.store.backup import DATABASE, backups, restore
 
     chosen = options.backup
     if not (chosen / DATABASE).is_file():
@@ -208,6 +207,6 @@ def restore(options: argparse.Namespace) -> dict[str, Any]:
             raise InputError(f"There is no backup in {chosen}: name a folder that `backup` made.")
         chosen = all_of_them[-1]
     settings = read_settings()
-    restore(chosen, Lab(settings.data, settings.users))
+    restore(chosen, settings)
     print(f"{chosen} was restored to {settings.data}.")
     return {"backup": str(chosen)}

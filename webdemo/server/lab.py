@@ -129,14 +129,9 @@ def make_lab(settings: Settings, engine: EngineLike, scratch: Scratch | None = N
         answers=OpenAnswers(),
         streams=streams,
         people=People(database),
-        administration=administration_of(settings, database, users) if settings.accounts else None,
+        administration=Administration(database, users, settings) if settings.accounts else None,
         sign_ins=SignIns(database, users, settings.session_hours) if users is not None else None,
     )
-
-
-def administration_of(settings: Settings, database: Database, users: Users | None) -> Administration:
-    """The acts of administrators of a lab."""
-    return Administration(database, users, settings.data, elsewhere=bool(settings.proxy_user))
 
 
 def engine_of(settings: Settings) -> EngineLike:

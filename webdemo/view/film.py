@@ -6,7 +6,6 @@ PyAV (FFmpeg's libraries) packs the pictures as H.264 or VP9, Pillow as GIF.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from importlib.util import find_spec
 from pathlib import Path
@@ -21,6 +20,7 @@ from motion.formats.files import replacing
 
 from .camera import Camera, cameras
 from .stage import Pane, Picture, Stage, Style, paste, words
+from .theme import Colour
 
 SUFFIXES = (".mp4", ".webm", ".gif")
 SIZES = (64, 3840)
@@ -37,27 +37,6 @@ _CODECS = {
     ".mp4": ("libx264", {"preset": "veryfast", "crf": "19", "movflags": "+faststart"}),
     ".webm": ("libvpx-vp9", {"deadline": "realtime", "cpu-used": "8", "crf": "31", "b": "0", "row-mt": "1"}),
 }
-
-
-@dataclass(frozen=True)
-class _Job:
-    """A film to be drawn.
-
-    Attributes:
-        panes: the motions, from left to right and from top to bottom.
-        style: how people are drawn.
-        size: width and height of the whole picture in pixels.
-        times: (N,) the moments in seconds.
-        views: the cameras of each pane, one a moment.
-        title: stands at the lower edge, with the time.
-    """
-
-    panes: Sequence[Pane]
-    style: Style
-    size: tuple[int, int]
-    times: NDArray[np.floating]
-    views: list[list[Camera]]
-    title: str
 
 
 def can_write(suffix: str) -> bool:
@@ -118,9 +97,9 @@ def write_film(
         yaw=yaw,
         elevation=elevation,
     )
-    job = _Job(panes, style, size, times, views, title)
+    pictures = _draw(panes, style, size, times, views, title)
     with replacing(path) as temporary:
-        counted = _counted(_draw(job), len(times), progress)
+        counted = _counted(pictures, len(times), progress)
         if suffix == ".gif":
             _write_gif(counted, temporary, rate)
         else:
@@ -157,20 +136,25 @@ def _cell(size: tuple[int, int], panes: int) -> tuple[int, int]:
     return size[0] // columns, size[1] // rows
 
 
-def _draw(job: _Job) -> Iterator[Picture]:
-    """The pictures (height, width, 4) of a film."""
-    size = _cell(job.size, len(job.panes))
-    stages = [
-        Stage(pane, job.style, size).pictures(job.times, views)
-        for pane, views in zip(job.panes, job.views, strict=True)
-    ]
-    for seconds, shown in zip(job.times, zip(*stages, strict=True), strict=True):
-        whole = _joined(job, shown)
-        _caption(job, whole, float(seconds))
+def _draw(
+    panes: Sequence[Pane],
+    style: Style,
+    size: tuple[int, int],
+    times: NDArray[np.floating],
+    views: list[list[Camera]],
+    title: str,
+) -> Iterator[Picture]:
+    """The pictures (height, width, 4) of a film at moments in seconds; ``views`` has a pane's cameras, one a moment."""
+    cell = _cell(size, len(panes))
+    stages = [Stage(pane, style, cell).pictures(times, ways) for pane, ways in zip(panes, views, strict=True)]
+    for seconds, shown in zip(times, zip(*stages, strict=True), strict=True):
+        whole = _joined(shown, size)
+        line = f"{title}  ·  {seconds:.2f} s" if title else f"{seconds:.2f} s"
+        _caption(whole, [pane.caption for pane in panes], line, style.colours.ink)
         yield whole
 
 
-def _joined(job: _Job, shown: Sequence[Picture]) -> Picture:
+def _joined(shown: Sequence[Picture], size: tuple[int, int]) -> Picture:
     """The panes in their columns and rows; what is left over is as the last one's edge."""
     if len(shown) == 1:
         return shown[0]
@@ -179,18 +163,18 @@ def _joined(job: _Job, shown: Sequence[Picture]) -> Picture:
     cells = [*shown, *blank]
     lines = [np.concatenate(cells[k : k + columns], axis=1) for k in range(0, len(cells), columns)]
     whole = np.concatenate(lines)
-    missing = (job.size[1] - whole.shape[0], job.size[0] - whole.shape[1])
+    missing = (size[1] - whole.shape[0], size[0] - whole.shape[1])
     return np.pad(whole, ((0, missing[0]), (0, missing[1]), (0, 0)), mode="edge")
 
 
-def _caption(job: _Job, whole: Picture, seconds: float) -> None:
-    height, ink = job.size[1], job.style.colours.ink
-    small = max(round(height / 48), 9)
-    (width, tall), (columns, rows) = _cell(job.size, len(job.panes)), _shape(len(job.panes))
-    for number, pane in enumerate(job.panes):
+def _caption(whole: Picture, captions: Sequence[str], line: str, ink: Colour) -> None:
+    """Writes each pane's caption over it, a line below all, and lines between the panes."""
+    height, small = len(whole), max(round(len(whole) / 48), 9)
+    (width, tall), (columns, rows) = _cell((whole.shape[1], height), len(captions)), _shape(len(captions))
+    for number, caption in enumerate(captions):
         row, column = divmod(number, columns)
-        if pane.caption:
-            label = words(pane.caption, ink, small)
+        if caption:
+            label = words(caption, ink, small)
             place = round(width * (column + 0.5) - label.shape[1] / 2), tall * row + small // 2
             paste(whole, label, *place)
     line_ink = [round(255 * c) for c in ink]
@@ -198,7 +182,6 @@ def _caption(job: _Job, whole: Picture, seconds: float) -> None:
         whole[:, width * column, :3] = line_ink
     for row in range(1, rows):
         whole[tall * row, :, :3] = line_ink
-    line = f"{job.title}  ·  {seconds:.2f} s" if job.title else f"{seconds:.2f} s"
     paste(whole, words(line, ink, small), small, height - 2 * small)
 
 

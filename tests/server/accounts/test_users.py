@@ -286,7 +286,7 @@ def test_nobody_inherits_from_an_earlier_account_of_the_same_name(
 ) -> None:
     """Neither by the shell, which removes what was theirs, nor where a line was deleted by hand."""
     database = Database(tmp_path / "history.db")
-    admin = Administration(database, users, tmp_path)
+    admin = Administration(database, users, Settings(data=tmp_path))
     first, owner = users.key("ada"), f"user {users.key('ada')}"
     admin.set_role("ada", admin=True)
     history = Notebook(database, tmp_path / "motions")

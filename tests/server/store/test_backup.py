@@ -15,14 +15,15 @@ from motion import InputError
 from tests.server.attacks.target import Target
 from tests.server.clients import FIELDS
 from webdemo.cli import main
-from webdemo.server.store.backup import Lab, back_up, backups, restore
+from webdemo.server.settings import Settings
+from webdemo.server.store.backup import back_up, backups, restore
 from webdemo.server.store.database import Database, Study
 from webdemo.server.store.notebook import Notebook
 from webdemo.ui.history import Search
 
 
-def lab_at(folder: Path) -> Lab:
-    return Lab(folder / "data", folder / "users")
+def lab_at(folder: Path) -> Settings:
+    return Settings(data=folder / "data", users=folder / "users")
 
 
 def test_a_restore_drill(tmp_path: Path) -> None:

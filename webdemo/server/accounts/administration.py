@@ -5,12 +5,12 @@ from __future__ import annotations
 import shutil
 from collections.abc import Collection
 from dataclasses import dataclass
-from pathlib import Path
 
 from sqlalchemy import delete, func, select
 
 from motion import InputError
 from webdemo.server.audit import audit
+from webdemo.server.settings import Settings
 from webdemo.server.store.database import Database, Person, Published, Run, Study
 
 from .people import ADMIN, People
@@ -40,13 +40,12 @@ class Administration:
     Args:
         database: of the lab.
         users: the accounts; None where people sign in elsewhere alone.
-        data: the data folder.
-        elsewhere: people may sign in elsewhere, so that not everybody is among the accounts.
+        settings: of the lab, where people may sign in elsewhere, so that not everybody is among the accounts.
     """
 
-    def __init__(self, database: Database, users: Users | None, data: Path, *, elsewhere: bool = False) -> None:
-        self.database, self.users, self.data = database, users, data
-        self.people, self.elsewhere = People(database), elsewhere
+    def __init__(self, database: Database, users: Users | None, settings: Settings) -> None:
+        self.database, self.users, self.data = database, users, settings.data
+        self.people, self.elsewhere = People(database), bool(settings.proxy_user)
 
     def _names(self, known: Collection[str]) -> list[str]:
         """Everybody with an account, and everybody who has signed in elsewhere: a key without an id."""

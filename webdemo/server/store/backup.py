@@ -14,11 +14,11 @@ import sqlite3
 import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 from motion import InputError
 from webdemo.server.audit import audit
+from webdemo.server.settings import Settings
 
 from .database import Database
 
@@ -28,29 +28,11 @@ _FOLDERS = {"motions": "SELECT id FROM runs WHERE state = 'done'", "studies": "S
 """Folders, and the rows that have a folder in each."""
 
 
-@dataclass(frozen=True)
-class Lab:
-    """The places that a backup is made of, and restored to.
-
-    Attributes:
-        data: the data folder.
-        users: the file of accounts; None without accounts.
-    """
-
-    data: Path
-    users: Path | None
-
-    @property
-    def database(self) -> Path:
-        """SQLite's file."""
-        return self.data / DATABASE
-
-
-def back_up(lab: Lab, folder: Path, *, keep: int = 0) -> Path:
+def back_up(lab: Settings, folder: Path, *, keep: int = 0) -> Path:
     """Makes a backup in a folder of its own below ``folder``; nothing half-made has its name.
 
     Args:
-        lab: to be backed up.
+        lab: whose data folder and file of accounts are copied.
         folder: holds all backups.
         keep: newest backups that stay; 0: all.
 
@@ -88,8 +70,8 @@ def backups(folder: Path) -> list[Path]:
     return sorted(path for path in folder.glob(f"{PREFIX}*") if (path / DATABASE).is_file())
 
 
-def restore(backup: Path, lab: Lab) -> None:
-    """Puts a backup into an empty data folder.
+def restore(backup: Path, lab: Settings) -> None:
+    """Puts a backup into the empty data folder of a lab.
 
     Raises:
         InputError: if the backup is damaged or another version's, or there is anything where it would go. Then
@@ -130,7 +112,7 @@ def _check(folder: Path) -> None:
                     raise InputError(f"The backup is damaged: {name}/{key} is missing. Take another one.")
 
 
-def _write(lab: Lab, half: Path) -> None:
+def _write(lab: Settings, half: Path) -> None:
     """Writes all of a backup."""
     with closing(sqlite3.connect(lab.database)) as live, closing(sqlite3.connect(half / DATABASE)) as copy:
         live.backup(copy)
