@@ -152,7 +152,7 @@ def test_a_stream_answers_each_frame_once() -> None:
     assert first["belief"]["text"] == "The stub watches."
     assert first["belief"]["chances"] == [["wave", 0.75], ["bow", 0.2]]
     assert answered(one, read_message(b"{}"))["frames"] is None
-    assert one.counts.frames == 4
+    assert one.frames == 4
 
 
 def test_landmarks_become_the_persons_poses() -> None:
@@ -242,7 +242,7 @@ def test_what_no_page_sends_is_refused_in_a_sentence(body: bytes) -> None:
 def test_a_message_that_spans_half_a_minute_is_not_computed_whole() -> None:
     one = stream()
     answer = answered(one, read_message(poses([float(second) for second in range(32)])))
-    assert MOST_FRAMES <= one.counts.frames < MOST_FRAMES + 30
+    assert MOST_FRAMES <= one.frames < MOST_FRAMES + 30
     assert answer["start"] == 0
 
 
@@ -250,10 +250,10 @@ def test_a_stream_gets_no_more_frames_than_time_has_passed() -> None:
     one = stream()
     for minute in range(3):
         answered(one, read_message(poses([60 * minute + 0.9 * i for i in range(32)])))
-    assert one.counts.frames == stream_module.AHEAD
+    assert one.frames == stream_module.AHEAD
     one.clock.now += 1.0
     answered(one, read_message(poses([600 + 0.9 * i for i in range(32)])))
-    assert one.counts.frames == stream_module.AHEAD + 30
+    assert one.frames == stream_module.AHEAD + 30
 
 
 def test_points_that_lie_in_one_place_do_no_harm() -> None:

@@ -40,24 +40,6 @@ class StreamEnded(InputError):
     """A live stream has ended."""
 
 
-@dataclass
-class Counts:
-    """A stream's work so far.
-
-    Attributes:
-        frames: that were answered.
-        seconds: of computing, for all frames together.
-    """
-
-    frames: int = 0
-    seconds: float = 0.0
-
-    @property
-    def milliseconds(self) -> float:
-        """Mean time of computing a frame."""
-        return 1000 * self.seconds / self.frames if self.frames else 0.0
-
-
 class Resampled:
     """Poses at uneven times → poses at 30 fps, between the last two that have come."""
 
@@ -91,7 +73,8 @@ class LiveStream:
         address: where they come from, where that limits them.
         partner: answers.
         clock: gives the time; seconds.
-        counts: what has been done.
+        frames: that were answered.
+        spent: seconds of computing, for all frames together.
         ended: why there is no more, for the page; empty while it runs.
         one: is held by the message that is answered; others wait for it.
         newest: stands for the last message that came.
@@ -102,7 +85,8 @@ class LiveStream:
     address: str
     partner: LivePartner
     clock: Callable[[], float] = time.monotonic
-    counts: Counts = field(default_factory=Counts)
+    frames: int = 0
+    spent: float = 0.0
     ended: str = ""
     one: asyncio.Lock = field(default_factory=asyncio.Lock)
     newest: object = None
@@ -112,6 +96,11 @@ class LiveStream:
         self._even = Resampled()
         self._shown_things: tuple[Thing, ...] = ()
         self.began = self.heard = self.found = self.clock()
+
+    @property
+    def milliseconds(self) -> float:
+        """Mean time of computing a frame."""
+        return 1000 * self.spent / self.frames if self.frames else 0.0
 
     def answer(self, content: Landmarks | Poses | None) -> Iterator[dict[str, Any] | None]:
         """Computes the answer to a message: None after each frame, at last both people's new ones and what is said.
@@ -124,7 +113,7 @@ class LiveStream:
         while True:
             if self.ended:
                 raise StreamEnded(self.ended)
-            if self.counts.frames + len(frames) >= AHEAD + FPS * (self.clock() - self.began):
+            if self.frames + len(frames) >= AHEAD + FPS * (self.clock() - self.began):
                 break
             self.heard = began = self.clock()
             frame = next(made, None)
@@ -134,9 +123,8 @@ class LiveStream:
             frames.append(frame)
             yield None
         self.heard = self.clock()
-        counts = self.counts
-        counts.seconds += spent
-        start, counts.frames = counts.frames, counts.frames + len(frames)
+        self.spent += spent
+        start, self.frames = self.frames, self.frames + len(frames)
         yield {
             "start": start,
             "frames": pack_positions(np.stack(frames, axis=1)) if frames else None,
@@ -144,7 +132,7 @@ class LiveStream:
             "belief": _plain(self.partner.belief),
             "hint": self._hint(),
             "milliseconds": round(1000 * spent, 1),
-            "mean_milliseconds": round(counts.milliseconds, 1),
+            "mean_milliseconds": round(self.milliseconds, 1),
         }
 
     def _things(self) -> dict[str, Any]:

@@ -210,7 +210,7 @@ class Streams:
         self._ended[stream.id] = reason
         while len(self._ended) > KEPT:
             del self._ended[next(iter(self._ended))]
-        log.info("live", extra={"frames": stream.counts.frames, "milliseconds": round(stream.counts.milliseconds, 2)})
+        log.info("live", extra={"frames": stream.frames, "milliseconds": round(stream.milliseconds, 2)})
 
 
 # ---- the addresses of live streams ---------------------------------------------------------------
@@ -269,4 +269,4 @@ def _begin(streams: Streams, visitor: Visitor, body: bytes) -> dict[str, Any]:
 def _end(streams: Streams, key: str, visitor: Visitor) -> dict[str, Any]:
     stream = streams.find(key, visitor)
     streams.close(stream)
-    return {"frames": stream.counts.frames}
+    return {"frames": stream.frames}
