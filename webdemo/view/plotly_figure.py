@@ -112,7 +112,7 @@ def _moments(motion: Clip | Duet, fps: float) -> list[int]:
 
 def _tracks(places: Array, skeleton: Skeleton) -> list[dict[str, Array]]:
     """Where four traces of each person are at one moment; ``places`` is (people, J, 3)."""
-    found = []
+    found: list[Array] = []
     for joints in places:
         found += [_lines(joints, skeleton, limb) for limb in LIMBS]
         found.append(joints[[np.argmax(joints[:, 1])]] + np.array([0.0, _ABOVE_HEAD, 0.0]))

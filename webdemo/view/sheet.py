@@ -85,7 +85,7 @@ def write_sheet(
     columns = min(len(times), _COLUMNS)
     tile = (width // columns, round(width / columns * _TALL))
     (views,) = cameras([motion], size=tile, times=times, view=view, around=0.0)
-    rows = []
+    rows: list[Picture] = []
     for first in range(0, len(times), columns):
         part = slice(first, first + columns)
         rows.append(_row(Stage(Pane(motion), style, tile), times[part], views[part], columns))
@@ -115,7 +115,7 @@ def write_grid_sheet(
     tile = (WIDTH // _IN_ROW, round(WIDTH / _IN_ROW * _TALL))
     times = np.linspace(0.0, max((m.num_frames - 1) / m.fps for m in motions.values()), _IN_ROW)
     ways = cameras(list(motions.values()), size=tile, times=times, follow=False)
-    rows = []
+    rows: list[Picture] = []
     for (name, motion), views in zip(motions.items(), ways, strict=True):
         rows += [_line([(0, name)], tile, _IN_ROW, style)]
         rows += [_row(Stage(Pane(motion), style, tile), times, views, _IN_ROW)]
