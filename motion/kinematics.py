@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from .skeleton import SMPL22, Skeleton
 from .vectors import unit
@@ -120,7 +120,8 @@ def followed_rotations(positions: Array) -> Array:
 
 def quaternions(rotations: Array) -> Array:
     """(T, …, 4) unit quaternions x y z w of (T, …, 3, 3), of two signs the one nearer to the frame before."""
-    found = np.asarray(Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_quat()).reshape(*rotations.shape[:-2], 4)
+    turns = scipy.spatial.transform.Rotation.from_matrix(rotations.reshape(-1, 3, 3))
+    found = np.asarray(turns.as_quat()).reshape(*rotations.shape[:-2], 4)
     flips = np.where(np.sum(found[1:] * found[:-1], axis=-1) < 0, -1.0, 1.0)
     found[1:] *= np.cumprod(flips, axis=0)[..., None]
     return found
@@ -128,7 +129,7 @@ def quaternions(rotations: Array) -> Array:
 
 def rotation_matrices(quaternions: Array) -> Array:
     """(…, 3, 3) rotations of quaternions (…, 4), x y z w, of any length but 0."""
-    turns = Rotation.from_quat(quaternions.reshape(-1, 4)).as_matrix()
+    turns = scipy.spatial.transform.Rotation.from_quat(quaternions.reshape(-1, 4)).as_matrix()
     return np.asarray(turns).reshape(*quaternions.shape[:-1], 3, 3)
 
 
