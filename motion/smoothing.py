@@ -62,7 +62,7 @@ def filled(positions: Array, label: str = "The motion") -> Array:
     if not lost.any():
         return positions
     if lost.all(axis=0).any():
-        raise InputError(f"{label} holds a joint that is missing in every frame: export it again.")
+        raise InputError(f"{label} holds a joint that is NaN in every frame: export it again.")
     found, times = np.array(positions), np.arange(len(positions))
     for joint in np.flatnonzero(lost.any(axis=0)):
         seen = np.flatnonzero(~lost[:, joint])
