@@ -133,7 +133,7 @@ def test_a_flooded_stream_costs_no_other_its_turns(target: Target) -> None:
         ):
             hers, his = [(await one.post("/live", json={"partner": "agent"})).json()["id"] for one in (ada, eve)]
             sent = [asyncio.create_task(eve.post(f"/live/{his}", content=long)) for _ in range(FLOOD)]
-            while not any(task.done() for task in sent):  # the first was replaced: they have come
+            while not any(task.done() for task in sent):  # the first is answered: the others have come
                 await asyncio.sleep(0.01)
             frames = 0
             for i in range(60):
@@ -146,5 +146,6 @@ def test_a_flooded_stream_costs_no_other_its_turns(target: Target) -> None:
 
     statuses, frames, others = asyncio.run(flood())
     assert frames >= 150
-    assert others <= frames + 2 * MOST_FRAMES, "the flood had more turns than its share"
+    # One message was answered before, and while ada's next one is on its way the flood alone is computed.
+    assert others <= frames + 3 * MOST_FRAMES, "the flood had more turns than its share"
     assert set(statuses) <= {200, 409, 410} and statuses.count(409) > FLOOD / 2

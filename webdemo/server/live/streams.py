@@ -11,7 +11,7 @@ import logging
 import secrets
 import threading
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator
 from functools import partial
 from typing import Any, Protocol, TypeVar
 
@@ -166,8 +166,7 @@ class Streams:
         async with stream.one:
             if stream.newest is not mine:
                 raise Replaced(REPLACED)
-            steps = stream.answer(await self._in_turn(self._computing, partial(read_message, body)))
-            answer = None
+            steps, answer = _steps(stream, body), None
             while answer is None:
                 answer = await self._in_turn(self._computing, partial(next, steps))
             return answer
@@ -211,6 +210,11 @@ class Streams:
         while len(self._ended) > KEPT:
             del self._ended[next(iter(self._ended))]
         log.info("live", extra={"frames": stream.frames, "milliseconds": round(stream.milliseconds, 2)})
+
+
+def _steps(stream: LiveStream, body: bytes) -> Iterator[dict[str, Any] | None]:
+    """Reads a message and computes its answer; see :meth:`LiveStream.answer`."""
+    yield from stream.answer(read_message(body))
 
 
 # ---- the addresses of live streams ---------------------------------------------------------------
