@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from motion import InputError
 
-from .captions import caption_of, naming
+from .captions import caption_of, naming, with_thing
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import FROM_BEHIND, Act, Plan
 from .reading import wordnet
 from .reading.parses import Parse, parses
-from .reading.people import A_NAME, B_NAME
+from .reading.people import A_NAME, ANYONE, B_NAME
 from .reading.spelling import Speller
 from .reading.syntax import is_likeness
 from .reading.vocabulary import vocabulary
@@ -46,6 +46,8 @@ _SCENERY = frozenset(
     ["floor", "ground", "room", "place", "spot", "air", "direction", "body", "scene", "person", "people"]
 )
 """What is there in every scene."""
+_OF_TWO = frozenset(("other", "each", "every", "no", "neither", "either"))
+"""Words before a noun of the two people, or of one of them."""
 _KINDS = ("begins", "ends", "light", "causes", "tried", "pretended", "wished", "offered", "not", "seems")
 """Verbs about other verbs, which the acts' modality, polarity and order stand for."""
 _STATES = frozenset(("be", "have", "stand", "stay", "remain", "keep", "do", "go", "come", "use"))
@@ -60,7 +62,7 @@ _WORD, _SLOTS = re.compile(r"[a-z]+"), re.compile(r"\{(?![\w.]+:)[^{}]*\}")
 _TURNS = frozenset(("left", "right", "clockwise", "counterclockwise"))
 """Directions that never belong to what an act's own words mean."""
 _SIDED = frozenset(("hand", "arm", "foot", "leg"))
-"""Families of the parts with which something is done: "with both hands"."""
+"""Parts with which something is done that a side stands for: "with both hands", but not "with both thumbs"."""
 
 
 # ---- words that no verdict says --------------------------------------------------------------------------
@@ -123,6 +125,8 @@ def _account(plan: Plan, known: Lexicon) -> Account:
             if told or not _counts(token, parsed, names):
                 continue
             by = _read_by(token, start, stop, plan, known, parsed)
+            if by is None and token.dep_ == "xcomp":  # "keeps walking"
+                by = _read_by(token, *spans[token.head.i], plan, known, parsed)
             if by is None:
                 left.append(parsed.text.span(*_phrase(token)))
             elif by:
@@ -198,7 +202,9 @@ def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
         head = token.head
         return token.dep_ == "nummod" and head.lower_ not in words.both and not words.is_person(_lemma(head, parsed))
     if token.pos_ in ("NOUN", "PROPN") and (words.is_person(lemma) or words.is_person(token.lower_)):
-        return is_likeness(token)  # "acts like a king"
+        said = {lemma, token.lower_} & (names | ANYONE) or words.is_person(_lemma(token.head, parsed))
+        said = said or token.tag_ == "NNS" or any(c.lower_ in _OF_TWO for c in token.children)
+        return is_likeness(token) or not said  # "acts like a king", "keeps his guard up"
     if token.pos_ == "PROPN" and not token.text.islower():
         return names.isdisjoint((lemma, token.lower_, token.head.lower_))
     if token.pos_ in ("NUM", "ADJ") and words.is_person(_lemma(token.head, parsed)):
@@ -229,6 +235,9 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return way in (act.direction, act.side, act.part_side)
     if lemma in (act.act.split("-")[0], act.act.replace("-", "")):
         return True
+    owned = any(c.dep_ == "poss" for c in token.children) and (not words.part(lemma) or act.part_of == act.patient)
+    if owned and act.patient and entry.to != "other" and "{b}" not in shown_caption(act, entry):
+        return False  # "buttons his coat" is not "buttons a coat"
     if text == "own":
         return act.patient is None or act.part_of in act.agents
     if _is_target(token) and "{b}" in shown_caption(act, entry):
@@ -241,10 +250,11 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return True
     if token.pos_ in ("VERB", "NOUN") and _alike(lemma, _verbs(entry.caption), entry.synsets):
         return True
-    if act.thing and forms & set(act.thing.split()):
-        return bool(kind_of(act.thing))
+    if act.thing and forms & set(act.thing.split()):  # "plays the violin" is not "plays the guitar"
+        shown = said_words((with_thing(act, shown_caption(act, entry))[1],))
+        return bool(kind_of(act.thing)) and not any(kind_of(word) for word in shown - forms)
     if family := words.part(lemma):
-        sided = act.side is not None and family in _SIDED and any(c.lower_ == act.side for c in token.children)
+        sided = act.side is not None and lemma in _SIDED and any(c.lower_ == act.side for c in token.children)
         return sided or (act.part is not None and family == words.part(act.part))
     if (text in words.speeds and act.speed != 1.0) or (lemma in words.gaits and act.speed != 1.0):
         return True

@@ -111,8 +111,9 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
     entry = known.entries.get(act.act)
     left = account(plan)
     wrote = left.others.get(act.id, "")
+    quoted = tuple(f"“{each}”" for each in left.unsaid.get(act.id, ()))
     if why := _unjudged(act, entry):
-        return Verdict(act.id, act.act, _words(act, entry), None, why, wrote=wrote)
+        return Verdict(act.id, act.act, _words(act, entry), None, why, quoted, wrote)
     assert entry is not None
     casts = [rule for who in act.agents for rule in rules_of(act, entry, who)]
     if act.polarity == "not":
@@ -126,13 +127,12 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
             unchecked |= {} if rule else {kind: None}
     failed = [rule for rule in casts if not check(rule, motion)]
     if not failed and OTHER_THING in unchecked:
-        return Verdict(act.id, act.act, _words(act, entry), None, OTHER_THING, wrote=wrote)
+        return Verdict(act.id, act.act, _words(act, entry), None, OTHER_THING, quoted, wrote)
     late = "" if failed else _held_before(act, plan, motion, known) or _too_early(act, plan, motion, known, before)
     done = not failed and not late
     words = _words(plain(act, frozenset(unchecked)) if done else act, entry)
-    kinds = (*unchecked, *(f"“{each}”" for each in left.unsaid.get(act.id, ())))
     measure = late or _measure(failed, casts, motion)
-    return Verdict(act.id, act.act, words, done, measure, kinds, wrote)
+    return Verdict(act.id, act.act, words, done, measure, (*unchecked, *quoted), wrote)
 
 
 def _unjudged(act: Act, entry: Entry | None) -> str:

@@ -18,6 +18,10 @@ from .shapes import Go, Touch
 
 _BOTH = re.compile(r"\bboth (?:\w+ )?(hands|arms|palms|fists|feet|legs|knees|elbows|shoulders|cheeks)\b", re.IGNORECASE)
 
+_OF_BOTH = "claps palms_strike both_hands_on hands_high hands_ahead hands_on_hips arms_wide arms_crossed arms_down"
+_TWO_HANDED = frozenset((*_OF_BOTH.split(), "holds_in_front"))
+"""Predicates that hold of both hands or arms at once."""
+
 OTHER_THING = "which thing"
 """The kind of qualifier without which an act is not judged: pointing at a door is not pointing at the other person."""
 
@@ -32,7 +36,8 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
         mask: the predicate by which it is seen; "" where it has none.
         said: the act's own words in the sentence.
     """
-    names = set(re.findall(r"\w+", " ".join(entry.rule)))
+    rules = " ".join(entry.rule)
+    names = set(re.findall(r"\w+", rules))
     caption = shown_caption(act, entry)
     words = said_words((caption,))
     goes = next((shape for shape in entry.stage if isinstance(shape, Go)), None)
@@ -43,7 +48,7 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     if act.part_side and "part" not in names:
         yield "which side", _on_side(act, entry, who)
     both = _BOTH.search(said) if act.side == "both" else None
-    if both and "side" not in names and not _is_two_handed(entry):
+    if both and "side" not in names and "'both'" not in rules and not names & _TWO_HANDED:
         yield "on both sides" if both[1] in ("feet", "legs", "knees") else "with both hands", ""
     if act.direction is not None and act.direction not in words and "way" not in names:
         yield "which way", _goes_way(act, who) if goes else ""
@@ -88,11 +93,6 @@ def plain(act: Act, kinds: frozenset[str]) -> Act:
         "from where": {"manner": ()},
     }
     return act.model_copy(update={name: value for kind in kinds for name, value in left.get(kind, {}).items()})
-
-
-def _is_two_handed(entry: Entry) -> bool:
-    """True for an entry whose own shape has both hands or arms."""
-    return any("both" in (getattr(shape, "sides", ""), getattr(shape, "hands", "")) for shape in entry.stage)
 
 
 def _on_side(act: Act, entry: Entry, who: str) -> str:

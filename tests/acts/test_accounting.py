@@ -29,6 +29,12 @@ from webdemo.inference.engine.tries import note
         ("They dance on Sunday.", ("on Sunday",)),
         ("Two people sit down, and one of them waves.", ()),
         ("There are two people who dance.", ()),
+        ("A couple of kids hug.", ()),
+        ("One of the kids waves at the other.", ()),
+        ("A hurries and keeps walking.", ()),
+        ("She is in a hurry and pulls him.", ("in a hurry",)),
+        ("A pair of skaters dance.", ()),
+        ("The other dancer bows.", ()),
     ],
 )
 def test_words_that_are_in_no_act_are_reported(sentence: str, unread: tuple[str, ...]) -> None:
@@ -49,6 +55,7 @@ def test_words_that_are_in_no_act_are_reported(sentence: str, unread: tuple[str,
         ("A stamps the foot angrily.", ("in which manner",)),
         ("A points at the door.", ("which thing",)),
         ("A kneels on both knees.", ("on both sides", "where on the body")),
+        ("A tickles B with both hands.", ("with both hands",)),
         ("A points at B and then at himself.", ("“at himself”",)),
     ],
 )
@@ -100,6 +107,15 @@ def test_an_act_that_says_none_of_its_words_is_shown_as_what_they_were_read_as(s
 def test_places_targets_and_verbs_that_no_verdict_says_are_named(sentence: str, words: str) -> None:
     left = account(read(sentence))
     assert any(words in each for each in (*left.unread, *(w for said in left.unsaid.values() for w in said)))
+
+
+@pytest.mark.parametrize(
+    ("sentence", "words"), [("A plays the violin.", "violin"), ("A looks up at the ceiling.", "at the ceiling")]
+)
+def test_a_note_tells_them_also_where_the_act_is_not_measured_or_not_seen(sentence: str, words: str) -> None:
+    plan = read(sentence)
+    (row,) = checked(plan, duet())
+    assert not row.done and words in note([[row.to_dict()]], unread=unread_words(plan))
 
 
 def test_a_long_note_names_fewer_of_each_kind() -> None:

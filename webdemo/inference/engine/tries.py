@@ -161,8 +161,7 @@ def note(rows: Sequence[Rows], tries: Mapping[str, Any] | None = None, unread: S
     made = [column for column in judged if all(row["done"] for row in column)]
     done = [column[0]["words"] for column in made if not column[0].get("wrote")]
     missed = [_missed(column) for column in judged if column not in made]
-    open_ = [_unchecked(column) for column in acts if column in made or column not in judged]
-    open_ = [each for each in open_ if each]
+    open_ = [each for each in map(_unchecked, acts) if each]
     quoted = [f"“{words}”" for words in unread]
     heads = {"Not understood": quoted, "Not checked": open_, "Not seen": missed, "Done": done}
     for most in range(MOST_NAMED, 0, -1):
@@ -181,14 +180,17 @@ def note(rows: Sequence[Rows], tries: Mapping[str, Any] | None = None, unread: S
 
 
 def _unchecked(column: Sequence[Mapping[str, Any]]) -> str:
-    """Parts left out of an act that is done, or that nothing measures; "" for nothing."""
+    """Parts left out of an act that is done, an act that nothing measures, words that no other part says; or ""."""
     row = column[0]
-    words = str(row["words"])
+    words, left = str(row["words"]), list(row.get("unchecked", ()))
+    missed = any(each["done"] is False for each in column)
     if row.get("wrote"):
-        return f"“{row['wrote']}”, read as: {words}"
+        return f"“{row['wrote']}”, read as: {words}" * (not missed)
     if row["done"] is None:
-        return words if row["measure"] == NO_RULE else _with_why(words, row["measure"])
-    return _with_why(" and ".join(row.get("unchecked", ())), " ".join(words.split()[:2])) * bool(row.get("unchecked"))
+        why = [] if row["measure"] == NO_RULE else [row["measure"]]
+        return _with_why(words, " and ".join(why + left))
+    left = [each for each in left if each.startswith("“") or not missed]
+    return _with_why(" and ".join(left), " ".join(words.split()[:2])) * bool(left)
 
 
 def _with_why(words: str, why: str) -> str:
