@@ -15,7 +15,7 @@ from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import RuleError, check, measured
 
 from .checking import cast
-from .lexicon import OURS, Entry, files, read_file
+from .lexicon import OURS, Entry, files, lexicon, read_file
 from .plan import Plan
 from .reading import read
 
@@ -35,6 +35,8 @@ def check_folder(folder: Path) -> Iterator[str]:
 def check_entry(name: str, entry: Entry, folders: tuple[Path, ...] = ()) -> Iterator[str]:
     """A sentence for each example of an entry that is not read as it should be."""
     where = f"{entry.group}.toml, [{name}]"
+    if entry.alone and entry.alone not in lexicon(folders).entries:
+        yield f"{where}: alone = “{entry.alone}” is no act."
     for sentence in entry.reads if entry.shown else ():
         plan = read(sentence, folders)
         found = [act.act for act in plan.acts if act.happens]

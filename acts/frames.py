@@ -323,6 +323,6 @@ def best(frames: Mapping[str, list[tuple[str, Frame]]], event: Event) -> tuple[s
                 continue
             handed = event.object is not None and match.thing == event.object.lemma
             if form is event and event.noun is not None and handed:  # "gives a hug" hands nothing over
-                match = replace(match, score=match.score - 3.0)
+                match = replace(match, score=match.score - 5.0)
             fitting.append((name, frame, match))
     return max(fitting, key=lambda found: (found[2].score, found[2].own, -len(found[1].elements)), default=None)

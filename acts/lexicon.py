@@ -58,6 +58,7 @@ class Entry(BaseModel):
         hand: the shape of the fingers while it is done (:mod:`motion.hands`); "" where none is special.
         mutual: done together even where one is named first: "he hugs her" has both arms around.
         near: metres between the two people, where one comes up to the other for it.
+        alone: the act that it is where the text names nobody else: what is taken from nobody is grabbed.
         moment: over so soon that nobody is found at it: "as she faints" begins with her on her feet.
         answers: done because of what the other does, and so after it, such as ducking or catching.
         reads, ignores: sentences that have the act and that do not.
@@ -82,6 +83,7 @@ class Entry(BaseModel):
     mutual: bool = False
     near: Annotated[float, Field(ge=0.3, le=1.5)] = 0.75
     answers: bool = False
+    alone: str = ""
     moment: bool = False
     shown: bool = True
     reads: Annotated[tuple[Sentence, ...], Field(min_length=1)]

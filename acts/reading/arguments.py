@@ -23,6 +23,10 @@ _PATH_NOUNS = "circle lap loop line arc curve spiral semicircle diagonal zigzag 
 _PATHS = frozenset(_PATH_NOUNS.split())
 _TURNS = frozenset(("clockwise", "counterclockwise"))
 _SIDES = frozenset(("behind", "below", "above"))
+_ALONG = frozenset(("up", "down", "over", "across", "along", "through", "past"))
+"""Particles that are prepositions before a thing: "walks down a ramp"."""
+_SPOTS = frozenset(("top", "back", "inside", "outside", "bottom", "tip"))
+"""Spots on a part of the body, which is named behind them."""
 _WAYS = frozenset(("way", "manner", "fashion", "mood", "style"))
 _RECEIVES = frozenset(("get", "receive", "take", "have"))
 _MODIFIERS = frozenset(("prt", "advmod", "acomp", "attr", "oprd", "npadvmod", "amod", "neg", "intj", "compound"))
@@ -65,6 +69,8 @@ class Arguments:
                 and (child.lower_ in self._words.directions or child.pos_ == "ADV")
             ):
                 self._modifier(child, event)
+            elif child.dep_ in ("dobj", "obj", "npadvmod") and (way := self._way(child, event)):  # "walks down a ramp"
+                event.prepositions.append((way, self._argument(child, who, event)))
             elif child.dep_ in ("dobj", "obj") and self._is_measure(child, event):  # "walk a few steps"
                 self._measured(child, who, event)
             elif self._is_path(child, event):  # "walks a circle around her"
@@ -116,6 +122,12 @@ class Arguments:
         lasts = lemma in self._words.seconds and any(c.dep_ == "nummod" for c in noun.children)
         return (lemma in _LENGTHS or lasts) and event.lemma not in self._words.verbs["light"]
 
+    def _way(self, noun: Token, event: Event) -> str:
+        """The particle of who goes somewhere, which is a preposition before a thing; "" for other verbs."""
+        goes = event.lemma in self._words.verbs["goes"] and not self._words.part(noun.lemma_.lower())
+        before = noun.doc[max(noun.left_edge.i - 1, 0)]
+        return before.lower_ if goes and before.dep_ in ("prt", "advmod") and before.lower_ in _ALONG else ""
+
     def _is_path(self, noun: Token, event: Event) -> bool:
         goes = event.lemma in self._words.verbs["goes"]
         return goes and noun.dep_ in ("dobj", "obj", "npadvmod") and noun.lemma_.lower() in _PATHS
@@ -135,6 +147,8 @@ class Arguments:
         if within is not None and self._words.directions.get(token.lower_) in _TURNS:
             self._direction(token.lower_, event)
             token = within  # "in a circle clockwise"
+        if (part := self._named_by(token)) is not None:
+            token = part
         person = self._words.is_person(token.lemma_.lower())
         states = {phrase.i for phrase, _ in states_of(token)} if person else set()
         for child in token.children:
@@ -157,6 +171,14 @@ class Arguments:
             elif child.lower_ == "no" and child.dep_ == "det":
                 event.denied = not event.denied
         return reference(token, self.cast, who)
+
+    def _named_by(self, spot: Token) -> Token | None:
+        """The part of the body of which a noun names a spot: "the top of his head"; None for other nouns."""
+        of = next((c for c in spot.children if c.lower_ == "of"), None)
+        parts = (c for c in of.children if self._words.part(c.lemma_.lower())) if of is not None else ()
+        part = next(iter(parts), None) if spot.lemma_.lower() in _SPOTS else None
+        self.seen |= {spot.i, of.i, part.i} if of is not None and part is not None else set()
+        return part
 
     def _others(self, noun: Token, who: str) -> bool:
         """True for what the other does: "parries A's left punch"."""
@@ -221,6 +243,10 @@ class Arguments:
         if preposition.lower_ in ("for", "within", "after", "over") and lemma in self._words.seconds:
             event.seconds = self._amount(noun) * self._words.seconds[lemma]
             return True
+        if preposition.lower_ == "for" and lemma in _LENGTHS:  # "walks forward for three steps"
+            for child in noun.children:
+                self._count(child, noun, event)
+            return True
         words = {child.lower_ for child in noun.children}
         if (
             lemma in ("direction", "side")
@@ -261,7 +287,7 @@ class Arguments:
         if value is None and number.text.isdecimal() and len(number.text) < 4:
             value = int(number.text)
         lemma = noun.lemma_.lower()
-        if value is None or self._words.is_person(lemma) or number.lower_ in ("a", "an"):
+        if value is None or self._words.is_person(lemma) or lemma == "degree" or number.lower_ in ("a", "an"):
             return
         if lemma in self._words.seconds:  # "on count five", "with a delay of one second"
             return
@@ -321,6 +347,8 @@ class Arguments:
     def light(self, event: Event) -> None:
         """Turns "gives him a hug" and "takes a bow" into the verb that their noun stands for."""
         noun = event.object
+        if noun is not None and noun.kind == "thing" and noun.lemma == event.lemma:  # "dances a slow dance"
+            event.object = noun = None
         if noun is not None and noun.kind == "thing" and noun.lemma in self._verbs:
             for kind in ("tried", "wished", "not", "pretended", "offered"):  # "wants a hug", "refuses the dance"
                 if event.lemma in self._words.verbs[kind] and event.lemma not in ("hope", "promise"):

@@ -112,6 +112,7 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
     verbs, subject, ref = vocabulary().verbs, event.subject, event.object
     repeats = event.lemma in verbs["repeats"]
     named = ref is None or ref.lemma in _SAME or ref.kind == "person"
+    named = named or (ref is not None and ref.lemma == "thing" and "same" in event.words)
     named = named or (repeats and ref is not None and (ref.kind == "part" or ref.lemma in _MOVEMENTS))
     named = named or (repeats and ref is not None and ref.lemma in known.frames)
     if subject is None or subject.kind != "person" or not named:
@@ -217,10 +218,13 @@ def is_next_to(event: Event, found: Found, known: Lexicon) -> bool:
     return bool(found[2].patient) and "posture" in shown and beside
 
 
-def held(event: Event, found: Found, find: Find) -> Iterator[tuple[Event, Found]]:
-    """The postures that phrases beside an act name: "begs on his knees", "with folded arms"."""
+def held(event: Event, found: Found, known: Lexicon, find: Find) -> Iterator[tuple[Event, Found]]:
+    """The postures that phrases beside an act name: "begs on his knees", but not "leans on his knees"."""
     agents = found[2].agents
-    rest = [event.prepositions[i] for i in found[2].rest]
+    elements = (each for _, frame in known.frames.get(event.lemma, ()) for each in frame.elements)
+    rests = event.lemma != "be" and any("on" in each.prepositions and each.slot != "place" for each in elements)
+    rests = rests or any(shape.do == "posture" for shape in known.entries[found[0]].stage)
+    rest = [event.prepositions[i] for i in found[2].rest if not (rests and event.prepositions[i][0] == "on")]
     for preposition, ref in rest:
         open_ = not ref.who and (preposition == "with" or (_carries(ref) and ref.family != "knee"))
         if ref.kind != "part" or not (open_ or ref.who == agents) or (preposition == "on" and not _carries(ref)):
@@ -273,6 +277,7 @@ def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tup
             continue
         own = any(vocabulary().part(word) for word in event.words)  # "with slow arm circles"
         bodily = is_act(ref.lemma) or own or (preposition == "in" and event.lemma in _IS)
+        bodily = bodily and not (event.lemma in _IS and ref.lemma in vocabulary().gaits)  # "is in a hurry"
         if not bodily or ref.lemma in vocabulary().verbs["no_nouns"]:
             continue
         others = [each for j, each in enumerate(event.prepositions) if j != i and j in rest]

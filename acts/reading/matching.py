@@ -22,6 +22,8 @@ _SYNONYM = 0.8
 """What each step through WordNet costs."""
 _FARTHEST = 1.0
 """Steps through WordNet, at most: ranks of the two verbs' senses and levels up."""
+_MOST_SENSES = 9
+"""Senses of a verb that others may stand for, at most: one of more, as "move" and "step", means too many things."""
 
 Found = tuple[str, Frame, Match]
 
@@ -69,7 +71,8 @@ class Matcher:
         found: Found | None = None
         about = vocabulary().verbs["begins"] | vocabulary().verbs["ends"]
         walks = event.object is not None and event.lemma in vocabulary().verbs["goes"]
-        if walks or (event.object is None and event.lemma in about):
+        light = event.lemma in ("do", "make") and event.object is not None  # means what its object names
+        if walks or light or (event.object is None and event.lemma in about):
             return None  # nobody moves what is walked, as a way is, and others are about other verbs
         most = LEAST_SCORE
         for cost, (name, frame, match) in self._alike(event):
@@ -80,6 +83,8 @@ class Matcher:
 
     def _alike(self, event: Event) -> Iterator[tuple[float, Found]]:
         lemma, event = _phrasal(event)
+        if len(wordnet.senses(lemma)) > _MOST_SENSES and wordnet.usual_kind(lemma) in wordnet.BODILY:
+            return
         near = ((sense, cost) for sense, cost in wordnet.meanings(lemma) if cost <= _FARTHEST)
         for sense, cost in near:
             for name in self._named.get(sense, ()):
@@ -96,7 +101,7 @@ class Matcher:
             for sense, level in [(own, 0), *((up, 1) for up in wordnet.above(own) if bodily)]:
                 for verb, other in self._verbs.get(sense, ()):
                     cost = rank + level + other
-                    if verb == lemma or cost > _FARTHEST:
+                    if verb == lemma or cost > _FARTHEST or ("_" in verb and not bodily):  # "lets down": disappoints
                         continue
                     found = best(self._frames, _as(event, verb))
                     if found is not None and found[2].score >= 0.0:

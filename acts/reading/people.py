@@ -27,6 +27,8 @@ PRONOUN_SEX = dict.fromkeys(("he", "him", "his", "himself"), "m") | dict.fromkey
 """The sex that a pronoun tells."""
 _NOMINATIVE = frozenset(("i", "he", "she", "they", "we"))
 ANYONE = frozenset(("someone", "somebody", "anyone", "anybody", "person"))
+_NEUTER = frozenset(("figure", "robot", "sim", "character"))
+"""Nouns of a person who is "it"."""
 _ARTICLES = frozenset(("a", "an", "the", "his", "her", "their"))
 _OTHERS = frozenset(("conj", "poss", "appos"))
 """What hangs on a noun and is somebody else: "a man and a girl", "the child's mother"."""
@@ -97,8 +99,9 @@ class Cast:
             return self._named("i" if text in ("i", "me", "myself") else "you")
         if text in _THEY:
             return self._they(text, subject)
+        figure = self.alone and token.dep_ == "nsubj" and bool(_NEUTER & set(self._known.get("a", _Known()).words))
         if text == "it" or is_likeness(token):
-            return None
+            return "a" if text == "it" and figure else None
         if text in _NOBODY or (text == "one" and "no" in children):
             return "ab"
         if text == "other" or ("other" in children and (text == "one" or self._words.is_person(lemma))):

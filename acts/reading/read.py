@@ -211,7 +211,7 @@ class _Planner:
         if is_next_to(event, found, self._known):
             for other, line in self._found(formations(event, ["form line"])):
                 self._add(number, other, *line, beside=at_once)
-        for other, posture in held(event, found, self._matcher.find):
+        for other, posture in held(event, found, self._known, self._matcher.find):
             self._add(number, other, *posture, beside=at_once)
         if (sits := seated(event, found, self._known, told)) is not None:
             for other, sat in self._found([sits]):
@@ -303,8 +303,8 @@ class _Planner:
     def _add(
         self, number: int, event: Event, name: str, frame: Frame, match: Match, beside: Relation | None = None
     ) -> None:
-        if name == "take-from" and self._reader.cast.alone:
-            name = "grab-thing"  # from nobody
+        if self._reader.cast.alone and (other := self._known.entries[name].alone) in self._known.entries:
+            name = other
         if name == "follow" and event.lemma in vocabulary().verbs["goes"] and self._rests(match.patient):
             name = "come-behind"  # "B lies down. A walks behind B."
         number_of = str(len(self._acts) + 1)

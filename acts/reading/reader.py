@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 _THEN = frozenset(
     ("then", "afterwards", "afterward", "finally", "next", "later", "subsequently", "eventually", "lastly")
 )
+_LISTED = frozenset(("conj", "xcomp", "advcl", "dep"))
+"""Relations of clauses behind another that "then" may join to it: "sits down, then getting up"."""
 _AT_ONCE = frozenset(("simultaneously", "meanwhile"))
 _SAYS = frozenset(("say", "shout", "yell", "scream"))
 _NEARLY = frozenset(("almost", "nearly"))
@@ -330,7 +332,7 @@ class Reader:
         marks = [c.lower_ for c in bare if c.dep_ in ("mark", "advmod", "prep", "cc", "intj")]
         above = head if head is not None else next((t for t in token.ancestors if self._tree.is_clause(t)), None)
         previous = max((i for i in self._of if i < token.i), default=None)
-        listed = above is not None and (token.dep_ == "conj" or (token.dep_ == "xcomp" and token.tag_ in ("VB", "VBP")))
+        listed = above is not None and above.i < token.i and token.dep_ in _LISTED and MARKS.keys().isdisjoint(marks)
         if not _THEN.isdisjoint(marks) or (listed and self._then_before(token)):
             return "then", previous
         if not _AT_ONCE.isdisjoint(marks) and token.dep_ != "xcomp":
@@ -355,11 +357,14 @@ class Reader:
             return "while", above.i
         if token.dep_ == "relcl" and token.i > above.i and token.tag_ != "VBG" and tells_on(token):
             return "who", above.i
-        if token.dep_ in ("acl", "relcl"):
+        if token.dep_ in ("acl", "relcl") and not (token.dep_ == "acl" and token.tag_ == "VBZ"):
             return ("while" if token.tag_ == "VBG" else "with"), above.i
         if token.dep_ in ("xcomp", "ccomp"):
             told = any(c.lower_ == "who" and c.dep_ == "nsubj" for c in token.children)  # "…, who limps"
             return "while" if told else "comp", above.i
+        if above.i > token.i:  # "they hug and then part", where the second became the main one
+            self._tree.mains.append(token.i)
+            return "after", None
         return "conj", above.i
 
     def _then_before(self, token: Token) -> bool:

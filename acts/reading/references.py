@@ -15,10 +15,12 @@ if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
 
 _SOMEBODY = ANYONE | {"someone", "somebody"}
-_PLAIN = _SOMEBODY | {"man", "woman", "guy", "boy", "girl", "human", "kid", "child", "dude"}
+_PLAIN = _SOMEBODY | {"man", "woman", "guy", "boy", "girl", "human", "kid", "child", "dude", "figure", "sim"}
 """Nouns that name nobody's part in a scene, as "nurse" does, who has a patient."""
 _AROUND = frozenset(("of", "behind", "above", "below", "over", "around", "beside", "under", "before"))
 """Prepositions of where something is around oneself: "in front of him"."""
+_LIMBS = frozenset(("hand", "arm", "leg", "foot"))
+"""Families of parts that are lifted, and so lowered again."""
 _COMPANY = frozenset(
     ("other", "another", "first", "second", "former", "latter", "you", "i", "me", "my", "your", "us", "we")
 )
@@ -29,7 +31,7 @@ def names_one(doc: Doc) -> bool:
     """True for a parsed text that names a single person, whose every part of a body and pronoun are."""
     words_of = vocabulary()
     nouns = [t for t in doc if t.lower_ in _SOMEBODY or words_of.is_usual_person(t.lemma_.lower())]
-    nouns = [t for t in nouns if t.pos_ != "VERB" and t.dep_ != "amod"]
+    nouns = [t for t in nouns if t.pos_ not in ("VERB", "ADV", "ADJ") and t.dep_ != "amod"]
     words = {t.lower_ for t in doc}
     if any(t.lower_ == "one" and words_of.part(t.nbor().lemma_) for t in doc[:-1]):
         words -= {"other"}  # "one foot in front of the other"
@@ -56,7 +58,7 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
     behind = cast.alone and token.dep_ == "pobj"  # "holds them in front of them"
     if token.lower_ == "them" and cast.things is not None and len(subject) == 1 and not behind:
         return replace(cast.things, first=first, last=last)  # "drops her keys, and he picks them up"
-    if token.lower_ == "it" and cast.thing is not None:
+    if token.lower_ == "it" and cast.thing is not None and not cast.person(token):
         said_of = cast.thing_of if cast.thing_of != subject and len(cast.thing_of) == 1 else ""
         hers = bool(cast.thing_sex) and cast.thing_sex == cast.sex(subject)  # "kisses her hand; she withdraws it"
         owner = cast.thing.who or (said_of if cast.thing.kind == "part" and not hers else "")
@@ -65,6 +67,8 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
     cast.seen[token.i] = ref
     if ref.kind == "person":
         cast.note_states(token, ref.who)
+        of = (c for c in token.children if c.lower_ == "of")  # "one of the kids"
+        cast.seen |= {c.i: ref for each in of for c in each.children if vocabulary().is_person(c.lemma_.lower())}
     _note_thing(token, ref, cast, subject)
     return ref
 
@@ -82,9 +86,12 @@ def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
     light = token.head.lemma_.lower() in vocabulary().verbs["light"]  # "does two jumps"
     many = ref.kind == "thing" or (ref.kind == "part" and cast.alone)
     taken = token.dep_ == "dobj" or (ref.kind == "part" and token.head.lower_ in ("with", "of"))
-    if many and token.tag_ == "NNS" and taken and not light:
+    if many and token.tag_ == "NNS" and taken and (ref.kind == "part" or not light):
         cast.things = ref
     beside = token.dep_ == "pobj" and cast.thing is not None and (ref.kind, cast.thing.kind) == ("part", "thing")
+    lifted = cast.alone and cast.thing is not None and cast.thing.family in _LIMBS
+    if lifted and ref.kind == "part" and (ref.family not in _LIMBS or token.head.lower_ in ("at", "from")):
+        return  # "raises a hand, rubs his head and lowers it", "bends an arm at the elbow and lowers it"
     if beside or _is_aside(token, cast):  # "throws the ball over her shoulder, and he catches it"
         return
     goal = ref.kind == "thing" and cast.thing is None and is_fixture(ref.lemma)  # "at the door, and opens it"

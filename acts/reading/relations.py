@@ -50,6 +50,7 @@ def related(
             continue
         other = acts[of[above]]
         then, kind = kind == "then", "after" if kind == "then" else kind
+        act = acts[act.id] = act.model_copy(update={"already": act.already and not then})
         if kind == "who":
             kind = "while" if _lasts(other, known) else "after"
         if kind == "after" and (other.already or _waits(other, known)):

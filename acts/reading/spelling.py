@@ -157,29 +157,6 @@ def other_language(text: str) -> str | None:
     return None
 
 
-_ENGLISH = frozenset(
-    [
-        "the",
-        "a",
-        "an",
-        "and",
-        "to",
-        "of",
-        "he",
-        "she",
-        "they",
-        "his",
-        "her",
-        "him",
-        "on",
-        "in",
-        "with",
-        "one",
-        "each",
-        "other",
-        "then",
-        "while",
-        "person",
-        "two",
-    ]
-)
+_ENGLISH_WORDS = "the a an and to of he she they his her him on in with one each other then while person two"
+_ENGLISH = frozenset(_ENGLISH_WORDS.split())
+"""Words of which English sentences of some length have one."""

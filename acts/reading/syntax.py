@@ -156,8 +156,8 @@ def is_noun_or_side(token: Token) -> bool:
     if any(c.dep_ in ("dobj", "nsubj") for c in token.children):
         return False
     before, part = token.nbor(-1), vocabulary().part
-    if word == "left":
-        return before.pos_ == "VERB"
+    if word == "left":  # "turns left", "to the right and left"
+        return before.pos_ == "VERB" or (token.i > 1 and token.nbor(-2).lower_ == "right")
     if word in ("level", "height"):
         return bool(part(before.lemma_.lower()))
     sided = before.lower_ in ("both", "left", "right") or before.tag_ == "PRP$"
@@ -290,7 +290,7 @@ class ClauseTree:
         beneath = token.subtree if token.dep_ == "pcomp" else token.children
         if token.dep_ != "ROOT" and not event and any(c.lower_ == "where" for c in beneath):
             return False  # "to where she came from" is a place, and "a tango where he dips her" none
-        if is_kept(token):
+        if is_kept(token) or (token.dep_ == "relcl" and token.head.lemma_ == "way"):  # "back the way he came"
             return False
         if token.dep_ == "acomp" and token.head.lemma_ in ("remain", "stay") and token.tag_ == "VBN":
             return False  # "who remains seated"

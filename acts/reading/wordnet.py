@@ -6,48 +6,30 @@ The tables beside this module are an extract, which this module made in commit 3
 
 from __future__ import annotations
 
-import bisect
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 _HERE = Path(__file__).parent
 VERBS, PEOPLE, NOUNS = _HERE / "verbs.tsv", _HERE / "people.tsv", _HERE / "nouns.tsv"
-_STARTS = (
-    "00001740",
-    "00109660",
-    "00588221",
-    "00740595",
-    "01072280",
-    "01156852",
-    "01205714",
-    "01617210",
-    "01759344",
-    "01831549",
-    "02105828",
-    "02199608",
-    "02367050",
-    "02603699",
-    "02756558",
-)
-_KINDS = (
-    "body",
-    "change",
-    "cognition",
-    "communication",
-    "competition",
-    "consumption",
-    "contact",
-    "creation",
-    "emotion",
-    "motion",
-    "perception",
-    "possession",
-    "social",
-    "stative",
-    "weather",
-)
-"""WordNet's kinds of verbs; their synsets stand in this order, each kind from the number in ``_STARTS`` on."""
+_KINDS = {
+    "body": "00001740",
+    "change": "00109660",
+    "cognition": "00588221",
+    "communication": "00740595",
+    "competition": "01072280",
+    "consumption": "01156852",
+    "contact": "01205714",
+    "creation": "01617210",
+    "emotion": "01759344",
+    "motion": "01831549",
+    "perception": "02105828",
+    "possession": "02199608",
+    "social": "02367050",
+    "stative": "02603699",
+    "weather": "02756558",
+}
+"""WordNet's kinds of verbs, and the number of the synset from which on each kind stands."""
 BODILY = frozenset(("body", "competition", "consumption", "contact", "motion"))
 """WordNet's kinds of verbs that bodies show; others are matched only with verbs of the same meaning."""
 
@@ -133,12 +115,13 @@ def above(sense: str) -> tuple[str, ...]:
 
 def kind(sense: str) -> str:
     """The kind of a verb's synset: "body", "motion", "contact", "cognition", …."""
-    return _KINDS[bisect.bisect_right(_STARTS, sense) - 1]
+    return [name for name, first in _KINDS.items() if first <= sense][-1]
 
 
 def usual_kind(lemma: str) -> str:
     """The kind of a verb in its first sense; "body" for a verb that WordNet lacks."""
-    return kind((senses(lemma) or _STARTS)[0])
+    own = senses(lemma)
+    return kind(own[0]) if own else "body"
 
 
 def meanings(lemma: str, most: int = 3, height: int = 2) -> list[tuple[str, float]]:

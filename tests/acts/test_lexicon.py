@@ -40,6 +40,7 @@ WRONG = {
     "table": ("x = 3\n", "write the entry as a table"),
     "reads": ('\n[zig]\nframes = ["{a} zig"]\ncaption = ["x"]\nreads = ["She sleeps."]', "is not read as zig"),
     "ignores": ('[zig]\nframes = ["{a} bow"]\ncaption = ["x"]\nreads = ["She bows."]\nignores = ["He bows."]', "zig"),
+    "alone": (f'[bow]\nframes = ["{{a}} bow"]\nalone = "zig"\n{HEAD.replace("x", "He bows.")}', "zig"),
     "rule": (
         '[zig]\nframes = ["{a} zigzag"]\ncaption = ["x"]\nreads = ["She zigzags."]\nrule = ["happens(flies(who))"]',
         "flies",

@@ -41,3 +41,14 @@ def test_a_particle_that_a_frame_has_is_a_part_of_it(words: str) -> None:
 def test_then_at_the_same_time_is_after_what_came_before() -> None:
     clap, bow = read("They clap, then bow at the same time.").acts
     assert [(r.kind, r.act) for r in bow.order] == [("after", clap.id)]
+
+
+@pytest.mark.parametrize("words", ["high-five, walk", "They hug and then part."])
+def test_the_first_of_two_verbs_comes_first(words: str) -> None:
+    first, then = read(words).acts
+    assert not first.order and [(r.kind, r.act) for r in then.order] == [("after", first.id)]
+
+
+def test_who_then_sits_down_was_not_seated_before() -> None:
+    man, woman = read("The man sits and the woman then sits next to him.").acts[:2]
+    assert man.already and not woman.already
