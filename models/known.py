@@ -67,6 +67,27 @@ class Known:
             torch.zeros(shape, dtype=torch.bool),
         )
 
+    def features(self, layout: TokenLayout, mean: Tensor, std: Tensor) -> Tensor:
+        """What a network sees of these parts: means over the frames nearest to each knot, masks and headings.
+
+        Args:
+            layout: frames a knot and knots a token.
+            mean, std: (70,) of the network's normaliser.
+
+        Returns:
+            (B, tokens, 2·knots_per_token·:data:`KNOWN_FEATURES`).
+        """
+        frames, step = self.rows.shape[2], layout.frames_per_knot
+        knots = layout.num_tokens(frames) * layout.knots_per_token
+        nearest = (torch.arange(frames) + step // 2) // step + 1  # knot k of the spline lies at frame step·(k − 1)
+        rows = torch.where(self.mask, (self.rows - mean) / std, 0.0)
+        given = self.heading_mask[..., None]
+        sums = torch.cat([rows, self.mask, torch.where(given, self.heading, 0.0), given], -1)
+        bins = sums.new_zeros(*sums.shape[:2], knots, sums.shape[-1]).index_add(2, nearest, sums)
+        values, counts, heading, times = bins.split([FEATURES, FEATURES, 2, 1], -1)
+        seen = [values / counts.clamp_min(1), counts > 0, heading / times.clamp_min(1), times > 0]
+        return pack(torch.cat([part.to(sums) for part in seen], -1), layout)
+
     def add_person(self, person: int, positions: Tensor, frames: Iterable[int] | None = None) -> None:
         """Marks a person's poses as known in all motions, at some frames or from the first frame on.
 
@@ -139,7 +160,7 @@ class Hold:
         mean, std: (70,) of the network's normaliser.
 
     Attributes:
-        features: (B, tokens, 2·knots_per_token·:data:`KNOWN_FEATURES`) what a network sees of the known part.
+        features: what a network sees of the known part, see :meth:`Known.features`.
         groups: how the columns of control points in which something is known are moved, those of one mask together.
     """
 
@@ -148,7 +169,7 @@ class Hold:
         frames = known.rows.shape[2]
         self.tokens = layout.num_tokens(frames)
         rows = torch.where(known.mask, (known.rows - mean) / std, 0.0)
-        self.features = self._features(known, rows)
+        self.features = known.features(layout, mean, std)
         basis = layout.basis(self.tokens)
         columns = rows.transpose(2, 3).reshape(-1, frames)
         masks = known.mask.transpose(2, 3).reshape(-1, frames)
@@ -225,18 +246,6 @@ class Hold:
             offset = offset.to(x)
             held[:, at] = offset if move is None else offset + columns[:, at] @ move.to(x).T
         return pack(held.view(control.transpose(2, 3).shape).transpose(2, 3), self.layout)
-
-    def _features(self, known: Known, rows: Tensor) -> Tensor:
-        """Means over the frames nearest to each knot."""
-        frames, knots = rows.shape[2], self.tokens * self.layout.knots_per_token
-        step = self.layout.frames_per_knot
-        nearest = (torch.arange(frames) + step // 2) // step + 1  # knot k of the spline lies at frame step·(k − 1)
-        given = known.heading_mask[..., None]
-        sums = torch.cat([rows, known.mask, torch.where(given, known.heading, 0.0), given], -1)
-        bins = sums.new_zeros(*sums.shape[:2], knots, sums.shape[-1]).index_add(2, nearest, sums)
-        values, counts, heading, times = bins.split([FEATURES, FEATURES, 2, 1], -1)
-        seen = [values / counts.clamp_min(1), counts > 0, heading / times.clamp_min(1), times > 0]
-        return pack(torch.cat([part.to(sums) for part in seen], -1), self.layout)
 
 
 def _stiffness(knots: int) -> Tensor:

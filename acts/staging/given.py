@@ -33,12 +33,16 @@ from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
 from .touches import touch_parts
 from .track import EVERY
-from .window import SETTLES, KnownFrames, Part, Stretch, Window
+from .window import SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
 
 Array = NDArray[np.floating]
 
 _POSED = 4
 """Frames between two poses of a statue: as many as between the network's knots, of which others would waver."""
+
+
+_PLACED = 30
+"""Frames between two places of somebody whose poses are a draft."""
 
 
 @dataclass(frozen=True)
@@ -81,6 +85,27 @@ def plan_parts(
     else:
         parts = _Beat(story, window, scene, placement).parts()
     return [part for part in parts if part.person not in taken]
+
+
+def drafted(parts: Sequence[Part]) -> list[Part]:
+    """The parts, with poses as drafts: of them only places are held, and the headings of those who are upright."""
+    found: list[Part] = []
+    for part in parts:
+        if isinstance(part, KnownPath) or part.kept:
+            found.append(part)
+            continue
+        found.append(replace(part, soft=True))
+        if not part.joints or 0 in part.joints:
+            frames = np.asarray(part.frames)
+            kept = [0]
+            for i in range(1, len(frames)):
+                if frames[i] - frames[kept[-1]] >= _PLACED or i == len(frames) - 1:
+                    kept.append(i)
+            poses = np.asarray(part.positions)[kept]
+            up = bool((poses[:, 0, 1] > UPRIGHT).all())
+            headings = heading(poses) if up else None  # of a body that lies, the hips say nothing
+            found.append(KnownPath(part.person, frames[kept].tolist(), poses[:, 0][:, [0, 2]], headings, up))
+    return found
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ SHORT = 120
 
 @dataclass(frozen=True, eq=False)
 class KnownFrames:
-    """The motion of a person at some frames, held exactly.
+    """The motion of a person at some frames, held exactly, or a draft of it.
 
     Attributes:
         person: 0 for a, 1 for b.
@@ -51,6 +51,7 @@ class KnownFrames:
         joints: those that are given; () for all. All but the pelvis are given relative to it. Where only some are
             given, the network is held to them, and the finished motion comes close to them.
         kept: the finished motion has these joints as they are given: a foot that stamps is not planted again.
+        soft: the network is shown these joints and how high the pelvis is, and is not held to them.
     """
 
     person: int
@@ -58,6 +59,7 @@ class KnownFrames:
     positions: Array
     joints: Sequence[int] = ()
     kept: bool = False
+    soft: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -42,6 +42,7 @@ class CompactConfig:
     role_text: see :class:`models.intergen.InterGenConfig`.
     words: the denoiser is a :class:`models.intergen.words.WordDenoiser`, which reads words, a sentence for each
         person and the known part of a motion.
+    drafts: with ``words``, it reads drafts, too.
     """
 
     latent_dim: int = 320
@@ -53,6 +54,7 @@ class CompactConfig:
     dropout: float = 0.0
     role_text: bool = False
     words: bool = False
+    drafts: bool = False
     layout: TokenLayout = field(default_factory=TokenLayout)
     touches: tuple[Touch, ...] = ()
 
@@ -99,6 +101,8 @@ class DuetSpace(nn.Module):
     std: Tensor
     reads_known = False
     """Whether the denoiser takes ``known``, the features of what is known (:attr:`models.known.Hold.features`)."""
+    reads_drafts = False
+    """Whether it sees a draft behind them."""
 
     def __init__(self, layout: TokenLayout) -> None:
         super().__init__()
@@ -110,6 +114,19 @@ class DuetSpace(nn.Module):
     def scale(self) -> Tensor:
         """(2·token_features,) metres to a unit of network space."""
         return self.std.repeat(2 * self.layout.knots_per_token)
+
+    def shown(self, known: Tensor | None, draft: Tensor | None = None) -> Tensor | None:
+        """What the denoiser sees of what is known, and of a draft where it reads drafts.
+
+        Args:
+            known, draft: (B, tokens, features) of :meth:`models.known.Known.features`; None where there is nothing.
+        """
+        if not self.reads_drafts or (known is None and draft is None):
+            return known
+        nothing = torch.zeros_like(known if draft is None else draft)
+        parts = [nothing if part is None else part for part in (known, draft)]
+        people = [part.view(*part.shape[:2], 2, -1) for part in parts]
+        return torch.cat(people, -1).flatten(2)
 
     def control(self, x: Tensor) -> Tensor:
         """Network space (B, tokens, 2·token_features) → control points (B, 2, knots, 70) in metres."""
@@ -125,7 +142,7 @@ class CompactInterGen(DuetSpace):
 
     def __init__(self, config: CompactConfig) -> None:
         super().__init__(config.layout)
-        self.config, self.reads_known = config, config.words
+        self.config, self.reads_known, self.reads_drafts = config, config.words, config.drafts
         sizes = InterGenConfig(
             input_features=config.layout.token_features,
             latent_dim=config.latent_dim,
@@ -138,7 +155,7 @@ class CompactInterGen(DuetSpace):
             role_text=config.role_text,
         )
         self.denoiser: InterGenDenoiser = (
-            WordDenoiser(sizes, KNOWN_FEATURES * config.layout.knots_per_token)
+            WordDenoiser(sizes, KNOWN_FEATURES * config.layout.knots_per_token, drafts=config.drafts)
             if config.words
             else InterGenDenoiser(sizes)
         )

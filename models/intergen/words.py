@@ -2,8 +2,9 @@
 
 The parts of :class:`models.intergen.InterGenDenoiser` stay as they are. New are attention to the words' features
 in every block, the vectors of each person's own sentence in AdaLN, and an embedding of the known part of the
-motion (:mod:`models.known`). All of them begin at zero, so a network grown from trained weights gives what those
-gave until it is trained.
+motion (:mod:`models.known`). With ``drafts`` the network also sees a draft: poses that the motion should follow without
+being held to them. All of these parts begin at zero, so a network grown from trained weights gives what those gave
+until it is trained.
 
 Shapes: B batch, T tokens in time, F features a person and token, R rows a sentence (its vector, then a word each),
 C text width, d latent width; the text of a motion is (B, 3, R, C): the sentence for both people, for a, for b.
@@ -69,15 +70,48 @@ class WordBlock(Block):
         return attended + self.ffn(attended, emb)
 
 
+class Draft(nn.Module):
+    """The way of a draft into the network: into the first states, and past all blocks into the prediction.
+
+    The second way is opened by the timestep: the noisier the motion, the more of the draft is worth keeping. Both ways
+    give nothing at the start of training.
+
+    Args:
+        features: numbers a person and token, as of what is known.
+        config: sizes of the network.
+    """
+
+    def __init__(self, features: int, config: InterGenConfig) -> None:
+        super().__init__()
+        d = config.latent_dim
+        self.read = nn.Linear(2 * features, d)
+        self.near = nn.Conv1d(d, d, 3, padding=1)
+        self.into = nn.Linear(d, d, bias=False)
+        self.past = nn.Linear(d, config.input_features, bias=False)
+        self.gate = nn.Linear(d, config.input_features)
+        nn.init.zeros_(self.into.weight)
+        nn.init.zeros_(self.past.weight)
+        nn.init.zeros_(self.gate.weight)
+        nn.init.ones_(self.gate.bias)
+
+    def forward(self, people: Tensor, emb: Tensor) -> tuple[Tensor, Tensor]:
+        """Both people's drafts (2, B, T, features) and emb (2, B, d) → what is added to states and prediction."""
+        own = F.gelu(self.read(torch.cat([people, people.flip(0)], -1)))
+        near = self.near(own.flatten(0, 1).transpose(1, 2)).transpose(1, 2).view_as(own)
+        seen = (own + F.gelu(near)) * (people != 0).flatten(2).any(-1).any(0)[:, None, None]
+        return self.into(seen), self.past(seen) * self.gate(emb)[:, :, None]
+
+
 class WordDenoiser(InterGenDenoiser):
     """The grown denoiser.
 
     Args:
         config: sizes; its text width is that of a row of text.
         known_features: numbers a person and token by which the network sees what is known.
+        drafts: it reads drafts: as many numbers more, behind these.
     """
 
-    def __init__(self, config: InterGenConfig, known_features: int) -> None:
+    def __init__(self, config: InterGenConfig, known_features: int, *, drafts: bool = False) -> None:
         super().__init__(config)
         d = config.latent_dim
         self.blocks = nn.ModuleList(WordBlock(config) for _ in range(config.num_layers))
@@ -86,6 +120,8 @@ class WordDenoiser(InterGenDenoiser):
         self.known_embed = nn.Linear(known_features, d, bias=False)
         nn.init.zeros_(self.person_text.weight)
         nn.init.zeros_(self.known_embed.weight)
+        self.draft = Draft(known_features, config) if drafts else None
+        self.seen_features = known_features * (2 if drafts else 1)
 
     def forward(
         self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None, known: Tensor | None = None
@@ -97,7 +133,8 @@ class WordDenoiser(InterGenDenoiser):
             t: (B,) int64 timesteps.
             cond: (B, 3, R, C) text; zeros for the unconditional prediction.
             mask: (B, T, 2), nonzero where a person's token is real; padding is not attended to.
-            known: (B, T, 2·known_features), see :attr:`models.known.Hold.features`; None if nothing is.
+            known: (B, T, 2·seen_features), for each person :meth:`models.known.Known.features` of what is known and,
+                with drafts, of the draft; None if there is neither.
 
         Returns:
             (B, T, 2F); what stands at padded tokens means nothing.
@@ -105,13 +142,19 @@ class WordDenoiser(InterGenDenoiser):
         b, length, _ = x.shape
         emb = self.embed(t, cond)
         h = self.embed_motion(x.view(b, length, 2, -1).permute(2, 0, 1, 3))
+        followed: Tensor | float = 0.0
         if known is not None:
-            h = h + self.known_embed(known.view(b, length, 2, -1).permute(2, 0, 1, 3))
+            seen = known.view(b, length, 2, -1).permute(2, 0, 1, 3)
+            width = self.known_embed.in_features
+            h = h + self.known_embed(seen[..., :width])
+            if self.draft is not None:
+                into, followed = self.draft(seen[..., width:], emb)
+                h = h + into
         text, real = self.text_of_each(cond)
         keep, keep_other = padding(mask)
         for block in cast(list[WordBlock], self.blocks):
             h = block.read(h, emb, keep, keep_other, text, real)
-        return self.out(h).permute(1, 2, 0, 3).reshape(b, length, -1)
+        return (self.out(h) + followed).permute(1, 2, 0, 3).reshape(b, length, -1)
 
     @property
     def varying(self) -> dict[str, tuple[int, ...]]:
@@ -123,7 +166,7 @@ class WordDenoiser(InterGenDenoiser):
     ) -> tuple[Tensor, ...]:
         """See :class:`models.compiled.TwoPersonInputs`; zeros say that nothing is known."""
         if known is None:
-            known = x.new_zeros(*x.shape[:2], 2 * self.known_embed.in_features)
+            known = x.new_zeros(*x.shape[:2], 2 * self.seen_features)
         return (*super().filled(x, t, cond, mask), known)
 
     def example(self) -> tuple[Tensor, ...]:
@@ -132,7 +175,7 @@ class WordDenoiser(InterGenDenoiser):
         draw = torch.Generator().manual_seed(1)
         cond = torch.randn(2, 3, 4, cond.shape[1], generator=draw)
         cond[1, 1:] = 0
-        known = torch.randn(2, x.shape[1], 2 * self.known_embed.in_features, generator=draw)
+        known = torch.randn(2, x.shape[1], 2 * self.seen_features, generator=draw)
         known[1, 3:] = 0
         return x, t, cond, mask, known
 

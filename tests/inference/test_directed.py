@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
+import torch
 
 from acts.staging.window import KnownFrames, KnownPath, Part
 from motion import SMPL22, Duet, InputError
@@ -39,6 +40,17 @@ def test_a_span_and_a_pose_are_held_exactly(either_engine: Engine) -> None:
     free = make(either_engine, [])
     assert np.abs(free.a.positions[:20] - past).max() > 0.1
     assert np.abs(free.b.positions[45] - pose[0]).max() > 0.1
+
+
+def test_a_draft_is_shown_and_not_held(either_engine: Engine) -> None:
+    poses, frames = walker()[::5], range(0, FRAMES, 5)
+    model = either_engine.pipeline("intergen").model
+    scene = directed(model, FRAMES, [KnownFrames(0, frames, poses, soft=True), KnownPath(1, [0], np.zeros((1, 2)))])
+    assert scene.draft is not None and scene.draft.any() and scene.given is not None
+    assert torch.equal(
+        scene.given.features, directed(model, FRAMES, [KnownPath(1, [0], np.zeros((1, 2)))]).given.features
+    )
+    assert not scene.draft.view(*scene.draft.shape[:2], 2, -1)[:, :, 1].any(), "it is person a's"
 
 
 def test_a_given_heading_is_shown_to_a_network_that_sees_it(reading_engine: Engine) -> None:

@@ -16,7 +16,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from torch import Tensor
 
 from acts import Act, Plan, lexicon, read
@@ -24,10 +23,9 @@ from acts.captions import worded
 from acts.checking import checked
 from acts.lexicon import Entry
 from acts.shapes import Shape
-from acts.staging.poses import UPRIGHT
+from acts.staging.given import drafted
 from acts.staging.window import KnownPath, Part
 from motion import Duet
-from motion.transforms import heading
 from webdemo.inference.pipelines import window
 from webdemo.inference.pipelines.scene import Parts
 from webdemo.inference.run import Result
@@ -40,8 +38,6 @@ SEEDS, WANTED, WORDINGS = 4, 3, 3
 """Seeds of a wording, those of them that have to show the act, and wordings that are tried."""
 SECONDS = (3.0, 6.0)
 """The shortest and the longest motion that is made of an act."""
-EVERY = 30
-"""Frames between two places that are kept of a body whose poses are left out."""
 
 
 @dataclass(frozen=True)
@@ -77,21 +73,7 @@ def gives_poses(shape: Shape) -> bool:
 
 def places_of(parts: Sequence[Part]) -> list[Part]:
     """The places and headings of parts (in the network's frame), without their poses."""
-    found: list[Part] = []
-    for part in parts:
-        if isinstance(part, KnownPath):
-            found.append(part)
-        elif not part.joints or 0 in part.joints:
-            frames = np.asarray(part.frames)
-            kept = [0]
-            for i in range(1, len(frames)):
-                if frames[i] - frames[kept[-1]] >= EVERY or i == len(frames) - 1:
-                    kept.append(i)
-            poses = np.asarray(part.positions)[kept]
-            up = bool((poses[:, 0, 1] > UPRIGHT).all())
-            headings = heading(poses) if up else None  # of a body that lies, the hips say nothing
-            found.append(KnownPath(part.person, frames[kept].tolist(), poses[:, 0][:, [0, 2]], headings, up))
-    return found
+    return [part for part in drafted(parts) if isinstance(part, KnownPath)]
 
 
 def wordings(act: Act, entry: Entry) -> list[str]:

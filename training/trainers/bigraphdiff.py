@@ -140,7 +140,9 @@ class Trainer(DuetTrainer):
         self.optimizer = adamw(self.model.parameters(), settings)
         self.restore(asdict(settings))
 
-    def terms(self, batch: Batch, t: Tensor, noise: Tensor, hold: object = None) -> dict[str, Tensor]:
+    def terms(
+        self, batch: Batch, t: Tensor, noise: Tensor, hold: object = None, draft: object = None
+    ) -> dict[str, Tensor]:
         """Every loss term of one batch, weighted."""
         xt = self.schedule.q_sample(batch.x0, t, noise)
         with mixed_precision(self.device):

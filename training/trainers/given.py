@@ -1,4 +1,4 @@
-"""Draws what is given of a training motion: a person, the past, all but a span, poses, joints, paths, a stage."""
+"""Draws what is given of a training motion: a person, the past, a span, poses, joints, paths, a stage; and drafts."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ class Shares:
         path: where one or both are on the floor, at all times or at a few; in half of them the heading, too.
         joints: the pelvis and one to four joints of a person for a while.
         staged: as the lab gives a story's beat to the network, see :func:`_staged`.
+        places: where people are and how they face, of both or of one.
         more: of the samples in which something is given, how many have a second kind given.
     """
 
@@ -36,9 +37,12 @@ class Shares:
     path: float = 0.1
     joints: float = 0.03
     staged: float = 0.0
+    places: float = 0.0
     more: float = 0.3
 
 
+AS_PLACES = Shares(person=0.08, past=0.12, span=0.03, poses=0.03, path=0.08, joints=0.01, places=0.5, more=0.35)
+"""What is given where the network is led by places, and by drafts of poses."""
 AS_STAGED = Shares(person=0.08, past=0.08, span=0.04, poses=0.04, path=0.05, joints=0.03, staged=0.45)
 """What is given where the network is to be led by the lab's plans."""
 
@@ -177,6 +181,11 @@ def _staged(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
             _kept(mask[person], _times(frames, draw), joints)
 
 
+def _places(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
+    for person in draw.people() if draw.uniform() < 0.4 else [0, 1]:
+        _way(mask[person], heading[person], frames, draw)
+
+
 def _way(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
     """A person's places at times 4 to 30 frames apart, and in most of them where they turn."""
     times = torch.arange(0, frames, draw.integer(4, 30))
@@ -207,6 +216,79 @@ def _kept(mask: Tensor, times: Tensor, joints: Iterable[int]) -> None:
         mask[times, 3 * joint : 3 * joint + 3] = True
 
 
+_DRAFTED = ((0.45, tuple(range(1, NUM_JOINTS))), (0.15, (*range(1, 16), 16, 17, 18, 19, 20, 21)), (0.1, _LEGS[1:]))
+"""Joints of a draft with their shares; in the others one arm or both are drafted, with the trunk in two thirds."""
+NO_DRAFT = 0.35
+"""Share of the motions without a draft."""
+
+
+def drafted(control: Tensor, frames: list[int], layout: TokenLayout, generator: torch.Generator) -> Known:
+    """Draws a draft of each motion of a batch: rough poses of some joints for a while, like those that a plan makes.
+
+    Args:
+        control: (B, 2, K, 70) true control points in metres.
+        frames: real frames of each motion.
+
+    Returns:
+        the draft as a known part; where there is none, nothing is known.
+    """
+    draw = Draw(generator)
+    basis = layout.basis(control.shape[2] // layout.knots_per_token)
+    known = Known.nothing(len(basis), len(control))
+    for i, count in enumerate(frames):
+        if draw.uniform() < NO_DRAFT:
+            continue
+        rows = basis @ control[i]
+        for person in range(2):
+            for _ in range(draw.integer(0, 2)):
+                start = draw.integer(0, max(count - 12, 0)) if draw.uniform() < 0.6 else 0
+                stop = min(count, start + draw.integer(12, 120)) if draw.uniform() < 0.7 else count
+                at = torch.arange(start, stop, draw.integer(3, 8))
+                mask = known.mask[i, person]
+                mask[at] = False
+                _kept(mask, at, _drafted_joints(draw))
+                if draw.uniform() < 0.5:
+                    mask[at, 1] = True  # how high the pelvis is
+                known.rows[i, person, start:stop] = _roughened(rows[person, :count], start, stop, draw)
+    return known
+
+
+def _drafted_joints(draw: Draw) -> tuple[int, ...]:
+    place = draw.uniform()
+    for share, joints in _DRAFTED:
+        if place < share:
+            return joints
+        place -= share
+    arm = _ARMS[draw.integer(0, 2)]
+    return (*_REACHING, *arm) if draw.uniform() < 0.67 else arm
+
+
+def _roughened(rows: Tensor, start: int, stop: int, draw: Draw) -> Tensor:
+    """Rows (T, 70) from ``start`` to ``stop`` as a hand would pose them, eased from key to key.
+
+    The keys are early or late, exaggerated, beside the joints and turned a little.
+    """
+    frames, generator = stop - start, draw.generator
+    spacing = draw.integer(3, 20)
+    shift = round(3 * float(torch.randn((), generator=generator)))
+    time = torch.arange(frames)
+    before = time.div(spacing, rounding_mode="floor") * spacing
+    along = (time - before).float() / spacing
+    eased = (along * along * (3 - 2 * along))[:, None]
+    keys = [(start + shift + key).clamp(0, len(rows) - 1) for key in (before, before + spacing)]
+    rough = rows[keys[0]] * (1 - eased) + rows[keys[1]] * eased
+    mean = rough.mean(0)
+    rough = mean + draw.uniform(0.75, 1.3) * (rough - mean)
+    size = draw.uniform(0.0, 0.06)
+    rough = rough + size * torch.randn(FEATURES, generator=generator)
+    joints = rough[:, 3:POSE].unflatten(-1, (-1, 3))
+    angle = 0.12 * torch.randn((), generator=generator)
+    sine, cosine = angle.sin(), angle.cos()
+    x, y, z = joints.unbind(-1)
+    rough[:, 3:POSE] = torch.stack([x * cosine + z * sine, y, z * cosine - x * sine], -1).flatten(-2)
+    return rough
+
+
 _KINDS = {
     "person": _person,
     "past": _past,
@@ -215,6 +297,7 @@ _KINDS = {
     "path": _path,
     "joints": _joints,
     "staged": _staged,
+    "places": _places,
 }
 
 

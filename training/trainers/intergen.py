@@ -20,7 +20,7 @@ from training.core import checkpoint
 from training.core.loop import adamw, mixed_precision
 from training.core.shell import add_options, add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
-from training.trainers.given import AS_STAGED, Held, known_parts
+from training.trainers.given import AS_PLACES, AS_STAGED, Held, drafted, known_parts
 from training.trainers.intergen_data import Batch, Data, Settings, seeded
 from training.trainers.scenes import Drawn, DuetTrainer, draw_timesteps
 
@@ -37,6 +37,7 @@ def new_model(settings: Settings, data: Data) -> CompactInterGen:
             dropout=settings.dropout,
             role_text=True,
             words=settings.words,
+            drafts=settings.drafts,
             layout=data.scenes.layout,
         )
     )
@@ -109,14 +110,27 @@ class Trainer(DuetTrainer):
         """All that a step draws, on the CPU; the same for the same seed and step."""
         batch, generator = self.data.batch(step), seeded(self.settings.seed, 3, step)
         t = draw_timesteps(len(batch.x0), self.schedule.timesteps, self.settings.noisiest, generator)
-        return Drawn(batch, t, self.hold(self.known(batch, generator)))
+        return Drawn(batch, t, self.hold(self.known(batch, generator)), self.draft(batch, generator))
 
-    def terms(self, batch: Batch, t: Tensor, noise: Tensor, hold: Hold | Held | None) -> dict[str, Tensor]:
+    def draft(self, batch: Batch, generator: torch.Generator) -> Tensor | None:
+        """The drafts of a batch as the network sees them."""
+        if not self.settings.drafts:
+            return None
+        frames = batch.frame_mask.sum(1).int().tolist()
+        layout = self.data.scenes.layout
+        draft = drafted(self.data.control(batch.x0), frames, layout, generator)
+        return draft.features(layout, self.data.mean, self.data.std)
+
+    def terms(
+        self, batch: Batch, t: Tensor, noise: Tensor, hold: Hold | Held | None, draft: Tensor | None = None
+    ) -> dict[str, Tensor]:
         """Every loss term of one batch, weighted."""
         xt = self.schedule.q_sample(batch.x0, t, noise)
         if hold is not None:
             xt = hold(xt)
-        seen = {} if hold is None or not self.settings.words else {"known": hold.features.to(xt)}
+        known = None if hold is None or not self.settings.words else hold.features.to(xt)
+        shown = self.model.shown(known, None if draft is None else draft.to(xt))
+        seen = {} if shown is None else {"known": shown}
         with mixed_precision(self.device):
             cond = condition(self.model, batch)
             predicted = self.model.denoiser(xt, t, cond, batch.mask, **seen)
@@ -141,6 +155,8 @@ def _run(options: argparse.Namespace) -> None:
     settings = chosen(options, Settings)
     if settings.staged:
         settings = replace(settings, given=AS_STAGED)
+    if settings.drafts:
+        settings = replace(settings, given=AS_PLACES)
     trainer = Trainer(
         load(options.scenes), settings, options.out, init=options.init, device=options.device, workers=options.workers
     )

@@ -39,6 +39,7 @@ class Settings:
         is given, which is how a scene is made longer.
     staged: parts of the motion are given as the lab's plans give them, see
         :data:`training.trainers.given.AS_STAGED`.
+    drafts: the network reads drafts of the motion, see :func:`training.trainers.given.drafted`.
     given: how often each kind of part of the motion is given.
     """
 
@@ -62,6 +63,7 @@ class Settings:
     words: bool = True
     continued: float = 0.2
     staged: bool = False
+    drafts: bool = False
     given: Shares = field(default_factory=Shares)
     weights: LossWeights = field(
         default_factory=lambda: LossWeights(

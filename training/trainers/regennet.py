@@ -273,7 +273,9 @@ class Trainer(SceneTrainer):
         noise, std = self.normal(x0, 8), self.model.std
         return make_past(predict, planned, x0, (xt, t), self.schedule, std, steps=s.sampler, noise=noise)
 
-    def terms(self, batch: Batch, t: Tensor, noise: Tensor, hold: object = None) -> dict[str, Tensor]:
+    def terms(
+        self, batch: Batch, t: Tensor, noise: Tensor, hold: object = None, draft: object = None
+    ) -> dict[str, Tensor]:
         """Every loss term of one batch, weighted; ``used`` becomes the share of scenes with a past of its own."""
         s, model, generator = self.settings, self.model, seeded(self.settings.seed, 9, self.step)
         actor, reactor, mask = self.data.people(batch)

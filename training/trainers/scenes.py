@@ -38,11 +38,12 @@ def draw_timesteps(size: int, timesteps: int, noisiest: float, generator: torch.
 
 @dataclass
 class Drawn:
-    """All that a step draws on the CPU: a batch, timesteps (B,), and what is given."""
+    """All that a step draws on the CPU: a batch, timesteps (B,), what is given, and drafts, where they are read."""
 
     batch: Batch
     t: Tensor
     hold: Hold | Held | None = None
+    draft: Tensor | None = None
 
 
 class SceneTrainer(Loop):
@@ -60,7 +61,9 @@ class SceneTrainer(Loop):
     _ahead: Iterator[Any] | None = None
 
     @abstractmethod
-    def terms(self, batch: Batch, t: Tensor, noise: Tensor, hold: Hold | Held | None) -> dict[str, Tensor]:
+    def terms(
+        self, batch: Batch, t: Tensor, noise: Tensor, hold: Hold | Held | None, draft: Tensor | None = None
+    ) -> dict[str, Tensor]:
         """Every loss term of one batch, weighted."""
 
     def draw(self, step: int) -> Drawn:
@@ -87,7 +90,7 @@ class SceneTrainer(Loop):
         drawn = self.next_draw()
         torch.manual_seed(seeded(self.settings.seed, 4, self.step).initial_seed())  # dropout
         self.model.train()
-        return self.step_on(self.terms(drawn.batch, drawn.t, self.normal(drawn.batch.x0), drawn.hold))
+        return self.step_on(self.terms(drawn.batch, drawn.t, self.normal(drawn.batch.x0), drawn.hold, drawn.draft))
 
 
 class DuetTrainer(SceneTrainer):

@@ -124,3 +124,24 @@ def test_what_is_known_is_seen(grown):
     assert torch.allclose(
         model.denoiser.guided(x, t, condition, None, known, scale=2.5), 2.5 * halves[0] - 1.5 * halves[1], atol=1e-4
     )
+
+
+def test_a_draft_is_read_beside_what_is_known_and_nothing_of_it_at_the_start(grown):
+    torch.manual_seed(5)
+    model = CompactInterGen(CompactConfig(**SIZES, words=True, drafts=True))
+    model.grow_from(grown)
+    x, t = inputs()
+    condition = model.condition(words(5, 3))
+    known, draft = torch.randn(2, 2, TOKENS, 4 * KNOWN_FEATURES)
+    known[:, 3:] = draft[:, :3] = 0
+
+    def made(*seen: Tensor | None) -> Tensor:
+        return model.eval().denoiser(x, t, condition, None, model.shown(*seen))
+
+    expected = grown.denoiser(x, t, condition, None, grown.shown(known))
+    assert torch.equal(made(known, draft), expected)
+    stirred(model)
+    assert torch.equal(made(known, None), made(known, 0 * draft))
+    assert torch.equal(made(None, draft), made(0 * known, draft))
+    assert (made(known, draft) - made(known, None)).abs().max() > 1e-3
+    assert (made(known, draft) - made(draft, known)).abs().max() > 1e-3, "a draft is not what is known"

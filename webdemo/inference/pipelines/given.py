@@ -63,10 +63,12 @@ class Scene:
     Attributes:
         frames: length at 30 fps.
         given: what is known of the motion, if anything.
+        draft: what a network that reads drafts sees of one, see :meth:`models.known.Known.features`.
     """
 
     frames: int
     given: Given | None = None
+    draft: Tensor | None = None
 
     def duet(self, pair: Array, finish: Finish) -> Duet:
         """The duet of one sample (2, T, 22, 3) in metres; ``finish`` cleans up a generated person."""
@@ -204,12 +206,33 @@ def _every_frame(frames: Array, poses: Array) -> tuple[Array, Array]:
 
 
 def directed(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Directed:
-    """A scene of so many frames with what is given of it, see :func:`hold_of`."""
-    return Directed(frames, hold_of(model, frames, parts) if parts else None, parts=parts)
+    """A scene of so many frames with what is given of it, see :func:`hold_of`, and its draft."""
+    held = [part for part in parts if not _is_draft(part)]
+    hold = hold_of(model, frames, held) if held else None
+    return Directed(frames, hold, draft_of(model, frames, parts), parts=held)
+
+
+def _is_draft(part: Part) -> bool:
+    return isinstance(part, KnownFrames) and part.soft
+
+
+def draft_of(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Tensor | None:
+    """The draft of a scene as a network sees it that reads drafts: of its soft parts all but the place on the floor."""
+    known = Known.nothing(model.layout.num_frames(model.layout.num_tokens(frames)))
+    for part in parts:
+        if not isinstance(part, KnownFrames) or not part.soft:
+            continue
+        at, poses = _frames(part, frames), torch.from_numpy(np.asarray(part.positions)).float()
+        joints = part.joints or range(SMPL22.num_joints)
+        known.add_joints(part.person, poses, at, [joint for joint in joints if joint])
+        if 0 in joints:
+            known.rows[:, part.person, at, 1] = poses[:, 0, 1]
+            known.mask[:, part.person, at, 1] = True
+    return known.features(model.layout, model.mean, model.std) if known.mask.any() else None
 
 
 def hold_of(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Hold:
-    """The known part of a scene.
+    """The known part of a scene, without drafts.
 
     Args:
         model: the network's space.

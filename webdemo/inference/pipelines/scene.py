@@ -125,7 +125,8 @@ class SceneMaker:
             total = sum(window.stop - window.start for window in listed)
             for window in listed:
                 cancel.raise_if_cancelled()
-                setting = Setting.of(request, window, scene, kept.windows[len(made_plans)] if kept else None)
+                planned = kept.windows[len(made_plans)] if kept else None
+                setting = Setting.of(request, window, scene, planned, reads_drafts=self.pipeline.model.reads_drafts)
                 made_plans.append(setting.plan)
                 said += setting.plan.notes
                 made = yield from self._window(request, sample, setting, cancel, timer, done, steps)

@@ -127,7 +127,9 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         )
         condition = conditioning.condition.expand(len(x), *conditioning.condition.shape[1:])
         # what is known is shown to a network that reads it
-        seen = {"known": given.features} if given is not None and self.model.reads_known else {}
+        known = None if given is None else given.features
+        shown = self.model.shown(known, scene.draft) if self.model.reads_known else None
+        seen = {} if shown is None else {"known": shown}
         # it is clean at every timestep, as in training (InterGen, section 5.4)
         with_given, bent = (given, given.bend) if given else (_as_is, _as_is)
         uncorrected = x

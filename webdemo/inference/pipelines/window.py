@@ -11,9 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from acts.staging.given import Story, plan_parts
+from acts.staging.given import Story, drafted, plan_parts
 from acts.staging.window import KnownFrames, Part, Window, known_paths
 from models.intergen.compact import CompactInterGen
+from models.known import Hold
 from motion import FPS, InputError
 from motion.placement import MEDIAN_START_DISTANCE, Placement
 from motion.transforms import heading, heading_matrix
@@ -23,7 +24,7 @@ from webdemo.inference.requests.paths import MOST_SPEED, FloorPath
 from webdemo.inference.requests.plans import WindowPlan
 from webdemo.inference.story.request import SceneRequest
 
-from .given import Directed, directed, hold_of
+from .given import Directed, directed
 from .two_person import TwoPersonPipeline
 
 Array = NDArray[np.floating]
@@ -60,7 +61,15 @@ class Setting:
     plan: WindowPlan
 
     @classmethod
-    def of(cls, request: SceneRequest, window: Window, scene: Array, kept: WindowPlan | None = None) -> Setting:
+    def of(
+        cls,
+        request: SceneRequest,
+        window: Window,
+        scene: Array,
+        kept: WindowPlan | None = None,
+        *,
+        reads_drafts: bool = False,
+    ) -> Setting:
         """The setting of a window in a scene (2, T, 22, 3) whose earlier frames are there.
 
         Args:
@@ -68,13 +77,14 @@ class Setting:
             window: the window.
             scene: as far as it is made.
             kept: what was planned of the window when the scene was made before; by default it is planned now.
+            reads_drafts: the network is shown the plan's poses as a draft, and held to places alone.
         """
         past, length = window.past, window.stop - window.start
         before = scene[:, window.start - past : window.start]
         after = scene[:, window.stop : window.stop + window.after]
         if request.loop and window.after:
             after = scene[:, : window.after]
-        plan = kept or _plan(request, window, scene, _place(request, before, after))
+        plan = kept or _plan(request, window, scene, _place(request, before, after), reads_drafts)
         placement = _at(plan.place)
         parts: list[Part] = []
         for person in range(2):
@@ -93,9 +103,8 @@ class Setting:
 
     def share(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> float:
         """The share of the new frames that the plan lays out, see :attr:`models.known.Hold.shares`."""
-        if not self.plan.parts:
-            return 0.0
-        return float(hold_of(pipeline.model, self.frames, self.plan.parts).shares[self._own].mean())
+        hold = directed(pipeline.model, self.frames, self.plan.parts).given
+        return float(hold.shares[self._own].mean()) if isinstance(hold, Hold) else 0.0
 
     def made(self, positions: Array) -> Array:
         """The new frames (2, T, 22, 3) in the scene's world, of the whole window's."""
@@ -114,7 +123,7 @@ class Setting:
         for part in self.parts:
             values = part.positions if isinstance(part, KnownFrames) else part.places
             headings = None if isinstance(part, KnownFrames) else part.headings
-            joints = [*part.joints, part.kept] if isinstance(part, KnownFrames) else []
+            joints = [*part.joints, part.kept, part.soft] if isinstance(part, KnownFrames) else []
             found.update(repr((type(part).__name__, part.person, list(part.frames), joints)).encode())
             for array in (values, headings):
                 found.update(b"-" if array is None else np.ascontiguousarray(array).tobytes())
@@ -123,14 +132,17 @@ class Setting:
         return found.hexdigest()
 
 
-def _plan(request: SceneRequest, window: Window, scene: Array, place: tuple[float, float, float]) -> WindowPlan:
+def _plan(
+    request: SceneRequest, window: Window, scene: Array, place: tuple[float, float, float], reads_drafts: bool
+) -> WindowPlan:
     """The plan, by the wishes and the words of a scene, of a window whose frame begins at a place."""
     placement, beat = _at(place), request.beats[window.beat]
     parts, notes = wishes(request, window, scene, placement)
     if request.plans_words:
         seconds, placed = [each.length for each in request.beats], bool(request.paths or request.poses)
         story = Story(request.scores, seconds, request.edges, request.seed, placed)
-        parts += plan_parts(story, window, scene, placement, {part.person for part in parts})
+        planned = plan_parts(story, window, scene, placement, {part.person for part in parts})
+        parts += drafted(planned) if reads_drafts else planned
     alone = beat.alone if any(beat.alone) else request.scores[window.beat].alone
     return WindowPlan(place, tuple(parts), alone, tuple(notes))
 

@@ -55,6 +55,7 @@ class _Poses(BaseModel):
     poses: list[list[Whole]]
     which: list[Annotated[int, Field(ge=0)]]
     kept: bool = False
+    soft: bool = False
 
     def part(self) -> KnownFrames:
         """The frames; raises ValueError where the lists do not fit together."""
@@ -64,7 +65,7 @@ class _Poses(BaseModel):
         fits = len(self.which) == len(self.frames) and max(self.which) < len(poses)
         if not fits or len(set(known)) < len(known) or len(set(self.frames)) < len(self.frames):
             raise ValueError("its poses are not those of its frames")
-        return KnownFrames(self.person, self.frames, poses[self.which], self.joints, self.kept)
+        return KnownFrames(self.person, self.frames, poses[self.which], self.joints, self.kept, self.soft)
 
 
 class _Path(BaseModel):
@@ -98,8 +99,8 @@ def _written(part: Part) -> dict[str, Any]:
         positions = positions - positions[:, :1]
     chosen = positions[:, joints] if joints else positions
     rows, which = _unique(_units(pose) for pose in chosen)
-    kept = {"kept": True} if part.kept else {}
-    return plain | {"joints": joints, "poses": rows, "which": which} | kept
+    marks = {name: True for name in ("kept", "soft") if getattr(part, name)}
+    return plain | {"joints": joints, "poses": rows, "which": which} | marks
 
 
 def _rounded(part: Any) -> Part:
