@@ -84,18 +84,17 @@ def plan_parts(
         parts = _apart(story, window, placement)
     else:
         parts = _Beat(story, window, scene, placement).parts()
-    return [part for part in parts if part.person not in taken]
+    found = [part for part in parts if part.person not in taken]
+    return [replace(part, soft=True) if isinstance(part, KnownFrames) and not part.kept else part for part in found]
 
 
-def drafted(parts: Sequence[Part]) -> list[Part]:
-    """The parts, with poses as drafts: of them only places are held, and the headings of those who are upright."""
+def places_of(parts: Sequence[Part]) -> list[Part]:
+    """The parts, with only the places of soft poses, and the headings of those who are upright."""
     found: list[Part] = []
     for part in parts:
-        if isinstance(part, KnownPath) or part.kept:
+        if isinstance(part, KnownPath) or not part.soft:
             found.append(part)
-            continue
-        found.append(replace(part, soft=True))
-        if not part.joints or 0 in part.joints:
+        elif not part.joints or 0 in part.joints:
             frames = np.asarray(part.frames)
             kept = [0]
             for i in range(1, len(frames)):

@@ -51,7 +51,7 @@ class KnownFrames:
         joints: those that are given; () for all. All but the pelvis are given relative to it. Where only some are
             given, the network is held to them, and the finished motion comes close to them.
         kept: the finished motion has these joints as they are given: a foot that stamps is not planted again.
-        soft: the network is shown these joints and how high the pelvis is, and is not held to them.
+        soft: a network that reads drafts is shown these joints and how high the pelvis is, and held to the places.
     """
 
     person: int

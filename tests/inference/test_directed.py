@@ -1,6 +1,7 @@
 """What is given of a scene is met by what the pipeline makes, after clean-up too, and nonsense is refused."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -42,15 +43,31 @@ def test_a_span_and_a_pose_are_held_exactly(either_engine: Engine) -> None:
     assert np.abs(free.b.positions[45] - pose[0]).max() > 0.1
 
 
-def test_a_draft_is_shown_and_not_held(either_engine: Engine) -> None:
+def test_a_draft_is_shown_and_not_held(reading_engine: Engine) -> None:
     poses, frames = walker()[::5], range(0, FRAMES, 5)
-    model = either_engine.pipeline("intergen").model
+    model = reading_engine.pipeline("intergen").model
     scene = directed(model, FRAMES, [KnownFrames(0, frames, poses, soft=True), KnownPath(1, [0], np.zeros((1, 2)))])
     assert scene.draft is not None and scene.draft.any() and scene.given is not None
     assert torch.equal(
         scene.given.features, directed(model, FRAMES, [KnownPath(1, [0], np.zeros((1, 2)))]).given.features
     )
     assert not scene.draft.view(*scene.draft.shape[:2], 2, -1)[:, :, 1].any(), "it is person a's"
+
+
+def test_the_stricter_a_plan_the_nearer_are_its_poses(reading_engine: Engine) -> None:
+    poses, frames, total = walker()[::5], range(0, FRAMES, 5), 8
+    model = reading_engine.pipeline("intergen").model
+    parts = [KnownFrames(0, frames, poses, soft=True), KnownPath(1, [0], np.zeros((1, 2)))]
+    x = torch.randn(1, model.layout.num_tokens(FRAMES), 2 * model.layout.token_features)
+    off: list[float] = []
+    for strictness in (0.0, 0.3, 0.55, 0.8):
+        scene = directed(model, FRAMES, parts, strictness)
+        scene = replace(scene, poses=scene.poses or directed(model, FRAMES, parts, 0.5).poses)
+        held = [scene.given_at(step, total) for step in range(total)]
+        off.append(sum(float((given(x) - scene.poses(x)).abs().mean()) for given in held))
+    assert off == sorted(off, reverse=True) and len({round(each, 6) for each in off}) == len(off)
+    strict = directed(model, FRAMES, parts, 1.0)
+    assert strict.draft is None and strict.parts == parts, "what is finished meets the poses"
 
 
 def test_a_given_heading_is_shown_to_a_network_that_sees_it(reading_engine: Engine) -> None:

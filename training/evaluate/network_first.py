@@ -23,8 +23,7 @@ from acts.captions import worded
 from acts.checking import checked
 from acts.lexicon import Entry
 from acts.shapes import Shape
-from acts.staging.given import drafted
-from acts.staging.window import KnownPath, Part
+from acts.staging.given import places_of
 from motion import Duet
 from webdemo.inference.pipelines import window
 from webdemo.inference.pipelines.scene import Parts
@@ -69,11 +68,6 @@ class Made:
 def gives_poses(shape: Shape) -> bool:
     """True for a shape that gives poses; the others give places."""
     return shape.do in POSES or bool(getattr(shape, "gait", ""))
-
-
-def places_of(parts: Sequence[Part]) -> list[Part]:
-    """The places and headings of parts (in the network's frame), without their poses."""
-    return [part for part in drafted(parts) if isinstance(part, KnownPath)]
 
 
 def wordings(act: Act, entry: Entry) -> list[str]:

@@ -14,7 +14,16 @@ from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
 
-from .parser import add_reading, add_sampling, add_tries, names_of, reading_choices, sampling_fields, with_notes
+from .parser import (
+    add_plan,
+    add_reading,
+    add_sampling,
+    add_tries,
+    names_of,
+    reading_choices,
+    sampling_fields,
+    with_notes,
+)
 from .running import check_out, run, write_result
 
 MOST_PLAN_BYTES = 200_000
@@ -32,11 +41,7 @@ def add_generate(commands: Any) -> None:
     parser.add_argument(
         "--no-split", action="store_true", help="give a sentence of several beats to the network at once"
     )
-    parser.add_argument(
-        "--no-plan",
-        action="store_true",
-        help="do not read from the words where people go and whether they stand by, sit down or jump",
-    )
+    add_plan(parser, GenerateRequest.strictness)
     add_sampling(parser, "generate")
     add_tries(parser, GenerateRequest.tries)
     parser.set_defaults(job=generate)
@@ -49,7 +54,8 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
         options.model = next(m.name for m in methods("generate") if "class" in m.takes)
     fields = sampling_fields(options)
     words = options.prompt if options.label is None else options.label
-    fields |= {"split": not options.no_split, "planned": not options.no_plan, "tries": options.tries}
+    fields |= {"split": not options.no_split, "planned": not options.no_plan}
+    fields |= {"strictness": options.strictness, "tries": options.tries}
     if options.plan is not None:
         words, fields["acts"] = "", read_plan(options.plan)
     request = GenerateRequest(prompt=words, seconds=options.seconds, **fields)

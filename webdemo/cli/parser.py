@@ -91,6 +91,22 @@ def add_tries(parser: argparse.ArgumentParser, default: int | None = None) -> No
     )
 
 
+def add_plan(parser: argparse.ArgumentParser, default: float | None = None) -> None:
+    """The options that say how a sentence's plan is followed; without a ``default`` it is the story's own."""
+    parser.add_argument(
+        "--no-plan",
+        action="store_true",
+        help="do not read from the words where people go and whether they stand by, sit down or jump",
+    )
+    parser.add_argument(
+        "--strictness",
+        type=float,
+        default=default,
+        metavar="SHARE",
+        help="share of the steps in which the network is held to the plan's poses; 0 shows them as a draft",
+    )
+
+
 def sampling_fields(options: argparse.Namespace) -> dict[str, Any]:
     """The fields of a request, from the options of :func:`add_sampling`."""
     names = ("seed", "samples", "guidance", "steps", "damping", "sampler", "model")

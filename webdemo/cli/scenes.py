@@ -14,7 +14,7 @@ from webdemo.inference.requests import SamplingRequest
 from webdemo.inference.story import SceneRequest, read_story, split_sentence
 from webdemo.inference.story.request import MOST_SECONDS
 
-from .parser import add_reading, add_tries, names_of, reading_choices, with_notes
+from .parser import add_plan, add_reading, add_tries, names_of, reading_choices, with_notes
 from .running import check_out, run, write_result
 
 
@@ -30,11 +30,7 @@ def add_scene(commands: Any) -> None:
     )
     parser.add_argument("--end", type=float, help="with --motion: second at which the motion goes on unchanged")
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
-    parser.add_argument(
-        "--no-plan",
-        action="store_true",
-        help="do not read from the words where people go and whether they stand by, sit down or jump",
-    )
+    add_plan(parser)
     default = "the story's own if not given"
     parser.add_argument("--seed", type=int, help=default)
     parser.add_argument("--samples", type=int, help=f"how many scenes or futures to generate; {default}")
@@ -56,6 +52,8 @@ def scene(options: argparse.Namespace) -> dict[str, Any]:
             asked[field.name] = getattr(options, field.name)
     if options.no_plan:
         asked["planned"] = False
+    if options.strictness is not None:
+        asked["strictness"] = options.strictness
     choices = reading_choices(options)
     if choices != ImportChoices() and options.motion is None:
         raise InputError("--animation and --file-… say how a motion is read: give --motion as well, or leave them out.")

@@ -39,6 +39,7 @@ class Scoring:
         steps, guidance, damping: as in :class:`SamplingRequest`.
         plain: sentences are given to the network as they are, neither split nor planned.
         zeros: the network's predictions are zeros, see :func:`silence`.
+        strictness: as in :class:`GenerateRequest`.
     """
 
     model: str
@@ -47,16 +48,17 @@ class Scoring:
     damping: float
     plain: bool = False
     zeros: bool = False
+    strictness: float = GenerateRequest.strictness
 
     def request(self, sentence: Sentence, seed: int, actor: Duet | None) -> GenerateRequest | ReactRequest:
         """The request for both people, or for the partner of an actor."""
         found = method(self.model)
         fields: dict[str, Any] = asdict(self) | {"seed": seed}
-        plain, _ = fields.pop("plain"), fields.pop("zeros")
+        plain, _, strictness = (fields.pop(name) for name in ("plain", "zeros", "strictness"))
         if actor is None:
             shortest, longest = found.seconds
             seconds = min(max(sentence.seconds, shortest), longest)
-            fields |= {"split": not plain, "planned": not plain}
+            fields |= {"split": not plain, "planned": not plain, "strictness": strictness}
             return GenerateRequest(prompt=sentence.words, seconds=seconds, **fields)
         sampler = SamplingRequest.sampler if "ddim" in found.samplers else found.samplers[0]
         heard = sentence.words if "words" in found.takes else ""
@@ -84,6 +86,7 @@ def add_score(commands: Any) -> None:
         action="store_true",
         help="put zeros in the place of all that the network makes: what is left is done by the plan alone",
     )
+    parser.add_argument("--strictness", type=float, default=GenerateRequest.strictness, help="as of generate")
     parser.add_argument("--motions", type=Path, help="folder that keeps the motions, so that a run can go on")
     parser.add_argument("--out", type=Path, help="JSON file for all verdicts")
     parser.set_defaults(job=score_model)
@@ -99,6 +102,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         options.damping,
         options.plain,
         options.zeros,
+        options.strictness,
     )
     sentences = _chosen(options)
     if not SEEDS[0] <= options.seeds <= SEEDS[1]:
@@ -126,7 +130,8 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         f"{options.seeds - 1}; {scoring.steps} steps, guidance {scoring.guidance:g}, "
         f"damping {scoring.damping:g}, weights {weights}"
         f"{'; sentences neither split nor planned' if scoring.plain else ''}"
-        f"{'; zeros in place of the network' if scoring.zeros else ''}."
+        f"{'; zeros in place of the network' if scoring.zeros else ''}"
+        f"{f'; strictness {scoring.strictness:g}' if scoring.strictness else ''}."
     )
     print(table(scores))
     if options.out is not None:

@@ -11,6 +11,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from acts.staging.given import places_of
 from acts.staging.window import KnownFrames, Part
 from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
@@ -70,6 +71,10 @@ class Scene:
     given: Given | None = None
     draft: Tensor | None = None
 
+    def given_at(self, step: int, total: int) -> Given | None:
+        """What is known at a denoising step of so many."""
+        return self.given
+
     def duet(self, pair: Array, finish: Finish) -> Duet:
         """The duet of one sample (2, T, 22, 3) in metres; ``finish`` cleans up a generated person."""
         return Duet.from_positions(np.stack([finish(person) for person in pair]), fps=FPS, roles=NAMES)
@@ -120,11 +125,62 @@ def given_person(model: DuetSpace, positions: Array, place: int) -> Hold:
     return hold_of(model, frames, [KnownFrames(place, range(frames), whole)])
 
 
+@dataclass(frozen=True)
+class Between:
+    """Samples that are held to a plan's poses in part: a share of the way from the hold to places."""
+
+    places: Given
+    poses: Given
+    share: float
+
+    @property
+    def features(self) -> Tensor | None:
+        """Of the places: the poses are a draft."""
+        return self.places.features
+
+    @property
+    def frozen(self) -> Tensor:
+        """As of both."""
+        return self.places.frozen
+
+    def __call__(self, x: Tensor) -> Tensor:
+        """See :class:`Given`."""
+        return torch.lerp(self.places(x), self.poses(x), self.share)
+
+    def bend(self, x: Tensor) -> Tensor:
+        """See :class:`Given`."""
+        return torch.lerp(self.places.bend(x), self.poses.bend(x), self.share)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Directed(Scene):
-    """Both people are made around what is given."""
+    """Both people are made around what is given.
+
+    Attributes:
+        parts: what the finished motion meets.
+        poses: holds also the poses of the draft.
+        strictness: the share of the steps, from the first one on, in which the sample is held to them.
+    """
 
     parts: Sequence[Part]
+    poses: Hold | None = None
+    strictness: float = 0.0
+
+    def given_at(self, step: int, total: int) -> Given | None:
+        """The places and, while the plan is strict, the poses."""
+        share = min(max(self.strictness * total - step, 0.0), 1.0)
+        if self.poses is None or self.given is None or not share:
+            return self.given
+        return self.poses if share == 1 else Between(self.given, self.poses, share)
+
+    @property
+    def shares(self) -> Tensor:
+        """See :attr:`models.known.Hold.shares`; over all steps."""
+        found = torch.zeros(self.frames)
+        for hold, weight in ((self.given, 1 - self.strictness), (self.poses, self.strictness)):
+            if isinstance(hold, Hold):
+                found = found + weight * hold.shares[: self.frames]
+        return found
 
     def duet(self, pair: Array, finish: Finish) -> Duet:
         """As :meth:`Scene.duet`; what is given is met exactly, and what was made leads there smoothly."""
@@ -205,15 +261,21 @@ def _every_frame(frames: Array, poses: Array) -> tuple[Array, Array]:
     return time, (1 - ahead) * poses[i] + ahead * poses[i + 1] + bends
 
 
-def directed(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Directed:
-    """A scene of so many frames with what is given of it, see :func:`hold_of`, and its draft."""
-    held = [part for part in parts if not _is_draft(part)]
-    hold = hold_of(model, frames, held) if held else None
-    return Directed(frames, hold, draft_of(model, frames, parts), parts=held)
+def directed(model: DuetSpace, frames: int, parts: Sequence[Part], strictness: float = 0.0) -> Directed:
+    """A scene of so many frames with what is given of it, and its draft.
 
+    Soft poses are a draft where the network reads one and the plan is not wholly strict, and are held otherwise.
 
-def _is_draft(part: Part) -> bool:
-    return isinstance(part, KnownFrames) and part.soft
+    Args:
+        model, frames, parts: as of :func:`hold_of`.
+        strictness: the share of the steps in which drafted poses are held, too.
+    """
+    if not model.reads_drafts or strictness == 1:
+        return Directed(frames, hold_of(model, frames, parts) if parts else None, parts=parts)
+    hold = hold_of(model, frames, places_of(parts)) if parts else None
+    poses = hold_of(model, frames, parts) if parts and strictness else None
+    draft = draft_of(model, frames, parts)
+    return Directed(frames, hold, draft, parts=places_of(parts), poses=poses, strictness=strictness)
 
 
 def draft_of(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Tensor | None:
@@ -232,7 +294,7 @@ def draft_of(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Tensor | N
 
 
 def hold_of(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Hold:
-    """The known part of a scene, without drafts.
+    """The known part of a scene.
 
     Args:
         model: the network's space.

@@ -126,7 +126,7 @@ class SceneMaker:
             for window in listed:
                 cancel.raise_if_cancelled()
                 planned = kept.windows[len(made_plans)] if kept else None
-                setting = Setting.of(request, window, scene, planned, reads_drafts=self.pipeline.model.reads_drafts)
+                setting = Setting.of(request, window, scene, planned)
                 made_plans.append(setting.plan)
                 said += setting.plan.notes
                 made = yield from self._window(request, sample, setting, cancel, timer, done, steps)

@@ -126,25 +126,28 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             touches=(conditioning.touch,) * len(x),
         )
         condition = conditioning.condition.expand(len(x), *conditioning.condition.shape[1:])
-        # what is known is shown to a network that reads it
-        known = None if given is None else given.features
-        shown = self.model.shown(known, scene.draft) if self.model.reads_known else None
-        seen = {} if shown is None else {"known": shown}
-        # it is clean at every timestep, as in training (InterGen, section 5.4)
-        with_given, bent = (given, given.bend) if given else (_as_is, _as_is)
-        uncorrected = x
+        uncorrected, done = x, 0
 
         def predict(x: Tensor, t: Tensor) -> Tensor:
-            return self.model.denoiser.guided(with_given(x), t, condition, scale=conditioning.guidance, **seen)
+            # What is known is clean at every timestep, as in training (InterGen, section 5.4), and shown to a network
+            # that reads it.
+            given = scene.given_at(done, settings.steps)
+            shown = self.model.shown(given and given.features, scene.draft) if self.model.reads_known else None
+            seen = {} if shown is None else {"known": shown}
+            return self.model.denoiser.guided(
+                given(x) if given else x, t, condition, scale=conditioning.guidance, **seen
+            )
 
         def correct(x0: Tensor, timestep: int) -> Tensor:
             nonlocal uncorrected
-            uncorrected = bent(x0)
-            return with_given(damping(uncorrected, timestep))
+            given = scene.given_at(done, settings.steps)
+            uncorrected = given.bend(x0) if given else x0
+            damped = damping(uncorrected, timestep)
+            return given(damped) if given else damped
 
         cancel.raise_if_cancelled()
         for step in sample_steps(predict, x, scheduler, correct=correct):
-            x = step.sample
+            x, done = step.sample, step.step
             yield timer.progress("sample", step.step, step.total)
             cancel.raise_if_cancelled()
         timer.lap("sample")

@@ -11,10 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from acts.staging.given import Story, drafted, plan_parts
+from acts.staging.given import Story, plan_parts
 from acts.staging.window import KnownFrames, Part, Window, known_paths
 from models.intergen.compact import CompactInterGen
-from models.known import Hold
 from motion import FPS, InputError
 from motion.placement import MEDIAN_START_DISTANCE, Placement
 from motion.transforms import heading, heading_matrix
@@ -52,6 +51,7 @@ class Setting:
         parts: what is given.
         placement: from the scene's world to the network's frame.
         plan: what was planned of it.
+        strictness: of the request.
     """
 
     window: Window
@@ -59,17 +59,10 @@ class Setting:
     parts: tuple[Part, ...]
     placement: Placement
     plan: WindowPlan
+    strictness: float
 
     @classmethod
-    def of(
-        cls,
-        request: SceneRequest,
-        window: Window,
-        scene: Array,
-        kept: WindowPlan | None = None,
-        *,
-        reads_drafts: bool = False,
-    ) -> Setting:
+    def of(cls, request: SceneRequest, window: Window, scene: Array, kept: WindowPlan | None = None) -> Setting:
         """The setting of a window in a scene (2, T, 22, 3) whose earlier frames are there.
 
         Args:
@@ -77,14 +70,13 @@ class Setting:
             window: the window.
             scene: as far as it is made.
             kept: what was planned of the window when the scene was made before; by default it is planned now.
-            reads_drafts: the network is shown the plan's poses as a draft, and held to places alone.
         """
         past, length = window.past, window.stop - window.start
         before = scene[:, window.start - past : window.start]
         after = scene[:, window.stop : window.stop + window.after]
         if request.loop and window.after:
             after = scene[:, : window.after]
-        plan = kept or _plan(request, window, scene, _place(request, before, after), reads_drafts)
+        plan = kept or _plan(request, window, scene, _place(request, before, after))
         placement = _at(plan.place)
         parts: list[Part] = []
         for person in range(2):
@@ -95,16 +87,16 @@ class Setting:
                 parts.append(KnownFrames(person, behind, placement.to_network(after[person])))
         tail = window.after or window.tail(request.edges[-1])
         frames = max(past + length + tail, round(SECONDS[0] * FPS))
-        return cls(window, frames, (*parts, *plan.parts), placement, plan)
+        return cls(window, frames, (*parts, *plan.parts), placement, plan, request.strictness)
 
     def scene(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> Directed:
         """As the pipeline takes it."""
-        return directed(pipeline.model, self.frames, self.parts)
+        return directed(pipeline.model, self.frames, self.parts, self.strictness)
 
     def share(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> float:
         """The share of the new frames that the plan lays out, see :attr:`models.known.Hold.shares`."""
-        hold = directed(pipeline.model, self.frames, self.plan.parts).given
-        return float(hold.shares[self._own].mean()) if isinstance(hold, Hold) else 0.0
+        scene = directed(pipeline.model, self.frames, self.plan.parts, self.strictness)
+        return float(scene.shares[self._own].mean())
 
     def made(self, positions: Array) -> Array:
         """The new frames (2, T, 22, 3) in the scene's world, of the whole window's."""
@@ -118,7 +110,7 @@ class Setting:
     def key(self, request: SceneRequest, words: str, seed: int, digest: str) -> str:
         """A hash of all that the window is made from: the request's settings, the words, the network, what is given."""
         settings = {**request.sampling, "samples": 1, "tries": 1, "seed": seed}
-        told = [digest, words, settings, self.plan.alone, self.frames, self.window.past]
+        told = [digest, words, settings, self.plan.alone, self.frames, self.window.past, self.strictness]
         found = hashlib.sha256(json.dumps(told).encode())
         for part in self.parts:
             values = part.positions if isinstance(part, KnownFrames) else part.places
@@ -132,17 +124,14 @@ class Setting:
         return found.hexdigest()
 
 
-def _plan(
-    request: SceneRequest, window: Window, scene: Array, place: tuple[float, float, float], reads_drafts: bool
-) -> WindowPlan:
+def _plan(request: SceneRequest, window: Window, scene: Array, place: tuple[float, float, float]) -> WindowPlan:
     """The plan, by the wishes and the words of a scene, of a window whose frame begins at a place."""
     placement, beat = _at(place), request.beats[window.beat]
     parts, notes = wishes(request, window, scene, placement)
     if request.plans_words:
         seconds, placed = [each.length for each in request.beats], bool(request.paths or request.poses)
         story = Story(request.scores, seconds, request.edges, request.seed, placed)
-        planned = plan_parts(story, window, scene, placement, {part.person for part in parts})
-        parts += drafted(planned) if reads_drafts else planned
+        parts += plan_parts(story, window, scene, placement, {part.person for part in parts})
     alone = beat.alone if any(beat.alone) else request.scores[window.beat].alone
     return WindowPlan(place, tuple(parts), alone, tuple(notes))
 

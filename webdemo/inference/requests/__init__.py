@@ -3,7 +3,7 @@
 These dataclasses import no torch, so the page, the shell and the API build them before any network loads.
 """
 
-from .limits import DAMPING, GUIDANCE, MAX_PROMPT, MAX_SEED, SAMPLES, STEPS, TRIES
+from .limits import DAMPING, GUIDANCE, MAX_PROMPT, MAX_SEED, SAMPLES, STEPS, STRICTNESS, TRIES
 from .predict import PredictRequest, PredictResult
 from .sampling import OWN_STEPS, GenerateRequest, ReactRequest, SamplingRequest, clip_facts, replayed
 
@@ -15,6 +15,7 @@ __all__ = [
     "OWN_STEPS",
     "SAMPLES",
     "STEPS",
+    "STRICTNESS",
     "TRIES",
     "GenerateRequest",
     "PredictRequest",

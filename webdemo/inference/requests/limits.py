@@ -13,6 +13,7 @@ SAMPLES = (1, 8)
 TRIES = (1, 4)
 GUIDANCE = (0.0, 10.0)
 DAMPING = (0.0, 1.0)
+STRICTNESS = (0.0, 1.0)
 MAX_SEED = 2**32 - 1
 SAMPLERS = ("ddim", "dpm++")
 

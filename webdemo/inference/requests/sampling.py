@@ -17,7 +17,20 @@ from webdemo.inference import methods
 from webdemo.inference.method import Method
 
 from .actor import ROLES, check_actor
-from .limits import DAMPING, GUIDANCE, MAX_SEED, SAMPLERS, SAMPLES, STEPS, TRIES, choice, number, prompt_of, whole
+from .limits import (
+    DAMPING,
+    GUIDANCE,
+    MAX_SEED,
+    SAMPLERS,
+    SAMPLES,
+    STEPS,
+    STRICTNESS,
+    TRIES,
+    choice,
+    number,
+    prompt_of,
+    whole,
+)
 from .paths import FloorPath, path_of, timed_paths
 from .plans import KeptPlan
 
@@ -94,6 +107,8 @@ class GenerateRequest(SamplingRequest):
             seconds, by a model that makes scenes. Off, the whole sentence is given to the network at once.
         planned: as in a scene: where the words send people, how these hold themselves and which of them stands by
             is read and given. Only with ``split``.
+        strictness: the share of the steps, from the first one on, in which the network is held to the poses of the
+            plan; in the others they are a draft. A network that reads no drafts is held in all of them.
         acts: what the two do, as a plan that was written or edited by hand; the words are then read by nobody. Where
             there are no words, they follow from the acts. Only with ``split`` and ``planned``.
         paths: on the floor, one for a person at most; only with ``split``, by a model that makes scenes.
@@ -104,6 +119,7 @@ class GenerateRequest(SamplingRequest):
     seconds: float = 5.0
     split: bool = True
     planned: bool = True
+    strictness: float = 0.0
     acts: Plan | None = None
     paths: tuple[FloorPath, ...] = ()
     plan: KeptPlan | None = field(default=None, compare=False, repr=False)
@@ -116,6 +132,7 @@ class GenerateRequest(SamplingRequest):
                 object.__setattr__(self, "prompt", in_words(self.acts))
         prompt_of(self.prompt, needed=True)
         object.__setattr__(self, "seconds", number("Length", self.seconds, *method.seconds, " seconds"))
+        object.__setattr__(self, "strictness", number("Strictness", self.strictness, *STRICTNESS))
         self._check(method)
         if self.paths:
             self._check_paths(method)
@@ -128,7 +145,7 @@ class GenerateRequest(SamplingRequest):
 
     def to_dict(self) -> dict[str, Any]:
         """All fields but the plan, and the kind of the request; acts and paths only where there are some."""
-        own = ("prompt", "seconds", "split", "planned")
+        own = ("prompt", "seconds", "split", "planned", "strictness")
         plain = self.sampling | {name: getattr(self, name) for name in own}
         paths = {"paths": [asdict(path) for path in self.paths]} if self.paths else {}
         acts = {} if self.acts is None else {"acts": self.acts.model_dump(mode="json", exclude_defaults=True)}

@@ -18,7 +18,7 @@ from acts.staging.window import AFTER, MOST_FRAMES, PAST, Window
 from motion import FPS, Duet, InputError
 from webdemo.inference import methods
 from webdemo.inference.requests import SamplingRequest
-from webdemo.inference.requests.limits import number
+from webdemo.inference.requests.limits import STRICTNESS, number
 from webdemo.inference.requests.paths import FloorPath, path_of, timed_paths
 from webdemo.inference.requests.plans import KeptPlan
 from webdemo.inference.requests.predict import check_motion
@@ -46,6 +46,7 @@ class SceneRequest(SamplingRequest):
             In a span they are stretched to fill it.
         paths: on the floor, one for a person at most; seconds count from the scene's beginning.
         poses: likewise.
+        strictness: as of :class:`GenerateRequest`.
         loop: the end meets the beginning; not with ``motion``.
         planned: where the words of a beat send people becomes a path (:mod:`.floor`), bystanders are held in place,
             and postures, jumps and hands become poses (:mod:`.postures`, :mod:`.gestures`), unless a path or pose says
@@ -61,6 +62,7 @@ class SceneRequest(SamplingRequest):
     poses: tuple[Pose, ...] = field(default=(), compare=False)
     loop: bool = False
     planned: bool = True
+    strictness: float = 0.0
     motion: Duet | None = None
     start: float | None = None
     end: float | None = None
@@ -69,6 +71,7 @@ class SceneRequest(SamplingRequest):
     def __post_init__(self) -> None:
         set_ = object.__setattr__
         self._check(methods.method(self.model, "scene"))
+        set_(self, "strictness", number("Strictness", self.strictness, *STRICTNESS))
         set_(self, "beats", tuple(self.beats))
         self._check_beats()
         if self.motion is None:
@@ -229,6 +232,7 @@ class SceneRequest(SamplingRequest):
             "poses": [pose.to_dict() for pose in self.poses],
             "loop": self.loop,
             "planned": self.planned,
+            "strictness": self.strictness,
         }
         if self.motion is not None:
             kept = self.kept(self.motion)
@@ -263,6 +267,7 @@ class SceneRequest(SamplingRequest):
             poses=tuple(pose_of(pose) for pose in values.get("poses", ())),
             loop=bool(values.get("loop", False)),
             planned=bool(values.get("planned", False)),  # scenes of before did without
+            strictness=values.get("strictness", cls.strictness),
             motion=motion,
             start=values.get("start"),
             end=values.get("end"),

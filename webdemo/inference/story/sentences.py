@@ -296,6 +296,7 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
         beats=beats,
         paths=_staying(request.paths, beats),
         planned=request.planned,
+        strictness=request.strictness,
         plan=replace(request.plan, acts=plans),
         **{f.name: getattr(request, f.name) for f in fields(SamplingRequest)},
     )

@@ -78,6 +78,7 @@ _TOP: dict[str, tuple[type, ...]] = {
     "tries": (int,),
     "loop": (bool,),
     "planned": (bool,),
+    "strictness": _NUMBER,
     "beat": (list,),
     "path": (list,),
     "pose": (list,),
@@ -140,6 +141,7 @@ def read_story(text: str, folder: Path | None = None) -> dict[str, Any]:
         "poses": tuple(_pose(entry, i, lines, folder) for i, entry in enumerate(found.get("pose", ()))),
         "loop": found.get("loop", False),
         "planned": found.get("planned", SceneRequest.planned),
+        "strictness": found.get("strictness", SceneRequest.strictness),
     }
 
 
@@ -167,6 +169,8 @@ def write_story(request: SceneRequest) -> str:
             story[f.name] = value
     if not request.planned:
         story["planned"] = False
+    if request.strictness != SceneRequest.strictness:
+        story["strictness"] = request.strictness
     if request.loop:
         story["loop"] = True
     tables = {

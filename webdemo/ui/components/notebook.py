@@ -43,6 +43,7 @@ _SETTINGS = (
     ("guidance", "Guidance"),
     ("steps", "Steps"),
     ("damping", "Damping"),
+    ("strictness", "Plan"),
     ("sampler", "Sampler"),
     ("marker", "Past ends at"),
     ("cleanup", "Clean-up"),

@@ -31,7 +31,15 @@ def place_of(shown: str) -> dict[str, int]:
 
 
 def part_fields(
-    part: str, story: Any, words: str, guidance: float, steps: float, damping: float, record: Record | None, place: str
+    part: str,
+    story: Any,
+    words: str,
+    guidance: float,
+    steps: float,
+    damping: float,
+    strictness: float,
+    record: Record | None,
+    place: str,
 ) -> dict[str, Any]:
     """The fields of a tab for a part, "span" or "futures", of the motion that the player shows."""
     return {
@@ -41,6 +49,7 @@ def part_fields(
         "guidance": guidance,
         "steps": steps,
         "damping": damping,
+        "strictness": strictness,
         "record": record,
         "seed": 0,
         **place_of(place),
@@ -54,7 +63,7 @@ def part_request(fields: Mapping[str, Any]) -> SceneRequest:
         InputError: without a motion or a span.
     """
     duet, story = shown_duet(fields["record"], fields["sample"]), story_fields(fields["story"])
-    plain = {f: fields[f] for f in ("guidance", "steps", "damping")}
+    plain = {f: fields[f] for f in ("guidance", "steps", "damping", "strictness")}
     plain |= {"seed": secrets.randbelow(MAX_SEED + 1), "planned": story["planned"]}
     words = str(fields["words"] or "").strip()
     if fields["part"] == "futures":

@@ -28,7 +28,7 @@ from webdemo.ui.text.classes import installed_classes, takes_class
 from webdemo.ui.text.examples import ARRIVAL, CLIPS, EXAMPLES
 from webdemo.ui.text.texts import say, worded
 
-from .grids import SENTENCES, methods_kind
+from .grids import PLAN, SENTENCES, methods_kind
 from .job import JobTab
 from .results import PRESS, QUIET, Updates
 from .sampling import Sampling, pace_of
@@ -93,7 +93,7 @@ class GenerateTab(JobTab):
     def kinds(self) -> Sequence[Kind]:
         """Also sentences, and methods."""
         methods = {name: method(name).label for _, name in generate_choices()}
-        return (*super().kinds(), SENTENCES, methods_kind("model", methods))
+        return (*super().kinds(), PLAN, SENTENCES, methods_kind("model", methods))
 
     def presets(self) -> Mapping[str, tuple[str, str]]:
         """Also a sentence beside a class, where there are classes."""

@@ -41,6 +41,7 @@ BASIC = (
     Kind("damping", "Damping", "damping", real, named=lambda value: f"{value:g}"),
 )
 """The settings that every sampled motion has."""
+PLAN = Kind("strictness", "Plan", "strictness", real, named=lambda value: f"{value:g}")
 SENTENCES = Kind("prompt", "Sentences", split=BETWEEN_SENTENCES)
 PRESETS = {"Plain beside damped": ("damping", "0, 0.7"), "Four seeds": ("seed", "1-4")}
 _SIDES = ("across", "down")

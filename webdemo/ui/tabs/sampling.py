@@ -8,7 +8,16 @@ from typing import Any
 import gradio as gr
 
 from webdemo.inference.method import DEFAULT_STEPS
-from webdemo.inference.requests import DAMPING, GUIDANCE, MAX_SEED, SAMPLES, TRIES, SamplingRequest
+from webdemo.inference.requests import (
+    DAMPING,
+    GUIDANCE,
+    MAX_SEED,
+    SAMPLES,
+    STRICTNESS,
+    TRIES,
+    GenerateRequest,
+    SamplingRequest,
+)
 from webdemo.ui.text.texts import say
 
 from .results import QUIET
@@ -22,15 +31,16 @@ _FOLLOWED = f"(steps) => [{FAST}, {FAITHFUL}].includes(steps) ? steps : null"
 
 
 class Sampling:
-    """Guidance, steps and damping, with what they did; in *More* samples, the seed and, for sentences, tries.
+    """Guidance, steps, damping and, for sentences, the plan, with what they did; in *More* samples, seed and tries.
 
     Args:
         prefix: before the ids of the elements.
-        sentences: puts the switch *Fast* or *Faithful* over the sliders.
+        sentences: puts the switch *Fast* or *Faithful* over the sliders, and the plan's slider under them.
     """
 
     pace: gr.Radio | None = None
     tries: gr.Slider | None = None
+    strictness: gr.Slider | None = None
 
     def __init__(self, prefix: str, *, sentences: bool = False) -> None:
         self.prefix, self.sentences = prefix, sentences
@@ -51,6 +61,9 @@ class Sampling:
         self.guidance = self._slider("sampling.guidance", "sampling.guidance_info", GUIDANCE, usual.guidance, 0.1)
         self.steps = self._slider("sampling.steps", "sampling.steps_info", STEPS_SHOWN, DEFAULT_STEPS)
         self.damping = self._slider("sampling.damping", "sampling.damping_info", DAMPING, usual.damping, 0.05)
+        if self.sentences:
+            usual_plan = GenerateRequest.strictness
+            self.strictness = self._slider("sampling.plan", "sampling.plan_info", STRICTNESS, usual_plan, 0.05)
         self.laid = gr.HTML(elem_id=f"{self.prefix}laid")
         with gr.Accordion(say("sampling.more"), open=False, elem_id=f"{self.prefix}more", elem_classes="pd-advanced"):
             self.samples = self._slider("sampling.samples", "sampling.samples_info", SAMPLES, usual.samples)
@@ -66,14 +79,14 @@ class Sampling:
     @property
     def controls(self) -> dict[str, gr.components.Component]:
         """The controls by the names of a request's fields."""
-        tries = {} if self.tries is None else {"tries": self.tries}
+        more = {"tries": self.tries, "strictness": self.strictness}
         return {
             "seed": self.seed,
             "samples": self.samples,
             "guidance": self.guidance,
             "steps": self.steps,
             "damping": self.damping,
-            **tries,
+            **{name: control for name, control in more.items() if control is not None},
         }
 
     def wire(self, another: gr.Button, go: gr.Button) -> None:
@@ -89,6 +102,8 @@ class Sampling:
         found: dict[Any, Any] = {}
         if self.tries is not None:
             found[self.tries] = gr.update(value=request.get("tries") or 1)
+        if self.strictness is not None:
+            found[self.strictness] = gr.update(value=request.get("strictness") or 0.0)
         if self.pace is not None:
             found[self.pace] = gr.update(value=pace_of(request.get("steps")))
         return found

@@ -75,7 +75,7 @@ class SceneTab(JobTab):
     def request(self, fields: Mapping[str, Any]) -> SceneRequest:
         """The whole story; raises InputError where it cannot be made."""
         plain = {f: fields[f] for f in ("seed", "guidance", "steps", "damping")}
-        plain["tries"] = fields.get("tries", SceneRequest.tries)  # older grids have none
+        plain |= {f: fields.get(f, getattr(SceneRequest, f)) for f in ("tries", "strictness")}  # older grids have none
         return SceneRequest(**story_fields(fields["story"]), samples=int(fields["samples"]), **plain)
 
     def settled(self, fields: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -182,7 +182,7 @@ class SceneTab(JobTab):
 
     def _wire_parts(self) -> None:
         form = self.sampling
-        settings = [form.guidance, form.steps, form.damping]
+        settings = [form.guidance, form.steps, form.damping, form.strictness]
         inputs = [self.line_up, self.words, *settings, self.record, self.shown_at]
         for button, part in ((self.remake, "span"), (self.futures, "futures")):
             self.wire_start(self._starter(part), [button.click], inputs=inputs, first=_READ_PLACE)
@@ -230,11 +230,12 @@ class SceneTab(JobTab):
             guidance: float,
             steps: float,
             damping: float,
+            strictness: float,
             record: Record | None,
             place: str,
             request: gr.Request,
         ) -> Iterator[Updates]:
-            fields = part_fields(part, story, words, guidance, steps, damping, record, place)
+            fields = part_fields(part, story, words, guidance, steps, damping, strictness, record, place)
             yield from self.run(str(request.session_hash), fields)
 
         return start

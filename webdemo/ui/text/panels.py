@@ -134,6 +134,7 @@ def _asked(result: Result) -> str:
         ("Guidance", _plain(request.get("guidance"))),
         ("Steps", request.get("steps")),
         ("Damping", _plain(request.get("damping"))),
+        ("Plan", _plain(request.get("strictness"))),
         ("Tries", tries if (tries := request.get("tries", 1)) != 1 else None),
         ("Plan from the words", "off" if request.get("planned") is False else None),
     ]
