@@ -39,7 +39,8 @@ def thumbnail(motion: Duet | Clip) -> str:
     """People, frames and places of :data:`JOINTS` in a square, as base64 of bytes; "" for other skeletons.
 
     The first byte is the number of people and the second that of frames; then follow x and y (down) of every joint
-    (person, frame, joint), 0 to 255. People are seen from the side of the line between them.
+    (person, frame, joint), 0 to 255. People are seen from the side of the line between them, by a camera that goes
+    along with them.
     """
     if motion.skeleton.joint_names != SMPL22.joint_names:
         return ""
@@ -47,6 +48,7 @@ def thumbnail(motion: Duet | Clip) -> str:
     moments = np.linspace(0, people.shape[1] - 1, FRAMES).round().astype(int)
     seen = people[:, moments][:, :, JOINTS]
     flat = np.stack([_across(people, seen), -seen[..., 1]], axis=-1)
+    flat[..., 0] -= flat[..., 0, 0].mean(axis=0)[None, :, None]
     low, high = flat.min(axis=(0, 1, 2)), flat.max(axis=(0, 1, 2))
     size = max(float((high - low).max()), 1.0) * 1.1
     places = (flat - (low + high) / 2) / size + 0.5
