@@ -13,7 +13,7 @@ from typing import Any
 
 import torch
 
-from models.intergen.compact import CaptionBank, save_folder
+from models.intergen.compact import CaptionBank, CompactInterGen, load_folder, save_folder
 from models.text import MiniLM
 from motion import InputError
 from training.core import checkpoint
@@ -57,6 +57,22 @@ def encode(encoder: MiniLM, captions: list[str]) -> torch.Tensor:
     return torch.cat([encoder(captions[i : i + 128]).pooled() for i in range(0, len(captions), 128)])
 
 
+@torch.no_grad()
+def average(model: CompactInterGen, began: CompactInterGen, share: float) -> None:
+    """Moves weights back towards those that a run began with, which forgets less of what these knew.
+
+    Wortsman et al. 2022, "Robust fine-tuning of zero-shot models". New parts keep the run's weights.
+
+    Args:
+        model: the run's network; ``share`` of each weight is its own.
+        began: the network that the run began with.
+    """
+    before = began.state_dict()
+    for name, value in model.state_dict().items():
+        if name in before and value.is_floating_point() and before[name].shape == value.shape:
+            value.lerp_(before[name].to(value), 1 - share)
+
+
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Turn a training run into the folder that is shipped.")
@@ -64,6 +80,8 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--scenes", type=Path, required=True)
     parser.add_argument("--out", type=Path, required=True, help="folder under models/weights")
     parser.add_argument("--card", type=Path, help="JSON with the card's fields")
+    parser.add_argument("--init", type=Path, help="the folder that the run began with, to average the weights with")
+    parser.add_argument("--share", type=float, default=1.0, help="the run's share in that average, 0 to 1")
     options = parser.parse_args(argv)
     return exit_code(lambda: _run(options))
 
@@ -74,6 +92,8 @@ def _run(options: argparse.Namespace) -> None:
     scenes = load(options.scenes)
     model = new_model(settings, Data(scenes, settings, options.run, "cpu", captions=False))
     checkpoint.restore_part(path, "ema", model)
+    if options.init is not None:
+        average(model, load_folder(options.init)[0], options.share)
     try:
         card: dict[str, Any] = json.loads(options.card.read_text()) if options.card else {}
     except (OSError, ValueError) as error:

@@ -27,7 +27,7 @@ from .lifts import Carrying
 from .limbs import limb_parts
 from .moves import coming, meeting, towards_touched
 from .places import Standing, Way2D
-from .poses import UPRIGHT, Pose, standing, upright
+from .poses import JOINT, UPRIGHT, Pose, standing, upright
 from .postures import bow_parts, posture_parts, postures
 from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
@@ -84,8 +84,12 @@ def plan_parts(
         parts = _apart(story, window, placement)
     else:
         parts = _Beat(story, window, scene, placement).parts()
-    found = [part for part in parts if part.person not in taken]
-    return [replace(part, soft=True) if isinstance(part, KnownFrames) and not part.kept else part for part in found]
+    return [part for part in parts if part.person not in taken]
+
+
+def softened(parts: Sequence[Part]) -> list[Part]:
+    """The parts, with poses that a network may change: all but those that the finished motion keeps."""
+    return [replace(part, soft=True) if isinstance(part, KnownFrames) and not part.kept else part for part in parts]
 
 
 def places_of(parts: Sequence[Part]) -> list[Part]:
@@ -101,10 +105,21 @@ def places_of(parts: Sequence[Part]) -> list[Part]:
                 if frames[i] - frames[kept[-1]] >= _PLACED or i == len(frames) - 1:
                     kept.append(i)
             poses = np.asarray(part.positions)[kept]
-            up = bool((poses[:, 0, 1] > UPRIGHT).all())
-            headings = heading(poses) if up else None  # of a body that lies, the hips say nothing
-            found.append(KnownPath(part.person, frames[kept].tolist(), poses[:, 0][:, [0, 2]], headings, up))
+            up = bool((poses[:, 0, 1] > UPRIGHT).all())  # of a body that lies, hips and shoulders say nothing
+            headings = _headings(part.joints, poses) if up else None
+            places = poses[:, 0][:, [0, 2]]
+            found.append(KnownPath(part.person, frames[kept].tolist(), places, headings, headings is not None))
     return found
+
+
+def _headings(joints: Collection[int], poses: Array) -> Array | None:
+    """(N,) radians in which poses (N, 22, 3) face by their hips, or else by their shoulders, if these are given."""
+    for pair in ("hip", "shoulder"):
+        left, right = (JOINT[f"{side}_{pair}"] for side in ("left", "right"))
+        if not joints or {left, right} <= set(joints):
+            across = poses[:, left] - poses[:, right]
+            return np.asarray(np.arctan2(-across[:, 2], across[:, 0]))
+    return None
 
 
 @dataclass(frozen=True)
@@ -184,13 +199,13 @@ class _Beat:
             turned = last is None and _keeps_back(score, who)
             stands = upright(stretch.stand.places[person], float(stretch.stand.headings[person]))
             if stays and who in score.figures:
-                parts += figure_parts(self.story.scores, person, stretch, last, seed)
+                parts += softened(figure_parts(self.story.scores, person, stretch, last, seed))
                 posed[person] = stands
             elif stays and up and who in score.limbs:
-                parts += limb_parts(person, score, stretch, seed)
+                parts += softened(limb_parts(person, score, stretch, seed))
                 posed[person] = stands
             elif stays and up and who in score.bows and _only_bows(score, who):
-                parts += bow_parts(person, score, stretch, seed)
+                parts += softened(bow_parts(person, score, stretch, seed))
                 posed[person] = stands
             elif up and who in score.idle & score.frozen:
                 parts += _statue_parts(person, stretch, seed)
@@ -203,7 +218,7 @@ class _Beat:
                 poses = self._postures(person, stretch)
                 if len(poses) > 1:
                     posed[person] = poses[-1][1]
-                parts += posture_parts(poses, person, score, stretch, self.window.tail(self.story.edges[-1]))
+                parts += softened(posture_parts(poses, person, score, stretch, self.window.tail(self.story.edges[-1])))
         return parts, posed
 
     def on_the_way(
@@ -223,9 +238,9 @@ class _Beat:
             if (gait := gaits.get(person)) is None:
                 parts += stretch.known_way(_until_posed(way, hand, stretch))
             elif gait not in STEPS:
-                parts += low_gait_parts(gait, person, self.down, stretch)
+                parts += softened(low_gait_parts(gait, person, self.down, stretch))
             else:
-                parts += step_parts(gait, person, score, stretch) if free else stretch.known_way(way)
+                parts += softened(step_parts(gait, person, score, stretch)) if free else stretch.known_way(way)
         leads = "ring" if any(move.backwards for move in moves) and score.by_both_hands else ""
         if (hold := score.hold or leads) and len(ways) == 2:
             parts += hold_parts(hold, stretch)
@@ -236,8 +251,8 @@ class _Beat:
         before = self.scene[:, self.start - 1].astype(np.float64) if self.start else None
         for arms in hand_parts(score, moves, posed, stretch, before, self.story.seed):
             if score.lift is None or "ab"[arms.person] == score.lift.carrier:
-                parts.append(arms)
-        parts += outer_hand_parts(score, moves, stretch)
+                parts += softened([arms])
+        parts += softened(outer_hand_parts(score, moves, stretch))
         return parts
 
     def _postures(self, person: int, stretch: Stretch) -> list[Pose]:

@@ -139,7 +139,13 @@ class Guided:
         words = torch.cat([cond if term.words else torch.zeros_like(cond) for term in sum_of])
         masks = None if mask is None else mask.repeat(many, 1, 1)
         made = network(x.repeat(many, 1, 1), t.repeat(many), words, masks, **seen).chunk(many)
-        return weighted(sum_of, made)
+        settled = self.settled(known)
+        guided = weighted(sum_of, made)
+        return guided if settled is None else torch.where(settled, made[0], guided)
+
+    def settled(self, known: Tensor | None) -> Tensor | None:
+        """True at the numbers (B, tokens, features) that guidance leaves as the words alone would have them."""
+        return None
 
 
 def weighted(sum_of: Sequence[Term], predictions: Sequence[Tensor]) -> Tensor:

@@ -20,6 +20,9 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from models.known import KNOWN_FEATURES
+from models.motion_tokens import FEATURES
+
 from .network import Block, InterGenConfig, InterGenDenoiser, attend, padding
 
 
@@ -155,6 +158,14 @@ class WordDenoiser(InterGenDenoiser):
         for block in cast(list[WordBlock], self.blocks):
             h = block.read(h, emb, keep, keep_other, text, real)
         return (self.out(h) + followed).permute(1, 2, 0, 3).reshape(b, length, -1)
+
+    def settled(self, known: Tensor | None) -> Tensor | None:
+        """Those that a draft says: guidance would exaggerate them."""
+        if known is None or self.draft is None:
+            return None
+        width = self.known_embed.in_features
+        draft = known.unflatten(-1, (2, -1))[..., width:].unflatten(-1, (-1, KNOWN_FEATURES))
+        return (draft[..., FEATURES : 2 * FEATURES] > 0).flatten(2)  # the masks, see Known.features
 
     @property
     def varying(self) -> dict[str, tuple[int, ...]]:

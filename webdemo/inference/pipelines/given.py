@@ -32,6 +32,8 @@ SETTLE = 0.5
 """Seconds over which the difference between a given first pose and the network's fades out."""
 FADE = 12
 """Frames over which what clean-up changed at a given frame is taken back beside it."""
+_APART = 30
+"""Frames between two poses of a draft beyond which it says nothing of what is between them."""
 _HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
 
 
@@ -279,17 +281,22 @@ def directed(model: DuetSpace, frames: int, parts: Sequence[Part], strictness: f
 
 
 def draft_of(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Tensor | None:
-    """The draft of a scene as a network sees it that reads drafts: of its soft parts all but the place on the floor."""
+    """The draft of a scene as a network sees it that reads drafts: of its soft parts all but the place on the floor.
+
+    In training a draft has a pose at every third to eighth frame, so those between two given ones are filled in.
+    """
     known = Known.nothing(model.layout.num_frames(model.layout.num_tokens(frames)))
     for part in parts:
         if not isinstance(part, KnownFrames) or not part.soft:
             continue
-        at, poses = _frames(part, frames), torch.from_numpy(np.asarray(part.positions)).float()
-        joints = part.joints or range(SMPL22.num_joints)
-        known.add_joints(part.person, poses, at, [joint for joint in joints if joint])
-        if 0 in joints:
-            known.rows[:, part.person, at, 1] = poses[:, 0, 1]
-            known.mask[:, part.person, at, 1] = True
+        given, joints = np.array(_frames(part, frames)), part.joints or range(SMPL22.num_joints)
+        for run in np.split(np.arange(len(given)), np.flatnonzero(np.diff(given) > _APART) + 1):
+            at, positions = _every_frame(given[run], np.asarray(part.positions)[run])
+            poses = torch.from_numpy(positions).float()
+            known.add_joints(part.person, poses, at.tolist(), [joint for joint in joints if joint])
+            if 0 in joints:
+                known.rows[:, part.person, at, 1] = poses[:, 0, 1]
+                known.mask[:, part.person, at, 1] = True
     return known.features(model.layout, model.mean, model.std) if known.mask.any() else None
 
 

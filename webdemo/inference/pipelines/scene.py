@@ -1,7 +1,7 @@
 """Scenes of several beats: window after window, each of which is given the end of the one before.
 
 Person a stands at the origin of the network's frame where a window begins, as in training, so each window is
-turned and moved there and back. What is given of a window is held at every step (:mod:`.directed`).
+turned and moved there and back. What is given of a window is held at every step, or shown as a draft (:mod:`.given`).
 Windows that were made are kept by their content: their words, settings, seed and everything that is given of them.
 """
 

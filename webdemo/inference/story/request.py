@@ -17,7 +17,7 @@ from acts.staging.stage import scores_of
 from acts.staging.window import AFTER, MOST_FRAMES, PAST, Window
 from motion import FPS, Duet, InputError
 from webdemo.inference import methods
-from webdemo.inference.requests import SamplingRequest
+from webdemo.inference.requests import GenerateRequest, SamplingRequest
 from webdemo.inference.requests.limits import STRICTNESS, number
 from webdemo.inference.requests.paths import FloorPath, path_of, timed_paths
 from webdemo.inference.requests.plans import KeptPlan
@@ -62,7 +62,7 @@ class SceneRequest(SamplingRequest):
     poses: tuple[Pose, ...] = field(default=(), compare=False)
     loop: bool = False
     planned: bool = True
-    strictness: float = 0.0
+    strictness: float = GenerateRequest.strictness
     motion: Duet | None = None
     start: float | None = None
     end: float | None = None
