@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 import torch
 
+from acts.staging.given import places_of
 from acts.staging.window import KnownFrames, KnownPath, Part
+from models.known import KNOWN_FEATURES
+from models.motion_tokens import FEATURES
 from motion import SMPL22, Duet, InputError
 from motion.transforms import heading_matrix
 from webdemo.inference import Engine, GenerateRequest
-from webdemo.inference.pipelines.given import FADE, Directed, directed, with_given, with_joints
+from webdemo.inference.pipelines.given import FADE, Directed, directed, draft_of, with_given, with_joints
 from webdemo.inference.run import CancelToken, StageTimer
 
 FRAMES = 60
@@ -46,12 +49,32 @@ def test_a_span_and_a_pose_are_held_exactly(either_engine: Engine) -> None:
 def test_a_draft_is_shown_and_not_held(reading_engine: Engine) -> None:
     poses, frames = walker()[::5], range(0, FRAMES, 5)
     model = reading_engine.pipeline("intergen").model
-    scene = directed(model, FRAMES, [KnownFrames(0, frames, poses, soft=True), KnownPath(1, [0], np.zeros((1, 2)))])
+    parts = [KnownFrames(0, frames, poses, soft=True), KnownPath(1, [0], np.zeros((1, 2)))]
+    scene = directed(model, FRAMES, parts)
     assert scene.draft is not None and scene.draft.any() and scene.given is not None
-    assert torch.equal(
-        scene.given.features, directed(model, FRAMES, [KnownPath(1, [0], np.zeros((1, 2)))]).given.features
-    )
+    assert torch.equal(scene.given.features, directed(model, FRAMES, places_of(parts)).given.features)
+    assert scene.shares.max() < 0.3, "places alone"
     assert not scene.draft.view(*scene.draft.shape[:2], 2, -1)[:, :, 1].any(), "it is person a's"
+
+
+def test_a_draft_is_filled_in_between_near_poses(reading_engine: Engine) -> None:
+    model = reading_engine.pipeline("intergen").model
+    drafted = [draft_of(model, FRAMES, [KnownFrames(0, at, walker()[at], soft=True)]) for at in ([0, 16], [0, 48])]
+    said = [draft.view(1, -1, 2, 2, KNOWN_FEATURES)[:, :, 0, :, FEATURES + 3].flatten().sum() for draft in drafted]
+    assert said[0] >= 16 / model.layout.frames_per_knot, "every knot between them"
+    assert said[1] == 2
+
+
+def test_a_draft_faces_as_the_joints_that_it_has() -> None:
+    angle = 2.5
+    poses = walker(angle=angle, speed=0.0)[:2]
+    poses[:, 1:3] = poses[:, :1]  # the hips are nobody's
+    above = [0, SMPL22.index("left_shoulder"), SMPL22.index("right_shoulder")]
+    (path,) = places_of([KnownFrames(0, [0, 1], poses, above, soft=True)])
+    assert isinstance(path, KnownPath) and path.headings is not None
+    np.testing.assert_allclose(path.headings, angle, atol=1e-6)
+    (path,) = places_of([KnownFrames(0, [0, 1], poses, [0, SMPL22.index("neck")], soft=True)])
+    assert isinstance(path, KnownPath) and path.headings is None
 
 
 def test_the_stricter_a_plan_the_nearer_are_its_poses(reading_engine: Engine) -> None:

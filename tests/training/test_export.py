@@ -6,8 +6,9 @@ from typing import Any
 
 import torch
 
+from models.intergen.compact import CompactConfig, CompactInterGen
 from models.motion_tokens import TokenLayout
-from training.export import BANK_PER_ACTS, BANK_PER_FAMILY, caption_bank
+from training.export import BANK_PER_ACTS, BANK_PER_FAMILY, average, caption_bank
 from training.prepare import Scenes
 
 
@@ -26,3 +27,15 @@ def test_the_bank_holds_every_kind_of_beat_beside_the_families() -> None:
     assert len(bank.captions) == len(bank.vectors) == sum(kinds)
     ((_, nearest),) = bank.nearest(bank.vectors[bank.captions.index("One kneels.")], 1)
     assert nearest == "One kneels."
+
+
+def test_weights_are_averaged_with_those_that_a_run_began_with() -> None:
+    sizes = {"latent_dim": 32, "ff_size": 48, "num_layers": 1, "num_heads": 4, "cond_dim": 64, "words": True}
+    began, made = CompactInterGen(CompactConfig(**sizes)), CompactInterGen(CompactConfig(**sizes, drafts=True))
+    before = {name: value.clone() for name, value in made.state_dict().items()}
+    average(made, began, 0.75)
+    for name, value in made.state_dict().items():
+        old = began.state_dict().get(name)
+        wanted = before[name] if old is None else 0.75 * before[name] + 0.25 * old
+        torch.testing.assert_close(value, wanted)
+    assert any(name.startswith("denoiser.draft") for name in before)

@@ -22,6 +22,7 @@ from training.core import checkpoint
 from training.core.handedness import mirror_caption, mirrored
 from training.core.loop import moved
 from training.core.text_features import CaptionFeatures, CaptionTokens
+from training.corpus.cues import STILL
 from training.prepare import Scenes, normalizer, sentence_lists
 from training.trainers.given import Shares
 
@@ -152,7 +153,7 @@ def later_beats(row: dict[str, Any]) -> list[dict[str, Any]]:
 
 def acts_of(row: dict[str, Any]) -> set[str]:
     """The acts of either person in a scene of beats, besides standing; none for other scenes."""
-    return {act for beat in row.get("beats") or () for act in beat["acts"]} - {"stand"}
+    return {act for beat in row.get("beats") or () for act in beat["acts"]} - {STILL}
 
 
 REPEATS = 5

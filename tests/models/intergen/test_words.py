@@ -6,6 +6,7 @@ from torch import Tensor
 
 from models.intergen.compact import CompactConfig, CompactInterGen
 from models.known import KNOWN_FEATURES
+from models.motion_tokens import FEATURES
 from models.text import TokenFeatures
 
 SIZES = {"latent_dim": 32, "ff_size": 48, "num_layers": 2, "num_heads": 4, "cond_dim": 64, "role_text": True}
@@ -145,3 +146,16 @@ def test_a_draft_is_read_beside_what_is_known_and_nothing_of_it_at_the_start(gro
     assert torch.equal(made(None, draft), made(0 * known, draft))
     assert (made(known, draft) - made(known, None)).abs().max() > 1e-3
     assert (made(known, draft) - made(draft, known)).abs().max() > 1e-3, "a draft is not what is known"
+
+
+def test_what_a_draft_says_is_not_guided() -> None:
+    torch.manual_seed(5)
+    model = stirred(CompactInterGen(CompactConfig(**SIZES, words=True, drafts=True)))
+    x, t = inputs()
+    said = torch.zeros(2, TOKENS, 2, 2, KNOWN_FEATURES)  # people, knots of a token
+    said[:, 2:4, 1, 0, FEATURES : FEATURES + 9] = 1.0
+    seen = model.shown(None, said.flatten(2))
+    once, often = (model.denoiser.guided(x, t, model.condition(words(5, 3)), None, seen, scale=s) for s in (1.0, 4.0))
+    same = torch.isclose(once, often, atol=1e-5).view(2, TOKENS, 2, 2, FEATURES)
+    assert same[:, 2:4, 1, 0, :9].all()
+    assert same.sum() < 1.2 * 2 * 2 * 9, "the others are"

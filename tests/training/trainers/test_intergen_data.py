@@ -11,6 +11,7 @@ import torch
 from tests.training.trainers.runs import SETTINGS, begin, prepared
 from training import prepare
 from training.core.text_features import CaptionFeatures
+from training.corpus.cues import STILL
 from training.trainers import intergen
 from training.trainers.given import Shares
 from training.trainers.intergen_data import LEAST, SENTENCES, balanced
@@ -102,7 +103,7 @@ def test_a_later_beat_is_learned_with_what_came_before_it_given(scenes: Path, tm
 
 def test_rare_families_and_rare_acts_are_drawn_up_to_five_times() -> None:
     def row(family: str, *acts: str) -> dict[str, Any]:
-        return {"family": family, "beats": [{"acts": [act, "stand"]} for act in acts]}
+        return {"family": family, "beats": [{"acts": [act, STILL]} for act in acts]}
 
     common = [row("beats", "walk") for _ in range(60)] + [row("hug") for _ in range(60)]
     rare = [row("beats", "walk", "jump") for _ in range(40)] + [row("beats", "crawl") for _ in range(4)]
