@@ -33,6 +33,8 @@ JOINTS = tuple(
     )
 )
 _LEVELS = 255
+_BODY = 0.2
+"""Metres by which a body is wider and taller than its joints."""
 
 
 def thumbnail(motion: Duet | Clip) -> str:
@@ -50,7 +52,8 @@ def thumbnail(motion: Duet | Clip) -> str:
     flat = np.stack([_across(people, seen), -seen[..., 1]], axis=-1)
     flat[..., 0] -= flat[..., 0, 0].mean(axis=0)[None, :, None]
     low, high = flat.min(axis=(0, 1, 2)), flat.max(axis=(0, 1, 2))
-    size = max(float((high - low).max()), 1.0) * 1.1
+    low, high = low - _BODY, high + _BODY
+    size = max(float((high - low).max()), 1.0)
     places = (flat - (low + high) / 2) / size + 0.5
     levels = np.clip(np.rint(places * _LEVELS), 0, _LEVELS).astype(np.uint8)
     return base64.b64encode(bytes([len(people), FRAMES]) + levels.tobytes()).decode("ascii")
