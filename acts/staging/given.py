@@ -6,7 +6,7 @@ the two is collected in :meth:`_Beat.on_the_way`.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -87,7 +87,7 @@ def plan_parts(
     return [part for part in parts if part.person not in taken]
 
 
-def softened(parts: Sequence[Part]) -> list[Part]:
+def softened(parts: Iterable[Part]) -> list[Part]:
     """The parts, with poses that a network may change: all but those that the finished motion keeps."""
     return [replace(part, soft=True) if isinstance(part, KnownFrames) and not part.kept else part for part in parts]
 

@@ -121,9 +121,10 @@ class DuetSpace(nn.Module):
         Args:
             known, draft: (B, tokens, features) of :meth:`models.known.Known.features`; None where there is nothing.
         """
-        if not self.reads_drafts or (known is None and draft is None):
+        seen = known if draft is None else draft
+        if not self.reads_drafts or seen is None:
             return known
-        nothing = torch.zeros_like(known if draft is None else draft)
+        nothing = torch.zeros_like(seen)
         parts = [nothing if part is None else part for part in (known, draft)]
         people = [part.view(*part.shape[:2], 2, -1) for part in parts]
         return torch.cat(people, -1).flatten(2)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 import time
-from pathlib import Path
 from typing import Any
 
 import gradio as gr
@@ -30,7 +29,7 @@ def test_one_persons_files_are_read_one_after_the_other() -> None:
 
     def ask() -> None:
         with pytest.raises(gr.Error, match="The file is empty"):
-            Endpoint(None)._answer(read, "x", PROGRESS, given=(Path("x"), None))  # type: ignore[arg-type]  # no run is begun
+            Endpoint(None)._answer(read, "x", PROGRESS, reads=True)  # type: ignore[arg-type]  # no run is begun
 
     threads = [threading.Thread(target=ask) for _ in range(20)]
     for thread in threads:

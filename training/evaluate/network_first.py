@@ -23,7 +23,8 @@ from acts.captions import worded
 from acts.checking import checked
 from acts.lexicon import Entry
 from acts.shapes import Shape
-from acts.staging.given import places_of
+from acts.staging import given as staging
+from acts.staging.window import KnownPath, Part
 from motion import Duet
 from webdemo.inference.pipelines import window
 from webdemo.inference.pipelines.scene import Parts
@@ -68,6 +69,11 @@ class Made:
 def gives_poses(shape: Shape) -> bool:
     """True for a shape that gives poses; the others give places."""
     return shape.do in POSES or bool(getattr(shape, "gait", ""))
+
+
+def places_of(parts: Sequence[Part]) -> list[Part]:
+    """The places and headings of parts (in the network's frame), without their poses."""
+    return [part for part in staging.places_of(staging.softened(parts)) if isinstance(part, KnownPath)]
 
 
 def wordings(act: Act, entry: Entry) -> list[str]:
@@ -157,7 +163,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         return result.duets[0]
 
     planned, made = window.plan_parts, list[Made]()
-    window.plan_parts = lambda *given: places_of(planned(*given))
+    window.plan_parts = lambda *asked: places_of(planned(*asked))
     for name, entry in lexicon().entries.items():
         given = entry.shown and entry.rule and any(map(gives_poses, entry.stage))
         if not given or (options.only and name not in options.only):

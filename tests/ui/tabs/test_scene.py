@@ -157,6 +157,7 @@ def part(tab: SceneTab, which: str, record: Record | None, story: Any, words: st
         "guidance": 4.3,
         "steps": 2,
         "damping": 0.7,
+        "strictness": 0.5,
         "record": record,
         "frame": 60,
         "sample": 0,
@@ -303,4 +304,4 @@ def test_every_story_of_the_page_is_read_in_limited_time(tab: SceneTab, monkeypa
     fields = {"record": record, "sample": 0, "frame": 30, "story": laid, "words": words, "part": "futures"}
     for part in ({"part": "futures"}, {"part": "span", "story": {**laid, "span": [0.0, 1.0]}}):
         with pytest.raises(InputError, match=said):
-            part_request({**fields, **part, "guidance": 1, "steps": 1, "damping": 0})
+            part_request({**fields, **part, "guidance": 1, "steps": 1, "damping": 0, "strictness": 0})

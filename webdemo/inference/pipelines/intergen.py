@@ -272,7 +272,8 @@ class Measured:
     """
 
     def __init__(self, scene: Scene) -> None:
-        self.frames, self.given, self._scene = scene.frames, scene.given, scene
+        self.frames, self.given, self.draft, self._scene = scene.frames, scene.given, scene.draft, scene
+        self.given_at = scene.given_at
         self.moved: list[float] = []
         """Mean distance in metres, one of each generated person."""
 

@@ -132,7 +132,8 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             # What is known is clean at every timestep, as in training (InterGen, section 5.4), and shown to a network
             # that reads it.
             given = scene.given_at(done, settings.steps)
-            shown = self.model.shown(given and given.features, scene.draft) if self.model.reads_known else None
+            features = None if given is None else given.features
+            shown = cast(DuetSpace, self.model).shown(features, scene.draft) if self.model.reads_known else None
             seen = {} if shown is None else {"known": shown}
             return self.model.denoiser.guided(
                 given(x) if given else x, t, condition, scale=conditioning.guidance, **seen

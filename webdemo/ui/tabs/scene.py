@@ -182,6 +182,7 @@ class SceneTab(JobTab):
 
     def _wire_parts(self) -> None:
         form = self.sampling
+        assert form.strictness is not None
         settings = [form.guidance, form.steps, form.damping, form.strictness]
         inputs = [self.line_up, self.words, *settings, self.record, self.shown_at]
         for button, part in ((self.remake, "span"), (self.futures, "futures")):
