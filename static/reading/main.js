@@ -328,7 +328,7 @@ class View {
     const found = this.checked(act);
     if (!found) return null;
     const [sign, name] = MARKS[found.done];
-    const made = node("span", `pdr-check pdr-check-${found.done}`, `${sign} ${found.done === null ? [name, found.measure].filter(Boolean).join(": ") : found.measure}`.trim());
+    const made = node("span", `pdr-check pdr-check-${found.done}`, `${sign} ${found.done === null ? [name, found.measure].filter(Boolean).join(": ") : found.measure || name}`);
     made.ariaHidden = "true";
     return made;
   }

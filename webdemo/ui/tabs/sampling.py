@@ -103,7 +103,7 @@ class Sampling:
         if self.tries is not None:
             found[self.tries] = gr.update(value=request.get("tries") or 1)
         if self.strictness is not None:
-            found[self.strictness] = gr.update(value=request.get("strictness") or 0.0)
+            found[self.strictness] = gr.update(value=request.get("strictness", GenerateRequest.strictness))
         if self.pace is not None:
             found[self.pace] = gr.update(value=pace_of(request.get("steps")))
         return found
