@@ -20,7 +20,6 @@ export class Actions {
     if (!player.data) return;
     if (action === "pose") return player.directing.togglePosing();
     if (action === "draw") return player.directing.toggleDrawing();
-    if (action === "take") return player.futures.take(argument);
     if (MOVES.has(action) && !player.directing.mayLeave()) return;
     if (action === "pause") clock.pause();
     else if (action === "play") clock.playing ? clock.pause() : clock.play();

@@ -134,9 +134,9 @@ export class Figure {
 
   /**
    * Lights the surface as in a studio whose lamps go with the camera, and hands out each triangle's corners.
-   * `colors` [r, g, b] a zone's name, `lamps` of the theme, `lens` the view, `scale` the scene's, `alpha` 0..1.
+   * `colors` [r, g, b] a zone's name, `lamps` of the theme, `lens` the view, `scale` the scene's.
    */
-  shade(colors, lamps, lens, scale, alpha) {
+  shade(colors, lamps, lens, scale) {
     const { body, vertices, normals, light } = this;
     const { forward, eye } = lens;
     const right = unit([forward[1], -forward[0], 0]);
@@ -164,10 +164,10 @@ export class Figure {
       this.shine ??= new Float32Array(vertices.length / 3);
       this.shine[v] = lamps.shine * shine * open;
     }
-    this.expand(colors, scale, alpha);
+    this.expand(colors, scale);
   }
 
-  expand(colors, scale, alpha) {
+  expand(colors, scale) {
     const { body, vertices, light, shine, positions, colors: out } = this;
     const { faces, faceZones, zones } = body;
     const palette = zones.map((zone) => linear(colors[zone] ?? colors.top));
@@ -177,9 +177,9 @@ export class Figure {
       for (let c = 0; c < 3; c++) {
         positions[p + c] = vertices[3 * v + c] * scale[c];
         const value = base[c] * light[3 * v + c] + shine[v];
-        out[q + c] = alpha * ENCODED[value < 1 ? (STEPS * value) | 0 : STEPS]; // as WebGL blends them
+        out[q + c] = ENCODED[value < 1 ? (STEPS * value) | 0 : STEPS];
       }
-      out[q + 3] = alpha;
+      out[q + 3] = 1;
     }
   }
 }

@@ -6,8 +6,6 @@ import { keepFigure } from "./remember.js";
 
 const FIGURES = ["both", "body", "skeleton"];
 
-const light = (looks) => Promise.all(looks.map((look) => loadBody(`${look}-small`)));
-
 export class Clothes {
   constructor(player) {
     this.player = player;
@@ -40,14 +38,7 @@ export class Clothes {
       console.error(error);
     }
     player.pane.dress((look) => this.body(look));
-    await this.dressFutures();
     player.wake();
-  }
-
-  /** What the ghosts of futures wear, once it is there: lighter than people. */
-  async dressFutures() {
-    const { futures } = this.player;
-    if (this.bodies.size && futures.samples.length) futures.dress(await light(futures.samples[0].looks));
   }
 
   /** How people are drawn: "both", "body" or "skeleton". */

@@ -23,7 +23,7 @@ export class Controls {
     });
     root.addEventListener("keydown", (event) => {
       if (belongsToControl(event)) return;
-      const asked = player.futures.actionFor(event) ?? actionFor(event);
+      const asked = actionFor(event);
       if (!asked) return;
       event.preventDefault();
       event.stopPropagation();

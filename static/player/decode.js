@@ -60,9 +60,9 @@ const unpackSample = (sample) => ({
 
 /** A payload as the player keeps it. */
 export function decode(payload) {
-  const { id, title, joint_names: names, parents, stream, rounds, futures = null, samples } = payload;
+  const { id, title, joint_names: names, parents, stream, rounds, samples } = payload;
   return {
-    id, title: title || "", names, parents, stream: Boolean(stream), rounds, futures,
+    id, title: title || "", names, parents, stream: Boolean(stream), rounds,
     samples: samples.map(unpackSample),
   };
 }

@@ -1,7 +1,6 @@
 // What a visitor may change while somebody keeps it: `director` is such as a story or the reading of a prompt. Of these it
 // has what it can keep:
 //   posesAt(frame): each person's kept pose in world axes, or null; keepPoses(frame, [{ person: "a" or "b", positions }])
-//   takeFuture(index): the continuation that was taken
 //   paths: [{ person, points }] of the next run, which lasts `seconds`; keepPath(person, points), undo() and mayUndo
 
 import { toScene } from "./decode.js";

@@ -31,12 +31,11 @@ export class Framing {
    * equally far in all of them, so that people are equally large.
    */
   wanted(view) {
-    const { orbit, clock, futures, skeleton, shown } = this.player;
+    const { orbit, clock, skeleton, shown } = this.player;
     const times = moments(clock.shown, clock);
-    const ghosts = times.flatMap((frame) => futures.at(frame).flatMap(({ people }) => people));
     const pairs = shown.map((pane) => ({
       now: pane.poseAt(clock.shown),
-      soon: [...times.flatMap((frame) => pane.poseAt(frame)), ...ghosts],
+      soon: times.flatMap((frame) => pane.poseAt(frame)),
       used: times.flatMap((frame) => pane.sample.things.beside(pane.poseAt(frame), skeleton.pelvis)),
       box: this.box,
     }));

@@ -27,9 +27,6 @@ function theme({ shade, lamps, bodies, people, given, curve, ...plain }) {
 
 export const THEMES = each(COLOURS, theme);
 
-/** Tints of futures that stand side by side; apart from both people's, and from each other for all common eyes. */
-export const FUTURES = ["#1f9d72", "#b13fc9", "#c2a40a"].map(hex);
-
 /** The floor at a distance in metres from the camera's target: it grows dimmer towards the horizon. */
 export const floorAt = (theme, metres) => mix(theme.floor, theme.far, smooth(Math.min(metres / theme.reach, 1)));
 

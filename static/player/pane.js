@@ -7,7 +7,6 @@ import { Ground } from "./ground.js";
 import { shapesAt } from "./hands.js";
 import { FIELD_OF_VIEW } from "./orbit.js";
 import { Labels, project } from "./overlay.js";
-import { FUTURES } from "./palette.js";
 import { Scene } from "./scene.js";
 
 const ABOVE_HEAD = 0.2; // metres
@@ -71,7 +70,7 @@ export class Pane {
   }
 
   /** Draws `pose` of this pane's motion, or the floor alone for null; `view` is of Orbit.view(), `ground` the floor's middle. */
-  paint(pose, { view, ground, theme, themeName, clock, skeleton, show, pinned, futures }) {
+  paint(pose, { view, ground, theme, themeName, clock, skeleton, show, pinned }) {
     const { scene } = this;
     const { matrix } = view;
     const [width, height] = [this.host.clientWidth, this.host.clientHeight];
@@ -86,7 +85,7 @@ export class Pane {
       bodies.forEach((body, person) => {
         const hands = shapesAt(this.sample.grips, person, clock.shown, this.sample.fps);
         body.pose(pose[person], hands, pose[1 - person]?.[skeleton.head]);
-        body.shade((given ? theme.givenBodies : theme.bodies)[person], theme.lamps, lens, scene.scale, 1);
+        body.shade((given ? theme.givenBodies : theme.bodies)[person], theme.lamps, lens, scene.scale);
         scene.setTriangles(`body${"AB"[person]}`, { positions: body.positions, colors: body.colors });
       });
       this.drop(["bodyA", "bodyB"].slice(bodies.length));
@@ -104,11 +103,7 @@ export class Pane {
       });
       this.drop(["bonesA", "jointsA", "bonesB", "jointsB"].slice(2 * thin.length));
       this.paintShadow(pose, skeleton, bodies, things, theme);
-      const ghosts = futures?.at(clock.shown) ?? [];
-      const company = show.bodies ? futures?.mesh(ghosts, theme, lens, scene.scale) : null;
-      if (company) scene.setTriangles("futures", company);
-      else this.drop(["futures"]);
-      this.paintExtras(put, lens, { theme, clock, skeleton, show, pinned, ghosts: company ? [] : ghosts });
+      this.paintExtras(put, lens, { theme, clock, skeleton, show, pinned });
       this.spots = pose.map((points) => points.map((p) => project(p, matrix, width, height, FIELD_OF_VIEW)));
       this.labels.place(pose.map((points) => {
         const above = figure.headCenter(points, skeleton);
@@ -145,11 +140,10 @@ export class Pane {
     scene.setTriangles("ground", { positions: ground.positions, colors: ground.colors, places: ground.places });
   }
 
-  paintExtras(put, lens, { theme, clock, skeleton, show, pinned = [], ghosts = [] }) {
+  paintExtras(put, lens, { theme, clock, skeleton, show, pinned }) {
     const { scene, sample, painted } = this;
     const paired = sample.ghostMotion ? poseAt(sample.ghostMotion, clock.shown) : [];
     const other = paired.map((points) => [points, theme.ghost]);
-    for (const { index, people } of ghosts) other.push(...people.map((points) => [points, FUTURES[index % FUTURES.length]]));
     const moments = show.ghosts ? figure.ghostFrames(clock.frames).map((f) => this.poseAt(f)) : [];
     if (pinned.some(Boolean)) moments.push(pinned);
     const pale = moments.length + other.length > 0;

@@ -8,7 +8,6 @@ import { Controls } from "./controls.js";
 import { decode, describe } from "./decode.js";
 import { Directing } from "./directing.js";
 import { Framing } from "./framing.js";
-import { Futures } from "./futures.js";
 import { Grid } from "./grid.js";
 import { Orbit, reducedMotion } from "./orbit.js";
 import { THEMES, themeName } from "./palette.js";
@@ -34,7 +33,6 @@ export class Player {
     this.pane.dress((look) => this.clothes.body(look));
     this.grid = new Grid(this.find(".pdd-grid"), this.pane);
     this.focus = null; // the number of the cell of a grid that is seen large
-    this.futures = new Futures(this);
     this.actions = new Actions(this);
     this.strip = new Strip(root, { onSeek: (frame) => this.seek(frame) });
     this.data = null;
@@ -81,7 +79,6 @@ export class Player {
     this.directing.end();
     if (!payload?.samples?.length) {
       this.data = null;
-      this.futures.load(null);
       this.clock.pause();
       this.root.dataset.state = "empty";
       this.strip.load(null);
@@ -99,7 +96,6 @@ export class Player {
     this.rounds = 0;
     this.clock.frame = Math.min(this.data.samples[0].past_until ?? 0, this.data.samples[0].frames - 1);
     this.controls.load(this.data);
-    this.futures.load(this.data);
     this.select(0);
     this.clothes.change();
     this.root.toggleAttribute("data-first", Boolean(payload.rounds)); // nothing is made yet that could be directed
@@ -266,7 +262,7 @@ export class Player {
   }
 
   paint(pose) {
-    const { futures, grid, orbit, theme, themeName, clock, skeleton, show } = this;
+    const { grid, orbit, theme, themeName, clock, skeleton, show } = this;
     const posed = this.posing?.pose;
     const pinned = pose && !posed && !clock.playing ? this.directing.posesAt(Math.round(clock.shown)) : [];
     const { drawing } = this.directing;
@@ -275,9 +271,8 @@ export class Player {
       const people = posed ?? (pose && pane.poseAt(clock.shown));
       const view = orbit.view(index);
       const ground = grid.cells.length ? orbit.targets[0] : view.target; // one floor for all cells, which one scene draws
-      pane.paint(people, { view, ground, theme, themeName, clock, skeleton, show, pinned, futures });
+      pane.paint(people, { view, ground, theme, themeName, clock, skeleton, show, pinned });
     });
-    futures.place(clock.shown, orbit.view().matrix);
     this.posing?.place(this.pane.spots);
     if (pose) drawing?.place(orbit.view());
     this.controls.show(this);

@@ -4,15 +4,15 @@
 // trace's own line, point and mesh objects, and the scene is asked to redraw. These objects are plotly's inside: they
 // are those of the copy in static/plotly, and take() says so where another one lacks them.
 //
-// Only ghosts of futures are translucent: one translucent object makes plotly draw the whole scene twice. Skeletons
-// beside bodies are drawn a little nearer to the eye instead, over bodies that stay solid.
+// Nothing is translucent: one translucent object makes plotly draw the whole scene twice. Skeletons beside bodies are
+// drawn a little nearer to the eye instead, over bodies that stay solid.
 
 import { css } from "./palette.js";
 import { simplify } from "./shaders.js";
 
 const HALF = 60; // metres; a box this wide around the origin makes scene units metres and clips nothing
 const KINDS = {
-  ground: "mesh", floor: "lines", bodyA: "mesh", bodyB: "mesh", things: "mesh", futures: "mesh", ghosts: "lines", paths: "lines",
+  ground: "mesh", floor: "lines", bodyA: "mesh", bodyB: "mesh", things: "mesh", ghosts: "lines", paths: "lines",
   bonesA: "lines", bonesB: "lines", jointsA: "points", jointsB: "points",
 };
 const HOLDERS = { lines: "linePlot", points: "scatterPlot", mesh: "mesh" }; // plotly's names for the drawing objects
@@ -142,7 +142,7 @@ export class Scene {
    */
   setTriangles(name, layer) {
     this.layers.set(name, layer);
-    const { positions, colors, places, alpha = 1 } = layer;
+    const { positions, colors, places } = layer;
     const corners = positions.length / 3;
     const mesh = this.objects[name];
     mesh.trianglePositions.update(positions);
@@ -154,7 +154,7 @@ export class Scene {
       Object.assign(mesh, { ambientLight: 1, diffuseLight: 0, specularLight: 0 });
       mesh.triangleCount = corners / 3;
     } else if (places) mesh.triangleUVs.update(places);
-    mesh.hasAlpha = alpha < 1;
+    mesh.hasAlpha = false;
     mesh.dirty = true;
   }
 

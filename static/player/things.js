@@ -110,7 +110,7 @@ export class Things {
     let first = 0;
     for (const figure of this.figures) {
       figure.move(frame);
-      figure.shade(figure.body.colors, lamps, lens, scale, 1);
+      figure.shade(figure.body.colors, lamps, lens, scale);
       this.positions.set(figure.positions, 3 * first);
       this.colors.set(figure.colors, 4 * first);
       first += figure.body.faces.length;

@@ -82,11 +82,6 @@ export class Editor {
     if (next !== this.story) this.show(next);
   }
 
-  /** The player's sample is to be the motion from now on: as the button *Take the one shown* does. */
-  takeFuture() {
-    this.root.closest(".pd-results")?.querySelector(".pd-take")?.click();
-  }
-
   /** Seconds that the line shows: the story's, or those of the motion in the player where that is longer. */
   get total() {
     return Math.max(edits.edges(this.story).at(-1), this.shown, 1);

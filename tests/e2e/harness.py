@@ -134,9 +134,6 @@ def ask_nobody() -> dict[str, object]:
 UPDATES: dict[str, Callable[[], dict[str, Any]]] = {
     "load": lambda: show(player_payload(walking_duet(), title="two people walk up to each other and shake hands")),
     "several": lambda: show(samples(*(walking_duet(phase=0.8 * i) for i in range(4)), title="four takes")),
-    "futures": lambda: show(
-        {**samples(walking_duet(4.0), apart_duet(4.0), walking_duet(4.0, phase=1.0)), "futures": 30}
-    ),
     "hostile": lambda: show(player_payload(walking_duet(roles=HOSTILE), title=" ".join(HOSTILE))),
     "predicted": lambda: show(samples(walking_duet(), ghost=walking_duet(phase=0.5), past_until=60)),
     "busy": lambda: busy("Step 12 of 50 ${1+1}", progress=0.24),

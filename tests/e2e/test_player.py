@@ -183,7 +183,7 @@ def test_meshes_are_drawn_by_shaders_of_our_own(player):
     page = player()
     meshes = "Object.values(window.__pasdedeux.player.scene.objects).filter((each) => each.triShader)"
     shaders = f"{meshes}.map((each) => each.triShader.simple)"
-    assert page.evaluate(shaders) == [True] * 5, "the ground, two bodies, things and futures"
+    assert page.evaluate(shaders) == [True] * 4, "the ground, two bodies and things"
     assert page.evaluate("window.__pasdedeux.player.scene.gl.gl.getError()") == 0
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from motion import SMPL22
 
-from .playing import pause, press, settled_box, until
+from .playing import pause, settled_box, until
 
 pytestmark = pytest.mark.e2e
 
@@ -22,7 +22,6 @@ DIRECT = """() => {
     window.__pasdedeux.player.direct({
         posesAt: () => [null, null],
         keepPoses: (frame, poses) => window.kept.push({ frame, poses }),
-        takeFuture: (index) => window.kept.push(index),
     });
 }"""
 WRIST, ANKLE, HEAD = (SMPL22.index(name) for name in ("right_wrist", "left_ankle", "head"))
@@ -208,26 +207,3 @@ def test_a_pose_is_made_without_a_mouse(still: Any) -> None:
     assert focused(still) == "Left hand of A"
     still.keyboard.press("Escape")
     assert focused(still) == "pdd pdd-styled"
-
-
-def test_ways_on_stand_beside_each_other_and_one_is_taken(still: Any) -> None:
-    press(still, "futures")
-    until(still, "window.__pasdedeux.player.futures.ghosts.length === 3")
-    still.evaluate("window.__pasdedeux.player.act('pause'); window.__pasdedeux.player.seek(20)")
-    until(still, "window.__pasdedeux.frame === 20 && window.__pasdedeux.loops === 0")
-    numbers = still.locator(".pdd-futures button")
-    triangles = "window.__pasdedeux.player.scene.objects.futures.triangleCount"
-    assert still.evaluate(triangles) == 0 and not numbers.first.is_visible(), "one past for all"
-    still.evaluate("window.__pasdedeux.player.seek(100)")
-    until(still, "window.__pasdedeux.frame === 100 && window.__pasdedeux.loops === 0")
-    assert still.evaluate(triangles) > 1000 and still.evaluate(
-        "window.__pasdedeux.player.scene.objects.futures.hasAlpha"
-    )
-    assert numbers.all_inner_texts() == ["1", "2", "3"]
-    # A click on a number, and a key.
-    numbers.nth(2).click()
-    still.locator(".pdd").focus()
-    still.keyboard.press("1")
-    still.keyboard.press("4")  # a camera
-    assert still.evaluate("window.kept") == [2, 0]
-    assert still.evaluate("window.__pasdedeux.player.sampleIndex") == 0

@@ -121,8 +121,8 @@ def test_two_people_have_several_futures_by_a_seed(page: Page, tmp_path: Path) -
     seed.locator("input").fill("7")
     page.click("button#predict-generate")
     expect(page.locator("#predict-status .pd-done")).to_contain_text("3 samples made")
-    page.wait_for_function("window.__pasdedeux.player.futures.samples.length === 3")
-    assert page.evaluate("window.__pasdedeux.player.futures.from") == 30
+    page.wait_for_function("window.__pasdedeux.player.data.samples.length === 3")
+    assert page.evaluate(f"{SAMPLE}.past_until") == 30
     choose(page, "#predict-method", "Motion MLP")
     expect(seed).to_be_hidden()
 

@@ -99,9 +99,10 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.locator("#scene-futures").click()
     page.wait_for_function("window.__pasdedeux?.player?.data?.samples.length === 3")
     rest(page)
-    # They stand beside each other from the moment on, and a press on a number takes one.
-    page.evaluate("window.__pasdedeux.player.act('pause'); window.__pasdedeux.player.act('last')")
-    page.get_by_role("button", name="Take continuation 2").click()
+    # Each has a tab of the player, and the one that is shown is taken.
+    page.locator("#scene-player .pdd-tabs [role=tab]").nth(1).click()
+    page.wait_for_function("window.__pasdedeux.player.sampleIndex === 1")
+    page.locator("#scene-take").click()
     page.wait_for_function("window.__pasdedeux?.player?.data.samples.length === 1")
     assert "number 2" in page.locator("#scene-status").inner_text()
 

@@ -35,8 +35,8 @@ test("a language is found as Gradio finds it", () => {
 
 test("values stand in the place of their names, and what nobody knows is given back", () => {
   assert.equal(language, "en");
-  assert.equal(say("player.take", { number: 3 }), "Take continuation 3");
-  assert.equal(say("player.take"), "Take continuation {number}");
+  assert.equal(say("player.sample", { number: 3 }), "Sample 3");
+  assert.equal(say("player.sample"), "Sample {number}");
   assert.equal(say("vote.pair", { number: 0, total: 12 }), "Pair 0 of 12");
   assert.equal(say("Something that the server said {number}"), "Something that the server said {number}");
 });
@@ -47,11 +47,11 @@ test("a mark of Gradio's configuration is read, with the words around it", () =>
 });
 
 test("in the lab's page, Gradio's choice counts, and its configuration has the texts", async () => {
-  const known = { de: { "player.take": "{number} nehmen" }, en: { "player.take": "Take {number}" } };
+  const known = { de: { "player.sample": "Probe {number}" }, en: { "player.sample": "Sample {number}" } };
   const page = { gradio_config: { i18n_translations: known }, document: { documentElement: { lang: "de" } }, location: { search: "?lang=en" } };
   const texts = await inPage(page, "gradio");
   assert.equal(texts.language, "de");
-  assert.equal(texts.say("player.take", { number: 2 }), "2 nehmen");
+  assert.equal(texts.say("player.sample", { number: 2 }), "Probe 2");
 });
 
 test("markup is put into the language, and English markup is left alone", async () => {

@@ -22,11 +22,10 @@ _NO_TRUTH = "Nothing follows the marker to compare with."
 def prediction_payload(result: PredictResult, *, title: str = "") -> Payload:
     """The player's value: the past marked as given, what really followed as a ghost, the error below.
 
-    The futures of a result are samples, of which the others show as ghosts.
+    Several futures of a result are samples.
     """
     made = [_sample(result, place) for place in range(len(result.duets))]
-    futures = {"futures": result.past_frames} if len(made) > 1 else {}
-    return {**build_payload(made, skeleton=without_name(result.duets[0]).skeleton, title=title), **futures}
+    return build_payload(made, skeleton=without_name(result.duets[0]).skeleton, title=title)
 
 
 def _sample(result: PredictResult, place: int) -> dict[str, Any]:

@@ -144,7 +144,7 @@ class SceneTab(JobTab):
             small: dict[str, Any] = {"size": "sm", "min_width": 0, "scale": 0}
             self.remake = gr.Button(say("scene.remake"), elem_id=self._id("remake"), **small)
             self.futures = gr.Button(say("scene.futures", count=FUTURES), elem_id=self._id("futures"), **small)
-            self.take = gr.Button(say("scene.take"), elem_id=self._id("take"), elem_classes="pd-take", **small)
+            self.take = gr.Button(say("scene.take"), elem_id=self._id("take"), **small)
         self.shown_at = gr.Textbox(visible=False)
 
     def more_outputs(self) -> dict[str, Any]:
@@ -187,15 +187,6 @@ class SceneTab(JobTab):
         inputs = [self.line_up, self.words, *settings, self.record, self.shown_at]
         for button, part in ((self.remake, "span"), (self.futures, "futures")):
             self.wire_start(self._starter(part), [button.click], inputs=inputs, first=_READ_PLACE)
-
-    def shown(self, result: Result, title: str) -> dict[str, Any]:
-        """As every tab shows a result; several continuations also say from which moment they begin."""
-        shown = super().shown(result, title)
-        asked = result.manifest.get("request", {})
-        ahead = asked.get("kind") == "scene" and "motion" in asked and asked.get("end") is None
-        if ahead and len(result.duets) > 1:
-            shown["player"]["value"]["futures"] = round(asked["start"] * result.duets[0].fps)
-        return shown
 
     def kept_more(self, fields: Mapping[str, Any]) -> dict[str, Any]:
         """Of a part also the whole story."""
