@@ -2,9 +2,7 @@
 
 A body is a closed surface bound to SMPL22 (``static/bodies``, made from MakeHuman's mesh, CC0). Joint positions alone
 pose it: :func:`bone_rotations` finds how each bone is turned, twist included, and :func:`skin` moves the surface by
-linear blend skinning. ``static/player/pose.js`` and ``skin.js`` do the same in the browser, number for number.
-
-Eyes turn to what is seen, as far as eyes do without the head; ``static/player/eyes.js`` does the same.
+linear blend skinning. ``static/player/pose.js`` and ``body.js`` do the same in the browser, number for number.
 """
 
 from __future__ import annotations
@@ -51,7 +49,6 @@ class Body:
         bones: (V, 4) joints that move each vertex.
         weights: (V, 4) their shares, which sum to 1.
         fingers: how its hands take shapes.
-        eyes: how its eyes turn.
     """
 
     name: str
@@ -65,7 +62,6 @@ class Body:
     bones: NDArray[np.integer] = field(repr=False)
     weights: Array = field(repr=False)
     fingers: Fingers = field(repr=False)
-    eyes: Eyes = field(repr=False)
 
 
 def in_base64(values: NDArray, kind: str) -> str:
@@ -92,35 +88,29 @@ def load_body(name: str, *, small: bool = False) -> Body:
         def numbers(key: str, kind: str, columns: int) -> NDArray:
             return decoded(stored[key], kind, columns)
 
-        vertices = np.array(stored["min"]) + np.array(stored["scale"]) * numbers("vertices", "<u2", 3)
-        faces, face_zones = numbers("faces", "<u2", 3).astype(np.int64), numbers("face_zones", "u1", 1)[:, 0]
-        zones = tuple(stored["zones"])
         return Body(
             name=name,
-            vertices=vertices,
-            faces=faces,
-            face_zones=face_zones,
-            zones=zones,
+            vertices=np.array(stored["min"]) + np.array(stored["scale"]) * numbers("vertices", "<u2", 3),
+            faces=numbers("faces", "<u2", 3).astype(np.int64),
+            face_zones=numbers("face_zones", "u1", 1)[:, 0],
+            zones=tuple(stored["zones"]),
             sky=numbers("sky", "u1", 1)[:, 0] / 255,
             joints=np.array(stored["joints"]),
             turns=np.array(stored["turns"]),
             bones=numbers("bones", "u1", 4).astype(np.int64),
             weights=numbers("weights", "u1", 4) / 255,
             fingers=Fingers.from_stored(stored["fingers"], decoded),
-            eyes=Eyes.of(np.array(stored["eyes"]), vertices, faces[np.isin(face_zones, eye_zones(zones))]),
         )
     except (OSError, ValueError, KeyError) as error:
         raise InputError(f"The body {path.name} cannot be read ({error}): restore static/bodies.") from error
 
 
-def skin(body: Body, motion: Clip | Array, hands: Array | None = None, seen: Array | None = None) -> Array:
+def skin(body: Body, motion: Clip | Array, hands: Array | None = None) -> Array:
     """The body's surface in each frame.
 
     Args:
         motion: a clip on SMPL22, or positions (T, 22, 3) in metres.
         hands: (T, 2, 20) finger shapes as :func:`motion.hands.angles` gives them; relaxed by default.
-        seen: (T, 3) metres, the place that the eyes turn to as far as they do, such as the joint of the other's head;
-            they look ahead by default.
 
     Returns:
         (T, V, 3) float32 metres.
@@ -139,11 +129,6 @@ def skin(body: Body, motion: Clip | Array, hands: Array | None = None, seen: Arr
         placed += positions[:, None, joint]
         surface[:, vertex] += (body.weights[vertex, slot, None] * placed).astype(np.float32)
     _shape_hands(body, turned, surface, hands)
-    if seen is not None:
-        head = turned[:, _J["head"]]
-        place = np.einsum("tji,tj->ti", head, seen - positions[:, _J["head"]]) + body.joints[_J["head"]]
-        shift = body.eyes.shift(body.vertices, place)
-        surface[:, body.eyes.vertices] += (shift @ np.swapaxes(head, -1, -2)).astype(np.float32)
     return surface
 
 
@@ -331,54 +316,3 @@ def _angle_about(axis: Array, first: Array, second: Array) -> Array:
     first = first - np.sum(first * axis, axis=-1, keepdims=True) * axis
     second = second - np.sum(second * axis, axis=-1, keepdims=True) * axis
     return np.arctan2(np.sum(axis * np.cross(first, second), axis=-1), np.sum(first * second, axis=-1))
-
-
-# ---- Eyes ------------------------------------------------------------------------------------------------------------
-ZONES = ("eyes", "whites")
-"""Zones of a body's surface that are eyes."""
-_ASIDE, _UP = np.radians([26.0, 8.0])
-"""Radians by which eyes turn to a side, and up or down, at most: their lids do not go with them."""
-_SEES = np.radians([55.0, 85.0])
-"""Radians beside where the face points up to which eyes turn to a place, and from which they look ahead."""
-
-
-@dataclass(frozen=True, eq=False)
-class Eyes:
-    """The eyes of a body in its pose of binding, which faces +Z.
-
-    Attributes:
-        middles: (2, 3) metres, of the left and of the right eye.
-        vertices: (E,) indices of the vertices of both.
-        sides: (E,) 0 for a vertex of the left eye, 1 for one of the right.
-    """
-
-    middles: Array
-    vertices: NDArray[np.integer]
-    sides: NDArray[np.integer]
-
-    @classmethod
-    def of(cls, middles: Array, vertices: Array, faces: NDArray[np.integer]) -> Eyes:
-        """The eyes with these middles, of a body's vertices (V, 3) and those of its faces that are eyes."""
-        used = np.unique(faces)
-        return cls(middles, used, (vertices[used, 0] < 0).astype(np.int64))
-
-    def turns(self, places: Array) -> Array:
-        """(T, 3, 3) rotation of both eyes to places (T, 3) in the frame of binding."""
-        way = places - self.middles.mean(axis=0)
-        yaw = np.arctan2(way[:, 0], way[:, 2])
-        pitch = np.arctan2(way[:, 1], np.hypot(way[:, 0], way[:, 2]))
-        share = 1 - smoothstep(np.abs(yaw), *_SEES)
-        yaw, pitch = share * _ASIDE * np.tanh(yaw / _ASIDE), share * _UP * np.tanh(pitch / _UP)
-        cy, sy, cp, sp, zero = np.cos(yaw), np.sin(yaw), np.cos(pitch), np.sin(pitch), 0 * yaw
-        rows = [cy, -sy * sp, sy * cp, zero, cp, sp, -sy, -cy * sp, cy * cp]
-        return np.stack(rows, axis=-1).reshape(-1, 3, 3)
-
-    def shift(self, vertices: Array, places: Array) -> Array:
-        """(T, E, 3) by how much the eyes' vertices move from the body's (V, 3) where they look at places (T, 3)."""
-        out = vertices[self.vertices] - self.middles[self.sides]
-        return np.asarray(out @ np.swapaxes(self.turns(places), -1, -2) - out)
-
-
-def eye_zones(zones: tuple[str, ...]) -> list[int]:
-    """Indices of the zones that are eyes."""
-    return [number for number, zone in enumerate(zones) if zone in ZONES]

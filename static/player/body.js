@@ -1,8 +1,7 @@
 // A body from static/bodies, posed by joint positions and lit: motion/body.py's skin in the browser.
 
-import { decodeEyes, turnEyes } from "./eyes.js";
 import { decodeFingers, RELAXED, shapeHands } from "./hands.js";
-import { apply, dot, multiply, Poser, smoothStep, sub, transpose, unit } from "./pose.js";
+import { apply, dot, multiply, Poser, smoothStep, unit } from "./pose.js";
 
 const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 const GAMMA = 2.2;
@@ -15,12 +14,11 @@ export function decodeBody(stored) {
   const levels = new Uint16Array(bytes(stored.vertices).buffer);
   const vertices = Float32Array.from(levels, (v, i) => stored.min[i % 3] + stored.scale[i % 3] * v);
   const faces = new Uint16Array(bytes(stored.faces).buffer);
-  const faceZones = bytes(stored.face_zones);
-  const { zones } = stored;
   return {
-    vertices, faces, faceZones, zones,
+    vertices, faces,
+    faceZones: bytes(stored.face_zones),
+    zones: stored.zones,
     normals: normalsOf(vertices, faces),
-    eyes: decodeEyes(stored.eyes, { vertices, faces, faceZones, zones }),
     sky: Float32Array.from(bytes(stored.sky), (v) => v / 255),
     bones: bytes(stored.bones),
     weights: Float32Array.from(bytes(stored.weights), (v) => v / 255),
@@ -62,44 +60,21 @@ export class Figure {
     this.moves = new Float32Array(12 * body.joints.length);
   }
 
-  /** Begins a surface as it is bound whose hands and eyes differ from the body's. */
-  copy() {
-    const { vertices, normals } = this.body;
-    this.bound ??= { vertices: Float32Array.from(vertices), normals: Float32Array.from(normals) };
-  }
-
-  /** The surface as it is bound, with its eyes turned to a `place` in the frame of binding. */
-  look(place) {
-    if (!this.body.eyes) return;
-    this.copy();
-    turnEyes(this.body, place, this.bound.vertices);
-  }
-
   /** The surface as it is bound, with its hands in other shapes. */
   shape(hands) {
     const { body } = this;
     if (!body.fingers || (this.hands && hands.every((hand, side) => hand.every((v, i) => v === this.hands[side][i])))) return;
     this.hands = hands;
-    this.copy();
+    this.bound ??= { vertices: Float32Array.from(body.vertices), normals: Float32Array.from(body.normals) };
     shapeHands(body, hands, this.bound.vertices, this.bound.normals);
   }
 
-  /**
-   * Brings the surface to joints [x, y, z] in scene axes; `hands` are the finger shapes of the left and the right, and
-   * `seen` is the place that the eyes turn to.
-   */
-  pose(points, hands = RELAXED, seen = null) {
+  /** Brings the surface to joints [x, y, z] in scene axes; `hands` are the finger shapes of the left and the right. */
+  pose(points, hands = RELAXED) {
     this.shape(hands);
     const { body, moves, vertices, normals } = this;
     const world = points.map(([z, x, y]) => [x, y, z]);
-    const rotations = body.poser.rotations(world);
-    const head = body.poser.at.head;
-    if (seen) {
-      const back = transpose(multiply(rotations[head], body.turns[head]));
-      const way = apply(back, sub([seen[1], seen[2], seen[0]], world[head]));
-      this.look(way.map((v, i) => v + body.joints[head][i]));
-    }
-    rotations.forEach((rotation, joint) => {
+    body.poser.rotations(world).forEach((rotation, joint) => {
       const m = multiply(rotation, body.turns[joint]);
       const start = apply(m, body.joints[joint]);
       [2, 0, 1].forEach((axis, row) => { // rows in the scene's order

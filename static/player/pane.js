@@ -84,7 +84,7 @@ export class Pane {
       if (bodies.length) this.figures = bodies;
       bodies.forEach((body, person) => {
         const hands = shapesAt(this.sample.grips, person, clock.shown, this.sample.fps);
-        body.pose(pose[person], hands, pose[1 - person]?.[skeleton.head]);
+        body.pose(pose[person], hands);
         body.shade((given ? theme.givenBodies : theme.bodies)[person], theme.lamps, lens, scene.scale);
         scene.setTriangles(`body${"AB"[person]}`, { positions: body.positions, colors: body.colors });
       });

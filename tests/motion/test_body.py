@@ -83,26 +83,3 @@ def test_a_hand_that_is_put_on_the_floor_lies_flat_and_one_in_the_air_goes_on_wi
     lowest = skin(body, poses, flat)[:, hands, 1].min(axis=1)
     assert lowest[0] > -0.03, "no fingers in the floor"
     assert lowest[1] < 1.0 - 0.08, "they hang down in the air"
-
-
-HEAD = SMPL22.index("head")
-POSE = SMPL22.rest_positions()[None]
-FACE = POSE[:, HEAD] + [0.0, 0.04, 0.0]
-
-
-def irises(name: str, seen: np.ndarray | None) -> np.ndarray:
-    """(2, 3) the middles of a person's left and right iris."""
-    body = load_body(name)
-    surface = skin(body, POSE, seen=seen)[0]
-    used = np.unique(body.faces[body.face_zones == body.zones.index("eyes")])
-    return np.stack([surface[used[side * body.vertices[used, 0] > 0]].mean(axis=0) for side in (1, -1)])
-
-
-@pytest.mark.parametrize("name", LOOKS)
-def test_eyes_turn_to_what_is_seen(name: str) -> None:
-    ahead = irises(name, FACE + np.array([0.0, 0.0, 3.0]))
-    np.testing.assert_allclose(ahead, irises(name, None), atol=0.002)
-    for way, axis, sign in (((1.0, 0.0, 2.0), 0, 1), ((-1.0, 0.0, 2.0), 0, -1), ((0.0, -1.0, 2.0), 1, -1)):
-        moved = irises(name, FACE + np.array(way)) - ahead
-        least = 0.002 if axis == 0 else 0.0008
-        assert (sign * moved[:, axis] > least).all() and np.abs(moved).max() < 0.008

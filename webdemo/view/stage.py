@@ -95,11 +95,6 @@ class Style:
         return tuple(load_body(look, small=small) for look in looks)
 
 
-def seen_by(people: Array, person: int) -> Array | None:
-    """(T, 3) the head of the other of two people (2, T, 22, 3), to which a person's eyes turn; None for one alone."""
-    return people[1 - person, :, SMPL22.index("head")] if len(people) == 2 else None
-
-
 @dataclass
 class Stage:
     """Draws a pane at any moment.
@@ -133,7 +128,7 @@ class Stage:
             poses = sampled(self.people, self.pane.motion.fps, block)
             frames = block * self.pane.motion.fps
             surfaces = [
-                skin(body, way, hands_of(self.pane.motion, person, frames), seen_by(poses, person))
+                skin(body, way, hands_of(self.pane.motion, person, frames))
                 for person, (body, way) in enumerate(zip(self.bodies, poses, strict=False))
             ]
             for i, seconds in enumerate(block):
