@@ -1,33 +1,26 @@
 // Entry point: a panel that turns a video or the webcam's picture into landmarks for the server.
 
-import { analyse } from "./analysis.js";
 import { detectorOf } from "./detector.js";
-import { drawPeople } from "./drawing.js";
-import { close, FilmError, LONGEST, openFilm } from "./film.js";
-import { takesTurns, takeTurn } from "./turns.js";
+import { drawPerson } from "./drawing.js";
+import { close, FilmError, LONGEST, openFilm, seek, times } from "./film.js";
+import { Landmarks } from "./landmarks.js";
+import { Panel } from "./panel.js";
 import { closeWebcam, countDown, openWebcam, record } from "./webcam.js";
+import { loadStyles } from "../player/loader.js";
 import { say, translate } from "../texts.js";
 
 /** `element` holds camera.html; `send(text)` hands landmarks to the page's Python side. */
-export async function mount(element, send, { folder }) {
+export function mount(element, send, { folder }) {
   translate(element);
-  new Panel(element.querySelector(".pdcam"), send, detectorOf(folder));
-  const address = new URL("camera.css", import.meta.url).href;
-  if (document.querySelector(`link[href="${address}"]`)) return;
-  const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href: address });
-  document.head.append(link);
+  loadStyles(new URL("camera.css", import.meta.url).href);
+  new CameraPanel(element.querySelector(".pdcam"), send, detectorOf(folder));
 }
 
-class Panel {
+class CameraPanel extends Panel {
   constructor(root, send, detector) {
+    super(root, ["choose", "record", "file", "count", "progress", "cancel"]);
     this.send = send;
     this.detector = detector;
-    this.run = 0; // number of what is being done: a later one stops it
-    const find = (name) => root.querySelector(`.pdcam-${name}`);
-    for (const name of ["open", "body", "choose", "record", "file", "stage", "video", "drawing", "count", "progress", "begin", "stop", "cancel", "line"])
-      this[name] = find(name);
-    this.root = root;
-    this.open.onclick = () => this.toggle();
     this.choose.onclick = () => this.file.click();
     this.file.onchange = () => {
       const [file] = this.file.files;
@@ -40,23 +33,6 @@ class Panel {
       this.rest();
       this.say(say("camera.cancelled"));
     };
-    takesTurns(this);
-    this.open.disabled = false; // before, nobody would hear
-  }
-
-  toggle() {
-    this.body.hidden = !this.body.hidden;
-    this.open.setAttribute("aria-expanded", String(!this.body.hidden));
-    if (this.body.hidden) this.rest();
-  }
-
-  get busy() {
-    return this.root.dataset.state !== "idle";
-  }
-
-  say(text, tone = "") {
-    this.line.textContent = text;
-    this.line.dataset.tone = tone;
   }
 
   /** Shows the buttons of a state: idle, ready (the webcam is on), recording or reading. */
@@ -81,7 +57,7 @@ class Panel {
 
   async attempt(job, fresh = true) {
     if (fresh) this.rest();
-    takeTurn(this);
+    this.takeTurn();
     const run = ++this.run;
     try {
       await job();
@@ -131,9 +107,9 @@ class Panel {
     const began = performance.now();
     const landmarks = await analyse(this.video, this.detector, {
       stopped,
-      each: (done, all, people) => {
+      each: (done, all, [person]) => {
         this.progress.value = done / all;
-        drawPeople(this.drawing, people, this.video.videoWidth, this.video.videoHeight);
+        drawPerson(this.drawing, person, this.video);
         const left = ((performance.now() - began) / done) * (all - done) / 1000;
         this.say(say("camera.reading", { done, all }) + (left > 3 ? say("camera.left", { seconds: Math.ceil(left / 5) * 5 }) : ""));
       },
@@ -147,6 +123,25 @@ class Panel {
   show(mirrored) {
     this.stage.hidden = false;
     this.stage.classList.toggle("pdcam-mirror", mirrored);
-    drawPeople(this.drawing, [], this.video.videoWidth, this.video.videoHeight);
+    drawPerson(this.drawing, null, this.video);
   }
+}
+
+/**
+ * Looks through the film in `video`; `each(done, all, people)` hears of every picture, and `stopped()` says whether to
+ * stop. Returns the landmarks, or null where it was stopped; throws a FilmError for a film without anybody.
+ */
+export async function analyse(video, detector, { each = () => {}, stopped = () => false } = {}) {
+  const when = times(video);
+  await detector.begin();
+  const landmarks = new Landmarks(video.videoWidth, video.videoHeight);
+  for (const [i, time] of when.entries()) {
+    await seek(video, time);
+    const people = await detector.detect(video, time);
+    if (stopped()) return null;
+    landmarks.add(time - when[0], people);
+    each(i + 1, when.length, people);
+  }
+  if (!landmarks.people.length) throw new FilmError(say("camera.nobody"));
+  return landmarks;
 }

@@ -13,10 +13,7 @@ const nap = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 export class Webcam {
   constructor(video, detector) {
     Object.assign(this, { video, detector });
-    this.shown = 0;
-    this.looked = 0;
     this.latest = -1;
-    this.behind = 0; // milliseconds from the camera to the page, where the browser tells
   }
 
   async begin() {
@@ -25,21 +22,9 @@ export class Webcam {
     await this.detector.begin();
     await this.detector.detect(this.video, 0); // the first picture takes seconds
     this.began = performance.now() - 100;
-    const count = (now, { presentedFrames, presentationTime, captureTime }) => {
-      if (captureTime) this.behind = Math.max(0, presentationTime - captureTime);
-      this.first ??= presentedFrames;
-      this.shown = presentedFrames - this.first + 1;
-      if (!this.over) this.video.requestVideoFrameCallback?.(count);
-    };
-    this.video.requestVideoFrameCallback?.(count);
   }
 
-  /** Pictures that were shown and not looked at. */
-  get missed() {
-    return Math.max(0, this.shown - this.looked);
-  }
-
-  /** The next picture: who is in it, when it was taken, and the message about it; null after the last one. */
+  /** The next picture: who is in it, and the message about it; null after the last one. */
   async next() {
     const { video } = this;
     while (!this.over) {
@@ -54,10 +39,9 @@ export class Webcam {
     const time = (this.at - this.began) / 1000;
     const people = await this.detector.detect(video, time);
     if (this.over) return null;
-    this.looked++;
     const landmarks = new Landmarks(video.videoWidth, video.videoHeight);
     landmarks.add(time, people);
-    return { people, taken: this.at - this.behind, message: JSON.parse(landmarks.pack()) };
+    return { people, message: JSON.parse(landmarks.pack()) };
   }
 
   end() {
@@ -69,7 +53,6 @@ export class Webcam {
 /** A person of the player, pose by pose at the pace of their motion. */
 export class Person {
   waits = true; // for a slow server: of a recording nothing is left out
-  missed = 0;
 
   constructor(player) {
     const sample = player?.sample;
@@ -93,7 +76,7 @@ export class Person {
     const poses = Int16Array.from(this.motion.values.subarray(width * this.place, width * last), (metres) => Math.max(-32767, Math.min(32767, Math.round(1000 * metres))));
     const times = Array.from({ length: last - this.place }, (_, i) => (this.place + i) / this.fps);
     this.place = last;
-    return { taken: performance.now(), message: { times, poses: btoa(String.fromCharCode(...new Uint8Array(poses.buffer))) } };
+    return { message: { times, poses: btoa(String.fromCharCode(...new Uint8Array(poses.buffer))) } };
   }
 
   end() {

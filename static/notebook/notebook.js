@@ -2,6 +2,7 @@
 // Python gives the entries (webdemo/ui/components/notebook.py) and hears of every press by one event.
 
 import { play } from "./thumbnail.js";
+import { loadStyles } from "../player/loader.js";
 import { say, translate } from "../texts.js";
 
 const MOST_RETRIES = 3;
@@ -199,8 +200,7 @@ export class Notebook {
 /** `element` holds notebook.html; `props` are the component's, watched by `watch`; `trigger` tells Python. */
 export function mount(element, props, watch, trigger) {
   translate(element);
-  const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href: new URL("notebook.css", import.meta.url).href });
-  document.head.append(link);
+  loadStyles(new URL("notebook.css", import.meta.url).href);
   const events = { open: "submit", compare: "like", study: "edit", publish: "apply", again: "retry", stop: "stop" }; // the others are "select"
   const notebook = new Notebook(element.querySelector(".pdn"), (action) => trigger(events[action.act] ?? "select", action));
   let shown = null;

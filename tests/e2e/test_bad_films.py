@@ -20,7 +20,7 @@ STATIC = Path(__file__).resolve().parents[2] / "static"
 PRELUDE = """
 const { openFilm } = await import("/camera/film.js");
 const { openWebcam } = await import("/camera/webcam.js");
-const { analyse } = await import("/camera/analysis.js");
+const { analyse } = await import("/camera/camera.js");
 const said = async (job) => {
   try {
     await job();

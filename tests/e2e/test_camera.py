@@ -102,7 +102,6 @@ def test_a_video_and_then_the_webcam_become_an_actor_who_gets_a_partner(
     filming.click("#react-live .pdcam-open")
     filming.select_option("#react-live .pdlive-source", "webcam")
     filming.click("#react-live .pdcam-begin")
-    expect(filming.locator("#react-live .pdlive-figures")).to_contain_text("ms to the partner", timeout=SLOW)
     people(filming, 2)
     filming.wait_for_function("window.__pasdedeux?.playing && window.__pasdedeux?.frame > 5")
     filming.click("#react-live .pdcam-stop")
