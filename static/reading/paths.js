@@ -4,8 +4,6 @@
 import { chips } from "../player/paths/walks.js";
 import { Past, path } from "../story/edits.js";
 
-const SECONDS = 5; // where the page does not say how long the motion will be
-
 export class Paths {
   /** `changed` is called when a visitor changed the paths. */
   constructor(root, changed) {
@@ -36,11 +34,6 @@ export class Paths {
 
   get paths() {
     return this.given.paths;
-  }
-
-  /** Seconds of the next run. */
-  get seconds() {
-    return Number(document.querySelector("#seconds input[type=number]")?.value) || SECONDS;
   }
 
   get mayUndo() {

@@ -60,10 +60,6 @@ export class Editor {
     return this.story.paths;
   }
 
-  get seconds() {
-    return this.story.beats.length ? edits.edges(this.story).at(-1) : this.total;
-  }
-
   get mayUndo() {
     return this.past.before.length > 0;
   }

@@ -146,7 +146,7 @@ def _longer(me: Newcomer) -> None:
 def _path(me: Newcomer) -> None:
     me.press("[data-act=draw]")
     until(me.page, "document.querySelector('.pdd-grip')?.style.transform")
-    me.drag(".pdd-grip[data-person=b][data-kind=path]", 90, 10)
+    me.drag(".pdd-grip[data-person=b]", 90, 10)
     expect(me.page.locator("#reading .pdr-paths li")).to_contain_text("B’s path")
     me.made(lambda: me.press("#generate"))
 

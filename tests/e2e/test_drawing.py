@@ -38,9 +38,9 @@ def drawing(shared_page: Page) -> Page:
     return page
 
 
-def drag(page: Page, kind: str, person: str, *by: tuple[float, float]) -> None:
+def drag(page: Page, person: str, *by: tuple[float, float]) -> None:
     """Drags a person's handle with the mouse, by pixels on each way."""
-    grip = page.locator(f"#player .pdd-grip[data-person={person}][data-kind={kind}]")
+    grip = page.locator(f"#player .pdd-grip[data-person={person}]")
     box, before = grip.bounding_box(), None
     while box != before:  # the page may still be laid out
         page.wait_for_timeout(150)
@@ -75,7 +75,7 @@ def generated(page: Page, server: Any, prompt: str) -> GenerateRequest:
 
 def test_a_drawn_path_is_sent_with_the_next_run(drawing: Page, server: Any) -> None:
     page = drawing
-    drag(page, "path", "a", (-120, 30), (0, -60))
+    drag(page, "a", (-120, 30), (0, -60))
     (path,) = paths(page)
     assert path["person"] == "a" and path["points"][0][0] == 0 and len(path["points"]) > 2
     expect(chips(page)).to_have_text(re.compile(r"A’s path 1\.\d m ✕"))
@@ -98,7 +98,7 @@ def test_a_drawn_path_is_sent_with_the_next_run(drawing: Page, server: Any) -> N
 
 def test_keys_draw_as_well(drawing: Page) -> None:
     page = drawing
-    page.locator("#player .pdd-grip[data-person=a][data-kind=path]").focus()
+    page.locator("#player .pdd-grip[data-person=a]").focus()
     for _ in range(3):
         page.keyboard.press("ArrowLeft")
     expect(chips(page)).to_contain_text(re.compile(r"A’s path 1\.[01] m"))
@@ -119,7 +119,7 @@ def test_a_story_keeps_what_is_drawn(shared_page: Page) -> None:
     until(page, f"{player}.directing.drawing && {player}.frameShown !== null")
     page.evaluate(f"{player}.seek(0); {player}.clock.pause()")
     page.click("#scene-player [data-act=draw]")
-    page.locator("#scene-player .pdd-grip[data-person=b][data-kind=path]").focus()
+    page.locator("#scene-player .pdd-grip[data-person=b]").focus()
     page.keyboard.press("ArrowRight")
     expect(page.locator(".pds-walks li")).to_contain_text(re.compile(r"B’s path 0\.[34] m"))
     (path,) = page.evaluate("document.querySelector('.pds').editor.story.paths")
@@ -131,7 +131,7 @@ def test_a_story_keeps_what_is_drawn(shared_page: Page) -> None:
 
 def test_a_kept_run_brings_its_paths_back(drawing: Page, server: Any) -> None:
     page = drawing
-    drag(page, "path", "a", (-120, 0))
+    drag(page, "a", (-120, 0))
     generated(page, server, "A bows to B.")
     (path,) = paths(page)
     page.evaluate("window.__pasdedeux.player.director.open([])")
