@@ -81,11 +81,11 @@ const RADII = [
   [/foot|toe/, 0.036],
   [/spine|torso|chest|pelvis/, 0.08],
 ];
-const SMPL22 = [
+export const SMPL22 = [
   "pelvis", "left_hip", "right_hip", "spine1", "left_knee", "right_knee", "spine2", "left_ankle", "right_ankle", "spine3",
   "left_foot", "right_foot", "neck", "left_collar", "right_collar", "head", "left_shoulder", "right_shoulder",
   "left_elbow", "right_elbow", "left_wrist", "right_wrist",
-].join();
+];
 
 const sideOf = (name) => (/left|^l[_A-Z]/.test(name) ? "left" : /right|^r[_A-Z]/.test(name) ? "right" : "middle");
 const radiusOf = (name) => (RADII.find(([pattern]) => pattern.test(name.toLowerCase())) || [null, 0.045])[1];
@@ -107,10 +107,9 @@ export function describe(names, parents) {
   });
   const joints = names.map((name) => ({ side: sideOf(name) }));
   const pelvis = Math.max(find(names, /pelvis|hips$/, /base_of_spine/, /torso/), 0);
-  const wrists = names.map((n, i) => (/wrist/.test(n.toLowerCase()) ? i : -1)).filter((i) => i >= 0);
   return {
-    wears: names.join() === SMPL22, // whether bodies fit
-    bones, joints, pelvis, wrists,
+    wears: names.join() === SMPL22.join(), // whether bodies fit
+    bones, joints, pelvis,
     head: find(names, /^head$/, /head/), neck: find(names, /neck/),
     hips: [find(names, /left_?hip|l_?hip/), find(names, /right_?hip|r_?hip/)],
   };

@@ -5,6 +5,7 @@
 // a frame, so arms and legs are solved in closed form (two bones and the plane they bend in), and the spine by cyclic
 // coordinate descent with limits (Wang & Chen 1991). Nothing here knows the page.
 
+import { SMPL22 } from "./decode.js";
 import { apply, cross, dot, rotation, smoothStep, sub, swing, unit } from "./pose.js";
 
 const UP = [0, 0, 1];
@@ -19,20 +20,10 @@ const LIFTED = [0.12, 0.4]; // heights of an ankle between which its foot begins
 const TURNS = 24; // of the descent along the spine
 const STEP = 0.12; // radians of one turn of one joint
 const SPINE = [["neck", 0.6], ["spine3", 0.3], ["spine2", 0.3], ["spine1", 0.4], ["pelvis", 0.4]]; // most radians each
-const LEAN = [["spine3", 0.1], ["spine2", 0.1], ["spine1", 0.12], ["pelvis", 0.3]]; // likewise, behind a hand
-const LEAN_TURNS = 24;
-const LEAN_BACK = 0.3; // of a lean forward
-const HEAD_UP = 0.5; // of a lean that the head does not follow
-const STRETCHED = [0.9, 0.99]; // of an arm's length: where the trunk begins to lean, and what is never reached
 
-const NAMES = [
-  "pelvis", "left_hip", "right_hip", "spine1", "left_knee", "right_knee", "spine2", "left_ankle", "right_ankle", "spine3",
-  "left_foot", "right_foot", "neck", "left_collar", "right_collar", "head", "left_shoulder", "right_shoulder",
-  "left_elbow", "right_elbow", "left_wrist", "right_wrist",
-];
-const AT = Object.fromEntries(NAMES.map((name, i) => [name, i]));
+const AT = Object.fromEntries(SMPL22.map((name, i) => [name, i]));
 const LEGS = ["hip", "knee", "ankle", "foot"].flatMap((part) => [AT[`left_${part}`], AT[`right_${part}`]]);
-const TRUNK = NAMES.map((_, i) => i).filter((i) => i && !LEGS.includes(i)); // all that the spine carries
+const TRUNK = SMPL22.map((_, i) => i).filter((i) => i && !LEGS.includes(i)); // all that the spine carries
 
 /** What can be pulled at: [joint, what it is called]. */
 export const HANDLES = [
@@ -42,11 +33,10 @@ export const HANDLES = [
 
 const add = (a, b, k = 1) => [a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]];
 const length = (a) => Math.hypot(a[0], a[1], a[2]);
-const copy = (points) => points.map((p) => [...p]);
 
 /** The pose in which `joint`, one of HANDLES', is as near to `target` as it gets; `points` stays as it is. */
 export function pull(points, joint, target) {
-  const pose = copy(points);
+  const pose = points.map((p) => [...p]);
   if (joint === AT.pelvis) moveHips(pose, target);
   else if (joint === AT.head) moveHead(pose, target);
   else if (joint === AT.left_wrist || joint === AT.right_wrist) moveHand(pose, joint === AT.left_wrist ? "left" : "right", target);
@@ -66,35 +56,7 @@ function moveHand(pose, side, target) {
   const across = sub(pose[AT.left_shoulder], pose[AT.right_shoulder]);
   const ahead = unit(cross(across, sub(pose[AT.neck], pose[AT.pelvis])));
   const above = Math.max(target[2], Math.min(PALM, pose[wrist][2]));
-  const place = [target[0], target[1], above];
-  const stood = copy(pose);
-  leanAfter(pose, [shoulder, elbow, wrist], place);
-  hang(pose, stood, side === "left" ? "right" : "left");
-  limb(pose, [shoulder, elbow, wrist], place, add([0, 0, -1], ahead, -1)); // elbows point back and down
-}
-
-/** The trunk leans after a hand that the arm alone hardly reaches: every joint its share, softly from STRETCHED on. */
-function leanAfter(pose, [shoulder, elbow, wrist], target) {
-  const arm = length(sub(pose[elbow], pose[shoulder])) + length(sub(pose[wrist], pose[elbow]));
-  const from = Math.max(STRETCHED[0] * arm, length(sub(pose[wrist], pose[shoulder]))); // an arm that hangs is at rest
-  const room = Math.max(STRETCHED[1] * arm - from, 1e-3);
-  const away = length(sub(target, pose[shoulder]));
-  if (away <= from) return;
-  const left = from + room * (1 - Math.exp((from - away) / room)); // what the arm bridges
-  const sideways = unit(sub(pose[AT.left_hip], pose[AT.right_hip])); // a turn about it leans forward
-  const whole = LEAN.reduce((sum, [, most]) => sum + most, 0);
-  const turned = straight(LEAN);
-  for (let turn = 0; turn < LEAN_TURNS; turn++) {
-    const goal = add(target, unit(sub(pose[shoulder], target)), left);
-    if (length(sub(pose[shoulder], goal)) < 1e-3) return;
-    for (const [name, most] of LEAN) {
-      const pivot = pose[AT[name]];
-      const [axis, angle] = between(sub(pose[shoulder], pivot), sub(goal, pivot));
-      let wanted = add(turned[name], axis, (angle * most) / whole);
-      wanted = add(wanted, sideways, Math.max(-LEAN_BACK * most - dot(wanted, sideways), 0));
-      bendSpine(pose, turned, name, most, wanted);
-    }
-  }
+  limb(pose, [shoulder, elbow, wrist], [target[0], target[1], above], add([0, 0, -1], ahead, -1)); // elbows point back and down
 }
 
 function moveFoot(pose, side, target) {
@@ -140,7 +102,7 @@ function level(pose, ankle, foot, lowest) {
 }
 
 function moveHead(pose, target) {
-  const turned = straight(SPINE);
+  const turned = Object.fromEntries(SPINE.map(([name]) => [name, [0, 0, 0]])); // what each joint has been turned by so far
   for (let turn = 0; turn < TURNS && length(sub(pose[AT.head], target)) > 1e-3; turn++) {
     for (const [name, most] of SPINE) {
       const pivot = pose[AT[name]];
@@ -149,18 +111,6 @@ function moveHead(pose, target) {
     }
   }
 }
-
-/** The other arm of a trunk that leans points where it did, and the head stays half as upright as it was. */
-function hang(pose, stood, side) {
-  const [shoulder, elbow, wrist] = ["shoulder", "elbow", "wrist"].map((part) => AT[`${side}_${part}`]);
-  for (const joint of [elbow, wrist]) pose[joint] = add(pose[shoulder], sub(stood[joint], stood[shoulder]));
-  const [carried, before] = [pose, stood].map((points) => sub(points[AT.head], points[AT.neck]));
-  const mixed = unit(add(add([0, 0, 0], carried, 1 - HEAD_UP), before, HEAD_UP));
-  pose[AT.head] = add(pose[AT.neck], mixed, length(before));
-}
-
-/** What each joint of the spine has been turned by so far: nothing. */
-const straight = (limits) => Object.fromEntries(limits.map(([name]) => [name, [0, 0, 0]]));
 
 /** Axis and angle of the smallest turn of one direction into another. */
 function between(from, to) {
@@ -182,7 +132,7 @@ function bendSpine(pose, turned, name, most, wanted) {
 function carriedBy(name) {
   if (name === "neck") return [AT.head];
   const below = { pelvis: [], spine1: ["spine1"], spine2: ["spine1", "spine2"], spine3: ["spine1", "spine2", "spine3"] }[name];
-  return TRUNK.filter((joint) => !below.includes(NAMES[joint]));
+  return TRUNK.filter((joint) => !below.includes(SMPL22[joint]));
 }
 
 /** Where a body faces, level with the floor. */

@@ -3,8 +3,7 @@
 
 import { chips } from "../player/paths/walks.js";
 import * as edits from "./edits.js";
-import { block, drawRuler, node } from "./lanes.js";
-import { Pins } from "./pins.js";
+import { block, drawRuler, node, pin } from "./lanes.js";
 import { say } from "../texts.js";
 
 const LANES = [["words", say("story.both")], ["a", "A"], ["b", "B"]];
@@ -24,7 +23,6 @@ export class Editor {
     this.selected = 0;
     this.past = new edits.Past();
     this.note = null; // stands in for the hint until the next change
-    this.pins = new Pins(this);
     this.shown = 0; // seconds of the motion in the player
     root.addEventListener("click", (event) => this.press(event));
     root.addEventListener("change", (event) => this.field(event));
@@ -152,6 +150,12 @@ export class Editor {
   press(event) {
     const cell = event.target.closest?.(".pds-cell");
     if (cell) return this.write(Number(cell.dataset.beat), cell.dataset.lane);
+    const pressed = event.target.closest?.(".pds-pin");
+    if (pressed) {
+      this.player?.act("pause");
+      this.player?.seek(edits.frameOf(this.story.poses[pressed.dataset.pose].seconds));
+      return;
+    }
     const act = event.target.closest?.("[data-act]")?.dataset.act;
     if (!act) return;
     const { story, selected } = this;
@@ -196,8 +200,9 @@ export class Editor {
     const cell = event.target.closest?.(".pds-cell");
     const handle = event.target.closest?.(".pds-handle");
     const arrow = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (this.pins.key(event)) return event.preventDefault();
-    if (handle && arrow) {
+    const pinned = event.target.closest?.(".pds-pin");
+    if (pinned && (arrow || event.key === "Delete")) this.changePin(Number(pinned.dataset.pose), arrow, event.shiftKey ? 10 : 1);
+    else if (handle && arrow) {
       const index = Number(handle.dataset.beat);
       this.edit(edits.stretch(this.story, index, edits.lengthOf(this.story.beats[index]) + 0.5 * arrow));
       this.find(`.pds-handle[data-beat="${index}"]`)?.focus();
@@ -211,6 +216,17 @@ export class Editor {
       this.travel(event.shiftKey ? "redo" : "undo");
     } else return;
     event.preventDefault();
+  }
+
+  /** Moves a pose by so many frames, or takes it away where there is no arrow. */
+  changePin(index, arrow, frames) {
+    const { story } = this;
+    if (!arrow) return this.edit(edits.removePose(story, index));
+    const { person, seconds } = story.poses[index];
+    const frame = Math.max(edits.frameOf(seconds) + arrow * frames, 0);
+    this.edit(edits.movePose(story, index, frame));
+    const moved = this.story.poses.indexOf(edits.poseAt(this.story, person, frame));
+    this.find(`.pds-pin[data-pose="${moved}"]`)?.focus({ preventScroll: true });
   }
 
   /** Opens a field for the words of a lane over its block. */
@@ -308,7 +324,7 @@ export class Editor {
   // ---- drawing ---------------------------------------------------------------------------------
 
   draw() {
-    this.late = Boolean(this.pins.held || this.find(".pds-words"));
+    this.late = Boolean(this.find(".pds-words"));
     if (this.late) return; // it is drawn when that is over
     const { story, total } = this;
     const starts = edits.edges(story);
@@ -324,7 +340,7 @@ export class Editor {
       story.beats.forEach((beat, i) => row.append(
         block(beat, i, { lane, name, starts, total, selected: i === this.selected, stretch }),
       ));
-      row.append(...this.pins.of(lane, total));
+      story.poses.forEach((pose, i) => pose.person === lane && row.append(pin(pose, i, total)));
       lanes.append(row);
     }
     if (focused) this.find(`[data-key="${focused}"]`)?.focus({ preventScroll: true });
@@ -345,11 +361,6 @@ export class Editor {
     this.find("[data-act=no-span]").disabled = !story.span;
     const said = beat ? this.summary(beat) : say("story.empty");
     this.find(".pds-hint").textContent = this.note ?? said;
-  }
-
-  focusPin(person, frame) {
-    const index = this.story.poses.indexOf(edits.poseAt(this.story, person, frame));
-    this.find(`.pds-pin[data-pose="${index}"]`)?.focus({ preventScroll: true });
   }
 
   /** Says something in place of the hint, until the next change. */

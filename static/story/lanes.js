@@ -1,4 +1,4 @@
-// The parts of the line that show and do nothing else than to be pressed: blocks of beats, the ruler.
+// The parts of the line that show and do nothing else than to be pressed: blocks of beats, pins of poses, the ruler.
 
 import * as edits from "./edits.js";
 import { say } from "../texts.js";
@@ -39,6 +39,18 @@ export function block(beat, index, { lane, name, starts, total, selected, stretc
     box.append(handle);
   }
   return box;
+}
+
+/** A pose of somebody as a pin at its moment; `index` is its number in the story. */
+export function pin({ person, seconds }, index, total) {
+  const made = node("button", "pds-pin");
+  made.type = "button";
+  made.dataset.pose = index;
+  made.dataset.key = `pin ${index}`;
+  made.style.left = `${(100 * seconds) / total}%`;
+  made.title = say("story.pin", { person: person.toUpperCase(), seconds: seconds.toFixed(2) });
+  made.setAttribute("aria-label", say("story.pin_keys", { pin: made.title }));
+  return made;
 }
 
 /** Seconds over the line. */

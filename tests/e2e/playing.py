@@ -53,10 +53,9 @@ def give_file(page, field: str, file) -> None:
     page.set_input_files(f"{field} input[type=file]", file)
 
 
-def settled_box(locator, *, handles: bool = True) -> dict[str, float]:
-    """The box of something once it lies still, as ``handles`` that the player places with the next picture."""
-    if handles:
-        until(locator.page, "document.querySelector('.pdd-handle')?.style.transform")
+def settled_box(locator) -> dict[str, float]:
+    """The box of a handle once it lies still: the player places it with the next picture."""
+    until(locator.page, "document.querySelector('.pdd-handle')?.style.transform")
     box = None
     for _ in range(100):
         last, box = box, locator.bounding_box()

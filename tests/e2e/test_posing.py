@@ -76,54 +76,6 @@ def test_bones_keep_their_lengths_and_joints_go_where_they_reach(still: Any) -> 
     assert 0.2 < bent < 0.75
 
 
-def test_the_trunk_leans_after_a_hand_that_the_arm_does_not_reach(still: Any) -> None:
-    pose = positions(still)[:, [2, 0, 1]]
-    shoulder, elbow, neck, pelvis = (
-        pose[SMPL22.index(name)] for name in ("right_shoulder", "right_elbow", "neck", "pelvis")
-    )
-    arm = np.linalg.norm(elbow - shoulder) + np.linalg.norm(pose[WRIST] - elbow)
-    ahead = np.cross(pose[1] - pose[2], [0, 0, 1])
-    ahead /= np.linalg.norm(ahead)
-    legs = [
-        i
-        for i, name in enumerate(SMPL22.joint_names)
-        if any(part in name for part in ("pelvis", "hip", "knee", "ankle", "foot"))
-    ]
-
-    def pulled(way: np.ndarray, reach: float) -> np.ndarray:
-        target = shoulder + reach * arm * way
-        return np.array(still.evaluate(PULL, [pose.tolist(), WRIST, target.tolist()]))
-
-    # What the arm reaches moves the arm alone.
-    moved = np.abs(pulled(ahead, 0.85) - pose).max(axis=-1) > 1e-9
-    assert {name for name, does in zip(SMPL22.joint_names, moved, strict=True) if does} == {
-        "right_elbow",
-        "right_wrist",
-    }
-    # Beyond that the trunk brings the hand nearer, on legs that stand, and the other arm hangs as it did.
-    beyond = pulled(ahead, 1.3)
-    assert (beyond[WRIST] - shoulder) @ ahead > 1.2 * arm
-    np.testing.assert_allclose(beyond[legs], pose[legs], atol=1e-9)
-    np.testing.assert_allclose(lengths(beyond), lengths(pose), atol=1e-9)
-    left = [SMPL22.index(f"left_{part}") for part in ("shoulder", "elbow", "wrist")]
-    np.testing.assert_allclose(np.diff(beyond[left], axis=0), np.diff(pose[left], axis=0), atol=1e-9)
-
-    def lean(way: np.ndarray) -> float:
-        bent = pulled(way, 5.0)[SMPL22.index("neck")] - pelvis
-        before = neck - pelvis
-        return float(np.arccos(bent @ before / np.linalg.norm(bent) / np.linalg.norm(before)))
-
-    assert 0.35 < lean(ahead) < 0.65, "a little, even after a hand that is far away"
-    assert lean(-ahead) < 0.6 * lean(ahead), "people lean back less"
-    # The trunk sets in softly: a bent arm that is drawn away evenly moves every other joint evenly.
-    pose = pulled(ahead, 0.6)
-    path = np.array([pulled(ahead, reach) for reach in np.linspace(0.8, 1.4, 31)])
-    steps = np.linalg.norm(np.diff(path, axis=0), axis=-1)
-    still_arm = [WRIST, SMPL22.index("right_elbow")]
-    assert np.delete(steps, still_arm, axis=1).max() < 2 * 0.02 * arm
-    assert np.abs(np.diff(np.delete(steps, still_arm, axis=1), axis=0)).max() < 0.01 * arm
-
-
 def test_a_hand_is_dragged_given_up_and_kept(still: Any) -> None:
     before = positions(still)
     still.locator("[data-act=pose]").click()
