@@ -1,7 +1,6 @@
 // How a prompt is understood, under it: the sentence with its marks, and its plan as chips on two lanes to be edited.
 
 import { Asking } from "./asking.js";
-import { Editor } from "./editor.js";
 import { Length } from "./length.js";
 import { people, pieces, spoken, summary, wordsOf } from "./marks.js";
 import { Paths } from "./paths.js";
@@ -32,12 +31,11 @@ class View {
     this.draft = null; // its plan and beats, as they were edited since
     this.edited = false;
     this.number = 0; // of what was asked last
-    this.entries = null; // all acts
     this.note = "";
     this.checks = null; // the verdicts on the last result, and those by the ids of its acts
     this.verdicts = new Map();
     this.waiting = false; // a run, for its text to be read
-    this.editor = new Editor(root, this);
+    this.chosen = null; // the id of the act whose panel is open
     const lab = root.closest(".pd-lab");
     this.length = new Length(
       this.find(".pdr-length"), lab?.querySelector("#seconds"), root.closest(".pd-ask")?.querySelector("textarea"),
@@ -48,7 +46,6 @@ class View {
     root.addEventListener("click", (event) => this.press(event.target));
     root.addEventListener("keydown", (event) => this.key(event));
     this.find(".pdr-again").addEventListener("click", () => this.readAgain());
-    this.find(".pdr-add").addEventListener("click", () => this.editor.show());
     this.find(".pdr-fold").addEventListener("click", () => this.fold(false));
     const asks = root.closest(".pd-ask");
     asks?.addEventListener("focusin", (event) => event.target.matches("textarea") && this.fold(false));
@@ -71,10 +68,7 @@ class View {
   leave() {
     this.fold(true);
     this.length.leave();
-    const { activeElement } = document;
-    if (!this.editor.open) return;
-    this.editor.close();
-    activeElement?.focus({ preventScroll: true });
+    this.choose(null);
   }
 
   /** On a phone, a line stands for the reading while a motion is made and watched. */
@@ -92,7 +86,6 @@ class View {
 
   /** The props of the component as they are now. */
   sync(props) {
-    if (props.acts) this.entries = props.acts;
     this.answer(props.shown);
     this.typed(props.text ?? "");
     this.answer(props.shown);
@@ -117,6 +110,7 @@ class View {
     this.fold(false);
     if (this.edited) this.note = say("reading.dropped");
     this.edited = false;
+    this.chosen = null;
     this.hold();
     const current = this.asking.answers(this.shown);
     this.root.hidden = !text.trim() || !this.shown;
@@ -124,14 +118,14 @@ class View {
   }
 
   /** The value of the component: the text, the plan where it was edited, and paths that were drawn. */
-  hold(more = {}) {
+  hold() {
     const plan = this.edited ? JSON.stringify(this.draft.plan) : null;
-    this.keep({ text: this.asking.text, plan, number: this.number, list: false, paths: this.paths?.paths ?? [], ...more });
+    this.keep({ text: this.asking.text, plan, number: this.number, paths: this.paths?.paths ?? [] });
   }
 
-  send(more = {}) {
+  send() {
     this.number += 1;
-    this.hold(more);
+    this.hold();
     this.ask();
   }
 
@@ -177,28 +171,44 @@ class View {
     this.send();
   }
 
-  /** Asks for the list of all acts, once. */
-  wantList() {
-    if (!this.entries) this.send({ list: true });
+  /** Opens the panel of an act, or closes it for null. */
+  choose(id) {
+    this.chosen = id;
+    if (this.shown) this.draw();
+    if (id) this.find("[data-do=hand]").focus();
   }
 
   focusChip(id) {
-    const chip = id && this.find(`.pdr-chip[data-id="${id}"]`);
-    (chip || this.find(".pdr-add")).focus();
+    this.find(`.pdr-chip[data-id="${id}"]`)?.focus();
   }
 
   // ---- events
 
   press(target) {
     const chip = target.closest("button.pdr-chip");
-    if (chip) this.editor.show(chip.dataset.id);
+    if (chip) this.choose(chip.dataset.id);
+    const todo = target.closest("[data-do]")?.dataset.do;
+    if (todo === "hand") this.edit(edits.hand(this.draft, this.chosen));
+    else if (todo === "remove") this.removeAct(this.chosen);
+    else if (todo === "close") this.close();
     const near = target.closest("[data-near]");
     if (!near) return;
     const entry = this.shown.nearest[near.dataset.near];
     this.edit(edits.understand(this.draft, Number(near.dataset.unread), entry));
   }
 
+  /** Closes the panel, and the focus goes back to its chip. */
+  close() {
+    const { chosen } = this;
+    this.choose(null);
+    this.focusChip(chosen);
+  }
+
   key(event) {
+    if (event.key === "Escape" && event.target.closest?.(".pdr-edit")) {
+      event.stopPropagation();
+      return this.close();
+    }
     const chip = event.target.closest?.("button.pdr-chip");
     if (!chip || !["Delete", "Backspace"].includes(event.key)) return;
     event.preventDefault();
@@ -225,7 +235,6 @@ class View {
     this.root.classList.toggle("pdr-old", !current);
     this.root.hidden = !this.asking.text.trim() || !text.trim();
     this.find(".pdr-state").hidden = !this.edited;
-    this.find(".pdr-add").hidden = !(this.editable && plan);
     const unread = plan ? this.unreadIn(plan) : [];
     this.find(".pdr-said").replaceChildren(...(plan ? this.sentence(plan, unread) : []));
     this.find(".pdr-unread").replaceChildren(...unread.map((part, i) => this.unread(part, i)));
@@ -240,7 +249,18 @@ class View {
     this.find(".pdr-heard").textContent = [...warnings, plan ? summary(plan) : ""].join(" ").trim();
     this.find(".pdr-fold").textContent = plan ? this.line(plan) : error;
     if (focused) this.focusChip(focused);
-    this.editor.draw();
+    this.drawPanel();
+  }
+
+  /** The panel of the chosen act, for as long as the plan has it. */
+  drawPanel() {
+    const panel = this.find(".pdr-edit");
+    const act = this.draft?.plan.acts.find(({ id }) => id === this.chosen);
+    panel.hidden = !act;
+    if (!act) return;
+    const title = `${people(act)} ${this.said[act.id] ?? act.act}`;
+    this.find(".pdr-title").textContent = title;
+    panel.setAttribute("aria-label", say("reading.change", { title }));
   }
 
   /** The parts that are not understood: those of the reading, and the words that the verdict found in no act. */
@@ -309,7 +329,7 @@ class View {
     const made = node(this.editable ? "button" : "span", `pdr-chip pdr-${act.agents.join("")}`);
     made.classList.toggle("pdr-not", act.polarity === "not" || act.modality !== "told");
     made.dataset.id = act.id;
-    made.classList.toggle("pdr-open", this.editor.open && this.editor.id === act.id);
+    made.classList.toggle("pdr-open", this.chosen === act.id);
     const seen = node("span", "");
     seen.ariaHidden = "true";
     seen.append(node("b", "", people(act)), ` ${said}`);
@@ -347,7 +367,7 @@ export function mount(element, props, watch, trigger) {
   const keep = (value) => (props.value = value);
   const view = new View(root, { keep, ask: () => trigger("input"), editable: props.editable });
   const sync = () => view.sync(props);
-  watch(["text", "shown", "acts", "checked"], sync);
+  watch(["text", "shown", "checked"], sync);
   sync();
   root.view = view;
 }

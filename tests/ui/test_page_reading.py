@@ -52,7 +52,7 @@ def edited(text: str, **changes: Any) -> dict[str, Any]:
     """A text with a plan as the browser sends them after an edit; ``changes`` are of its first act."""
     plan = read(text).model_dump(mode="json")
     plan["acts"][0] |= changes
-    return {"text": text, "plan": json.dumps(plan), "number": 3, "list": False}
+    return {"text": text, "plan": json.dumps(plan), "number": 3}
 
 
 def test_an_edited_plan_is_shown_in_place_of_the_words() -> None:
@@ -89,14 +89,6 @@ def test_an_edited_plan_counts_for_its_own_text_alone() -> None:
     assert edited_plan(sent, "They wave.") is None
     assert edited_plan({**sent, "plan": None}, "They bow.") is None
     assert edited_plan(None, "") is None
-
-
-def test_the_list_of_acts_comes_when_it_is_wanted() -> None:
-    assert "acts" not in reread({"text": "They bow."})
-    found = reread({"text": "They bow.", "list": True})["acts"]
-    assert len(found) > 200 and found == sorted(found, key=lambda act: act["said"])
-    (hug,) = (act for act in found if act["name"] == "hug")
-    assert hug == {"name": "hug", "said": "hugs", "caption": "hugs the other", "patient": True, "mutual": True}
 
 
 def test_marks_are_of_the_acts_that_were_checked() -> None:

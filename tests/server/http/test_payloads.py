@@ -58,7 +58,7 @@ TYPICAL: dict[type, Any] = {
     gr.UploadButton: [FILE],
     StoryLine: STORY,
     Gallery: {"prompt": "They bow.", "seconds": 3, "seed": 1},
-    Reading: {"text": "They bow.", "plan": "{}", "number": 3, "list": True},
+    Reading: {"text": "They bow.", "plan": "{}", "number": 3},
 }
 EVENTS: dict[type, tuple[Any, ...]] = {NotebookView: (ACTION, DESCRIBED)}
 

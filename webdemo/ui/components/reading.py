@@ -14,14 +14,14 @@ import gradio as gr
 from pydantic import TypeAdapter
 
 from acts import Act, Plan, lexicon, read
-from acts.captions import short, worded
+from acts.captions import short
 from acts.plan import plan_of
 from motion import InputError
 from webdemo.inference.requests.paths import FloorPath, path_of
 from webdemo.inference.story.sentences import beats_of
 from webdemo.ui.text.words import error_line
 
-from .accepts import Finite, Flag, Sent, SentPaths, Text
+from .accepts import Finite, Sent, SentPaths, Text
 from .part import MOUNT, STATIC, Part, on_load, scoped
 
 READING_FOLDER = STATIC / "reading"
@@ -54,14 +54,12 @@ class SentReading(Sent):
         text: stands in the prompt.
         plan: of this text, as JSON, where it was edited; otherwise the text is read.
         number: of the question; its answer has the same.
-        list: true where the list of all acts is wanted as well.
         paths: drawn on the stage for the next run.
     """
 
     text: Text = ""
     plan: Text | None = None
     number: Finite = 0
-    list: Flag = False
     paths: SentPaths
 
 
@@ -69,7 +67,7 @@ class Reading(Part):
     """Shows how a text is understood, and lets its plan be edited.
 
     Props beside the value, which is a :class:`SentReading`: ``text``, what is typed; ``shown``, see :func:`shown`;
-    ``acts``, all acts, see :func:`entry_facts`; ``checked``, see :func:`checked`.
+    ``checked``, see :func:`checked`.
 
     Args:
         value: as the browser sends it.
@@ -81,7 +79,7 @@ class Reading(Part):
     template = READING_FOLDER / "reading.html"
     script = on_load(MOUNT, READING_FOLDER / "main.js")
     style = scoped(READING_FOLDER / "reading.css")
-    declared: ClassVar = {"text": "", "shown": None, "acts": None, "checked": None, "editable": False}
+    declared: ClassVar = {"text": "", "shown": None, "checked": None, "editable": False}
     sends = ("object", "a text that is to be read, or its edited plan; or null")
 
     def read_first(self, prompt: gr.Textbox, seconds: gr.Slider, inputs: Iterable[gr.Component]) -> str:
@@ -113,8 +111,6 @@ def reread(sent: Any) -> dict[str, Any]:
         found = shown(plan)
     except Exception as error:
         found = {"error": error_line(error)}
-    if fields.get("list"):
-        return gr.update(shown=asked | found, acts=known_acts())
     return gr.update(shown=asked | found)
 
 
@@ -133,7 +129,7 @@ def edited_plan(sent: Any, text: str) -> Plan | None:
     plan = plan_of(values)
     for act in plan.acts:
         if act.act not in lexicon().entries:
-            raise InputError(f"There is no act “{act.act}”: choose one of the list.")
+            raise InputError(f"There is no act “{act.act}”: press Read again.")
     return plan
 
 
@@ -172,26 +168,16 @@ def shown(plan: Plan) -> dict[str, Any]:
     }
 
 
-def known_acts() -> list[dict[str, Any]]:
-    """The facts of all acts that bodies show, in the order of their words."""
-    found = [entry_facts(name) for name, entry in lexicon().entries.items() if entry.shown]
-    return sorted(found, key=lambda act: str(act["said"]))
-
-
 def entry_facts(name: str) -> dict[str, Any]:
-    """An act of the lexicon as the list of acts has it.
+    """An act of the lexicon as it is offered for words that were not understood.
 
     Returns:
-        its ``name``; ``said``, in a few words; its ``caption``, as one person does it; whether it has a ``patient``;
-        whether it is ``mutual``.
+        its ``name``; ``said``, in a few words; whether it has a ``patient``; whether it is ``mutual``.
     """
     entry = lexicon().entries[name]
-    act = Act(id="1", act=name, agents=("a",), patient="b")
-    caption = worded(act, entry.caption[0]) if entry.caption else ""
     return {
         "name": name,
-        "said": short(act, entry),
-        "caption": caption.replace("person A ", "").replace("person B", "the other"),
+        "said": short(Act(id="1", act=name, agents=("a",), patient="b"), entry),
         "patient": any("{b" in text for text in (*entry.caption, *entry.frames)),
         "mutual": entry.mutual,
     }
