@@ -117,7 +117,7 @@ class CameraPanel extends Panel {
     if (!landmarks) return;
     this.state("idle");
     this.say(say("camera.sent"));
-    this.send(landmarks.pack({ name }));
+    this.send(JSON.stringify({ name, ...landmarks.pack() }));
   }
 
   show(mirrored) {

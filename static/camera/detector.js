@@ -2,15 +2,12 @@
 
 const LONGEST_SIDE = 960; // pixels of what is looked at: more costs time and finds nothing more
 
-const shared = new Map(); // one for the page: it takes a second to load and 100 MB
+let shared = null; // one for the page: it takes a second to load and 100 MB
 
 /** The page's detector with MediaPipe's files at an address. */
-export function detectorOf(folder) {
-  if (!shared.has(folder)) shared.set(folder, new Detector(folder));
-  return shared.get(folder);
-}
+export const detectorOf = (folder) => (shared ??= new Detector(folder));
 
-export class Detector {
+class Detector {
   /** `folder` is the address of MediaPipe's files, with a slash at its end. */
   constructor(folder) {
     this.folder = folder;

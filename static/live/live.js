@@ -10,8 +10,8 @@ import { Connection, LiveError } from "./connection.js";
 import { Person, Webcam } from "./sources.js";
 import { say, translate } from "../texts.js";
 
-const WAITING = 8; // messages that wait for the server; older ones are dropped
-const TOGETHER = 6; // messages that are sent as one
+const WAITING = 8; // pictures that wait for the server; older ones are dropped
+const TOGETHER = 6; // pictures that are sent as one message
 const NAMES = { agent: "agent", regennet: "reactor" };
 
 /**
@@ -116,7 +116,7 @@ class LivePanel extends Panel {
     for (let seen = await source.next(); seen && !over(); seen = await source.next()) {
       if (!this.root.offsetParent) return this.rest(say("live.left"));
       if (seen.people) drawPerson(this.drawing, seen.people[0], source.video);
-      waiting.push(seen.message);
+      waiting.push(seen);
       sending ??= send();
       if (waiting.length < WAITING) continue;
       if (source.waits) await sending;
@@ -139,10 +139,10 @@ class LivePanel extends Panel {
     this.say(say("live.kept"));
   }
 
-  /** Sends messages about what has been seen, and shows what is answered. */
-  async exchange(messages, over) {
-    const { connection, stream } = this.live;
-    const answer = await connection.send(together(messages));
+  /** Sends what has been seen as one message, and shows what is answered. */
+  async exchange(seen, over) {
+    const { connection, source, stream } = this.live;
+    const answer = await connection.send(source.pack(seen));
     if (over()) return;
     if (!stream.shown) return this.rest(say("live.gone"));
     if (answer.frames) stream.add(answer.frames, answer.belief.state === "answers" ? "answers" : "", answer);
@@ -164,20 +164,4 @@ class LivePanel extends Panel {
       }),
     );
   }
-}
-
-/** Several messages as one: the pictures or poses one after the other. */
-function together(messages) {
-  if (messages.length === 1) return messages[0];
-  const joined = { ...messages[0] };
-  const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-  for (const name of ["times", "counts", "world", "image", "seen", "poses"]) {
-    const values = messages.map((message) => message[name]);
-    if (Array.isArray(values[0])) joined[name] = values.flat();
-    else if (values[0] !== undefined) {
-      const parts = values.map(bytes);
-      joined[name] = btoa(parts.map((part) => String.fromCharCode(...part)).join(""));
-    }
-  }
-  return joined;
 }

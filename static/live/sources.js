@@ -1,5 +1,6 @@
 // Whom a partner answers: the webcam's picture, or a person of the player.
 
+import { toBase64 } from "../player/base64.js";
 import { FilmError } from "../camera/film.js";
 import { Landmarks } from "../camera/landmarks.js";
 import { closeWebcam, openWebcam } from "../camera/webcam.js";
@@ -24,7 +25,7 @@ export class Webcam {
     this.began = performance.now() - 100;
   }
 
-  /** The next picture: who is in it, and the message about it; null after the last one. */
+  /** The next picture: who is in it, and at what second; null after the last one. */
   async next() {
     const { video } = this;
     while (!this.over) {
@@ -39,9 +40,14 @@ export class Webcam {
     const time = (this.at - this.began) / 1000;
     const people = await this.detector.detect(video, time);
     if (this.over) return null;
-    const landmarks = new Landmarks(video.videoWidth, video.videoHeight);
-    landmarks.add(time, people);
-    return { people, message: JSON.parse(landmarks.pack()) };
+    return { people, time };
+  }
+
+  /** The message about several pictures. */
+  pack(seen) {
+    const landmarks = new Landmarks(this.video.videoWidth, this.video.videoHeight);
+    for (const { time, people } of seen) landmarks.add(time, people);
+    return landmarks.pack();
   }
 
   end() {
@@ -64,6 +70,7 @@ export class Person {
     this.began = performance.now();
   }
 
+  /** The next poses, from one frame to another; null after the last ones. */
   async next() {
     const { frames } = this.motion;
     if (this.over || this.place >= frames) return null;
@@ -72,11 +79,18 @@ export class Person {
     const wait = due - performance.now();
     if (wait > 0) await nap(wait);
     if (this.over) return null;
-    const width = 3 * this.motion.joints;
-    const poses = Int16Array.from(this.motion.values.subarray(width * this.place, width * last), (metres) => Math.max(-32767, Math.min(32767, Math.round(1000 * metres))));
-    const times = Array.from({ length: last - this.place }, (_, i) => (this.place + i) / this.fps);
+    const from = this.place;
     this.place = last;
-    return { message: { times, poses: btoa(String.fromCharCode(...new Uint8Array(poses.buffer))) } };
+    return { from, to: last };
+  }
+
+  /** The message about poses that follow each other: in millimetres and world axes. */
+  pack(seen) {
+    const [from, to] = [seen[0].from, seen.at(-1).to];
+    const width = 3 * this.motion.joints;
+    const metres = this.motion.values.subarray(width * from, width * to);
+    const poses = Int16Array.from(metres, (value) => Math.max(-32767, Math.min(32767, Math.round(1000 * value))));
+    return { times: Array.from({ length: to - from }, (_, i) => (from + i) / this.fps), poses: toBase64(poses) };
   }
 
   end() {

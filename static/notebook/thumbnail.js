@@ -1,5 +1,6 @@
 // Moving thumbnails: the browser's side of webdemo/view/thumbnail.py. Those in view move, ten times a second.
 
+import { fromBase64 } from "../player/base64.js";
 import colours from "../player/colours.js";
 
 const JOINTS = 13;
@@ -29,7 +30,7 @@ function step() {
 /** Gives a canvas a thumbnail to play; "" leaves it empty. */
 export function play(canvas, packed) {
   if (!packed) return;
-  canvas.bytes = Uint8Array.from(atob(packed), (c) => c.charCodeAt(0));
+  canvas.bytes = fromBase64(packed);
   const [people, frames] = canvas.bytes;
   const trunks = [];
   for (let i = 0; i < people * frames; i++) {

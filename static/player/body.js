@@ -1,9 +1,9 @@
 // A body from static/bodies, posed by joint positions and lit: motion/body.py's skin in the browser.
 
 import { decodeFingers, RELAXED, shapeHands } from "./hands.js";
+import { fromBase64 } from "./base64.js";
 import { apply, dot, multiply, Poser, smoothStep, unit } from "./pose.js";
 
-const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 const GAMMA = 2.2;
 const STEPS = 1024;
 const ENCODED = Float32Array.from({ length: STEPS + 1 }, (_, i) => (i / STEPS) ** (1 / GAMMA));
@@ -11,20 +11,20 @@ const linear = (color) => color.map((v) => v ** GAMMA);
 
 /** What is stored of a body, as typed arrays in world axes; shared by everybody who wears it. */
 export function decodeBody(stored) {
-  const levels = new Uint16Array(bytes(stored.vertices).buffer);
+  const levels = new Uint16Array(fromBase64(stored.vertices).buffer);
   const vertices = Float32Array.from(levels, (v, i) => stored.min[i % 3] + stored.scale[i % 3] * v);
-  const faces = new Uint16Array(bytes(stored.faces).buffer);
+  const faces = new Uint16Array(fromBase64(stored.faces).buffer);
   return {
     vertices, faces,
-    faceZones: bytes(stored.face_zones),
+    faceZones: fromBase64(stored.face_zones),
     zones: stored.zones,
     normals: normalsOf(vertices, faces),
-    sky: Float32Array.from(bytes(stored.sky), (v) => v / 255),
-    bones: bytes(stored.bones),
-    weights: Float32Array.from(bytes(stored.weights), (v) => v / 255),
+    sky: Float32Array.from(fromBase64(stored.sky), (v) => v / 255),
+    bones: fromBase64(stored.bones),
+    weights: Float32Array.from(fromBase64(stored.weights), (v) => v / 255),
     joints: stored.joints,
     turns: stored.turns.map((rows) => rows.flat()),
-    fingers: decodeFingers(stored.fingers, bytes),
+    fingers: decodeFingers(stored.fingers),
     poser: new Poser(stored.joint_names, stored.rest),
   };
 }
@@ -63,7 +63,7 @@ export class Figure {
   /** The surface as it is bound, with its hands in other shapes. */
   shape(hands) {
     const { body } = this;
-    if (!body.fingers || (this.hands && hands.every((hand, side) => hand.every((v, i) => v === this.hands[side][i])))) return;
+    if (this.hands && hands.every((hand, side) => hand.every((v, i) => v === this.hands[side][i]))) return;
     this.hands = hands;
     this.bound ??= { vertices: Float32Array.from(body.vertices), normals: Float32Array.from(body.normals) };
     shapeHands(body, hands, this.bound.vertices, this.bound.normals);

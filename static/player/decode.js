@@ -1,10 +1,11 @@
 // From a payload of webdemo/view/payload.py to motions as typed arrays, and what is known of their skeleton.
 
+import { fromBase64 } from "./base64.js";
 import { decodeThing, Things } from "./things.js";
 
 /** Undoes pack_positions: metres as Float32Array in (people, frames, joints, 3) order. */
 export function unpackPositions(packed) {
-  const bytes = Uint8Array.from(atob(packed.data), (c) => c.charCodeAt(0));
+  const bytes = fromBase64(packed.data);
   const view = new DataView(bytes.buffer);
   const values = new Float32Array(bytes.length / 2);
   for (let i = 0; i < values.length; i++) {

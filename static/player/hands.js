@@ -1,5 +1,6 @@
 // Finger shapes: motion/hands.py in the browser, number for number (a test compares the bodies).
 
+import { fromBase64 } from "./base64.js";
 import { apply, multiply, rotation, smoothStep } from "./pose.js";
 
 const FINGERS = 5;
@@ -36,14 +37,13 @@ export function shapesAt(grips, person, frame, fps) {
   return hands;
 }
 
-/** The fingers of a body of static/bodies, or null for one whose hands are stiff. */
-export function decodeFingers(stored, bytes) {
-  if (!stored) return null;
+/** The fingers of a body of static/bodies. */
+export function decodeFingers(stored) {
   return {
     joints: stored.joints, flex: stored.flex, close: stored.close, normals: stored.normals,
-    vertices: new Uint16Array(bytes(stored.vertices).buffer),
-    bones: bytes(stored.bones),
-    weights: Float32Array.from(bytes(stored.weights), (v) => v / 255),
+    vertices: new Uint16Array(fromBase64(stored.vertices).buffer),
+    bones: fromBase64(stored.bones),
+    weights: Float32Array.from(fromBase64(stored.weights), (v) => v / 255),
   };
 }
 

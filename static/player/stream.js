@@ -1,5 +1,6 @@
 // A motion of two that is still being made: a stream without an end.
 
+import { toBase64 } from "./base64.js";
 import { Pace } from "./clock.js";
 import { unpackPositions } from "./decode.js";
 
@@ -32,11 +33,7 @@ export class Stream {
 
   /** What can be looked at again as base64 of float32 (2, frames, joints, 3); after the end. */
   pack() {
-    const { values } = this.player.sample.motion;
-    const bytes = new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
-    let text = "";
-    for (let start = 0; start < bytes.length; start += 8192) text += String.fromCharCode(...bytes.subarray(start, start + 8192));
-    return btoa(text);
+    return toBase64(this.player.sample.motion.values);
   }
 
   /** Frames by which the picture lags behind what has come. */
@@ -77,11 +74,9 @@ export class Stream {
     const { player, known } = this;
     if (!known || !this.shown) return;
     const { sample } = player;
-    const { values, people, frames, joints } = sample.motion;
-    const width = 3 * joints;
-    const cut = new Float32Array(people * width * known);
-    for (let person = 0; person < people; person++) cut.set(values.subarray(width * frames * person, width * (frames * person + known)), width * known * person);
-    sample.motion = { values: cut, people, frames: known, joints };
+    const whole = empty(sample.motion, known);
+    copyFrames(sample.motion, 0, known, whole, 0);
+    sample.motion = whole;
     sample.live = null;
     player.clock.hurry = 1;
     player.select(0);
@@ -91,26 +86,32 @@ export class Stream {
     const { player, roles } = this;
     const sample = { ...this.template.samples[0], roles, positions: packed, frames: packed.shape[1], curves: [], ...(things && { things }) };
     player.load({ ...this.template, samples: [sample], stream: true });
-    const { values, people, frames, joints } = player.sample.motion;
-    const room = new Float32Array(people * KEPT * 3 * joints);
-    for (let person = 0; person < people; person++) room.set(values.subarray(3 * joints * frames * person, 3 * joints * frames * (person + 1)), 3 * joints * KEPT * person);
-    player.sample.motion = { values: room, people, frames: KEPT, joints };
-    this.known = frames;
+    const first = player.sample.motion;
+    player.sample.motion = empty(first, KEPT);
+    copyFrames(first, 0, first.frames, player.sample.motion, 0);
+    this.known = first.frames;
   }
 
-  _append({ values, people, frames, joints }) {
+  _append(motion) {
     const { clock, sample } = this.player;
-    const width = 3 * joints;
-    const room = sample.motion.values;
-    if (this.known + frames > KEPT) {
-      for (let person = 0; person < people; person++) {
-        const from = width * KEPT * person;
-        room.copyWithin(from, from + width * DROPPED, from + width * this.known);
-      }
+    if (this.known + motion.frames > KEPT) {
+      copyFrames(sample.motion, DROPPED, this.known, sample.motion, 0);
       this.known -= DROPPED;
       clock.frame = Math.max(0, clock.frame - DROPPED);
     }
-    for (let person = 0; person < people; person++) room.set(values.subarray(width * frames * person, width * frames * (person + 1)), width * (KEPT * person + this.known));
-    this.known += frames;
+    copyFrames(motion, 0, motion.frames, sample.motion, this.known);
+    this.known += motion.frames;
+  }
+}
+
+/** Room for so many frames of the same people. */
+const empty = ({ people, joints }, frames) => ({ values: new Float32Array(people * frames * joints * 3), people, frames, joints });
+
+/** Copies a motion's frames from `start` to `stop` into another one, from its frame `at` on. */
+function copyFrames(from, start, stop, to, at) {
+  const width = 3 * from.joints;
+  for (let person = 0; person < from.people; person++) {
+    const [first, place] = [width * from.frames * person, width * (to.frames * person + at)];
+    to.values.set(from.values.subarray(first + width * start, first + width * stop), place);
   }
 }

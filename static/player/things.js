@@ -1,8 +1,8 @@
 // Things beside the people: chairs and cups, drawn as bodies are, but stiff. webdemo/view/things.py packs them.
 
+import { fromBase64 } from "./base64.js";
 import { Figure, normalsOf } from "./body.js";
 
-const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16) / 255);
 const SHADE = 0.3; // darkness of the shadow for each square metre of surface, as in webdemo/view/light.py
 const AT = 1.5; // metres from a window or the like within which somebody is at it, as in webdemo/view/camera.py
@@ -10,19 +10,19 @@ const HIGHEST = 1.8; // metres over the floor from which nothing is shaded
 
 /** A thing of a payload, as typed arrays in world axes. */
 export function decodeThing(stored) {
-  const vertices = new Float32Array(bytes(stored.vertices).buffer);
-  const faces = new Uint16Array(bytes(stored.faces).buffer);
+  const vertices = new Float32Array(fromBase64(stored.vertices).buffer);
+  const faces = new Uint16Array(fromBase64(stored.faces).buffer);
   const zones = stored.palette;
   return {
     kind: stored.kind, name: stored.name, frames: stored.frames, stands: stored.stands,
     vertices, faces, zones,
     normals: normalsOf(vertices, faces),
-    faceZones: bytes(stored.face_colours),
+    faceZones: fromBase64(stored.face_colours),
     colors: Object.fromEntries(zones.map((zone) => [zone, hex(zone)])),
     sky: new Float32Array(vertices.length / 3).fill(1),
     joints: [], spots: stored.spots,
-    places: new Float32Array(bytes(stored.places).buffer),
-    turns: Float32Array.from(new Int16Array(bytes(stored.turns).buffer), (v) => v / 32767),
+    places: new Float32Array(fromBase64(stored.places).buffer),
+    turns: Float32Array.from(new Int16Array(fromBase64(stored.turns).buffer), (v) => v / 32767),
   };
 }
 
