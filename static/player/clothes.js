@@ -37,8 +37,7 @@ export class Clothes {
     } catch (error) {
       console.error(error);
     }
-    player.pane.dress((look) => this.body(look));
-    player.wake();
+    player.refresh();
   }
 
   /** How people are drawn: "both", "body" or "skeleton". */

@@ -2,7 +2,6 @@
 // is handed to the player.
 
 import { actionFor, attach, belongsToControl } from "./input.js";
-import { roleText } from "./overlay.js";
 import { say, translate } from "../texts.js";
 
 export class Controls {
@@ -78,17 +77,12 @@ export class Controls {
     );
   }
 
-  /** Marks a sample's tab, and says what happens in it, how long it is and who is who. */
+  /** Marks a sample's tab, and says what happens in it and how long it is. */
   select(sample, index) {
     const told = this.find(".pdd-told");
     told.hidden = !sample.told;
     if (told.textContent !== (sample.told ?? "")) told.textContent = sample.told ?? "";
     this.find(".pdd-range").max = String(sample.frames - 1);
-    for (const [person, key] of ["a", "b"].entries()) {
-      const text = this.find(`[data-key=${key}]`);
-      text.hidden = text.previousElementSibling.hidden = person >= sample.roles.length;
-      text.textContent = text.hidden ? "" : roleText(person, sample.roles[person]);
-    }
     [...this.find(".pdd-tabs").children].forEach((tab, i) => {
       tab.setAttribute("aria-selected", String(i === index));
       tab.tabIndex = i === index ? 0 : -1;

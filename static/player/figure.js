@@ -2,6 +2,7 @@
 
 import { floorAt, mix, smooth } from "./palette.js";
 import { FIELD_OF_VIEW } from "./orbit.js";
+import { dot, sub, unit } from "./pose.js";
 
 const GAP = [NaN, NaN, NaN];
 const BONE = 0.008; // radii in metres
@@ -16,14 +17,12 @@ const GHOSTS = 5;
 export class Lens {
   constructor({ eye, center }, heightPx) {
     this.eye = eye;
-    const toward = center.map((v, i) => v - this.eye[i]);
-    const n = Math.hypot(...toward) || 1;
-    this.forward = toward.map((v) => v / n);
+    this.forward = unit(sub(center, eye));
     this.pxAtOneMetre = heightPx / 2 / Math.tan(FIELD_OF_VIEW / 2);
   }
 
   depth(p) {
-    return Math.max((p[0] - this.eye[0]) * this.forward[0] + (p[1] - this.eye[1]) * this.forward[1] + (p[2] - this.eye[2]) * this.forward[2], 0.05);
+    return Math.max(dot(sub(p, this.eye), this.forward), 0.05);
   }
 
   pixels(metres, p) {
@@ -44,9 +43,8 @@ export function headCenter(points, skeleton) {
   const { head, neck } = skeleton;
   if (head < 0) return points[0].map((v, i) => (i === 2 ? v + 0.8 : v));
   if (neck < 0) return points[head];
-  const along = points[head].map((v, i) => v - points[neck][i]);
-  const n = Math.hypot(...along) || 1;
-  return points[head].map((v, i) => v + (0.055 * along[i]) / n);
+  const along = unit(sub(points[head], points[neck]));
+  return points[head].map((v, i) => v + 0.055 * along[i]);
 }
 
 /** The points moved towards the eye, each along its own ray, but at most half of the way. */

@@ -2,6 +2,8 @@
 // Views beside each other share its angles and its distance, so that people are equally large in them, and each has its
 // own target.
 
+import { dot } from "./pose.js";
+
 const LOWEST = -0.05; // radians of elevation; the floor hides what lies under it
 const HIGHEST = 1.5;
 const NEAREST = 0.8;
@@ -43,9 +45,9 @@ export class Orbit {
   view(index = 0) {
     const target = this.targets[index] ?? this.targets[0];
     const center = target.map((v, i) => v + this.pan[i]);
-    const { back } = axesOf(this.yaw, this.elevation);
-    const eye = center.map((v, i) => v + this.distance * back[i]);
-    return { target, center, eye, matrix: matrixOf(eye, center) };
+    const axes = axesOf(this.yaw, this.elevation);
+    const eye = center.map((v, i) => v + this.distance * axes.back[i]);
+    return { target, center, eye, matrix: matrixOf(eye, axes) };
   }
 
   /** Turns by radians. */
@@ -64,11 +66,8 @@ export class Orbit {
   /** Moves the target in the image plane by fractions of the view's height. */
   slide(right, up) {
     const scale = 2 * this.distance * Math.tan(FIELD_OF_VIEW / 2);
-    const [s, c] = [Math.sin(this.yaw), Math.cos(this.yaw)];
-    const [se, ce] = [Math.sin(this.elevation), Math.cos(this.elevation)];
-    this.pan[0] += scale * (right * s + up * se * c);
-    this.pan[1] += scale * (-right * c + up * se * s);
-    this.pan[2] += scale * -up * ce;
+    const axes = axesOf(this.yaw, this.elevation);
+    this.pan = this.pan.map((v, i) => v - scale * (right * axes.right[i] + up * axes.up[i]));
   }
 
   /** Glides to a view; what is left out stays. */
@@ -121,20 +120,15 @@ export class Orbit {
     const away = wanted.targets.map((want, n) => Math.hypot(...want.map((v, i) => v - this.targets[n][i])));
     return Math.max(...away) < SETTLED && (!this.framing || Math.abs(wanted.distance - this.distance) < SETTLED);
   }
-
 }
 
-/** The view matrix from an eye to a centre, column-major as WebGL wants it. */
-function matrixOf(eye, center) {
-  const back = normalise(eye.map((v, i) => v - center[i]));
-  const right = normalise([-back[1], back[0], 0]);
-  const up = cross(back, right);
-  const dot = (a) => -(a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2]);
+/** The view matrix from an eye along a camera's axes, column-major as WebGL wants it. */
+function matrixOf(eye, { right, up, back }) {
   return [
     right[0], up[0], back[0], 0,
     right[1], up[1], back[1], 0,
     right[2], up[2], back[2], 0,
-    dot(right), dot(up), dot(back), 1,
+    -dot(right, eye), -dot(up, eye), -dot(back, eye), 1,
   ];
 }
 
@@ -142,13 +136,4 @@ function matrixOf(eye, center) {
 export function axesOf(yaw, elevation) {
   const [s, c, se, ce] = [Math.sin(yaw), Math.cos(yaw), Math.sin(elevation), Math.cos(elevation)];
   return { right: [-s, c, 0], up: [-se * c, -se * s, ce], back: [ce * c, ce * s, se] };
-}
-
-function normalise(v) {
-  const n = Math.hypot(...v) || 1;
-  return v.map((x) => x / n);
-}
-
-function cross(a, b) {
-  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }

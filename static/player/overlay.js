@@ -17,7 +17,7 @@ export function project(point, matrix, width, height, fieldOfView) {
 const ROLES = { given: "player.given", generated: "player.generated", "acts first": "player.acts_first", answers: "player.answers" };
 
 /** "A · actor", or "A" alone where the role says no more. */
-export function roleText(person, role) {
+function roleText(person, role) {
   const letter = "AB"[person];
   if (!role || role.toLowerCase() === letter.toLowerCase()) return letter;
   return `${letter} · ${role in ROLES ? say(ROLES[role]) : role}`;

@@ -13,8 +13,10 @@ const ABOVE_HEAD = 0.2; // metres
 const WIDE = 3.5; // times, skeletons that stand for bodies that cannot be had
 
 export class Pane {
-  constructor(host) {
+  /** `wear` gives the body of a look, or null while there is none. */
+  constructor(host, wear) {
     this.host = host;
+    this.wear = wear;
     this.find = (selector) => host.querySelector(selector);
     this.labels = new Labels(this.find(".pdd-labels"));
     this.sample = null;
@@ -22,15 +24,8 @@ export class Pane {
     this.spots = [];
     this.painted = { floor: "", ghosts: false };
     this.ground = new Ground();
-    this.wear = () => null;
     this.made = new Map(); // figures of all looks that have been seen, for A and for B
     this.figures = [];
-  }
-
-  /** Says what people wear: `wear` gives the body of a look, or null while there is none. */
-  dress(wear) {
-    this.wear = wear;
-    this.refresh();
   }
 
   /** The figures of the present motion's people; none where a body is missing. */
@@ -45,7 +40,6 @@ export class Pane {
 
   async open(background, Plotly) {
     this.scene = await new Scene(this.find(".pdd-gl"), Plotly).open(background);
-    return this;
   }
 
   /** Another motion to show, or null; `caption` names a cell of a grid that is seen large. */

@@ -29,8 +29,7 @@ export class Player {
     this.show = { ghosts: false, ...figureAtFirst() };
     this.clothes = new Clothes(this);
     this.framing = new Framing(this);
-    this.pane = new Pane(this.find(".pdd-pane"));
-    this.pane.dress((look) => this.clothes.body(look));
+    this.pane = new Pane(this.find(".pdd-pane"), (look) => this.clothes.body(look));
     this.grid = new Grid(this.find(".pdd-grid"), this.pane);
     this.focus = null; // the number of the cell of a grid that is seen large
     this.actions = new Actions(this);

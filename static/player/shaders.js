@@ -27,7 +27,7 @@ void main() { gl_FragColor = hue * texture2D(picture, place); }`,
 };
 const PLACES = { position: 0, color: 2, uv: 3 }; // of gl-mesh3d's buffers
 
-/** A program of one of the kinds of PIXEL, or null where the browser does not make it. */
+/** A program of one of the kinds of PIXEL. */
 function program(gl, kind) {
   const made = gl.createProgram();
   for (const [type, source] of [[gl.VERTEX_SHADER, CORNER], [gl.FRAGMENT_SHADER, PIXEL[kind]]]) {
@@ -38,31 +38,26 @@ function program(gl, kind) {
   }
   for (const [name, place] of Object.entries(PLACES)) gl.bindAttribLocation(made, place, name);
   gl.linkProgram(made);
-  return gl.getProgramParameter(made, gl.LINK_STATUS) ? made : null;
+  return made;
 }
 
 /**
  * Draws a mesh's triangles as they are coloured, and for the kind "shaded" multiplied by the picture that Scene.setShade()
- * lays over them. Where that cannot be had, plotly's shader of edges does, which is the next best.
+ * lays over them.
  */
 export function simplify(mesh, gl, kind) {
-  const { lineShader, triShader } = mesh;
+  const { triShader } = mesh;
   const own = program(gl, kind);
-  const at = own && Object.fromEntries(["model", "view", "projection", "picture"].map((name) => [name, gl.getUniformLocation(own, name)]));
+  const at = Object.fromEntries(["model", "view", "projection", "picture"].map((name) => [name, gl.getUniformLocation(own, name)]));
   mesh.triShader = {
-    simple: Boolean(own),
-    bind: () => (own ? gl.useProgram(own) : lineShader.bind()),
+    bind: () => gl.useProgram(own),
     set uniforms(values) {
-      if (!own) {
-        lineShader.uniforms = { ...values, opacity: 1 };
-        return;
-      }
       for (const name of ["model", "view", "projection"]) gl.uniformMatrix4fv(at[name], false, values[name]);
       if (at.picture) gl.uniform1i(at.picture, values.texture);
     },
     dispose: () => {
       triShader.dispose();
-      if (own) gl.deleteProgram(own);
+      gl.deleteProgram(own);
     },
   };
 }

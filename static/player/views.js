@@ -1,6 +1,7 @@
 // Camera presets, which follow from the places of the two people, and the views that hold everybody.
 
 import { FIELD_OF_VIEW, axesOf } from "./orbit.js";
+import { dot } from "./pose.js";
 
 const AROUND = 0.13; // metres about a joint that must be in view: palms and the sides of a body
 const ABOVE = 0.24; // metres over the joint of a head: its crown
@@ -60,7 +61,6 @@ function need({ now, soon, used = [], box: { width, height, inset } }, skeleton,
   const half = height / 2 || 1;
   const slope = (pixels) => Math.max(Math.tan(FIELD_OF_VIEW / 2) * (pixels / half), 0.05);
   const slopes = [slope(width / 2 - inset.right), slope(width / 2 - inset.left), slope(half - inset.top), slope(half - inset.bottom)];
-  const along = (axis, p) => axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
   // A point (x, y, z) in the camera's axes lies inside a side of slope s, seen from distance d about a centre c,
   // where x - c <= s (d - z): so c + s d is at least the largest x + s z of all, and so for each side.
   const reach = (poses) => {
@@ -69,7 +69,7 @@ function need({ now, soon, used = [], box: { width, height, inset } }, skeleton,
       points.forEach((point, joint) => {
         const tall = joint === skeleton.head ? ABOVE : 0;
         for (const p of tall ? [point, [point[0], point[1], point[2] + tall]] : [point]) {
-          const [x, y, z] = [along(right, p), along(up, p), along(back, p)];
+          const [x, y, z] = [dot(right, p), dot(up, p), dot(back, p)];
           const sides = [x, -x, y, -y];
           for (let k = 0; k < 4; k++) most[k] = Math.max(most[k], sides[k] + slopes[k] * z + AROUND);
         }
@@ -79,7 +79,7 @@ function need({ now, soon, used = [], box: { width, height, inset } }, skeleton,
   };
   const all = reach([...soon, ...used]);
   // They are measured from the world's origin: the depth of the centre is free, so it is taken amidst everybody.
-  const depth = mean(now.flatMap((points) => points.map((p) => along(back, p))));
+  const depth = mean(now.flatMap((points) => points.map((p) => dot(back, p))));
   const least = Math.max(...[0, 2].map((k) => (all[k] + all[k + 1]) / (slopes[k] + slopes[k + 1]))) - depth;
   return { here: reach([...now, ...used]), slopes, depth, least };
 }

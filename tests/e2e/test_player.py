@@ -181,9 +181,14 @@ def test_the_onion_skin_is_drawn(player):
 
 def test_meshes_are_drawn_by_shaders_of_our_own(player):
     page = player()
-    meshes = "Object.values(window.__pasdedeux.player.scene.objects).filter((each) => each.triShader)"
-    shaders = f"{meshes}.map((each) => each.triShader.simple)"
-    assert page.evaluate(shaders) == [True] * 4, "the ground, two bodies and things"
+    linked = page.evaluate("""() => {
+        const { objects, gl: { gl } } = window.__pasdedeux.player.scene;
+        return Object.values(objects).filter((each) => each.triShader).map(({ triShader }) => {
+            triShader.bind();
+            return gl.getProgramParameter(gl.getParameter(gl.CURRENT_PROGRAM), gl.LINK_STATUS);
+        });
+    }""")
+    assert linked == [True] * 4, "the ground, two bodies and things"
     assert page.evaluate("window.__pasdedeux.player.scene.gl.gl.getError()") == 0
 
 

@@ -50,7 +50,7 @@ def method_name(result: PredictResult) -> str:
 
 
 def without_name(motion: Clip | Duet) -> Clip | Duet:
-    """The motion as the player's legend shows it: one person as "a", not by the name of a file."""
+    """The motion as the player names its people: one person as "a", not by the name of a file."""
     return replace(motion, name="a") if isinstance(motion, Clip) else motion
 
 
