@@ -9,29 +9,24 @@ export class Framing {
     this.box = { width: 960, height: 640, inset: { top: 44, right: 64, bottom: 22, left: 24 } }; // the room for people in a view
   }
 
-  /** Glides to a preset; at once where `now` is null. */
-  goTo(name, now = performance.now()) {
+  /** Takes up a preset. */
+  goTo(name) {
     const { player } = this;
     const { orbit, clock, skeleton } = player;
     this.preset = name;
     const view = preset(name, heading(player.everybody(clock.shown), skeleton));
     const wanted = this.wanted(view);
-    if (!orbit.following || now === null) orbit.jump(wanted.targets);
-    orbit.goTo({ ...view, distance: wanted.distance }, now);
+    orbit.jump(wanted.targets);
+    orbit.goTo({ ...view, distance: wanted.distance });
     player.refresh();
-  }
-
-  /** The view that a motion is first seen in. */
-  reset() {
-    this.goTo("threequarter", null);
   }
 
   /**
    * What the camera of each view should look at, to hold its own people about this moment, and from how far: from
    * equally far in all of them, so that people are equally large.
    */
-  wanted(view) {
-    const { orbit, clock, skeleton, shown } = this.player;
+  wanted({ yaw, elevation } = this.player.orbit) {
+    const { clock, skeleton, shown } = this.player;
     const times = moments(clock.shown, clock);
     const pairs = shown.map((pane) => ({
       now: pane.poseAt(clock.shown),
@@ -39,7 +34,6 @@ export class Framing {
       used: times.flatMap((frame) => pane.sample.things.beside(pane.poseAt(frame), skeleton.pelvis)),
       box: this.box,
     }));
-    const { yaw, elevation } = view ?? orbit.glide?.to ?? orbit;
     return fit(pairs, skeleton, { yaw, elevation });
   }
 

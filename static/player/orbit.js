@@ -8,17 +8,12 @@ const LOWEST = -0.05; // radians of elevation; the floor hides what lies under i
 const HIGHEST = 1.5;
 const NEAREST = 0.8;
 const FARTHEST = 40;
-const GLIDE_SECONDS = 0.45;
 const FOLLOW_SECONDS = 0.3; // time constants of the follow
 const FRAME_SECONDS = 0.45;
 const SETTLED = 0.004; // metres
 export const FIELD_OF_VIEW = Math.PI / 4; // plotly's
 
-const ease = (t) => 1 - (1 - t) ** 3;
 const clamp = (v, low, high) => Math.min(Math.max(v, low), high);
-
-/** Whether the visitor's system asks for as little movement as possible. */
-export const reducedMotion = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 export class Orbit {
   constructor() {
@@ -27,7 +22,6 @@ export class Orbit {
     this.distance = 5;
     this.targets = [[0, 0, 0.9]]; // one a view
     this.pan = [0, 0, 0]; // what the user moved the target by
-    this.glide = null;
     this.following = true;
     this.framing = true; // whether the distance adapts, until the user zooms
   }
@@ -52,13 +46,11 @@ export class Orbit {
 
   /** Turns by radians. */
   turn(yaw, elevation) {
-    this.glide = null;
     this.yaw += yaw;
     this.elevation = clamp(this.elevation + elevation, LOWEST, HIGHEST);
   }
 
   zoom(factor) {
-    this.glide = null;
     this.framing = false;
     this.distance = clamp(this.distance * factor, NEAREST, FARTHEST);
   }
@@ -70,35 +62,17 @@ export class Orbit {
     this.pan = this.pan.map((v, i) => v - scale * (right * axes.right[i] + up * axes.up[i]));
   }
 
-  /** Glides to a view; what is left out stays. */
-  goTo({ yaw = this.yaw, elevation = this.elevation, distance = this.distance, keepPan = false }, now = null) {
-    const turn = Math.atan2(Math.sin(yaw - this.yaw), Math.cos(yaw - this.yaw)); // the short way round
-    const to = { yaw: this.yaw + turn, elevation, distance: clamp(distance, NEAREST, FARTHEST), pan: keepPan ? this.pan.slice() : [0, 0, 0] };
-    this.framing = true;
-    if (now === null || reducedMotion()) {
-      Object.assign(this, to);
-      this.glide = null;
-    } else {
-      this.glide = { from: { yaw: this.yaw, elevation: this.elevation, distance: this.distance, pan: this.pan.slice() }, to, start: now };
-    }
+  /** Takes up a view; what is left out stays. */
+  goTo({ yaw = this.yaw, elevation = this.elevation, distance = this.distance }) {
+    Object.assign(this, { yaw, elevation, distance: clamp(distance, NEAREST, FARTHEST), pan: [0, 0, 0], framing: true });
   }
 
-  /** Follows `wanted` ({ targets, distance } or null) smoothly and plays a glide. `seconds` since the last call. */
-  step(now, seconds, wanted) {
-    if (this.glide) {
-      const { from, to, start } = this.glide;
-      const t = clamp((now - start) / 1000 / GLIDE_SECONDS, 0, 1);
-      const at = (a, b) => a + (b - a) * ease(t);
-      this.yaw = at(from.yaw, to.yaw);
-      this.elevation = at(from.elevation, to.elevation);
-      this.distance = at(from.distance, to.distance);
-      this.pan = from.pan.map((v, i) => at(v, to.pan[i]));
-      if (t >= 1) this.glide = null;
-    }
+  /** Follows `wanted` ({ targets, distance } or null) smoothly. `seconds` since the last call. */
+  step(seconds, wanted) {
     if (!this.following || !wanted || this.settled(wanted)) return;
     const k = 1 - Math.exp(-seconds / FOLLOW_SECONDS);
     this.targets = wanted.targets.map((want, n) => (this.targets[n] ?? want).map((v, i) => v + k * (want[i] - v)));
-    if (this.framing && !this.glide) this.distance += (1 - Math.exp(-seconds / FRAME_SECONDS)) * (wanted.distance - this.distance);
+    if (this.framing) this.distance += (1 - Math.exp(-seconds / FRAME_SECONDS)) * (wanted.distance - this.distance);
   }
 
   jump(targets) {
@@ -109,12 +83,11 @@ export class Orbit {
   cut(wanted) {
     if (!this.following || !wanted) return;
     this.jump(wanted.targets);
-    if (this.framing && !this.glide) this.distance = wanted.distance;
+    if (this.framing) this.distance = wanted.distance;
   }
 
   /** Whether the picture would stay as it is without anyone's doing. */
   settled(wanted) {
-    if (this.glide) return false;
     if (!this.following || !wanted) return true;
     if (wanted.targets.length !== this.targets.length) return false;
     const away = wanted.targets.map((want, n) => Math.hypot(...want.map((v, i) => v - this.targets[n][i])));

@@ -9,7 +9,7 @@ import { decode, describe } from "./decode.js";
 import { Directing } from "./directing.js";
 import { Framing } from "./framing.js";
 import { Grid } from "./grid.js";
-import { Orbit, reducedMotion } from "./orbit.js";
+import { Orbit } from "./orbit.js";
 import { THEMES, themeName } from "./palette.js";
 import { Pane } from "./pane.js";
 import { Strip } from "./strip.js";
@@ -98,8 +98,8 @@ export class Player {
     this.select(0);
     this.clothes.change();
     this.root.toggleAttribute("data-first", Boolean(payload.rounds)); // nothing is made yet that could be directed
-    this.framing.reset();
-    if (!(payload.rounds && reducedMotion())) this.clock.play();
+    this.framing.goTo("threequarter");
+    if (!payload.rounds || !matchMedia("(prefers-reduced-motion: reduce)").matches) this.clock.play();
     if (!payload.rounds && !payload.stream) aim(this);
     this.refresh();
   }
@@ -241,7 +241,7 @@ export class Player {
       this.rounds++;
       if (this.data.rounds && this.rounds >= this.data.rounds) this.clock.pause();
     }
-    this.orbit.step(now, seconds, wanted);
+    this.orbit.step(seconds, wanted);
     const moving = this.clock.playing || !this.orbit.settled(wanted);
     if (moving && this.sparing && now - this.painted < LIVE_PAUSE) return this.wake();
     this.painted = now;

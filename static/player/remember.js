@@ -46,7 +46,7 @@ export function aim(player) {
   player.clock.pause();
   player.clock.seek(Math.round(number("frame", 0, player.clock.frames - 1) ?? 0));
   player.orbit.jump(player.framing.wanted().targets);
-  player.orbit.goTo({ yaw: number("yaw", -1000, 1000), elevation: number("elevation", -0.05, 1.5), distance: number("distance", 0.8, 40) }, null);
+  player.orbit.goTo({ yaw: number("yaw", -1000, 1000), elevation: number("elevation", -0.05, 1.5), distance: number("distance", 0.8, 40) });
   player.orbit.framing = !asked.has("distance");
   player.framing.preset = null;
 }

@@ -2,21 +2,15 @@
 // directs the player, see ../player/directing.js.
 
 import { chips } from "../player/paths/walks.js";
-import { Past, path } from "../story/edits.js";
+import { path } from "../story/edits.js";
 
 export class Paths {
-  /** `changed` is called when a visitor changed the paths. */
+  /** `changed` is called when the paths are others. */
   constructor(root, changed) {
     this.root = root;
     this.list = root.parentElement.querySelector(".pdr-paths");
     this.changed = changed;
-    this.past = new Past();
-    this.given = { paths: [] };
-    this.list.addEventListener("keydown", (event) => {
-      if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z") return;
-      event.preventDefault();
-      this.undo();
-    });
+    this.paths = [];
     this.leaving = new AbortController();
     document.addEventListener("pdd-here", () => this.meet(), { signal: this.leaving.signal });
     this.meet();
@@ -25,47 +19,25 @@ export class Paths {
   /** Directs the player of the same tab once it is there; a root that has left the page, or was never on it, does not. */
   meet() {
     if (!this.root.isConnected) return this.leaving.abort();
-    this.root.closest(".pd-lab")?.querySelector(".pdd")?.player?.direct(this);
+    this.player?.direct(this);
   }
 
   get player() {
     return this.root.closest(".pd-lab")?.querySelector(".pdd")?.player;
   }
 
-  get paths() {
-    return this.given.paths;
-  }
-
-  get mayUndo() {
-    return this.past.before.length > 0;
-  }
-
   keepPath(person, points) {
-    this.past.keep(this.given);
-    this.show(path(this.given, person, points));
+    this.open(path({ paths: this.paths }, person, points).paths);
   }
 
-  undo() {
-    this.show(this.past.undo(this.given));
-  }
-
-  /** The paths of a kept run. */
+  /** Shows other paths, such as those of a kept run. */
   open(paths) {
-    this.past = new Past();
-    this.show({ paths });
-  }
-
-  show(given) {
-    this.given = given;
-    this.draw();
-    this.changed();
-    this.player?.refresh();
-  }
-
-  draw() {
-    chips(this.list, this.paths, (person) => {
+    this.paths = paths;
+    chips(this.list, paths, (person) => {
       this.keepPath(person, []);
       (this.list.querySelector("button") ?? this.player?.root)?.focus({ preventScroll: true });
     });
+    this.changed();
+    this.player?.refresh();
   }
 }

@@ -58,16 +58,8 @@ export class Editor {
     return this.story.paths;
   }
 
-  get mayUndo() {
-    return this.past.before.length > 0;
-  }
-
   keepPath(person, points) {
     this.edit(edits.path(this.story, person, points));
-  }
-
-  undo() {
-    this.travel("undo");
   }
 
   /** Goes back to the story before, or forward again. */

@@ -102,10 +102,10 @@ def test_everybody_is_in_view_over_the_whole_clip(player, size):
         const wrong = [];
         for (const camera of ["threequarter", "front", "side", "top"]) {
             clock.seek(0);
-            player.framing.goTo(camera, null);
+            player.framing.goTo(camera);
             for (let frame = 0; frame < clock.frames; frame++) {
                 clock.seek(frame);
-                orbit.step(0, 1 / clock.fps, player.framing.wanted());
+                orbit.step(1 / clock.fps, player.framing.wanted());
                 if (frame % 10) continue;
                 player.paint(player.everybody(frame));
                 for (const pane of player.shown) {

@@ -17,7 +17,7 @@ export class Drawing {
     this.grips = player.find(".pdd-grips");
     this.lengths = player.find(".pdd-lengths");
     this.bar = player.find(".pdd-drawing");
-    this.bar.addEventListener("click", (event) => this.press(event.target.closest("[data-draw]")?.dataset.draw));
+    this.bar.querySelector("button").addEventListener("click", () => this.toggle(false));
     const { stage } = player;
     stage.addEventListener("pointerdown", (event) => this.begin(event), { capture: true });
     stage.addEventListener("pointermove", (event) => this.drag(event));
@@ -85,21 +85,8 @@ export class Drawing {
     }));
   }
 
-  say(text = "") {
-    const rest = say("player.draw_rest");
-    this.bar.querySelector("output").textContent = text || `${this.seconds.toFixed(1)} s: ${rest}`;
-    this.bar.querySelector("[data-draw=undo]").disabled = !this.director.mayUndo;
-  }
-
-  press(act) {
-    if (act === "undo") this.undo();
-    else if (act === "done") this.toggle(false);
-  }
-
-  undo() {
-    this.director.undo();
-    this.say();
-    this.player.refresh();
+  say(text = `${this.seconds.toFixed(1)} s: ${say("player.draw_rest")}`) {
+    this.bar.querySelector("output").textContent = text;
   }
 
   // ---- hands ---------------------------------------------------------------------------------------
@@ -160,7 +147,7 @@ export class Drawing {
   /** Hands a path to the director. */
   keep(person, points) {
     this.director.keepPath(person, points);
-    this.say(points.length ? say("player.drawn", { path: named(person, points) }) : "");
+    this.say(points.length ? say("player.drawn", { path: named(person, points) }) : undefined);
     this.player.refresh();
   }
 
@@ -170,7 +157,6 @@ export class Drawing {
     if (!this.on) return;
     const grip = event.target.closest(".pdd-grip");
     if (event.key === "Escape") this.held ? this.drop() : this.toggle(false);
-    else if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") this.undo();
     else if (grip && event.key in KEYS) this.lengthen(grip.dataset.person, ...KEYS[event.key]);
     else if (grip && ["Delete", "Backspace"].includes(event.key)) this.keep(grip.dataset.person, []);
     else return;
