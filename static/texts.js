@@ -4,7 +4,6 @@
 const LANGUAGES = ["en"]; // the names of the files
 const ENGLISH = "en";
 const ATTRIBUTES = ["title", "aria-label", "placeholder"];
-const MARK = /__i18n__(\{[^}]*\})/;
 
 /** The language that is nearest to what a browser wants, by Gradio's rule: "de-AT" is German, an unknown one English. */
 export function nearest(wanted, known) {
@@ -40,11 +39,6 @@ const texts = await read(language);
 export function say(key, values = {}) {
   const text = texts[key] ?? key;
   return text.replace(/\{(\w+)\}/g, (name, inner) => values[inner] ?? name);
-}
-
-/** A text of Gradio's configuration, which may hold a mark for one of ours. */
-export function unmarked(text) {
-  return text.replace(MARK, (_, mark) => say(JSON.parse(mark).key));
 }
 
 /** Puts the language into markup, which is written in English: data-say names an element's text, data-say-title its title. */

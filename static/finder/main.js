@@ -1,51 +1,22 @@
 // The page's search: Ctrl K opens a dialog, arrows choose, Enter goes there. webdemo/ui/components/finder.py has its data.
 
-import { placesOf, search } from "./finder.js";
+import { search } from "./finder.js";
 import { say, translate } from "../texts.js";
 
-const PATIENCE = 8000; // ms until what was chosen must be on the page
+const PATIENCE = 8000; // ms until the prompt must be on the page
 
 const make = (tag, className, text) => Object.assign(document.createElement(tag), { className, textContent: text });
 
-/** The element once it is on the page and seen; null if it does not come. */
-async function appeared(find) {
-  const end = performance.now() + PATIENCE;
-  for (;;) {
-    const element = find();
-    if (element?.offsetParent) return element;
-    if (performance.now() > end) return null;
-    await new Promise((done) => setTimeout(done, 50));
-  }
-}
-
-async function openTab(label) {
-  const tabs = [...document.querySelectorAll(".pd-tabs [role=tab]")];
-  tabs.find((tab) => tab.textContent.trim() === label && tab.ariaSelected !== "true")?.click();
-}
-
-/** Puts the focus on a control, once the folded parts around it are open. */
-async function reach(folds, target) {
-  for (const id of folds) {
-    const fold = await appeared(() => document.querySelector(`#${id} > button.label-wrap`));
-    if (fold && !fold.classList.contains("open")) fold.click();
-  }
-  const element = await appeared(() => document.getElementById(target));
-  if (!element) return;
-  element.scrollIntoView({ block: "center" });
-  const field = element.matches("button") ? element : element.querySelector("input:not([type=file]), textarea, select, button");
-  (field ?? element).focus();
-}
-
-/** Opens the tab and the folded parts around a control, brings it into view and puts the focus on it. */
-async function goTo({ tab, folds, target }) {
-  await openTab(tab);
-  if (target) await reach(folds, target);
-}
-
-/** Puts a sentence into the prompt, as if it had been typed. */
+/** Puts a sentence into the prompt of the tab Generate, as if it had been typed. */
 async function write(sentence) {
-  await openTab(say("tabs.generate"));
-  const prompt = await appeared(() => document.querySelector("#prompt textarea, #prompt input"));
+  const tabs = [...document.querySelectorAll(".pd-tabs [role=tab]")];
+  tabs.find((tab) => tab.textContent.trim() === say("tabs.generate") && tab.ariaSelected !== "true")?.click();
+  const end = performance.now() + PATIENCE;
+  let prompt = null;
+  while (!prompt?.offsetParent && performance.now() < end) {
+    await new Promise((done) => setTimeout(done, 50));
+    prompt = document.querySelector("#prompt textarea");
+  }
   if (!prompt) return;
   Object.getOwnPropertyDescriptor(Object.getPrototypeOf(prompt), "value").set.call(prompt, sentence);
   prompt.dispatchEvent(new Event("input", { bubbles: true }));
@@ -59,7 +30,6 @@ class Finder {
     this.field = root.querySelector("input");
     this.list = root.querySelector("[role=listbox]");
     this.entries = [];
-    this.places = placesOf(window.gradio_config);
     root.querySelector(".pdq-open").addEventListener("click", () => this.open());
     root.querySelector(".pdq-open kbd").textContent = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘ K" : say("finder.keys");
     this.field.addEventListener("input", () => this.show());
@@ -89,7 +59,6 @@ class Finder {
   /** Takes what Python knows: { acts: [name, sentence], runs: [id, title, facts] }. */
   load({ acts, runs }) {
     this.entries = [
-      ...this.places,
       ...acts.map(([name, sentence]) => ({ kind: say("finder.act"), name, more: sentence, sentence })),
       ...runs.map(([run, name, more]) => ({ kind: say("finder.run"), name, more, run })),
     ];
@@ -97,7 +66,7 @@ class Finder {
   }
 
   show() {
-    this.found = search(this.entries.length ? this.entries : this.places, this.field.value);
+    this.found = search(this.entries, this.field.value);
     this.at = 0;
     this.list.replaceChildren(...this.found.map((entry, index) => {
       const row = make("li", "pdq-row", "");
@@ -133,11 +102,9 @@ class Finder {
     const entry = this.found[index];
     if (!entry) return;
     this.dialog.close();
-    if (entry.sentence) write(entry.sentence);
-    else if (entry.run) {
-      const lang = new URLSearchParams(window.location.search).get("lang"); // which the address may ask for
-      window.location.search = new URLSearchParams({ run: entry.run, ...(lang && { lang }) });
-    } else goTo(entry);
+    if (entry.sentence) return write(entry.sentence);
+    const lang = new URLSearchParams(window.location.search).get("lang"); // which the address may ask for
+    window.location.search = new URLSearchParams({ run: entry.run, ...(lang && { lang }) });
   }
 }
 

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-const { language, nearest, say, translate, unmarked } = await import("../../../static/texts.js");
+const { language, nearest, say, translate } = await import("../../../static/texts.js");
 
 /** The module as a page loads it, with the globals of that page. */
 async function inPage(globals, name) {
@@ -39,11 +39,6 @@ test("values stand in the place of their names, and what nobody knows is given b
   assert.equal(say("player.sample"), "Sample {number}");
   assert.equal(say("vote.pair", { number: 0, total: 12 }), "Pair 0 of 12");
   assert.equal(say("Something that the server said {number}"), "Something that the server said {number}");
-});
-
-test("a mark of Gradio's configuration is read, with the words around it", () => {
-  assert.equal(unmarked('__i18n__{"__type__": "translation_metadata", "key": "files.film"} .mp4'), "Film .mp4");
-  assert.equal(unmarked("Any label"), "Any label");
 });
 
 test("in the lab's page, Gradio's choice counts, and its configuration has the texts", async () => {

@@ -1,4 +1,4 @@
-"""The search over acts, controls, tabs and runs that Ctrl K opens. What it lists travels as data and is set as text."""
+"""The search over acts and runs that Ctrl K opens. What it lists travels as data and is set as text."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Finder(Part):
 
 
 def known(history: HistoryLike | None) -> dict[str, Any]:
-    """The part of the list that the browser cannot know.
+    """What the search finds.
 
     Returns:
         ``acts``, each act that bodies show in a few words and a sentence that has it; ``runs``, the id, the title and
