@@ -75,7 +75,7 @@ class Finder {
       row.append(make("span", "pdq-kind", entry.kind), make("span", "pdq-name", entry.name), make("span", "pdq-more", entry.more));
       return row;
     }));
-    if (!this.found.length) this.list.append(make("li", "pdq-none", say("finder.nothing")));
+    if (this.entries.length && !this.found.length) this.list.append(make("li", "pdq-none", say("finder.nothing")));
     this.mark();
   }
 

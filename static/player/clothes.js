@@ -2,9 +2,7 @@
 // and small. They stay skeletons where no body can be had.
 
 import { loadBody } from "./loader.js";
-import { keepFigure } from "./remember.js";
-
-const FIGURES = ["both", "body", "skeleton"];
+import { FIGURES, keepFigure } from "./remember.js";
 
 export class Clothes {
   constructor(player) {
@@ -40,18 +38,11 @@ export class Clothes {
     player.refresh();
   }
 
-  /** How people are drawn: "both", "body" or "skeleton". */
-  get figure() {
-    const { bodies, skeletons } = this.player.show;
-    return bodies ? (skeletons ? "both" : "body") : "skeleton";
-  }
-
   /** Draws people so, or as comes next where no figure is named. */
   choose(figure) {
     const { show } = this.player;
-    const next = figure ?? FIGURES[(FIGURES.indexOf(this.figure) + 1) % FIGURES.length];
-    Object.assign(show, { bodies: next !== "skeleton", skeletons: next !== "body" });
-    keepFigure(show);
+    show.figure = figure ?? FIGURES[(FIGURES.indexOf(show.figure) + 1) % FIGURES.length];
+    keepFigure(show.figure);
   }
 }
 

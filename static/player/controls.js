@@ -112,7 +112,7 @@ export class Controls {
   }
 
   /** Brings everything to what is true of the player now. */
-  show({ clock, clothes, directing, framing, orbit, posing, sample, show }) {
+  show({ clock, directing, framing, orbit, posing, sample, show }) {
     const { root } = this;
     const frame = clock.shown;
     const range = this.find(".pdd-range");
@@ -123,7 +123,8 @@ export class Controls {
     this.find(".pdd-time").textContent = sample
       ? say("player.time", { now: (frame / clock.fps).toFixed(2), all: clock.duration.toFixed(2), frame: Math.round(frame) + 1, frames: clock.frames }) : "";
     root.dataset.playing = String(clock.playing);
-    if (root.dataset.figure !== clothes.figure) this.find(`.pdd-figure [value=${(root.dataset.figure = clothes.figure)}]`).checked = true;
+    root.dataset.figure = show.figure;
+    this.find(`.pdd-figure [value=${show.figure}]`).checked = true;
     this.find(".pdd-play").setAttribute("aria-label", say(clock.playing ? "player.pause" : "player.play"));
     const speed = this.find(".pdd-speed select");
     if (speed.value !== String(clock.speed)) speed.value = String(clock.speed);
@@ -132,7 +133,7 @@ export class Controls {
     press("follow", orbit.following);
     press("ghosts", show.ghosts);
     press("pose", Boolean(posing));
-    press("draw", Boolean(directing.drawing?.on));
+    press("draw", directing.drawing.on);
     press("fullscreen", document.fullscreenElement === root || root.classList.contains("pdd-full"));
     for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === framing.preset));
     this.showPart(sample, frame);

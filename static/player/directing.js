@@ -4,6 +4,7 @@
 //   paths: [{ person, points }] of the next run; keepPath(person, points)
 
 import { toScene } from "./decode.js";
+import { Drawing } from "./paths/drawing.js";
 import { Posing } from "./posing.js";
 
 const TOOLS = { pose: "keepPoses", draw: "keepPath" };
@@ -13,7 +14,7 @@ export class Directing {
     this.player = player;
     this.director = null;
     this.posing = null;
-    this.drawing = null;
+    this.drawing = new Drawing(player);
   }
 
   direct(director) {
@@ -22,12 +23,7 @@ export class Directing {
     for (const [tool, needed] of Object.entries(TOOLS)) {
       for (const part of player.root.querySelectorAll(`[data-act=${tool}], [data-help=${tool}]`)) part.hidden = !director[needed];
     }
-    if (director.keepPath && !this.drawing) {
-      import("./paths/drawing.js").then(({ Drawing }) => {
-        this.drawing ??= new Drawing(player);
-        if (player.data) player.refresh();
-      });
-    }
+    if (player.data) player.refresh();
   }
 
   /** Whether one pair stands in the stage, whose motion is all there. */
@@ -41,7 +37,7 @@ export class Directing {
     if (this.posing) return this.endPosing();
     const { player } = this;
     if (!this.director?.keepPoses || !player.skeleton?.wears || !this.alone) return;
-    this.drawing?.toggle(false);
+    this.drawing.toggle(false);
     const frame = Math.round(player.clock.shown);
     player.clock.pause();
     player.clock.seek(frame);
@@ -52,7 +48,7 @@ export class Directing {
   /** Begins to draw on the floor, or ends it. */
   toggleDrawing() {
     if (!this.director?.keepPath || !this.mayLeave()) return;
-    this.drawing?.toggle(this.alone && !this.drawing.on);
+    this.drawing.toggle(this.alone && !this.drawing.on);
   }
 
   /** The poses that are kept at a frame: points [x, y, z] in scene axes, or null. */
@@ -69,7 +65,7 @@ export class Directing {
   /** Ends all that was begun, as another motion comes. */
   end() {
     this.endPosing();
-    this.drawing?.toggle(false);
+    this.drawing.toggle(false);
   }
 
   /** Whether another moment may be shown: not while a pose is neither kept nor given up. */

@@ -18,28 +18,15 @@ const hooks = {
   get loops() {
     return loops.running;
   },
-  get id() {
-    return hooks.player?.data?.id ?? null;
-  },
   get frame() {
     return hooks.player?.frameShown ?? null;
   },
   get playing() {
     return hooks.player?.clock.playing ?? false;
   },
-  get fps() {
-    return hooks.player?.fps ?? 0;
-  },
-  get eye() {
-    return hooks.player?.orbit.eye ?? null;
-  },
   /** World coordinates (Y up), metres: [person][joint][x, y, z]. */
   get positions() {
     return hooks.player?.pose?.map((points) => points.map(([z, x, y]) => [x, y, z])) ?? null;
-  },
-  /** Whether the 3D view is there. */
-  get open() {
-    return Boolean(hooks.player?.scene);
   },
 };
 

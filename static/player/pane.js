@@ -74,7 +74,7 @@ export class Pane {
     if (pose) {
       const lens = new figure.Lens(view, height);
       const given = clock.shown < (this.sample.past_until ?? 0);
-      const bodies = show.bodies && skeleton.wears ? this.dressed(pose.length) : [];
+      const bodies = show.figure !== "skeleton" && skeleton.wears ? this.dressed(pose.length) : [];
       if (bodies.length) this.figures = bodies;
       bodies.forEach((body, person) => {
         const hands = shapesAt(this.sample.grips, person, clock.shown, this.sample.fps);
@@ -87,8 +87,8 @@ export class Pane {
       if (things.figures.length) scene.setTriangles("things", things.at(clock.shown, theme.lamps, lens, scene.scale));
       else this.drop(["things"]);
       const colors = given ? theme.given : theme.people;
-      const wide = bodies.length || !show.bodies ? 1 : WIDE;
-      const thin = show.skeletons || !bodies.length ? pose : [];
+      const wide = bodies.length || show.figure === "skeleton" ? 1 : WIDE;
+      const thin = show.figure !== "body" || !bodies.length ? pose : [];
       thin.forEach((own, person) => {
         const points = bodies.length ? figure.ahead(own, lens) : own;
         const limbs = bodies.length ? figure.inked(colors[person]) : colors[person];

@@ -26,7 +26,7 @@ export class Player {
     this.controls = new Controls(root);
     this.clock = new Clock();
     this.orbit = new Orbit();
-    this.show = { ghosts: false, ...figureAtFirst() };
+    this.show = { ghosts: false, figure: figureAtFirst() };
     this.clothes = new Clothes(this);
     this.framing = new Framing(this);
     this.pane = new Pane(this.find(".pdd-pane"), (look) => this.clothes.body(look));
@@ -265,7 +265,7 @@ export class Player {
     const posed = this.posing?.pose;
     const pinned = pose && !posed && !clock.playing ? this.directing.posesAt(Math.round(clock.shown)) : [];
     const { drawing } = this.directing;
-    if (pose) drawing?.lay(this.pane.scene, theme);
+    if (pose) drawing.lay(this.pane.scene, theme);
     this.shown.forEach((pane, index) => {
       const people = posed ?? (pose && pane.poseAt(clock.shown));
       const view = orbit.view(index);
@@ -273,7 +273,7 @@ export class Player {
       pane.paint(people, { view, ground, theme, themeName, clock, skeleton, show, pinned });
     });
     this.posing?.place(this.pane.spots);
-    if (pose) drawing?.place(orbit.view());
+    if (pose) drawing.place(orbit.view());
     this.controls.show(this);
     this.strip.show(clock.shown);
     this.pose = posed ?? pose;

@@ -9,22 +9,23 @@ export function remember() {
   }
 }
 
+export const FIGURES = ["both", "body", "skeleton"];
 const FIGURE = "pas-de-deux-figure";
 
-/** How people are drawn, as the visitor left it: { bodies, skeletons }, both at first. */
+/** How people are drawn, one of FIGURES, as the visitor left it. */
 export function figureAtFirst() {
   try {
     const kept = localStorage.getItem(FIGURE);
-    return { bodies: kept !== "skeleton", skeletons: kept !== "body" };
+    return FIGURES.includes(kept) ? kept : FIGURES[0];
   } catch {
-    return { bodies: true, skeletons: true };
+    return FIGURES[0];
   }
 }
 
 /** Keeps how people are drawn. */
-export function keepFigure({ bodies, skeletons }) {
+export function keepFigure(figure) {
   try {
-    localStorage.setItem(FIGURE, bodies ? (skeletons ? "both" : "body") : "skeleton");
+    localStorage.setItem(FIGURE, figure);
   } catch {
     // a browser may keep nothing
   }

@@ -345,7 +345,7 @@ def player_in_page(open_page, player_url):
 
 def _opened(page, button: str | None):
     page.wait_for_selector(".pdd-styled", timeout=90_000)
-    page.wait_for_function("window.__pasdedeux?.open", timeout=90_000)
+    page.wait_for_function("window.__pasdedeux?.player", timeout=90_000)
     if button:
         press(page, button)
         page.wait_for_function("window.__pasdedeux?.frame > 0", timeout=90_000)

@@ -79,9 +79,10 @@ class Newcomer:
 
     def made(self, act: Callable[[], None]) -> None:
         """Does what starts a run and waits until its motion is there."""
-        before = self.page.evaluate("window.__pasdedeux.id")
+        shown = "window.__pasdedeux.player?.data?.id"
+        before = self.page.evaluate(shown)
         act()
-        until(self.page, f"window.__pasdedeux.id !== {json.dumps(before)} && window.__pasdedeux.id", SLOW / 1000)
+        until(self.page, f"{shown} && {shown} !== {json.dumps(before)}", SLOW / 1000)
         until(self.page, "!document.querySelector('.pdd[aria-busy=true]')", SLOW / 1000)
 
     def saved(self, act: Callable[[], None], suffix: str) -> None:

@@ -42,7 +42,7 @@ def test_an_act_and_a_run_are_found_by_keyboard_and_an_example_by_one_press(
     page.keyboard.press("Enter")
     page.wait_for_url("**/?run=*")
     live(page)
-    until(page, "window.__pasdedeux?.id")
+    until(page, "window.__pasdedeux?.player?.data?.id")
 
     page.get_by_role("button", name="All examples").click()
     scenes = page.locator("#gallery .pdx-scene")

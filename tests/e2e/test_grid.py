@@ -45,7 +45,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
     sweep(page, "across", "Seeds", "1-500")
     page.click("#grid-make")
     expect(page.locator("#status .pd-error")).to_contain_text("A grid has 1 to 9 cells")
-    until(page, "window.__pasdedeux.open")
+    until(page, "window.__pasdedeux.player")
     before = page.evaluate("window.contexts")
 
     unfold(page, "#grid")

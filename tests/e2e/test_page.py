@@ -56,7 +56,7 @@ def wait_for_line(page: Page, pattern: str) -> None:
 
 
 def shown_id(page: Page) -> str | None:
-    return page.evaluate("window.__pasdedeux?.id ?? null")
+    return page.evaluate("window.__pasdedeux?.player?.data?.id ?? null")
 
 
 def made(page: Page, prompt: str) -> str:

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.e2e
 
 def test_plays_both_people(player):
     page = player()
-    assert hook(page, "open")
+    assert hook(page, "count") == 1
     assert hook(page, "playing")
     first, frame = np.array(hook(page, "positions")), hook(page, "frame")
     assert first.shape == (2, 22, 3)
@@ -26,7 +26,7 @@ def test_plays_both_people(player):
     pixels = stage_pixels(page)
     assert has_color(pixels, blue=True)
     assert has_color(pixels, blue=False)
-    print(f"\nplaying: {hook(page, 'fps'):.1f} frames a second")
+    print(f"\nplaying: {hook(page, 'player.fps'):.1f} frames a second")
 
 
 def test_shows_what_was_sent(player):
@@ -83,11 +83,11 @@ def test_scrub_strip_and_contact_marks(player):
 
 def test_dragging_turns_the_camera_while_playing(player):
     page = player()
-    before, frame = np.array(hook(page, "eye")), hook(page, "frame")
+    before, frame = np.array(hook(page, "player.orbit.eye")), hook(page, "frame")
     turned = yaw(page)
     drag(page, 260, 0, steps=40)
-    print(f"\nturning: {hook(page, 'fps'):.1f} frames a second")
-    after = np.array(hook(page, "eye"))
+    print(f"\nturning: {hook(page, 'player.fps'):.1f} frames a second")
+    after = np.array(hook(page, "player.orbit.eye"))
     assert hook(page, "playing")
     assert hook(page, "frame") != frame
     assert abs(yaw(page) - turned) > 0.8
@@ -113,7 +113,7 @@ def test_keyboard(player):
     for key in "123456":
         page.keyboard.press(key)
         until(page, "window.__pasdedeux.loops === 0")
-        seen.append(tuple(round(v, 2) for v in hook(page, "eye")))
+        seen.append(tuple(round(v, 2) for v in hook(page, "player.orbit.eye")))
     assert len(set(seen)) == 6
     assert page.locator("[data-camera=b]").get_attribute("aria-pressed") == "true"
     for key, act in (("f", "follow"), ("g", "ghosts"), ("l", "loop")):

@@ -158,7 +158,7 @@ def test_without_bodies_there_are_skeletons(open_page, plain_url, expected_error
 
     page = open_page(plain_url, before=without_bodies)
     page.wait_for_selector(".pdd-styled", timeout=30_000)
-    page.wait_for_function("window.__pasdedeux?.open", timeout=30_000)
+    page.wait_for_function("window.__pasdedeux?.player", timeout=30_000)
     press(page, "load")
     until(page, "window.__pasdedeux.frame > 0")
     assert bones_drawn(page)

@@ -30,7 +30,7 @@ def rested(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
             server.url, lively=True, before=lambda tab: tab.add_init_script(COUNT), reduced_motion="no-preference"
         )
     )
-    page.wait_for_function("window.__pasdedeux?.open", timeout=SLOW)
+    page.wait_for_function("window.__pasdedeux?.player", timeout=SLOW)
     page.evaluate("window.__pasdedeux.player.act('pause')")
     page.wait_for_function("window.__pasdedeux?.loops === 0", timeout=SLOW)
     for _ in range(10):  # a still picture is drawn once more, finer, and Gradio's loading screen swings out

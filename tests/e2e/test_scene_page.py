@@ -90,9 +90,9 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.mouse.up()
     first, last = story(page)["span"]
     assert last - first >= 0.5
-    whole = page.evaluate("window.__pasdedeux.id")
+    whole = page.evaluate("window.__pasdedeux.player?.data?.id")
     page.locator("#scene-remake").click()
-    page.wait_for_function(f"window.__pasdedeux?.id !== {whole!r}")
+    page.wait_for_function(f"window.__pasdedeux?.player?.data?.id !== {whole!r}")
     rest(page)
     page.evaluate("window.__pasdedeux.player.act('pause'); window.__pasdedeux.player.seek(60)")
     page.wait_for_function("window.__pasdedeux?.frame === 60")  # they begin at what is shown

@@ -35,7 +35,7 @@ WATCHED = 3.0
 """Seconds over which frames a second are read."""
 _STAGE_STYLE = """#player .pdd-stage {{ width: {0}px !important; min-width: {0}px !important;
 height: {1}px !important; min-height: {1}px !important; flex: none !important }}"""
-_PLAYED = "window.__pasdedeux?.open && !window.__pasdedeux.playing"
+_PLAYED = "window.__pasdedeux?.player && !window.__pasdedeux.playing"
 _FIRST_VIEW = """() => new Promise((done) => {
   let shifted = 0;
   new PerformanceObserver((list) => {
@@ -50,7 +50,8 @@ _FIRST_VIEW = """() => new Promise((done) => {
   setTimeout(report, 100);
 })"""
 _FOLLOW_RUN = """() => {
-  const seen = (window.__benchmark = { before: window.__pasdedeux?.id ?? null, done: null, motion: null, body: null });
+  const before = window.__pasdedeux?.player?.data?.id ?? null;
+  const seen = (window.__benchmark = { before, done: null, motion: null, body: null });
   let looks = 0;
   const look = (now) => {
     const player = window.__pasdedeux;
@@ -167,7 +168,7 @@ def _frame_rate(page: Any) -> dict[str, Any]:
     while time.monotonic() < until:
         page.wait_for_timeout(50)
         if until - time.monotonic() < WATCHED / 2:  # the count looks back over a while
-            counts.append(page.evaluate("window.__pasdedeux.fps"))
+            counts.append(page.evaluate("window.__pasdedeux.player.fps"))
     width, height = page.evaluate(
         "(({ clientWidth, clientHeight }) => [clientWidth, clientHeight])(window.__pasdedeux.player.stage)"
     )

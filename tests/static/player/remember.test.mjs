@@ -3,10 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { figureAtFirst, keepFigure } from "../../../static/player/remember.js";
-
-const BODY = { bodies: true, skeletons: false };
-const BOTH = { bodies: true, skeletons: true };
+import { FIGURES, figureAtFirst, keepFigure } from "../../../static/player/remember.js";
 
 function storing(entries = {}) {
   globalThis.localStorage = { getItem: (key) => entries[key] ?? null, setItem: (key, value) => { entries[key] = String(value); } };
@@ -14,21 +11,21 @@ function storing(entries = {}) {
 
 test("people are bodies with skeletons at first", () => {
   storing();
-  assert.deepEqual(figureAtFirst(), BOTH);
+  assert.equal(figureAtFirst(), "both");
 });
 
 test("bodies, skeletons and both come back as they were left", () => {
   storing();
-  for (const figure of [{ bodies: false, skeletons: true }, BOTH, BODY]) {
-    keepFigure({ ...figure, trails: true });
-    assert.deepEqual(figureAtFirst(), figure);
+  for (const figure of FIGURES) {
+    keepFigure(figure);
+    assert.equal(figureAtFirst(), figure);
   }
 });
 
 test("a browser that keeps nothing, or something else, shows both", () => {
   storing({ "pas-de-deux-figure": "hologram" });
-  assert.deepEqual(figureAtFirst(), BOTH);
+  assert.equal(figureAtFirst(), "both");
   globalThis.localStorage = { getItem: () => { throw new Error("denied"); }, setItem: () => { throw new Error("denied"); } };
-  keepFigure(BODY);
-  assert.deepEqual(figureAtFirst(), BOTH);
+  keepFigure("body");
+  assert.equal(figureAtFirst(), "both");
 });

@@ -33,12 +33,11 @@ READ_PLAYER = """(record, _) => {
   const player = window.__pasdedeux?.player;
   if (!player) return [record, "{}"];
   const { orbit, show } = player;
-  const bodies = show.bodies ?? false, skeletons = show.skeletons ?? !bodies;
   return [record, JSON.stringify({
     yaw: orbit.yaw, elevation: orbit.elevation, view: player.framing.preset, follow: orbit.following,
     frame: Math.round(player.clock.shown), distance: orbit.distance,
     theme: player.themeName, sample: player.sampleIndex,
-    look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons",
+    look: { both: "both", body: "bodies", skeleton: "skeletons" }[show.figure],
   })];
 }"""
 """JavaScript that tells how the player shows the motion: what :func:`make_film` takes."""
