@@ -1,4 +1,4 @@
-// The time of a player: its clock, the pictures it draws a second, and the hurry of a stream that lags.
+// The time of a player: its clock, and the hurry of a stream that lags.
 
 const LONGEST_STEP = 0.5; // seconds; a stalled tab goes on from where it stood
 
@@ -56,26 +56,6 @@ export class Clock {
   /** The frame to show: the clock may stand between the last frame and the wrap to the first. */
   get shown() {
     return Math.min(this.frame, this.frames - 1);
-  }
-}
-
-const WINDOW = 1500; // milliseconds that are looked back on
-
-export class Rate {
-  constructor() {
-    this.times = []; // milliseconds
-  }
-
-  /** Takes a picture that was drawn at `now` milliseconds. */
-  count(now) {
-    this.times.push(now);
-    while (now - this.times[0] > WINDOW) this.times.shift();
-  }
-
-  /** Pictures a second over the last second and a half. */
-  get value() {
-    const span = this.times[this.times.length - 1] - this.times[0];
-    return span > 0 ? (1000 * (this.times.length - 1)) / span : 0;
   }
 }
 

@@ -76,8 +76,8 @@ export function joints(points, skeleton, colors, lens, wide = 1) {
   };
 }
 
-/** Pale figures: moments along the way, in which somebody may be missing, and others with their [points, colour]. */
-export function ghosts(moments, other, skeleton, theme, lens) {
+/** Pale figures: moments along the way, in which somebody may be missing, and what really happened. */
+export function ghosts(moments, real, skeleton, theme, lens) {
   const out = { points: [], colors: [], sizes: [] };
   const add = (points, color, width) => {
     const back = points.map((p) => lens.behind(p, GHOST_BEHIND));
@@ -88,7 +88,7 @@ export function ghosts(moments, other, skeleton, theme, lens) {
     }
   };
   for (const pose of moments) pose.forEach((points, p) => points && add(points, mix(theme.background, theme.people[p].middle, 0.38), 3));
-  for (const [points, color] of other) add(points, color, 5);
+  for (const points of real) add(points, theme.ghost, 5);
   return out;
 }
 

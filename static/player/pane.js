@@ -22,7 +22,7 @@ export class Pane {
     this.sample = null;
     this.scene = null;
     this.spots = [];
-    this.painted = { floor: "", ghosts: false };
+    this.floor = ""; // what the floor was painted for
     this.ground = new Ground();
     this.made = new Map(); // figures of all looks that have been seen, for A and for B
     this.figures = [];
@@ -60,7 +60,7 @@ export class Pane {
 
   /** Everything is drawn anew at the next picture. */
   refresh() {
-    this.painted.floor = "";
+    this.floor = "";
   }
 
   /** Draws `pose` of this pane's motion, or the floor alone for null; `view` is of Orbit.view(), `ground` the floor's middle. */
@@ -68,7 +68,6 @@ export class Pane {
     const { scene } = this;
     const { matrix } = view;
     const [width, height] = [this.host.clientWidth, this.host.clientHeight];
-    const put = (name, layer) => scene.set(name, layer);
     scene.setView(matrix);
     this.paintFloor(ground, theme, themeName);
     if (pose) {
@@ -92,12 +91,12 @@ export class Pane {
       thin.forEach((own, person) => {
         const points = bodies.length ? figure.ahead(own, lens) : own;
         const limbs = bodies.length ? figure.inked(colors[person]) : colors[person];
-        put(`bones${"AB"[person]}`, figure.bones(points, skeleton, limbs, lens, wide));
-        put(`joints${"AB"[person]}`, figure.joints(points, skeleton, limbs, lens, wide));
+        scene.set(`bones${"AB"[person]}`, figure.bones(points, skeleton, limbs, lens, wide));
+        scene.set(`joints${"AB"[person]}`, figure.joints(points, skeleton, limbs, lens, wide));
       });
       this.drop(["bonesA", "jointsA", "bonesB", "jointsB"].slice(2 * thin.length));
       this.paintShadow(pose, skeleton, bodies, things, theme);
-      this.paintExtras(put, lens, { theme, clock, skeleton, show, pinned });
+      this.paintGhosts(lens, { theme, clock, skeleton, show, pinned });
       this.spots = pose.map((points) => points.map((p) => project(p, matrix, width, height, FIELD_OF_VIEW)));
       this.labels.place(pose.map((points) => {
         const above = figure.headCenter(points, skeleton);
@@ -113,12 +112,17 @@ export class Pane {
   }
 
   paintFloor(target, theme, themeName) {
-    const { scene, ground, painted } = this;
+    const { scene, ground } = this;
     const key = `${themeName} ${target.slice(0, 2).map(Math.round)} ${scene.scale}`;
-    if (painted.floor === key) return;
-    painted.floor = key;
+    if (this.floor === key) return;
+    this.floor = key;
     scene.set("floor", figure.floor(target, 9, theme));
     ground.lay(target.map(Math.round), theme, scene.scale);
+    this.layGround();
+  }
+
+  layGround() {
+    const { scene, ground } = this;
     ground.place(scene.scale);
     scene.setTriangles("ground", { positions: ground.positions, colors: ground.colors, places: ground.places });
   }
@@ -129,21 +133,17 @@ export class Pane {
     const before = `${shadow.origin} ${shadow.span}`;
     shadow.cast(pose, skeleton, bodies, theme.shade, things.shades);
     scene.setShade("ground", shadow.pixels, shadow.size);
-    if (before === `${shadow.origin} ${shadow.span}`) return;
-    ground.place(scene.scale);
-    scene.setTriangles("ground", { positions: ground.positions, colors: ground.colors, places: ground.places });
+    if (before !== `${shadow.origin} ${shadow.span}`) this.layGround();
   }
 
-  paintExtras(put, lens, { theme, clock, skeleton, show, pinned }) {
-    const { scene, sample, painted } = this;
-    const paired = sample.ghostMotion ? poseAt(sample.ghostMotion, clock.shown) : [];
-    const other = paired.map((points) => [points, theme.ghost]);
+  /** Pale figures: what really followed a prediction, moments along the way, poses that are kept at this one. */
+  paintGhosts(lens, { theme, clock, skeleton, show, pinned }) {
+    const { sample } = this;
+    const real = sample.ghostMotion ? poseAt(sample.ghostMotion, clock.shown) : [];
     const moments = show.ghosts ? figure.ghostFrames(clock.frames).map((f) => this.poseAt(f)) : [];
     if (pinned.some(Boolean)) moments.push(pinned);
-    const pale = moments.length + other.length > 0;
-    if (pale) put("ghosts", figure.ghosts(moments, other, skeleton, theme, lens));
-    else if (painted.ghosts) scene.hide("ghosts");
-    painted.ghosts = pale;
+    if (moments.length + real.length) this.scene.set("ghosts", figure.ghosts(moments, real, skeleton, theme, lens));
+    else this.drop(["ghosts"]);
   }
 
   close() {

@@ -2,7 +2,7 @@
 
 import { Actions } from "./actions.js";
 import { aim, figureAtFirst, remember } from "./remember.js";
-import { Clock, Rate } from "./clock.js";
+import { Clock } from "./clock.js";
 import { Clothes } from "./clothes.js";
 import { Controls } from "./controls.js";
 import { decode, describe } from "./decode.js";
@@ -37,7 +37,6 @@ export class Player {
     this.data = null;
     this.directing = new Directing(this);
     this.sampleIndex = 0;
-    this.rate = new Rate();
     this.dirty = true;
     this.handle = 0;
     this.root.dataset.theme = this.themeName = themeName();
@@ -248,7 +247,6 @@ export class Player {
     if (moving || this.dirty) {
       this.dirty = false;
       this.paint(pose);
-      this.rate.count(now);
     }
     if (moving || this.dirty) {
       const asked = this.dirty;
@@ -265,7 +263,7 @@ export class Player {
     const posed = this.posing?.pose;
     const pinned = pose && !posed && !clock.playing ? this.directing.posesAt(Math.round(clock.shown)) : [];
     const { drawing } = this.directing;
-    if (pose) drawing.lay(this.pane.scene, theme);
+    if (pose) drawing.lay(this.pane, theme);
     this.shown.forEach((pane, index) => {
       const people = posed ?? (pose && pane.poseAt(clock.shown));
       const view = orbit.view(index);
@@ -287,11 +285,6 @@ export class Player {
   /** Whether the processor draws here while it is also needed to follow a person live. */
   get sparing() {
     return Boolean(this.data?.stream && this.clock.limit !== null && this.scene?.software);
-  }
-
-  /** Pictures a second, lately. */
-  get fps() {
-    return this.rate.value;
   }
 
   close() {

@@ -190,15 +190,10 @@ export class Editor {
 
   key(event) {
     const cell = event.target.closest?.(".pds-cell");
-    const handle = event.target.closest?.(".pds-handle");
     const arrow = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
     const pinned = event.target.closest?.(".pds-pin");
     if (pinned && (arrow || event.key === "Delete")) this.changePin(Number(pinned.dataset.pose), arrow, event.shiftKey ? 10 : 1);
-    else if (handle && arrow) {
-      const index = Number(handle.dataset.beat);
-      this.edit(edits.stretch(this.story, index, edits.lengthOf(this.story.beats[index]) + 0.5 * arrow));
-      this.find(`.pds-handle[data-beat="${index}"]`)?.focus();
-    } else if (cell && arrow) {
+    else if (cell && arrow) {
       if (event.altKey) this.change(arrow < 0 ? "left" : "right");
       else this.selected = Math.min(Math.max(this.selected + arrow, 0), this.story.beats.length - 1);
       this.draw();
@@ -282,7 +277,6 @@ export class Editor {
   stretchBy(event, index) {
     event.preventDefault();
     event.stopPropagation();
-    const handle = event.currentTarget;
     const wide = this.find(".pds-lanes").clientWidth / this.total;
     const [from, before, story] = [event.clientX, edits.lengthOf(this.story.beats[index]), this.story];
     let next = story;
@@ -294,7 +288,6 @@ export class Editor {
       window.removeEventListener("pointermove", drag);
       if (next !== story) this.edit(next);
     };
-    handle.blur();
     window.addEventListener("pointermove", drag);
     window.addEventListener("pointerup", end, { once: true });
   }

@@ -27,14 +27,6 @@ export function block(beat, index, { lane, name, starts, total, selected, stretc
   box.append(cell);
   if (lane === "words") {
     const handle = node("span", "pds-handle");
-    handle.tabIndex = 0;
-    handle.dataset.beat = index;
-    handle.dataset.key = `length ${index}`;
-    handle.setAttribute("role", "slider");
-    handle.setAttribute("aria-label", say("story.length", { number: index + 1 }));
-    handle.setAttribute("aria-valuenow", edits.lengthOf(beat));
-    handle.setAttribute("aria-valuemin", edits.SHORTEST);
-    handle.setAttribute("aria-valuemax", edits.LONGEST);
     handle.addEventListener("pointerdown", (event) => stretch(event, index));
     box.append(handle);
   }

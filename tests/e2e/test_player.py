@@ -26,7 +26,6 @@ def test_plays_both_people(player):
     pixels = stage_pixels(page)
     assert has_color(pixels, blue=True)
     assert has_color(pixels, blue=False)
-    print(f"\nplaying: {hook(page, 'player.fps'):.1f} frames a second")
 
 
 def test_shows_what_was_sent(player):
@@ -86,7 +85,6 @@ def test_dragging_turns_the_camera_while_playing(player):
     before, frame = np.array(hook(page, "player.orbit.eye")), hook(page, "frame")
     turned = yaw(page)
     drag(page, 260, 0, steps=40)
-    print(f"\nturning: {hook(page, 'player.fps'):.1f} frames a second")
     after = np.array(hook(page, "player.orbit.eye"))
     assert hook(page, "playing")
     assert hook(page, "frame") != frame

@@ -176,12 +176,12 @@ export class Drawing {
 
   // ---- drawing -------------------------------------------------------------------------------------
 
-  /** Lays the lines on the floor of a scene. */
-  lay(scene, theme) {
+  /** Lays the lines on the floor of a pane. */
+  lay(pane, theme) {
     const { paths } = this;
     const places = this.on ? this.places : [];
-    if (paths.length || places.length) scene.set("paths", lines(paths, places, theme.people.map(({ middle }) => middle)));
-    else if (scene.layers.get("paths")?.hidden !== true) scene.hide("paths");
+    if (paths.length || places.length) pane.scene.set("paths", lines(paths, places, theme.people.map(({ middle }) => middle)));
+    else pane.drop(["paths"]);
   }
 
   /** Puts handles and lengths where they belong in the picture. */
