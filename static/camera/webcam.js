@@ -23,7 +23,6 @@ export async function openWebcam(video) {
   }
   video.srcObject = stream;
   await video.play();
-  return stream;
 }
 
 /** Lets go of the webcam. */

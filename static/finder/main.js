@@ -1,11 +1,10 @@
 // The page's search: Ctrl K opens a dialog, arrows choose, Enter goes there. webdemo/ui/components/finder.py has its data.
 
 import { search } from "./finder.js";
+import { node } from "../player/node.js";
 import { say, translate } from "../texts.js";
 
 const PATIENCE = 8000; // ms until the prompt must be on the page
-
-const make = (tag, className, text) => Object.assign(document.createElement(tag), { className, textContent: text });
 
 /** Puts a sentence into the prompt of the tab Generate, as if it had been typed. */
 async function write(sentence) {
@@ -69,13 +68,13 @@ class Finder {
     this.found = search(this.entries, this.field.value);
     this.at = 0;
     this.list.replaceChildren(...this.found.map((entry, index) => {
-      const row = make("li", "pdq-row", "");
+      const row = node("li", "pdq-row", "");
       Object.assign(row, { id: `pdq-${index}`, role: "option" });
       row.dataset.index = index;
-      row.append(make("span", "pdq-kind", entry.kind), make("span", "pdq-name", entry.name), make("span", "pdq-more", entry.more));
+      row.append(node("span", "pdq-kind", entry.kind), node("span", "pdq-name", entry.name), node("span", "pdq-more", entry.more));
       return row;
     }));
-    if (this.entries.length && !this.found.length) this.list.append(make("li", "pdq-none", say("finder.nothing")));
+    if (this.entries.length && !this.found.length) this.list.append(node("li", "pdq-none", say("finder.nothing")));
     this.mark();
   }
 

@@ -1,15 +1,16 @@
 // The drawer of examples: scenes.json as cards that move. webdemo/ui/components/gallery.py takes the one that is pressed.
 
 import { play } from "../notebook/thumbnail.js";
+import { node } from "../player/node.js";
 import { translate } from "../texts.js";
 
 const SIZE = 240; // pixels of a thumbnail
 
 /** A card for a scene; its words are set as text. */
 function card(scene, take) {
-  const item = document.createElement("li");
-  const button = Object.assign(document.createElement("button"), { type: "button", className: "pdx-scene" });
-  const canvas = Object.assign(document.createElement("canvas"), { width: SIZE, height: SIZE, ariaHidden: "true" });
+  const item = node("li");
+  const button = node("button", "pdx-scene");
+  const canvas = Object.assign(node("canvas"), { width: SIZE, height: SIZE, ariaHidden: "true" });
   button.append(canvas, scene.prompt);
   button.addEventListener("click", () => take(scene));
   item.append(button);

@@ -5,6 +5,7 @@ import { drawPerson } from "../camera/drawing.js";
 import { FilmError } from "../camera/film.js";
 import { Panel } from "../camera/panel.js";
 import { loadStyles } from "../player/loader.js";
+import { node } from "../player/node.js";
 import { Stream } from "../player/stream.js";
 import { Connection, LiveError } from "./connection.js";
 import { Person, Webcam } from "./sources.js";
@@ -157,9 +158,9 @@ class LivePanel extends Panel {
     if (this.text.textContent !== text) this.text.textContent = text;
     this.chances.replaceChildren(
       ...chances.map(([label, chance]) => {
-        const item = document.createElement("li");
+        const item = node("li");
         item.style.setProperty("--share", `${100 * chance}%`);
-        for (const part of [label, `${Math.round(100 * chance)} %`]) item.append(Object.assign(document.createElement("span"), { textContent: part }));
+        item.append(node("span", "", label), node("span", "", `${Math.round(100 * chance)} %`));
         return item;
       }),
     );

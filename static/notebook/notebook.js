@@ -2,6 +2,7 @@
 // Python gives the entries (webdemo/ui/components/notebook.py) and hears of every press by one event.
 
 import { play } from "./thumbnail.js";
+import { node } from "../player/node.js";
 import { loadStyles } from "../player/loader.js";
 import { say, translate } from "../texts.js";
 
@@ -10,8 +11,6 @@ const WAIT = 300; // ms after the last key before a search
 const KINDS = [
   ["", "notebook.all_jobs"], ["generate", "tabs.generate"], ["scene", "tabs.scene"], ["react", "tabs.react"], ["predict", "tabs.predict"],
 ];
-
-const element = (tag, className = "", text = "") => Object.assign(document.createElement(tag), { className, textContent: text });
 
 export class Notebook {
   constructor(root, tell) {
@@ -37,7 +36,7 @@ export class Notebook {
   options(name, pairs) {
     const list = this.find(`[data-find=${name}]`);
     const was = list.value;
-    list.replaceChildren(...pairs.map(([value, label]) => Object.assign(element("option", "", label), { value })));
+    list.replaceChildren(...pairs.map(([value, label]) => Object.assign(node("option", "", label), { value })));
     list.value = pairs.some(([value]) => value === was) ? was : "";
   }
 
@@ -77,25 +76,25 @@ export class Notebook {
   }
 
   card(entry) {
-    const card = element("li", "pdn-card");
+    const card = node("li", "pdn-card");
     card.dataset.id = entry.id;
     card.tabIndex = 0;
-    const box = Object.assign(element("input"), { type: "checkbox", ariaLabel: say("notebook.choose", { title: entry.title }) });
+    const box = Object.assign(node("input"), { type: "checkbox", ariaLabel: say("notebook.choose", { title: entry.title }) });
     box.dataset.choose = "";
-    const picture = Object.assign(element("canvas", "pdn-thumb"), { width: 88, height: 88 });
+    const picture = Object.assign(node("canvas", "pdn-thumb"), { width: 88, height: 88 });
     picture.setAttribute("aria-hidden", "true");
     play(picture, entry.thumbnail);
-    const text = element("div", "pdn-text");
-    const title = element("p", "pdn-title");
+    const text = node("div", "pdn-text");
+    const title = node("p", "pdn-title");
     title.append(`${entry.favourite ? "★ " : ""}${entry.title}`);
-    const facts = element("p", "pdn-facts", entry.facts);
-    const tags = element("p", "pdn-tags");
-    for (const tag of entry.tags) tags.append(element("span", "", `#${tag}`));
+    const facts = node("p", "pdn-facts", entry.facts);
+    const tags = node("p", "pdn-tags");
+    for (const tag of entry.tags) tags.append(node("span", "", `#${tag}`));
     text.append(title, facts, tags);
-    if (entry.message) text.append(element("p", "pdn-message", entry.message));
-    if (entry.note) text.append(element("p", "pdn-note", entry.note));
-    const more = element("details", "pdn-details");
-    more.append(element("summary", "", say("notebook.details")));
+    if (entry.message) text.append(node("p", "pdn-message", entry.message));
+    if (entry.note) text.append(node("p", "pdn-note", entry.note));
+    const more = node("details", "pdn-details");
+    more.append(node("summary", "", say("notebook.details")));
     more.addEventListener("toggle", () => more.open && more.children.length === 1 && this.fill(more, entry));
     text.append(more);
     card.append(box, picture, text);
@@ -105,21 +104,21 @@ export class Notebook {
   /** The rest of a card, made when it is opened. */
   fill(more, entry) {
     const field = (label, name, value, tag = "input") => {
-      const line = element("label", "", label);
-      const input = Object.assign(element(tag), { value });
+      const line = node("label", "", label);
+      const input = Object.assign(node(tag), { value });
       input.dataset.field = name;
       line.append(input);
       return line;
     };
-    const form = element("div", "pdn-form");
+    const form = node("div", "pdn-form");
     form.append(field(say("notebook.name"), "title", entry.title), field(say("notebook.tags"), "tags", entry.tags.join(" ")), field(say("notebook.note"), "note", entry.note, "textarea"));
-    const save = Object.assign(element("button", "", say("notebook.save")), { type: "button" });
+    const save = node("button", "", say("notebook.save"));
     save.dataset.save = entry.id;
     form.append(save);
-    const list = element("dl", "pdn-settings");
+    const list = node("dl", "pdn-settings");
     for (const [name, value] of entry.settings) {
-      const pair = element("div");
-      pair.append(element("dt", "", name), element("dd", "", value));
+      const pair = node("div");
+      pair.append(node("dt", "", name), node("dd", "", value));
       list.append(pair);
     }
     more.append(form, list);

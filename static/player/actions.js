@@ -57,10 +57,7 @@ export class Actions {
   }
 
   savePicture() {
-    const { clock, data, shown, stage, theme, sampleIndex } = this.player;
-    const frame = Math.round(clock.shown);
-    const caption = [data.title, `${(frame / clock.fps).toFixed(2)} s`].filter(Boolean).join("  ·  ");
-    const name = `pas-de-deux-${sampleIndex + 1}-frame-${frame}.png`;
-    return savePicture({ panes: shown, stage, theme, caption, name });
+    const { clock, shown, stage, sampleIndex } = this.player;
+    return savePicture(shown, stage, `pas-de-deux-${sampleIndex + 1}-frame-${Math.round(clock.shown)}.png`);
   }
 }

@@ -2,6 +2,7 @@
 // is handed to the player.
 
 import { actionFor, attach, belongsToControl } from "./input.js";
+import { node } from "./node.js";
 import { say, translate } from "../texts.js";
 
 export class Controls {
@@ -67,11 +68,9 @@ export class Controls {
     tabs.hidden = samples.length < 2;
     tabs.replaceChildren(
       ...samples.map((sample, i) => {
-        const tab = document.createElement("button");
-        tab.type = "button";
+        const tab = node("button", "", sample.label || String(i + 1));
         tab.setAttribute("role", "tab");
         tab.setAttribute("aria-label", say("player.sample", { number: sample.label || i + 1 }));
-        tab.textContent = sample.label || String(i + 1);
         return tab;
       }),
     );

@@ -4,8 +4,7 @@
 // each cell in its turn, and the picture is copied into the cell's own canvas.
 
 import { poseAt } from "./decode.js";
-
-const make = (className, text = "") => Object.assign(document.createElement("div"), { className, textContent: text });
+import { node } from "./node.js";
 
 /** One motion of a grid; the player paints it as it paints a pane. */
 class Cell {
@@ -13,9 +12,8 @@ class Cell {
     this.sample = sample;
     this.pane = pane;
     this.spots = [];
-    this.labels = { labels: [] };
-    this.host = make("pdd-cell");
-    this.canvas = document.createElement("canvas");
+    this.host = node("div", "pdd-cell");
+    this.canvas = node("canvas");
     this.scene = { setStill: (...given) => pane.scene.setStill(...given), picture: async () => this.canvas };
     this.host.title = sample.caption;
     this.host.append(this.canvas);
@@ -57,31 +55,26 @@ export class Grid {
     this.pane.host.classList.toggle("pdd-behind", !this.host.hidden);
     this.host.replaceChildren();
     if (this.host.hidden) {
-      this.free();
+      Object.assign(this.pane.host.style, { flex: "", width: "", height: "" });
       return before > 0;
     }
     const { columns, rows } = sample;
-    if (!columns.some(Boolean)) for (const cell of this.cells) cell.host.append(make("pdd-cell-text", cell.sample.caption));
+    if (!columns.some(Boolean)) for (const cell of this.cells) cell.host.append(node("div", "pdd-cell-text", cell.sample.caption));
     this.host.style.gridTemplateColumns = `${rows.some(Boolean) ? "auto" : "0"} repeat(${columns.length}, minmax(0, 1fr))`;
     this.host.style.gridTemplateRows = `${columns.some(Boolean) ? "auto" : "0"} repeat(${rows.length}, minmax(0, 1fr))`;
-    this.host.append(make(), ...columns.map((name) => make("pdd-head", name)));
+    this.host.append(node("div"), ...columns.map((name) => node("div", "pdd-head", name)));
     rows.forEach((name, row) => {
       const line = this.cells.slice(row * columns.length, (row + 1) * columns.length);
-      this.host.append(make("pdd-head pdd-side", name), ...line.map((cell) => cell.host));
+      this.host.append(node("div", "pdd-head pdd-side", name), ...line.map((cell) => cell.host));
     });
     return true;
   }
 
-  /** Makes the scene as large as a cell; says whether there are cells. */
+  /** Makes the scene as large as a cell. */
   fit() {
-    if (!this.cells.length) return false;
+    if (!this.cells.length) return;
     const { clientWidth, clientHeight } = this.cells[0].host;
     Object.assign(this.pane.host.style, { flex: "none", width: `${clientWidth}px`, height: `${clientHeight}px` });
-    return true;
-  }
-
-  free() {
-    Object.assign(this.pane.host.style, { flex: "", width: "", height: "" });
   }
 
   /** The number of the cell at a point of the window, or -1. */

@@ -1,5 +1,6 @@
 // Words over the picture: names above heads.
 
+import { node } from "./node.js";
 import { say } from "../texts.js";
 
 const LABEL_PX = 25; // height of a label with room
@@ -33,9 +34,7 @@ export class Labels {
     this.host.replaceChildren();
     this.widths = null; // measured when first placed
     this.labels = roles.map((role, person) => {
-      const label = document.createElement("span");
-      label.className = `pdd-label pdd-label-${"ab"[person]}`;
-      label.textContent = roleText(person, role);
+      const label = node("span", `pdd-label pdd-label-${"ab"[person]}`, roleText(person, role));
       this.host.append(label);
       return label;
     });

@@ -1,6 +1,7 @@
 // Posing: people stand still at a frame and can be pulled at by handles over their hands, feet, hips and heads. What
 // comes of it goes to the player's director, such as a story, which keeps it.
 
+import { node } from "./node.js";
 import { FIELD_OF_VIEW, axesOf } from "./orbit.js";
 import { HANDLES, carry, pull } from "./reach.js";
 import { say } from "../texts.js";
@@ -36,8 +37,8 @@ export class Posing {
     const { signal } = this.abort;
     this.host.addEventListener("pointerdown", (event) => this.begin(event), { signal });
     this.host.addEventListener("pointermove", (event) => this.drag(event), { signal });
-    this.host.addEventListener("pointerup", () => this.release(), { signal });
-    this.host.addEventListener("pointercancel", () => this.giveUp(), { signal });
+    this.host.addEventListener("pointerup", () => this.release(true), { signal });
+    this.host.addEventListener("pointercancel", () => this.release(false), { signal });
     this.host.addEventListener("focusin", (event) => this.choose(event.target), { signal });
     this.bar.addEventListener("click", (event) => this.press(event), { signal });
     this.player.root.addEventListener("keydown", (event) => this.key(event), { signal, capture: true });
@@ -46,9 +47,7 @@ export class Posing {
   /** One button a handle, in the order of people and HANDLES. */
   lay() {
     this.handles = this.pose.flatMap((_, person) => HANDLES.map(([joint, name]) => {
-      const handle = document.createElement("button");
-      handle.type = "button";
-      handle.className = `pdd-handle pdd-handle-${"ab"[person]}`;
+      const handle = node("button", `pdd-handle pdd-handle-${"ab"[person]}`);
       Object.assign(handle.dataset, { person, joint });
       handle.title = say("player.joint_of", { joint: name[0].toUpperCase() + name.slice(1), person: "AB"[person] });
       handle.setAttribute("aria-label", say("player.handle", { joint: handle.title }));
@@ -145,22 +144,16 @@ export class Posing {
     this.player.wake();
   }
 
-  release() {
+  /** Ends a pull, which is kept as a step or undone. */
+  release(kept) {
     const { held } = this;
     if (!held) return;
     this.held = null;
     held.handle.classList.remove("pdd-held");
-    if (this.pose[held.person] !== held.before) this.remember(held.person, held.before);
-  }
-
-  /** The pull that is going on is undone. */
-  giveUp() {
-    const { held } = this;
-    if (!held) return;
-    this.held = null;
-    held.handle.classList.remove("pdd-held");
-    this.pose = this.pose.map((points, i) => (i === held.person ? held.before : points));
-    this.player.wake();
+    if (!kept) {
+      this.pose = this.pose.map((points, i) => (i === held.person ? held.before : points));
+      this.player.wake();
+    } else if (this.pose[held.person] !== held.before) this.remember(held.person, held.before);
   }
 
   remember(person, before) {
@@ -190,7 +183,7 @@ export class Posing {
   key(event) {
     const { target } = event;
     const handle = target.closest(".pdd-handle");
-    if (event.key === "Escape") this.held ? this.giveUp() : this.player.directing.endPosing();
+    if (event.key === "Escape") this.held ? this.release(false) : this.player.directing.endPosing();
     else if (event.key === "Enter" && !target.closest(".pdd-posing")) this.keep();
     else if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") this.back();
     else if (handle && event.key in KEYS && !this.held) this.nudge(handle, ...KEYS[event.key], event);

@@ -1,5 +1,6 @@
 // Under the scene: curves over time with a playhead, and the contacts as ticks that can be pressed.
 
+import { node } from "./node.js";
 import { say } from "../texts.js";
 
 const CURVES = { Apart: "player.apart", Hands: "player.hands" }; // what the server calls its curves
@@ -21,11 +22,7 @@ export class Strip {
       const at = Math.min(Math.max((event.clientX - box.left) / box.width, 0), 1);
       if (this.sample) onSeek(Math.round(at * (this.sample.frames - 1)));
     };
-    this.box.addEventListener("pointerdown", (event) => {
-      this.box.setPointerCapture(event.pointerId);
-      seek(event);
-    });
-    this.box.addEventListener("pointermove", (event) => event.buttons & 1 && seek(event));
+    this.box.addEventListener("click", seek);
   }
 
   load(sample, colors) {
@@ -37,18 +34,15 @@ export class Strip {
     this.ticks.replaceChildren();
     if (!sample) return;
     sample.curves.forEach((curve, i) => {
-      const name = document.createElement("dt");
-      name.textContent = curve.label in CURVES ? say(CURVES[curve.label]) : curve.label;
+      const name = node("dt", "", curve.label in CURVES ? say(CURVES[curve.label]) : curve.label);
       name.style.setProperty("--key", colors[i % colors.length]);
-      const value = document.createElement("dd");
+      const value = node("dd");
       this.values.append(name, value);
       this.readouts.push(value);
     });
     const span = Math.max(sample.frames - 1, 1);
     for (const contact of sample.contacts.slice(0, TOO_MANY_TICKS)) {
-      const tick = document.createElement("button");
-      tick.type = "button";
-      tick.className = "pdd-tick";
+      const tick = node("button", "pdd-tick");
       tick.dataset.kind = contact.kind;
       tick.style.left = `${(100 * contact.start) / span}%`;
       tick.style.width = `${(100 * Math.max(contact.stop - 1 - contact.start, 0)) / span}%`;

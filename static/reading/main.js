@@ -5,19 +5,11 @@ import { Length } from "./length.js";
 import { people, pieces, spoken, summary, wordsOf } from "./marks.js";
 import { Paths } from "./paths.js";
 import * as edits from "./plan.js";
+import { node } from "../player/node.js";
 import { say, translate } from "../texts.js";
 
 const NAMES = { a: "A", b: "B", ab: say("reading.a_and_b") };
 const MARKS = { true: ["✓", say("reading.done")], false: ["✗", say("reading.not_done")], null: ["–", say("reading.not_measured")] };
-
-/** An element with a class and a text. */
-function node(tag, kind, text = "") {
-  const made = document.createElement(tag);
-  made.className = kind;
-  made.textContent = text;
-  if (tag === "button") made.type = "button";
-  return made;
-}
 
 class View {
   /** `keep` takes the component's value, and `ask` sends it to the server; `editable` plans can be edited. */

@@ -3,7 +3,8 @@
 
 import { chips } from "../player/paths/walks.js";
 import * as edits from "./edits.js";
-import { block, drawRuler, node, pin } from "./lanes.js";
+import { block, drawRuler, pin } from "./lanes.js";
+import { node } from "../player/node.js";
 import { say } from "../texts.js";
 
 const LANES = [["words", say("story.both")], ["a", "A"], ["b", "B"]];

@@ -1,14 +1,8 @@
 // The parts of the line that show and do nothing else than to be pressed: blocks of beats, pins of poses, the ruler.
 
 import * as edits from "./edits.js";
+import { node } from "../player/node.js";
 import { say } from "../texts.js";
-
-export const node = (name, className, text) => {
-  const made = document.createElement(name);
-  made.className = className;
-  if (text !== undefined) made.textContent = text;
-  return made;
-};
 
 /** A beat in a lane; `stretch(event, index)` begins to change its length. */
 export function block(beat, index, { lane, name, starts, total, selected, stretch }) {
@@ -17,7 +11,6 @@ export function block(beat, index, { lane, name, starts, total, selected, stretc
   box.style.width = `${(100 * edits.lengthOf(beat)) / total}%`;
   const words = beat[lane] ?? "";
   const cell = node("button", `pds-cell${words ? "" : " pds-none"}`, words || "+");
-  cell.type = "button";
   cell.dataset.beat = index;
   cell.dataset.lane = lane;
   cell.dataset.key = `${lane} ${index}`;
@@ -36,7 +29,6 @@ export function block(beat, index, { lane, name, starts, total, selected, stretc
 /** A pose of somebody as a pin at its moment; `index` is its number in the story. */
 export function pin({ person, seconds }, index, total) {
   const made = node("button", "pds-pin");
-  made.type = "button";
   made.dataset.pose = index;
   made.dataset.key = `pin ${index}`;
   made.style.left = `${(100 * seconds) / total}%`;

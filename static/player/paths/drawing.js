@@ -1,6 +1,7 @@
 // Drawing on the floor of the stage: where people walk in the next run. What comes of it goes to the player's director,
 // which keeps it.
 
+import { node } from "../node.js";
 import { FIELD_OF_VIEW, axesOf } from "../orbit.js";
 import { project } from "../overlay.js";
 import { floorUnder, inside, lengthOf, lines, named, onFloor, STEP } from "./walks.js";
@@ -74,11 +75,8 @@ export class Drawing {
   layGrips() {
     const people = this.player.sample.roles.length;
     this.grips.replaceChildren(...["a", "b"].slice(0, people).map((person) => {
-      const grip = document.createElement("button");
-      grip.type = "button";
-      grip.className = `pdd-grip pdd-grip-${person}`;
+      const grip = node("button", `pdd-grip pdd-grip-${person}`, "✎");
       grip.dataset.person = person;
-      grip.textContent = "✎";
       grip.title = say("player.draw_path", { who: person.toUpperCase() });
       grip.ariaLabel = `${grip.title}: ${say("player.draw_path_keys")}`;
       return grip;
@@ -196,7 +194,7 @@ export class Drawing {
     for (const grip of this.grips.children) put(grip, places["ab".indexOf(grip.dataset.person)]);
     const long = this.paths.filter(({ points }) => points.length > 1);
     while (this.lengths.children.length > long.length) this.lengths.lastChild.remove();
-    while (this.lengths.children.length < long.length) this.lengths.append(document.createElement("span"));
+    while (this.lengths.children.length < long.length) this.lengths.append(node("span"));
     long.forEach(({ person, points }, i) => {
       const label = this.lengths.children[i];
       label.className = `pdd-length pdd-length-${person}`;

@@ -2,6 +2,7 @@
 // [seconds or null, x, z]: metres in world axes, as in a story's paths.
 
 import { say } from "../../texts.js";
+import { node } from "../node.js";
 import { axesOf, FIELD_OF_VIEW } from "../orbit.js";
 
 export const STEP = 0.35; // metres between two points of a path that is drawn
@@ -26,13 +27,11 @@ export function named(person, points) {
 /** A chip for each path, with a button that takes it away. */
 export function chips(list, paths, remove) {
   const made = paths.map(({ person, points }) => {
-    const chip = document.createElement("li");
-    const button = document.createElement("button");
     const text = named(person, points);
+    const chip = node("li", "", `${text} `);
+    const button = node("button", "", "✕");
     chip.dataset.person = person;
-    chip.append(`${text} `, button);
-    button.type = "button";
-    button.textContent = "✕";
+    chip.append(button);
     button.title = say("player.remove_title");
     button.ariaLabel = say("player.remove", { text });
     button.addEventListener("click", () => remove(person));
