@@ -69,19 +69,7 @@ export function decode(payload) {
 }
 
 // Half the width of the limb about the bone that ends in a joint, metres; the first pattern that matches wins.
-const RADII = [
-  [/head/, 0.045],
-  [/neck/, 0.045],
-  [/collar/, 0.05],
-  [/shoulder/, 0.05],
-  [/elbow/, 0.042],
-  [/wrist|hand|thumb/, 0.034],
-  [/hip/, 0.07],
-  [/knee/, 0.062],
-  [/ankle/, 0.046],
-  [/foot|toe/, 0.036],
-  [/spine|torso|chest|pelvis/, 0.08],
-];
+const RADII = [[/spine|torso|chest|pelvis/, 0.08], [/hip|knee/, 0.066], [/./, 0.045]];
 export const SMPL22 = [
   "pelvis", "left_hip", "right_hip", "spine1", "left_knee", "right_knee", "spine2", "left_ankle", "right_ankle", "spine3",
   "left_foot", "right_foot", "neck", "left_collar", "right_collar", "head", "left_shoulder", "right_shoulder",
@@ -89,7 +77,7 @@ export const SMPL22 = [
 ];
 
 const sideOf = (name) => (/left|^l[_A-Z]/.test(name) ? "left" : /right|^r[_A-Z]/.test(name) ? "right" : "middle");
-const radiusOf = (name) => (RADII.find(([pattern]) => pattern.test(name.toLowerCase())) || [null, 0.045])[1];
+const radiusOf = (name) => RADII.find(([pattern]) => pattern.test(name.toLowerCase()))[1];
 const find = (names, ...patterns) => {
   for (const pattern of patterns) {
     const at = names.findIndex((name) => pattern.test(name.toLowerCase()));

@@ -26,11 +26,7 @@ export class Orbit {
     this.framing = true; // whether the distance adapts, until the user zooms
   }
 
-  /** The first view's centre and eye. */
-  get center() {
-    return this.view().center;
-  }
-
+  /** The first view's eye. */
   get eye() {
     return this.view().eye;
   }
@@ -64,7 +60,11 @@ export class Orbit {
 
   /** Takes up a view; what is left out stays. */
   goTo({ yaw = this.yaw, elevation = this.elevation, distance = this.distance }) {
-    Object.assign(this, { yaw, elevation, distance: clamp(distance, NEAREST, FARTHEST), pan: [0, 0, 0], framing: true });
+    this.yaw = yaw;
+    this.elevation = clamp(elevation, LOWEST, HIGHEST);
+    this.distance = clamp(distance, NEAREST, FARTHEST);
+    this.pan = [0, 0, 0];
+    this.framing = true;
   }
 
   /** Follows `wanted` ({ targets, distance } or null) smoothly. `seconds` since the last call. */

@@ -38,16 +38,15 @@ export function aim(player) {
   const asked = new URLSearchParams(window.location.search);
   if (used || !asked.has("run") || !asked.has("frame")) return;
   used = true;
-  const number = (name, low, high) => {
-    const value = Number(asked.get(name) ?? NaN);
-    return asked.get(name) && Number.isFinite(value) ? Math.min(Math.max(value, low), high) : undefined;
+  const number = (name) => {
+    const value = parseFloat(asked.get(name));
+    return Number.isFinite(value) ? value : undefined;
   };
-  const sample = number("sample", 0, player.data.samples.length - 1);
-  if (sample) player.select(Math.round(sample));
+  player.select(Math.round(number("sample") ?? 0));
   player.clock.pause();
-  player.clock.seek(Math.round(number("frame", 0, player.clock.frames - 1) ?? 0));
+  player.clock.seek(Math.round(number("frame") ?? 0));
   player.orbit.jump(player.framing.wanted().targets);
-  player.orbit.goTo({ yaw: number("yaw", -1000, 1000), elevation: number("elevation", -0.05, 1.5), distance: number("distance", 0.8, 40) });
+  player.orbit.goTo({ yaw: number("yaw"), elevation: number("elevation"), distance: number("distance") });
   player.orbit.framing = !asked.has("distance");
   player.framing.preset = null;
 }

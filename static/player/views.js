@@ -19,16 +19,20 @@ export function heading(pose, skeleton) {
   return Math.atan2(left[1] - right[1], left[0] - right[0]) - Math.PI / 2;
 }
 
-/** Yaw and elevation of a preset. */
+// Radians beside the line from A to B, and above the floor.
+const PRESETS = {
+  threequarter: [-1.05, 0.24],
+  front: [0, 0.16],
+  side: [-Math.PI / 2, 0.1],
+  top: [-Math.PI / 2, 1.48],
+  a: [Math.PI + 0.4, 0.3],
+  b: [-0.4, 0.3],
+};
+
+/** Yaw and elevation of a preset, for the angle of the line from A to B. */
 export function preset(name, along) {
-  switch (name) {
-    case "front": return { yaw: along, elevation: 0.16 };
-    case "side": return { yaw: along - Math.PI / 2, elevation: 0.1 };
-    case "top": return { yaw: along - Math.PI / 2, elevation: 1.48 };
-    case "a": return { yaw: along + Math.PI + 0.4, elevation: 0.3 };
-    case "b": return { yaw: along - 0.4, elevation: 0.3 };
-    default: return { yaw: along - 1.05, elevation: 0.24 };
-  }
+  const [aside, elevation] = PRESETS[name];
+  return { yaw: along + aside, elevation };
 }
 
 /** Moments about `frame` at which everybody must be in view. */

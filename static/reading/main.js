@@ -153,6 +153,7 @@ class View {
   removeAct(id) {
     const ids = this.draft.beats.flat();
     const next = ids[ids.indexOf(id) + 1] ?? ids.at(-2) ?? null;
+    this.chosen = null;
     this.edit(edits.remove(this.draft, id));
     this.focusNext = next;
   }

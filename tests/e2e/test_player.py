@@ -48,7 +48,7 @@ def test_balls_are_as_wide_as_asked(player):
     ball = """() => {
         const { scene, orbit } = window.__pasdedeux.player;
         for (const name of scene.names) scene.hide(name);
-        scene.set("jointsA", { points: [[...orbit.center]], colors: [1, 0, 0], sizes: [120] });
+        scene.set("jointsA", { points: [[...orbit.view().center]], colors: [1, 0, 0], sizes: [120] });
         scene.draw();
     }"""
     for _ in range(20):  # the player may draw its frame once more, after a pause or a change of size
