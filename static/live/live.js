@@ -108,22 +108,21 @@ class LivePanel extends Panel {
     let sending = null; // what is on its way
     const send = async () => {
       try {
-        while (waiting.length && !over()) await this.exchange(waiting.splice(0, TOGETHER), over);
+        await this.exchange(waiting.splice(0, TOGETHER), over);
       } catch (error) {
         this.fail(error, over);
       }
-      sending = null;
+      sending = waiting.length && !over() ? send() : null;
     };
     for (let seen = await source.next(); seen && !over(); seen = await source.next()) {
       if (!this.root.offsetParent) return this.rest(say("live.left"));
       if (seen.people) drawPerson(this.drawing, seen.people[0], source.video);
       waiting.push(seen);
       sending ??= send();
-      if (waiting.length < WAITING) continue;
-      if (source.waits) await sending;
-      else waiting.shift();
+      while (source.waits && sending && !over() && waiting.length >= WAITING) await sending;
+      if (waiting.length > WAITING) waiting.shift();
     }
-    await sending;
+    while (sending && !over()) await sending;
     if (over()) return;
     if (!this.live.stream.known) throw new FilmError(say("live.nobody"));
     this.rest(`${say("live.ended")} ${say("live.again")}`);

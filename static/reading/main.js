@@ -60,7 +60,7 @@ class View {
   leave() {
     this.fold(true);
     this.length.leave();
-    this.choose(null);
+    if (this.chosen) this.choose(null);
   }
 
   /** On a phone, a line stands for the reading while a motion is made and watched. */
