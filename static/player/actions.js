@@ -1,6 +1,6 @@
 // What buttons and keys ask for, by name: play, step, sample, camera, picture, … (input.js and player.html).
 
-import { savePicture } from "./picture.js";
+import { node } from "./node.js";
 
 const SPEEDS = [0.25, 0.5, 1, 1.5, 2];
 const MOVES = new Set(["play", "step", "first", "last", "sample"]); // to another moment or motion
@@ -56,8 +56,16 @@ export class Actions {
     this.player.refresh();
   }
 
-  savePicture() {
+  /** Saves the scene that the stage shows, or the scenes of a grid. */
+  async savePicture() {
     const { clock, shown, stage, sampleIndex } = this.player;
-    return savePicture(shown, stage, `pas-de-deux-${sampleIndex + 1}-frame-${Math.round(clock.shown)}.png`);
+    const images = await Promise.all(shown.map((pane) => pane.scene.picture()));
+    const ratio = images[0].width / shown[0].host.clientWidth;
+    const canvas = node("canvas");
+    [canvas.width, canvas.height] = [ratio * stage.clientWidth, ratio * stage.clientHeight].map(Math.round);
+    const context = canvas.getContext("2d");
+    images.forEach((image, i) => context.drawImage(image, ratio * shown[i].host.offsetLeft, ratio * shown[i].host.offsetTop));
+    const download = `pas-de-deux-${sampleIndex + 1}-frame-${Math.round(clock.shown)}.png`;
+    Object.assign(node("a"), { href: canvas.toDataURL("image/png"), download }).click();
   }
 }

@@ -7,12 +7,12 @@ import { Clothes } from "./clothes.js";
 import { Controls } from "./controls.js";
 import { decode, describe } from "./decode.js";
 import { Directing } from "./directing.js";
-import { Framing } from "./framing.js";
 import { Grid } from "./grid.js";
 import { Orbit } from "./orbit.js";
 import { THEMES, themeName } from "./palette.js";
 import { Pane } from "./pane.js";
 import { Strip } from "./strip.js";
+import { Framing } from "./views.js";
 
 const STILL_AFTER = 250; // ms
 const LIVE_PAUSE = 48; // ms between pictures that the processor draws of a person who moves now
