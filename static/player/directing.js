@@ -2,7 +2,8 @@
 // has what it can keep:
 //   posesAt(frame): each person's kept pose in world axes, or null; keepPoses(frame, [{ person: "a" or "b", positions }])
 //   takeFuture(index): the continuation that was taken
-//   paths: [{ person, points }] of the next run, which lasts `seconds`; keepPath(person, points), undo() and mayUndo
+//   paths: [{ person, points }] of the next run, which lasts `seconds`; keepPath(person, points), undo() and mayUndo;
+//   drawn(), after a path was drawn by hand
 
 import { toScene } from "./decode.js";
 import { Posing } from "./posing.js";

@@ -7,11 +7,12 @@ import { Past, path } from "../story/edits.js";
 const SECONDS = 5; // where the page does not say how long the motion will be
 
 export class Paths {
-  /** `changed` is called when a visitor changed the paths. */
-  constructor(root, changed) {
+  /** `changed` is called when the paths are others, and `drawn` when a visitor has drawn one by hand. */
+  constructor(root, changed, drawn) {
     this.root = root;
     this.list = root.parentElement.querySelector(".pdr-paths");
     this.changed = changed;
+    this.drawn = drawn;
     this.past = new Past();
     this.given = { paths: [] };
     this.list.addEventListener("keydown", (event) => {

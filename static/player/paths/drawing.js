@@ -161,8 +161,8 @@ export class Drawing {
     this.held = null;
     if (held.end) this.further(held, LEAST);
     const drawn = held.kind === "here" ? held.now : held.points.length > 1;
-    if (drawn) this.keep(held.person, held.points);
-    else this.say();
+    if (!drawn) this.say();
+    else if (this.keep(held.person, held.points)) this.director.drawn?.();
     this.player.wake();
   }
 
@@ -179,12 +179,13 @@ export class Drawing {
     this.player.wake();
   }
 
-  /** Hands a path to the director, or says why nobody can walk it. */
+  /** Hands a path to the director, or says why nobody can walk it; whether they can. */
   keep(person, points) {
     const wrong = trouble(points, this.director.seconds);
     if (!wrong) this.director.keepPath(person, points);
     this.say(wrong || (points.length ? say("player.drawn", { path: named(person, points) }) : ""));
     this.player.refresh();
+    return !wrong;
   }
 
   // ---- keys ----------------------------------------------------------------------------------------

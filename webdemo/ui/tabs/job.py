@@ -182,7 +182,6 @@ class JobTab(ABC):
         *,
         more: Sequence[gr.components.Component] = (),
         first: str | None = None,
-        inputs: Sequence[gr.components.Component] | None = None,
     ) -> None:
         """Wires an event that runs something.
 
@@ -191,12 +190,11 @@ class JobTab(ABC):
             triggers: of the event, or what wires it.
             more: further inputs.
             first: JavaScript that the inputs pass through.
-            inputs: in this order, for a ``start`` that takes a value each.
         """
         listen = triggers if callable(triggers) else partial(gr.on, list(triggers))
         run = listen(
             start,  # not called "generate": that name is the public endpoint's
-            inputs=list(inputs) if inputs else {*self.controls.values(), *more},
+            inputs={*self.controls.values(), *more},
             outputs=list(self.outputs.values()),
             concurrency_limit=None,  # runs wait in a line of their own, where they can be cancelled
             trigger_mode="once",

@@ -15,22 +15,12 @@ from webdemo.inference.story.beats import story_title
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import show
 from webdemo.ui.components.reading import Reading, checked
-from webdemo.ui.components.scene_parts import (
-    FUTURES,
-    only_sample,
-    part_fields,
-    part_request,
-    place_of,
-    shown_duet,
-    went_on,
-)
-from webdemo.ui.components.show import arrival_payload
+from webdemo.ui.components.scene_parts import FUTURES, only_sample, part_request, place_of, shown_duet, went_on
 from webdemo.ui.components.story import StoryLine, story_fields, value_of
 from webdemo.ui.components.story_words import edited, lay_out, said_of, settled, story_text, written
 from webdemo.ui.components.upload import chip
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
-from webdemo.ui.text.examples import ARRIVAL, CLIPS
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import error_line, tries_line
@@ -108,8 +98,7 @@ class SceneTab(JobTab):
                 self.results.build_readouts()
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     self.sampling.build()
-            first = arrival_payload(CLIPS / ARRIVAL)
-            self.results.build_stage(compare=self.grids.build, below=self._story, first=first)
+            self.results.build_stage(compare=self.grids.build, below=self._story)
         self.controls = {"prompt": self.prompt, "story": self.line_up, **self.sampling.controls}
         self.wire([self.go.click, self.prompt.submit], record)
         self._wire_parts()
@@ -181,12 +170,10 @@ class SceneTab(JobTab):
         self.last.click(self.take_last, inputs=self.record, outputs=last_shown, **QUIET)
 
     def _wire_parts(self) -> None:
-        form = self.sampling
-        assert form.strictness is not None
-        settings = [form.guidance, form.steps, form.damping, form.strictness]
-        inputs = [self.line_up, self.words, *settings, self.record, self.shown_at]
-        for button, part in ((self.remake, "span"), (self.futures, "futures")):
-            self.wire_start(self._starter(part), [button.click], inputs=inputs, first=_READ_PLACE)
+        kept = self.remake.click(None, js=_KEEP_POSE, **QUIET).then
+        for trigger, part in ((kept, "span"), (self.futures.click, "futures")):
+            more = [self.words, self.record, self.shown_at]
+            self.wire_start(self._starter(part), trigger, more=more, first=_READ_PLACE)
 
     def shown(self, result: Result, title: str) -> dict[str, Any]:
         """As every tab shows a result; several continuations also say from which moment they begin."""
@@ -225,19 +212,9 @@ class SceneTab(JobTab):
     def _starter(self, part: str) -> Callable[..., Iterator[Updates]]:
         """What makes a part of the motion: the selected "span" again, or "futures" from the player's frame on."""
 
-        def start(
-            story: Any,
-            words: str,
-            guidance: float,
-            steps: float,
-            damping: float,
-            strictness: float,
-            record: Record | None,
-            place: str,
-            request: gr.Request,
-        ) -> Iterator[Updates]:
-            fields = part_fields(part, story, words, guidance, steps, damping, strictness, record, place)
-            yield from self.run(str(request.session_hash), fields)
+        def start(values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
+            fields = self.fields(values) | {"part": part, "words": values[self.words], "record": values[self.record]}
+            yield from self.run(str(request.session_hash), fields | place_of(values[self.shown_at]))
 
         return start
 
@@ -306,4 +283,6 @@ _READ_PLACE = """(...values) => {
   const place = { frame: Math.round(player?.frameShown ?? 0), sample: player?.sampleIndex ?? 0 };
   return [...values.slice(0, -1), JSON.stringify(place)];
 }"""
-"""JavaScript that tells which frame of which sample the player shows."""
+"""JavaScript that tells which frame of which sample the player shows; that comes last of the inputs."""
+_KEEP_POSE = "() => window.__pasdedeux?.player?.directing.posing?.keep()"
+"""JavaScript that keeps a pose that is being pulled at: it is a part of what is made again."""
