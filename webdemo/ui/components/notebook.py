@@ -26,8 +26,6 @@ ACTS = (
     "favour",
     "link",
     "revoke",
-    "again",
-    "stop",
     "compare",
     "study",
     "publish",

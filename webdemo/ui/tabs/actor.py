@@ -7,10 +7,11 @@ from typing import Any
 
 import gradio as gr
 
+from motion import Duet
 from motion.formats.recording import AXES, ORDERS, UNITS
 from webdemo.inference.method import SECONDS
 from webdemo.inference.methods import methods
-from webdemo.ui.again import actor_source
+from webdemo.inference.requests.actor import ROLES
 from webdemo.ui.components.actors import AUTO, Source, offered_animations
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.settings import FittedSlider
@@ -157,6 +158,15 @@ class ActorPanel(SourcePanel):
             **dict(zip(self.known, source.read_with[:4], strict=True)),
             **dict(zip(self.more(), self._chosen(source, begin, end), strict=True)),
         }
+
+
+def actor_source(opened: Opened) -> Source:
+    """The given person of a kept reaction, whom its result holds unchanged."""
+    asked = opened.entry.request
+    place = ROLES.index(asked.get("role", ROLES[0]))
+    duet = opened.result.duets[0]
+    assert isinstance(duet, Duet)  # as every reaction is
+    return Source(asked.get("actor", {}).get("name") or opened.entry.title, (duet.people[place],))
 
 
 def _found(source: Source) -> str:

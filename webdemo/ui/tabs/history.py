@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import gradio as gr
 
 from motion import InputError
-from webdemo.inference.run import Cancelled, Progress, Result
-from webdemo.ui.again import request_of, request_of_unfinished, verdict
+from webdemo.inference.run import Result
 from webdemo.ui.components.exports import KINDS, Record
 from webdemo.ui.components.notebook import Action, NotebookView, shown
 from webdemo.ui.components.sweep import MOST, loose
@@ -18,7 +17,7 @@ from webdemo.ui.context import PageContext
 from webdemo.ui.history import Found, HistoryLike, Opened, Search
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import cancelled_line, error_line, link_line, progress_line, text
+from webdemo.ui.text.words import error_line, link_line, text
 from webdemo.ui.visitor import Visitor, visitor
 
 from .grids import grid_shown
@@ -88,9 +87,6 @@ class HistoryTab:
         tab.select(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
         self.view.select(self.act, inputs=self.removed, outputs=shown, **quick)
         self.files.wire(shown[:2], self.line, self.saved, self.removed)
-        again = self.view.retry(self.again, outputs=[self.line], concurrency_limit=None, trigger_mode="once", **QUIET)
-        again.then(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
-        self.view.stop(self.cancel, queue=False, **QUIET)
         if self.study is not None:
             self.study.wire(tab, self.view.edit)
         if self.sharing is not None:
@@ -184,35 +180,6 @@ class HistoryTab:
         key, until = self.history.link(run, owner)
         return f"{visitor().base}?run={key}", link_line(until)
 
-    def again(self, request: gr.Request, event: gr.EventData) -> Iterator[str]:
-        """Runs a kept request once more and says whether it came out the same."""
-        last: Progress | None = None
-        line = ""
-        try:
-            run = Action(event._data).one
-            entry = self.history.entry(run, visitor().owner)
-            if entry.state != "done":
-                opened, wanted = None, request_of_unfinished(entry)
-            else:
-                opened = self.history.open(run, visitor().owner)
-                wanted = request_of(opened)
-            for made in self.page.runs.run(_session(request), wanted):
-                if isinstance(made, Result):
-                    sentence = verdict(opened.result, made) if opened else "Run again: its result is in the list."
-                    line = status(sentence, tone="done")
-                    break
-                last = made
-                yield status(progress_line(made), tone="busy")
-        except Cancelled:
-            line = status(cancelled_line(last), tone="warning")
-        except Exception as error:
-            line = status(error_line(error), tone="error")
-        yield line
-
-    def cancel(self, request: gr.Request) -> None:
-        """Stops what runs again."""
-        self.page.runs.cancel(_session(request))
-
     def open(self, event: gr.EventData) -> Updates:
         """Shows a run in its tab, with all controls as they were."""
         try:
@@ -302,8 +269,3 @@ def _signed_in(who: Visitor) -> str:
         f'<form class="pd-status pd-account" method="post" action="{text(who.base)}logout">'
         f"{text(f'Signed in as {who.account}')} ·\u2002<button>Sign out</button></form>"
     )
-
-
-def _session(request: gr.Request) -> str:
-    """The session of this panel's own runs, which do not cancel those of the other tabs."""
-    return f"again-{request.session_hash}"
