@@ -20,7 +20,6 @@ _NO_WARNINGS = ("This was made as ", "Read as ")
 """Beginnings of notes that say how a sentence was understood."""
 _VERDICT = ("Done", "Not understood:", "Not checked:", "Not seen:", "This is the ", "Best of ")
 """Beginnings of the note on the acts, which the reading under the prompt shows at its chips."""
-_SAME = '<td class="pd-same">same</td>'
 
 
 def status(line: str = "", *, tone: str = "quiet") -> str:
@@ -110,8 +109,9 @@ def prediction_lines(lines: Mapping[str, str]) -> str:
     )
 
 
-def _heads(count: int) -> list[str]:
-    return [f"Sample {i + 1}" for i in range(count)]
+def _heads(count: int) -> Sequence[str]:
+    """The names of the columns of so many samples."""
+    return [f"Sample {i + 1}" for i in range(count)] if count > 1 else ["Value"]
 
 
 def sides(readout: Mapping[str, Any]) -> tuple[Summary | None, Summary]:
@@ -154,50 +154,26 @@ def _plain(value: Any) -> str | None:
 
 
 def _quality_table(samples: Sequence[tuple[Summary | None, Summary]]) -> str:
-    head: Sequence[str]
-    if len(samples) == 1 and samples[0][0] is not None:
-        head = ("Before", "After", "Change")
-    elif len(samples) == 1:
-        head = ("Value",)
-    else:
-        head = _heads(len(samples))
-    rows = "".join(_quality_row(measure, samples) for measure in QUALITY)
     compared = any(before is not None for before, _ in samples)
-    return _table("Quality, before → after damping and clean-up" if compared else "Quality", head, rows)
+    caption = "Quality, before → after damping and clean-up" if compared else "Quality"
+    rows = "".join(
+        _row(measure, "".join(_quality_cell(measure, before or {}, after) for before, after in samples))
+        for measure in QUALITY
+    )
+    return _table(caption, _heads(len(samples)), rows)
 
 
-def _quality_row(measure: Measure, samples: Sequence[tuple[Summary | None, Summary]]) -> str:
-    cells = []
-    for before, after in samples:
-        new = _value(measure, after)
-        old = "" if before is None else _value(measure, before)
-        if len(samples) > 1:
-            cells.append(f"<td>{old} → <b>{new}</b></td>" if old else f"<td><b>{new}</b></td>")
-        elif before is None:
-            cells.append(f"<td><b>{new}</b></td>")
-        else:
-            cells.append(f"<td>{old}</td><td><b>{new}</b></td>{_change(measure, before, after)}")
-    return _row(measure, "".join(cells))
-
-
-def _change(measure: Measure, before: Summary, after: Summary) -> str:
-    old, new = before.get(measure.key), after.get(measure.key)
-    smallest = 0.5 * 10**-measure.digits
-    if old is None or new is None:
-        return "<td>–</td>"
-    if _value(measure, before) == _value(measure, after):
-        return _SAME
-    tone = "pd-better" if new < old else "pd-worse"
-    if old < smallest:
-        return f'<td class="{tone}">+{number(new - old, measure.digits)}</td>'
-    percent = f"{100 * (new - old) / old:+.0f}".replace("-", "−")
-    if percent in ("+0", "−0"):
-        return _SAME
-    return f'<td class="{tone}">{percent} %</td>'
+def _quality_cell(measure: Measure, before: Summary, after: Summary) -> str:
+    """The value after, and the one before where it is shown as another."""
+    old, new = _value(measure, before), _value(measure, after)
+    if old in ("–", new):
+        return f"<td><b>{new}</b></td>"
+    tone = "" if new == "–" else "pd-better" if after[measure.key] < before[measure.key] else "pd-worse"
+    return f'<td class="{tone}">{old} → <b>{new}</b></td>'
 
 
 def _relation_table(samples: Sequence[tuple[Summary | None, Summary]], result: Result) -> str:
-    head = ("Value",) if len(samples) == 1 else _heads(len(samples))
+    head = _heads(len(samples))
     rows = "".join(
         _row(measure, "".join(f"<td><b>{_value(measure, after)}</b></td>" for _, after in samples))
         for measure in RELATION
