@@ -10,7 +10,7 @@ import gradio as gr
 
 from motion import InputError
 from webdemo.inference.run import Result
-from webdemo.ui.components.exports import KINDS, Record
+from webdemo.ui.components.exports import Record
 from webdemo.ui.components.notebook import Action, NotebookView, shown
 from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
@@ -22,7 +22,7 @@ from webdemo.ui.visitor import Visitor, visitor
 
 from .grids import grid_shown
 from .job import JobTab
-from .results import QUIET, Updates
+from .results import QUIET, Parts, Updates
 from .sharing import SharingPanel
 from .study import StudyPanel
 
@@ -93,19 +93,9 @@ class HistoryTab:
         chosen = self.view.submit(self.open, outputs=self.opened, **quick)
         compared = self.view.like(self.compare, outputs=self.opened, **quick)
         address = demo.load(self.open_address, inputs=named, outputs=self.opened, js=_NAMED, **quick)
-        for chain in (chosen, compared, address):
-            for kind, job in self.jobs.items():
-                handed = [job.line, *job.results.downloads]
-                chain = chain.then(self._exporter(kind, job), inputs=record, outputs=handed, **quick)
-
-    def _exporter(self, kind: str, job: JobTab) -> Any:
-        def export(record: Record | None) -> Updates:
-            """Writes the files of an opened run for the tab that shows it."""
-            if record is None or record.result.manifest.get("request", {}).get("kind", "generate") != kind:
-                return (gr.skip(),) * (1 + len(KINDS))
-            return job.results.export(record)
-
-        return export
+        handed = [self.line, *(part for job in self.jobs.values() for part in (job.line, *job.results.downloads))]
+        for event in (chosen, compared, address):
+            event.then(self.export, inputs=record, outputs=handed, **quick)
 
     # ---- events ----------------------------------------------------------------------------------
 
@@ -183,14 +173,14 @@ class HistoryTab:
         key, until = self.history.link(run, owner)
         return f"{visitor().base}?run={key}", link_line(until)
 
-    def open(self, event: gr.EventData) -> Updates:
+    def open(self, event: gr.EventData) -> Parts:
         """Shows a run in its tab, with all controls as they were."""
         try:
             return self._shown(self.history.open(Action(event._data).one, visitor().owner))
         except Exception as error:
             return self._not_shown(error_line(error))
 
-    def compare(self, event: gr.EventData) -> Updates:
+    def compare(self, event: gr.EventData) -> Parts:
         """Shows the first sample of several runs as a grid, in the tab of the first."""
         try:
             action = Action(event._data)
@@ -201,16 +191,15 @@ class HistoryTab:
             shown = compared(runs) | job.laid_out(run.result for run in runs)
         except Exception as error:
             return self._not_shown(error_line(error))
-        changes: dict[int, Any] = {
-            self.tabs._id: gr.update(selected=runs[0].entry.kind),
-            self.line._id: status(),
-            job.line._id: status(f"{len(runs)} runs of the history side by side.", tone="done"),
-            job.results.under._id: gr.update(visible=True),
-            **{job.outputs[name]._id: update for name, update in shown.items()},
+        return {
+            self.tabs: gr.update(selected=runs[0].entry.kind),
+            self.line: status(),
+            job.line: status(f"{len(runs)} runs of the history side by side.", tone="done"),
+            job.results.under: gr.update(visible=True),
+            **{job.outputs[name]: update for name, update in shown.items()},
         }
-        return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
 
-    def open_address(self, run: str | None) -> Updates:
+    def open_address(self, run: str | None) -> Parts | Updates:
         """Opens the run that the page's address names, or the last one, so that a reload keeps it."""
         try:
             if run == _LAST:
@@ -222,25 +211,27 @@ class HistoryTab:
         except Exception as error:
             return self._not_shown(error_line(error), first=True)
 
+    def export(self, record: Record | None) -> Parts:
+        """Writes the files of an opened run for the tab that shows it."""
+        kind = record.result.manifest.get("request", {}).get("kind", "generate") if record is not None else ""
+        job = self.jobs.get(kind)
+        if job is None:
+            return {self.line: gr.skip()}
+        return dict(zip((job.line, *job.results.downloads), job.results.export(record), strict=True))
+
     # ---- what an opened run shows ----------------------------------------------------------------
 
-    def _not_shown(self, sentence: str, *, first: bool = False) -> Updates:
+    def _not_shown(self, sentence: str, *, first: bool = False) -> Parts:
         """The sentence under the list, or under the first tab's button where the page began with it."""
         shown = next(iter(self.jobs.values())).line if first else self.line
-        changes: dict[int, Any] = {shown._id: status(sentence, tone="error")}
-        return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
+        return {shown: status(sentence, tone="error")}
 
-    def _shown(self, opened: Opened) -> Updates:
+    def _shown(self, opened: Opened) -> Parts:
         entry = opened.entry
         job = self.jobs.get(entry.kind)
         if job is None:
             raise InputError(f"There is no tab for a run of the kind {entry.kind!r} here.")
-        changes: dict[int, Any] = {
-            self.tabs._id: gr.update(selected=entry.kind),
-            self.line._id: status(),
-            **{part._id: update for part, update in job.opened(opened).items()},
-        }
-        return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
+        return {self.tabs: gr.update(selected=entry.kind), self.line: status(), **job.opened(opened)}
 
 
 def compared(runs: Sequence[Opened]) -> dict[str, Any]:

@@ -30,7 +30,7 @@ from webdemo.ui.text.words import cancelled_line, error_line, progress_line
 from webdemo.ui.visitor import visitor
 
 from .grids import BASIC, PRESETS, Grids, Kind
-from .results import QUIET, Results, Updates
+from .results import QUIET, Parts, Results, Updates
 from .sampling import Sampling
 
 log = logging.getLogger(__name__)
@@ -169,9 +169,8 @@ class JobTab(ABC):
             self.sampling.wire(self.results.another, self.go)
         self.wire_start(self.start, triggers, first=self.first)
         self.stop.click(self.cancel, queue=False, **QUIET)
-        undone = {part._id: part for part in (*self.parts(), self.trail, self.results.back)}
-        self.undone = list(undone.values())
-        back = self.results.back.click(self.go_back, inputs=[self.record, self.trail], outputs=self.undone, **QUIET)
+        undone = list({part._id: part for part in (*self.parts(), self.trail, self.results.back)}.values())
+        back = self.results.back.click(self.go_back, inputs=[self.record, self.trail], outputs=undone, **QUIET)
         self.results.hand_out(back)
         self.grids.wire()
 
@@ -311,7 +310,7 @@ class JobTab(ABC):
         ready = (gr.update(interactive=True) for _ in self.starts())
         return *ready, gr.update(interactive=False), trail, gr.update(visible=len(trail) > 1)
 
-    def go_back(self, record: Record | None, trail: list[str]) -> Updates:
+    def go_back(self, record: Record | None, trail: list[str]) -> Parts:
         """Opens the run before the one that is shown, with all its settings, from the history."""
         if record is not None and trail[-1:] == [record.result.run]:
             trail = trail[:-1]
@@ -321,8 +320,7 @@ class JobTab(ABC):
             found = self.opened(self.page.history.open(trail[-1], visitor().owner))
         except Exception as error:
             found = {self.line: status(error_line(error), tone="error")}
-        found |= {self.trail: trail, self.results.back: gr.update(visible=len(trail) > 1)}
-        return tuple(found.get(part, gr.skip()) for part in self.undone)
+        return found | {self.trail: trail, self.results.back: gr.update(visible=len(trail) > 1)}
 
     def cancel(self, request: gr.Request) -> None:
         """Stops the session's run within one denoising step, or as soon as what it needs was read."""

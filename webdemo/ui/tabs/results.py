@@ -50,6 +50,8 @@ DRAWN = {"result.film": make_film, "result.figure": make_figure}
 """What is drawn of a result when its button is pressed, by the key of the button's text."""
 
 Updates = tuple[Any, ...]
+Parts = dict[Any, Any]
+"""Updates by the components that they change; the others stay."""
 
 
 class Results:
