@@ -135,6 +135,23 @@ class JobTab(ABC):
     def _id(self, name: str) -> str:
         return self.prefix + name
 
+    def lay_out(self, ask: Callable[[], None], settings: Callable[[], None], **stage: Any) -> None:
+        """The tab in two columns: what is asked for, its figures and the settings; and the stage.
+
+        Args:
+            ask: lays out what is asked for.
+            settings: lays out the settings.
+            stage: options of :meth:`~.results.Results.build_stage`.
+        """
+        with gr.Row(elem_classes="pd-lab", equal_height=False):
+            with gr.Column(elem_classes="pd-controls", min_width=0):
+                with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
+                    ask()
+                self.results.build_readouts()
+                with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
+                    settings()
+            self.results.build_stage(compare=self.grids.build, **stage)
+
     def build_go(self, verb: str, beside: Callable[[], None] = lambda: None) -> None:
         """The buttons that start a run and cancel it, with what ``beside`` lays out between them, and the line."""
         with gr.Row(elem_classes="pd-go"):

@@ -109,20 +109,15 @@ class PastPanel(SourcePanel):
 
 
 class PredictTab(JobTab):
-    """A past → its future.
-
-    Args:
-        page: what the tabs share.
-        examples: (name, file) of example motions; those that are shipped by default.
-    """
+    """A past → its future."""
 
     label = "Predict"
     named = "tabs.predict"
     prefix = "predict-"
 
-    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
+    def __init__(self, page: PageContext) -> None:
         super().__init__(page)
-        self.past = PastPanel(self.results, self.prefix, examples)
+        self.past = PastPanel(self.results, self.prefix)
 
     def request(self, fields: Mapping[str, Any]) -> Any:
         """A :class:`PredictRequest`; raises InputError where none can be made of the fields."""
@@ -165,15 +160,7 @@ class PredictTab(JobTab):
 
     def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
         """See :meth:`JobTab.build`."""
-        with gr.Row(elem_classes="pd-lab", equal_height=False):
-            with gr.Column(elem_classes="pd-controls", min_width=0):
-                with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-                    self.past.build()
-                    self.past.build_animation()
-                    self.build_go(say("predict.go"))
-                self.results.build_readouts()
-                self._settings()
-            self.results.build_stage(compare=self.grids.build, another=False)
+        self.lay_out(self._ask, self._settings, another=False)
         self.controls = {
             "source": self.past.state,
             "marker": self.past.marker,
@@ -191,29 +178,33 @@ class PredictTab(JobTab):
             **QUIET,
         )
 
+    def _ask(self) -> None:
+        self.past.build()
+        self.past.build_animation()
+        self.build_go(say("predict.go"))
+
     def _settings(self) -> None:
-        with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-            self.past.build_marker()
-            self.seconds = gr.Slider(
-                *method(PredictRequest.model).seconds,
-                value=PredictRequest.seconds,
-                step=0.5,
-                label=say("predict.seconds"),
-                elem_id="predict-seconds",
-                buttons=[],
+        self.past.build_marker()
+        self.seconds = gr.Slider(
+            *method(PredictRequest.model).seconds,
+            value=PredictRequest.seconds,
+            step=0.5,
+            label=say("predict.seconds"),
+            elem_id="predict-seconds",
+            buttons=[],
+        )
+        with gr.Row(elem_classes="pd-rows"):
+            self.model = gr.Dropdown(
+                predict_choices(),
+                value=PredictRequest.model,
+                label=say("react.method"),
+                elem_id="predict-method",
+                min_width=0,
+                filterable=False,
             )
-            with gr.Row(elem_classes="pd-rows"):
-                self.model = gr.Dropdown(
-                    predict_choices(),
-                    value=PredictRequest.model,
-                    label=say("react.method"),
-                    elem_id="predict-method",
-                    min_width=0,
-                    filterable=False,
-                )
-            about, _ = self._of_method(PredictRequest.model)
-            self.about = gr.HTML(about, elem_id="predict-about")
-            self.seed = seed_field(self.prefix, "predict.seed_info", visible="hidden")
+        about, _ = self._of_method(PredictRequest.model)
+        self.about = gr.HTML(about, elem_id="predict-about")
+        self.seed = seed_field(self.prefix, "predict.seed_info", visible="hidden")
 
     def restored(self) -> Sequence[Any]:
         """The file and its animation."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import gradio as gr
@@ -41,21 +40,16 @@ _STREAM = """(method) => {
 
 
 class ReactTab(JobTab):
-    """One person → two people.
-
-    Args:
-        page: what the tabs share.
-        examples: (name, file) of example actors; those that are shipped by default.
-    """
+    """One person → two people."""
 
     label = "React"
     named = "tabs.react"
     prefix = "react-"
 
-    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
+    def __init__(self, page: PageContext) -> None:
         super().__init__(page)
         self.sampling: Sampling = Sampling(self.prefix)
-        self.actor = ActorPanel(self.results, self.prefix, examples)
+        self.actor = ActorPanel(self.results, self.prefix)
 
     def request(self, fields: Mapping[str, Any]) -> ReactRequest:
         """See :meth:`JobTab.request`."""
@@ -85,13 +79,7 @@ class ReactTab(JobTab):
 
     def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
         """See :meth:`JobTab.build`."""
-        with gr.Row(elem_classes="pd-lab", equal_height=False):
-            with gr.Column(elem_classes="pd-controls", min_width=0):
-                self._ask()
-                self.results.build_readouts()
-                with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-                    self.sampling.build()
-            self.results.build_stage(compare=self.grids.build)
+        self.lay_out(self._ask, self.sampling.build)
         self.controls = {
             "source": self.actor.state,
             "person": self.actor.person,
@@ -116,19 +104,18 @@ class ReactTab(JobTab):
         return [self.role, form.steps, form.guidance, form.damping, self.prompt, self.about, self.stream]
 
     def _ask(self) -> None:
-        with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-            self.actor.build(self._live)
-            self.actor.build_trim()
-            self.prompt = gr.Textbox(
-                label=_WORDS,
-                placeholder="One person waves and the other waves back.",
-                lines=1,  # so that Enter generates; the style sheet gives it the height of three
-                max_lines=6,
-                elem_id="react-prompt",
-            )
-            self.build_go(say("react.go"), self._stream)
-            with gr.Accordion(say("react.advanced"), open=False, elem_id="react-advanced", elem_classes="pd-advanced"):
-                self._advanced()
+        self.actor.build(self._live)
+        self.actor.build_trim()
+        self.prompt = gr.Textbox(
+            label=_WORDS,
+            placeholder="One person waves and the other waves back.",
+            lines=1,  # so that Enter generates; the style sheet gives it the height of three
+            max_lines=6,
+            elem_id="react-prompt",
+        )
+        self.build_go(say("react.go"), self._stream)
+        with gr.Accordion(say("react.advanced"), open=False, elem_id="react-advanced", elem_classes="pd-advanced"):
+            self._advanced()
 
     def _live(self) -> None:
         self.live = LivePanel(elem_id="react-live")

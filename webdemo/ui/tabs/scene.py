@@ -92,13 +92,7 @@ class SceneTab(JobTab):
 
     def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
         """See :meth:`JobTab.build`."""
-        with gr.Row(elem_classes="pd-lab", equal_height=False):
-            with gr.Column(elem_classes="pd-controls", min_width=0):
-                self._ask()
-                self.results.build_readouts()
-                with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-                    self.sampling.build()
-            self.results.build_stage(compare=self.grids.build, below=self._story)
+        self.lay_out(self._ask, self.sampling.build, below=self._story)
         self.controls = {"prompt": self.prompt, "story": self.line_up, **self.sampling.controls}
         self.wire([self.go.click, self.prompt.submit], record)
         self._wire_parts()
@@ -106,18 +100,16 @@ class SceneTab(JobTab):
         self.reading.follow(self.prompt, **QUIET)
 
     def _ask(self) -> None:
-        with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-            self.prompt = gr.Textbox(
-                label=say("scene.prompt"), placeholder=EXAMPLES[0][1], lines=1, max_lines=8, elem_id=self._id("prompt")
-            )
-            with gr.Row(elem_classes="pd-chips"):
-                self.chips = [
-                    chip(worded("examples", name), elem_id=self._id(f"example-{i}"))
-                    for i, (name, _) in enumerate(EXAMPLES)
-                ]
-                self.last = chip(say("scene.last"), elem_id=self._id("last"))
-            self.reading = Reading(elem_id=self._id("reading"), elem_classes="pd-reading")
-            self.build_go(say("scene.go"))
+        self.prompt = gr.Textbox(
+            label=say("scene.prompt"), placeholder=EXAMPLES[0][1], lines=1, max_lines=8, elem_id=self._id("prompt")
+        )
+        with gr.Row(elem_classes="pd-chips"):
+            self.chips = [
+                chip(worded("examples", name), elem_id=self._id(f"example-{i}")) for i, (name, _) in enumerate(EXAMPLES)
+            ]
+            self.last = chip(say("scene.last"), elem_id=self._id("last"))
+        self.reading = Reading(elem_id=self._id("reading"), elem_classes="pd-reading")
+        self.build_go(say("scene.go"))
 
     def _story(self) -> None:
         self.line_up = StoryLine(elem_id=self._id("story"), elem_classes="pd-story")
