@@ -109,7 +109,7 @@ def test_the_list_is_searched_and_says_why_it_is_empty() -> None:
     book = Book()
     empty = tab(book).refresh([])[0]["value"]
     assert empty["empty"] == EMPTY and empty["removed"] == 0
-    asked = {"words": "hug", "starred": True, "kind": None, "tag": "a"}
+    asked = {"words": "hug", "starred": True, "kind": "", "tag": "a"}
     found = press(tab(book), "search", search=asked).view["value"]
     assert found["empty"] == NOTHING_FOUND
     assert book.done[-1] == Search(words="hug", starred=True, tag="a", limit=STEP)
@@ -154,7 +154,7 @@ def test_an_export_says_what_is_in_it(tmp_path: Path) -> None:
 )
 def test_what_a_notebook_never_sends_is_refused(data: Any) -> None:
     with pytest.raises(InputError, match="something unknown"):
-        Action(data)
+        Action.read(data)
 
 
 def test_a_history_that_cannot_be_read_is_a_sentence() -> None:

@@ -11,7 +11,7 @@ import gradio as gr
 from motion import InputError
 from webdemo.inference.run import Result
 from webdemo.ui.components.exports import Record
-from webdemo.ui.components.notebook import Action, NotebookView, shown
+from webdemo.ui.components.notebook import UNKNOWN, Action, NotebookView, shown
 from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Found, HistoryLike, Opened, Search, Usage
@@ -120,8 +120,8 @@ class HistoryTab:
         line, address, saved = gr.skip(), gr.update(visible=False), gr.skip()
         search = Search()
         try:
-            action = Action(event._data)
-            search, owner = action.search, visitor().owner
+            action = Action.read(event._data)
+            search, owner = action.wanted, visitor().owner
             if action.act == "link":
                 link, until = self._link(action.one, owner)
                 line, address = status(until, tone="done"), gr.update(value=link, visible=True)
@@ -158,9 +158,9 @@ class HistoryTab:
             ended = self.history.revoke(run, owner)
             return "Its link no longer works." if ended == 1 else f"{ended} links to it no longer work."
         if action.act == "describe":
-            self.history.describe(run, owner, **action.fields)
+            self.history.describe(run, owner, title=action.title, tags=action.tags, note=action.note)
             return "Saved."
-        raise InputError("The notebook sent something unknown: reload the page.")
+        raise InputError(UNKNOWN)
 
     def _export(self, runs: Sequence[str], owner: str) -> Updates:
         """Writes runs into one file; a line on it, and the change of the button that gives it."""
@@ -176,14 +176,14 @@ class HistoryTab:
     def open(self, event: gr.EventData) -> Parts:
         """Shows a run in its tab, with all controls as they were."""
         try:
-            return self._shown(self.history.open(Action(event._data).one, visitor().owner))
+            return self._shown(self.history.open(Action.read(event._data).one, visitor().owner))
         except Exception as error:
             return self._not_shown(error_line(error))
 
     def compare(self, event: gr.EventData) -> Parts:
         """Shows the first sample of several runs as a grid, in the tab of the first."""
         try:
-            action = Action(event._data)
+            action = Action.read(event._data)
             runs = [self.history.open(run, visitor().owner) for run in action.ids[: MOST + 1]]
             job = self.jobs.get(runs[0].entry.kind) if runs else None
             if job is None:

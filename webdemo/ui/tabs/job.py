@@ -44,11 +44,6 @@ _ASKED = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping"
 Watch = Callable[[Progress], dict[str, Any] | None]
 
 
-def total(result: Result) -> float:
-    """Seconds that a result took."""
-    return result.timings.get("total", sum(result.timings.values()))
-
-
 class JobTab(ABC):
     """A tab that turns its controls into a request, runs it and shows the result.
 
@@ -354,7 +349,7 @@ class JobTab(ABC):
         """Updates that show a result, by the names of the outputs."""
         return {
             "player": show(result_payload(result, title=title)),
-            "line": status(made_line(result, total(result)), tone="done") + notes_lines(result),
+            "line": status(made_line(result), tone="done") + notes_lines(result),
             "under": gr.update(visible=True),
             "readouts": readout_panel(result),
             "record": Record(result, title),

@@ -35,9 +35,14 @@ def status(line: str = "", *, tone: str = "quiet") -> str:
     return f'<p class="pd-status pd-{tone}" role="{role}">{text(line)}</p>'
 
 
-def made_line(result: Result, spent: float) -> str:
+def total(result: Result) -> float:
+    """Seconds that a result took."""
+    return result.timings.get("total", sum(result.timings.values()))
+
+
+def made_line(result: Result) -> str:
     """How many samples were made, in how many seconds, and by which of several tries."""
-    count, tries = len(result.duets), result.manifest.get("tries")
+    count, tries, spent = len(result.duets), result.manifest.get("tries"), total(result)
     made = "Made" if count == 1 else f"{count} samples made"
     within = f" in {seconds(spent)}" if spent else ""
     chosen = f", try {tries['won']} of {tries['made']}" if tries else ""
