@@ -6,12 +6,13 @@ import json
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import gradio as gr
 
 from motion import InputError
-from webdemo.ui.components.exports import KINDS, PURPOSES, Record, file_name, for_download, write_record
+from webdemo.ui.components.exports import KINDS, PURPOSES, Record, file_name, for_download, without_place, write_record
 from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film
 from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.context import PageContext
@@ -171,6 +172,7 @@ class Results:
         label = say(key)
         off = gr.update(value=None, interactive=False)
         done = [0.0]
+        folder = Path()
         try:
             folder = self.page.shelf.folder()
             with ThreadPoolExecutor(1) as pool:
@@ -180,7 +182,8 @@ class Results:
                     wait([drawing], timeout=0.5)
             path = drawing.result()
         except Exception as error:
-            yield status(error_line(error), tone="error"), gr.update(value=label), gr.skip()
+            line = error_line(without_place(error, folder))
+            yield status(line, tone="error"), gr.update(value=label), gr.skip()
             return
         yield gr.skip(), gr.update(value=label), gr.update(value=path, interactive=True)
 
