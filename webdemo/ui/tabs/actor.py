@@ -18,7 +18,7 @@ from webdemo.ui.components.settings import FittedSlider
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import error_line, text
+from webdemo.ui.text.words import error_line
 
 from .results import QUIET, Updates
 from .source import SourcePanel
@@ -115,7 +115,7 @@ class ActorPanel(SourcePanel):
             gr.update(choices=source.choices, visible=len(source.people) > 1, value=source.chosen),
             gr.update(maximum=last, value=begin),
             gr.update(maximum=last, value=min(end, last)),
-            _found(source),
+            status(source.found or "Taken from a result or the history, so there was nothing to detect."),
         ]
 
     def preview(self, source: Source | None, person: str, start: float, end: float) -> Updates:
@@ -167,11 +167,3 @@ def actor_source(opened: Opened) -> Source:
     duet = opened.result.duets[0]
     assert isinstance(duet, Duet)  # as every reaction is
     return Source(asked.get("actor", {}).get("name") or opened.entry.title, (duet.people[place],))
-
-
-def _found(source: Source) -> str:
-    """Describes as HTML how a source's file was read: one line, then its joints beside SMPL's."""
-    if source.found is None:
-        return status("Taken from a result or the history, so there was nothing to detect.")
-    pairs = " · ".join(f"{text(theirs)} → {text(ours)}" for theirs, ours in source.found.joints)
-    return f'{status(source.found.line)}<p class="pd-timings">{pairs}</p>'
