@@ -34,7 +34,6 @@ class CameraPanel(Part):
     accepts = TypeAdapter(Text | None)
     template = CAMERA_FOLDER / "camera.html"
     script = on_load(_MOUNT, CAMERA_FOLDER)
-    sends = ("string", "landmarks of a film, as the page packs them")
 
 
 def film_source(text: str | None) -> Source:

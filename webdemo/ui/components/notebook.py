@@ -121,7 +121,6 @@ class NotebookView(Part):
     accepts_event = TypeAdapter(Action)
     template = NOTEBOOK_FOLDER / "notebook.html"
     script = on_load(MOUNT, NOTEBOOK_FOLDER / "notebook.js")
-    sends = ("object", "runs of a history, or null")
 
 
 def shown(found: Found, *, empty: str, removed: int = 0, search: Search | None = None) -> dict[str, Any]:

@@ -44,7 +44,6 @@ class MotionPlayer(Part):
     style = "& { min-height: 320px; } .pdd:not(.pdd-styled) { visibility: hidden; }"
     script = on_load(_MOUNT, PLAYER_FOLDER / "main.js", PLOTLY_JS, EMPTY_TEXT)
     declared: ClassVar = {"busy": "", "progress": None}
-    sends = ("object", "motion for the player, or null")
 
 
 def busy(text: str = "", *, progress: float | None = None) -> dict[str, Any]:
