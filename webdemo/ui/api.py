@@ -25,8 +25,8 @@ from .context import PageContext
 from .places import READING
 
 Answer = tuple[dict[str, Any], list[str]]
-Inputs = dict[str, gr.components.Component]
-"""What a job takes, by the names of its arguments."""
+Inputs = dict[str, Any]
+"""Components for what a job takes, by the names of its arguments."""
 RATE = "true frames a second of a file that gives none or a wrong one; 0 for its own or the usual rate of its kind"
 UP = "what points up in the file: x, y, z, -x, -y or -z; empty to find it"
 ORDER = "order of joints without names, such as h36m17; empty to find it"

@@ -12,7 +12,16 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from webdemo.ui.components.exports import KINDS, PURPOSES, Record, file_name, for_download, without_place, write_record
+from webdemo.ui.components.exports import (
+    KINDS,
+    PURPOSES,
+    Record,
+    file_name,
+    for_download,
+    offered,
+    without_place,
+    write_record,
+)
 from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film
 from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.context import PageContext
@@ -138,13 +147,12 @@ class Results:
 
     def _download(self, key: str) -> None:
         """The button of one kind of file."""
-        kind = next(kind for kind in KINDS if kind.key == key)
-        self._buttons[key] = self._saved(worded("files", kind.label), key.replace(".", "-"), visible=kind.offered())
+        self._buttons[key] = self._saved(worded("files", KINDS[key]), key.replace(".", "-"), visible=offered(key))
 
     @property
     def downloads(self) -> list[gr.DownloadButton]:
         """The buttons of all kinds of files, in the order of :data:`KINDS`."""
-        return [self._buttons[kind.key] for kind in KINDS]
+        return [self._buttons[kind] for kind in KINDS]
 
     def wire(self, record: gr.State, line: gr.HTML) -> None:
         """Wires what hands the result in ``record`` out; ``line`` says how that went."""
@@ -224,5 +232,5 @@ class Results:
                 status(f"The motion is ready, but its files are not. {error_line(error)}", tone="error"),
                 *(off for _ in KINDS),
             )
-        offered = (found.get(kind.key) for kind in KINDS)
-        return (gr.skip(), *(gr.update(value=file, interactive=file is not None) for file in offered))
+        given = (found.get(kind) for kind in KINDS)
+        return (gr.skip(), *(gr.update(value=file, interactive=file is not None) for file in given))
