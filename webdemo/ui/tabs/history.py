@@ -78,7 +78,6 @@ class HistoryTab:
         self._wire(demo, tab, record)
 
     def _wire(self, demo: gr.Blocks, tab: gr.Tab, record: gr.State) -> None:
-        self.record = record
         quick: dict[str, Any] = {"concurrency_limit": 8, "concurrency_id": "history", **QUIET}
         shown = [self.view, self.who, self.line, self.address, self.saved, self.removed]
         tab.select(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
