@@ -180,7 +180,7 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
         react = jobs["react"]
         assert isinstance(react, ReactTab)
         react.actor.wire_arrival(shown["react"], record, react.label)
-        predict.wire_page(shown["predict"], tabs, [job.results.onward for job in jobs.values()])
+        predict.wire_page(shown["predict"], tabs, [job.results for job in jobs.values()])
         if page.history is not None:
             with gr.Tab(say("tabs.history"), id=HISTORY.lower()) as past:
                 HistoryTab(page, jobs, tabs).build(demo, past, record)

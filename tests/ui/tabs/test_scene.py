@@ -185,17 +185,18 @@ def test_futures_begin_at_the_playhead_and_one_is_taken(tab: SceneTab) -> None:
     assert [(b["words"], b["seconds"]) for b in beats] == [("They meet.", 2.0), ("They bow.", 3.0)]
     assert last["prompt"] == "They meet. They bow."
     assert last["player"]["value"]["futures"] == 60
-    player, line, kept, past = tab.take_shown(last["record"], ["run"], '{"sample": 2}')
-    assert kept.result.duets == found.duets[2:] and "number 3" in line and "futures" not in player["value"]
-    assert past == ["run", found.run], "Undo opens the choice again"
+    taken = tab.take_shown(last["record"], ["run"], '{"sample": 2}')
+    assert taken[tab.record].result.duets == found.duets[2:] and "number 3" in taken[tab.line]
+    assert "futures" not in taken[tab.results.player]["value"]
+    assert taken[tab.trail] == ["run", found.run], "Undo opens the choice again"
 
 
 def test_parts_need_a_motion_and_a_span(tab: SceneTab) -> None:
     record = generate(tab)[-1]["record"]
     assert "There is no motion yet" in part(tab, "futures", None, None)["line"]
     assert "No span is selected" in part(tab, "span", record, story_value((Beat("x"),)))["line"]
-    assert "There is no motion yet" in tab.take_last(None)[1]
-    assert tab.take_last(record)[0]["value"]["samples"]
+    assert "There is no motion yet" in tab.take_last(None)[tab.line]
+    assert tab.take_last(record)[tab.results.player]["value"]["samples"]
 
 
 def test_a_kept_run_opens_with_its_story(tab: SceneTab) -> None:

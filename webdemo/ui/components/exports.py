@@ -71,14 +71,14 @@ class Record:
     Attributes:
         result: what the engine gave.
         prompt: names the files.
-        exported: whether its files were written.
+        files: what was written of it for download, by kind.
         compared: the results of a grid by the names of their cells; ``result`` is the first of them.
         grid: columns, rows, names and title of the grid that they stand in; empty for none.
     """
 
     result: Result = field(repr=False)
     prompt: str
-    exported: bool = False
+    files: Mapping[str, Path] = field(default_factory=dict, repr=False)
     compared: Mapping[str, Result] = field(default_factory=dict, repr=False)
     grid: Mapping[str, Any] = field(default_factory=dict)
 

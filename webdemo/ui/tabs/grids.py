@@ -135,6 +135,7 @@ class Grids:
             **grid_shown(grid, made, title) | tab.laid_out(made.values()) | tab.beside_grid(made, asked),
             line=status(f"{len(wanted)} results done in {spent}.", tone="done") + "".join(notes),
             under=gr.update(visible=True),
+            **tab.results.fresh(),
         )
 
     def opened(self, run: Opened) -> dict[str, Any]:
@@ -155,8 +156,10 @@ def grid_shown(grid: Grid, made: Mapping[str, Result], title: str) -> dict[str, 
     """Updates that show a grid."""
     results = list(made.values())
     about = {"columns": grid.columns, "rows": grid.rows, "names": list(made), "title": title}
+    record = Record(results[0], title, compared=dict(made), grid=about)
     return {
         "player": show(grid_payload(grid, results, title=title)),
         "readouts": grid_table(made),
-        "record": Record(results[0], title, compared=dict(made), grid=about),
+        "record": record,
+        "own": record,
     }

@@ -10,7 +10,6 @@ import gradio as gr
 
 from motion import InputError
 from webdemo.inference.run import Result
-from webdemo.ui.components.exports import Record
 from webdemo.ui.components.notebook import UNKNOWN, Action, NotebookView, shown
 from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
@@ -89,12 +88,9 @@ class HistoryTab:
         parts = [self.tabs, record, self.line, *(c for job in self.jobs.values() for c in job.parts())]
         self.opened = list({part._id: part for part in parts}.values())
         named = gr.Textbox(visible=False)
-        chosen = self.view.submit(self.open, outputs=self.opened, **quick)
-        compared = self.view.like(self.compare, outputs=self.opened, **quick)
-        address = demo.load(self.open_address, inputs=named, outputs=self.opened, js=_NAMED, **quick)
-        handed = [self.line, *(part for job in self.jobs.values() for part in (job.line, *job.results.downloads))]
-        for event in (chosen, compared, address):
-            event.then(self.export, inputs=record, outputs=handed, **quick)
+        self.view.submit(self.open, outputs=self.opened, **quick)
+        self.view.like(self.compare, outputs=self.opened, **quick)
+        demo.load(self.open_address, inputs=named, outputs=self.opened, js=_NAMED, **quick)
 
     # ---- events ----------------------------------------------------------------------------------
 
@@ -187,7 +183,7 @@ class HistoryTab:
             job = self.jobs.get(runs[0].entry.kind) if runs else None
             if job is None:
                 raise InputError("Choose two to nine runs first.")
-            shown = compared(runs) | job.laid_out(run.result for run in runs)
+            shown = compared(runs) | job.results.fresh() | job.laid_out(run.result for run in runs)
         except Exception as error:
             return self._not_shown(error_line(error))
         return {
@@ -209,14 +205,6 @@ class HistoryTab:
             return self._shown(self.history.open(run, visitor().owner))
         except Exception as error:
             return self._not_shown(error_line(error), first=True)
-
-    def export(self, record: Record | None) -> Parts:
-        """Writes the files of an opened run for the tab that shows it."""
-        kind = record.result.manifest.get("request", {}).get("kind", "generate") if record is not None else ""
-        job = self.jobs.get(kind)
-        if job is None:
-            return {self.line: gr.skip()}
-        return dict(zip((job.line, *job.results.downloads), job.results.export(record), strict=True))
 
     # ---- what an opened run shows ----------------------------------------------------------------
 

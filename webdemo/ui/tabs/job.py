@@ -171,19 +171,21 @@ class JobTab(ABC):
             **self.starts(),
             "stop": self.stop,
             "under": self.results.under,
+            "menu": self.results.menu,
+            "address": self.results.address,
             "readouts": self.results.readouts,
             "record": self.record,
+            "own": self.results.own,
             **({"laid": self.sampling.laid} if self.sampling else {}),
             **self.more_outputs(),
         }
-        self.results.wire(self.record, self.line)
+        self.results.wire(self.line)
         if self.sampling is not None:
             self.sampling.wire(self.results.another, self.go)
         self.wire_start(self.start, triggers, first=self.first)
         self.stop.click(self.cancel, queue=False, **QUIET)
         undone = list({part._id: part for part in (*self.parts(), self.trail, self.results.back)}.values())
-        back = self.results.back.click(self.go_back, inputs=[self.record, self.trail], outputs=undone, **QUIET)
-        self.results.hand_out(back)
+        self.results.back.click(self.go_back, inputs=[self.results.own, self.trail], outputs=undone, **QUIET)
         self.grids.wire()
 
     def wire_start(
@@ -214,8 +216,7 @@ class JobTab(ABC):
         )
         # Only now would a press be taken: while the event goes on, Gradio drops it.
         rested = [*self.starts().values(), self.stop, self.trail, self.results.back]
-        run.then(self.rest, inputs=[self.record, self.trail], outputs=rested, queue=False, **QUIET)
-        self.results.hand_out(run)
+        run.then(self.rest, inputs=[self.results.own, self.trail], outputs=rested, queue=False, **QUIET)
 
     def start(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
         """Runs what the controls ask for; yields updates of the page."""
@@ -347,12 +348,15 @@ class JobTab(ABC):
 
     def shown(self, result: Result, title: str) -> dict[str, Any]:
         """Updates that show a result, by the names of the outputs."""
+        record = Record(result, title)
         return {
             "player": show(result_payload(result, title=title)),
             "line": status(made_line(result), tone="done") + notes_lines(result),
             "under": gr.update(visible=True),
             "readouts": readout_panel(result),
-            "record": Record(result, title),
+            "record": record,
+            "own": record,
+            **self.results.fresh(),
             **self.laid_out([result]),
         }
 

@@ -28,7 +28,7 @@ from webdemo.view.payload import player_payload
 
 from .grids import methods_kind
 from .job import JobTab
-from .results import PRESS, QUIET
+from .results import PRESS, QUIET, Results
 from .sampling import seed_field
 from .source import SourcePanel
 
@@ -212,18 +212,18 @@ class PredictTab(JobTab):
 
     # ---- events ----------------------------------------------------------------------------------
 
-    def wire_page(self, tab: gr.Tab, tabs: gr.Tabs, onwards: Sequence[gr.Button]) -> None:
+    def wire_page(self, tab: gr.Tab, tabs: gr.Tabs, stages: Sequence[Results]) -> None:
         """Wires what happens as the tab is opened.
 
         Args:
             tab: this one, among ``tabs``.
             tabs: of the page.
-            onwards: buttons of any tab that take the last result here, as a past that goes on at once.
+            stages: of all tabs, whose results can be taken here, as a past that goes on at once.
         """
         load = self.past.load_options
         self.past.wire_arrival(tab, self.record, self.label)
-        for button in onwards:
-            taken = button.click(self.past.take_result, inputs=self.record, **load)
+        for stage in stages:
+            taken = stage.onward.click(self.past.take_result, inputs=stage.own, **load)
             taken.then(None, outputs=self.past.file, js="() => null", **QUIET)
             # Only now is the tab opened, which finds the result on it.
             chosen = taken.then(lambda: gr.update(selected=self.label.lower()), outputs=tabs, queue=False, **QUIET)

@@ -27,7 +27,7 @@ from webdemo.ui.text.words import error_line, tries_line
 from webdemo.view.payload import player_payload
 
 from .job import JobTab
-from .results import QUIET, Updates
+from .results import QUIET, Parts, Updates
 from .sampling import Sampling
 
 EXAMPLES = (
@@ -154,17 +154,15 @@ class SceneTab(JobTab):
         self.line_up.input(edited, inputs=self.line_up, **last)
         self.prompt.input(None, inputs=self.line_up, outputs=self.line_up, js=_TYPED, **QUIET)
         self.prompt.blur(written, inputs=[self.prompt, self.line_up], **last)
-        player, under, readouts = self.results.player, self.results.under, self.results.readouts
-        changed = [player, self.line, self.record, self.trail]
-        shown = [self.record, self.trail, self.shown_at]
+        changed = [*self.outputs.values(), self.trail]
+        shown = [self.results.own, self.trail, self.shown_at]
         self.take.click(self.take_shown, inputs=shown, js=_READ_PLACE, outputs=changed, **QUIET)
-        last_shown = [player, self.line, under, readouts]
-        self.last.click(self.take_last, inputs=self.record, outputs=last_shown, **QUIET)
+        self.last.click(self.take_last, inputs=self.record, outputs=changed, **QUIET)
 
     def _wire_parts(self) -> None:
         kept = self.remake.click(None, js=_KEEP_POSE, **QUIET).then
         for trigger, part in ((kept, "span"), (self.futures.click, "futures")):
-            more = [self.words, self.record, self.shown_at]
+            more = [self.words, self.results.own, self.shown_at]
             self.wire_start(self._starter(part), trigger, more=more, first=_READ_PLACE)
 
     def shown(self, result: Result, title: str) -> dict[str, Any]:
@@ -205,7 +203,8 @@ class SceneTab(JobTab):
         """What makes a part of the motion: the selected "span" again, or "futures" from the player's frame on."""
 
         def start(values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
-            fields = self.fields(values) | {"part": part, "words": values[self.words], "record": values[self.record]}
+            record = values[self.results.own]
+            fields = self.fields(values) | {"part": part, "words": values[self.words], "record": record}
             yield from self.run(str(request.session_hash), fields | place_of(values[self.shown_at]))
 
         return start
@@ -217,30 +216,31 @@ class SceneTab(JobTab):
         line = f"{tries_line(event)}Beat {event.beat + 1} is there. Step {event.step} of {event.total}."
         return {"player": show(player_payload(event.motion, title=title)), "line": status(line, tone="busy")}
 
-    def take_last(self, record: Record | None) -> Updates:
+    def take_last(self, record: Record | None) -> Parts:
         """Shows the session's last result here, of whichever tab, so that parts of it can be made again."""
         try:
             shown_duet(record, 0)
         except Exception as error:
-            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip()
+            return {self.line: status(error_line(error), tone="error")}
         assert record is not None
         shown = self.shown(record.result, record.prompt)
-        line = status("Select a span of it, or ask for continuations.")
-        return shown["player"], line, shown["under"], shown["readouts"]
+        shown["line"] = status("Select a span of it, or ask for continuations.")
+        return {self.outputs[name]: shown[name] for name in ("player", "line", "under", "readouts", "own")}
 
-    def take_shown(self, record: Record | None, trail: list[str], shown: str) -> Updates:
+    def take_shown(self, record: Record | None, trail: list[str], shown: str) -> Parts:
         """Keeps one of several futures as the motion; the choice can be gone back to."""
         try:
             sample = place_of(shown)["sample"]
             shown_duet(record, sample)
         except Exception as error:
-            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip()
+            return {self.line: status(error_line(error), tone="error")}
         assert record is not None
         if len(record.result.duets) == 1:
-            return gr.skip(), status("This is the motion already."), gr.skip(), gr.skip()
-        kept = Record(only_sample(record.result, sample), record.prompt)
-        line = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
-        return self.shown(kept.result, record.prompt)["player"], line, kept, [*trail, record.result.run]
+            return {self.line: status("This is the motion already.")}
+        kept = self.shown(only_sample(record.result, sample), record.prompt)
+        kept["line"] = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
+        found = {self.outputs[name]: kept[name] for name in ("player", "line", "record", "own")}
+        return found | {self.trail: [*trail, record.result.run]}
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the story that was asked for."""
