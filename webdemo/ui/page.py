@@ -40,7 +40,7 @@ from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
 TABS = (GenerateTab, SceneTab, ReactTab, PredictTab)
-"""A class a job, with a ``label``, the key of its shown name, ``named``, and ``build(demo, record)``."""
+"""A class a job, with a ``label``, the key of its shown name, ``named``, and ``build(record)``."""
 ENDPOINTS = (
     PredictEndpoint,
     GenerateEndpoint,
@@ -170,7 +170,7 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
         shown: dict[str, gr.Tab] = {}
         for name, job in jobs.items():
             with gr.Tab(say(job.named), id=name) as shown[name]:
-                job.build(demo, record)
+                job.build(record)
         scene, first = jobs["scene"], jobs["generate"].results.player
         shown["scene"].select(None, js=_WRITE % json.dumps(scene.prefix + "prompt"), **QUIET)
         own = scene.results.player

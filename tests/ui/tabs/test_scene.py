@@ -8,17 +8,14 @@ import numpy as np
 import pytest
 
 from motion import InputError
+from tests.ui.tab_events import built
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, sentences
-from webdemo.ui.components.exports import Record, Shelf
+from webdemo.ui.components.exports import Record
 from webdemo.ui.components.scene_parts import part_request
 from webdemo.ui.components.story import story_value
 from webdemo.ui.components.story_words import edited, lay_out, settled, story_text, written
-from webdemo.ui.context import PageContext
 from webdemo.ui.history import Entry, Kept, Opened
-from webdemo.ui.runs import Loader, Runs
 from webdemo.ui.tabs.scene import SceneTab
-
-from ..stub_engine import StubEngine
 
 SETTINGS = {"seed": 3, "samples": 1, "guidance": 4.3, "steps": 2, "damping": 0.7, "tries": 1}
 PLACE = '{"frame": 60, "sample": 0}'
@@ -26,13 +23,7 @@ PLACE = '{"frame": 60, "sample": 0}'
 
 @pytest.fixture
 def tab(tmp_path: Path) -> SceneTab:
-    engine = StubEngine()
-    tab = SceneTab(
-        PageContext(engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(tmp_path / "files"))
-    )
-    with gr.Blocks() as demo:
-        tab.build(demo)
-    return tab
+    return built(SceneTab, tmp_path / "files")
 
 
 def shown(tab: SceneTab, updates: Any) -> list[dict[str, Any]]:

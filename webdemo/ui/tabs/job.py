@@ -73,11 +73,10 @@ class JobTab(ABC):
     # ---- what a tab says -------------------------------------------------------------------------
 
     @abstractmethod
-    def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
-        """Lays out the tab inside ``demo`` and wires its events.
+    def build(self, record: gr.State | None = None) -> None:
+        """Lays out the tab and wires its events.
 
         Args:
-            demo: the page.
             record: keeps the session's last result, of this tab or another; by default a state of the tab's own.
         """
 
@@ -131,13 +130,7 @@ class JobTab(ABC):
         return self.prefix + name
 
     def lay_out(self, ask: Callable[[], None], settings: Callable[[], None], **stage: Any) -> None:
-        """The tab in two columns: what is asked for, its figures and the settings; and the stage.
-
-        Args:
-            ask: lays out what is asked for.
-            settings: lays out the settings.
-            stage: options of :meth:`~.results.Results.build_stage`.
-        """
+        """Two columns: what ``ask`` lays out, the figures and the ``settings``; and the stage with its options."""
         with gr.Row(elem_classes="pd-lab", equal_height=False):
             with gr.Column(elem_classes="pd-controls", min_width=0):
                 with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):

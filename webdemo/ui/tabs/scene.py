@@ -90,7 +90,7 @@ class SceneTab(JobTab):
 
     # ---- layout ----------------------------------------------------------------------------------
 
-    def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
+    def build(self, record: gr.State | None = None) -> None:
         """See :meth:`JobTab.build`."""
         self.lay_out(self._ask, self.sampling.build, below=self._story)
         self.controls = {"prompt": self.prompt, "story": self.line_up, **self.sampling.controls}
