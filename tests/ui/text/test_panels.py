@@ -47,7 +47,7 @@ def test_no_panel_lets_markup_or_templates_through(made: str) -> None:
 
 def test_readouts_show_what_was_before_and_what_is_better() -> None:
     made = readout_panel(result())
-    for words in ("before → after damping", "Foot skate", "Jerk", "Penetration", "Bone drift", "Contacts"):
+    for words in ("before → after damping", "Foot skate", "Jerk", "Penetration", "Bone drift"):
         assert words in made
     assert re.search(r"pd-better\">[\d.]+ → <b>", made)
     assert "nearest that it knows" in notes_lines(result())

@@ -95,11 +95,11 @@ def model_state(state: str, error: str | None = None) -> str:
 
 
 def readout_panel(result: Result) -> str:
-    """All figures of a result, behind a line: what was asked, measures, contacts, timings."""
+    """All figures of a result, behind a line: what was asked, measures, timings."""
     samples = [sides(readout) for readout in result.readouts]
     tables = ""
     if samples:
-        both = _quality_table(samples) + _relation_table(samples, result)
+        both = _quality_table(samples) + _relation_table(samples)
         tables = f'<div class="pd-tables">{both}</div>'
     figures = f"{_asked(result)}{tables}{_timings(result.timings)}"
     shown = f'<details class="pd-figures"><summary>All figures</summary>{figures}</details>'
@@ -177,35 +177,12 @@ def _quality_cell(measure: Measure, before: Summary, after: Summary) -> str:
     return f'<td class="{tone}">{old} → <b>{new}</b></td>'
 
 
-def _relation_table(samples: Sequence[tuple[Summary | None, Summary]], result: Result) -> str:
-    head = _heads(len(samples))
+def _relation_table(samples: Sequence[tuple[Summary | None, Summary]]) -> str:
     rows = "".join(
         _row(measure, "".join(f"<td><b>{_value(measure, after)}</b></td>" for _, after in samples))
         for measure in RELATION
     )
-    contacts = "".join(_contacts(i, result, head) for i in range(len(samples)))
-    return f'<div class="pd-relation">{_table("Between the two", head, rows)}{contacts}</div>'
-
-
-def _contacts(sample: int, result: Result, head: Sequence[str]) -> str:
-    found = result.readouts[sample].get("contacts")
-    if found is None:
-        return ""
-    fps = result.duets[sample].fps
-    title = "Contacts" + (f", {head[sample]}" if len(result.duets) > 1 else "")
-    items = "".join(
-        f'<li class="pd-{text(contact["kind"])}">'
-        f"<b>{_span(contact['start'] / fps, contact['stop'] / fps)} s</b> {text(contact['label'])}</li>"
-        for contact in found
-    )
-    items = items or "<li>none</li>"
-    return f'<div class="pd-contacts"><h4>{text(title)}</h4><ul>{items}</ul></div>'
-
-
-def _span(start: float, stop: float) -> str:
-    """Two times in seconds, or one where they are the same tenth."""
-    first, last = f"{start:.1f}", f"{stop:.1f}"
-    return first if first == last else f"{first}–{last}"
+    return _table("Between the two", _heads(len(samples)), rows)
 
 
 def _timings(timings: Mapping[str, float]) -> str:
