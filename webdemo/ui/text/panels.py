@@ -99,8 +99,11 @@ def readout_panel(result: Result) -> str:
     samples = [sides(readout) for readout in result.readouts]
     tables = ""
     if samples:
-        both = _quality_table(samples) + _relation_table(samples)
-        tables = f'<div class="pd-tables">{both}</div>'
+        compared = any(before is not None for before, _ in samples)
+        caption = "Quality, before → after damping and clean-up" if compared else "Quality"
+        quality = _measures(caption, QUALITY, samples)
+        relation = _measures("Between the two", RELATION, [(None, after) for _, after in samples])
+        tables = f'<div class="pd-tables">{quality}{relation}</div>'
     figures = f"{_asked(result)}{tables}{_timings(result.timings)}"
     shown = f'<details class="pd-figures"><summary>All figures</summary>{figures}</details>'
     return f'<div class="pd-readouts">{shown}</div>'
@@ -112,11 +115,6 @@ def prediction_lines(lines: Mapping[str, str]) -> str:
         f'<p class="pd-in-words">{f"<b>{text(name)}</b> " if name else ""}{text(line)}</p>'
         for name, line in lines.items()
     )
-
-
-def _heads(count: int) -> Sequence[str]:
-    """The names of the columns of so many samples."""
-    return [f"Sample {i + 1}" for i in range(count)] if count > 1 else ["Value"]
 
 
 def sides(readout: Mapping[str, Any]) -> tuple[Summary | None, Summary]:
@@ -158,31 +156,22 @@ def _plain(value: Any) -> str | None:
     return None if value is None else f"{value:g}"
 
 
-def _quality_table(samples: Sequence[tuple[Summary | None, Summary]]) -> str:
-    compared = any(before is not None for before, _ in samples)
-    caption = "Quality, before → after damping and clean-up" if compared else "Quality"
+def _measures(caption: str, measures: Sequence[Measure], samples: Sequence[tuple[Summary | None, Summary]]) -> str:
+    """A table: a row a measure, a column a sample."""
+    heads = [f"Sample {i + 1}" for i in range(len(samples))] if len(samples) > 1 else ["Value"]
     rows = "".join(
-        _row(measure, "".join(_quality_cell(measure, before or {}, after) for before, after in samples))
-        for measure in QUALITY
+        _row(measure, "".join(_cell(measure, before or {}, after) for before, after in samples)) for measure in measures
     )
-    return _table(caption, _heads(len(samples)), rows)
+    return _table(caption, heads, rows)
 
 
-def _quality_cell(measure: Measure, before: Summary, after: Summary) -> str:
+def _cell(measure: Measure, before: Summary, after: Summary) -> str:
     """The value after, and the one before where it is shown as another."""
     old, new = _value(measure, before), _value(measure, after)
     if old in ("–", new):
         return f"<td><b>{new}</b></td>"
     tone = "" if new == "–" else "pd-better" if after[measure.key] < before[measure.key] else "pd-worse"
     return f'<td class="{tone}">{old} → <b>{new}</b></td>'
-
-
-def _relation_table(samples: Sequence[tuple[Summary | None, Summary]]) -> str:
-    rows = "".join(
-        _row(measure, "".join(f"<td><b>{_value(measure, after)}</b></td>" for _, after in samples))
-        for measure in RELATION
-    )
-    return _table("Between the two", _heads(len(samples)), rows)
 
 
 def _timings(timings: Mapping[str, float]) -> str:
