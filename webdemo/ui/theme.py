@@ -92,11 +92,12 @@ document.addEventListener("keydown", shut);
 // A menu under a resting mouse is open until the mouse leaves it; a press in it keeps it open, one on its name shut.
 {
   const label = (menu) => menu?.querySelector(":scope > .label-wrap");
-  let rested = null;
+  let rested = null; // the menu that the mouse has opened
+  let closed = null; // one that stays shut until the mouse has left it
   let soon;
   const rest = (menu) => {
     const open = document.querySelector(".pd-menu > .label-wrap.open");
-    if (open && open !== label(rested)) return; // it was pressed
+    if (open && (open !== label(rested) || menu === rested)) return; // it was pressed, or the mouse is on it again
     open?.click();
     rested = menu;
     label(menu)?.click();
@@ -104,15 +105,20 @@ document.addEventListener("keydown", shut);
   document.addEventListener("pointerover", ({ pointerType, target }) => {
     const menu = pointerType === "mouse" ? target.closest(".pd-menu") : null;
     clearTimeout(soon);
-    if (menu !== rested) soon = setTimeout(rest, 200, menu);
+    if (menu !== closed) closed = null;
+    if (menu !== closed || !menu) soon = setTimeout(rest, 200, menu);
   });
   document.addEventListener("click", (event) => {
     const menu = event.isTrusted && event.target.closest(".pd-menu");
     if (!menu) return;
     const shuts = label(menu).contains(event.target) && label(menu).classList.contains("open");
     if (shuts && menu === rested) event.stopPropagation();
-    rested = shuts && menu !== rested ? menu : null;
+    else if (shuts) closed = menu;
+    rested = null;
   }, { capture: true });
+  document.addEventListener("keydown", ({ key }) => {
+    if (key === "Escape") [closed, rested] = [rested, null];
+  });
 }
 </script>"""
 
