@@ -104,7 +104,9 @@ class Action(Sent):
     def wanted(self) -> Search:
         """The search, of texts that are not too long."""
         asked = (self.search or SentSearch()).model_dump()
-        words = {name: value[:200] if isinstance(value, str) else value for name, value in asked.items()}
+        words: dict[str, Any] = {
+            name: value[:200] if isinstance(value, str) else value for name, value in asked.items()
+        }
         most = int(self.limit or 0)
         return Search(**words, limit=most if STEP <= most <= MOST_SHOWN else STEP)
 
