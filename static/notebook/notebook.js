@@ -178,7 +178,7 @@ export class Notebook {
     const done = chosen.filter((entry) => entry.state === "done");
     const able = {
       open: one?.state === "done", link: one?.state === "done", revoke: one?.links > 0,
-      again: one && one.state !== "running", stop: true, favour: Boolean(one),
+      favour: Boolean(one),
       compare: done.length > 1 && done.length === chosen.length && done.length <= 9,
       study: done.length === 2 && chosen.length === 2,
       publish: one?.state === "done",
@@ -200,7 +200,7 @@ export class Notebook {
 export function mount(element, props, watch, trigger) {
   translate(element);
   loadStyles(new URL("notebook.css", import.meta.url).href);
-  const events = { open: "submit", compare: "like", study: "edit", publish: "apply", again: "retry", stop: "stop" }; // the others are "select"
+  const events = { open: "submit", compare: "like", study: "edit", publish: "apply" }; // the others are "select"
   const notebook = new Notebook(element.querySelector(".pdn"), (action) => trigger(events[action.act] ?? "select", action));
   let shown = null;
   const sync = () => {

@@ -10,6 +10,7 @@ import { say, translate } from "../texts.js";
 
 const NAMES = { a: "A", b: "B", ab: say("reading.a_and_b") };
 const MARKS = { true: ["✓", say("reading.done")], false: ["✗", say("reading.not_done")], null: ["–", say("reading.not_measured")] };
+const SOON = 700; // milliseconds after an edit in which another may come
 
 class View {
   /** `keep` takes the component's value, and `ask` sends it to the server; `editable` plans can be edited. */
@@ -32,7 +33,7 @@ class View {
     this.length = new Length(
       this.find(".pdr-length"), lab?.querySelector("#seconds"), root.closest(".pd-ask")?.querySelector("textarea"),
     );
-    this.paths = editable ? new Paths(root, () => this.hold()) : null;
+    this.paths = editable ? new Paths(root, () => this.hold(), () => this.makeAgain()) : null;
     for (const kind of ["pointerover", "focusin"]) root.addEventListener(kind, (event) => this.point(event.target));
     for (const kind of ["pointerleave", "focusout"]) root.addEventListener(kind, () => this.point(null));
     root.addEventListener("click", (event) => this.press(event.target));
@@ -148,6 +149,18 @@ class View {
     this.draft = draft;
     this.edited = true;
     this.send();
+    this.makeAgain();
+  }
+
+  /** Makes the motion on the stage again where it is that of this text: soon, and once nothing else is made or drawn. */
+  makeAgain() {
+    clearTimeout(this.making);
+    if (!this.checks || this.checks.text !== this.asking.text) return;
+    const go = this.root.closest(".pd-ask").querySelector("button.pd-run");
+    this.making = setTimeout(() => {
+      const busy = go.disabled || this.paths.player?.directing.drawing?.held;
+      busy ? this.makeAgain() : go.click();
+    }, SOON);
   }
 
   removeAct(id) {

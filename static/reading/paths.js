@@ -5,11 +5,12 @@ import { chips } from "../player/paths/walks.js";
 import { path } from "../story/edits.js";
 
 export class Paths {
-  /** `changed` is called when the paths are others. */
-  constructor(root, changed) {
+  /** `changed` is called when the paths are others, and `drawn` when a visitor has drawn one by hand. */
+  constructor(root, changed, drawn) {
     this.root = root;
     this.list = root.parentElement.querySelector(".pdr-paths");
     this.changed = changed;
+    this.drawn = drawn;
     this.paths = [];
     this.leaving = new AbortController();
     document.addEventListener("pdd-here", () => this.meet(), { signal: this.leaving.signal });

@@ -20,8 +20,8 @@ from motion.hands import Grip
 from motion.looks import size_of
 from motion.sizes import at_sizes
 from motion.things import Thing, shape
-from webdemo.ui.components.player import MotionPlayer, busy, player_payload, show
-from webdemo.view.payload import build_payload, sample_payload
+from webdemo.ui.components.player import MotionPlayer, busy, show
+from webdemo.view.payload import build_payload, player_payload, sample_payload
 
 FPS = 30.0
 HOSTILE = ('<img src=x onerror="window.__hacked=1">', "${window.__hacked=2}{{value}}")
@@ -151,7 +151,7 @@ def build() -> gr.Blocks:
         with gr.Tab("first"):
             player = MotionPlayer(elem_id="player")
         with gr.Tab("second"):
-            late = MotionPlayer(elem_id="late", empty_text="Nothing here yet")
+            late = MotionPlayer(elem_id="late")
         with gr.Row():
             for name, update in UPDATES.items():
                 gr.Button(name).click(update, None, player)

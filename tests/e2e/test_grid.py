@@ -41,7 +41,9 @@ def test_nine_results_share_one_context_and_one_opens_large(
     live(page, slow=SLOW)
     ask(page, "Two people shake hands.")
     expect(page.locator("#status .pd-done")).to_be_visible()
-    unfold(page, "#grid")
+    page.hover("#grid > button")  # a menu opens under the mouse
+    expect(page.locator("#grid-across")).to_be_visible()
+    page.wait_for_timeout(500)
     sweep(page, "across", "Seeds", "1-500")
     page.click("#grid-make")
     expect(page.locator("#status .pd-error")).to_contain_text("A grid has 1 to 9 cells")

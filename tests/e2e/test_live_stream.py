@@ -87,7 +87,7 @@ def test_a_recorded_person_is_answered_as_they_move(
     page.get_by_role("button", name="Push").click()
     page.wait_for_function("window.__pasdedeux?.positions?.length === 1", timeout=SLOW)
     page.route("**/live/*", lambda route: route.abort())
-    start(page, "clip")
+    page.click("#react-stream")
     expect(line).to_contain_text("The server cannot be reached", timeout=SLOW)
     page.unroute("**/live/*")
     start(page, "clip")

@@ -155,6 +155,7 @@ def test_a_run_can_be_cancelled_whose_first_updates_arrive_together(
     try:
         made(page, "two people hug once more")
         expect(page.locator("button#generate")).to_be_enabled()
+        unfold(page, "#downloads")
         page.route("**/queue/join*", late)
         server.engine.pause = LONG_STEP
         ask(page, "two people dance for long")
@@ -211,11 +212,11 @@ def test_downloads_are_files_and_never_those_of_the_run_before(page: Page, monke
     try:
         made(page, "two people hug at last")
         expect(page.locator("button#generate")).to_be_enabled()
+        unfold(page, "#downloads")
         expect(button).to_be_disabled()
     finally:
         written.set()
     expect(button).to_be_enabled()
-    unfold(page, "#downloads")
     with page.expect_download() as waiting:
         button.click()
     assert waiting.value.suggested_filename.startswith("two-people-hug-at-last-seed")

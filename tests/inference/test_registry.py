@@ -70,7 +70,7 @@ def test_a_method_is_everywhere(toy: None, tmp_path: Path, capsys: pytest.Captur
             return tmp_path / "files"
 
     answer, _ = GenerateEndpoint(Page()).generate(  # type: ignore[arg-type]
-        "Sway.", 2.0, 0, 1, 4.3, 3, 0.0, "ddim", "toy", progress=lambda *a, **k: None
+        "Sway.", 3, progress=lambda *a, **k: None, seconds=2.0, model="toy"
     )
     assert answer["manifest"]["model"] == "toy"
     # in the history

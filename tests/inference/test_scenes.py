@@ -100,7 +100,7 @@ def test_outside_a_remade_span_nothing_changes(engine: Engine, story: Result, st
     np.testing.assert_array_equal(made[:, :first], positions(story)[:, :first])
     np.testing.assert_array_equal(made[:, last:], positions(story)[:, last:])
     assert np.abs(made[:, first:last] - positions(story)[:, first:last]).max() > 0.01
-    # Run again from the result alone, as a history does.
+    # Made again from the result alone.
     again = run(engine, SceneRequest.from_dict(request.to_dict(), run(engine, request).duets[0]))
     np.testing.assert_array_equal(positions(again), made)
 

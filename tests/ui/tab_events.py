@@ -25,8 +25,8 @@ def built(kind: type[Tab], files: Path) -> Tab:
     """A tab of this kind, laid out on a page of its own, with the stub engine; its files go to a folder."""
     engine = StubEngine()
     tab = kind(PageContext(engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(files)))
-    with gr.Blocks() as demo:
-        tab.build(demo)
+    with gr.Blocks():
+        tab.build()
     return tab
 
 

@@ -23,10 +23,8 @@ def test_values_pass_unchanged_and_the_template_is_constant(part: type[Part]) ->
     made = part(render=False)
     value = {"text": "<script>alert(1)</script>"}
     assert made.preprocess(value) is value and made.postprocess(value) is value
-    assert made.example_payload() is None and made.example_value() is None
     assert made.html_template == part.template.read_text(encoding="utf-8")
     assert set(made.props) == set(part.declared)
-    assert made.api_info()["type"] in {"object", "string", "null"}
 
 
 def test_values_of_a_script_become_json() -> None:

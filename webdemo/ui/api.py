@@ -25,6 +25,8 @@ from .context import PageContext
 from .places import READING
 
 Answer = tuple[dict[str, Any], list[str]]
+Inputs = dict[str, Any]
+"""Components for what a job takes, by the names of its arguments."""
 RATE = "true frames a second of a file that gives none or a wrong one; 0 for its own or the usual rate of its kind"
 UP = "what points up in the file: x, y, z, -x, -y or -z; empty to find it"
 ORDER = "order of joints without names, such as h36m17; empty to find it"
@@ -52,26 +54,27 @@ class Endpoint:
         self.page = page
 
     @staticmethod
-    def _sampling(guidance: float = SamplingRequest.guidance) -> list[gr.components.Component]:
-        """Inputs for the fields of a :class:`SamplingRequest`, in the order of the jobs' arguments."""
-        return [
-            gr.Number(SamplingRequest.seed, label="0 to 4294967295; the same seed gives the same motion"),
-            gr.Number(SamplingRequest.samples, label="how many motions to generate, 1 to 8"),
-            gr.Number(guidance, label="scale of classifier-free guidance, 0 to 10; 1 is none"),
-            gr.Number(None, label="denoising steps, 1 to 1000; the model's own if not given (mostly 8)"),
-            gr.Number(SamplingRequest.damping, label="damping threshold as a share of T, 0 to 1; 0 is none"),
-            gr.Textbox(SamplingRequest.sampler, label="ddim or dpm++"),
-        ]
+    def _sampling(guidance: float = SamplingRequest.guidance) -> Inputs:
+        """Inputs for the fields of a :class:`SamplingRequest`."""
+        return {
+            "seed": gr.Number(SamplingRequest.seed, label="0 to 4294967295; the same seed gives the same motion"),
+            "samples": gr.Number(SamplingRequest.samples, label="how many motions to generate, 1 to 8"),
+            "guidance": gr.Number(guidance, label="scale of classifier-free guidance, 0 to 10; 1 is none"),
+            "steps": gr.Number(None, label="denoising steps, 1 to 1000; the model's own if not given (mostly 8)"),
+            "damping": gr.Number(SamplingRequest.damping, label="damping threshold as a share of T, 0 to 1; 0 is none"),
+            "sampler": gr.Textbox(SamplingRequest.sampler, label="ddim or dpm++"),
+        }
 
     @staticmethod
-    def _publish(job: Callable[..., Answer], name: str, inputs: list[gr.components.Component]) -> None:
+    def _publish(job: Callable[..., Answer], name: str, inputs: Inputs) -> None:
+        """Publishes a job, which gets the inputs by their names; one without a value is named in its signature."""
         outputs = [
             gr.JSON(label="result: manifest, readouts, timings, notes, names of files"),
             gr.File(label="the files", file_count="multiple"),
         ]
         gr.Button().click(
             job,
-            inputs=inputs,
+            inputs_kwargs=inputs,
             outputs=outputs,
             api_name=name,
             concurrency_limit=None,  # runs wait in the line that they share with the page's
@@ -131,103 +134,49 @@ class GenerateEndpoint(Endpoint):
 
     def publish(self) -> None:
         """Adds the endpoint to the page that is being built."""
+        models = " or ".join(m.name for m in methods("generate") if "words" in m.takes)
+        tries = "tries, 1 to 4: seeds to try until the motion shows all that is said; the best is kept"
         with gr.Row(visible=False):
-            inputs = [
-                gr.Textbox(label="what the two people do, in English, up to 500 characters"),
-                gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
-                *self._sampling(),
-                gr.Textbox(
-                    GenerateRequest.model, label=" or ".join(m.name for m in methods("generate") if "words" in m.takes)
-                ),
-                gr.Number(
-                    GenerateRequest.tries,
-                    label="tries, 1 to 4: seeds to try until the motion shows all that is said; the best is kept",
-                ),
-            ]
+            inputs: Inputs = {
+                "prompt": gr.Textbox(label="what the two people do, in English, up to 500 characters"),
+                "seconds": gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
+                **self._sampling(),
+                "model": gr.Textbox(GenerateRequest.model, label=models),
+                "tries": gr.Number(GenerateRequest.tries, label=tries),
+            }
             self._publish(self.generate, "generate", inputs)
 
-    def generate(
-        self,
-        prompt: str,
-        seconds: float,
-        seed: int,
-        samples: int,
-        guidance: float,
-        steps: int = OWN_STEPS,
-        damping: float = SamplingRequest.damping,
-        sampler: str = SamplingRequest.sampler,
-        model: str = GenerateRequest.model,
-        tries: int = GenerateRequest.tries,
-        progress: gr.Progress = PROGRESS,
-    ) -> Answer:
+    def generate(self, prompt: str, steps: int = OWN_STEPS, progress: gr.Progress = PROGRESS, **asked: Any) -> Answer:
         """Two people from one sentence.
 
         Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
         two-person .npz, two .bvh, two .smpl.npz, a .usda (and a .glb where the server writes them), a contact sheet
         .png, and a manifest .json. An error is one sentence that says what to change.
         """
-        return self._answer(
-            lambda: GenerateRequest(
-                prompt=prompt,
-                seconds=seconds,
-                seed=seed,
-                samples=samples,
-                guidance=guidance,
-                steps=steps,
-                damping=damping,
-                sampler=sampler,
-                model=model,
-                tries=tries,
-            ),
-            prompt,
-            progress,
-        )
+        return self._answer(lambda: GenerateRequest(prompt=prompt, steps=steps, **asked), prompt, progress)
 
 
-class ClassEndpoint(Endpoint):
+class ClassEndpoint(GenerateEndpoint):
     """``/generate_class``: a class → motion files."""
 
     def publish(self) -> None:
         """Adds the endpoint to the page that is being built."""
         with gr.Row(visible=False):
-            inputs = [
-                gr.Textbox(label="name of a class, such as: shake hands"),
-                gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
-                *self._sampling(class_method().default("guidance", GenerateRequest.guidance)),
-            ]
+            inputs: Inputs = {
+                "name": gr.Textbox(label="name of a class, such as: shake hands"),
+                "seconds": gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
+                **self._sampling(class_method().default("guidance", GenerateRequest.guidance)),
+            }
             self._publish(self.generate_class, "generate_class", inputs)
 
     def generate_class(
-        self,
-        name: str,
-        seconds: float,
-        seed: int,
-        samples: int,
-        guidance: float,
-        steps: int = OWN_STEPS,
-        damping: float = SamplingRequest.damping,
-        sampler: str = SamplingRequest.sampler,
-        progress: gr.Progress = PROGRESS,
+        self, name: str, steps: int = OWN_STEPS, progress: gr.Progress = PROGRESS, **asked: Any
     ) -> Answer:
         """Two people from the name of a class, by BiGraphDiff; an unknown one is answered with all names.
 
         Returns what /generate does.
         """
-        return self._answer(
-            lambda: GenerateRequest(
-                prompt=name,
-                seconds=seconds,
-                seed=seed,
-                samples=samples,
-                guidance=guidance,
-                steps=steps,
-                damping=damping,
-                sampler=sampler,
-                model=class_method().name,
-            ),
-            name,
-            progress,
-        )
+        return self.generate(name, steps, progress, model=class_method().name, **asked)
 
 
 class ReactEndpoint(Endpoint):
@@ -238,23 +187,26 @@ class ReactEndpoint(Endpoint):
         found = methods("react")
         streaming = " or ".join(m.name for m in found if "online" in m.modes)
         posed = " or ".join(m.name for m in found if "first pose" in m.takes)
+        models = " or ".join([AUTOMATIC, *(m.name for m in found)])
         with gr.Row(visible=False):
-            inputs = [
-                gr.File(label="the given person: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
-                gr.Textbox("", label="what the two people do, in English; may be empty"),
-                gr.Textbox("", label="a to f, if the file holds several people"),
-                gr.Number(0, label="start of the part to use, in seconds"),
-                gr.Number(0, label="its end, in seconds; 0 is the end of the file"),
-                gr.Textbox(ReactRequest.role, label="a: the given person acts first; b: they react"),
-                *self._sampling(),
-                gr.Textbox(ReactRequest.model, label=" or ".join([AUTOMATIC, *(m.name for m in methods("react"))])),
-                gr.Textbox(ReactRequest.mode, label=f"offline; or online ({streaming})"),
-                gr.Checkbox(False, label=f"start in the first pose of the other person in the file ({posed})"),
-                gr.Textbox("", label=WHICH),
-                gr.Number(0, label=RATE),
-                gr.Textbox("", label=UP),
-                gr.Textbox("", label=ORDER),
-            ]
+            inputs: Inputs = {
+                "actor": gr.File(label="the given person: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
+                "prompt": gr.Textbox("", label="what the two people do, in English; may be empty"),
+                "person": gr.Textbox("", label="a to f, if the file holds several people"),
+                "start": gr.Number(0, label="start of the part to use, in seconds"),
+                "end": gr.Number(0, label="its end, in seconds; 0 is the end of the file"),
+                "role": gr.Textbox(ReactRequest.role, label="a: the given person acts first; b: they react"),
+                **self._sampling(),
+                "model": gr.Textbox(ReactRequest.model, label=models),
+                "mode": gr.Textbox(ReactRequest.mode, label=f"offline; or online ({streaming})"),
+                "keep_start": gr.Checkbox(
+                    False, label=f"start in the first pose of the other person in the file ({posed})"
+                ),
+                "animation": gr.Textbox("", label=WHICH),
+                "fps": gr.Number(0, label=RATE),
+                "up": gr.Textbox("", label=UP),
+                "order": gr.Textbox("", label=ORDER),
+            }
             self._publish(self.react, "react", inputs)
 
     def react(
@@ -264,21 +216,14 @@ class ReactEndpoint(Endpoint):
         person: str,
         start: float,
         end: float,
-        role: str,
-        seed: int,
-        samples: int,
-        guidance: float,
+        keep_start: bool,
+        animation: str,
+        fps: float,
+        up: str,
+        order: str,
         steps: int = OWN_STEPS,
-        damping: float = SamplingRequest.damping,
-        sampler: str = SamplingRequest.sampler,
-        model: str = ReactRequest.model,
-        mode: str = ReactRequest.mode,
-        keep_start: bool = False,
-        animation: str = "",
-        fps: float = 0.0,
-        up: str = "",
-        order: str = "",
         progress: gr.Progress = PROGRESS,
+        **asked: Any,
     ) -> Answer:
         """A second person for a given one, who stays exactly as they are (at 30 frames a second).
 
@@ -290,28 +235,11 @@ class ReactEndpoint(Endpoint):
         def request() -> ReactRequest:
             if not actor:
                 raise InputError("There is no actor: send a motion file, such as a .bvh.")
+            choices = reading_choices(animation, fps, up, order)
             clip, pose = read_actor(
-                actor,
-                person=person or None,
-                start=start,
-                end=end or None,
-                keep_start=keep_start,
-                choices=reading_choices(animation, fps, up, order),
+                actor, person=person or None, start=start, end=end or None, keep_start=keep_start, choices=choices
             )
-            return ReactRequest(
-                actor=clip,
-                prompt=prompt,
-                role=role,
-                seed=seed,
-                samples=samples,
-                guidance=guidance,
-                steps=steps,
-                damping=damping,
-                sampler=sampler,
-                model=model,
-                mode=mode,
-                first_pose=pose,
-            )
+            return ReactRequest(actor=clip, first_pose=pose, prompt=prompt, steps=steps, **asked)
 
         title = prompt.strip() or f"Reaction to {Path(actor or '').stem}"
         return self._answer(request, title, progress, reads=True)
@@ -323,17 +251,17 @@ class PredictEndpoint(Endpoint):
     def publish(self) -> None:
         """Adds the endpoint to the page that is being built."""
         with gr.Row(visible=False):
-            inputs = [
-                gr.File(label="the motion of one person or two: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
-                gr.Number(0, label="the second at which the past ends; 0 is the end of the file"),
-                gr.Number(PredictRequest.seconds, label="how much to predict in seconds, 0.5 to 4"),
-                gr.Textbox(PredictRequest.model, label=" or ".join(m.name for m in methods("predict"))),
-                gr.Textbox("", label=WHICH),
-                gr.Number(0, label=RATE),
-                gr.Number(0, precision=0, label="seed of a method that draws its futures"),
-                gr.Textbox("", label=UP),
-                gr.Textbox("", label=ORDER),
-            ]
+            inputs: Inputs = {
+                "past": gr.File(label="the motion of one person or two: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
+                "marker": gr.Number(0, label="the second at which the past ends; 0 is the end of the file"),
+                "seconds": gr.Number(PredictRequest.seconds, label="how much to predict in seconds, 0.5 to 4"),
+                "model": gr.Textbox(PredictRequest.model, label=" or ".join(m.name for m in methods("predict"))),
+                "animation": gr.Textbox("", label=WHICH),
+                "fps": gr.Number(0, label=RATE),
+                "seed": gr.Number(0, precision=0, label="seed of a method that draws its futures"),
+                "up": gr.Textbox("", label=UP),
+                "order": gr.Textbox("", label=ORDER),
+            }
             self._publish(self.predict, "predict", inputs)
 
     def predict(

@@ -40,7 +40,7 @@ from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
 TABS = (GenerateTab, SceneTab, ReactTab, PredictTab)
-"""A class a job, with a ``label``, the key of its shown name, ``named``, and ``build(demo, record)``."""
+"""A class a job, with a ``label``, the key of its shown name, ``named``, and ``build(record)``."""
 ENDPOINTS = (
     PredictEndpoint,
     GenerateEndpoint,
@@ -62,6 +62,8 @@ _WRITE = """() => {
   if (pressed && matchMedia("(pointer: fine)").matches) setTimeout(write, 300);
 }"""
 """JavaScript that makes a field ready for typing where its tab was opened by a mouse; to be filled with its id."""
+_BEGIN_WITH = """(own, first) => ({ __type__: "update", ...(own ? {} : { value: first }) })"""
+"""JavaScript that lets an empty player begin with what another shows, so that the page carries the example once."""
 _HEADER = f'<div class="pd-brand"><h1>Pas de Deux</h1><p>{say("page.intro")}</p></div>'
 _CACHE = (1800, 7200)
 """Seconds: how often Gradio's copies of downloads are looked through, and how old they may get."""
@@ -168,14 +170,17 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
         shown: dict[str, gr.Tab] = {}
         for name, job in jobs.items():
             with gr.Tab(say(job.named), id=name) as shown[name]:
-                job.build(demo, record)
-        shown["scene"].select(None, js=_WRITE % json.dumps(jobs["scene"].prefix + "prompt"), **QUIET)
+                job.build(record)
+        scene, first = jobs["scene"], jobs["generate"].results.player
+        shown["scene"].select(None, js=_WRITE % json.dumps(scene.prefix + "prompt"), **QUIET)
+        own = scene.results.player
+        shown["scene"].select(None, inputs=[own, first], outputs=own, js=_BEGIN_WITH, **QUIET)
         predict = jobs["predict"]
         assert isinstance(predict, PredictTab)
         react = jobs["react"]
         assert isinstance(react, ReactTab)
         react.actor.wire_arrival(shown["react"], record, react.label)
-        predict.wire_page(shown["predict"], tabs, [job.results.onward for job in jobs.values()])
+        predict.wire_page(shown["predict"], tabs, [job.results for job in jobs.values()])
         if page.history is not None:
             with gr.Tab(say("tabs.history"), id=HISTORY.lower()) as past:
                 HistoryTab(page, jobs, tabs).build(demo, past, record)

@@ -19,20 +19,12 @@ from webdemo.view.sheet import SUFFIXES as SHEETS
 from webdemo.view.sheet import write_sheet
 from webdemo.view.stage import LOOKS, Pane, Style
 
-from .api import ORDER, RATE, UP, WHICH, reading_choices
-from .context import PageContext
+from .api import ORDER, RATE, UP, WHICH, Endpoint, reading_choices
 from .places import READING
 
 
-class RenderEndpoint:
-    """``/render``: a motion file → a film, a contact sheet or a plotly figure.
-
-    Args:
-        page: what tabs and endpoints share.
-    """
-
-    def __init__(self, page: PageContext) -> None:
-        self.page = page
+class RenderEndpoint(Endpoint):
+    """``/render``: a motion file → a film, a contact sheet or a plotly figure."""
 
     def publish(self) -> None:
         """Adds the endpoint to the page that is being built."""

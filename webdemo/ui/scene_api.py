@@ -12,7 +12,7 @@ from motion.retarget import to_smpl
 from webdemo.inference.story import SceneRequest, in_time, read_words
 from webdemo.inference.story.request import MOST_SECONDS
 
-from .api import ORDER, PROGRESS, RATE, UP, WHICH, Answer, Endpoint, reading_choices
+from .api import ORDER, PROGRESS, RATE, UP, WHICH, Answer, Endpoint, Inputs, reading_choices
 
 
 class SceneEndpoint(Endpoint):
@@ -21,18 +21,22 @@ class SceneEndpoint(Endpoint):
     def publish(self) -> None:
         """Adds the endpoint to the page that is being built."""
         with gr.Row(visible=False):
-            inputs = [
-                gr.Textbox(label="the story: TOML (docs/scenes.md), or sentences, which are split into beats"),
-                gr.File(label="a motion of two people that the story goes on from, up to 50 MB; may be empty"),
-                gr.Number(0, label="with a motion: the second at which the story begins; 0 is the motion's end"),
-                gr.Number(0, label="with a motion: the second at which it goes on unchanged; 0: it does not"),
-                gr.Number(None, label="how many scenes or futures, 1 to 8; the story's own by default"),
-                gr.Number(None, label="seed; the story's own by default"),
-                gr.Textbox("", label=WHICH),
-                gr.Number(0, label=RATE),
-                gr.Textbox("", label=UP),
-                gr.Textbox("", label=ORDER),
-            ]
+            inputs: Inputs = {
+                "story": gr.Textbox(label="the story: TOML (docs/scenes.md), or sentences, which are split into beats"),
+                "motion": gr.File(
+                    label="a motion of two people that the story goes on from, up to 50 MB; may be empty"
+                ),
+                "start": gr.Number(
+                    0, label="with a motion: the second at which the story begins; 0 is the motion's end"
+                ),
+                "end": gr.Number(0, label="with a motion: the second at which it goes on unchanged; 0: it does not"),
+                "samples": gr.Number(None, label="how many scenes or futures, 1 to 8; the story's own by default"),
+                "seed": gr.Number(None, label="seed; the story's own by default"),
+                "animation": gr.Textbox("", label=WHICH),
+                "fps": gr.Number(0, label=RATE),
+                "up": gr.Textbox("", label=UP),
+                "order": gr.Textbox("", label=ORDER),
+            }
             self._publish(self.scene, "scene", inputs)
 
     def scene(

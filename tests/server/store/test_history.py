@@ -17,13 +17,12 @@ from motion import InputError, formats, stacked_positions
 from tests.server.clients import no_room
 from tests.server.lab import stub_module
 from webdemo.inference import Engine
-from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.requests.predict import PredictRequest, PredictResult
 from webdemo.inference.run import Result
 from webdemo.server.store.database import Database, Link, Run
 from webdemo.server.store.history import DAY
 from webdemo.server.store.notebook import Notebook
-from webdemo.ui.again import request_of, verdict
 from webdemo.ui.history import Entry, Search
 
 ME, OTHER = "user ada", "user eve"
@@ -54,20 +53,11 @@ def test_a_run_is_found_again_as_it_was(history: Notebook) -> None:
     run = kept(history, seed=9)
     opened = history.open(run, ME)
     assert (opened.entry.title, opened.entry.state) == ("Two people walk.", "done")
-    again = made(request_of(opened))
-    assert verdict(opened.result, again) == "Run again: the same motion, bit for bit."
-    assert opened.result.readouts[0]["after"] == again.readouts[0]["after"]
+    assert opened.entry.request["seed"] == 9
+    first = made(GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1, samples=2, seed=9))
+    np.testing.assert_array_equal(opened.result.duets[1].positions, first.duets[1].positions)
+    assert opened.result.readouts[0]["after"] == first.readouts[0]["after"]
     assert [entry.id for entry in entries(history)] == [run]
-
-
-def test_a_reaction_is_run_again_from_its_result(history: Notebook) -> None:
-    actor = stub_module().walking(1.0).a
-    request = ReactRequest(actor=actor, role="b", steps=1, seed=3)
-    run = history.begin(ME, request, "Reaction")
-    history.finish(run, made(request))
-    asked = request_of(history.open(run, ME))
-    assert isinstance(asked, ReactRequest) and asked.role == "b"
-    np.testing.assert_array_equal(asked.actor.positions, actor.positions)
 
 
 @pytest.mark.parametrize(("people", "marker"), [(2, 1.5), (1, 1.5), (2, 3.0)])
@@ -85,20 +75,7 @@ def test_a_prediction_keeps_its_marker_and_what_really_followed(history: Noteboo
     assert (kept.truth is None) == (marker == 3.0)
     end = min(90, kept.past_frames + 30)
     np.testing.assert_array_equal(stacked_positions(kept.given), stacked_positions(request.motion)[:, :end])
-    *_, again = engine.run(request_of(opened))
-    assert verdict(kept, again) == "Run again: the same motion, bit for bit."
-
-
-def test_the_verdict_names_what_differs(history: Notebook) -> None:
-    old = history.open(kept(history), ME).result
-    new = Result(
-        duets=tuple(duet.with_positions(duet.positions + np.float32(0.002)) for duet in old.duets),
-        manifest=old.manifest | {"weights_sha256": "f" * 64, "versions": {"torch": "9"}},
-    )
-    sentence = verdict(old, new)
-    assert all(part in sentence for part in ("up to 2 mm", "the weights (unknown → ffffffff)", "torch (none → 9)"))
-    elsewhere = replace(new, manifest=old.manifest)
-    assert "same weights and versions; it ran on another machine" in verdict(old, elsewhere)
+    np.testing.assert_array_equal(stacked_positions(kept.duets[0]), stacked_positions(result.duets[0]))
 
 
 def test_others_see_nothing_but_by_a_link_that_lasts(history: Notebook) -> None:

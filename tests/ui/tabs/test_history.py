@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,7 +13,7 @@ import pytest
 
 from motion import SKELETONS, Clip, InputError
 from tests.ui.stub_engine import walking
-from webdemo.inference.run import Progress, Result
+from webdemo.inference.run import Result
 from webdemo.ui.components.notebook import MOST_SHOWN, STEP, Action, facts, settings, shown
 from webdemo.ui.history import Entry, Found, Opened, Search, Usage
 from webdemo.ui.tabs.history import EMPTY, NOTHING_FOUND, HistoryTab, compared
@@ -110,7 +109,7 @@ def test_the_list_is_searched_and_says_why_it_is_empty() -> None:
     book = Book()
     empty = tab(book).refresh([])[0]["value"]
     assert empty["empty"] == EMPTY and empty["removed"] == 0
-    asked = {"words": "hug", "starred": True, "kind": None, "tag": "a"}
+    asked = {"words": "hug", "starred": True, "kind": "", "tag": "a"}
     found = press(tab(book), "search", search=asked).view["value"]
     assert found["empty"] == NOTHING_FOUND
     assert book.done[-1] == Search(words="hug", starred=True, tag="a", limit=STEP)
@@ -155,29 +154,7 @@ def test_an_export_says_what_is_in_it(tmp_path: Path) -> None:
 )
 def test_what_a_notebook_never_sends_is_refused(data: Any) -> None:
     with pytest.raises(InputError, match="something unknown"):
-        Action(data)
-
-
-def test_a_run_without_a_result_is_run_again() -> None:
-    lost = replace(entry("lost"), state="interrupted", request={"prompt": "They hug.", "seconds": 2.0, "seed": 9})
-    asked: list[Any] = []
-
-    def run(session: str, request: Any) -> Iterator[Any]:
-        asked.append((request.prompt, request.seconds, request.seed))
-        yield Progress(stage="text")
-        yield Result(duets=(), manifest={})
-
-    history = tab(Book(lost, replace(lost, id="r", kind="react")))
-    history.page.runs = SimpleNamespace(run=run)  # type: ignore[misc, assignment]
-    who: Any = SimpleNamespace(session_hash="s")
-
-    def again(run: str) -> str:
-        event: Any = SimpleNamespace(_data={"act": "again", "ids": [run], "search": {}})
-        return list(history.again(who, event))[-1]
-
-    assert "its result is in the list" in again("lost")
-    assert asked == [("They hug.", 2.0, 9)]
-    assert "send the file again" in again("r") and len(asked) == 1
+        Action.read(data)
 
 
 def test_a_history_that_cannot_be_read_is_a_sentence() -> None:

@@ -15,9 +15,9 @@ from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built
 from webdemo.inference.requests.live import LONGEST, LiveTake
 from webdemo.server.queue.recorder import title_of
-from webdemo.ui.again import actor_source, request_of
 from webdemo.ui.components.live import FARTHEST, take_of
 from webdemo.ui.history import Entry, Opened
+from webdemo.ui.tabs.actor import actor_source
 from webdemo.ui.tabs.react import ReactTab
 
 from .reacting import run
@@ -46,7 +46,7 @@ def test_a_stream_becomes_a_result_with_readouts_and_files(tmp_path: Path) -> No
     assert list((tmp_path / "files").rglob("*.npz"))
 
 
-def test_a_kept_stream_is_found_and_opened_and_not_run_again(tmp_path: Path) -> None:
+def test_a_kept_stream_is_found_and_opened(tmp_path: Path) -> None:
     take = take_of(sent(PEOPLE))
     asked = take.to_dict()
     assert title_of(asked) == "Live with Virtual agent" == take.title
@@ -58,8 +58,6 @@ def test_a_kept_stream_is_found_and_opened_and_not_run_again(tmp_path: Path) -> 
     np.testing.assert_array_equal(actor_source(opened).people[0].positions, take.actor.positions)
     found = tab.opened(opened)
     assert found[tab.record].result is result
-    with pytest.raises(InputError, match="cannot be run again"):
-        request_of(opened)
 
 
 def test_an_opened_minute_is_trimmed_to_what_a_network_takes(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
 from tests.ui.tab_events import built
 from webdemo.inference.methods import variants
+from webdemo.ui.components.actors import react_choices
 from webdemo.ui.tabs.react import ReactTab
 
 from .reacting import run, upload
@@ -41,6 +42,11 @@ def test_a_method_is_a_model_and_a_mode(
     assert steps_slider["value"] == steps
     assert role["interactive"] is (model == "intergen")
     assert damping["interactive"] is (mode == "offline")
+
+
+def test_a_method_streams_where_it_can_answer_pose_by_pose(tab: ReactTab) -> None:
+    streams = {key for _, key in react_choices() if tab.fit_method(key)[-1]["visible"]}
+    assert streams == {"automatic", "regennet", "regennet-online", "agent"}
 
 
 def test_the_steps_of_every_method_can_be_set(tab: ReactTab) -> None:

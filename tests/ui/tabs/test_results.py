@@ -14,7 +14,7 @@ import pytest
 
 from tests.ui.tab_events import built
 from tests.ui.tabs.generating import result_of
-from webdemo.ui.components.exports import KINDS, file_name, for_download, write_files
+from webdemo.ui.components.exports import KINDS, file_name, for_download, offered, write_files
 from webdemo.ui.components.film import make_film
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.view.stage import Style
@@ -37,13 +37,13 @@ def test_files_of_one_sample(tab: GenerateTab, tmp_path: Path) -> None:
     assert zipfile.ZipFile(found["bvh"]).namelist() == [path.name for path in files["bvh"]]
 
 
-def test_export_fills_the_buttons_once(tab: GenerateTab) -> None:
+def test_export_fills_the_buttons_with_files_that_are_written_once(tab: GenerateTab) -> None:
     record = result_of(tab)
     first = tab.results.export(record)
-    offered = {kind.key for kind in KINDS if kind.offered()}
-    filled = {kind.key for kind, update in zip(KINDS, first[1:], strict=True) if update["interactive"]}
-    assert filled == offered
-    assert all(update == gr.skip() for update in tab.results.export(record))
+    written = {kind for kind in KINDS if offered(kind)}
+    filled = {kind for kind, update in zip(KINDS, first[1:], strict=True) if update["interactive"]}
+    assert filled == written
+    assert tab.results.export(record) == first
     assert all(update == gr.skip() for update in tab.results.export(None))
 
 

@@ -8,17 +8,14 @@ import numpy as np
 import pytest
 
 from motion import InputError
+from tests.ui.tab_events import built
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, sentences
-from webdemo.ui.components.exports import Record, Shelf
+from webdemo.ui.components.exports import Record
 from webdemo.ui.components.scene_parts import part_request
 from webdemo.ui.components.story import story_value
 from webdemo.ui.components.story_words import edited, lay_out, settled, story_text, written
-from webdemo.ui.context import PageContext
 from webdemo.ui.history import Entry, Kept, Opened
-from webdemo.ui.runs import Loader, Runs
 from webdemo.ui.tabs.scene import SceneTab
-
-from ..stub_engine import StubEngine
 
 SETTINGS = {"seed": 3, "samples": 1, "guidance": 4.3, "steps": 2, "damping": 0.7, "tries": 1}
 PLACE = '{"frame": 60, "sample": 0}'
@@ -26,13 +23,7 @@ PLACE = '{"frame": 60, "sample": 0}'
 
 @pytest.fixture
 def tab(tmp_path: Path) -> SceneTab:
-    engine = StubEngine()
-    tab = SceneTab(
-        PageContext(engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(tmp_path / "files"))
-    )
-    with gr.Blocks() as demo:
-        tab.build(demo)
-    return tab
+    return built(SceneTab, tmp_path / "files")
 
 
 def shown(tab: SceneTab, updates: Any) -> list[dict[str, Any]]:
@@ -184,17 +175,17 @@ def test_futures_begin_at_the_playhead_and_one_is_taken(tab: SceneTab) -> None:
     beats = last["story"]["value"]["beats"]
     assert [(b["words"], b["seconds"]) for b in beats] == [("They meet.", 2.0), ("They bow.", 3.0)]
     assert last["prompt"] == "They meet. They bow."
-    _, line, kept, past = tab.take_shown(last["record"], ["run"], '{"sample": 2}')
-    assert kept.result.duets == found.duets[2:] and "number 3" in line
-    assert past == ["run", found.run], "Undo opens the choice again"
+    taken = tab.take_shown(last["record"], ["run"], '{"sample": 2}')
+    assert taken[tab.record].result.duets == found.duets[2:] and "number 3" in taken[tab.line]
+    assert taken[tab.trail] == ["run", found.run], "Undo opens the choice again"
 
 
 def test_parts_need_a_motion_and_a_span(tab: SceneTab) -> None:
     record = generate(tab)[-1]["record"]
     assert "There is no motion yet" in part(tab, "futures", None, None)["line"]
     assert "No span is selected" in part(tab, "span", record, story_value((Beat("x"),)))["line"]
-    assert "There is no motion yet" in tab.take_last(None)[1]
-    assert tab.take_last(record)[0]["value"]["samples"]
+    assert "There is no motion yet" in tab.take_last(None)[tab.line]
+    assert tab.take_last(record)[tab.results.player]["value"]["samples"]
 
 
 def test_a_kept_run_opens_with_its_story(tab: SceneTab) -> None:

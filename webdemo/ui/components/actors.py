@@ -60,7 +60,7 @@ class Source:
         people: up to six, at 30 fps, with the joints of the file where those have to be fitted.
         chosen: "a", "b" …: which one is offered first.
         path: the file, so that it can be read anew with other choices; None for a result.
-        found: how the file was read, None for a result.
+        found: a line on how the file was read, "" for a result.
         notes: sentences about how well it could be read.
         read_with: what was known of the file: up axis, unit, rate, order of its joints, and its chosen animation.
         animations: labels of those in the file, where there is one to choose.
@@ -71,7 +71,7 @@ class Source:
     people: tuple[Clip, ...] = field(repr=False)
     chosen: str = "a"
     path: Path | None = None
-    found: Found | None = None
+    found: str = ""
     notes: tuple[str, ...] = ()
     read_with: ReadWith = ("auto", "auto", None, "auto", None)
     animations: tuple[str, ...] = ()
@@ -130,14 +130,6 @@ def offered_animations(source: Source | None) -> Any:
     return animation_list(source.animations, source.read_with[4]) if source else animation_list((), None)
 
 
-@dataclass(frozen=True)
-class Found:
-    """A summary of how a file was read: one line, and its joints beside SMPL's."""
-
-    line: str
-    joints: tuple[tuple[str, str], ...] = field(repr=False)
-
-
 def read_source(path: str | Path, name: str | None = None, read_with: ReadWith | None = None) -> Source:
     """A motion file as a source; raises InputError where it cannot be read."""
     path = Path(path)
@@ -147,7 +139,7 @@ def read_source(path: str | Path, name: str | None = None, read_with: ReadWith |
         name or path.name,
         tuple(at_30_fps(person) for person in found.people),
         path=path,
-        found=Found(found.describe(), found.joints),
+        found=found.describe(),
         notes=found.notes,
         asks=found.asks,
         read_with=read_with or Source.read_with,

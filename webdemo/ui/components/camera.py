@@ -12,7 +12,7 @@ from motion import InputError
 from motion.video import person_of, unpack_film
 
 from .accepts import Text
-from .actors import Found, Source
+from .actors import Source
 from .part import STATIC, Part, on_load
 
 CAMERA_FOLDER = STATIC / "camera"
@@ -34,7 +34,6 @@ class CameraPanel(Part):
     accepts = TypeAdapter(Text | None)
     template = CAMERA_FOLDER / "camera.html"
     script = on_load(_MOUNT, CAMERA_FOLDER)
-    sends = ("string", "landmarks of a film, as the page packs them")
 
 
 def film_source(text: str | None) -> Source:
@@ -49,4 +48,4 @@ def film_source(text: str | None) -> Source:
     filmed = person_of(landmarks, name=name)
     sure = round(100 * float(filmed.confidence.mean()))
     line = f"One person from video, {sure} % of the body seen, camera looks down {filmed.tilt:.0f}°"
-    return Source(name, (filmed.person,), found=Found(line, ()), notes=filmed.notes)
+    return Source(name, (filmed.person,), found=line, notes=filmed.notes)

@@ -36,23 +36,6 @@ _WRITING = threading.Lock()
 """Writing is work for Python, which does one thing at a time: several at once only hold up the page."""
 
 
-@dataclass(frozen=True)
-class Kind:
-    """One kind of file.
-
-    Attributes:
-        key: its suffix without the dot, and how programs call it.
-        label: on its button.
-    """
-
-    key: str
-    label: str
-
-    def offered(self) -> bool:
-        """True if this installation can write it for every result."""
-        return self.key in (*_PLAIN, ALL) or formats.can_write(f".{self.key}")
-
-
 _SHEET = Style(names=False)
 _PLAIN = ("png", "json", "csv")
 """Kinds that are no motion."""
@@ -60,17 +43,18 @@ _PLAIN = ("png", "json", "csv")
 ALL = "all"
 """The key of everything in one archive."""
 
-KINDS = (
-    Kind("glb", "Animated .glb"),
-    Kind("bvh", "BVH pair"),
-    Kind("usda", "Animated .usda"),
-    Kind("npz", "Motion .npz"),
-    Kind("smpl.npz", "SMPL .npz"),
-    Kind("csv", "Read-outs .csv"),
-    Kind("json", "Manifest"),
-    Kind("png", "Contact sheet"),
-    Kind(ALL, "All files .zip"),
-)
+KINDS = {
+    "glb": "Animated .glb",
+    "bvh": "BVH pair",
+    "usda": "Animated .usda",
+    "npz": "Motion .npz",
+    "smpl.npz": "SMPL .npz",
+    "csv": "Read-outs .csv",
+    "json": "Manifest",
+    "png": "Contact sheet",
+    ALL: "All files .zip",
+}
+"""What stands on the button of a kind of file, by its suffix without the dot, which programs call it by as well."""
 PURPOSES = {
     "For Blender": ("glb", "bvh", "usda"),
     "Numbers": ("npz", "smpl.npz", "csv", "json"),
@@ -87,14 +71,14 @@ class Record:
     Attributes:
         result: what the engine gave.
         prompt: names the files.
-        exported: whether its files were written.
+        files: what was written of it for download, by kind.
         compared: the results of a grid by the names of their cells; ``result`` is the first of them.
         grid: columns, rows, names and title of the grid that they stand in; empty for none.
     """
 
     result: Result = field(repr=False)
     prompt: str
-    exported: bool = False
+    files: Mapping[str, Path] = field(default_factory=dict, repr=False)
     compared: Mapping[str, Result] = field(default_factory=dict, repr=False)
     grid: Mapping[str, Any] = field(default_factory=dict)
 
@@ -147,6 +131,11 @@ class Shelf:
                 log.info("Could not remove %s: %s", folder, error)
 
 
+def offered(kind: str) -> bool:
+    """True if this installation can write a kind of file for every result."""
+    return kind in (*_PLAIN, ALL) or formats.can_write(f".{kind}")
+
+
 def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:
     """:func:`write_files` for all results of a record; names of compared ones begin with their method.
 
@@ -181,9 +170,9 @@ def write_files(result: Result, folder: Path, *, prompt: str, leave_out: tuple[s
     name = file_name(prompt, result.manifest)
     with _writing(folder):
         return {
-            kind.key: _write_kind(kind, result, folder, name, prompt)
+            kind: _write_kind(kind, result, folder, name, prompt)
             for kind in KINDS
-            if kind.offered() and kind.key not in (*leave_out, ALL) and _holds(kind, result)
+            if offered(kind) and kind not in (*leave_out, ALL) and _holds(kind, result)
         }
 
 
@@ -205,17 +194,17 @@ def without_place(error: Exception, folder: Path) -> Exception:
     return error
 
 
-def _write_kind(kind: Kind, result: Result, folder: Path, name: str, prompt: str) -> list[Path]:
-    if kind.key == "json":
+def _write_kind(kind: str, result: Result, folder: Path, name: str, prompt: str) -> list[Path]:
+    if kind == "json":
         path = folder / f"{name}.json"
         path.write_text(json.dumps(result.manifest, indent=2, ensure_ascii=False), encoding="utf-8")
         return [path]
-    if kind.key == "csv":
+    if kind == "csv":
         return [_write_table({"": result}, folder / f"{name}.csv")]
     several = len(result.duets) > 1
     files: list[Path] = []
     for i, duet in enumerate(result.duets):
-        path = folder / (f"{name}-{i + 1}.{kind.key}" if several else f"{name}.{kind.key}")
+        path = folder / (f"{name}-{i + 1}.{kind}" if several else f"{name}.{kind}")
         files += _write_motion(duet, path, title=prompt)
     return files
 
@@ -241,12 +230,12 @@ def _write_table(results: Mapping[str, Result], path: Path) -> Path:
     return path
 
 
-def _holds(kind: Kind, result: Result) -> bool:
+def _holds(kind: str, result: Result) -> bool:
     """True if files of a kind can hold the people of a result."""
-    if kind.key == "csv" and not result.readouts:
+    if kind == "csv" and not result.readouts:
         return False
     one = isinstance(result.duets[0], Clip)
-    return not one or kind.key in _PLAIN or f".{kind.key}" in ALONE
+    return not one or kind in _PLAIN or f".{kind}" in ALONE
 
 
 def _write_motion(duet: Duet | Clip, path: Path, *, title: str) -> list[Path]:

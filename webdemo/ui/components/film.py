@@ -19,8 +19,8 @@ from webdemo.view.camera import VIEWS
 from webdemo.view.stage import LOOKS, Pane, Style
 from webdemo.view.theme import THEMES
 
-from .exports import Record, file_name, without_place
-from .prediction_view import ghost_of, method_name, without_name
+from .exports import Record, file_name
+from .prediction_view import ghost_of, without_name
 from .show import with_shown_roles
 
 LONGEST = 60.0
@@ -89,21 +89,18 @@ def make_film(record: Record | None, shown: str, folder: Path, progress: Drawn |
         raise InputError(f"Films on the page last {LONGEST:g} s at most: use `python -m webdemo render` for more.")
     path = folder / f"{file_name(record.prompt, record.result.manifest)}{suffix()}"
     style = Style(look=_one_of(state, "look", LOOKS, "bodies"), theme=_one_of(state, "theme", tuple(THEMES), "light"))
-    try:
-        return film.write_film(
-            panes,
-            path,
-            style=style,
-            size=film.SIZE if suffix() == ".mp4" else (640, 360),
-            view=_one_of(state, "view", VIEWS, "threequarter"),
-            follow=state.get("follow") is not False,
-            title=record.prompt,
-            yaw=number_of(state, "yaw", -1000.0, 1000.0),
-            elevation=number_of(state, "elevation", -0.05, 1.5),
-            progress=in_time(progress),
-        )
-    except InputError as error:
-        raise without_place(error, folder) from None
+    return film.write_film(
+        panes,
+        path,
+        style=style,
+        size=film.SIZE if suffix() == ".mp4" else (640, 360),
+        view=_one_of(state, "view", VIEWS, "threequarter"),
+        follow=state.get("follow") is not False,
+        title=record.prompt,
+        yaw=number_of(state, "yaw", *_LIMITS["yaw"]),
+        elevation=number_of(state, "elevation", *_LIMITS["elevation"]),
+        progress=in_time(progress),
+    )
 
 
 def make_figure(record: Record | None, shown: str, folder: Path, progress: Drawn | None = None) -> Path:
@@ -117,10 +114,7 @@ def make_figure(record: Record | None, shown: str, folder: Path, progress: Drawn
     motion = _pane(record.result, state.get("sample"), "").motion
     path = folder / f"{file_name(record.prompt, record.result.manifest)}.html"
     theme = _one_of(state, "theme", tuple(THEMES), "light")
-    try:
-        return plotly_figure.write_figure(motion, path, title=record.prompt, theme=theme)
-    except InputError as error:
-        raise without_place(error, folder) from None
+    return plotly_figure.write_figure(motion, path, title=record.prompt, theme=theme)
 
 
 def _pane(result: Result, sample: Any, name: str) -> Pane:
@@ -131,8 +125,7 @@ def _pane(result: Result, sample: Any, name: str) -> Pane:
     if not isinstance(result, PredictResult):
         return Pane(motion, name)
     motion = without_name(motion)
-    caption = method_name(result) if name else ""
-    return Pane(motion, caption, ghost_of(motion, result), result.past_frames)
+    return Pane(motion, name, ghost_of(motion, result), result.past_frames)
 
 
 def read_player(shown: str) -> Mapping[str, Any]:

@@ -32,7 +32,6 @@ class Finder(Part):
     script = on_load(MOUNT, FINDER_FOLDER / "main.js")
     style = scoped(FINDER_FOLDER / "finder.css")
     declared: ClassVar = {"known": None}
-    sends = ("null", "nothing")
 
     def wire(self, history: HistoryLike | None, **quiet: Any) -> None:
         """Answers the browser, which asks whenever the dialog opens; ``quiet`` are the options of the page's events."""

@@ -38,7 +38,6 @@ class Gallery(Part):
     template = GALLERY_FOLDER / "gallery.html"
     script = on_load(MOUNT, GALLERY_FOLDER / "main.js")
     style = scoped(GALLERY_FOLDER / "gallery.css")
-    sends = ("object", "the scene that was pressed; or null")
 
     def fill(self, prompt: gr.Textbox, seconds: gr.Slider, seed: gr.Number, run: gr.Button, **quiet: Any) -> None:
         """Puts the scene that is pressed into the controls and presses the button that makes it.

@@ -40,7 +40,6 @@ class LivePanel(Part):
     accepts = TypeAdapter(Text | None)
     template = LIVE_FOLDER / "live.html"
     script = on_load(_MOUNT, CAMERA_FOLDER, LIVE_FOLDER)
-    sends = ("string", "a live stream, as the page packs it")
 
 
 def take_of(text: str | None) -> LiveTake:

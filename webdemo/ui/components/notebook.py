@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
 from motion import InputError
 from webdemo.inference.methods import label_of, methods, variants
@@ -20,14 +20,13 @@ NOTEBOOK_FOLDER = STATIC / "notebook"
 STEP = 60
 """Runs that are shown at first, and how many more at a time."""
 MOST_SHOWN = 500
+UNKNOWN = "The notebook sent something unknown: reload the page."
 ACTS = (
     "search",
     "open",
     "favour",
     "link",
     "revoke",
-    "again",
-    "stop",
     "compare",
     "study",
     "publish",
@@ -64,8 +63,16 @@ class SentSearch(Sent):
     starred: Flag = False
 
 
-class SentAction(Sent):
-    """A visitor's action in the notebook, as the browser sends it; :class:`Action` reads it."""
+class Action(Sent):
+    """A visitor's action in the notebook, as the browser sends it.
+
+    Attributes:
+        act: one of :data:`ACTS`.
+        ids: of the chosen runs.
+        search: what is searched for.
+        limit: how many runs are shown at most.
+        title, tags, note: of a run that is described.
+    """
 
     act: Text
     ids: list[Text]
@@ -75,20 +82,47 @@ class SentAction(Sent):
     tags: Text | None = None
     note: Text | None = None
 
+    @classmethod
+    def read(cls, data: Any) -> Action:
+        """The action that a browser sent; raises InputError for anything that the notebook does not send."""
+        try:
+            found = cls.model_validate(data)
+        except ValidationError:
+            raise InputError(UNKNOWN) from None
+        if found.act not in ACTS or len(found.ids) > MOST_SHOWN:
+            raise InputError(UNKNOWN)
+        return found
+
+    @property
+    def one(self) -> str:
+        """The id of the only chosen run; raises InputError where there is none, or several."""
+        if len(self.ids) != 1:
+            raise InputError("Choose a run first." if not self.ids else "Choose one run only.")
+        return self.ids[0]
+
+    @property
+    def wanted(self) -> Search:
+        """The search, of texts that are not too long."""
+        asked = (self.search or SentSearch()).model_dump()
+        words: dict[str, Any] = {
+            name: value[:200] if isinstance(value, str) else value for name, value in asked.items()
+        }
+        most = int(self.limit or 0)
+        return Search(**words, limit=most if STEP <= most <= MOST_SHOWN else STEP)
+
 
 class NotebookView(Part):
     """The runs of a history as cards; its value is what :func:`shown` gives.
 
-    What a visitor does arrives as the event ``select``, whose data :class:`Action` reads.
+    What a visitor does arrives as the data of its events, an :class:`Action`.
 
     Args:
         elem_id: id of the element in the page.
     """
 
-    accepts_event = TypeAdapter(SentAction)
+    accepts_event = TypeAdapter(Action)
     template = NOTEBOOK_FOLDER / "notebook.html"
     script = on_load(MOUNT, NOTEBOOK_FOLDER / "notebook.js")
-    sends = ("object", "runs of a history, or null")
 
 
 def shown(found: Found, *, empty: str, removed: int = 0, search: Search | None = None) -> dict[str, Any]:
@@ -169,42 +203,3 @@ def method_label(asked: Mapping[str, Any]) -> str:
         known = (v.label for v in variants("react").values() if (v.method.name, v.mode) == (model, mode))
         return next(known, label_of(model))
     return label_of(model)
-
-
-class Action:
-    """A visitor's action in the notebook, read from what a browser sent.
-
-    Attributes:
-        act: one of :data:`ACTS`.
-        ids: of the chosen runs.
-        search: what is searched for.
-        fields: name, tags and note of a run that is described.
-
-    Raises:
-        InputError: for anything that the notebook does not send.
-    """
-
-    def __init__(self, data: Any) -> None:
-        data = data if isinstance(data, Mapping) else {}
-        ids, search = data.get("ids"), data.get("search")
-        if data.get("act") not in ACTS or not isinstance(ids, list) or len(ids) > MOST_SHOWN:
-            raise InputError("The notebook sent something unknown: reload the page.")
-        self.act: str = data["act"]
-        self.ids = [each for each in ids if isinstance(each, str)]
-        self.search = _search(search if isinstance(search, Mapping) else {}, data.get("limit"))
-        self.fields: dict[str, Any] = {
-            name: data[name] for name in ("title", "tags", "note") if isinstance(data.get(name), str)
-        }
-
-    @property
-    def one(self) -> str:
-        """The id of the only chosen run; raises InputError where there is none, or several."""
-        if len(self.ids) != 1:
-            raise InputError("Choose a run first." if not self.ids else "Choose one run only.")
-        return self.ids[0]
-
-
-def _search(fields: Mapping[str, Any], limit: Any) -> Search:
-    words: dict[str, Any] = {name: str(fields.get(name) or "")[:200] for name in ("words", "kind", "model", "tag")}
-    most = limit if type(limit) is int and STEP <= limit <= MOST_SHOWN else STEP
-    return Search(**words, starred=fields.get("starred") is True, limit=most)

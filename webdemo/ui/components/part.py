@@ -55,8 +55,6 @@ class Part(gr.HTML):
     """CSS that the page gets with the part, or none where the script loads it."""
     declared: ClassVar[dict[str, Any]] = {}
     """Props beside the value, as they are at first."""
-    sends: ClassVar[tuple[str, str]]
-    """The JSON type of the value and its description, for the API page."""
 
     def __init_subclass__(cls) -> None:
         gr.set_static_paths([cls.template.parent])
@@ -71,19 +69,6 @@ class Part(gr.HTML):
             **kwargs,
         }
         super().__init__(value, elem_id=elem_id, **kwargs)
-
-    def api_info(self) -> dict[str, Any]:
-        """The kind of value, for the API page."""
-        kind, description = self.sends
-        return {"type": kind, "description": description}
-
-    def example_payload(self) -> None:
-        """None: a part takes no example."""
-        return None
-
-    def example_value(self) -> None:
-        """None: a part takes no example."""
-        return None
 
 
 def scoped(path: Path) -> str:

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 import gradio as gr
 
 from webdemo.ui.text.texts import TEXTS_FOLDER, TEXTS_JS
-from webdemo.view.payload import Payload, player_payload
+from webdemo.view.payload import Payload
 
 from .part import STATIC, Part, on_load
 
@@ -37,21 +37,13 @@ class MotionPlayer(Part):
 
     Args:
         value: the payload shown at first.
-        empty_text: key of what is shown while there is no motion: what to do, and on further lines what comes of it.
         elem_id: id of the element in the page.
     """
 
     template = PLAYER_FOLDER / "player.html"
     style = "& { min-height: 320px; } .pdd:not(.pdd-styled) { visibility: hidden; }"
+    script = on_load(_MOUNT, PLAYER_FOLDER / "main.js", PLOTLY_JS, EMPTY_TEXT)
     declared: ClassVar = {"busy": "", "progress": None}
-    sends = ("object", "motion for the player, or null")
-
-    def __init__(
-        self, value: Payload | None = None, *, empty_text: str = EMPTY_TEXT, elem_id: str | None = None, **kwargs: Any
-    ) -> None:
-        # all in the script: a tab that is opened late knows its component's own properties late
-        script = on_load(_MOUNT, PLAYER_FOLDER / "main.js", PLOTLY_JS, empty_text)
-        super().__init__(value, elem_id=elem_id, **{"js_on_load": script, **kwargs})
 
 
 def busy(text: str = "", *, progress: float | None = None) -> dict[str, Any]:
@@ -67,6 +59,3 @@ def busy(text: str = "", *, progress: float | None = None) -> dict[str, Any]:
 def show(payload: Payload | None) -> dict[str, Any]:
     """An update that shows a payload and takes the message away."""
     return gr.update(value=payload, busy="", progress=None)
-
-
-__all__ = ["EMPTY_TEXT", "MotionPlayer", "busy", "player_payload", "show"]

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import Clip, Duet, stacked_positions
-from webdemo.inference.methods import label_of
 from webdemo.inference.requests.predict import PredictResult, with_people
 from webdemo.view.payload import Curve, Payload, build_payload, sample_payload
 
@@ -41,12 +40,6 @@ def _sample(result: PredictResult, place: int) -> dict[str, Any]:
         ghost=ghost_of(motion, result),
         past_until=result.past_frames,
     )
-
-
-def method_name(result: PredictResult) -> str:
-    """The page's name for the method of a result."""
-    model = str(result.manifest.get("model", ""))
-    return label_of(model) or "Prediction"
 
 
 def without_name(motion: Clip | Duet) -> Clip | Duet:

@@ -80,7 +80,6 @@ class Reading(Part):
     script = on_load(MOUNT, READING_FOLDER / "main.js")
     style = scoped(READING_FOLDER / "reading.css")
     declared: ClassVar = {"text": "", "shown": None, "checked": None, "editable": False}
-    sends = ("object", "a text that is to be read, or its edited plan; or null")
 
     def read_first(self, prompt: gr.Textbox, seconds: gr.Slider, inputs: Iterable[gr.Component]) -> str:
         """JavaScript for a run of ``inputs``, a set, that waits until its prompt is read and takes the length then."""

@@ -30,34 +30,12 @@ def place_of(shown: str) -> dict[str, int]:
         return {"frame": 0, "sample": 0}
 
 
-def part_fields(
-    part: str,
-    story: Any,
-    words: str,
-    guidance: float,
-    steps: float,
-    damping: float,
-    strictness: float,
-    record: Record | None,
-    place: str,
-) -> dict[str, Any]:
-    """The fields of a tab for a part, "span" or "futures", of the motion that the player shows."""
-    return {
-        "part": part,
-        "story": story,
-        "words": words,
-        "guidance": guidance,
-        "steps": steps,
-        "damping": damping,
-        "strictness": strictness,
-        "record": record,
-        "seed": 0,
-        **place_of(place),
-    }
-
-
 def part_request(fields: Mapping[str, Any]) -> SceneRequest:
-    """The request of the fields of :func:`part_fields`: the selected span again, or several futures.
+    """A request for a part of the motion that the player shows: the selected span again, or several futures.
+
+    Args:
+        fields: of the tab, with ``part`` ("span" or "futures"), its ``words``, the ``record`` of the motion, and what
+            :func:`place_of` gives.
 
     Raises:
         InputError: without a motion or a span.

@@ -12,7 +12,7 @@ from motion import Clip, Duet
 from motion.formats import read
 from motion.metrics import Contact
 from webdemo.inference.run import Result
-from webdemo.view.payload import Payload, build_payload, player_payload, sample_payload
+from webdemo.view.payload import Payload, build_payload, sample_payload
 
 ROUNDS = 3
 """Rounds that an example plays before it rests, so that a page left open costs nothing."""
@@ -54,7 +54,8 @@ def _contacts(readouts: tuple[Mapping[str, Any], ...]) -> list[Contact] | None:
 def arrival_payload(path: Path) -> Payload | None:
     """A motion file that a page shows before anything is asked of it, played ``ROUNDS`` times, then at rest.
 
-    Its title is the sentence that it was made from. None where the file is missing.
+    No touches are marked on its time line, and its title is the sentence that it was made from. None where the file is
+    missing.
     """
     if not path.is_file():
         return None
@@ -62,4 +63,5 @@ def arrival_payload(path: Path) -> Payload | None:
     if not isinstance(duet, Duet):
         return None
     title = (duet.manifest or {}).get("request", {}).get("prompt", "")
-    return {**player_payload(with_shown_roles(duet, duet.manifest or {}), title=title), "rounds": ROUNDS}
+    shown = sample_payload(with_shown_roles(duet, duet.manifest or {}), label="1", contacts=())
+    return {**build_payload([shown], skeleton=duet.skeleton, title=title), "rounds": ROUNDS}

@@ -71,7 +71,6 @@ class StoryLine(Part):
     script = on_load(MOUNT, STORY_FOLDER / "main.js")
     style = scoped(STORY_FOLDER / "story.css")
     declared: ClassVar = {"lengths": None, "laid": None}
-    sends = ("object", "a story, or null")
 
 
 def story_value(

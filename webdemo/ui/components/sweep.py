@@ -105,16 +105,13 @@ class Grid:
         columns: names over the columns.
         rows: names beside the rows; one "" for a single row.
         cells: the settings that each cell changes.
+        names: of the cells.
     """
 
     columns: list[str]
     rows: list[str]
     cells: list[dict[str, Any]]
-
-    @property
-    def names(self) -> list[str]:
-        """Of the cells."""
-        return [" · ".join(filter(None, (row, column))) for row in self.rows for column in self.columns]
+    names: list[str]
 
 
 def grid_of(axes: Sequence[Axis]) -> Grid:
@@ -133,26 +130,14 @@ def grid_of(axes: Sequence[Axis]) -> Grid:
     _check(len(axes[0].values) * len(axes[1].values))
     across, down = axes
     cells = [{down.kind.field: d, across.kind.field: a} for d, a in product(down.values, across.values)]
-    return Grid(across.names, down.names, cells)
+    return Grid(across.names, down.names, cells, [" · ".join(pair) for pair in product(down.names, across.names)])
 
 
 def loose(cells: list[dict[str, Any]], names: list[str]) -> Grid:
     """A grid without a second axis: up to three cells in a row, then two or three rows; cells name themselves."""
     _check(len(cells))
     wide = len(cells) if len(cells) <= 3 else 2 if len(cells) == 4 else 3
-    return Named([""] * wide, [""] * -(-len(cells) // wide), cells, tuple(names))
-
-
-@dataclass(frozen=True)
-class Named(Grid):
-    """A grid whose cells have names of their own."""
-
-    own: tuple[str, ...] = ()
-
-    @property
-    def names(self) -> list[str]:
-        """Of the cells."""
-        return list(self.own)
+    return Grid([""] * wide, [""] * -(-len(cells) // wide), cells, names)
 
 
 def grid_payload(grid: Grid, results: Sequence[Result], *, title: str = "") -> Payload:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import gradio as gr
 
 from motion.formats import READABLE, RIGS
 from motion.formats.recording import Animations
-from webdemo.ui.text.texts import say, worded
+from webdemo.ui.text.texts import say
 
 
 def file_field(key: str, *, elem_id: str) -> gr.File:
@@ -22,11 +20,6 @@ def file_field(key: str, *, elem_id: str) -> gr.File:
 def chip(label: str, *, elem_id: str | None = None) -> gr.Button:
     """A small round button."""
     return gr.Button(label, size="sm", elem_classes="pd-chip", elem_id=elem_id, min_width=0)
-
-
-def example_chips(examples: Sequence[tuple[str, Path]]) -> list[gr.Button]:
-    """A chip for each (name, file)."""
-    return [chip(worded("examples", name)) for name, _ in examples]
 
 
 MOST_OFFERED = 200

@@ -7,17 +7,18 @@ from typing import Any
 
 import gradio as gr
 
+from motion import Duet
 from motion.formats.recording import AXES, ORDERS, UNITS
 from webdemo.inference.method import SECONDS
 from webdemo.inference.methods import methods
-from webdemo.ui.again import actor_source
+from webdemo.inference.requests.actor import ROLES
 from webdemo.ui.components.actors import AUTO, Source, offered_animations
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.settings import FittedSlider
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import error_line, text
+from webdemo.ui.text.words import error_line
 
 from .results import QUIET, Updates
 from .source import SourcePanel
@@ -114,7 +115,7 @@ class ActorPanel(SourcePanel):
             gr.update(choices=source.choices, visible=len(source.people) > 1, value=source.chosen),
             gr.update(maximum=last, value=begin),
             gr.update(maximum=last, value=min(end, last)),
-            _found(source),
+            status(source.found or "Taken from a result or the history, so there was nothing to detect."),
         ]
 
     def preview(self, source: Source | None, person: str, start: float, end: float) -> Updates:
@@ -159,9 +160,10 @@ class ActorPanel(SourcePanel):
         }
 
 
-def _found(source: Source) -> str:
-    """Describes as HTML how a source's file was read: one line, then its joints beside SMPL's."""
-    if source.found is None:
-        return status("Taken from a result or the history, so there was nothing to detect.")
-    pairs = " · ".join(f"{text(theirs)} → {text(ours)}" for theirs, ours in source.found.joints)
-    return f'{status(source.found.line)}<p class="pd-timings">{pairs}</p>'
+def actor_source(opened: Opened) -> Source:
+    """The given person of a kept reaction, whom its result holds unchanged."""
+    asked = opened.entry.request
+    place = ROLES.index(asked.get("role", ROLES[0]))
+    duet = opened.result.duets[0]
+    assert isinstance(duet, Duet)  # as every reaction is
+    return Source(asked.get("actor", {}).get("name") or opened.entry.title, (duet.people[place],))

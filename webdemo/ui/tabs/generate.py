@@ -120,14 +120,9 @@ class GenerateTab(JobTab):
 
     # ---- layout ----------------------------------------------------------------------------------
 
-    def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
+    def build(self, record: gr.State | None = None) -> None:
         """See :meth:`JobTab.build`."""
-        with gr.Row(elem_classes="pd-lab", equal_height=False):
-            with gr.Column(elem_classes="pd-controls", min_width=0):
-                self._ask()
-                self.results.build_readouts()
-                self._settings()
-            self.results.build_stage(compare=self.grids.build, first=arrival_payload(CLIPS / ARRIVAL))
+        self.lay_out(self._ask, self._settings, first=arrival_payload(CLIPS / ARRIVAL))
         self.controls = {
             "model": self.model,
             "prompt": self.prompt,
@@ -152,52 +147,50 @@ class GenerateTab(JobTab):
     def _ask(self) -> None:
         classes = installed_classes()
         choices = generate_choices()
-        with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-            self.model = gr.Radio(
-                [(worded("way", label), name) for label, name in choices],
-                value=GenerateRequest.model,
-                show_label=False,
-                container=False,
-                visible=len(choices) > 1,
-                elem_id="way",
-                elem_classes="pd-way",
-            )
-            with gr.Column(min_width=0, elem_classes="pd-sentence") as self.by_sentence:
-                self.prompt = gr.Textbox(
-                    label=say("generate.prompt"),
-                    info=say("generate.prompt_info"),
-                    placeholder=EXAMPLES[0][1],
-                    lines=1,  # so that Enter generates; the style sheet gives it the height of three
-                    max_lines=6,
-                    elem_id="prompt",
-                    autofocus=True,
-                )
-                with gr.Row(elem_classes="pd-chips"):
-                    self.gallery = Gallery(elem_id="gallery", elem_classes="pd-gallery", min_width=0)
-                    self.chips = [chip(worded("examples", name)) for name, _ in EXAMPLES]
-                self.reading = Reading(editable=True, elem_id="reading", elem_classes="pd-reading")
-            self.class_name = gr.Dropdown(
-                classes,
-                value=None,
+        self.model = gr.Radio(
+            [(worded("way", label), name) for label, name in choices],
+            value=GenerateRequest.model,
+            show_label=False,
+            container=False,
+            visible=len(choices) > 1,
+            elem_id="way",
+            elem_classes="pd-way",
+        )
+        with gr.Column(min_width=0, elem_classes="pd-sentence") as self.by_sentence:
+            self.prompt = gr.Textbox(
                 label=say("generate.prompt"),
-                info=say("generate.class_info", count=len(classes)),
-                visible=False,
-                elem_id="class",
+                info=say("generate.prompt_info"),
+                placeholder=EXAMPLES[0][1],
+                lines=1,  # so that Enter generates; the style sheet gives it the height of three
+                max_lines=6,
+                elem_id="prompt",
+                autofocus=True,
             )
-            self.build_go(say("generate.go"))
+            with gr.Row(elem_classes="pd-chips"):
+                self.gallery = Gallery(elem_id="gallery", elem_classes="pd-gallery", min_width=0)
+                self.chips = [chip(worded("examples", name)) for name, _ in EXAMPLES]
+            self.reading = Reading(editable=True, elem_id="reading", elem_classes="pd-reading")
+        self.class_name = gr.Dropdown(
+            classes,
+            value=None,
+            label=say("generate.prompt"),
+            info=say("generate.class_info", count=len(classes)),
+            visible=False,
+            elem_id="class",
+        )
+        self.build_go(say("generate.go"))
 
     def _settings(self) -> None:
-        with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-            self.seconds = gr.Slider(
-                *SECONDS,
-                value=GenerateRequest.seconds,
-                step=0.5,
-                label=say("generate.seconds"),
-                info=say("generate.seconds_info"),
-                elem_id="seconds",
-                buttons=[],
-            )
-            self.sampling.build(self._more)
+        self.seconds = gr.Slider(
+            *SECONDS,
+            value=GenerateRequest.seconds,
+            step=0.5,
+            label=say("generate.seconds"),
+            info=say("generate.seconds_info"),
+            elem_id="seconds",
+            buttons=[],
+        )
+        self.sampling.build(self._more)
 
     def _more(self) -> None:
         """A switch, by which words become paths, or not."""

@@ -18,7 +18,6 @@ from webdemo.ui.components.sweep import (
     MOST,
     Grid,
     Kind,
-    Named,
     grid_of,
     grid_payload,
     grid_table,
@@ -28,7 +27,7 @@ from webdemo.ui.components.sweep import (
 )
 from webdemo.ui.components.upload import chip
 from webdemo.ui.history import Opened
-from webdemo.ui.text.panels import notes_lines, status
+from webdemo.ui.text.panels import notes_lines, status, total
 from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import seconds
 
@@ -130,12 +129,13 @@ class Grids:
         for i, (name, request) in enumerate(zip(grid.names, wanted, strict=True)):
             made[name] = yield from tab.made(session, request, label=f"{i + 1} of {len(wanted)}, {name}. ")
         title = f"{tab.title(wanted[0])} · grid of {len(wanted)}"
-        spent = seconds(sum(result.timings.get("total", sum(result.timings.values())) for result in made.values()))
+        spent = seconds(sum(map(total, made.values())))
         notes = {note: None for result in made.values() for note in notes_lines(result).splitlines() if note}
         yield tab.updates(
             **grid_shown(grid, made, title) | tab.laid_out(made.values()) | tab.beside_grid(made, asked),
             line=status(f"{len(wanted)} results done in {spent}.", tone="done") + "".join(notes),
             under=gr.update(visible=True),
+            **tab.results.fresh(),
         )
 
     def opened(self, run: Opened) -> dict[str, Any]:
@@ -148,7 +148,7 @@ class Grids:
         names = about["names"] if whole_grid else [str(i + 1) for i in range(len(results))]
         columns, rows = (about["columns"], about["rows"]) if whole_grid else ([""] * len(results), [""])
         made = dict(zip(names, results, strict=True))
-        shown = grid_shown(Named(columns, rows, [], tuple(names)), made, str(about["title"]))
+        shown = grid_shown(Grid(columns, rows, [], names), made, str(about["title"]))
         return shown | self.tab.laid_out(results) | self.tab.beside_grid(made, {})
 
 
@@ -156,8 +156,10 @@ def grid_shown(grid: Grid, made: Mapping[str, Result], title: str) -> dict[str, 
     """Updates that show a grid."""
     results = list(made.values())
     about = {"columns": grid.columns, "rows": grid.rows, "names": list(made), "title": title}
+    record = Record(results[0], title, compared=dict(made), grid=about)
     return {
         "player": show(grid_payload(grid, results, title=title)),
         "readouts": grid_table(made),
-        "record": Record(results[0], title, compared=dict(made), grid=about),
+        "record": record,
+        "own": record,
     }

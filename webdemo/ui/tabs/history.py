@@ -2,29 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import gradio as gr
 
 from motion import InputError
-from webdemo.inference.run import Cancelled, Progress, Result
-from webdemo.ui.again import request_of, request_of_unfinished, verdict
-from webdemo.ui.components.exports import KINDS, Record
-from webdemo.ui.components.notebook import Action, NotebookView, shown
+from webdemo.inference.run import Result
+from webdemo.ui.components.notebook import UNKNOWN, Action, NotebookView, shown
 from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
-from webdemo.ui.history import Found, HistoryLike, Opened, Search
+from webdemo.ui.history import Found, HistoryLike, Opened, Search, Usage
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import cancelled_line, error_line, link_line, progress_line, text
+from webdemo.ui.text.words import error_line, link_line, text
 from webdemo.ui.visitor import Visitor, visitor
 
 from .grids import grid_shown
-from .history_files import FilesPanel, room_html, runs_line
 from .job import JobTab
-from .results import QUIET, Updates
+from .results import QUIET, Parts, Updates
 from .sharing import SharingPanel
 from .study import StudyPanel
 
@@ -51,7 +48,6 @@ class HistoryTab:
             raise ValueError("The page has no history.")
         self.page, self.jobs, self.tabs = page, jobs, tabs
         self.history: HistoryLike = page.history
-        self.files = FilesPanel(page, self.history, self.refresh)
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -77,20 +73,14 @@ class HistoryTab:
             self.sharing = SharingPanel(self.page) if self.page.sharing is not None else None
             if self.sharing is not None:
                 self.sharing.build()
-            self.files.build()
         self.removed = gr.State([])
         self._wire(demo, tab, record)
 
     def _wire(self, demo: gr.Blocks, tab: gr.Tab, record: gr.State) -> None:
-        self.record = record
         quick: dict[str, Any] = {"concurrency_limit": 8, "concurrency_id": "history", **QUIET}
         shown = [self.view, self.who, self.line, self.address, self.saved, self.removed]
         tab.select(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
         self.view.select(self.act, inputs=self.removed, outputs=shown, **quick)
-        self.files.wire(shown[:2], self.line, self.saved, self.removed)
-        again = self.view.retry(self.again, outputs=[self.line], concurrency_limit=None, trigger_mode="once", **QUIET)
-        again.then(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
-        self.view.stop(self.cancel, queue=False, **QUIET)
         if self.study is not None:
             self.study.wire(tab, self.view.edit)
         if self.sharing is not None:
@@ -98,22 +88,9 @@ class HistoryTab:
         parts = [self.tabs, record, self.line, *(c for job in self.jobs.values() for c in job.parts())]
         self.opened = list({part._id: part for part in parts}.values())
         named = gr.Textbox(visible=False)
-        chosen = self.view.submit(self.open, outputs=self.opened, **quick)
-        compared = self.view.like(self.compare, outputs=self.opened, **quick)
-        address = demo.load(self.open_address, inputs=named, outputs=self.opened, js=_NAMED, **quick)
-        for chain in (chosen, compared, address):
-            for kind, job in self.jobs.items():
-                handed = [job.line, *job.results.downloads]
-                chain = chain.then(self._exporter(kind, job), inputs=record, outputs=handed, **quick)
-
-    def _exporter(self, kind: str, job: JobTab) -> Any:
-        def export(record: Record | None) -> Updates:
-            """Writes the files of an opened run for the tab that shows it."""
-            if record is None or record.result.manifest.get("request", {}).get("kind", "generate") != kind:
-                return (gr.skip(),) * (1 + len(KINDS))
-            return job.results.export(record)
-
-        return export
+        self.view.submit(self.open, outputs=self.opened, **quick)
+        self.view.like(self.compare, outputs=self.opened, **quick)
+        demo.load(self.open_address, inputs=named, outputs=self.opened, js=_NAMED, **quick)
 
     # ---- events ----------------------------------------------------------------------------------
 
@@ -138,13 +115,13 @@ class HistoryTab:
         line, address, saved = gr.skip(), gr.update(visible=False), gr.skip()
         search = Search()
         try:
-            action = Action(event._data)
-            search, owner = action.search, visitor().owner
+            action = Action.read(event._data)
+            search, owner = action.wanted, visitor().owner
             if action.act == "link":
                 link, until = self._link(action.one, owner)
                 line, address = status(until, tone="done"), gr.update(value=link, visible=True)
             elif action.act == "export":
-                line, saved = self.files.export(action.ids)
+                line, saved = self._export(action.ids, owner)
             elif action.act == "remove":
                 count, removed = self.history.remove(action.ids, owner), action.ids
                 line = status(
@@ -176,71 +153,48 @@ class HistoryTab:
             ended = self.history.revoke(run, owner)
             return "Its link no longer works." if ended == 1 else f"{ended} links to it no longer work."
         if action.act == "describe":
-            self.history.describe(run, owner, **action.fields)
+            self.history.describe(run, owner, title=action.title, tags=action.tags, note=action.note)
             return "Saved."
-        raise InputError("The notebook sent something unknown: reload the page.")
+        raise InputError(UNKNOWN)
+
+    def _export(self, runs: Sequence[str], owner: str) -> Updates:
+        """Writes runs into one file; a line on it, and the change of the button that gives it."""
+        file = self.page.shelf.folder(self.history.weight(owner, runs)) / "pas-de-deux-results.zip"
+        count = self.history.export(owner, runs, file)
+        line = f"{runs_line(count).capitalize()} in one file of {file.stat().st_size / 2**20:.1f} MB."
+        return status(line, tone="done"), gr.update(value=str(file), visible=True)
 
     def _link(self, run: str, owner: str) -> tuple[str, str]:
         key, until = self.history.link(run, owner)
         return f"{visitor().base}?run={key}", link_line(until)
 
-    def again(self, request: gr.Request, event: gr.EventData) -> Iterator[str]:
-        """Runs a kept request once more and says whether it came out the same."""
-        last: Progress | None = None
-        line = ""
-        try:
-            run = Action(event._data).one
-            entry = self.history.entry(run, visitor().owner)
-            if entry.state != "done":
-                opened, wanted = None, request_of_unfinished(entry)
-            else:
-                opened = self.history.open(run, visitor().owner)
-                wanted = request_of(opened)
-            for made in self.page.runs.run(_session(request), wanted):
-                if isinstance(made, Result):
-                    sentence = verdict(opened.result, made) if opened else "Run again: its result is in the list."
-                    line = status(sentence, tone="done")
-                    break
-                last = made
-                yield status(progress_line(made), tone="busy")
-        except Cancelled:
-            line = status(cancelled_line(last), tone="warning")
-        except Exception as error:
-            line = status(error_line(error), tone="error")
-        yield line
-
-    def cancel(self, request: gr.Request) -> None:
-        """Stops what runs again."""
-        self.page.runs.cancel(_session(request))
-
-    def open(self, event: gr.EventData) -> Updates:
+    def open(self, event: gr.EventData) -> Parts:
         """Shows a run in its tab, with all controls as they were."""
         try:
-            return self._shown(self.history.open(Action(event._data).one, visitor().owner))
+            return self._shown(self.history.open(Action.read(event._data).one, visitor().owner))
         except Exception as error:
             return self._not_shown(error_line(error))
 
-    def compare(self, event: gr.EventData) -> Updates:
+    def compare(self, event: gr.EventData) -> Parts:
         """Shows the first sample of several runs as a grid, in the tab of the first."""
         try:
-            action = Action(event._data)
+            action = Action.read(event._data)
             runs = [self.history.open(run, visitor().owner) for run in action.ids[: MOST + 1]]
             job = self.jobs.get(runs[0].entry.kind) if runs else None
             if job is None:
                 raise InputError("Choose two to nine runs first.")
-            shown = compared(runs) | job.laid_out(run.result for run in runs)
+            shown = compared(runs) | job.results.fresh() | job.laid_out(run.result for run in runs)
         except Exception as error:
             return self._not_shown(error_line(error))
-        changes: dict[int, Any] = {
-            self.tabs._id: gr.update(selected=runs[0].entry.kind),
-            self.line._id: status(),
-            job.line._id: status(f"{len(runs)} runs of the history side by side.", tone="done"),
-            job.results.under._id: gr.update(visible=True),
-            **{job.outputs[name]._id: update for name, update in shown.items()},
+        return {
+            self.tabs: gr.update(selected=runs[0].entry.kind),
+            self.line: status(),
+            job.line: status(f"{len(runs)} runs of the history side by side.", tone="done"),
+            job.results.under: gr.update(visible=True),
+            **{job.outputs[name]: update for name, update in shown.items()},
         }
-        return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
 
-    def open_address(self, run: str | None) -> Updates:
+    def open_address(self, run: str | None) -> Parts | Updates:
         """Opens the run that the page's address names, or the last one, so that a reload keeps it."""
         try:
             if run == _LAST:
@@ -254,23 +208,17 @@ class HistoryTab:
 
     # ---- what an opened run shows ----------------------------------------------------------------
 
-    def _not_shown(self, sentence: str, *, first: bool = False) -> Updates:
+    def _not_shown(self, sentence: str, *, first: bool = False) -> Parts:
         """The sentence under the list, or under the first tab's button where the page began with it."""
         shown = next(iter(self.jobs.values())).line if first else self.line
-        changes: dict[int, Any] = {shown._id: status(sentence, tone="error")}
-        return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
+        return {shown: status(sentence, tone="error")}
 
-    def _shown(self, opened: Opened) -> Updates:
+    def _shown(self, opened: Opened) -> Parts:
         entry = opened.entry
         job = self.jobs.get(entry.kind)
         if job is None:
             raise InputError(f"There is no tab for a run of the kind {entry.kind!r} here.")
-        changes: dict[int, Any] = {
-            self.tabs._id: gr.update(selected=entry.kind),
-            self.line._id: status(),
-            **{part._id: update for part, update in job.opened(opened).items()},
-        }
-        return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
+        return {self.tabs: gr.update(selected=entry.kind), self.line: status(), **job.opened(opened)}
 
 
 def compared(runs: Sequence[Opened]) -> dict[str, Any]:
@@ -304,6 +252,38 @@ def _signed_in(who: Visitor) -> str:
     )
 
 
-def _session(request: gr.Request) -> str:
-    """The session of this panel's own runs, which do not cancel those of the other tabs."""
-    return f"again-{request.session_hash}"
+def runs_line(count: int) -> str:
+    """A number of runs in words."""
+    return "one run" if count == 1 else f"{count} runs"
+
+
+def room_html(usage: Usage) -> str:
+    """A bar and a line on the room that a person uses and has."""
+    parts = [
+        f"{name} {_megabytes(size)}"
+        for name, size in (
+            ("runs", usage.runs),
+            ("favourites", usage.favourites),
+            ("studies", usage.studies),
+            ("uploads and downloads", usage.temporary),
+        )
+        if size
+    ]
+    what = f": {', '.join(parts)}" if parts else ""
+    full = (
+        f" When runs and studies reach {_megabytes(usage.kept)} MB, your oldest runs make way; favourites and studies "
+        "stay."
+        if usage.used > 0.5 * usage.kept
+        else ""
+    )
+    line = f"{_megabytes(usage.used)} of {_megabytes(usage.allowed)} MB used{what}.{full}"
+    return (
+        f'<p class="pd-status pd-room"><meter min="0" max="{usage.allowed:.0f}" high="{0.7 * usage.allowed:.0f}" '
+        f'value="{usage.used:.0f}" aria-label="Room used"></meter><span>{text(line)}</span></p>'
+    )
+
+
+def _megabytes(size: float) -> str:
+    """Megabytes to read: with one decimal below ten."""
+    megabytes = size / 2**20
+    return f"{megabytes:,.1f}" if 0 < megabytes < 9.95 else f"{megabytes:,.0f}"

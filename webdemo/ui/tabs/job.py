@@ -30,7 +30,7 @@ from webdemo.ui.text.words import cancelled_line, error_line, progress_line
 from webdemo.ui.visitor import visitor
 
 from .grids import BASIC, PRESETS, Grids, Kind
-from .results import QUIET, Results, Updates
+from .results import QUIET, Parts, Results, Updates
 from .sampling import Sampling
 
 log = logging.getLogger(__name__)
@@ -42,11 +42,6 @@ MOST_BACK = 20
 _ASKED = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role", "model")
 """Fields of a request that a tab may have a control of the same name for."""
 Watch = Callable[[Progress], dict[str, Any] | None]
-
-
-def total(result: Result) -> float:
-    """Seconds that a result took."""
-    return result.timings.get("total", sum(result.timings.values()))
 
 
 class JobTab(ABC):
@@ -78,11 +73,10 @@ class JobTab(ABC):
     # ---- what a tab says -------------------------------------------------------------------------
 
     @abstractmethod
-    def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
-        """Lays out the tab inside ``demo`` and wires its events.
+    def build(self, record: gr.State | None = None) -> None:
+        """Lays out the tab and wires its events.
 
         Args:
-            demo: the page.
             record: keeps the session's last result, of this tab or another; by default a state of the tab's own.
         """
 
@@ -135,6 +129,17 @@ class JobTab(ABC):
     def _id(self, name: str) -> str:
         return self.prefix + name
 
+    def lay_out(self, ask: Callable[[], None], settings: Callable[[], None], **stage: Any) -> None:
+        """Two columns: what ``ask`` lays out, the figures and the ``settings``; and the stage with its options."""
+        with gr.Row(elem_classes="pd-lab", equal_height=False):
+            with gr.Column(elem_classes="pd-controls", min_width=0):
+                with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
+                    ask()
+                self.results.build_readouts()
+                with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
+                    settings()
+            self.results.build_stage(compare=self.grids.build, **stage)
+
     def build_go(self, verb: str, beside: Callable[[], None] = lambda: None) -> None:
         """The buttons that start a run and cancel it, with what ``beside`` lays out between them, and the line."""
         with gr.Row(elem_classes="pd-go"):
@@ -159,20 +164,21 @@ class JobTab(ABC):
             **self.starts(),
             "stop": self.stop,
             "under": self.results.under,
+            "menu": self.results.menu,
+            "address": self.results.address,
             "readouts": self.results.readouts,
             "record": self.record,
+            "own": self.results.own,
             **({"laid": self.sampling.laid} if self.sampling else {}),
             **self.more_outputs(),
         }
-        self.results.wire(self.record, self.line)
+        self.results.wire(self.line)
         if self.sampling is not None:
             self.sampling.wire(self.results.another, self.go)
         self.wire_start(self.start, triggers, first=self.first)
         self.stop.click(self.cancel, queue=False, **QUIET)
-        undone = {part._id: part for part in (*self.parts(), self.trail, self.results.back)}
-        self.undone = list(undone.values())
-        back = self.results.back.click(self.go_back, inputs=[self.record, self.trail], outputs=self.undone, **QUIET)
-        self.results.hand_out(back)
+        undone = list({part._id: part for part in (*self.parts(), self.trail, self.results.back)}.values())
+        self.results.back.click(self.go_back, inputs=[self.results.own, self.trail], outputs=undone, **QUIET)
         self.grids.wire()
 
     def wire_start(
@@ -182,7 +188,6 @@ class JobTab(ABC):
         *,
         more: Sequence[gr.components.Component] = (),
         first: str | None = None,
-        inputs: Sequence[gr.components.Component] | None = None,
     ) -> None:
         """Wires an event that runs something.
 
@@ -191,12 +196,11 @@ class JobTab(ABC):
             triggers: of the event, or what wires it.
             more: further inputs.
             first: JavaScript that the inputs pass through.
-            inputs: in this order, for a ``start`` that takes a value each.
         """
         listen = triggers if callable(triggers) else partial(gr.on, list(triggers))
         run = listen(
             start,  # not called "generate": that name is the public endpoint's
-            inputs=list(inputs) if inputs else {*self.controls.values(), *more},
+            inputs={*self.controls.values(), *more},
             outputs=list(self.outputs.values()),
             concurrency_limit=None,  # runs wait in a line of their own, where they can be cancelled
             trigger_mode="once",
@@ -205,8 +209,7 @@ class JobTab(ABC):
         )
         # Only now would a press be taken: while the event goes on, Gradio drops it.
         rested = [*self.starts().values(), self.stop, self.trail, self.results.back]
-        run.then(self.rest, inputs=[self.record, self.trail], outputs=rested, queue=False, **QUIET)
-        self.results.hand_out(run)
+        run.then(self.rest, inputs=[self.results.own, self.trail], outputs=rested, queue=False, **QUIET)
 
     def start(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
         """Runs what the controls ask for; yields updates of the page."""
@@ -313,7 +316,7 @@ class JobTab(ABC):
         ready = (gr.update(interactive=True) for _ in self.starts())
         return *ready, gr.update(interactive=False), trail, gr.update(visible=len(trail) > 1)
 
-    def go_back(self, record: Record | None, trail: list[str]) -> Updates:
+    def go_back(self, record: Record | None, trail: list[str]) -> Parts:
         """Opens the run before the one that is shown, with all its settings, from the history."""
         if record is not None and trail[-1:] == [record.result.run]:
             trail = trail[:-1]
@@ -323,8 +326,7 @@ class JobTab(ABC):
             found = self.opened(self.page.history.open(trail[-1], visitor().owner))
         except Exception as error:
             found = {self.line: status(error_line(error), tone="error")}
-        found |= {self.trail: trail, self.results.back: gr.update(visible=len(trail) > 1)}
-        return tuple(found.get(part, gr.skip()) for part in self.undone)
+        return found | {self.trail: trail, self.results.back: gr.update(visible=len(trail) > 1)}
 
     def cancel(self, request: gr.Request) -> None:
         """Stops the session's run within one denoising step, or as soon as what it needs was read."""
@@ -339,12 +341,15 @@ class JobTab(ABC):
 
     def shown(self, result: Result, title: str) -> dict[str, Any]:
         """Updates that show a result, by the names of the outputs."""
+        record = Record(result, title)
         return {
             "player": show(result_payload(result, title=title)),
-            "line": status(made_line(result, total(result)), tone="done") + notes_lines(result),
+            "line": status(made_line(result), tone="done") + notes_lines(result),
             "under": gr.update(visible=True),
             "readouts": readout_panel(result),
-            "record": Record(result, title),
+            "record": record,
+            "own": record,
+            **self.results.fresh(),
             **self.laid_out([result]),
         }
 

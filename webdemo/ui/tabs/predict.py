@@ -28,7 +28,7 @@ from webdemo.view.payload import player_payload
 
 from .grids import methods_kind
 from .job import JobTab
-from .results import PRESS, QUIET
+from .results import PRESS, QUIET, Results
 from .sampling import seed_field
 from .source import SourcePanel
 
@@ -109,20 +109,15 @@ class PastPanel(SourcePanel):
 
 
 class PredictTab(JobTab):
-    """A past → its future.
-
-    Args:
-        page: what the tabs share.
-        examples: (name, file) of example motions; those that are shipped by default.
-    """
+    """A past → its future."""
 
     label = "Predict"
     named = "tabs.predict"
     prefix = "predict-"
 
-    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
+    def __init__(self, page: PageContext) -> None:
         super().__init__(page)
-        self.past = PastPanel(self.results, self.prefix, examples)
+        self.past = PastPanel(self.results, self.prefix)
 
     def request(self, fields: Mapping[str, Any]) -> Any:
         """A :class:`PredictRequest`; raises InputError where none can be made of the fields."""
@@ -163,17 +158,9 @@ class PredictTab(JobTab):
 
     # ---- layout ----------------------------------------------------------------------------------
 
-    def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
+    def build(self, record: gr.State | None = None) -> None:
         """See :meth:`JobTab.build`."""
-        with gr.Row(elem_classes="pd-lab", equal_height=False):
-            with gr.Column(elem_classes="pd-controls", min_width=0):
-                with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-                    self.past.build()
-                    self.past.build_animation()
-                    self.build_go(say("predict.go"))
-                self.results.build_readouts()
-                self._settings()
-            self.results.build_stage(compare=self.grids.build, another=False)
+        self.lay_out(self._ask, self._settings, another=False)
         self.controls = {
             "source": self.past.state,
             "marker": self.past.marker,
@@ -191,29 +178,33 @@ class PredictTab(JobTab):
             **QUIET,
         )
 
+    def _ask(self) -> None:
+        self.past.build()
+        self.past.build_animation()
+        self.build_go(say("predict.go"))
+
     def _settings(self) -> None:
-        with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-            self.past.build_marker()
-            self.seconds = gr.Slider(
-                *method(PredictRequest.model).seconds,
-                value=PredictRequest.seconds,
-                step=0.5,
-                label=say("predict.seconds"),
-                elem_id="predict-seconds",
-                buttons=[],
+        self.past.build_marker()
+        self.seconds = gr.Slider(
+            *method(PredictRequest.model).seconds,
+            value=PredictRequest.seconds,
+            step=0.5,
+            label=say("predict.seconds"),
+            elem_id="predict-seconds",
+            buttons=[],
+        )
+        with gr.Row(elem_classes="pd-rows"):
+            self.model = gr.Dropdown(
+                predict_choices(),
+                value=PredictRequest.model,
+                label=say("react.method"),
+                elem_id="predict-method",
+                min_width=0,
+                filterable=False,
             )
-            with gr.Row(elem_classes="pd-rows"):
-                self.model = gr.Dropdown(
-                    predict_choices(),
-                    value=PredictRequest.model,
-                    label=say("react.method"),
-                    elem_id="predict-method",
-                    min_width=0,
-                    filterable=False,
-                )
-            about, _ = self._of_method(PredictRequest.model)
-            self.about = gr.HTML(about, elem_id="predict-about")
-            self.seed = seed_field(self.prefix, "predict.seed_info", visible="hidden")
+        about, _ = self._of_method(PredictRequest.model)
+        self.about = gr.HTML(about, elem_id="predict-about")
+        self.seed = seed_field(self.prefix, "predict.seed_info", visible="hidden")
 
     def restored(self) -> Sequence[Any]:
         """The file and its animation."""
@@ -221,18 +212,18 @@ class PredictTab(JobTab):
 
     # ---- events ----------------------------------------------------------------------------------
 
-    def wire_page(self, tab: gr.Tab, tabs: gr.Tabs, onwards: Sequence[gr.Button]) -> None:
+    def wire_page(self, tab: gr.Tab, tabs: gr.Tabs, stages: Sequence[Results]) -> None:
         """Wires what happens as the tab is opened.
 
         Args:
             tab: this one, among ``tabs``.
             tabs: of the page.
-            onwards: buttons of any tab that take the last result here, as a past that goes on at once.
+            stages: of all tabs, whose results can be taken here, as a past that goes on at once.
         """
         load = self.past.load_options
         self.past.wire_arrival(tab, self.record, self.label)
-        for button in onwards:
-            taken = button.click(self.past.take_result, inputs=self.record, **load)
+        for stage in stages:
+            taken = stage.onward.click(self.past.take_result, inputs=stage.own, **load)
             taken.then(None, outputs=self.past.file, js="() => null", **QUIET)
             # Only now is the tab opened, which finds the result on it.
             chosen = taken.then(lambda: gr.update(selected=self.label.lower()), outputs=tabs, queue=False, **QUIET)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import gradio as gr
 
 from webdemo.inference.methods import AUTOMATIC, variants
 from webdemo.inference.requests import ReactRequest
+from webdemo.inference.requests.live import PARTNERS
 from webdemo.ui.components.actors import chosen_actor, react_choices, reactor, with_method
 from webdemo.ui.components.live import LivePanel, take_of
 from webdemo.ui.components.settings import looked_up
@@ -28,24 +28,28 @@ from .sampling import Sampling
 
 _AUTOMATIC = english("method.automatic")
 _WORDS = say("react.words")
+_STREAM = """(method) => {
+  const panel = document.querySelector("#react-live .pdlive");
+  const find = (name) => panel.querySelector(`.${name}`);
+  if (find("pdcam-body").hidden) find("pdcam-open").click();
+  find("pdlive-source").value = "clip";
+  find("pdlive-partner").value = method === "agent" ? "agent" : "regennet";
+  find("pdcam-begin").click();
+}"""
+"""JavaScript that lets a live partner answer the person on the stage, by a method where that can."""
 
 
 class ReactTab(JobTab):
-    """One person → two people.
-
-    Args:
-        page: what the tabs share.
-        examples: (name, file) of example actors; those that are shipped by default.
-    """
+    """One person → two people."""
 
     label = "React"
     named = "tabs.react"
     prefix = "react-"
 
-    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
+    def __init__(self, page: PageContext) -> None:
         super().__init__(page)
         self.sampling: Sampling = Sampling(self.prefix)
-        self.actor = ActorPanel(self.results, self.prefix, examples)
+        self.actor = ActorPanel(self.results, self.prefix)
 
     def request(self, fields: Mapping[str, Any]) -> ReactRequest:
         """See :meth:`JobTab.request`."""
@@ -73,15 +77,9 @@ class ReactTab(JobTab):
 
     # ---- layout ----------------------------------------------------------------------------------
 
-    def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
+    def build(self, record: gr.State | None = None) -> None:
         """See :meth:`JobTab.build`."""
-        with gr.Row(elem_classes="pd-lab", equal_height=False):
-            with gr.Column(elem_classes="pd-controls", min_width=0):
-                self._ask()
-                self.results.build_readouts()
-                with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-                    self.sampling.build()
-            self.results.build_stage(compare=self.grids.build)
+        self.lay_out(self._ask, self.sampling.build)
         self.controls = {
             "source": self.actor.state,
             "person": self.actor.person,
@@ -95,6 +93,7 @@ class ReactTab(JobTab):
         self.wire([self.go.click, self.prompt.submit], record)
         self.wire_start(self.keep_live, [self.live.submit], more=[self.live])
         self.actor.wire(self.record, self.line, self.go)
+        self.stream.click(None, inputs=self.method, js=_STREAM, **QUIET)
         # In the browser: a late answer of the server would undo what was set meanwhile.
         fits = {key: self.fit_method(key) for _, key in react_choices()}
         self.method.input(None, inputs=self.method, outputs=self._fitted(), js=looked_up(fits), **QUIET)
@@ -102,25 +101,28 @@ class ReactTab(JobTab):
     def _fitted(self) -> list[Any]:
         """What :meth:`fit_method` updates."""
         form = self.sampling
-        return [self.role, form.steps, form.guidance, form.damping, self.prompt, self.about]
+        return [self.role, form.steps, form.guidance, form.damping, self.prompt, self.about, self.stream]
 
     def _ask(self) -> None:
-        with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-            self.actor.build(self._live)
-            self.actor.build_trim()
-            self.prompt = gr.Textbox(
-                label=_WORDS,
-                placeholder="One person waves and the other waves back.",
-                lines=1,  # so that Enter generates; the style sheet gives it the height of three
-                max_lines=6,
-                elem_id="react-prompt",
-            )
-            self.build_go(say("react.go"))
-            with gr.Accordion(say("react.advanced"), open=False, elem_id="react-advanced", elem_classes="pd-advanced"):
-                self._advanced()
+        self.actor.build(self._live)
+        self.actor.build_trim()
+        self.prompt = gr.Textbox(
+            label=_WORDS,
+            placeholder="One person waves and the other waves back.",
+            lines=1,  # so that Enter generates; the style sheet gives it the height of three
+            max_lines=6,
+            elem_id="react-prompt",
+        )
+        self.build_go(say("react.go"), self._stream)
+        with gr.Accordion(say("react.advanced"), open=False, elem_id="react-advanced", elem_classes="pd-advanced"):
+            self._advanced()
 
     def _live(self) -> None:
         self.live = LivePanel(elem_id="react-live")
+
+    def _stream(self) -> None:
+        """The button by which a method answers the person on the stage pose by pose, where it can."""
+        self.stream = gr.Button(say("react.stream"), elem_id="react-stream", scale=0, min_width=96)
 
     def _advanced(self) -> None:
         """The method, and what the given person does in the reaction."""
@@ -133,7 +135,7 @@ class ReactTab(JobTab):
                 min_width=0,
                 filterable=False,
             )
-        self.about = gr.HTML(self.fit_method(AUTOMATIC)[-1], elem_id="react-about")
+        self.about = gr.HTML(method_line(_AUTOMATIC), elem_id="react-about")
         self.role = gr.Radio(
             [(say("react.acts_first"), "a"), (say("react.reacts"), "b")],
             value=ReactRequest.role,
@@ -142,14 +144,14 @@ class ReactTab(JobTab):
         )
 
     def restored(self) -> Sequence[Any]:
-        """The file, how it was read, and the line on the method."""
-        return [self.actor.file, self.actor.animation, *self.actor.known, *self.actor.more(), self.about]
+        """The file, how it was read, the line on the method and whether it can stream."""
+        return [self.actor.file, self.actor.animation, *self.actor.known, *self.actor.more(), self.about, self.stream]
 
     # ---- events ----------------------------------------------------------------------------------
 
     @staticmethod
     def fit_method(method: str) -> Updates:
-        """Updates of role, steps, guidance, damping, words and the line on a method.
+        """Updates of role, steps, guidance, damping, words, the line on a method and the button *Stream*.
 
         What a method does not have cannot be set.
         """
@@ -164,6 +166,7 @@ class ReactTab(JobTab):
             gr.update(interactive="damping" not in fixed and chosen.mode == "offline"),
             gr.update(interactive=heard, label=_WORDS if heard else say("react.words_unused", method=chosen.label)),
             method_line(about),
+            gr.update(visible=method == AUTOMATIC or chosen.method.name in PARTNERS),
         )
 
     def keep_live(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:

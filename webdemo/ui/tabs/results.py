@@ -6,12 +6,22 @@ import json
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import gradio as gr
 
 from motion import InputError
-from webdemo.ui.components.exports import KINDS, PURPOSES, Record, file_name, for_download, write_record
+from webdemo.ui.components.exports import (
+    KINDS,
+    PURPOSES,
+    Record,
+    file_name,
+    for_download,
+    offered,
+    without_place,
+    write_record,
+)
 from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film
 from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.context import PageContext
@@ -32,6 +42,8 @@ _TAKE_PICTURE = """() => {
   shown?.querySelector("[data-act=picture]")?.click();
 }"""
 """JavaScript that presses the picture button of the player in view."""
+_NO_FILES = '() => Array(%d).fill({ __type__: "update", interactive: false })'
+"""JavaScript that gives no file, for so many buttons, until those of the motion that is shown are there."""
 _SAVE = """() => {
   const button = document.getElementById(%s);
   setTimeout(() => button?.disabled === false && button.click(), 50);
@@ -50,6 +62,8 @@ DRAWN = {"result.film": make_film, "result.figure": make_figure}
 """What is drawn of a result when its button is pressed, by the key of the button's text."""
 
 Updates = tuple[Any, ...]
+Parts = dict[Any, Any]
+"""Updates by the components that they change; the others stay."""
 
 
 class Results:
@@ -60,10 +74,8 @@ class Results:
         prefix: before the ids of the elements.
     """
 
-    record: gr.State
-    """Keeps the session's last result."""
-    line: gr.HTML
-    """Says how a run went, or what was handed out."""
+    own: gr.State
+    """Keeps the result on this stage."""
 
     def __init__(self, page: PageContext, prefix: str) -> None:
         self.page, self.prefix = page, prefix
@@ -88,6 +100,7 @@ class Results:
             first: is played before anything is asked for.
             another: offers one more take of a result.
         """
+        self.own = gr.State(None, time_to_live=3600)
         with gr.Column(elem_classes="pd-results", min_width=0):
             with gr.Column(elem_classes="pd-panel pd-stage", min_width=0):
                 with gr.Row(elem_classes="pd-actions", visible=False) as self.under:
@@ -121,7 +134,8 @@ class Results:
 
     def _export(self) -> None:
         """Files of a result, by what they are for."""
-        with gr.Accordion(say("result.export"), open=False, elem_id=self._id("downloads"), elem_classes="pd-menu"):
+        name = self._id("downloads")
+        with gr.Accordion(say("result.export"), open=False, elem_id=name, elem_classes="pd-menu") as self.menu:
             for purpose, keys in PURPOSES.items():
                 gr.HTML(f'<p class="pd-purpose">{worded("purpose", purpose)}</p>', padding=False)
                 with gr.Row(elem_classes="pd-downloads"):
@@ -135,40 +149,34 @@ class Results:
 
     def _download(self, key: str) -> None:
         """The button of one kind of file."""
-        kind = next(kind for kind in KINDS if kind.key == key)
-        self._buttons[key] = self._saved(worded("files", kind.label), key.replace(".", "-"), visible=kind.offered())
+        self._buttons[key] = self._saved(worded("files", KINDS[key]), key.replace(".", "-"), visible=offered(key))
 
     @property
     def downloads(self) -> list[gr.DownloadButton]:
         """The buttons of all kinds of files, in the order of :data:`KINDS`."""
-        return [self._buttons[kind.key] for kind in KINDS]
+        return [self._buttons[kind] for kind in KINDS]
 
-    def wire(self, record: gr.State, line: gr.HTML) -> None:
-        """Wires what hands the result in ``record`` out; ``line`` says how that went."""
-        self.record, self.line = record, line
+    def wire(self, line: gr.HTML) -> None:
+        """Wires what hands the result out; ``line`` says how that went."""
         drawn: dict[str, Any] = {"concurrency_limit": 1, "concurrency_id": "film", "trigger_mode": "once", **QUIET}
-        shown: dict[str, Any] = {"inputs": [record, self.player_state], "js": READ_PLAYER}
+        shown: dict[str, Any] = {"inputs": [self.own, self.player_state], "js": READ_PLAYER}
         for key, button in self.drawn.items():
             made = button.click(partial(self.draw, key), outputs=[line, button, self.saved], **shown, **drawn)
             made.then(None, js=_SAVE % json.dumps(self.saved.elem_id), **QUIET)
+        opened = self.menu.expand(None, outputs=self.downloads, js=_NO_FILES % len(KINDS), **QUIET)
+        opened.then(self.export, inputs=self.own, outputs=[line, *self.downloads], concurrency_limit=2, **QUIET)
         self.picture.click(None, js=_TAKE_PICTURE, **QUIET)
         self.share.click(self.make_link, outputs=[line, self.address], **shown, **QUIET)
 
-    def hand_out(self, event: Any) -> None:
-        """Writes the files of a new result after an event, and until then gives none of the result before."""
-        gone = [*self.handed_out, self.address]
-        event.then(self.withhold, inputs=self.record, outputs=gone, queue=False, **QUIET).then(
-            self.export, inputs=self.record, outputs=[self.line, *self.downloads], concurrency_limit=2, **QUIET
-        )
-
     def draw(self, key: str, record: Record | None, shown: str) -> Iterator[Updates]:
-        """Draws the last result as the player shows it, as one of :data:`DRAWN`, and hands the file out.
+        """Draws the result as the player shows it, as one of :data:`DRAWN`, and hands the file out.
 
         Its button says how much of it is drawn.
         """
         label = say(key)
         off = gr.update(value=None, interactive=False)
         done = [0.0]
+        folder = Path()
         try:
             folder = self.page.shelf.folder()
             with ThreadPoolExecutor(1) as pool:
@@ -178,7 +186,8 @@ class Results:
                     wait([drawing], timeout=0.5)
             path = drawing.result()
         except Exception as error:
-            yield status(error_line(error), tone="error"), gr.update(value=label), gr.skip()
+            line = error_line(without_place(error, folder))
+            yield status(line, tone="error"), gr.update(value=label), gr.skip()
             return
         yield gr.skip(), gr.update(value=label), gr.update(value=path, interactive=True)
 
@@ -193,31 +202,22 @@ class Results:
         address = link_address(visitor().base, key, shown)
         return status(link_line(until), tone="done"), gr.update(value=address, visible=True)
 
-    @property
-    def handed_out(self) -> list[gr.DownloadButton]:
-        """The buttons of all files of a result: :attr:`downloads`, and what is drawn of it."""
-        return [*self.downloads, self.saved]
-
-    def withhold(self, record: Record | None) -> Updates:
-        """Takes the last result's files and link away where a new result's are still to be made."""
-        if record is None or record.exported:
-            return (gr.skip(),) * (len(self.handed_out) + 1)
-        return *(gr.update(value=None, interactive=False) for _ in self.handed_out), gr.update(visible=False)
-
     def export(self, record: Record | None) -> Updates:
-        """Writes the files of a new result and hands them to the download buttons."""
-        unchanged = (gr.skip(),) * (1 + len(KINDS))
-        if record is None or record.exported:
-            return unchanged
-        record.exported = True
+        """Writes the files of the result on the stage, once, and hands them to the download buttons."""
+        if record is None:
+            return (gr.skip(),) * (1 + len(KINDS))
         try:
-            files = write_record(record, self.page.shelf.folder())
-            found = for_download(files, file_name(record.prompt, record.result.manifest))
+            if not all(file.exists() for file in record.files.values()) or not record.files:
+                files = write_record(record, self.page.shelf.folder())
+                record.files = for_download(files, file_name(record.prompt, record.result.manifest))
         except Exception as error:
             off = gr.update(value=None, interactive=False)
-            return (
-                status(f"The motion is ready, but its files are not. {error_line(error)}", tone="error"),
-                *(off for _ in KINDS),
-            )
-        offered = (found.get(kind.key) for kind in KINDS)
-        return (gr.skip(), *(gr.update(value=file, interactive=file is not None) for file in offered))
+            line = status(f"The motion is ready, but its files are not. {error_line(error)}", tone="error")
+            return line, *(off for _ in KINDS)
+        given = (record.files.get(kind) for kind in KINDS)
+        return (gr.skip(), *(gr.update(value=file, interactive=file is not None) for file in given))
+
+    @staticmethod
+    def fresh() -> dict[str, Any]:
+        """Updates as another motion comes: the menu of files, which are written as it opens, and the link are gone."""
+        return {"menu": gr.update(open=False), "address": gr.update(visible=False)}

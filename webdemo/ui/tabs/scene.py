@@ -15,29 +15,19 @@ from webdemo.inference.story.beats import story_title
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import show
 from webdemo.ui.components.reading import Reading, checked
-from webdemo.ui.components.scene_parts import (
-    FUTURES,
-    only_sample,
-    part_fields,
-    part_request,
-    place_of,
-    shown_duet,
-    went_on,
-)
-from webdemo.ui.components.show import arrival_payload
+from webdemo.ui.components.scene_parts import FUTURES, only_sample, part_request, place_of, shown_duet, went_on
 from webdemo.ui.components.story import StoryLine, story_fields, value_of
 from webdemo.ui.components.story_words import edited, lay_out, said_of, settled, story_text, written
 from webdemo.ui.components.upload import chip
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
-from webdemo.ui.text.examples import ARRIVAL, CLIPS
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import error_line, tries_line
 from webdemo.view.payload import player_payload
 
 from .job import JobTab
-from .results import QUIET, Updates
+from .results import QUIET, Parts, Updates
 from .sampling import Sampling
 
 EXAMPLES = (
@@ -100,16 +90,9 @@ class SceneTab(JobTab):
 
     # ---- layout ----------------------------------------------------------------------------------
 
-    def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
+    def build(self, record: gr.State | None = None) -> None:
         """See :meth:`JobTab.build`."""
-        with gr.Row(elem_classes="pd-lab", equal_height=False):
-            with gr.Column(elem_classes="pd-controls", min_width=0):
-                self._ask()
-                self.results.build_readouts()
-                with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-                    self.sampling.build()
-            first = arrival_payload(CLIPS / ARRIVAL)
-            self.results.build_stage(compare=self.grids.build, below=self._story, first=first)
+        self.lay_out(self._ask, self.sampling.build, below=self._story)
         self.controls = {"prompt": self.prompt, "story": self.line_up, **self.sampling.controls}
         self.wire([self.go.click, self.prompt.submit], record)
         self._wire_parts()
@@ -117,18 +100,16 @@ class SceneTab(JobTab):
         self.reading.follow(self.prompt, **QUIET)
 
     def _ask(self) -> None:
-        with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-            self.prompt = gr.Textbox(
-                label=say("scene.prompt"), placeholder=EXAMPLES[0][1], lines=1, max_lines=8, elem_id=self._id("prompt")
-            )
-            with gr.Row(elem_classes="pd-chips"):
-                self.chips = [
-                    chip(worded("examples", name), elem_id=self._id(f"example-{i}"))
-                    for i, (name, _) in enumerate(EXAMPLES)
-                ]
-                self.last = chip(say("scene.last"), elem_id=self._id("last"))
-            self.reading = Reading(elem_id=self._id("reading"), elem_classes="pd-reading")
-            self.build_go(say("scene.go"))
+        self.prompt = gr.Textbox(
+            label=say("scene.prompt"), placeholder=EXAMPLES[0][1], lines=1, max_lines=8, elem_id=self._id("prompt")
+        )
+        with gr.Row(elem_classes="pd-chips"):
+            self.chips = [
+                chip(worded("examples", name), elem_id=self._id(f"example-{i}")) for i, (name, _) in enumerate(EXAMPLES)
+            ]
+            self.last = chip(say("scene.last"), elem_id=self._id("last"))
+        self.reading = Reading(elem_id=self._id("reading"), elem_classes="pd-reading")
+        self.build_go(say("scene.go"))
 
     def _story(self) -> None:
         self.line_up = StoryLine(elem_id=self._id("story"), elem_classes="pd-story")
@@ -173,20 +154,16 @@ class SceneTab(JobTab):
         self.line_up.input(edited, inputs=self.line_up, **last)
         self.prompt.input(None, inputs=self.line_up, outputs=self.line_up, js=_TYPED, **QUIET)
         self.prompt.blur(written, inputs=[self.prompt, self.line_up], **last)
-        player, under, readouts = self.results.player, self.results.under, self.results.readouts
-        changed = [player, self.line, self.record, self.trail]
-        shown = [self.record, self.trail, self.shown_at]
+        changed = [*self.outputs.values(), self.trail]
+        shown = [self.results.own, self.trail, self.shown_at]
         self.take.click(self.take_shown, inputs=shown, js=_READ_PLACE, outputs=changed, **QUIET)
-        last_shown = [player, self.line, under, readouts]
-        self.last.click(self.take_last, inputs=self.record, outputs=last_shown, **QUIET)
+        self.last.click(self.take_last, inputs=self.record, outputs=changed, **QUIET)
 
     def _wire_parts(self) -> None:
-        form = self.sampling
-        assert form.strictness is not None
-        settings = [form.guidance, form.steps, form.damping, form.strictness]
-        inputs = [self.line_up, self.words, *settings, self.record, self.shown_at]
-        for button, part in ((self.remake, "span"), (self.futures, "futures")):
-            self.wire_start(self._starter(part), [button.click], inputs=inputs, first=_READ_PLACE)
+        kept = self.remake.click(None, js=_KEEP_POSE, **QUIET).then
+        for trigger, part in ((kept, "span"), (self.futures.click, "futures")):
+            more = [self.words, self.results.own, self.shown_at]
+            self.wire_start(self._starter(part), trigger, more=more, first=_READ_PLACE)
 
     def kept_more(self, fields: Mapping[str, Any]) -> dict[str, Any]:
         """Of a part also the whole story."""
@@ -216,19 +193,10 @@ class SceneTab(JobTab):
     def _starter(self, part: str) -> Callable[..., Iterator[Updates]]:
         """What makes a part of the motion: the selected "span" again, or "futures" from the player's frame on."""
 
-        def start(
-            story: Any,
-            words: str,
-            guidance: float,
-            steps: float,
-            damping: float,
-            strictness: float,
-            record: Record | None,
-            place: str,
-            request: gr.Request,
-        ) -> Iterator[Updates]:
-            fields = part_fields(part, story, words, guidance, steps, damping, strictness, record, place)
-            yield from self.run(str(request.session_hash), fields)
+        def start(values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
+            record = values[self.results.own]
+            fields = self.fields(values) | {"part": part, "words": values[self.words], "record": record}
+            yield from self.run(str(request.session_hash), fields | place_of(values[self.shown_at]))
 
         return start
 
@@ -239,30 +207,31 @@ class SceneTab(JobTab):
         line = f"{tries_line(event)}Beat {event.beat + 1} is there. Step {event.step} of {event.total}."
         return {"player": show(player_payload(event.motion, title=title)), "line": status(line, tone="busy")}
 
-    def take_last(self, record: Record | None) -> Updates:
+    def take_last(self, record: Record | None) -> Parts:
         """Shows the session's last result here, of whichever tab, so that parts of it can be made again."""
         try:
             shown_duet(record, 0)
         except Exception as error:
-            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip()
+            return {self.line: status(error_line(error), tone="error")}
         assert record is not None
         shown = self.shown(record.result, record.prompt)
-        line = status("Select a span of it, or ask for continuations.")
-        return shown["player"], line, shown["under"], shown["readouts"]
+        shown["line"] = status("Select a span of it, or ask for continuations.")
+        return {self.outputs[name]: shown[name] for name in ("player", "line", "under", "readouts", "own")}
 
-    def take_shown(self, record: Record | None, trail: list[str], shown: str) -> Updates:
+    def take_shown(self, record: Record | None, trail: list[str], shown: str) -> Parts:
         """Keeps one of several futures as the motion; the choice can be gone back to."""
         try:
             sample = place_of(shown)["sample"]
             shown_duet(record, sample)
         except Exception as error:
-            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip()
+            return {self.line: status(error_line(error), tone="error")}
         assert record is not None
         if len(record.result.duets) == 1:
-            return gr.skip(), status("This is the motion already."), gr.skip(), gr.skip()
-        kept = Record(only_sample(record.result, sample), record.prompt)
-        line = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
-        return self.shown(kept.result, record.prompt)["player"], line, kept, [*trail, record.result.run]
+            return {self.line: status("This is the motion already.")}
+        kept = self.shown(only_sample(record.result, sample), record.prompt)
+        kept["line"] = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
+        found = {self.outputs[name]: kept[name] for name in ("player", "line", "record", "own")}
+        return found | {self.trail: [*trail, record.result.run]}
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the story that was asked for."""
@@ -297,4 +266,6 @@ _READ_PLACE = """(...values) => {
   const place = { frame: Math.round(player?.frameShown ?? 0), sample: player?.sampleIndex ?? 0 };
   return [...values.slice(0, -1), JSON.stringify(place)];
 }"""
-"""JavaScript that tells which frame of which sample the player shows."""
+"""JavaScript that tells which frame of which sample the player shows; that comes last of the inputs."""
+_KEEP_POSE = "() => window.__pasdedeux?.player?.directing.posing?.keep()"
+"""JavaScript that keeps a pose that is being pulled at: it is a part of what is made again."""

@@ -68,7 +68,7 @@ class SharingPanel:
     def publish(self, event: gr.EventData) -> Updates:
         """Makes a page of the run that is chosen in the notebook, and shows its address."""
         try:
-            page = self.sharing.publish(visitor().owner, Action(event._data).one)
+            page = self.sharing.publish(visitor().owner, Action.read(event._data).one)
         except Exception as error:
             return gr.update(open=True), status(error_line(error), tone="error"), *((gr.skip(),) * 4)
         line = f"Published. Anybody with the address can watch until {_day(page.until)}."

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import gradio as gr
@@ -16,10 +15,10 @@ from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.show import ROUNDS
-from webdemo.ui.components.upload import animation_field, chip, example_chips, file_field
+from webdemo.ui.components.upload import animation_field, chip, file_field
 from webdemo.ui.text.examples import example_clips
 from webdemo.ui.text.panels import status
-from webdemo.ui.text.texts import say
+from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import error_line
 
 from .results import QUIET, Results, Updates
@@ -31,7 +30,6 @@ class SourcePanel(ABC):
     Args:
         results: where the motion is shown.
         prefix: before the ids of the elements, such as "react-".
-        examples: (name, file) of example motions; those that are shipped by default.
     """
 
     named: str
@@ -41,9 +39,9 @@ class SourcePanel(ABC):
     known: Sequence[Any] = ()
     """Controls of how a file is read: up axis, unit, frames a second and order of joints, where the panel has them."""
 
-    def __init__(self, results: Results, prefix: str, examples: list[tuple[str, Path]] | None = None) -> None:
+    def __init__(self, results: Results, prefix: str) -> None:
         self.results, self.prefix = results, prefix
-        self.examples = example_clips() if examples is None else examples
+        self.examples = example_clips()
 
     # ---- what a panel says -----------------------------------------------------------------------
 
@@ -69,7 +67,7 @@ class SourcePanel(ABC):
         """Lays out where a motion can come from; ``cameras`` lays out more beside the camera's panel."""
         self.file = file_field(self.named, elem_id=f"{self.prefix}file")
         with gr.Row(elem_classes="pd-chips pd-sources"):
-            self.chips = example_chips(self.examples)
+            self.chips = [chip(worded("examples", name)) for name, _ in self.examples]
             self.take = chip(say("source.take"), elem_id=f"{self.prefix}take")
             self.camera = CameraPanel(elem_id=f"{self.prefix}camera")
             cameras()

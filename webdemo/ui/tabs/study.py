@@ -94,7 +94,7 @@ class StudyPanel:
     @_said
     def choose(self, event: gr.EventData) -> Parts:
         """Says what the two runs that are chosen in the notebook are called in a study."""
-        ids = Action(event._data).ids
+        ids = Action.read(event._data).ids
         said = status(" against ".join(names(self._runs(ids))))
         return {
             self.line: said,

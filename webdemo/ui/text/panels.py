@@ -20,7 +20,6 @@ _NO_WARNINGS = ("This was made as ", "Read as ")
 """Beginnings of notes that say how a sentence was understood."""
 _VERDICT = ("Done", "Not understood:", "Not checked:", "Not seen:", "This is the ", "Best of ")
 """Beginnings of the note on the acts, which the reading under the prompt shows at its chips."""
-_SAME = '<td class="pd-same">same</td>'
 
 
 def status(line: str = "", *, tone: str = "quiet") -> str:
@@ -36,9 +35,14 @@ def status(line: str = "", *, tone: str = "quiet") -> str:
     return f'<p class="pd-status pd-{tone}" role="{role}">{text(line)}</p>'
 
 
-def made_line(result: Result, spent: float) -> str:
+def total(result: Result) -> float:
+    """Seconds that a result took."""
+    return result.timings.get("total", sum(result.timings.values()))
+
+
+def made_line(result: Result) -> str:
     """How many samples were made, in how many seconds, and by which of several tries."""
-    count, tries = len(result.duets), result.manifest.get("tries")
+    count, tries, spent = len(result.duets), result.manifest.get("tries"), total(result)
     made = "Made" if count == 1 else f"{count} samples made"
     within = f" in {seconds(spent)}" if spent else ""
     chosen = f", try {tries['won']} of {tries['made']}" if tries else ""
@@ -91,12 +95,15 @@ def model_state(state: str, error: str | None = None) -> str:
 
 
 def readout_panel(result: Result) -> str:
-    """All figures of a result, behind a line: what was asked, measures, contacts, timings."""
+    """All figures of a result, behind a line: what was asked, measures, timings."""
     samples = [sides(readout) for readout in result.readouts]
     tables = ""
     if samples:
-        both = _quality_table(samples) + _relation_table(samples, result)
-        tables = f'<div class="pd-tables">{both}</div>'
+        compared = any(before is not None for before, _ in samples)
+        caption = "Quality, before → after damping and clean-up" if compared else "Quality"
+        quality = _measures(caption, QUALITY, samples)
+        relation = _measures("Between the two", RELATION, [(None, after) for _, after in samples])
+        tables = f'<div class="pd-tables">{quality}{relation}</div>'
     figures = f"{_asked(result)}{tables}{_timings(result.timings)}"
     shown = f'<details class="pd-figures"><summary>All figures</summary>{figures}</details>'
     return f'<div class="pd-readouts">{shown}</div>'
@@ -108,10 +115,6 @@ def prediction_lines(lines: Mapping[str, str]) -> str:
         f'<p class="pd-in-words">{f"<b>{text(name)}</b> " if name else ""}{text(line)}</p>'
         for name, line in lines.items()
     )
-
-
-def _heads(count: int) -> list[str]:
-    return [f"Sample {i + 1}" for i in range(count)]
 
 
 def sides(readout: Mapping[str, Any]) -> tuple[Summary | None, Summary]:
@@ -153,78 +156,22 @@ def _plain(value: Any) -> str | None:
     return None if value is None else f"{value:g}"
 
 
-def _quality_table(samples: Sequence[tuple[Summary | None, Summary]]) -> str:
-    head: Sequence[str]
-    if len(samples) == 1 and samples[0][0] is not None:
-        head = ("Before", "After", "Change")
-    elif len(samples) == 1:
-        head = ("Value",)
-    else:
-        head = _heads(len(samples))
-    rows = "".join(_quality_row(measure, samples) for measure in QUALITY)
-    compared = any(before is not None for before, _ in samples)
-    return _table("Quality, before → after damping and clean-up" if compared else "Quality", head, rows)
-
-
-def _quality_row(measure: Measure, samples: Sequence[tuple[Summary | None, Summary]]) -> str:
-    cells = []
-    for before, after in samples:
-        new = _value(measure, after)
-        old = "" if before is None else _value(measure, before)
-        if len(samples) > 1:
-            cells.append(f"<td>{old} → <b>{new}</b></td>" if old else f"<td><b>{new}</b></td>")
-        elif before is None:
-            cells.append(f"<td><b>{new}</b></td>")
-        else:
-            cells.append(f"<td>{old}</td><td><b>{new}</b></td>{_change(measure, before, after)}")
-    return _row(measure, "".join(cells))
-
-
-def _change(measure: Measure, before: Summary, after: Summary) -> str:
-    old, new = before.get(measure.key), after.get(measure.key)
-    smallest = 0.5 * 10**-measure.digits
-    if old is None or new is None:
-        return "<td>–</td>"
-    if _value(measure, before) == _value(measure, after):
-        return _SAME
-    tone = "pd-better" if new < old else "pd-worse"
-    if old < smallest:
-        return f'<td class="{tone}">+{number(new - old, measure.digits)}</td>'
-    percent = f"{100 * (new - old) / old:+.0f}".replace("-", "−")
-    if percent in ("+0", "−0"):
-        return _SAME
-    return f'<td class="{tone}">{percent} %</td>'
-
-
-def _relation_table(samples: Sequence[tuple[Summary | None, Summary]], result: Result) -> str:
-    head = ("Value",) if len(samples) == 1 else _heads(len(samples))
+def _measures(caption: str, measures: Sequence[Measure], samples: Sequence[tuple[Summary | None, Summary]]) -> str:
+    """A table: a row a measure, a column a sample."""
+    heads = [f"Sample {i + 1}" for i in range(len(samples))] if len(samples) > 1 else ["Value"]
     rows = "".join(
-        _row(measure, "".join(f"<td><b>{_value(measure, after)}</b></td>" for _, after in samples))
-        for measure in RELATION
+        _row(measure, "".join(_cell(measure, before or {}, after) for before, after in samples)) for measure in measures
     )
-    contacts = "".join(_contacts(i, result, head) for i in range(len(samples)))
-    return f'<div class="pd-relation">{_table("Between the two", head, rows)}{contacts}</div>'
+    return _table(caption, heads, rows)
 
 
-def _contacts(sample: int, result: Result, head: Sequence[str]) -> str:
-    found = result.readouts[sample].get("contacts")
-    if found is None:
-        return ""
-    fps = result.duets[sample].fps
-    title = "Contacts" + (f", {head[sample]}" if len(result.duets) > 1 else "")
-    items = "".join(
-        f'<li class="pd-{text(contact["kind"])}">'
-        f"<b>{_span(contact['start'] / fps, contact['stop'] / fps)} s</b> {text(contact['label'])}</li>"
-        for contact in found
-    )
-    items = items or "<li>none</li>"
-    return f'<div class="pd-contacts"><h4>{text(title)}</h4><ul>{items}</ul></div>'
-
-
-def _span(start: float, stop: float) -> str:
-    """Two times in seconds, or one where they are the same tenth."""
-    first, last = f"{start:.1f}", f"{stop:.1f}"
-    return first if first == last else f"{first}–{last}"
+def _cell(measure: Measure, before: Summary, after: Summary) -> str:
+    """The value after, and the one before where it is shown as another."""
+    old, new = _value(measure, before), _value(measure, after)
+    if old in ("–", new):
+        return f"<td><b>{new}</b></td>"
+    tone = "" if new == "–" else "pd-better" if after[measure.key] < before[measure.key] else "pd-worse"
+    return f'<td class="{tone}">{old} → <b>{new}</b></td>'
 
 
 def _timings(timings: Mapping[str, float]) -> str:
