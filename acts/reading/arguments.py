@@ -83,6 +83,9 @@ class Arguments:
                 event.dative = self._argument(child, who, event)
             elif child.dep_ == "agent":
                 agent = next((self._argument(n, who, event) for n in child.children if n.dep_ == "pobj"), None)
+                if agent is not None and agent.kind == "part":  # "is pulled by the elbow"
+                    event.prepositions.append(("by", agent))
+                    agent = None
             elif child.dep_ in ("prep", "dative") or (
                 child.dep_ == "prt" and any(c.dep_ == "pobj" for c in child.children)
             ):
@@ -271,7 +274,8 @@ class Arguments:
             adverbs = [self._words.likeness[word] for word in named if word in self._words.likeness]
             event.adverbs += adverbs[-1:]
 
-    def _amount(self, noun: Token) -> float:
+    def _amount(self, noun: Token, otherwise: float = 1.0) -> float:
+        """The number that stands with a noun, and another where none does."""
         for child in noun.children:
             if child.lower_ in self._words.numbers:
                 return float(self._words.numbers[child.lower_])
@@ -280,7 +284,13 @@ class Arguments:
                     return float(child.text.replace(",", "."))
                 except ValueError:
                     continue
-        return 1.0
+        return otherwise
+
+    def _is_length(self, noun: Token) -> bool:
+        """True for a unit of length; feet are one behind a number and a verb, and not where one stands on them."""
+        lemma = noun.lemma_.lower()
+        measured = noun.tag_ == "NNS" and noun.dep_ in ("npadvmod", "dobj", "obj")
+        return lemma in self._words.metres and (measured or not self._words.part(lemma))
 
     def _count(self, number: Token, noun: Token, event: Event) -> None:
         value = self._words.numbers.get(number.lower_)
@@ -291,7 +301,7 @@ class Arguments:
             return
         if lemma in self._words.seconds:  # "on count five", "with a delay of one second"
             return
-        if lemma in self._words.metres:
+        if self._is_length(noun):
             event.distance = value * self._words.metres[lemma]
             event.times = value if lemma in ("step", "pace") else event.times
         elif not self._words.part(lemma) and value <= 100:
@@ -306,9 +316,9 @@ class Arguments:
         if text in DENY or token.dep_ == "neg":
             return
         if lemma == "time" and (token.dep_ == "npadvmod" or any(c.dep_ == "nummod" for c in token.children)):
-            event.times = int(self._amount(token))
+            event.times = int(self._amount(token, 0.0)) or event.times  # "this time" is no number
             return
-        if token.dep_ == "npadvmod" and lemma in self._words.metres:
+        if token.dep_ == "npadvmod" and self._is_length(token):
             event.distance = self._amount(token) * self._words.metres[lemma]
             event.times = int(self._amount(token)) if lemma in ("step", "pace") else event.times
             event.words.append(lemma)

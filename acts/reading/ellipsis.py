@@ -49,6 +49,8 @@ class Ellipsis:
         self._words = vocabulary()
         self._last = ""
         """The last verb of the sentence, also one that was supplied."""
+        self._behind = 0
+        """The number of the word behind it."""
 
     def before(self, i: int) -> str:
         """The verb to supply before the word ``i``; "" for none. Asked for each word in order."""
@@ -58,6 +60,7 @@ class Ellipsis:
         verb = self._listed_side(i) or self._deed(i)
         if verb or self._acts(i):
             self._last = verb.partition(" ")[0] or word
+            self._behind = i if verb else i + 1
         return verb
 
     def has_acted(self) -> bool:
@@ -169,9 +172,15 @@ class Ellipsis:
         more = noun and self._is_sided(last)
         if last == side or self._lower(last + more) not in _ENDS | _CLAUSES | {"again", "side"}:
             return ""
-        before = self._lower(first - 1 - (self._lower(first - 1) in _OWNERS))
-        with_it = more and not own and before in _BEFORE_SIDES - {"to"}
-        return f"{self._last} {before}" if with_it else self._last
+        end = first - 1 - (self._lower(first - 1) in _OWNERS)
+        before = self._lower(end)
+        object_ = range(self._behind, end + (before not in _BEFORE_SIDES))
+        said = [self._last]
+        if 0 < len(object_) < 4 and self._is_sided(object_[-1]):  # "turns the head left, then (turns the head) right"
+            said += map(self._lower, object_)
+        if before in _BEFORE_SIDES and not own and (more or self._lower(i) in _OWNERS):
+            said.append(before)
+        return " ".join(said)
 
     def _is_sided(self, i: int) -> bool:
         """True for a part of the body of which there are two, or a side."""

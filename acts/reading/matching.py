@@ -14,7 +14,7 @@ from acts.plan import other_of
 
 from . import wordnet
 from .ellipsis import PERFORM
-from .vocabulary import vocabulary
+from .vocabulary import is_act, vocabulary
 
 LEAST_SCORE = -1.0
 """What a frame must score to be taken at all: more beside it than in it is another sentence."""
@@ -71,7 +71,8 @@ class Matcher:
         found: Found | None = None
         about = vocabulary().verbs["begins"] | vocabulary().verbs["ends"]
         walks = event.object is not None and event.lemma in vocabulary().verbs["goes"]
-        light = event.lemma in ("do", "make") and event.object is not None  # means what its object names
+        deed = event.object is not None and is_act(event.object.lemma) and event.lemma in vocabulary().light
+        light = (event.lemma in ("do", "make") and event.object is not None) or deed  # means what its object names
         if walks or light or (event.object is None and event.lemma in about):
             return None  # nobody moves what is walked, as a way is, and others are about other verbs
         most = LEAST_SCORE

@@ -104,13 +104,16 @@ class Cast:
             return "a" if text == "it" and figure else None
         if text in _NOBODY or (text == "one" and "no" in children):
             return "ab"
+        if text == "other" and self.alone:
+            return None  # "crosses one foot over the other"
         if text == "other" or ("other" in children and (text == "one" or self._words.is_person(lemma))):
             return self._other(subject, lemma) if children.isdisjoint(("each", "one")) else "ab"
         if text in ("both", "each", "everyone", "everybody", "all") or lemma in self._words.both:
             return self._many(token, children)
-        if text in _FIRST or children & _FIRST:
+        numbered = text == "one" or self._words.is_person(lemma) or self._has(lemma)  # and not "the first step"
+        if text in _FIRST or (numbered and children & _FIRST):
             return self._as("a", lemma)
-        if text in _SECOND or children & _SECOND:
+        if text in _SECOND or (numbered and children & _SECOND):
             return self._as("b", lemma)
         if text == "one":
             return self._as("a" if "a" not in self._known or self.last != "a" else "b", "one")

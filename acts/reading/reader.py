@@ -268,6 +268,8 @@ class Reader:
         marks = {c.lower_ for c in token.children if c.dep_ in ("mark", "prep")}
         if token.dep_ == "advcl" and ({"as", "if"} <= marks or {"as", "though"} <= marks or "like" in marks):
             event.modality = "pretended"  # "walks up as if to hug"
+        if token.dep_ == "pcomp" and token.head.lower_ == "like" and not seems(token.head.head):
+            event.modality = "pretended"  # "moves the arms like rowing a boat"
         if token.dep_ == "advcl" and "than" in marks:
             event.denied = True  # "rather than shake hands, they bow"
         if token.dep_ == "pcomp" and (

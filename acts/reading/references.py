@@ -25,6 +25,9 @@ _COMPANY = frozenset(
     ("other", "another", "first", "second", "former", "latter", "you", "i", "me", "my", "your", "us", "we")
 )
 """Words of more people than one, or of those who speak."""
+_WHICH = frozenset(("other", "first", "second"))
+_NO_PEOPLE = frozenset(("direction", "item", "object", "step", "thing", "time", "way"))
+"""Nouns of which one may be the first or the other, beside parts of the body."""
 
 
 def names_one(doc: Doc) -> bool:
@@ -32,7 +35,7 @@ def names_one(doc: Doc) -> bool:
     words_of = vocabulary()
     nouns = [t for t in doc if t.lower_ in _SOMEBODY or words_of.is_usual_person(t.lemma_.lower())]
     nouns = [t for t in nouns if t.pos_ not in ("VERB", "ADV", "ADJ") and t.dep_ != "amod"]
-    words = {t.lower_ for t in doc}
+    words = {t.lower_ for t in doc if not _is_of_thing(t)}
     if any(t.lower_ == "one" and words_of.part(t.nbor().lemma_) for t in doc[:-1]):
         words -= {"other"}  # "one foot in front of the other"
     new = sum(any(c.lower_ in ("a", "an") for c in t.children) for t in nouns)
@@ -44,6 +47,16 @@ def names_one(doc: Doc) -> bool:
     sexes |= {words_of.sex(t.lemma_.lower()) for t in nouns} - {""}
     named = any(t.text in (A_NAME, B_NAME) for t in doc) or bool(words & _COMPANY)
     return same and len(sexes) < 2 and not named
+
+
+def _is_of_thing(token: Token) -> bool:
+    """True for a word of company that says of a thing which one it is: "another ball", "the other hand"."""
+    noun, words = token.head.lemma_.lower(), vocabulary()
+    if token.head.tag_ != "NN" or token.head == token:  # "the other hands him a cup"
+        return False
+    if token.lower_ == "another":
+        return not words.is_person(noun)
+    return token.lower_ in _WHICH and bool(words.part(noun) or noun in _NO_PEOPLE)
 
 
 def reference(token: Token, cast: Cast, subject: str) -> Ref:

@@ -156,8 +156,10 @@ def is_noun_or_side(token: Token) -> bool:
     if any(c.dep_ in ("dobj", "nsubj") for c in token.children):
         return False
     before, part = token.nbor(-1), vocabulary().part
-    if word == "left":  # "turns left", "to the right and left"
-        return before.pos_ == "VERB" or (token.i > 1 and token.nbor(-2).lower_ == "right")
+    if word == "left":  # of "leave" only in a passive or a perfect, and behind another past: "hugged her and left"
+        leaves = any(c.dep_ in ("aux", "auxpass", "nsubjpass") for c in token.children)
+        leaves = leaves or (token.dep_ == "conj" and token.head.tag_ in ("VBD", "VBN"))
+        return not leaves or before.pos_ == "VERB" or (token.i > 1 and token.nbor(-2).lower_ == "right")
     if word in ("level", "height"):
         return bool(part(before.lemma_.lower()))
     sided = before.lower_ in ("both", "left", "right") or before.tag_ == "PRP$"
