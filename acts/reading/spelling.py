@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from acts.captions import gerund, past, singular
 from acts.frames import PREPOSITIONS
 from acts.lexicon import Lexicon
 
@@ -77,13 +78,10 @@ def _forms(verbs: frozenset[str]) -> dict[str, tuple[str, str]]:
     """The forms of verbs, as form → (lemma, ending)."""
     found: dict[str, tuple[str, str]] = {}
     for verb in verbs:
-        stem = verb[:-1] if verb.endswith("e") else verb
-        double = stem + stem[-1] if len(verb) < 5 and verb[-1] not in "aeiouwxy" and verb[-2:-1] in "aeiou" else stem
-        third = verb + "es" if verb.endswith(("s", "sh", "ch", "x", "z", "o")) else verb + "s"
-        if verb.endswith("y") and verb[-2:-1] not in "aeiou":
-            third, double = verb[:-1] + "ies", verb
-        for form, ending in ((verb, ""), (third, "s"), (double + "ing", "ing"), (double + "ed", "ed")):
+        for form, ending in ((verb, ""), (singular(verb), "s"), (gerund(verb), "ing"), (past(verb), "ed")):
             found.setdefault(form, (verb, ending))
+    for auxiliary in ("is", "has"):  # which are hardly ever verbs of their own
+        found.pop(auxiliary, None)
     return found
 
 
