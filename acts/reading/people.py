@@ -63,8 +63,6 @@ class Cast:
         """The people of the clause that named it."""
         self.alone = False
         """The text names one person and nobody else, whose every part of a body and pronoun are."""
-        self.animals: set[str] = set()
-        """Animals that act as people do."""
         self.seen: dict[int, Ref] = {}
         """What the tokens mean that were looked at."""
         self.states: dict[int, tuple[str, str]] = {}
@@ -153,7 +151,7 @@ class Cast:
             return False
         acts = token.dep_ in ("nsubj", "nsubjpass") and bool(children & _ARTICLES)
         known = self._words.is_person(lemma) or bool(self._has(lemma)) or self._is_many(token)
-        return known or self._is_acting_animal(token, lemma) or _is_who(token) or (acts and self._is_acting(token))
+        return known or _is_who(token) or (acts and self._is_acting(token))
 
     def _is_plural(self, token: Token, lemma: str) -> bool:
         """True for the plural of a noun, and not for a name like one: "Chris"."""
@@ -172,16 +170,6 @@ class Cast:
         if len(self._known) == 2 or self._words.part(token.lemma_.lower()):
             return False
         return wordnet.may_be_person(token.lemma_.lower())
-
-    def _is_acting_animal(self, token: Token, lemma: str) -> bool:
-        """True for the animals of a fable, which act as people do where nobody else is there to act."""
-        free = [who for who in "ab" if who not in self._known]
-        if not free or not wordnet.is_animal(lemma) or self._words.part(lemma):
-            return False
-        acts = token.dep_ in ("nsubj", "nsubjpass") or any(wordnet.is_animal(w) for w in self.animals)
-        if acts:
-            self.animals.add(lemma)
-        return acts
 
     def _many(self, token: Token, children: set[str]) -> str:
         if any(self._words.numbers.get(child, 0) > 2 for child in children):  # "three people"

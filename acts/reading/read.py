@@ -127,8 +127,6 @@ class _Planner:
         people = self._reader.cast.people()
         things = dict.fromkeys(act.thing for act in self._acts if act.thing)
         notes = []
-        if self._reader.cast.animals:
-            notes.append("Only people can be shown: animals that act are people here.")
         if self._reader.cast.third:
             notes.append("Only two people can be shown: the others that are named do nothing.")
         said = {token.lower() for token in self._text.replace(",", " ").replace(".", " ").split()}

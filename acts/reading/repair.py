@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from acts.frames import PREPOSITIONS
 
-from . import wordnet
 from .people import A_NAME, B_NAME
 from .syntax import is_noun_or_side
 from .vocabulary import vocabulary
@@ -267,7 +266,6 @@ def _after_person(token: Token, ending: str) -> bool:
         or the_two
         or before.lower_ == "both"
         or vocabulary().is_person(before.lemma_.lower())
-        or wordnet.is_animal(before.lemma_.lower())
         or (many and before.lemma_ in vocabulary().both)
     )
 
