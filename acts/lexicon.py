@@ -45,7 +45,6 @@ class Entry(BaseModel):
         caption: the network's words, as ``{a} [pat] {b} on the {part}``; see :func:`acts.captions.worded`. The first is
             used, the others are paraphrases of it.
         seconds: how long it usually takes.
-        before: what must hold first, after: what holds from then on (a posture).
         stage: its score; empty leaves it to the network's words.
         refused: what is then shown of a refusal, which leaves the act itself undone.
         rule: predicates of :mod:`motion.metrics.sentences` that its motion fulfils, with ``who`` for the agent and
@@ -71,8 +70,6 @@ class Entry(BaseModel):
     synsets: Annotated[tuple[str, ...], Field(max_length=20)] = ()
     caption: Annotated[tuple[Sentence, ...], Field(max_length=12)] = ()
     seconds: Annotated[float, Field(gt=0, le=60)] = 3.0
-    before: dict[Literal["posture"], str] = {}
-    after: dict[Literal["posture"], str] = {}
     stage: Annotated[tuple[Shape, ...], Field(max_length=12)] = ()
     refused: Annotated[tuple[Shape, ...], Field(max_length=6)] = ()
     rule: Annotated[tuple[Sentence, ...], Field(max_length=6)] = ()
