@@ -198,6 +198,8 @@ def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
         return False
     if token.dep_ in ("prt", "aux", "auxpass", "neg", "mark"):
         return False
+    if lemma == "side" and any(words.directions.get(c.lower_) in _TURNS for c in token.children):  # "to the left side"
+        return False
     if token.lower_ in words.both:  # "two people", but not "two fingers"
         head = token.head
         return token.dep_ == "nummod" and head.lower_ not in words.both and not words.is_person(_lemma(head, parsed))

@@ -28,6 +28,8 @@ _COMPANY = frozenset(
 _WHICH = frozenset(("other", "first", "second"))
 _NO_PEOPLE = frozenset(("direction", "item", "object", "step", "thing", "time", "way"))
 """Nouns of which one may be the first or the other, beside parts of the body."""
+_MANNERS = frozenset(("direction", "fashion", "manner", "motion", "movement", "pattern", "way"))
+"""Nouns of how something is done, which "it" never means."""
 
 
 def names_one(doc: Doc) -> bool:
@@ -52,7 +54,8 @@ def names_one(doc: Doc) -> bool:
 def _is_of_thing(token: Token) -> bool:
     """True for a word of company that says of a thing which one it is: "another ball", "the other hand"."""
     noun, words = token.head.lemma_.lower(), vocabulary()
-    if token.head.tag_ != "NN" or token.head == token:  # "the other hands him a cup"
+    counted = token.lower_ == "another" and any(c.dep_ == "nummod" for c in token.head.children)
+    if token.head == token or (token.head.tag_ != "NN" and not counted):  # "the other hands him a cup"
         return False
     if token.lower_ == "another":
         return not words.is_person(noun)
@@ -106,6 +109,8 @@ def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
     if lifted and ref.kind == "part" and (ref.family not in _LIMBS or token.head.lower_ in ("at", "from")):
         return  # "raises a hand, rubs his head and lowers it", "bends an arm at the elbow and lowers it"
     if beside or _is_aside(token, cast):  # "throws the ball over her shoulder, and he catches it"
+        return
+    if ref.lemma in _MANNERS:
         return
     goal = ref.kind == "thing" and cast.thing is None and is_fixture(ref.lemma)  # "at the door, and opens it"
     if ref.kind in ("part", "thing") and token.tag_ in ("NN", "NNP") and (goal or not ref.place):
