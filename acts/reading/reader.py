@@ -17,19 +17,13 @@ from .people import A_NAME, B_NAME, Cast
 from .references import names_one, reference
 from .subjects import Subjects, give_roles, goes_on, is_passive, state_of
 from .syntax import MARKS, NOUNMARKS, ClauseTree, is_ongoing, seems, tells_on
-from .vocabulary import vocabulary
+from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
 
-_THEN = frozenset(
-    ("then", "afterwards", "afterward", "finally", "next", "later", "subsequently", "eventually", "lastly")
-)
 _LISTED = frozenset(("conj", "xcomp", "advcl", "dep"))
 """Relations of clauses behind another that "then" may join to it: "sits down, then getting up"."""
-_AT_ONCE = frozenset(("simultaneously", "meanwhile"))
-_SAYS = frozenset(("say", "shout", "yell", "scream"))
-_NEARLY = frozenset(("almost", "nearly"))
 _MEANING = frozenset(("NOUN", "PROPN", "VERB", "ADV", "ADJ"))
 """Parts of speech of words with a meaning of their own."""
 _WITHIN = frozenset(("compound", "amod", "poss", "nmod", "det", "nummod"))
@@ -82,7 +76,7 @@ class Reader:
         seen = self._arguments.seen | self._of.keys() | self.cast.seen.keys() | held
         for token in self.doc:
             own = token.dep_ not in _WITHIN and token.i not in seen
-            own = (own and token.lower_ not in _THEN | _AT_ONCE) or self._is_swallowed(token)
+            own = (own and token.lower_ not in closed("then") | closed("at once")) or self._is_swallowed(token)
             if token.pos_ in _MEANING and own:
                 yield token
 
@@ -263,7 +257,7 @@ class Reader:
                 event.denied = True
             if child.dep_ == "aux" and child.lower_ in self._words.modals["wished"]:
                 event.modality = "wished"
-        if children & _NEARLY:
+        if children & closed("nearly"):
             event.modality = "tried"
         marks = {c.lower_ for c in token.children if c.dep_ in ("mark", "prep")}
         if token.dep_ == "advcl" and ({"as", "if"} <= marks or {"as", "though"} <= marks or "like" in marks):
@@ -305,7 +299,7 @@ class Reader:
         if above is None or token.dep_ == "advcl":
             return
         verbs = self._words.verbs
-        if above.lemma in _SAYS and token.tag_ == "VB":  # "says hit me"
+        if above.lemma in closed("says") and token.tag_ == "VB":  # "says hit me"
             event.modality = "wished"
         for kind in ("tried", "pretended", "wished", "offered"):
             if above.lemma in verbs[kind]:
@@ -335,9 +329,9 @@ class Reader:
         above = head if head is not None else next((t for t in token.ancestors if self._tree.is_clause(t)), None)
         previous = max((i for i in self._of if i < token.i), default=None)
         listed = above is not None and above.i < token.i and token.dep_ in _LISTED and MARKS.keys().isdisjoint(marks)
-        if not _THEN.isdisjoint(marks) or (listed and self._then_before(token)):
+        if not closed("then").isdisjoint(marks) or (listed and self._then_before(token)):
             return "then", previous
-        if not _AT_ONCE.isdisjoint(marks) and token.dep_ != "xcomp":
+        if not closed("at once").isdisjoint(marks) and token.dep_ != "xcomp":
             return "with", previous
         if self._tree.is_main(token):
             main = next(reversed(self._tree.mains), None)
@@ -372,4 +366,4 @@ class Reader:
     def _then_before(self, token: Token) -> bool:
         """True if "then" stands between a clause and the verb before it."""
         before = max((i for i in self._of if i < token.i), default=0)
-        return any(self.doc[i].lower_ in _THEN for i in range(before, token.i))
+        return any(self.doc[i].lower_ in closed("then") for i in range(before, token.i))

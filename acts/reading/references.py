@@ -9,7 +9,7 @@ from acts.events import Ref
 from acts.things import is_fixture
 
 from .people import A_NAME, ANYONE, B_NAME, PRONOUN_SEX, Cast, begins_clause
-from .vocabulary import vocabulary
+from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
@@ -17,19 +17,6 @@ if TYPE_CHECKING:
 _SOMEBODY = ANYONE | {"someone", "somebody"}
 _PLAIN = _SOMEBODY | {"man", "woman", "guy", "boy", "girl", "human", "kid", "child", "dude", "figure", "sim"}
 """Nouns that name nobody's part in a scene, as "nurse" does, who has a patient."""
-_AROUND = frozenset(("of", "behind", "above", "below", "over", "around", "beside", "under", "before"))
-"""Prepositions of where something is around oneself: "in front of him"."""
-_LIMBS = frozenset(("hand", "arm", "leg", "foot"))
-"""Families of parts that are lifted, and so lowered again."""
-_COMPANY = frozenset(
-    ("other", "another", "first", "second", "former", "latter", "you", "i", "me", "my", "your", "us", "we")
-)
-"""Words of more people than one, or of those who speak."""
-_WHICH = frozenset(("other", "first", "second"))
-_NO_PEOPLE = frozenset(("direction", "item", "object", "step", "thing", "time", "way"))
-"""Nouns of which one may be the first or the other, beside parts of the body."""
-_MANNERS = frozenset(("direction", "fashion", "manner", "motion", "movement", "pattern", "way"))
-"""Nouns of how something is done, which "it" never means."""
 
 
 def names_one(doc: Doc) -> bool:
@@ -43,11 +30,13 @@ def names_one(doc: Doc) -> bool:
     new = sum(any(c.lower_ in ("a", "an") for c in t.children) for t in nouns)
     plain = all(t.lemma_.lower() in _PLAIN for t in nouns)
     objects = (t for t in doc if t.lower_ in ("him", "her", "them") and t.dep_ != "poss")
-    plain = plain and all(t.head.lower_ in _AROUND or (t.lower_ == "them" and t.dep_ != "pobj") for t in objects)
+    plain = plain and all(
+        t.head.lower_ in closed("around oneself") or (t.lower_ == "them" and t.dep_ != "pobj") for t in objects
+    )
     same = plain and len({t.lemma_.lower() for t in nouns}) == 1 and new < 2 and all(t.tag_ == "NN" for t in nouns)
     sexes = {PRONOUN_SEX[word] for word in words & PRONOUN_SEX.keys()}
     sexes |= {words_of.sex(t.lemma_.lower()) for t in nouns} - {""}
-    named = any(t.text in (A_NAME, B_NAME) for t in doc) or bool(words & _COMPANY)
+    named = any(t.text in (A_NAME, B_NAME) for t in doc) or bool(words & closed("company"))
     return same and len(sexes) < 2 and not named
 
 
@@ -59,7 +48,7 @@ def _is_of_thing(token: Token) -> bool:
         return False
     if token.lower_ == "another":
         return not words.is_person(noun)
-    return token.lower_ in _WHICH and bool(words.part(noun) or noun in _NO_PEOPLE)
+    return token.lower_ in closed("ordinals") and bool(words.part(noun) or noun in closed("countable"))
 
 
 def reference(token: Token, cast: Cast, subject: str) -> Ref:
@@ -105,12 +94,12 @@ def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
     if many and token.tag_ == "NNS" and taken and (ref.kind == "part" or not light):
         cast.things = ref
     beside = token.dep_ == "pobj" and cast.thing is not None and (ref.kind, cast.thing.kind) == ("part", "thing")
-    lifted = cast.alone and cast.thing is not None and cast.thing.family in _LIMBS
-    if lifted and ref.kind == "part" and (ref.family not in _LIMBS or token.head.lower_ in ("at", "from")):
+    lifted = cast.alone and cast.thing is not None and cast.thing.family in closed("limbs")
+    if lifted and ref.kind == "part" and (ref.family not in closed("limbs") or token.head.lower_ in ("at", "from")):
         return  # "raises a hand, rubs his head and lowers it", "bends an arm at the elbow and lowers it"
     if beside or _is_aside(token, cast):  # "throws the ball over her shoulder, and he catches it"
         return
-    if ref.lemma in _MANNERS:
+    if ref.lemma in closed("manners"):
         return
     goal = ref.kind == "thing" and cast.thing is None and is_fixture(ref.lemma)  # "at the door, and opens it"
     if ref.kind in ("part", "thing") and token.tag_ in ("NN", "NNP") and (goal or not ref.place):

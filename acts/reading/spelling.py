@@ -13,7 +13,7 @@ from acts.lexicon import Lexicon
 from . import wordnet
 from .repair import deeds_done, suspects, verbs_taken_for_nouns
 from .syntax import is_adverb, is_word
-from .vocabulary import is_act, vocabulary
+from .vocabulary import closed, is_act, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc
@@ -148,13 +148,8 @@ def other_language(text: str) -> str | None:
     if sum(ord(c) < 0x250 for c in letters) < 0.6 * len(letters):
         return "This is not in the Latin alphabet: write in English."
     words = [word for word in "".join(c if c.isalpha() or c == "'" else " " for c in text).split() if len(word) > 1]
-    if len(words) >= 4 and not any(word.lower() in _ENGLISH for word in words):
+    if len(words) >= 4 and not any(word.lower() in closed("english") for word in words):
         unknown = sum(not is_word(word.lower()) for word in words)
         if unknown >= 0.4 * len(words):
             return "This does not seem to be English: write in English."
     return None
-
-
-_ENGLISH_WORDS = "the a an and to of he she they his her him on in with one each other then while person two"
-_ENGLISH = frozenset(_ENGLISH_WORDS.split())
-"""Words of which English sentences of some length have one."""

@@ -14,18 +14,13 @@ from acts.plan import other_of
 from .people import A_NAME, B_NAME, Cast, begins_clause
 from .references import reference
 from .syntax import ClauseTree, is_finite
-from .vocabulary import vocabulary
+from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Token
 
-_PROMISES = frozenset(("promise", "threaten"))
-"""Verbs whose subject does what follows, where others' objects do."""
-ORDINALS = frozenset(("other", "first", "second", "former", "latter"))
-"""Words that stand for one of the two behind "the"."""
 _OPENS = frozenset((".", ";", ":", "!", "?", ",", "and", "then"))
 """What stands before a clause."""
-_SOMEBODY = frozenset(("him", "her", "his", "me", "my"))
 
 
 def ends_before(noun: Token, verb: Token) -> bool:
@@ -97,7 +92,7 @@ class Subjects:
                     above is not None
                     and above.object is not None
                     and above.object.kind == "person"
-                    and above.lemma not in _PROMISES
+                    and above.lemma not in closed("promises")
                     and not shown
                 ):
                     return above.object
@@ -107,7 +102,9 @@ class Subjects:
             return self._found.get(main)
         if token.dep_ == "ROOT" or head is None:
             # "grab her by the wrist" is said to one
-            alone = self._cast.alone or any(t.lower_ in _SOMEBODY or self._is_someone(t) for t in token.subtree)
+            alone = self._cast.alone or any(
+                t.lower_ in closed("somebody") or self._is_someone(t) for t in token.subtree
+            )
             if alone:
                 self._cast.address("a")
             return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)
@@ -127,7 +124,7 @@ class Subjects:
         """The subject that stands beside a verb."""
         before = token.nbor(-1) if token.i > 1 else token
         # "the other ducks" may be birds to the parser
-        if before.lower_ in ORDINALS and before.nbor(-1).lower_ == "the" and is_finite(token):
+        if before.lower_ in closed("ordinals") and before.nbor(-1).lower_ == "the" and is_finite(token):
             return reference(before, self._cast, "")
         # "he comes running"
         moving = (c for aux in token.children if aux.dep_ == "aux" for c in aux.children)

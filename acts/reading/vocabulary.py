@@ -62,6 +62,7 @@ class Vocabulary:
             note: frozenset(words.split()) for note, words in tables["limits"].items()
         }
         """What the stage cannot do, as a sentence, by the words that ask for it."""
+        self.classes = {name: frozenset(text.split()) for name, text in tables["classes"].items()}
         self.modals = {kind: frozenset(text.split()) for kind, text in tables["modals"].items()}
 
     def is_person(self, lemma: str) -> bool:
@@ -105,6 +106,11 @@ class Vocabulary:
 def is_act(noun: str) -> bool:
     """True for a noun that may stand for what somebody does, as "hug", "bow" and "lunge"."""
     return noun in vocabulary().verbs["nouns"] or wordnet.is_act(noun)
+
+
+def closed(name: str) -> frozenset[str]:
+    """A closed class of words, by its name in ``words.toml``: those with which an owner is named, say."""
+    return vocabulary().classes[name]
 
 
 @cache
