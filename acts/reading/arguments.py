@@ -6,7 +6,7 @@ from collections.abc import Set
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from acts.events import Event, Ref
+from acts.frames import Event, Ref
 
 from . import wordnet
 from .people import Cast, states_of

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from acts.events import Event, Ref
+from acts.frames import Event, Ref
 from acts.lexicon import Lexicon
 from acts.plan import Act, other_of
 

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 
-from acts.events import Event, Ref
-from acts.frames import Frame, Match, best
+from acts.frames import Event, Frame, Match, Ref, best
 from acts.lexicon import Lexicon
 from acts.plan import other_of
 

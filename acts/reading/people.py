@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from acts.events import Ref
+from acts.frames import Ref
 from acts.plan import Person, other_of
 
 from . import wordnet

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from acts.events import Event, Ref
-from acts.frames import Frame, Match
+from acts.frames import Event, Frame, Match, Ref
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread, other_of
 from acts.shapes import Go

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from acts.events import Event, Ref
-from acts.frames import best
+from acts.frames import Event, Ref, best
 from acts.lexicon import Lexicon
 
 from . import wordnet

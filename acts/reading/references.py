@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from acts.events import Ref
+from acts.frames import Ref
 from acts.things import is_fixture
 
 from .people import A_NAME, ANYONE, B_NAME, PRONOUN_SEX, Cast, begins_clause
@@ -52,7 +52,7 @@ def _is_of_thing(token: Token) -> bool:
 
 
 def reference(token: Token, cast: Cast, subject: str) -> Ref:
-    """The reference of a noun or pronoun; see :class:`acts.events.Ref`."""
+    """The reference of a noun or pronoun; see :class:`acts.frames.Ref`."""
     first, last = token.idx, token.idx + len(token.text)
     lemma = token.lemma_.lower()
     children = {child.lower_ for child in token.children}

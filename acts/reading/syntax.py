@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from acts.events import Event
+from acts.frames import Event
 from motion import InputError
 
 from . import wordnet
