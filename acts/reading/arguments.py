@@ -10,7 +10,7 @@ from acts.frames import Event, Ref
 
 from . import wordnet
 from .people import Cast, states_of
-from .references import reference
+from .subjects import reference
 from .syntax import adverb_of, is_adverb, is_kept, taken_away
 from .vocabulary import closed, is_act, vocabulary
 

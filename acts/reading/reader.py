@@ -13,8 +13,7 @@ from . import wordnet
 from .arguments import Arguments
 from .ellipsis import Absolute, absolutes
 from .people import A_NAME, B_NAME, Cast
-from .references import names_one, reference
-from .subjects import Subjects, give_roles, goes_on, is_passive, state_of
+from .subjects import Subjects, give_roles, goes_on, is_passive, names_one, reference, state_of
 from .syntax import MARKS, NOUNMARKS, ClauseTree, is_ongoing, seems, tells_on
 from .vocabulary import closed, vocabulary
 
