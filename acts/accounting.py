@@ -212,7 +212,8 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
     """True for a word that the verdict on an act says, or that one of its fields stands for."""
     words, lemma, text = vocabulary(), _lemma(token, parsed), token.lower_
     forms = {lemma, text, *_WORD.findall(text)}
-    if (way := words.directions.get(text)) in closed("turns"):
+    way = words.directions.get(text) if token.pos_ != "VERB" else None  # and not "left the room"
+    if way in closed("turns"):
         return way in (act.direction, act.side, act.part_side)
     if lemma in (act.act.split("-")[0], act.act.replace("-", "")):
         return True
@@ -236,7 +237,7 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
     if act.thing and forms & set(act.thing.split()):  # "plays the violin" is not "plays the guitar"
         shown = said_words((with_thing(act, shown_caption(act, entry))[1],))
         return bool(kind_of(act.thing)) and not any(kind_of(word) for word in shown - forms)
-    if family := words.part(lemma):
+    if (family := words.part(lemma)) and not (lemma in words.metres and act.distance is not None):
         sided = act.side is not None and lemma in closed("limbs") and any(c.lower_ == act.side for c in token.children)
         return sided or (act.part is not None and family == words.part(act.part))
     if (text in words.speeds and act.speed != 1.0) or (lemma in words.gaits and act.speed != 1.0):
@@ -253,7 +254,7 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
 def _is_read(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
     """True for a word by which an act was found."""
     lemma = _lemma(token, parsed)
-    if vocabulary().directions.get(token.lower_) in closed("turns"):
+    if token.pos_ != "VERB" and vocabulary().directions.get(token.lower_) in closed("turns"):
         return False
     return bool({lemma, token.lower_, *_WORD.findall(token.lower_)} & said_words(entry.frames)) or (
         token.pos_ in ("VERB", "NOUN")

@@ -237,11 +237,9 @@ class _Preparation:
             return "with"  # "kicks using the left leg"
         if lower.endswith("s") and following.isalpha() and self._owns(i, lower[:-1]):
             return f"{self._words.shorthand.get(lower[:-1], word[:-1])}'s"  # "her brothers back"
-        if (
-            lower in ("left", "right")
-            and (self._is_verb(self._lower(i - 1)) or (self._pieces[-1:] and self._is_verb(self._pieces[-1][0])))
-            and not self._words.part(following)
-        ):
+        supplied = self._pieces[-1][0].partition(" ")[0] if self._pieces else ""  # with its object, where it has one
+        moved = self._is_verb(self._lower(i - 1)) or self._is_verb(supplied)
+        if lower in ("left", "right") and moved and not self._words.part(following):
             return f"to the {lower}"  # "turn left": no past of "leave"
         if word.islower() and word.isalpha() and len(word) > 3 and (right := self._mended(lower)) is not None:
             return right
