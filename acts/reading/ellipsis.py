@@ -129,7 +129,7 @@ class Ellipsis:
         """True for a word that is a verb where it stands."""
         word, before = self._lower(i), self._lower(i - 1)
         ending = self._ending(word)
-        if ending is None or self._words.part(word) or self._words.part(word.removesuffix("s")):
+        if ending is None or self._words.named_part(word):
             return False
         if before in closed("owners") | closed("one of many") | PREPOSITIONS or before in self._words.numbers:
             return False
@@ -178,8 +178,7 @@ class Ellipsis:
     def _is_sided(self, i: int) -> bool:
         """True for a part of the body of which there are two, or a side."""
         word = self._lower(i)
-        part = self._words.part({"feet": "foot"}.get(word, word)) or self._words.part(word.removesuffix("s"))
-        return bool(part) or word in ("side", "direction")
+        return bool(self._words.named_part(word)) or word in ("side", "direction")
 
 
 # ---- parts of the body ---------------------------------------------------------------------------------
@@ -277,9 +276,7 @@ def stands_absolutely(lower: Callable[[int], str], has_verb: Callable[[int], boo
     at = i
     while lower(at) in closed("before parts") and at < i + 3:
         at += 1
-    part = lower(at).removesuffix("s") if not words.part(lower(at)) else lower(at)
-    part = {"feet": "foot", "knee": "knee"}.get(part, part)
-    if not words.part(part) or (lower(i - 1) in ("", "and") and at > i and lower(i) == "the"):
+    if not words.named_part(lower(at)) or (lower(i - 1) in ("", "and") and at > i and lower(i) == "the"):
         return False
     after, behind = lower(at + 1), lower(at + 2)
     if lower(i - 1) == "and" and at == i:

@@ -102,6 +102,11 @@ class Vocabulary:
         """The family of a part of the body; "" for other nouns."""
         return self._parts.get(lemma, "")
 
+    def named_part(self, word: str) -> str:
+        """The family of a part of the body that a word names in the singular or plural; "" for other words."""
+        one = {"feet": "foot"}.get(word, word)
+        return self.part(one) or self.part(one.removesuffix("s"))
+
 
 def is_act(noun: str) -> bool:
     """True for a noun that may stand for what somebody does, as "hug", "bow" and "lunge"."""

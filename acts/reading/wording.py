@@ -83,7 +83,8 @@ class _Preparation:
 
     def _phrase(self, i: int) -> int:
         """Several words that join clauses as one does, as "as soon as"; how many they were, or 0."""
-        if self._part_at(i - 1) and (swung := next((w for w in _TO_SIDES if self._stand_at(i, w)), ())):
+        swung = next((words for words in _TO_SIDES if self._stand_at(i, words)), ())
+        if swung and self._words.named_part(self._lower(i - 1)):
             last = self._tokens[i + len(swung) - 1]
             self._pieces.append(("sideways", self._tokens[i][1], last[2]))  # "shakes his head left and right"
             return len(swung)
@@ -189,7 +190,7 @@ class _Preparation:
     def _supplied(self, i: int) -> list[tuple[str, int, int]]:
         """The article that a bare noun of a person lacks."""
         word, start, _ = self._tokens[i]
-        sided = self._lower(i) in ("left", "right") and self._part_at(i + 1)
+        sided = self._lower(i) in ("left", "right") and self._words.named_part(self._lower(i + 1))
         begun = self._pieces[-1:] and self._pieces[-1][1:] == (start, start)  # a verb was supplied
         within = closed("determiners") | {"left", "right", "and", "or", "with"}
         if sided and (begun or self._lower(i - 1) not in within):
@@ -201,11 +202,6 @@ class _Preparation:
         if before_it and not before:  # "an unconscious man"
             return []
         return [("the", start, start)] if _begins(self._lower(i - 1)) else []
-
-    def _part_at(self, i: int) -> str:
-        """The family of a part of the body, also of several; "" for other words."""
-        word = {"feet": "foot"}.get(self._lower(i), self._lower(i))
-        return self._words.part(word) or self._words.part(word.removesuffix("s"))
 
     def _is_bare_person(self, i: int) -> bool:
         """True for a usual noun of a person, and for a rarer one before its verb or behind a preposition."""
