@@ -22,7 +22,7 @@ from .reading import wordnet
 from .reading.parses import Parse, parses
 from .reading.people import A_NAME, ANYONE, B_NAME
 from .reading.spelling import Speller
-from .reading.syntax import is_likeness
+from .reading.syntax import is_likeness, seems
 from .reading.vocabulary import closed, vocabulary
 from .reading.wording import prepared
 from .shapes import Go
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 MOST_WORDS = 12
 """Stretches of words that are reported of one sentence, at most."""
 _CONTENT = frozenset(("NOUN", "PROPN", "VERB", "ADJ", "ADV", "NUM"))
-_KINDS = ("begins", "ends", "light", "causes", "tried", "pretended", "wished", "offered", "not", "seems")
+_KINDS = ("begins", "ends", "light", "causes", "tried", "pretended", "wished", "offered", "not")
 """Verbs about other verbs, which the acts' modality, polarity and order stand for."""
 _VERB = re.compile(r"\[([a-z-]+)\]")
 _PHRASAL = re.compile(r"\[([a-z-]+)\] (?:\{b\} )?([a-z]+)")
@@ -170,9 +170,8 @@ def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
         return False
     if token.pos_ != "VERB" and {lemma, token.lower_} & (closed("fillers") | closed("scenery")):
         return False
-    if token.pos_ in ("VERB", "AUX") and (
-        lemma in closed("states") or any(lemma in words.verbs[kind] for kind in _KINDS)
-    ):
+    about = lemma in closed("states") or any(lemma in words.verbs[kind] for kind in _KINDS)
+    if token.pos_ in ("VERB", "AUX") and (about or seems(token)):
         return False
     if token.dep_ in ("prt", "aux", "auxpass", "neg", "mark"):
         return False
