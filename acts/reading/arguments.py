@@ -48,6 +48,8 @@ class Arguments:
                 continue
             if subject is not None and self.cast.seen.get(child.i) is subject:  # "…, said the witch"
                 continue
+            if child.i in self._postures and child.dep_ in ("prt", "advmod"):  # "stands with shoulders up"
+                continue
             bare = all(c.dep_ not in ("poss", "det") for c in child.children)
             if child.dep_ == "aux" and child.lower_ in ("come", "comes", "came"):  # "comes running"
                 event.words.append("come")

@@ -59,7 +59,10 @@ class Matcher:
         if event.noun is not None and event.noun.object is None and event.subject is not None:
             other = other_of(event.subject.who)
             whom = Ref("person", other) if other else Ref("each", "ab", "other")
-            forms.append(replace(event.noun, object=whom))
+            done, plain = replace(event.noun, object=whom), best(self._known.frames, event.noun)
+            to_other = best(self._known.frames, done)
+            if plain is None or (to_other is not None and to_other[0] == plain[0]):  # "makes jumps" jumps at nobody
+                forms.append(done)
         for form in forms:
             found = best(self._known.frames, form)
             if found is not None and (form.lemma == event.lemma or not found[2].thing):

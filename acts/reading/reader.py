@@ -290,7 +290,8 @@ class Reader:
                 own = any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)
                 if above is not None and not own and above.denied and token.head.i == head.i:
                     event.denied = event.denied or any(c.lower_ == "or" for c in head.children)
-                if above is not None and not own and above.modality != "told" and head.dep_ in ("xcomp", "ccomp"):
+                below = head.dep_ in ("xcomp", "ccomp") or token.tag_ in ("VB", "VBG")
+                if above is not None and not own and above.modality != "told" and below:
                     event.modality, event.denied = above.modality, event.denied or above.denied
             return
         above = self._event_of(head)

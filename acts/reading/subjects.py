@@ -48,7 +48,7 @@ def _is_of_thing(token: Token) -> bool:
     """True for a word of company that says of a thing which one it is: "another ball", "the other hand"."""
     noun, words = token.head.lemma_.lower(), vocabulary()
     counted = token.lower_ == "another" and any(c.dep_ == "nummod" for c in token.head.children)
-    if token.head == token or (token.head.tag_ != "NN" and not counted):  # "the other hands him a cup"
+    if token.dep_ in ("poss", "ROOT") or (token.head.tag_ != "NN" and not counted):  # "the other hands him a cup"
         return False
     if token.lower_ == "another":
         return not words.is_person(noun)
