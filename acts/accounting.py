@@ -22,8 +22,8 @@ from .reading import wordnet
 from .reading.parses import Parse, parses
 from .reading.people import A_NAME, ANYONE, B_NAME
 from .reading.spelling import Speller
-from .reading.syntax import is_likeness
-from .reading.vocabulary import vocabulary
+from .reading.syntax import is_likeness, seems
+from .reading.vocabulary import closed, vocabulary
 from .reading.wording import prepared
 from .shapes import Go
 from .things import kind_of
@@ -34,35 +34,11 @@ if TYPE_CHECKING:
 MOST_WORDS = 12
 """Stretches of words that are reported of one sentence, at most."""
 _CONTENT = frozenset(("NOUN", "PROPN", "VERB", "ADJ", "ADV", "NUM"))
-_WORDS_OF_GRAMMAR = (
-    "then finally again next now afterwards afterward meanwhile later first second last also too so "
-    "very just still already even only almost together simultaneously immediately instead back "
-    "around away off not never there here ever other another each same such one time turn way "
-    "something nothing each-other when while how where let"
-)
-FILLERS = frozenset(_WORDS_OF_GRAMMAR.split())
-"""Words of grammar, of order and of together and apart, which the acts' agents and order stand for."""
-_SCENERY = frozenset(
-    ["floor", "ground", "room", "place", "spot", "air", "direction", "body", "scene", "person", "people"]
-)
-"""What is there in every scene."""
-_OF_TWO = frozenset(("other", "each", "every", "no", "neither", "either"))
-"""Words before a noun of the two people, or of one of them."""
-_KINDS = ("begins", "ends", "light", "causes", "tried", "pretended", "wished", "offered", "not", "seems")
+_KINDS = ("begins", "ends", "light", "causes", "tried", "pretended", "wished", "offered", "not")
 """Verbs about other verbs, which the acts' modality, polarity and order stand for."""
-_STATES = frozenset(("be", "have", "stand", "stay", "remain", "keep", "do", "go", "come", "use"))
-_PLACES_TEXT = "behind beside past across between under through near opposite along front next"
-_PLACES = frozenset(_PLACES_TEXT.split())
-"""Words of where somebody is to the other or to a thing, before what they name."""
-_TARGETS = frozenset(("on", "onto", "against", "over", "at", "into"))
-_BESIDE = frozenset(("beside", "next", "side", "alongside"))
 _VERB = re.compile(r"\[([a-z-]+)\]")
 _PHRASAL = re.compile(r"\[([a-z-]+)\] (?:\{b\} )?([a-z]+)")
 _WORD, _SLOTS = re.compile(r"[a-z]+"), re.compile(r"\{(?![\w.]+:)[^{}]*\}")
-_TURNS = frozenset(("left", "right", "clockwise", "counterclockwise"))
-"""Directions that never belong to what an act's own words mean."""
-_SIDED = frozenset(("hand", "arm", "foot", "leg"))
-"""Parts with which something is done that a side stands for: "with both hands", but not "with both thumbs"."""
 
 
 # ---- words that no verdict says --------------------------------------------------------------------------
@@ -164,7 +140,7 @@ def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> boo
             shared.add(lemma)
         if token.pos_ not in ("VERB", "NOUN") or (token.pos_ == "NOUN" and words.part(lemma)):
             continue
-        if lemma in captions and lemma not in words.light and lemma not in _STATES:
+        if lemma in captions and lemma not in words.light and lemma not in closed("states"):
             return True
         if _alike(lemma, verbs, ()) or (token.pos_ == "VERB" and _is_kind_of(lemma, verbs)):
             return True
@@ -192,18 +168,22 @@ def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
         return False
     if token.text in (A_NAME, B_NAME) or lemma == "let":
         return False
-    if token.pos_ != "VERB" and {lemma, token.lower_} & (FILLERS | _SCENERY):
+    if token.pos_ != "VERB" and {lemma, token.lower_} & (closed("fillers") | closed("scenery")):
         return False
-    if token.pos_ in ("VERB", "AUX") and (lemma in _STATES or any(lemma in words.verbs[kind] for kind in _KINDS)):
+    about = lemma in closed("states") or any(lemma in words.verbs[kind] for kind in _KINDS)
+    if token.pos_ in ("VERB", "AUX") and (about or seems(token)):
         return False
     if token.dep_ in ("prt", "aux", "auxpass", "neg", "mark"):
+        return False
+    named = {words.directions.get(child.lower_) for child in token.children}
+    if lemma == "side" and not closed("turns").isdisjoint(named):  # "to the left side"
         return False
     if token.lower_ in words.both:  # "two people", but not "two fingers"
         head = token.head
         return token.dep_ == "nummod" and head.lower_ not in words.both and not words.is_person(_lemma(head, parsed))
     if token.pos_ in ("NOUN", "PROPN") and (words.is_person(lemma) or words.is_person(token.lower_)):
         said = {lemma, token.lower_} & (names | ANYONE) or words.is_person(_lemma(token.head, parsed))
-        said = said or token.tag_ == "NNS" or any(c.lower_ in _OF_TWO for c in token.children)
+        said = said or token.tag_ == "NNS" or any(c.lower_ in closed("of two") for c in token.children)
         return is_likeness(token) or not said  # "acts like a king", "keeps his guard up"
     if token.pos_ == "PROPN" and not token.text.islower():
         return names.isdisjoint((lemma, token.lower_, token.head.lower_))
@@ -231,7 +211,8 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
     """True for a word that the verdict on an act says, or that one of its fields stands for."""
     words, lemma, text = vocabulary(), _lemma(token, parsed), token.lower_
     forms = {lemma, text, *_WORD.findall(text)}
-    if (way := words.directions.get(text)) in _TURNS:
+    way = words.directions.get(text) if token.pos_ != "VERB" else None  # and not "left the room"
+    if way in closed("turns"):
         return way in (act.direction, act.side, act.part_side)
     if lemma in (act.act.split("-")[0], act.act.replace("-", "")):
         return True
@@ -246,15 +227,17 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return True
     if words.likeness.get(lemma) in act.manner:
         return True
-    if (text in _BESIDE and said_words(entry.caption) & _BESIDE) or (text == "behind" and FROM_BEHIND in act.manner):
+    if (text in closed("next to") and said_words(entry.caption) & closed("next to")) or (
+        text == "behind" and FROM_BEHIND in act.manner
+    ):
         return True
     if token.pos_ in ("VERB", "NOUN") and _alike(lemma, _verbs(entry.caption), entry.synsets):
         return True
     if act.thing and forms & set(act.thing.split()):  # "plays the violin" is not "plays the guitar"
         shown = said_words((with_thing(act, shown_caption(act, entry))[1],))
         return bool(kind_of(act.thing)) and not any(kind_of(word) for word in shown - forms)
-    if family := words.part(lemma):
-        sided = act.side is not None and lemma in _SIDED and any(c.lower_ == act.side for c in token.children)
+    if (family := words.part(lemma)) and not (lemma in words.metres and act.distance is not None):
+        sided = act.side is not None and lemma in closed("limbs") and any(c.lower_ == act.side for c in token.children)
         return sided or (act.part is not None and family == words.part(act.part))
     if (text in words.speeds and act.speed != 1.0) or (lemma in words.gaits and act.speed != 1.0):
         return True
@@ -270,7 +253,7 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
 def _is_read(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
     """True for a word by which an act was found."""
     lemma = _lemma(token, parsed)
-    if vocabulary().directions.get(token.lower_) in _TURNS:
+    if token.pos_ != "VERB" and vocabulary().directions.get(token.lower_) in closed("turns"):
         return False
     return bool({lemma, token.lower_, *_WORD.findall(token.lower_)} & said_words(entry.frames)) or (
         token.pos_ in ("VERB", "NOUN")
@@ -312,13 +295,13 @@ def _lemma(token: Token, parsed: Parse) -> str:
 
 
 def _is_place(token: Token) -> bool:
-    return token.lower_ in _PLACES and any(c.dep_ in ("pobj", "prep") for c in token.children)
+    return token.lower_ in closed("where") and any(c.dep_ in ("pobj", "prep") for c in token.children)
 
 
 def _is_target(token: Token) -> bool:
     """True for a preposition before the person to whom something is done: "on each other"."""
     people = vocabulary().is_person
-    return token.lower_ in _TARGETS and any(
+    return token.lower_ in closed("targets") and any(
         (c.dep_ == "pobj" and (c.pos_ == "PRON" or c.text in (A_NAME, B_NAME) or people(c.lemma_.lower())))
         or (c.lower_ == "other" and c.dep_ == "pobj")
         for c in token.children

@@ -39,7 +39,7 @@ def singular(verb: str) -> str:
     return f"{verb[:-1]}ies" if verb.endswith("y") and verb[-2:-1] not in "aeiou" else f"{verb}s"
 
 
-_DOUBLED = re.compile(r"[^aeiouy][aeiou][bdgmnpt]")
+_DOUBLED = re.compile(r"[^aeiouy][aeiou][bdgkmnprtv]")
 
 
 def gerund(verb: str) -> str:
@@ -50,6 +50,13 @@ def gerund(verb: str) -> str:
     if _DOUBLED.fullmatch(short[-3:]) and len(re.findall("[aeiouy]+", short)) == 1:
         return f"{verb}{verb[-1]}ing"
     return f"{verb[:-1] if re.search('[^eoy]e$', verb) and verb != 'be' else verb}ing"
+
+
+def past(verb: str) -> str:
+    """A regular verb's past: "hugged", "waved", "carried"."""
+    if verb.endswith("y") and verb[-2:-1] not in "aeiou":
+        return f"{verb[:-1]}ied"
+    return f"{verb}d" if verb.endswith("e") else f"{gerund(verb).removesuffix('ing')}ed"
 
 
 def _plural(part: str) -> str:

@@ -18,9 +18,9 @@ arguments count against it, and an object that no element asks for rules it out.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Literal
 
-from acts.events import Event, Ref
 from acts.plan import other_of
 from motion import InputError
 
@@ -34,6 +34,79 @@ _DIRECTIONS = frozenset(("across", "along", "around", "back", "by", "in", "out",
 """Particles that only say where somebody goes; "away", "off" and "down" say more."""
 _PARTICLES = PREPOSITIONS | {"back"}
 _SLOTS = frozenset(("a", "a+b", "b", "each", "self", "thing", "part", "place"))
+
+
+@dataclass(frozen=True)
+class Ref:
+    """The person, part of the body or thing that a noun or pronoun stands for.
+
+    Attributes:
+        kind: "person", "part", "self", "each" (each other), "thing", "third" (a person who is neither of the two).
+        who: the people, "a", "b" or "ab"; of a part or a thing, its owner, "" where the words leave that open.
+        lemma: of the head.
+        family: of a part: "hand", "head", ….
+        side: of a part, "left", "right" or "both".
+        place: a thing where people can be, as a room.
+        bare: a thing in the singular without an article, as in "in surprise"; a part without a possessive.
+        definite: of a part, behind "the".
+        first, last: character offsets in the text that was parsed.
+    """
+
+    kind: Literal["person", "part", "self", "each", "thing", "third"]
+    who: str = ""
+    lemma: str = ""
+    family: str = ""
+    side: str = ""
+    place: bool = False
+    bare: bool = False
+    definite: bool = False
+    first: int = 0
+    last: int = 0
+
+
+@dataclass
+class Event:
+    """A verb of a text with its arguments: what frames are held against.
+
+    Attributes:
+        lemma: of the verb.
+        subject, object, dative: its arguments.
+        words: lemmas of particles, adverbs and complements beside it.
+        particles: those of ``words`` that belong to the verb, as "up" in "picks up".
+        prepositions: (preposition, argument).
+        denied, modality: of the clause.
+        ongoing: it goes on when the clause begins, as in "is sitting" and "keeps walking".
+        state: a phrase says it that hangs on a noun, as in "the lady on the bench".
+        joint: how it is joined to event ``beside``, as in :class:`acts.plan.Relation`.
+        first, last: character offsets in the text that was parsed.
+        goes: its verb means that somebody moves, so that a particle may just say where to, as in "jumps out".
+        adverbs, seconds, times, distance, direction, side: modifiers.
+    """
+
+    lemma: str
+    subject: Ref | None = None
+    object: Ref | None = None
+    dative: Ref | None = None
+    words: list[str] = field(default_factory=list)
+    particles: list[str] = field(default_factory=list)
+    prepositions: list[tuple[str, Ref]] = field(default_factory=list)
+    denied: bool = False
+    ongoing: bool = False
+    state: bool = False
+    modality: str = "told"
+    joint: str = ""
+    beside: int | None = None
+    first: int = 0
+    last: int = 0
+    adverbs: list[str] = field(default_factory=list)
+    seconds: float | None = None
+    times: int | None = None
+    distance: float | None = None
+    direction: str | None = None
+    side: str | None = None
+    goes: bool = False
+    noun: Event | None = None
+    """The same with the verb that its noun stands for: "gives a hug" as "hugs"."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +200,8 @@ class Frame:
             if element.family:
                 score += 0.4
             if isinstance(ref, Ref):
-                if element.slot == "b.part" and len(agents) == 2 and _is_own(ref):
+                own = ref.who == "ab" or (ref.definite and not ref.who)
+                if element.slot == "b.part" and len(agents) == 2 and own:
                     score -= _OWN
                 elif element.slot == "b.part" and ref.bare and not ref.who and "b" not in bound:
                     score -= _OPEN
@@ -204,10 +278,6 @@ _OWN = 2.5
 
 _OPEN = 0.5
 """What it costs that "the wrist" should be the other's, where nothing names them: it is rather one's own."""
-
-
-def _is_own(ref: Ref) -> bool:
-    return ref.who == "ab" or (ref.definite and not ref.who)
 
 
 def _beside(event: Event, used: list[int], taken: set[str], together: bool) -> float:

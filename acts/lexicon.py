@@ -15,13 +15,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from motion import InputError
 
 from .frames import Frame
+from .plan import problem
 from .shapes import Shape
 from .things import Does, Prop
 
@@ -45,7 +46,6 @@ class Entry(BaseModel):
         caption: the network's words, as ``{a} [pat] {b} on the {part}``; see :func:`acts.captions.worded`. The first is
             used, the others are paraphrases of it.
         seconds: how long it usually takes.
-        before: what must hold first, after: what holds from then on (a posture).
         stage: its score; empty leaves it to the network's words.
         refused: what is then shown of a refusal, which leaves the act itself undone.
         rule: predicates of :mod:`motion.metrics.sentences` that its motion fulfils, with ``who`` for the agent and
@@ -71,8 +71,6 @@ class Entry(BaseModel):
     synsets: Annotated[tuple[str, ...], Field(max_length=20)] = ()
     caption: Annotated[tuple[Sentence, ...], Field(max_length=12)] = ()
     seconds: Annotated[float, Field(gt=0, le=60)] = 3.0
-    before: dict[Literal["posture"], str] = {}
-    after: dict[Literal["posture"], str] = {}
     stage: Annotated[tuple[Shape, ...], Field(max_length=12)] = ()
     refused: Annotated[tuple[Shape, ...], Field(max_length=6)] = ()
     rule: Annotated[tuple[Sentence, ...], Field(max_length=6)] = ()
@@ -151,8 +149,8 @@ def _lexicon(folders: tuple[Path, ...]) -> Lexicon:
 
 
 def _read_all(folder: Path, into: dict[str, Entry]) -> None:
-    for problem in (p for path in files(folder) for p in read_file(path, into)):
-        raise InputError(problem)
+    for wrong in (each for path in files(folder) for each in read_file(path, into)):
+        raise InputError(wrong)
 
 
 def files(folder: Path) -> list[Path]:
@@ -190,7 +188,7 @@ def read_file(path: Path, into: dict[str, Entry]) -> Iterator[str]:
             for frame in entry.frames:
                 Frame.parse(frame)
         except ValidationError as error:
-            yield f"{where}: {_sentence(error)}"
+            yield f"{where}: {problem(error)}"
         except InputError as error:
             yield f"{where}: {error}"
         else:
@@ -202,9 +200,3 @@ def _line(text: str, name: str) -> int:
         if line.strip().strip("[]").strip('"') == name:
             return number
     return 1
-
-
-def _sentence(error: ValidationError) -> str:
-    first: Any = error.errors()[0]
-    place = ".".join(str(part) for part in first["loc"])
-    return f"{place}: {first['msg']}."

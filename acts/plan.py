@@ -148,7 +148,7 @@ class Plan(_Model):
         unread: what was not understood.
         doubts: what another parse of the text takes for another act, with the names of what it would be.
         notes: sentences on the text as a whole, such as its language.
-        reader: who read the text: "lexicon", a director's model, or "hand".
+        reader: who read the text, "lexicon", or wrote the plan, "hand" or "corpus".
     """
 
     sentence: Text = ""

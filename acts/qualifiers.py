@@ -10,10 +10,10 @@ from collections.abc import Iterator
 
 from motion.metrics.sentences.touches import BODY
 
-from .accounting import FILLERS, said_words, shown_caption
+from .accounting import said_words, shown_caption
 from .lexicon import Entry
 from .plan import FROM_BEHIND, Act
-from .reading.vocabulary import is_act, vocabulary
+from .reading.vocabulary import closed, is_act, vocabulary
 from .shapes import Go, Touch
 
 _BOTH = re.compile(r"\bboth (?:\w+ )?(hands|arms|palms|fists|feet|legs|knees|elbows|shoulders|cheeks)\b", re.IGNORECASE)
@@ -63,9 +63,8 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
         yield "how long", ""
     if FROM_BEHIND in act.manner:
         yield "from where", f"happens(both({mask}, behind({who})))" if mask else ""
-    if any(
-        adverb not in FILLERS and adverb != FROM_BEHIND and adverb not in vocabulary().speeds for adverb in act.manner
-    ):
+    told = {FROM_BEHIND, *closed("fillers"), *vocabulary().speeds}
+    if not told.issuperset(act.manner):
         yield "in which manner", ""
     if (
         act.part
@@ -76,7 +75,7 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     ):
         yield "where on the body", ""
     other = act.thing and "{b}" in caption and not entry.thing and not set(act.thing.split()) & words
-    if other and act.thing not in FILLERS and not is_act(act.thing or ""):
+    if other and act.thing not in closed("fillers") and not is_act(act.thing or ""):
         yield OTHER_THING, ""
 
 

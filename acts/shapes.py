@@ -14,6 +14,25 @@ from pydantic import BaseModel, ConfigDict, Field
 Metres = Annotated[float, Field(ge=0, le=20)]
 Part = Literal["", "head", "shoulder", "back", "chest", "waist", "arm", "hand", "leg", "foot"]
 
+# The gestures of hands, the movements of legs, trunk and head, and the figures of whole bodies, by kind.
+_Held = Literal["high", "up", "ahead", "spread", "crossed", "behind", "around", "linked", "lowers", "bends", "prays"]
+_AtBody = Literal["hips", "chest", "belly", "head", "mouth", "ears", "eyes", "phone", "photo"]
+_Shown = Literal["salutes", "claps", "offers", "waves", "beckons", "points", "conducts", "pumps", "beats"]
+_Swung = Literal["fans", "flaps", "circles", "swings", "shakes", "rubs"]
+_Works = Literal["works", "drums", "types", "juggles", "dribbles", "knocks", "carries"]
+_Crafts = Literal["paints", "brushes", "hammers", "eats", "combs", "writes"]
+
+_Legs = Literal["raises leg", "raises knee", "swings leg", "kicks", "stamps", "taps foot", "crosses legs", "marches"]
+_Stands = Literal["stands on one leg", "turns legs out", "bends knees", "lunges", "stands tall", "on tiptoe"]
+_Trunk = Literal["reaches down", "leans", "is dipped", "twists", "sways", "shakes", "shrugs"]
+_Head = Literal["moves head", "rolls head", "nods", "shakes head", "turns head"]
+
+_Exercise = Literal["push-ups", "sit-ups", "jumping-jacks", "lifts-weights", "skips-rope", "hops", "rolls", "warms-up"]
+_Acrobatics = Literal["handstand", "cartwheel", "somersault", "frog", "leapfrog", "pirouette", "phrase"]
+_Sport = Literal["kicks-ball", "stops-ball", "shoots", "shoots-bow", "swings-club", "smashes", "rows", "swims"]
+_Fight = Literal["kicks", "shadow-boxes", "slashes", "chops", "arm-wrestles", "thumb-wrestles", "bumps-elbow", "pulls"]
+_Labour = Literal["sweeps", "digs", "ties", "rests-on-knees"]
+
 
 class _Shape(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -116,56 +135,7 @@ class Gesture(_Shape):
     """
 
     do: Literal["gesture"] = "gesture"
-    gesture: Literal[
-        "high",
-        "up",
-        "salutes",
-        "claps",
-        "phone",
-        "ears",
-        "eyes",
-        "photo",
-        "prays",
-        "ahead",
-        "offers",
-        "waves",
-        "beckons",
-        "points",
-        "spread",
-        "hips",
-        "chest",
-        "belly",
-        "head",
-        "mouth",
-        "fans",
-        "behind",
-        "crossed",
-        "flaps",
-        "circles",
-        "swings",
-        "shakes",
-        "around",
-        "works",
-        "rubs",
-        "linked",
-        "lowers",
-        "drums",
-        "types",
-        "juggles",
-        "dribbles",
-        "conducts",
-        "pumps",
-        "knocks",
-        "paints",
-        "brushes",
-        "hammers",
-        "eats",
-        "combs",
-        "writes",
-        "beats",
-        "bends",
-        "carries",
-    ]
+    gesture: Literal[_Held, _AtBody, _Shown, _Swung, _Works, _Crafts]
     sides: Literal["left", "right", "both"] = "right"
     times: Annotated[int, Field(ge=0, le=20)] = 0
 
@@ -240,34 +210,7 @@ class Limb(_Shape):
     """
 
     do: Literal["limb"] = "limb"
-    does: Literal[
-        "raises leg",
-        "raises knee",
-        "swings leg",
-        "kicks",
-        "stamps",
-        "taps foot",
-        "stands on one leg",
-        "turns legs out",
-        "bends knees",
-        "lunges",
-        "stands tall",
-        "reaches down",
-        "on tiptoe",
-        "crosses legs",
-        "leans",
-        "is dipped",
-        "twists",
-        "sways",
-        "moves head",
-        "rolls head",
-        "nods",
-        "shakes",
-        "shakes head",
-        "turns head",
-        "shrugs",
-        "marches",
-    ]
+    does: Literal[_Legs, _Stands, _Trunk, _Head]
     side: Literal["left", "right", "both"] = "right"
     direction: Literal["", "up", "down", "forward", "back", "out", "left", "right"] = ""
     times: Annotated[int, Field(ge=0, le=20)] = 0
@@ -287,43 +230,7 @@ class Figure(_Shape):
     """
 
     do: Literal["figure"] = "figure"
-    figure: Literal[
-        "push-ups",
-        "sit-ups",
-        "handstand",
-        "cartwheel",
-        "somersault",
-        "jumping-jacks",
-        "kicks",
-        "kicks-ball",
-        "shadow-boxes",
-        "rows",
-        "swims",
-        "sweeps",
-        "digs",
-        "ties",
-        "arm-wrestles",
-        "thumb-wrestles",
-        "bumps-elbow",
-        "pulls",
-        "frog",
-        "leapfrog",
-        "shoots",
-        "stops-ball",
-        "rests-on-knees",
-        "lifts-weights",
-        "skips-rope",
-        "hops",
-        "shoots-bow",
-        "slashes",
-        "chops",
-        "swings-club",
-        "smashes",
-        "rolls",
-        "pirouette",
-        "warms-up",
-        "phrase",
-    ]
+    figure: Literal[_Exercise, _Acrobatics, _Sport, _Fight, _Labour]
     times: Annotated[int, Field(ge=0, le=20)] = 0
     mirrored: bool = False
     meets: bool = False

@@ -6,29 +6,17 @@ from collections.abc import Set
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from acts.events import Event, Ref
+from acts.frames import Event, Ref
 
 from . import wordnet
 from .people import Cast, states_of
-from .references import reference
+from .subjects import reference
 from .syntax import adverb_of, is_adverb, is_kept, taken_away
-from .vocabulary import is_act, vocabulary
+from .vocabulary import closed, is_act, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Token
 
-DENY = frozenset(("not", "n't", "never", "hardly", "barely", "no", "neither", "nor"))
-_LENGTHS = frozenset(("step", "pace", "metre", "meter", "yard"))
-_PATH_NOUNS = "circle lap loop line arc curve spiral semicircle diagonal zigzag direction"
-_PATHS = frozenset(_PATH_NOUNS.split())
-_TURNS = frozenset(("clockwise", "counterclockwise"))
-_SIDES = frozenset(("behind", "below", "above"))
-_ALONG = frozenset(("up", "down", "over", "across", "along", "through", "past"))
-"""Particles that are prepositions before a thing: "walks down a ramp"."""
-_SPOTS = frozenset(("top", "back", "inside", "outside", "bottom", "tip"))
-"""Spots on a part of the body, which is named behind them."""
-_WAYS = frozenset(("way", "manner", "fashion", "mood", "style"))
-_RECEIVES = frozenset(("get", "receive", "take", "have"))
 _MODIFIERS = frozenset(("prt", "advmod", "acomp", "attr", "oprd", "npadvmod", "amod", "neg", "intj", "compound"))
 
 
@@ -60,6 +48,8 @@ class Arguments:
                 continue
             if subject is not None and self.cast.seen.get(child.i) is subject:  # "…, said the witch"
                 continue
+            if child.i in self._postures and child.dep_ in ("prt", "advmod"):  # "stands with shoulders up"
+                continue
             bare = all(c.dep_ not in ("poss", "det") for c in child.children)
             if child.dep_ == "aux" and child.lower_ in ("come", "comes", "came"):  # "comes running"
                 event.words.append("come")
@@ -83,6 +73,9 @@ class Arguments:
                 event.dative = self._argument(child, who, event)
             elif child.dep_ == "agent":
                 agent = next((self._argument(n, who, event) for n in child.children if n.dep_ == "pobj"), None)
+                if agent is not None and agent.kind == "part":  # "is pulled by the elbow"
+                    event.prepositions.append(("by", agent))
+                    agent = None
             elif child.dep_ in ("prep", "dative") or (
                 child.dep_ == "prt" and any(c.dep_ == "pobj" for c in child.children)
             ):
@@ -120,17 +113,17 @@ class Arguments:
     def _is_measure(self, noun: Token, event: Event) -> bool:
         lemma = noun.lemma_.lower()
         lasts = lemma in self._words.seconds and any(c.dep_ == "nummod" for c in noun.children)
-        return (lemma in _LENGTHS or lasts) and event.lemma not in self._words.verbs["light"]
+        return (lemma in closed("lengths") or lasts) and event.lemma not in self._words.verbs["light"]
 
     def _way(self, noun: Token, event: Event) -> str:
         """The particle of who goes somewhere, which is a preposition before a thing; "" for other verbs."""
         goes = event.lemma in self._words.verbs["goes"] and not self._words.part(noun.lemma_.lower())
         before = noun.doc[max(noun.left_edge.i - 1, 0)]
-        return before.lower_ if goes and before.dep_ in ("prt", "advmod") and before.lower_ in _ALONG else ""
+        return before.lower_ if goes and before.dep_ in ("prt", "advmod") and before.lower_ in closed("along") else ""
 
     def _is_path(self, noun: Token, event: Event) -> bool:
         goes = event.lemma in self._words.verbs["goes"]
-        return goes and noun.dep_ in ("dobj", "obj", "npadvmod") and noun.lemma_.lower() in _PATHS
+        return goes and noun.dep_ in ("dobj", "obj", "npadvmod") and noun.lemma_.lower() in closed("paths")
 
     def _object(self, token: Token, who: str, event: Event) -> None:
         """Takes up an object; of two, as in "hands the knight his sword", the person is the receiver."""
@@ -144,9 +137,12 @@ class Arguments:
     def _argument(self, token: Token, who: str, event: Event) -> Ref:
         self.seen.add(token.i)
         within = next((c for c in token.children if c.dep_ == "compound"), None)
-        if within is not None and self._words.directions.get(token.lower_) in _TURNS:
+        way = self._words.directions.get(token.lower_)
+        moved = within is not None and way is not None and self._words.part(within.lemma_.lower())
+        if within is not None and (moved or way in closed("of the clock")):
+            event.words += [token.lower_] if moved else []
             self._direction(token.lower_, event)
-            token = within  # "in a circle clockwise"
+            token = within  # "in a circle clockwise", "waves the hand sideways"
         if (part := self._named_by(token)) is not None:
             token = part
         person = self._words.is_person(token.lemma_.lower())
@@ -154,7 +150,7 @@ class Arguments:
         for child in token.children:
             if child.dep_ in ("compound", "amod"):
                 event.words.append(child.lemma_.lower())
-                if self._words.directions.get(child.lower_) in _TURNS:
+                if self._words.directions.get(child.lower_) in closed("of the clock"):
                     self._direction(child.lower_, event)
                 if child.lower_ in ("left", "right") and is_act(token.lemma_.lower()) and not self._others(token, who):
                     event.side = event.side or child.lower_  # "a left hook"
@@ -176,7 +172,7 @@ class Arguments:
         """The part of the body of which a noun names a spot: "the top of his head"; None for other nouns."""
         of = next((c for c in spot.children if c.lower_ == "of"), None)
         parts = (c for c in of.children if self._words.part(c.lemma_.lower())) if of is not None else ()
-        part = next(iter(parts), None) if spot.lemma_.lower() in _SPOTS else None
+        part = next(iter(parts), None) if spot.lemma_.lower() in closed("spots") else None
         self.seen |= {spot.i, of.i, part.i} if of is not None and part is not None else set()
         return part
 
@@ -225,7 +221,9 @@ class Arguments:
                 self._preposition(child, who, event)
                 found = True
         if token.lower_ == "from":  # "from behind"
-            event.adverbs += [f"from {c.lower_}" for c in token.children if c.lower_ in _SIDES and not c.n_rights]
+            event.adverbs += [
+                f"from {c.lower_}" for c in token.children if c.lower_ in closed("from where") and not c.n_rights
+            ]
         if not found:
             event.words.append(token.lower_)
             event.particles.append(token.lower_)
@@ -243,7 +241,7 @@ class Arguments:
         if preposition.lower_ in ("for", "within", "after", "over") and lemma in self._words.seconds:
             event.seconds = self._amount(noun) * self._words.seconds[lemma]
             return True
-        if preposition.lower_ == "for" and lemma in _LENGTHS:  # "walks forward for three steps"
+        if preposition.lower_ == "for" and lemma in closed("lengths"):  # "walks forward for three steps"
             for child in noun.children:
                 self._count(child, noun, event)
             return True
@@ -264,14 +262,15 @@ class Arguments:
     def _likeness(self, noun: Token, preposition: Token, event: Event) -> None:
         """Notes "like an old man" and "in a friendly way" as the adverb of how one moves so."""
         said = [c.lower_ for c in noun.children if c.dep_ in ("amod", "compound")]
-        if preposition.lower_ == "in" and noun.lower_ in _WAYS:
+        if preposition.lower_ == "in" and noun.lower_ in closed("ways"):
             event.adverbs += [adverb_of(adjective) for adjective in said]
         elif preposition.lower_ == "like":
             named = (noun.lemma_.lower(), *said)  # of "an old king", old
             adverbs = [self._words.likeness[word] for word in named if word in self._words.likeness]
             event.adverbs += adverbs[-1:]
 
-    def _amount(self, noun: Token) -> float:
+    def _amount(self, noun: Token, otherwise: float = 1.0) -> float:
+        """The number that stands with a noun, and another where none does."""
         for child in noun.children:
             if child.lower_ in self._words.numbers:
                 return float(self._words.numbers[child.lower_])
@@ -280,7 +279,13 @@ class Arguments:
                     return float(child.text.replace(",", "."))
                 except ValueError:
                     continue
-        return 1.0
+        return otherwise
+
+    def _is_length(self, noun: Token) -> bool:
+        """True for a unit of length; feet are one behind a number and a verb, and not where one stands on them."""
+        lemma = noun.lemma_.lower()
+        measured = noun.tag_ == "NNS" and noun.dep_ in ("npadvmod", "dobj", "obj")
+        return lemma in self._words.metres and (measured or not self._words.part(lemma))
 
     def _count(self, number: Token, noun: Token, event: Event) -> None:
         value = self._words.numbers.get(number.lower_)
@@ -291,7 +296,7 @@ class Arguments:
             return
         if lemma in self._words.seconds:  # "on count five", "with a delay of one second"
             return
-        if lemma in self._words.metres:
+        if self._is_length(noun):
             event.distance = value * self._words.metres[lemma]
             event.times = value if lemma in ("step", "pace") else event.times
         elif not self._words.part(lemma) and value <= 100:
@@ -303,12 +308,12 @@ class Arguments:
         if token.pos_ == "INTJ" or token.dep_ == "intj":  # "says no"
             event.words.append(text)
             return
-        if text in DENY or token.dep_ == "neg":
+        if text in closed("denials") or token.dep_ == "neg":
             return
         if lemma == "time" and (token.dep_ == "npadvmod" or any(c.dep_ == "nummod" for c in token.children)):
-            event.times = int(self._amount(token))
+            event.times = int(self._amount(token, 0.0)) or event.times  # "this time" is no number
             return
-        if token.dep_ == "npadvmod" and lemma in self._words.metres:
+        if token.dep_ == "npadvmod" and self._is_length(token):
             event.distance = self._amount(token) * self._words.metres[lemma]
             event.times = int(self._amount(token)) if lemma in ("step", "pace") else event.times
             event.words.append(lemma)
@@ -368,7 +373,7 @@ class Arguments:
             return  # "offers her a drink" hands something over
         event.noun = replace(event, lemma=noun.lemma, object=event.dative, dative=None)
         giver = next((i for i, (p, ref) in enumerate(event.prepositions) if p == "from" and ref.kind == "person"), -1)
-        if event.lemma in _RECEIVES and giver >= 0:  # "gets a massage from her": she massages him
+        if event.lemma in closed("receives") and giver >= 0:  # "gets a massage from her": she massages him
             rest = [each for i, each in enumerate(event.prepositions) if i != giver]
             event.noun = replace(
                 event.noun, subject=event.prepositions[giver][1], object=event.subject, prepositions=rest

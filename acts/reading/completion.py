@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from acts.events import Event, Ref
+from acts.frames import Event, Ref
 from acts.lexicon import Lexicon
 from acts.plan import Act, other_of
 
@@ -14,12 +14,10 @@ from .ellipsis import PERFORM
 from .matching import Found
 from .relations import BESIDE
 from .spelling import deeds
-from .vocabulary import is_act, vocabulary
+from .vocabulary import closed, is_act, vocabulary
 
 _SHARING = frozenset(("conj", "after", "with"))
 """Joints of clauses that may share an object."""
-
-_LIMBS = frozenset(("hand", "arm", "leg", "foot"))
 
 
 def completed(
@@ -40,7 +38,7 @@ def completed(
         whose = event.subject.who or (above.who if above is not None and above.kind == "person" else "")
         if len(whose) == 1:  # "an arm hooked around his waist": who hooks it there
             yield replace(event, subject=Ref("person", whose), object=event.subject, state=True), 0.0
-    if (limb := event.subject) is not None and limb.kind == "part" and limb.family in _LIMBS:
+    if (limb := event.subject) is not None and limb.kind == "part" and limb.family in closed("limbs"):
         whose = limb.who or ("".join(acts[-1].agents) if acts else "a")
         by = ("with", replace(limb, who=""))  # "his right hand picks it up": with it, he does
         yield replace(event, subject=Ref("person", whose), prepositions=[*event.prepositions, by]), 0.0
@@ -95,9 +93,7 @@ def _is_implied(subject: Ref | None) -> bool:
 
 
 # ---- repeats -------------------------------------------------------------------------------------------
-_SAME = frozenset(("same", "it", "that", "this", "likewise", "so"))
 _MIRRORED = {"left": "right", "right": "left"}
-_MOVEMENTS = frozenset(("movement", "move", "gesture", "motion", "pose", "step", "action"))
 
 
 def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[str, Any] | None:
@@ -111,18 +107,20 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
     """
     verbs, subject, ref = vocabulary().verbs, event.subject, event.object
     repeats = event.lemma in verbs["repeats"]
-    named = ref is None or ref.lemma in _SAME or ref.kind == "person"
+    named = ref is None or ref.lemma in closed("same") or ref.kind == "person"
     named = named or (ref is not None and ref.lemma == "thing" and "same" in event.words)
-    named = named or (repeats and ref is not None and (ref.kind == "part" or ref.lemma in _MOVEMENTS))
+    named = named or (repeats and ref is not None and (ref.kind == "part" or ref.lemma in closed("movements")))
     named = named or (repeats and ref is not None and ref.lemma in known.frames)
     if subject is None or subject.kind != "person" or not named:
         return None
-    if has_inner and not (repeats and ref is not None and ref.lemma in _SAME):
+    if has_inner and not (repeats and ref is not None and ref.lemma in closed("same")):
         return None
     declines = event.lemma in verbs["not"] | verbs["wished"]
     if event.lemma != "do" and not repeats and not declines:
         return None
-    if declines and ((ref is not None and ref.lemma not in _SAME) or not (event.denied or event.lemma in verbs["not"])):
+    if declines and (
+        (ref is not None and ref.lemma not in closed("same")) or not (event.denied or event.lemma in verbs["not"])
+    ):
         return None
     agents, other = tuple(subject.who), other_of(subject.who) or "a"
     if len(last.agents) > 1 or (len(agents) > 1 and event.lemma != "do"):
@@ -144,17 +142,12 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
 # ---- acts beside a verb --------------------------------------------------------------------------------
 Find = Callable[[Event], Found | None]
 
-_HELD = frozenset(("crossed", "folded", "cross", "fold", "outstretched", "raised", "raise", "outstretch"))
-"""Participles of postures of the arms, and the parser's lemmas of them."""
-_NOUNS = frozenset(("with", "in", "into", "for"))
-"""Prepositions behind which a noun may be an act."""
 _OWN = {
     "back": frozenset(("sit", "kneel", "lie", "lean")),
     "unison": frozenset(("dance", "move", "act", "perform")),
     "canon": frozenset(("dance", "move", "act", "perform", "do")),
 }
 """Verbs that a formation goes with as one act: "they sit back to back"."""
-_IS = frozenset(("be", "stand", "stay", "remain"))
 _EACH = Ref("each", "ab", "other")
 
 
@@ -229,7 +222,7 @@ def held(event: Event, found: Found, known: Lexicon, find: Find) -> Iterator[tup
         open_ = not ref.who and (preposition == "with" or (_carries(ref) and ref.family != "knee"))
         if ref.kind != "part" or not (open_ or ref.who == agents) or (preposition == "on" and not _carries(ref)):
             continue
-        words = [word for word in event.words if word in _HELD]
+        words = [word for word in event.words if word in closed("arms held")]
         if preposition == "with" and not words:
             continue
         posture = replace(
@@ -268,7 +261,7 @@ def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tup
     for i in rest:
         preposition, ref = event.prepositions[i]
         if (
-            preposition not in _NOUNS
+            preposition not in closed("before deeds")
             or ref.kind != "thing"
             or ref.lemma not in deeds(known)
             or (ref.place and preposition != "with")
@@ -276,9 +269,9 @@ def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tup
         ):
             continue
         own = any(vocabulary().part(word) for word in event.words)  # "with slow arm circles"
-        bodily = is_act(ref.lemma) or own or (preposition == "in" and event.lemma in _IS)
-        bodily = bodily and not (event.lemma in _IS and ref.lemma in vocabulary().gaits)  # "is in a hurry"
-        if not bodily or ref.lemma in vocabulary().verbs["no_nouns"]:
+        bodily = is_act(ref.lemma) or own or (preposition == "in" and event.lemma in closed("is there"))
+        hurries = event.lemma in closed("is there") and ref.lemma in vocabulary().gaits  # "is in a hurry"
+        if not bodily or hurries or ref.lemma in vocabulary().verbs["no_nouns"]:
             continue
         others = [each for j, each in enumerate(event.prepositions) if j != i and j in rest]
         person = event.object if event.object is not None and event.object.kind in ("person", "each") else None

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from acts.frames import PREPOSITIONS
 
-from .vocabulary import vocabulary
+from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
@@ -22,14 +22,6 @@ if TYPE_CHECKING:
 
 _ENDS = frozenset(("", ",", ";", ":", ".", "!", "?", "-", "then", "and"))
 _JOINS = frozenset((",", "and", "then"))
-_BEFORE_SIDES = frozenset(("to", "with", "on", "towards", "toward", "over", "by"))
-"""Prepositions before a side, or a part of the body that has one."""
-_ARTICLES = frozenset(("a", "an", "another", "one"))
-_OTHERS = frozenset(("both", "one", "other", "first", "second", "each"))
-_OWNERS = frozenset(("his", "her", "their", "my", "your", "its", "the", "this", "that", "each", "no", "some"))
-_CLAUSES = frozenset(
-    ("i", "you", "he", "she", "they", "we", "who", "is", "are", "was", "were", "as", "while", "until", "to")
-)
 PERFORM = "perform"
 """The verb of a noun that has none, which the parser takes for nothing else."""
 _LONGEST = 5
@@ -49,6 +41,8 @@ class Ellipsis:
         self._words = vocabulary()
         self._last = ""
         """The last verb of the sentence, also one that was supplied."""
+        self._behind = 0
+        """The number of the word behind it."""
 
     def before(self, i: int) -> str:
         """The verb to supply before the word ``i``; "" for none. Asked for each word in order."""
@@ -58,6 +52,7 @@ class Ellipsis:
         verb = self._listed_side(i) or self._deed(i)
         if verb or self._acts(i):
             self._last = verb.partition(" ")[0] or word
+            self._behind = i if verb else i + 1
         return verb
 
     def has_acted(self) -> bool:
@@ -91,7 +86,8 @@ class Ellipsis:
 
     def _is_headline(self, i: int) -> bool:
         """True for a sentence that is only a noun of several deeds: "push-ups", "synchronized jumping jacks"."""
-        outside = PREPOSITIONS | _ENDS | _OWNERS | _CLAUSES | _ARTICLES | _OTHERS
+        outside = PREPOSITIONS | _ENDS | closed("owners") | closed("clause begins")
+        outside |= closed("one of many") | closed("others")
         at = i
         while at < i + _LONGEST and self._lower(at) not in outside:
             at += 1
@@ -109,7 +105,7 @@ class Ellipsis:
         word = self._lower(i)
         if word.isdecimal() and len(word) < 4:
             return int(word)
-        return 1 if word in _ARTICLES else self._words.numbers.get(word, 0)
+        return 1 if word in closed("one of many") else self._words.numbers.get(word, 0)
 
     def _ending(self, word: str) -> str | None:
         """The ending of a verb's form, as "s" of "waves"; None for other words."""
@@ -125,21 +121,21 @@ class Ellipsis:
     def _inside(self, i: int) -> bool:
         """True for a word that may stand within a noun phrase."""
         word = self._lower(i)
-        outside = word in PREPOSITIONS | _ENDS | _OWNERS | _CLAUSES or word in self._words.directions
-        outside = outside or word in _ARTICLES or self._ending(word) == "s"
+        outside = word in PREPOSITIONS | _ENDS | closed("owners") | closed("clause begins") | closed("one of many")
+        outside = outside or word in self._words.directions or self._ending(word) == "s"
         return word.isalpha() and (not outside or word in ("left", "right", "high", "low", "back"))
 
     def _acts(self, i: int) -> bool:
         """True for a word that is a verb where it stands."""
         word, before = self._lower(i), self._lower(i - 1)
         ending = self._ending(word)
-        if ending is None or self._words.part(word) or self._words.part(word.removesuffix("s")):
+        if ending is None or self._words.named_part(word):
             return False
-        if before in _OWNERS | _ARTICLES | PREPOSITIONS or before in self._words.numbers:
+        if before in closed("owners") | closed("one of many") | PREPOSITIONS or before in self._words.numbers:
             return False
         if ending in ("s", "ed", "ing"):
             return True
-        return before in _ENDS | _CLAUSES
+        return before in _ENDS | closed("clause begins")
 
     def has_verb(self, i: int) -> bool:
         """True if a verb, or another clause, stands between a word and the next mark."""
@@ -163,21 +159,26 @@ class Ellipsis:
         first = at - noun
         if self._lower(first) not in ("left", "right") or (noun and not self._is_sided(at)):
             return ""
-        own = self._lower(i) in _BEFORE_SIDES
-        side = i + own + (self._lower(i + own) in _OWNERS)
+        own = self._lower(i) in closed("before sides")
+        side = i + own + (self._lower(i + own) in closed("owners"))
         last = side + (self._lower(side) in ("left", "right"))
         more = noun and self._is_sided(last)
-        if last == side or self._lower(last + more) not in _ENDS | _CLAUSES | {"again", "side"}:
+        if last == side or self._lower(last + more) not in _ENDS | closed("clause begins") | {"again", "side"}:
             return ""
-        before = self._lower(first - 1 - (self._lower(first - 1) in _OWNERS))
-        with_it = more and not own and before in _BEFORE_SIDES - {"to"}
-        return f"{self._last} {before}" if with_it else self._last
+        end = first - 1 - (self._lower(first - 1) in closed("owners"))
+        before = self._lower(end)
+        object_ = range(self._behind, end + (before not in closed("before sides")))
+        said = [self._last]
+        if 0 < len(object_) < 4 and self._is_sided(object_[-1]):  # "turns the head left, then (turns the head) right"
+            said += map(self._lower, object_)
+        if before in closed("before sides") and not own and (more or self._lower(i) in closed("owners")):
+            said.append(before)
+        return " ".join(said)
 
     def _is_sided(self, i: int) -> bool:
         """True for a part of the body of which there are two, or a side."""
         word = self._lower(i)
-        part = self._words.part({"feet": "foot"}.get(word, word)) or self._words.part(word.removesuffix("s"))
-        return bool(part) or word in ("side", "direction")
+        return bool(self._words.named_part(word)) or word in ("side", "direction")
 
 
 # ---- parts of the body ---------------------------------------------------------------------------------
@@ -185,10 +186,6 @@ _WITHIN = frozenset(("DET", "PRON", "NUM", "ADJ"))
 _PARTICIPLES = {"outstretched": "extend", "outspread": "spread", "upraised": "raise", "uplifted": "raise"}
 """Participles that are no verbs, and the verb of what they show."""
 _BEFORE = frozenset((",", ";", ":", "-", "", "and"))
-_PART_OWNERS = frozenset(["his", "her", "their", "its", "my", "your", "each", "both", "one", "the", "left", "right"])
-_PLACES = frozenset(("on", "behind", "above", "around", "over", "against"))
-_STATES = frozenset(("straight", "upright", "together", "parallel", "loose", "relaxed", "soft", "tense"))
-"""Adjectives of how a part is held that are no directions."""
 _BEFORE_PART = 4
 """Words before the part of the body, at most."""
 
@@ -230,7 +227,7 @@ def _behind(preposition: Token) -> Absolute | None:
     if at == len(doc):
         return None
     part = doc[at]
-    straight = at + 1 < len(doc) and doc[at + 1].lower_ in _STATES
+    straight = at + 1 < len(doc) and doc[at + 1].lower_ in closed("held so")
     if words.part(part.lemma_.lower()) == "back" and not straight:  # "with her back to him" is a way to stand
         return None
     if before is not None:
@@ -240,7 +237,7 @@ def _behind(preposition: Token) -> Absolute | None:
         return None
     if after.lower_ in _PARTICIPLES:
         return Absolute(preposition, part, _PARTICIPLES[after.lower_], after)
-    if after.lower_ in _STATES:
+    if after.lower_ in closed("held so"):
         return Absolute(preposition, part, "hold", after)
     if after.tag_ in ("VBN", "VBD", "VBG"):
         return Absolute(preposition, part, "", after)
@@ -273,15 +270,13 @@ def stands_absolutely(lower: Callable[[int], str], has_verb: Callable[[int], boo
     """
     words = vocabulary()
     if lower(i - 1) not in _BEFORE:  # "cuffs the thief hands behind his back"
-        behind = lower(i + 3) if lower(i + 2) in _PART_OWNERS else lower(i + 2)
-        own = words.part(lower(i).removesuffix("s")) and words.part(behind) and lower(i + 1) in _PLACES
+        behind = lower(i + 3) if lower(i + 2) in closed("before parts") else lower(i + 2)
+        own = words.part(lower(i).removesuffix("s")) and words.part(behind) and lower(i + 1) in closed("laid")
         return bool(own) and words.is_person(lower(i - 1)) and lower(i).endswith("s")
     at = i
-    while lower(at) in _PART_OWNERS and at < i + 3:
+    while lower(at) in closed("before parts") and at < i + 3:
         at += 1
-    part = lower(at).removesuffix("s") if not words.part(lower(at)) else lower(at)
-    part = {"feet": "foot", "knee": "knee"}.get(part, part)
-    if not words.part(part) or (lower(i - 1) in ("", "and") and at > i and lower(i) == "the"):
+    if not words.named_part(lower(at)) or (lower(i - 1) in ("", "and") and at > i and lower(i) == "the"):
         return False
     after, behind = lower(at + 1), lower(at + 2)
     if lower(i - 1) == "and" and at == i:
@@ -291,4 +286,8 @@ def stands_absolutely(lower: Callable[[int], str], has_verb: Callable[[int], boo
     placed = after in PREPOSITIONS - {"of", "to", "with"} and behind.isalpha() and after not in words.directions
     if placed and at == i and lower(i).endswith("s"):  # "hands over a parcel" is an act
         placed = any(words.part(lower(k).removesuffix("s")) for k in range(at + 2, at + 5))
-    return held or ((after in words.directions or after in _STATES) and ends) or (placed and not has_verb(at + 1))
+    return (
+        held
+        or ((after in words.directions or after in closed("held so")) and ends)
+        or (placed and not has_verb(at + 1))
+    )

@@ -7,14 +7,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 
-from acts.events import Event, Ref
-from acts.frames import Frame, Match, best
+from acts.frames import Event, Frame, Match, Ref, best
 from acts.lexicon import Lexicon
 from acts.plan import other_of
 
 from . import wordnet
 from .ellipsis import PERFORM
-from .vocabulary import vocabulary
+from .vocabulary import is_act, vocabulary
 
 LEAST_SCORE = -1.0
 """What a frame must score to be taken at all: more beside it than in it is another sentence."""
@@ -60,7 +59,10 @@ class Matcher:
         if event.noun is not None and event.noun.object is None and event.subject is not None:
             other = other_of(event.subject.who)
             whom = Ref("person", other) if other else Ref("each", "ab", "other")
-            forms.append(replace(event.noun, object=whom))
+            done, plain = replace(event.noun, object=whom), best(self._known.frames, event.noun)
+            to_other = best(self._known.frames, done)
+            if plain is None or (to_other is not None and to_other[0] == plain[0]):  # "makes jumps" jumps at nobody
+                forms.append(done)
         for form in forms:
             found = best(self._known.frames, form)
             if found is not None and (form.lemma == event.lemma or not found[2].thing):
@@ -71,7 +73,8 @@ class Matcher:
         found: Found | None = None
         about = vocabulary().verbs["begins"] | vocabulary().verbs["ends"]
         walks = event.object is not None and event.lemma in vocabulary().verbs["goes"]
-        light = event.lemma in ("do", "make") and event.object is not None  # means what its object names
+        deed = event.object is not None and is_act(event.object.lemma) and event.lemma in vocabulary().light
+        light = (event.lemma in ("do", "make") and event.object is not None) or deed  # means what its object names
         if walks or light or (event.object is None and event.lemma in about):
             return None  # nobody moves what is walked, as a way is, and others are about other verbs
         most = LEAST_SCORE

@@ -12,7 +12,7 @@ from .repair import others
 from .spelling import Speller
 from .syntax import parse
 from .text import Text
-from .vocabulary import vocabulary
+from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
@@ -101,8 +101,6 @@ _BELOW = frozenset(("ccomp", "acl", "csubj", "pcomp"))
 _LINKS = frozenset(("SCONJ", "CCONJ", "PUNCT", "PART", "AUX"))
 _SENSES = 3
 """Senses of a verb that are looked at: one that bodies show takes no clause."""
-_PEOPLE = frozenset(("other", "one", "first", "second"))
-"""Words that stand for a person behind an article."""
 
 
 def breaks(doc: Doc, lemmas: Mapping[int, str]) -> Iterator[Token]:
@@ -147,7 +145,7 @@ def _joins_person(conjunction: Token) -> bool:
 
 
 def _is_person(noun: Token) -> bool:
-    named = noun.text in (A_NAME, B_NAME) or noun.lower_ in _PEOPLE
+    named = noun.text in (A_NAME, B_NAME) or noun.lower_ in {*closed("ordinals"), "one"}
     return named or vocabulary().is_person(noun.lemma_.lower())
 
 

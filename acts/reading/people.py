@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from acts.events import Ref
+from acts.frames import Ref
 from acts.plan import Person, other_of
 
 from . import wordnet
 from .syntax import is_likeness
-from .vocabulary import Vocabulary, vocabulary
+from .vocabulary import Vocabulary, closed, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Token
@@ -20,19 +20,13 @@ A_NAME, B_NAME = "Adam", "Beth"
 """Names that stand for "A" and "B" while a text is parsed: the parser takes letters for articles and nouns."""
 
 _FIRST, _SECOND = frozenset(("first", "former")), frozenset(("second", "latter"))
-_THEY = frozenset(("they", "them", "themselves", "we", "us", "ourselves"))
 PRONOUN_SEX = dict.fromkeys(("he", "him", "his", "himself"), "m") | dict.fromkeys(
     ("she", "her", "hers", "herself"), "f"
 )
 """The sex that a pronoun tells."""
-_NOMINATIVE = frozenset(("i", "he", "she", "they", "we"))
 ANYONE = frozenset(("someone", "somebody", "anyone", "anybody", "person"))
-_NEUTER = frozenset(("figure", "robot", "sim", "character"))
-"""Nouns of a person who is "it"."""
-_ARTICLES = frozenset(("a", "an", "the", "his", "her", "their"))
 _OTHERS = frozenset(("conj", "poss", "appos"))
 """What hangs on a noun and is somebody else: "a man and a girl", "the child's mother"."""
-_NOBODY = frozenset(("nobody", "noone", "none", "neither"))
 
 
 @dataclass
@@ -63,8 +57,6 @@ class Cast:
         """The people of the clause that named it."""
         self.alone = False
         """The text names one person and nobody else, whose every part of a body and pronoun are."""
-        self.animals: set[str] = set()
-        """Animals that act as people do."""
         self.seen: dict[int, Ref] = {}
         """What the tokens mean that were looked at."""
         self.states: dict[int, tuple[str, str]] = {}
@@ -91,26 +83,31 @@ class Cast:
         """
         lemma, text = token.lemma_.lower(), token.lower_
         children = {child.lower_ for child in token.children}
-        if self.alone and (text in PRONOUN_SEX or text in _THEY):
+        if self.alone and (text in PRONOUN_SEX or text in closed("they")):
             return self._as("a", text)
         if text in PRONOUN_SEX:
             return self._pronoun(PRONOUN_SEX[text], subject)
         if text in ("i", "me", "myself", "you", "yourself"):
             return self._named("i" if text in ("i", "me", "myself") else "you")
-        if text in _THEY:
+        if text in closed("they"):
             return self._they(text, subject)
-        figure = self.alone and token.dep_ == "nsubj" and bool(_NEUTER & set(self._known.get("a", _Known()).words))
+        figure = (
+            self.alone and token.dep_ == "nsubj" and bool(closed("neuter") & set(self._known.get("a", _Known()).words))
+        )
         if text == "it" or is_likeness(token):
             return "a" if text == "it" and figure else None
-        if text in _NOBODY or (text == "one" and "no" in children):
+        if text in closed("nobody") or (text == "one" and "no" in children):
             return "ab"
+        if text == "other" and self.alone:
+            return None  # "crosses one foot over the other"
         if text == "other" or ("other" in children and (text == "one" or self._words.is_person(lemma))):
             return self._other(subject, lemma) if children.isdisjoint(("each", "one")) else "ab"
         if text in ("both", "each", "everyone", "everybody", "all") or lemma in self._words.both:
             return self._many(token, children)
-        if text in _FIRST or children & _FIRST:
+        numbered = text == "one" or self._words.is_person(lemma) or self._has(lemma)  # and not "the first step"
+        if text in _FIRST or (numbered and children & _FIRST):
             return self._as("a", lemma)
-        if text in _SECOND or children & _SECOND:
+        if text in _SECOND or (numbered and children & _SECOND):
             return self._as("b", lemma)
         if text == "one":
             return self._as("a" if "a" not in self._known or self.last != "a" else "b", "one")
@@ -148,9 +145,9 @@ class Cast:
         """True for a noun that names a person, by itself or by what it does here."""
         if token.pos_ in ("ADV", "VERB", "ADP"):
             return False
-        acts = token.dep_ in ("nsubj", "nsubjpass") and bool(children & _ARTICLES)
+        acts = token.dep_ in ("nsubj", "nsubjpass") and bool(children & closed("articles"))
         known = self._words.is_person(lemma) or bool(self._has(lemma)) or self._is_many(token)
-        return known or self._is_acting_animal(token, lemma) or _is_who(token) or (acts and self._is_acting(token))
+        return known or _is_who(token) or (acts and self._is_acting(token))
 
     def _is_plural(self, token: Token, lemma: str) -> bool:
         """True for the plural of a noun, and not for a name like one: "Chris"."""
@@ -169,16 +166,6 @@ class Cast:
         if len(self._known) == 2 or self._words.part(token.lemma_.lower()):
             return False
         return wordnet.may_be_person(token.lemma_.lower())
-
-    def _is_acting_animal(self, token: Token, lemma: str) -> bool:
-        """True for the animals of a fable, which act as people do where nobody else is there to act."""
-        free = [who for who in "ab" if who not in self._known]
-        if not free or not wordnet.is_animal(lemma) or self._words.part(lemma):
-            return False
-        acts = token.dep_ in ("nsubj", "nsubjpass") or any(wordnet.is_animal(w) for w in self.animals)
-        if acts:
-            self.animals.add(lemma)
-        return acts
 
     def _many(self, token: Token, children: set[str]) -> str:
         if any(self._words.numbers.get(child, 0) > 2 for child in children):  # "three people"
@@ -330,7 +317,7 @@ def _is_who(noun: Token) -> bool:
 def begins_clause(pronoun: Token) -> bool:
     """True for a subject that the parser joined to the object before: "hugs Beth and he waves"."""
     joined = pronoun.dep_ == "conj" and pronoun.head.dep_ in ("dobj", "dative", "pobj")
-    return joined and pronoun.lower_ in _NOMINATIVE and pronoun.tag_ == "PRP"
+    return joined and pronoun.lower_ in closed("nominatives") and pronoun.tag_ == "PRP"
 
 
 def states_of(noun: Token) -> Iterator[tuple[Token, str]]:

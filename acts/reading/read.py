@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from acts.events import Event, Ref
-from acts.frames import Frame, Match
+from acts.frames import Event, Frame, Match, Ref
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread, other_of
 from acts.shapes import Go
@@ -22,17 +21,11 @@ from .relations import related
 from .spelling import Speller, other_language, unknown
 from .syntax import spans
 from .text import Text
-from .vocabulary import vocabulary
+from .vocabulary import closed, vocabulary
 from .wording import prepared
 
 MOST_CHARACTERS = 2000
 """Characters of a text that is read at once."""
-_STATES = frozenset(("be", "become", "seem", "have", "there", "feel", "look", "appear", "act"))
-"""Verbs that say how somebody is; where no frame knows them, they show nothing and are passed over."""
-_STANDS = frozenset(("stand", "stay", "remain", "pose", "rest", "meet"))
-"""Verbs beside which a formation is all that is shown: "they stand back to back"."""
-_BEFORE = frozenset(("to", "toward", "towards", "for", "at", "by", "before", "near"))
-"""Prepositions before what people go to, or stand at."""
 _DOUBT = 0.5
 """Words that another parse may leave over more, and still be as likely."""
 _CANON = "move canon"
@@ -127,8 +120,6 @@ class _Planner:
         people = self._reader.cast.people()
         things = dict.fromkeys(act.thing for act in self._acts if act.thing)
         notes = []
-        if self._reader.cast.animals:
-            notes.append("Only people can be shown: animals that act are people here.")
         if self._reader.cast.third:
             notes.append("Only two people can be shown: the others that are named do nothing.")
         said = {token.lower() for token in self._text.replace(",", " ").replace(".", " ").split()}
@@ -173,7 +164,9 @@ class _Planner:
         vague = found is None or event.lemma in vocabulary().verbs["vague"] | vocabulary().verbs["begins"]
         if vague and not (found is not None and inner) and (noun := self._noun(event, found)) is not None:
             event, found = noun
-        elif formed and (vague or event.lemma in _STATES | _STANDS or formed[0][0].lemma == event.lemma):
+        elif formed and (
+            vague or event.lemma in closed("shows nothing") | closed("stands") or formed[0][0].lemma == event.lemma
+        ):
             (event, found), *formed = formed
         if found is not None and not self._known.entries[found[0]].shown:
             self._unread.append(Unread(words=self._span(number), why="This is nothing that bodies show."))
@@ -182,7 +175,7 @@ class _Planner:
                 self._taken.update(inner)
             self._add(number, event, *found)
             self._companions(number, event, found, formed)
-        elif event.lemma not in _STATES and not (inner and self._about_another(event)):
+        elif event.lemma not in closed("shows nothing") and not (inner and self._about_another(event)):
             self._not_read(number, event)
 
     def _found(self, events: Iterable[Event]) -> list[tuple[Event, Found]]:
@@ -376,7 +369,7 @@ class _Planner:
             return next((noun for noun in places if kind_of(noun) in SEATS), None)
         if ref is not None and ref.kind == "thing" and self._known.entries[name].thing and kind_of(ref.lemma):
             return ref.lemma
-        goals = (ref for word, ref in event.prepositions if word in _BEFORE and ref.kind == "thing")
+        goals = (ref for word, ref in event.prepositions if word in closed("before goals") and ref.kind == "thing")
         return next((ref.lemma for ref in goals if is_fixture(ref.lemma)), None)
 
     def _goes_on(self, event: Event, agents: str) -> bool:

@@ -6,30 +6,22 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from acts.events import Event, Ref
-from acts.frames import best
+from acts.frames import Event, Ref, best
 from acts.lexicon import Lexicon
 
 from . import wordnet
 from .arguments import Arguments
 from .ellipsis import Absolute, absolutes
 from .people import A_NAME, B_NAME, Cast
-from .references import names_one, reference
-from .subjects import Subjects, give_roles, goes_on, is_passive, state_of
+from .subjects import Subjects, give_roles, goes_on, is_passive, names_one, reference, state_of
 from .syntax import MARKS, NOUNMARKS, ClauseTree, is_ongoing, seems, tells_on
-from .vocabulary import vocabulary
+from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
 
-_THEN = frozenset(
-    ("then", "afterwards", "afterward", "finally", "next", "later", "subsequently", "eventually", "lastly")
-)
 _LISTED = frozenset(("conj", "xcomp", "advcl", "dep"))
 """Relations of clauses behind another that "then" may join to it: "sits down, then getting up"."""
-_AT_ONCE = frozenset(("simultaneously", "meanwhile"))
-_SAYS = frozenset(("say", "shout", "yell", "scream"))
-_NEARLY = frozenset(("almost", "nearly"))
 _MEANING = frozenset(("NOUN", "PROPN", "VERB", "ADV", "ADJ"))
 """Parts of speech of words with a meaning of their own."""
 _WITHIN = frozenset(("compound", "amod", "poss", "nmod", "det", "nummod"))
@@ -82,7 +74,7 @@ class Reader:
         seen = self._arguments.seen | self._of.keys() | self.cast.seen.keys() | held
         for token in self.doc:
             own = token.dep_ not in _WITHIN and token.i not in seen
-            own = (own and token.lower_ not in _THEN | _AT_ONCE) or self._is_swallowed(token)
+            own = (own and token.lower_ not in closed("then") | closed("at once")) or self._is_swallowed(token)
             if token.pos_ in _MEANING and own:
                 yield token
 
@@ -263,11 +255,13 @@ class Reader:
                 event.denied = True
             if child.dep_ == "aux" and child.lower_ in self._words.modals["wished"]:
                 event.modality = "wished"
-        if children & _NEARLY:
+        if children & closed("nearly"):
             event.modality = "tried"
         marks = {c.lower_ for c in token.children if c.dep_ in ("mark", "prep")}
         if token.dep_ == "advcl" and ({"as", "if"} <= marks or {"as", "though"} <= marks or "like" in marks):
             event.modality = "pretended"  # "walks up as if to hug"
+        if token.dep_ == "pcomp" and token.head.lower_ == "like" and not seems(token.head.head):
+            event.modality = "pretended"  # "moves the arms like rowing a boat"
         if token.dep_ == "advcl" and "than" in marks:
             event.denied = True  # "rather than shake hands, they bow"
         if token.dep_ == "pcomp" and (
@@ -296,14 +290,15 @@ class Reader:
                 own = any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)
                 if above is not None and not own and above.denied and token.head.i == head.i:
                     event.denied = event.denied or any(c.lower_ == "or" for c in head.children)
-                if above is not None and not own and above.modality != "told" and head.dep_ in ("xcomp", "ccomp"):
+                below = head.dep_ in ("xcomp", "ccomp") or token.tag_ in ("VB", "VBG")
+                if above is not None and not own and above.modality != "told" and below:
                     event.modality, event.denied = above.modality, event.denied or above.denied
             return
         above = self._event_of(head)
         if above is None or token.dep_ == "advcl":
             return
         verbs = self._words.verbs
-        if above.lemma in _SAYS and token.tag_ == "VB":  # "says hit me"
+        if above.lemma in closed("says") and token.tag_ == "VB":  # "says hit me"
             event.modality = "wished"
         for kind in ("tried", "pretended", "wished", "offered"):
             if above.lemma in verbs[kind]:
@@ -333,9 +328,9 @@ class Reader:
         above = head if head is not None else next((t for t in token.ancestors if self._tree.is_clause(t)), None)
         previous = max((i for i in self._of if i < token.i), default=None)
         listed = above is not None and above.i < token.i and token.dep_ in _LISTED and MARKS.keys().isdisjoint(marks)
-        if not _THEN.isdisjoint(marks) or (listed and self._then_before(token)):
+        if not closed("then").isdisjoint(marks) or (listed and self._then_before(token)):
             return "then", previous
-        if not _AT_ONCE.isdisjoint(marks) and token.dep_ != "xcomp":
+        if not closed("at once").isdisjoint(marks) and token.dep_ != "xcomp":
             return "with", previous
         if self._tree.is_main(token):
             main = next(reversed(self._tree.mains), None)
@@ -370,4 +365,4 @@ class Reader:
     def _then_before(self, token: Token) -> bool:
         """True if "then" stands between a clause and the verb before it."""
         before = max((i for i in self._of if i < token.i), default=0)
-        return any(self.doc[i].lower_ in _THEN for i in range(before, token.i))
+        return any(self.doc[i].lower_ in closed("then") for i in range(before, token.i))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 
-from acts.events import Event
+from acts.frames import Event
 from acts.lexicon import Lexicon
 from acts.plan import Act, Relation
 from acts.shapes import Gesture, Go, Hold, Shape, Strike

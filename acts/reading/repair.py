@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 from acts.frames import PREPOSITIONS
 
-from . import wordnet
 from .people import A_NAME, B_NAME
 from .syntax import is_noun_or_side
-from .vocabulary import vocabulary
+from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
@@ -24,7 +23,6 @@ _SAFE = {
 """Forms of a verb with and of two without an object that the parser hardly takes for anything else."""
 _SAFE_WITH_VERB = {"s": "starts", "ing": "starting", "ed": "started", "": "start"}
 """The same before another verb: "mimes drinking"."""
-_SUBJECTS = frozenset(("i", "you", "he", "she", "they", "we", "who", "someone", "somebody", "nobody", "everyone"))
 _DO = {"does": "makes", "do": "make", "did": "made"}
 """Forms of "do", and of a verb in the same form that is no part of another."""
 _JOINS = frozenset(("and", "then", "but", ",", ";", "or"))
@@ -251,7 +249,7 @@ def _after_person(token: Token, ending: str) -> bool:
     if ending == "" and (before.lower_ in ("one", "other") or token.pos_ == "ADP"):
         return False  # "one knee", "follows A down the street"
     if before.pos_ == "PRON" and not one:
-        return before.lower_ in _SUBJECTS
+        return before.lower_ in {*closed("subjects"), "who"}
     the_two = before.lower_ == "two" and before.i > 0 and before.nbor(-1).lower_ in ("the", "these", "those")
     counted = any(c.dep_ == "nummod" and c.lower_ != "one" for c in before.children) or (
         before.i > 0 and before.nbor(-1).lower_ in ("two", "both", "2")
@@ -267,7 +265,6 @@ def _after_person(token: Token, ending: str) -> bool:
         or the_two
         or before.lower_ == "both"
         or vocabulary().is_person(before.lemma_.lower())
-        or wordnet.is_animal(before.lemma_.lower())
         or (many and before.lemma_ in vocabulary().both)
     )
 

@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from acts.captions import gerund, past, singular
 from acts.frames import PREPOSITIONS
 from acts.lexicon import Lexicon
 
 from . import wordnet
 from .repair import deeds_done, suspects, verbs_taken_for_nouns
 from .syntax import is_adverb, is_word
-from .vocabulary import is_act, vocabulary
+from .vocabulary import closed, is_act, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc
@@ -77,13 +78,10 @@ def _forms(verbs: frozenset[str]) -> dict[str, tuple[str, str]]:
     """The forms of verbs, as form → (lemma, ending)."""
     found: dict[str, tuple[str, str]] = {}
     for verb in verbs:
-        stem = verb[:-1] if verb.endswith("e") else verb
-        double = stem + stem[-1] if len(verb) < 5 and verb[-1] not in "aeiouwxy" and verb[-2:-1] in "aeiou" else stem
-        third = verb + "es" if verb.endswith(("s", "sh", "ch", "x", "z", "o")) else verb + "s"
-        if verb.endswith("y") and verb[-2:-1] not in "aeiou":
-            third, double = verb[:-1] + "ies", verb
-        for form, ending in ((verb, ""), (third, "s"), (double + "ing", "ing"), (double + "ed", "ed")):
+        for form, ending in ((verb, ""), (singular(verb), "s"), (gerund(verb), "ing"), (past(verb), "ed")):
             found.setdefault(form, (verb, ending))
+    for auxiliary in ("is", "has"):  # which are hardly ever verbs of their own
+        found.pop(auxiliary, None)
     return found
 
 
@@ -150,13 +148,8 @@ def other_language(text: str) -> str | None:
     if sum(ord(c) < 0x250 for c in letters) < 0.6 * len(letters):
         return "This is not in the Latin alphabet: write in English."
     words = [word for word in "".join(c if c.isalpha() or c == "'" else " " for c in text).split() if len(word) > 1]
-    if len(words) >= 4 and not any(word.lower() in _ENGLISH for word in words):
+    if len(words) >= 4 and not any(word.lower() in closed("english") for word in words):
         unknown = sum(not is_word(word.lower()) for word in words)
         if unknown >= 0.4 * len(words):
             return "This does not seem to be English: write in English."
     return None
-
-
-_ENGLISH_WORDS = "the a an and to of he she they his her him on in with one each other then while person two"
-_ENGLISH = frozenset(_ENGLISH_WORDS.split())
-"""Words of which English sentences of some length have one."""

@@ -14,11 +14,11 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from acts.events import Event
+from acts.frames import Event
 from motion import InputError
 
 from . import wordnet
-from .vocabulary import vocabulary
+from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
     from spacy.language import Language
@@ -82,27 +82,22 @@ def _words() -> frozenset[str]:
     return frozenset(_language().vocab.strings)  # before texts are parsed, whose words the parser adds
 
 
-_GOES_ON = frozenset(("keep", "stay", "remain", "continue"))
-IN_PLACE = frozenset(("sleep", "kneel", "stand", "crouch", "squat", "lean"))
-_STATES = frozenset(("sit", "lie"))
-"""Verbs that say how somebody is, and with "down" what they do."""
 _LIKENED, _BESIDE = frozenset(("like", "if", "though")), ("prep", "advcl", "mark", "advmod")
-_ABOUT = frozenset(("around", "round", "about"))
 
 
 def is_ongoing(token: Token, lemma: str) -> bool:
     """True if a verb's act goes on when its clause begins: "is sitting", "stays seated", "the sleeping child"."""
     children = {child.lower_ for child in token.children}
-    if lemma in _GOES_ON and any(c.dep_ in ("acomp", "oprd") or c.tag_ == "VBN" for c in token.children):
+    if lemma in closed("goes on") and any(c.dep_ in ("acomp", "oprd") or c.tag_ == "VBN" for c in token.children):
         return True  # "stays seated"
     being = any(child.dep_ == "aux" and child.lemma_ == "be" for child in token.children)
     if "down" in children:
         return lemma == "lie" and being
-    if lemma in _STATES or children & {"still", "already", "there"}:
+    if lemma in closed("sits or lies") or children & {"still", "already", "there"}:
         return True
-    if token.dep_ == "relcl" and lemma in IN_PLACE:  # "B, who sleeps on the floor"
+    if token.dep_ == "relcl" and lemma in closed("in place"):  # "B, who sleeps on the floor"
         return True
-    if token.dep_ in ("xcomp", "acomp", "advcl") and token.head.lemma_.lower() in _GOES_ON:
+    if token.dep_ in ("xcomp", "acomp", "advcl") and token.head.lemma_.lower() in closed("goes on"):
         return True
     return token.tag_ == "VBG" and (being or token.dep_ in ("amod", "acl"))
 
@@ -122,7 +117,7 @@ def seems(token: Token) -> bool:
         )
         if (says_how and text not in words.directions) or (likened and child.dep_ in _BESIDE):
             found = True
-        elif child.dep_ in ("prep", "prt", "dobj") or text in _ABOUT or text in words.directions:
+        elif child.dep_ in ("prep", "prt", "dobj") or text in closed("about") or text in words.directions:
             return False
     return found
 
@@ -156,8 +151,10 @@ def is_noun_or_side(token: Token) -> bool:
     if any(c.dep_ in ("dobj", "nsubj") for c in token.children):
         return False
     before, part = token.nbor(-1), vocabulary().part
-    if word == "left":  # "turns left", "to the right and left"
-        return before.pos_ == "VERB" or (token.i > 1 and token.nbor(-2).lower_ == "right")
+    if word == "left":  # of "leave" only in a passive or a perfect, and behind another past: "hugged her and left"
+        leaves = any(c.dep_ in ("aux", "auxpass", "nsubjpass") for c in token.children)
+        leaves = leaves or (token.dep_ == "conj" and token.head.tag_ in ("VBD", "VBN"))
+        return not leaves or before.pos_ == "VERB" or (token.i > 1 and token.nbor(-2).lower_ == "right")
     if word in ("level", "height"):
         return bool(part(before.lemma_.lower()))
     sided = before.lower_ in ("both", "left", "right") or before.tag_ == "PRP$"

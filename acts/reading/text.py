@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 
 from .people import A_NAME, B_NAME
 from .syntax import is_adverb
-from .vocabulary import vocabulary
+from .vocabulary import closed, vocabulary
 
 _TOKEN = re.compile(r"[Pp][12]\b|[^\W\d_]+(?:['’-][^\W\d_]+)*|\d+(?:[.,]\d+)?|[^\w\s]|_")
 _QUOTES = {"’": "'", "‘": "'", "`": "'", "“": '"', "”": '"', "–": "-", "—": "-"}
@@ -146,14 +146,11 @@ def names(words: list[str], is_verb: Callable[[str], bool]) -> dict[int, str]:
     return found
 
 
-_AUXILIARIES = frozenset(("is", "was", "has", "had", "does", "did", "will", "can", "cannot", "would"))
-
-
 def _verb_follows(words: list[str], i: int, is_verb: Callable[[str], bool]) -> bool:
     """True for a name before what it does: "A waves", "A slowly and sadly walks"."""
     following = itertools.islice(words, i + 1, i + 6)
     verb = next((word for word in following if word not in ("and", ",") and not _says_how(word)), "")
-    return verb in _AUXILIARIES or (verb.endswith(("s", "ed")) and is_verb(verb))
+    return verb in closed("auxiliaries") or (verb.endswith(("s", "ed")) and is_verb(verb))
 
 
 def _says_how(word: str) -> bool:

@@ -62,6 +62,7 @@ class Vocabulary:
             note: frozenset(words.split()) for note, words in tables["limits"].items()
         }
         """What the stage cannot do, as a sentence, by the words that ask for it."""
+        self.classes = {name: frozenset(text.split()) for name, text in tables["classes"].items()}
         self.modals = {kind: frozenset(text.split()) for kind, text in tables["modals"].items()}
 
     def is_person(self, lemma: str) -> bool:
@@ -101,10 +102,20 @@ class Vocabulary:
         """The family of a part of the body; "" for other nouns."""
         return self._parts.get(lemma, "")
 
+    def named_part(self, word: str) -> str:
+        """The family of a part of the body that a word names in the singular or plural; "" for other words."""
+        one = {"feet": "foot"}.get(word, word)
+        return self.part(one) or self.part(one.removesuffix("s"))
+
 
 def is_act(noun: str) -> bool:
     """True for a noun that may stand for what somebody does, as "hug", "bow" and "lunge"."""
     return noun in vocabulary().verbs["nouns"] or wordnet.is_act(noun)
+
+
+def closed(name: str) -> frozenset[str]:
+    """A closed class of words, by its name in ``words.toml``: those with which an owner is named, say."""
+    return vocabulary().classes[name]
 
 
 @cache

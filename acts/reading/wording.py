@@ -11,32 +11,12 @@ from typing import TYPE_CHECKING
 from .ellipsis import Ellipsis, stands_absolutely
 from .people import A_NAME, B_NAME
 from .text import Text, names, tokens, without_request, without_speech
-from .vocabulary import vocabulary
+from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
     from .spelling import Speller
 
-_BEFORE_NOUNS = (
-    "a an the his her its their my your our this that these those another other one two both each every "
-    "some any no first second three four five most own same of"
-)
-_DETERMINERS = frozenset(_BEFORE_NOUNS.split())
-_LETTER_BEFORES = "person actor dancer player figure character performer partner agent man woman"
-_LETTER_BEFORE = frozenset(_LETTER_BEFORES.split())
 
-_SUBJECTS = frozenset(
-    ("i", "you", "he", "she", "it", "they", "we", "someone", "somebody", "nobody", "everyone", "everybody")
-)
-_TOWARDS = frozenset(("at", "to", "with", "by", "from", "behind", "past", "towards", "toward", "around"))
-"""Prepositions of people, after which a noun without an article lacks one."""
-_INTENSIFIEDS = "up past round around behind through into across by over down out back there here beside"
-_INTENSIFIED = frozenset(_INTENSIFIEDS.split())
-"""Words before which "right" and "way" only make more of a direction."""
-_GOINGS = "is are was were be and while keeps starts begins person man woman"
-_GOING = frozenset(_GOINGS.split())
-"""Words before "using" that make it a verb of its own."""
-_BEHIND_BACK = frozenset(("on", "to", "turned", "towards", "toward"))
-"""Words behind "her back" after which it is a part of the body."""
 _TO_SIDES = tuple(
     tuple(words.format(*sides).split())
     for words in ("{} and {}", "from {} to {}", "{} to {}", "to the {} and {}", "to the {} and the {}")
@@ -45,7 +25,6 @@ _TO_SIDES = tuple(
 """Words behind a part of the body that say that it moves from side to side."""
 _LIES = ("lie", "lying", "lay", "fall", "fell", "land", "roll", "flat")
 """How verbs begin of which "on her back" says how she lies herself."""
-_MOTIONS = frozenset(("motion", "motions", "movement", "movements", "gesture", "gestures", "action", "actions"))
 _NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}
 """Letters and numbers behind "person" or "dancer", and whether they name the first."""
 
@@ -88,7 +67,7 @@ class _Preparation:
         last = self._lower(i - 1)
         if self._lower(i) != "and" or not (i - 1 in self._letters or self._words.is_person(last)):
             return False
-        known = self._lower(i + 1) in ("the", "this", "that", *_LETTER_BEFORE)  # "a woman and a woman" are two
+        known = self._lower(i + 1) in ("the", "this", "that", *closed("lettered"))  # "a woman and a woman" are two
         return last == self._lower(i + 1 + known)
 
     def _supply(self, verb: str, i: int) -> None:
@@ -104,7 +83,8 @@ class _Preparation:
 
     def _phrase(self, i: int) -> int:
         """Several words that join clauses as one does, as "as soon as"; how many they were, or 0."""
-        if self._part_at(i - 1) and (swung := next((w for w in _TO_SIDES if self._stand_at(i, w)), ())):
+        swung = next((words for words in _TO_SIDES if self._stand_at(i, words)), ())
+        if swung and self._words.named_part(self._lower(i - 1)):
             last = self._tokens[i + len(swung) - 1]
             self._pieces.append(("sideways", self._tokens[i][1], last[2]))  # "shakes his head left and right"
             return len(swung)
@@ -129,7 +109,7 @@ class _Preparation:
             return 1
         owned = self._lower(i - 1).endswith("'s") and self._lower(i - 1) not in ("he's", "she's", "it's")
         laid = self._lower(i - 2) == "on" and self._lower(i - 3).startswith(_LIES)
-        turned = self._lower(i - 1) == "her" and (self._lower(i + 1) in _BEHIND_BACK or laid)
+        turned = self._lower(i - 1) == "her" and (self._lower(i + 1) in closed("behind back") or laid)
         if self._lower(i) == "back" and (owned or turned):
             self._pieces.append(("spine", *self._tokens[i][1:]))  # the noun, and no adverb
             return 1
@@ -148,7 +128,7 @@ class _Preparation:
         makes = verb in self._words.verbs["light"]
         if not makes and self._lower(i) not in ("in", "with"):
             return 0
-        at = next((k for k in range(i, i + 5) if self._lower(k + 1) in _MOTIONS), i)
+        at = next((k for k in range(i, i + 5) if self._lower(k + 1) in closed("motions")), i)
         last = at + (3 if makes and self._lower(at + 2) == "of" else 1)
         lemma, going = self._forms.get(self._lower(last if last > at + 1 else at), ("", ""))
         if going != "ing" or last == i + 1:
@@ -166,14 +146,14 @@ class _Preparation:
         word, owner = "", "'s" * following.endswith("'s")
         letter = following.removesuffix("'s")
         if (
-            lower in _LETTER_BEFORE
+            lower in closed("lettered")
             and letter in _NUMBERED
             and (owner or _ends_name(self._tokens, i + 2, self._tokens[i + 1][0]))
         ):
             word = (A_NAME if _NUMBERED[letter] else B_NAME) + owner
         elif self._words.part(lower) and following in ("height", "level") and lower != "eye":
             word = following  # "to shoulder height", where nobody shoulders anything
-        elif lower in ("right", "way") and following in _INTENSIFIED and not self._keeps(i):
+        elif lower in ("right", "way") and following in closed("intensified") and not self._keeps(i):
             word = "around" if following == "round" else following  # "walks right past him", "way up"
         elif (
             following.isalpha()
@@ -190,7 +170,7 @@ class _Preparation:
     def _keeps(self, i: int) -> bool:
         """True for a direction, and for a noun: "turn right past her", "the way up"."""
         before = self._lower(i - 1)
-        return before.startswith("turn") if self._lower(i) == "right" else before in _DETERMINERS
+        return before.startswith("turn") if self._lower(i) == "right" else before in closed("determiners")
 
     def _single(self, i: int) -> int:
         """One token; always 1."""
@@ -210,21 +190,18 @@ class _Preparation:
     def _supplied(self, i: int) -> list[tuple[str, int, int]]:
         """The article that a bare noun of a person lacks."""
         word, start, _ = self._tokens[i]
-        sided = self._lower(i) in ("left", "right") and self._part_at(i + 1)
+        sided = self._lower(i) in ("left", "right") and self._words.named_part(self._lower(i + 1))
         begun = self._pieces[-1:] and self._pieces[-1][1:] == (start, start)  # a verb was supplied
-        if sided and (begun or self._lower(i - 1) not in _DETERMINERS | {"left", "right", "and", "or", "with"}):
+        within = closed("determiners") | {"left", "right", "and", "or", "with"}
+        if sided and (begun or self._lower(i - 1) not in within):
             return [("the", start, start)]  # "drags left leg", where nobody leaves
         bare = i not in self._letters and word.islower() and not word.endswith("s") and word not in ("one", "person")
         if not bare or not self._is_bare_person(i) or self._lower(i + 1) == "'":
             return []
-        if self._lower(i - 2) in _DETERMINERS and self._lower(i - 1) not in _DETERMINERS:  # "an unconscious man"
+        before_it, before = (self._lower(k) in closed("determiners") for k in (i - 2, i - 1))
+        if before_it and not before:  # "an unconscious man"
             return []
         return [("the", start, start)] if _begins(self._lower(i - 1)) else []
-
-    def _part_at(self, i: int) -> str:
-        """The family of a part of the body, also of several; "" for other words."""
-        word = {"feet": "foot"}.get(self._lower(i), self._lower(i))
-        return self._words.part(word) or self._words.part(word.removesuffix("s"))
 
     def _is_bare_person(self, i: int) -> bool:
         """True for a usual noun of a person, and for a rarer one before its verb or behind a preposition."""
@@ -234,7 +211,7 @@ class _Preparation:
         if not self._words.is_person(word) or self._is_verb(word):
             return False
         acts = following.endswith("s") and self._is_verb(following)
-        return acts or self._lower(i - 1) in _TOWARDS
+        return acts or self._lower(i - 1) in closed("towards")
 
     def _owns(self, i: int, word: str) -> bool:
         """True for a person, or somebody named elsewhere in the text, who owns the noun behind: "a customers beard"."""
@@ -252,15 +229,13 @@ class _Preparation:
         lower, following = word.lower(), self._lower(i + 1)
         if lower in self._words.shorthand:
             return self._words.shorthand[lower]
-        if lower == "using" and self._ellipsis.has_acted() and self._lower(i - 1) not in _GOING:
+        if lower == "using" and self._ellipsis.has_acted() and self._lower(i - 1) not in closed("going"):
             return "with"  # "kicks using the left leg"
         if lower.endswith("s") and following.isalpha() and self._owns(i, lower[:-1]):
             return f"{self._words.shorthand.get(lower[:-1], word[:-1])}'s"  # "her brothers back"
-        if (
-            lower in ("left", "right")
-            and (self._is_verb(self._lower(i - 1)) or (self._pieces[-1:] and self._is_verb(self._pieces[-1][0])))
-            and not self._words.part(following)
-        ):
+        supplied = self._pieces[-1][0].partition(" ")[0] if self._pieces else ""  # with its object, where it has one
+        moved = self._is_verb(self._lower(i - 1)) or self._is_verb(supplied)
+        if lower in ("left", "right") and moved and not self._words.part(following):
             return f"to the {lower}"  # "turn left": no past of "leave"
         if word.islower() and word.isalpha() and len(word) > 3 and (right := self._mended(lower)) is not None:
             return right
@@ -279,8 +254,8 @@ def begins_with_subject(text: str) -> bool:
     if not words:
         return False
     known = vocabulary()
-    alone = words[0] in _SUBJECTS or words[0] in known.both or known.is_usual_person(words[0])
-    return alone or words[0] in _DETERMINERS
+    alone = words[0] in closed("subjects") or words[0] in known.both or known.is_usual_person(words[0])
+    return alone or words[0] in closed("determiners")
 
 
 def _begins(before: str) -> bool:
@@ -289,9 +264,9 @@ def _begins(before: str) -> bool:
         return before != "'" and before != "-"
     words = vocabulary()
     return (
-        before not in _DETERMINERS
+        before not in closed("determiners")
         and not words.is_person(before)
-        and (before.endswith(("s", "ing", "ed")) or before in _TOWARDS | {"while", "then", "and"})
+        and (before.endswith(("s", "ing", "ed")) or before in closed("towards") | {"while", "then", "and"})
     )
 
 

@@ -11,29 +11,10 @@ from typing import Literal
 from acts.plan import Act
 from motion.things import FIXTURES
 
-Does = Literal[
-    "",
-    "gives",
-    "takes",
-    "throws",
-    "catches",
-    "carries",
-    "holds",
-    "lifts",
-    "puts",
-    "drops",
-    "plays",
-    "sits",
-    "fights",
-    "passes",
-    "faces",
-    "opens",
-    "closes",
-    "rolls",
-    "kicks",
-    "uses",
-    "bounces",
-]
+_Passed = Literal["gives", "takes", "throws", "catches", "rolls", "kicks", "bounces"]
+_Held = Literal["carries", "holds", "lifts", "puts", "drops", "plays", "fights", "uses"]
+_Stands = Literal["sits", "passes", "faces", "opens", "closes"]
+Does = Literal["", _Passed, _Held, _Stands]
 """What is done with a thing: the values that an entry's ``thing`` may have."""
 SEATS = ("chair", "bench", "bed")
 """Kinds of things on which people sit."""

@@ -12,6 +12,7 @@ from acts.reading.wording import prepared
     ("text", "parsed"),
     [
         ("She throws left, right, left.", "She throws to the left and throws to the right and throws to the left ."),
+        ("He turns his head left then right.", "He turns his head to the left then turns his head to the right ."),
         # no ellipsis: another clause, an act's own noun, a person
         ("A hug makes her happy.", "A hug makes her happy ."),
         ("He gives her a hug.", "He gives her a hug ."),

@@ -73,7 +73,6 @@ def _said(act: Act) -> str:
         ("She offers him a drink and he waves it off.", ["a offer-thing b", "b wave-off a"]),
         # people and pronouns
         ("One person extends a hand and the other person shakes it.", ["a offer-thing b", "b shake-hands a"]),
-        ("The bear held out his paw and the mouse shook it.", ["a offer-thing b", "b shake-hands a"]),
         # verbs that share what stands once
         ("The dancer is dipped by her partner and then spun out.", ["b dip a", "b twirl a"]),
         ("The first person is frozen on one leg.", ["a freeze", "a stand-on-one-leg"]),
@@ -258,7 +257,7 @@ def test_what_the_stage_cannot_do_is_said() -> None:
     notes = read("Both walk downstage in canon.").notes
     assert len(notes) == 2 and "audience" in notes[0] and "canon" in notes[1]
     assert not read("Both walk.").notes
-    assert read("The fox chases the hen.").notes == ("Only people can be shown: animals that act are people here.",)
+    assert not read("The squirrel chases the sheep.").acts
 
 
 def test_a_formation_goes_on_as_its_verb_does() -> None:

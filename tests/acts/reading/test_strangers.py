@@ -63,6 +63,17 @@ from tests.acts.reading.reading import told
         ("a person moves objects on a shelf", [("move-thing", "a", None)]),
         ("a person loses his balance", [("stumble", "a", None)]),
         ("a person returns to a standing position", [("stand-still", "a", None)]),
+        # captions of one person, where the other hand, another ball and the first step name nobody else
+        ("a person crosses one foot over the other", [("cross-legs", "a", None)]),
+        ("a person catches a ball, then throws another ball", [("catch-thing", "a", None), ("throw-ball", "a", "b")]),
+        ("a person walks in a figure of eight", [("walk-ahead", "a", None)]),
+        ("a person is pulled by the elbow", [("lead", "b", "a")]),
+        ("a person continues walking backwards", [("step-back", "a", None)]),
+        ("a person waves their hand side to side", [("wave", "a", "b")]),
+        (
+            "a person moves his hand in a circular motion and lets it fall",
+            [("circle-arms", "a", None), ("lower-arm", "a", None)],
+        ),
     ],
 )
 def test_a_sentence_is_read(text: str, acts: list[tuple[str, str, str | None]]) -> None:
