@@ -223,7 +223,7 @@ def held(event: Event, found: Found, known: Lexicon, find: Find) -> Iterator[tup
         if ref.kind != "part" or not (open_ or ref.who == agents) or (preposition == "on" and not _carries(ref)):
             continue
         words = [word for word in event.words if word in closed("arms held")]
-        if preposition == "with" and not words:
+        if preposition in ("to", "from") or (preposition == "with" and not words):  # "from foot to foot" rises to none
             continue
         posture = replace(
             event,
