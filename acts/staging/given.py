@@ -31,6 +31,7 @@ from .poses import JOINT, UPRIGHT, Pose, standing, upright
 from .postures import bow_parts, posture_parts, postures
 from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
+from .take import Take
 from .touches import touch_parts
 from .track import EVERY
 from .window import SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
@@ -62,6 +63,10 @@ class Story:
     edges: Sequence[int]
     seed: int
     placed: bool = False
+
+    def beginning(self) -> Standing:
+        """The places at which it begins."""
+        return Take.of(self.seed).of_places(beginning(self.scores, self.seconds), self.scores[0])
 
 
 def plan_parts(
@@ -158,7 +163,7 @@ class _Beat:
         """All that the window is given of it."""
         score, start, lift = self.score, self.start, self.score.lift
         before = self.scene[:, max(start - 4, 0) : start]
-        stand = _stand(before) if start else beginning(self.story.scores, self.story.seconds)
+        stand = _stand(before) if start else self.story.beginning()
         moves = coming(score, stand, self.down) if start else score.moves
         room = self._room(moves, stand)
         stand = room.stand

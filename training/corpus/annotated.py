@@ -1,13 +1,15 @@
-"""InterHuman or Inter-X as a corpus: ``python -m training.corpus.annotated --data DIR --out DIR``.
+"""InterHuman, Inter-X or HumanML3D as a corpus: ``python -m training.corpus.annotated --data DIR --out DIR``.
 
-Neither is part of this project; whoever has one can train on it. What this writes is what
+None is part of this project; whoever has one can train on it. What this writes is what
 ``python -m training.prepare`` reads, and after that every trainer. Expected are
 
 - of InterHuman (Liang et al. 2024) ``motions_processed/person1/N.npy`` and ``person2/N.npy`` (frames, 492) and
   ``annots/N.txt`` with a sentence a line;
 - of Inter-X (Xu et al. 2024) ``motions/NAME/P1.npz`` and ``P2.npz``, SMPL-X parameters, and ``texts/NAME.txt``.
   ``interaction_order.pkl``, which says who acts, is a pickle and is not opened: ``--second-acts`` names a text file
-  with the names of the motions in which P2 does.
+  with the names of the motions in which P2 does;
+- of HumanML3D (Guo et al. 2022), which is AMASS with sentences, ``new_joint_vecs/NAME.npy`` (frames, 263) and
+  ``texts/NAME.txt``. Its single people are shown two by two, each doing what their own sentence says.
 
 Lists of names in ``split/train.txt``, ``val.txt`` and ``test.txt`` (or beside the motions) give the splits.
 """
@@ -15,6 +17,7 @@ Lists of names in ``split/train.txt``, ``val.txt`` and ``test.txt`` (or beside t
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Collection, Iterator
 from pathlib import Path
@@ -24,7 +27,7 @@ import numpy as np
 from motion import InputError
 from motion.formats import ImportChoices, read_pair
 from motion.kinematics import project_to_skeleton
-from motion.transforms import canonicalize, resample
+from motion.transforms import canonicalize, resample, turn
 from training.core.shell import exit_code
 
 from .build import save
@@ -48,8 +51,8 @@ def motions_in(data: Path) -> Iterator[tuple[str, tuple[Path, Path], Path]]:
     first = sorted((human / "person1").glob("*.npy")) or sorted((data / "motions").glob("*/P1.npz"))
     if not first:
         raise InputError(
-            f"{data} holds neither motions_processed/person1/*.npy nor motions/*/P1.npz: give the folder of "
-            "InterHuman or of Inter-X."
+            f"{data} holds no motions_processed/person1/*.npy, motions/*/P1.npz or new_joint_vecs/*.npy: give the "
+            "folder of InterHuman, Inter-X or HumanML3D."
         )
     for path in first:
         if path.suffix == ".npy":
@@ -84,6 +87,71 @@ def read_annotated(data: Path, second_acts: Collection[str] = ()) -> Iterator[Sc
             yield Scene(canonicalize(people), "annotated", (source,), splits.get(name, "train"), captions=sentences)
 
 
+_SOMEBODY = re.compile(r"((an?|the|this|one) )?(person|(wo)?man|figure|human|individual|guy|someone|s?he)\b", re.I)
+_WHOLE = frozenset(("0.0", "nan"))
+"""Beginning and end, in a file of sentences, of one that is about the whole clip."""
+_APART = np.arange(1.0, 6.0, 0.25)
+"""Metres between two single people at the beginning, of which the first is taken that never brings them closer than
+:data:`_ROOM`."""
+_ROOM = 0.8
+_OPEN = 0.6
+"""Radians by which two single people may face past each other at the beginning, to either side."""
+
+
+def read_singles(data: Path) -> Iterator[Scene]:
+    """The single people of HumanML3D two by two, each clip once as a and once as b, cut to the shorter one.
+
+    Args:
+        data: the data set's folder.
+    """
+    splits, dice = _splits(data), np.random.default_rng(0)
+    by_split: dict[str, list[Path]] = {}
+    for path in sorted((data / "new_joint_vecs").glob("*.npy")):
+        by_split.setdefault(splits.get(path.stem, "train"), []).append(path)
+    for split, paths in sorted(by_split.items()):
+        order = dice.permutation(len(paths))
+        for first, second in zip(order, np.roll(order, 1), strict=True):
+            files = paths[first], paths[second]
+            told = [_told(data / "texts" / f"{path.stem}.txt", name) for path, name in zip(files, "AB", strict=True)]
+            if not all(told):
+                continue
+            try:
+                duet = read_pair(*files)
+            except InputError as error:
+                print(f"left out: {files[0].stem}: {error}", file=sys.stderr)
+                continue
+            people = [resample(person.astype(np.float64), duet.fps, FPS) for person in duet.positions]
+            a, b = (canonicalize(project_to_skeleton(person)[0]) for person in people)
+            scene = _apart(a, turn(b, np.pi + dice.uniform(-_OPEN, _OPEN)), dice.uniform(-_OPEN, _OPEN))
+            if scene is not None and scene.shape[1] >= SHORTEST:
+                both = [f"{one}, and {other}" for one, other in zip(*told, strict=False)]
+                sources = tuple(f"humanml3d/{path.stem}" for path in files)
+                yield Scene(scene, "annotated", sources, split, captions=both, alone=(told[0], told[1]))
+
+
+def _told(text: Path, name: str) -> list[str]:
+    """The sentences on all of a clip that begin with somebody, with the name of the person who does it here."""
+    found = []
+    for line in text.read_text(encoding="utf-8", errors="replace").splitlines() if text.is_file() else []:
+        words, *when = line.strip().split("#")
+        somebody = _SOMEBODY.match(words)
+        if somebody and set(when[1:]) <= _WHOLE:
+            found.append(f"person {name}{words[somebody.end() :].rstrip('. ')}")
+    return found[:_MOST_SENTENCES]
+
+
+def _apart(a: np.ndarray, b: np.ndarray, aside: float) -> np.ndarray | None:
+    """(2, T, 22, 3): b's (T, 22, 3) moved away from a's, ``aside`` radians beside where a faces; None where they meet
+    at any distance."""
+    frames = min(len(a), len(b))
+    for metres in _APART:
+        moved = b[:frames] + metres * np.array([np.sin(aside), 0.0, np.cos(aside)])
+        gaps = np.linalg.norm((moved - a[:frames])[:, 0, [0, 2]], axis=-1)
+        if gaps.min() >= _ROOM:
+            return np.stack([a[:frames], moved])
+    return None
+
+
 def _splits(data: Path) -> dict[str, str]:
     """The split of each motion that a list names."""
     found: dict[str, str] = {}
@@ -97,14 +165,15 @@ def _splits(data: Path) -> dict[str, str]:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(prog="python -m training.corpus.annotated", description=__doc__)
-    parser.add_argument("--data", type=Path, required=True, help="folder of InterHuman or Inter-X")
+    parser.add_argument("--data", type=Path, required=True, help="folder of InterHuman, Inter-X or HumanML3D")
     parser.add_argument("--out", type=Path, required=True, help="folder of the corpus")
     parser.add_argument("--second-acts", type=Path, help="text file of the motions in which the second person acts")
     options = parser.parse_args(argv)
 
     def job() -> None:
         names = options.second_acts.read_text(encoding="utf-8").split() if options.second_acts else ()
-        scenes = list(read_annotated(options.data, set(names)))
+        single = (options.data / "new_joint_vecs").is_dir()
+        scenes = list(read_singles(options.data) if single else read_annotated(options.data, set(names)))
         options.out.mkdir(parents=True, exist_ok=True)
         save(scenes, options.out)
         seconds = sum(scene.positions.shape[1] for scene in scenes) / FPS

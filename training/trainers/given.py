@@ -218,7 +218,7 @@ def _kept(mask: Tensor, times: Tensor, joints: Iterable[int]) -> None:
 
 _DRAFTED = ((0.45, tuple(range(1, NUM_JOINTS))), (0.15, (*range(1, 16), 16, 17, 18, 19, 20, 21)), (0.1, _LEGS[1:]))
 """Joints of a draft with their shares; in the others one arm or both are drafted, with the trunk in two thirds."""
-NO_DRAFT = 0.35
+NO_DRAFT = 0.25
 """Share of the motions without a draft."""
 
 
@@ -243,7 +243,7 @@ def drafted(control: Tensor, frames: list[int], layout: TokenLayout, generator: 
             for _ in range(draw.integer(0, 2)):
                 start = draw.integer(0, max(count - 12, 0)) if draw.uniform() < 0.6 else 0
                 stop = min(count, start + draw.integer(12, 120)) if draw.uniform() < 0.7 else count
-                at = torch.arange(start, stop, draw.integer(3, 8))
+                at = torch.arange(start, stop)
                 mask = known.mask[i, person]
                 mask[at] = False
                 _kept(mask, at, _drafted_joints(draw))
@@ -270,7 +270,7 @@ def _roughened(rows: Tensor, start: int, stop: int, draw: Draw) -> Tensor:
     """
     frames, generator = stop - start, draw.generator
     spacing = draw.integer(3, 20)
-    shift = round(3 * float(torch.randn((), generator=generator)))
+    shift = round(2 * float(torch.randn((), generator=generator)))
     time = torch.arange(frames)
     before = time.div(spacing, rounding_mode="floor") * spacing
     along = (time - before).float() / spacing
@@ -278,11 +278,11 @@ def _roughened(rows: Tensor, start: int, stop: int, draw: Draw) -> Tensor:
     keys = [(start + shift + key).clamp(0, len(rows) - 1) for key in (before, before + spacing)]
     rough = rows[keys[0]] * (1 - eased) + rows[keys[1]] * eased
     mean = rough.mean(0)
-    rough = mean + draw.uniform(0.75, 1.3) * (rough - mean)
-    size = draw.uniform(0.0, 0.06)
+    rough = mean + draw.uniform(0.85, 1.2) * (rough - mean)
+    size = draw.uniform(0.0, 0.03)
     rough = rough + size * torch.randn(FEATURES, generator=generator)
     joints = rough[:, 3:POSE].unflatten(-1, (-1, 3))
-    angle = 0.12 * torch.randn((), generator=generator)
+    angle = 0.07 * torch.randn((), generator=generator)
     sine, cosine = angle.sin(), angle.cos()
     x, y, z = joints.unbind(-1)
     rough[:, 3:POSE] = torch.stack([x * cosine + z * sine, y, z * cosine - x * sine], -1).flatten(-2)

@@ -74,7 +74,7 @@ class Settings:
             distance_map=10.0,
             joint_affinity=1.0,
             relative_orientation=0.02,
-            contact=5.0,
+            contact=10.0,
         )
     )
 

@@ -1,4 +1,4 @@
-"""Files of InterHuman and Inter-X become a corpus."""
+"""Files of InterHuman, Inter-X and HumanML3D become a corpus, on which the trainer runs."""
 
 from __future__ import annotations
 
@@ -88,3 +88,29 @@ def test_inter_x_is_read_by_its_parameters_and_the_actor_comes_first(tmp_path: P
     gaps = [np.asarray(motions[row["start"], 1, 0] - motions[row["start"], 0, 0]) for row in rows]
     np.testing.assert_allclose(gaps[0][[0, 2]], -gaps[1][[0, 2]], atol=1e-3)
     np.testing.assert_allclose(np.linalg.norm(gaps[0][[0, 2]]), 5**0.5, atol=0.05)
+
+
+def test_single_people_of_humanml3d_do_what_their_sentences_say_and_keep_apart(tmp_path: Path) -> None:
+    (tmp_path / "new_joint_vecs").mkdir()
+    (tmp_path / "texts").mkdir()
+    for name, speed in (("000001", 0.06), ("000002", 0.0)):  # one walks 3.6 m ahead, one stands
+        features = np.zeros((60, 263))
+        features[:, 2], features[:, 3] = speed, POSITIONS[0, 0, 1]
+        features[:, 4:67] = (POSITIONS[0, 1:] - POSITIONS[0, 0] * [1, 0, 1]).reshape(-1)
+        np.save(tmp_path / "new_joint_vecs" / f"{name}.npy", features)
+    whole = "#a/DET person/NOUN#0.0#0.0\n"
+    (tmp_path / "texts" / "000001.txt").write_text(
+        f"a person walks ahead.{whole}arms swing{whole}a man nods#-#1.0#2.0\n"
+    )
+    (tmp_path / "texts" / "000002.txt").write_text(f"Someone stands{whole}")
+    assert annotated.main(["--data", str(tmp_path), "--out", str(tmp_path / "corpus")]) == 0
+    motions, rows = prepare.load_corpus(tmp_path / "corpus")
+    assert sorted(row["captions"] for row in rows) == [
+        ["person A stands, and person B walks ahead"],
+        ["person A walks ahead, and person B stands"],
+    ]
+    assert sorted(row["alone"][0] for row in rows) == [["person A stands"], ["person A walks ahead"]]
+    for row in rows:
+        places = np.asarray(motions[row["start"] : row["start"] + row["frames"], :, 0])[..., [0, 2]]
+        assert np.linalg.norm(places[:, 0] - places[:, 1], axis=-1).min() > 0.75
+        assert sorted(np.linalg.norm(places[-1] - places[0], axis=-1) > 3.0) == [False, True]

@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 
 from acts import Plan
+from acts.lexicon import lexicon
 from acts.staging.score import Score
 from acts.staging.stage import scores_of
+from acts.staging.take import Take
 from acts.staging.window import AFTER, MOST_FRAMES, PAST, Window
 from motion import FPS, Duet, InputError
 from webdemo.inference import methods
@@ -213,8 +215,10 @@ class SceneRequest(SamplingRequest):
 
     @cached_property
     def scores(self) -> tuple[Score, ...]:
-        """The score of each beat."""
-        return scores_of([beat.acts or plan.acts for beat, plan in zip(self.beats, self.plans, strict=True)])
+        """The score of each beat, in the take of the seed."""
+        take, known = Take.of(self.seed), lexicon()
+        acts = (beat.acts or plan.acts for beat, plan in zip(self.beats, self.plans, strict=True))
+        return scores_of([take.of_acts(listed, known) for listed in acts])
 
     @property
     def num_frames(self) -> int:
