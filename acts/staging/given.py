@@ -19,6 +19,7 @@ from motion.transforms import heading
 
 from .arms import hand_parts, outer_hand_parts
 from .beginnings import Room, beginning, going, roomy, starting
+from .bystanders import standing_by
 from .figures import figure_parts, figure_poses
 from .floor import plan
 from .gaits import STEPS, low_gait_parts, step_parts
@@ -27,7 +28,7 @@ from .lifts import Carrying
 from .limbs import limb_parts
 from .moves import coming, meeting, towards_touched
 from .places import Standing, Way2D
-from .poses import JOINT, UPRIGHT, Pose, standing, upright
+from .poses import HANDS, JOINT, UPRIGHT, Pose, all_but, standing, upright
 from .postures import bow_parts, posture_parts, postures
 from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
@@ -40,8 +41,8 @@ Array = NDArray[np.floating]
 
 _POSED = 4
 """Frames between two poses of a statue: as many as between the network's knots, of which others would waver."""
-
-
+_DRAFTED = 6
+"""Frames between two poses of a bystander."""
 _PLACED = 30
 """Frames between two places of somebody whose poses are a draft."""
 
@@ -103,7 +104,7 @@ def places_of(parts: Sequence[Part]) -> list[Part]:
     for part in parts:
         if isinstance(part, KnownPath) or not part.soft:
             found.append(part)
-        elif not part.joints or 0 in part.joints:
+        elif not part.free and (not part.joints or 0 in part.joints):
             frames = np.asarray(part.frames)
             kept = [0]
             for i in range(1, len(frames)):
@@ -215,9 +216,9 @@ class _Beat:
             elif up and who in score.idle & score.frozen:
                 parts += _statue_parts(person, stretch, seed)
             elif up and who in score.idle:
-                parts += _staying_parts(person, stretch)
+                parts += _bystander_parts(person, stretch, seed)
             elif stays and up and (turned or who in score.gesturing):
-                parts += _staying_parts(person, stretch)
+                parts += _bystander_parts(person, stretch, seed, all_but(HANDS))
                 posed[person] = stands
             elif stays:
                 poses = self._postures(person, stretch)
@@ -303,12 +304,17 @@ def _keeps_back(score: Score, who: str) -> bool:
     return bool(score.side) or (touch is not None and touch.behind and touch.person != who)
 
 
-def _staying_parts(person: int, stretch: Stretch) -> list[Part]:
-    """The place and the heading of a person who stays; what they do there is the network's."""
-    frames = stretch.every(EVERY, SETTLES if stretch.start else 0)
+def _bystander_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int] = ()) -> list[Part]:
+    """The place and the heading of a person who stays, and a recorded draft of some joints, of all by default."""
+    frames = stretch.every(_DRAFTED, SETTLES if stretch.start else 0)
+    if not len(frames):
+        return []
     angle = float(stretch.stand.headings[person])
-    way = Way2D(person, frames.tolist(), np.tile(stretch.halt(person), (len(frames), 1)), np.full(len(frames), angle))
-    return stretch.known_way(way)
+    poses = standing_by(stretch.halt(person), angle, frames + stretch.start, seed=2 * seed + person)
+    at = np.isin(frames, stretch.every(EVERY, SETTLES if stretch.start else 0))
+    way = Way2D(person, frames[at].tolist(), poses[at, 0][:, [0, 2]], np.full(at.sum(), angle))
+    draft = stretch.known(person, frames, poses, joints or range(len(JOINT)))
+    return [*stretch.known_way(way), replace(draft, soft=True, free=True)]
 
 
 def _statue_parts(person: int, stretch: Stretch, seed: int) -> list[Part]:

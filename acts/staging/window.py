@@ -52,6 +52,7 @@ class KnownFrames:
             given, the network is held to them, and the finished motion comes close to them.
         kept: the finished motion has these joints as they are given: a foot that stamps is not planted again.
         soft: a network that reads drafts is shown these joints and how high the pelvis is, and held to the places.
+        free: the same, and no network is ever held to the poses, however strict the plan is.
     """
 
     person: int
@@ -60,6 +61,7 @@ class KnownFrames:
     joints: Sequence[int] = ()
     kept: bool = False
     soft: bool = False
+    free: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -266,18 +266,23 @@ def _every_frame(frames: Array, poses: Array) -> tuple[Array, Array]:
 def directed(model: DuetSpace, frames: int, parts: Sequence[Part], strictness: float = 0.0) -> Directed:
     """A scene of so many frames with what is given of it, and its draft.
 
-    Soft poses are a draft where the network reads one and the plan is not wholly strict, and are held otherwise.
+    Soft poses are a draft where the network reads one and the plan is not wholly strict, and are held otherwise; free
+    ones are never held.
 
     Args:
         model, frames, parts: as of :func:`hold_of`.
         strictness: the share of the steps in which drafted poses are held, too.
     """
-    if not model.reads_drafts or strictness == 1:
-        return Directed(frames, hold_of(model, frames, parts) if parts else None, parts=parts)
-    hold = hold_of(model, frames, places_of(parts)) if parts else None
-    poses = hold_of(model, frames, parts) if parts and strictness else None
+    held = [part for part in parts if not (isinstance(part, KnownFrames) and part.free)]
+    places = places_of(parts)
+    poses = hold_of(model, frames, held) if held and strictness else None
+    if not model.reads_drafts:
+        return Directed(frames, hold_of(model, frames, held) if held else None, parts=held)
     draft = draft_of(model, frames, parts)
-    return Directed(frames, hold, draft, parts=places_of(parts), poses=poses, strictness=strictness)
+    if strictness == 1:
+        return Directed(frames, poses, draft, parts=held)
+    hold = hold_of(model, frames, places) if places else None
+    return Directed(frames, hold, draft, parts=places, poses=poses, strictness=strictness)
 
 
 def draft_of(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Tensor | None:

@@ -115,7 +115,7 @@ class Setting:
         for part in self.parts:
             values = part.positions if isinstance(part, KnownFrames) else part.places
             headings = None if isinstance(part, KnownFrames) else part.headings
-            joints = [*part.joints, part.kept, part.soft] if isinstance(part, KnownFrames) else []
+            joints = [*part.joints, part.kept, part.soft, part.free] if isinstance(part, KnownFrames) else []
             found.update(repr((type(part).__name__, part.person, list(part.frames), joints)).encode())
             for array in (values, headings):
                 found.update(b"-" if array is None else np.ascontiguousarray(array).tobytes())

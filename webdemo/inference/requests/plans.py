@@ -56,6 +56,7 @@ class _Poses(BaseModel):
     which: list[Annotated[int, Field(ge=0)]]
     kept: bool = False
     soft: bool = False
+    free: bool = False
 
     def part(self) -> KnownFrames:
         """The frames; raises ValueError where the lists do not fit together."""
@@ -65,7 +66,7 @@ class _Poses(BaseModel):
         fits = len(self.which) == len(self.frames) and max(self.which) < len(poses)
         if not fits or len(set(known)) < len(known) or len(set(self.frames)) < len(self.frames):
             raise ValueError("its poses are not those of its frames")
-        return KnownFrames(self.person, self.frames, poses[self.which], self.joints, self.kept, self.soft)
+        return KnownFrames(self.person, self.frames, poses[self.which], self.joints, self.kept, self.soft, self.free)
 
 
 class _Path(BaseModel):
@@ -99,7 +100,7 @@ def _written(part: Part) -> dict[str, Any]:
         positions = positions - positions[:, :1]
     chosen = positions[:, joints] if joints else positions
     rows, which = _unique(_units(pose) for pose in chosen)
-    marks = {name: True for name in ("kept", "soft") if getattr(part, name)}
+    marks = {name: True for name in ("kept", "soft", "free") if getattr(part, name)}
     return plain | {"joints": joints, "poses": rows, "which": which} | marks
 
 
