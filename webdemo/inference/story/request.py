@@ -215,10 +215,12 @@ class SceneRequest(SamplingRequest):
 
     @cached_property
     def scores(self) -> tuple[Score, ...]:
-        """The score of each beat, in the take of the seed."""
-        take, known = Take.of(self.seed), lexicon()
-        acts = (beat.acts or plan.acts for beat, plan in zip(self.beats, self.plans, strict=True))
-        return scores_of([take.of_acts(listed, known) for listed in acts])
+        """The score of each beat, in the take of its seed."""
+        found, known = [], lexicon()
+        for beat, plan in zip(self.beats, self.plans, strict=True):
+            take = Take.of(self.seed if beat.seed is None else beat.seed)
+            found.append(take.of_acts(beat.acts or plan.acts, known))
+        return scores_of(found)
 
     @property
     def num_frames(self) -> int:
