@@ -23,8 +23,10 @@ Array = NDArray[np.floating]
 
 STILL = 0.2
 """Metres a second: slower than that in all joints, a body is still."""
-MOST_STILL, MOST_STEPS = 0.75, 0.06
+MOST_STILL, MOST_STEPS = 0.6, 0.06
 """Shares of the frames in which the body is still, and in which a foot moves, at most."""
+PIECE = 180
+"""Frames of a piece of a recording."""
 _FEET = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("ankle", "foot")]
 
 
@@ -43,11 +45,15 @@ def main(argv: list[str] | None = None) -> int:
     options = parser.parse_args(argv)
 
     def job() -> None:
-        clips = [c for c in load_sources(options.data) if c.dataset == "reactidle" and lively(c.positions)]
-        if not clips:
+        kept = {}
+        for clip in load_sources(options.data):
+            for start in range(0, len(clip.positions) - PIECE + 1, PIECE) if clip.dataset == "reactidle" else ():
+                piece = clip.positions[start : start + PIECE]
+                if lively(piece):
+                    kept[f"{clip.source}_{len(kept)}"] = canonicalize(piece)[:: round(FPS / RATE)]
+        if not kept:
             raise InputError(f"{options.data} holds no recording of ReActIdle in which people move: unpack it there.")
         options.out.mkdir(parents=True, exist_ok=True)
-        kept = {f"{c.source}_{i}": canonicalize(c.positions)[:: round(FPS / RATE)] for i, c in enumerate(clips)}
         with replacing(options.out / "idle.npz") as temporary, temporary.open("wb") as file:
             np.savez_compressed(file, **{name: np.rint(1000 * poses).astype(np.int16) for name, poses in kept.items()})
         print(f"{len(kept)} recordings, {sum(map(len, kept.values())) / RATE:.0f} s")

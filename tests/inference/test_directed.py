@@ -57,6 +57,17 @@ def test_a_draft_is_shown_and_not_held(reading_engine: Engine) -> None:
     assert not scene.draft.view(*scene.draft.shape[:2], 2, -1)[:, :, 1].any(), "it is person a's"
 
 
+@pytest.mark.parametrize("strictness", [0.0, 0.5, 1.0])
+def test_a_free_draft_is_shown_and_never_held(reading_engine: Engine, strictness: float) -> None:
+    model = reading_engine.pipeline("intergen").model
+    place = KnownPath(0, [0, 30], np.zeros((2, 2)))
+    free = KnownFrames(0, range(0, FRAMES, 5), walker()[::5], range(22), soft=True, free=True)
+    scene = directed(model, FRAMES, [place, free], strictness)
+    assert scene.draft is not None and scene.draft.any()
+    assert torch.equal(scene.shares, directed(model, FRAMES, [place], strictness).shares)
+    assert not any(isinstance(part, KnownFrames) for part in scene.parts)
+
+
 def test_a_draft_is_filled_in_between_near_poses(reading_engine: Engine) -> None:
     model = reading_engine.pipeline("intergen").model
     drafted = [draft_of(model, FRAMES, [KnownFrames(0, at, walker()[at], soft=True)]) for at in ([0, 16], [0, 48])]
