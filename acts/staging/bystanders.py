@@ -36,12 +36,12 @@ def recordings() -> tuple[Array, ...]:
     return tuple(found)
 
 
-def standing_by(place: Array, angle: float, frames: Frames, seed: int) -> Array:
+def standing_by(place: Array, angle: float | Array, frames: Frames, seed: int) -> Array:
     """A person who stands by.
 
     Args:
-        place: (2,) x and z in metres, around which the pelvis sways.
-        angle: heading in radians from +Z towards +X.
+        place: (2,) or (N, 2) x and z in metres, around which the pelvis sways.
+        angle: heading, or (N,) headings, in radians from +Z towards +X.
         frames: (N,) frames of the scene.
         seed: chooses the recording, and where it begins.
 
@@ -56,4 +56,5 @@ def standing_by(place: Array, angle: float, frames: Frames, seed: int) -> Array:
     before = np.minimum(at.astype(int), last - 1)
     share = (at - before)[:, None, None]
     mixed = (1 - share) * poses[before] + share * poses[before + 1]
-    return mixed @ heading_matrix(angle).T + np.insert(place, 1, 0.0)
+    turns = heading_matrix(np.broadcast_to(angle, len(mixed)))
+    return np.einsum("nij,nkj->nki", turns, mixed) + np.insert(np.atleast_2d(place), 1, 0.0, axis=1)[:, None]

@@ -28,7 +28,7 @@ from .lifts import Carrying
 from .limbs import limb_parts
 from .moves import coming, meeting, towards_touched
 from .places import Standing, Way2D
-from .poses import HANDS, JOINT, UPRIGHT, Pose, all_but, standing, upright
+from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, standing, upright
 from .postures import bow_parts, posture_parts, postures
 from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
@@ -43,6 +43,8 @@ _POSED = 4
 """Frames between two poses of a statue: as many as between the network's knots, of which others would waver."""
 _DRAFTED = 6
 """Frames between two poses of a bystander."""
+_RESTS, _STAYS, _FACES = 15, 0.03, 0.2
+"""Frames before and after one at which somebody on their way rests, and the metres and radians that they may move."""
 _PLACED = 30
 """Frames between two places of somebody whose poses are a draft."""
 
@@ -247,6 +249,9 @@ class _Beat:
                 parts += softened(low_gait_parts(gait, person, self.down, stretch))
             else:
                 parts += softened(step_parts(gait, person, score, stretch)) if free else stretch.known_way(way)
+            if free and gait is None:
+                joints = TRUNK if "ab"[person] in score.gestures else (*TRUNK, *HANDS)
+                parts += _waiting_parts(person, stretch, self.story.seed, joints)
         leads = "ring" if any(move.backwards for move in moves) and score.by_both_hands else ""
         if (hold := score.hold or leads) and len(ways) == 2:
             parts += hold_parts(hold, stretch)
@@ -315,6 +320,20 @@ def _bystander_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[
     way = Way2D(person, frames[at].tolist(), poses[at, 0][:, [0, 2]], np.full(at.sum(), angle))
     draft = stretch.known(person, frames, poses, joints or range(len(JOINT)))
     return [*stretch.known_way(way), replace(draft, soft=True, free=True)]
+
+
+def _waiting_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int]) -> list[Part]:
+    """A recorded draft of some joints of somebody with a way, for as long as it leaves them where they are."""
+    course, at = stretch.course(person), stretch.every(_DRAFTED)
+    around = np.clip(at + np.array([[-_RESTS], [_RESTS]]), 0, stretch.frames - 1)
+    first, last = course.places[around]
+    at = at[
+        (np.linalg.norm(last - first, axis=-1) < _STAYS) & (np.abs(np.ptp(course.headings[around], axis=0)) < _FACES)
+    ]
+    if len(at) < 2:
+        return []
+    poses = standing_by(course.places[at], course.headings[at], at + stretch.start, seed=2 * seed + person)
+    return [replace(stretch.known(person, at, poses, joints), soft=True, free=True)]
 
 
 def _statue_parts(person: int, stretch: Stretch, seed: int) -> list[Part]:
