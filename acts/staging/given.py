@@ -34,7 +34,6 @@ from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
 from .take import Take
 from .touches import touch_parts
-from .track import EVERY
 from .window import SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
 
 Array = NDArray[np.floating]
@@ -316,7 +315,7 @@ def _bystander_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[
         return []
     angle = float(stretch.stand.headings[person])
     poses = standing_by(stretch.halt(person), angle, frames + stretch.start, seed=2 * seed + person)
-    at = np.isin(frames, stretch.every(EVERY, SETTLES if stretch.start else 0))
+    at = np.isin(frames, stretch.every(2 * _DRAFTED, SETTLES if stretch.start else 0))
     way = Way2D(person, frames[at].tolist(), poses[at, 0][:, [0, 2]], np.full(at.sum(), angle))
     draft = stretch.known(person, frames, poses, joints or range(len(JOINT)))
     return [*stretch.known_way(way), replace(draft, soft=True, free=True)]

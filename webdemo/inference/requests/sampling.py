@@ -119,7 +119,7 @@ class GenerateRequest(SamplingRequest):
     seconds: float = 5.0
     split: bool = True
     planned: bool = True
-    strictness: float = 0.9
+    strictness: float = 0.7
     acts: Plan | None = None
     paths: tuple[FloorPath, ...] = ()
     plan: KeptPlan | None = field(default=None, compare=False, repr=False)
