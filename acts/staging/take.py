@@ -54,7 +54,7 @@ class Take:
         """The take of a seed."""
         dice = np.random.default_rng([seed, 1])
         left, clockwise = dice.random(2) < LEFT_HANDED, dice.random() < 0.5
-        pace, apart, (a, b) = dice.uniform(*PACE), dice.uniform(*APART), dice.uniform(-OPEN, OPEN, 2)
+        pace, apart, (a, b) = dice.uniform(*PACE), dice.uniform(*APART), dice.uniform(-OPEN, OPEN, 2).tolist()
         return cls((bool(left[0]), bool(left[1])), clockwise, pace, apart, (a, b))
 
     def of_acts(self, acts: Sequence[Act], known: Lexicon) -> list[Act]:

@@ -93,7 +93,7 @@ def test_those_in_a_hold_have_their_hands_joined_while_they_turn(engine: Engine,
 )
 def test_a_touch_of_the_back_or_from_behind_comes_from_there(engine: Engine, prompt: str) -> None:
     found = made(engine, prompt, seconds=8.0 if "Then" in prompt else 4.0)
-    gap = nearest(found, 0, ["right_wrist"], ["left_shoulder", "right_shoulder", "spine3"])
+    gap = nearest(found, 0, ["left_wrist", "right_wrist"], ["left_shoulder", "right_shoulder", "spine3"])
     across = found[1, :, SMPL22.index("left_hip")] - found[1, :, SMPL22.index("right_hip")]
     ahead = np.cross(across, [0.0, 1.0, 0.0])
     behind = np.sum((found[0, :, 0] - found[1, :, 0]) * ahead, axis=1) < 0

@@ -157,7 +157,7 @@ def test_those_who_only_clap_have_their_hands_led(engine: Engine) -> None:
 
 
 def test_the_other_arm_hangs_while_one_salutes(engine: Engine) -> None:
-    found = made(engine, "Person A salutes person B.", seconds=5.0)[0]
+    found = made(engine, "Person A salutes person B with the right hand.", seconds=5.0)[0]
     high = found[:, WRISTS, 1] - found[:, :1, 1]
     assert high[60, 1] > 0.5 and (high[:, 0] < 0.15).all()
     assert np.abs(high[[0, -1]]).max() < 0.2
@@ -204,7 +204,7 @@ def test_a_look_at_a_window_is_judged_where_the_window_is_made(engine: Engine) -
 @pytest.mark.parametrize(
     ("prompt", "joint", "least"),
     [
-        ("He stamps his foot.", "right_foot", 0.1),
+        ("He stamps his right foot.", "right_foot", 0.1),
         ("She stands on tiptoe.", "left_ankle", 0.12),
         ("He marches on the spot.", "left_foot", 0.15),
     ],

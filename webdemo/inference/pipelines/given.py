@@ -274,14 +274,13 @@ def directed(model: DuetSpace, frames: int, parts: Sequence[Part], strictness: f
         strictness: the share of the steps in which drafted poses are held, too.
     """
     held = [part for part in parts if not (isinstance(part, KnownFrames) and part.free)]
-    places = places_of(parts)
-    poses = hold_of(model, frames, held) if held and strictness else None
+    poses = hold_of(model, frames, held) if held and (strictness or not model.reads_drafts) else None
     if not model.reads_drafts:
-        return Directed(frames, hold_of(model, frames, held) if held else None, parts=held)
-    draft = draft_of(model, frames, parts)
+        return Directed(frames, poses, parts=held)
     if strictness == 1:
-        return Directed(frames, poses, draft, parts=held)
-    hold = hold_of(model, frames, places) if places else None
+        return Directed(frames, poses, draft_of(model, frames, [p for p in parts if p not in held]), parts=held)
+    places = places_of(parts)
+    hold, draft = hold_of(model, frames, places) if places else None, draft_of(model, frames, parts)
     return Directed(frames, hold, draft, parts=places, poses=poses, strictness=strictness)
 
 
