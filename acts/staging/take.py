@@ -59,7 +59,7 @@ class Take:
 
     def of_acts(self, acts: Sequence[Act], known: Lexicon) -> list[Act]:
         """The acts of a beat with what their words leave open filled in."""
-        sided = {who for act in acts if act.side for who in act.agents}
+        sided = {str(who) for act in acts if act.side for who in act.agents}
         return [self._filled(act, known, sided) for act in acts]
 
     def _filled(self, act: Act, known: Lexicon, sided: set[str]) -> Act:
