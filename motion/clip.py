@@ -30,7 +30,6 @@ class Clip:
         positions: (T, J, 3) float32 joint positions in metres, Y up, floor at 0.
         fps: frames a second.
         skeleton: names and parents of the J joints.
-        rotations: (T, J, 3, 3) local rotations against the skeleton's rest pose, where they are known.
         name: shown in messages and file names.
         notes: sentences on how well its file could be read, such as that it does not give its frame rate.
     """
@@ -38,7 +37,6 @@ class Clip:
     positions: Array = field(repr=False)
     fps: float
     skeleton: Skeleton = SMPL22
-    rotations: Array | None = field(default=None, repr=False)
     name: str = ""
     notes: tuple[str, ...] = field(default=(), repr=False)
 
@@ -70,12 +68,11 @@ class Clip:
 
     def cut(self, start: int = 0, stop: int | None = None) -> Clip:
         """Frames ``start`` to ``stop`` (exclusive) as a clip of its own."""
-        rotations = None if self.rotations is None else self.rotations[start:stop]
-        return replace(self, positions=self.positions[start:stop], rotations=rotations)
+        return replace(self, positions=self.positions[start:stop])
 
     def with_positions(self, positions: Array) -> Clip:
-        """The same person with other positions; rotations no longer hold and are dropped."""
-        return replace(self, positions=positions, rotations=None)
+        """The same person with other positions."""
+        return replace(self, positions=positions)
 
 
 @dataclass(frozen=True, eq=False)

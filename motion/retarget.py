@@ -57,7 +57,7 @@ def retarget(rig: RigMotion, *, fps: float = 30.0, plant: bool = True) -> Clip:
         plant: hold standing feet still and above the floor.
 
     Returns:
-        a clip with positions and local rotations against SMPL22's T-pose, over the same place as in the file.
+        a clip over the same place as in the file.
 
     Raises:
         InputError: if no human body is found in the rig.
@@ -136,23 +136,22 @@ def _on_smpl(rig: RigMotion, fps: float, scale: float) -> Array:
     if rig.fps == fps:
         return positions
     # A spline between frames bends bones by fractions of a millimetre; rotations set them right.
-    return _on_bones(resample(positions, rig.fps, fps))[0]
+    return _on_bones(resample(positions, rig.fps, fps))
 
 
-def _on_bones(positions: Array) -> tuple[Array, Array]:
+def _on_bones(positions: Array) -> Array:
     """:func:`~motion.kinematics.project_to_skeleton`, some frames at a time to spare memory."""
-    places, rotations = np.empty(positions.shape), np.empty((*positions.shape, 3), dtype=np.float32)
+    places = np.empty(positions.shape)
     for start in range(0, len(positions), _BLOCK):
         block = slice(start, start + _BLOCK)
-        places[block], rotations[block] = project_to_skeleton(positions[block])
-    return places, rotations
+        places[block], _ = project_to_skeleton(positions[block])
+    return places
 
 
 def _finished(positions: Array, fps: float, name: str, plant: bool = True) -> Clip:
     if plant:
         positions = plant_feet(positions, foot_contacts(positions, fps, speed=_CONTACT_SPEED))
-    positions, rotations = _on_bones(positions)
-    return Clip(positions, fps, SMPL22, rotations, name)
+    return Clip(_on_bones(positions), fps, name=name)
 
 
 def up_axis(*rigs: RigMotion) -> str:

@@ -33,7 +33,6 @@ class RigMotion:
         parents: index of each joint's parent, -1 for a root; parents come first.
         offsets: (J, 3) rest position relative to the parent, in metres.
         positions: (T, J, 3) world positions in metres, axes as in the file.
-        rotations: (T, J, 3, 3) local rotations against the rig's rest pose, where the joints are SMPL22's.
         fps: frames a second.
         metres_per_unit: what the file's lengths were multiplied by.
         name: the file's name, for messages.
@@ -48,7 +47,6 @@ class RigMotion:
     parents: tuple[int, ...]
     offsets: Array = field(repr=False)
     positions: Array = field(repr=False)
-    rotations: Array | None = field(repr=False)
     fps: float
     metres_per_unit: float = 1.0
     name: str = ""

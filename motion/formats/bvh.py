@@ -94,15 +94,11 @@ def _placed(motion: Motion, every: int) -> tuple[RigMotion, ...]:
         raise InputError(f"{label} holds {len(joints)} joints in {kept:,} frames, too many: lower its frame rate.")
     positions = np.empty((kept, len(joints), 3), dtype=np.float32)
     people = trees(joints, label)
-    own = [range(first, stop) for first, stop in people if _is_own(joints[first:stop])]
-    rotations = np.empty((kept, len(joints), 3, 3), dtype=np.float32) if own else None
     done = 0
     for values, begun in _every_nth(motion, every):
         if not done:
             _forget_empty(joints, values)
         _place(joints, values.T, positions[begun : begun + len(values)])
-        if rotations is not None:
-            _turn(joints, values.T, rotations[begun : begun + len(values)])
         done = begun + len(values)
     assert done == kept
     scale = _metres_per_unit(positions, joints[: people[0][1]], label)
@@ -113,7 +109,6 @@ def _placed(motion: Motion, every: int) -> tuple[RigMotion, ...]:
             tuple(max(joint.parent - first, -1) for joint in joints[first:stop]),
             np.array([joint.offset for joint in joints[first:stop]]) * scale,
             positions[:, first:stop],
-            None if rotations is None else rotations[:, first:stop],
             motion.fps / every,
             scale,
             label,
@@ -174,19 +169,6 @@ def _place(joints: list[Joint], values: Array, positions: Array) -> None:
         positions[:, index] = place.T
         if index in last_child:
             world[index] = _turned(rotation, turns), place
-
-
-def _turn(joints: list[Joint], values: Array, rotations: Array) -> None:
-    """Writes the joints' local rotations (n, J, 3, 3) for channels (width, n)."""
-    upright = np.repeat(np.eye(3)[..., None], values.shape[1], axis=2)
-    column = 0
-    for index, joint in enumerate(joints):
-        turns = []
-        for kind, axis in joint.channels:
-            if kind == "rotation":
-                turns.append((axis, values[column]))
-            column += 1
-        rotations[:, index] = _turned(upright, turns).transpose(2, 0, 1)
 
 
 def _turned(rotation: Array, turns: list[tuple[int, Array]]) -> Array:

@@ -114,7 +114,6 @@ class _Person:
             self.rig.above,
             rest - np.where(above[:, None] < 0, 0.0, rest[np.maximum(above, 0)]),
             positions,
-            None,
             fps,
             scale,
             self.file.label,

@@ -142,8 +142,7 @@ def without_calibration(person: Any) -> Any:
     if count == 0:
         return person
     note = _CALIBRATION.format(person.name, "frame was" if count == 1 else f"{count} frames were")
-    rotations = None if person.rotations is None else person.rotations[count:]
-    return replace(person, positions=person.positions[count:], rotations=rotations, notes=(*person.notes, note))
+    return replace(person, positions=person.positions[count:], notes=(*person.notes, note))
 
 
 def _with_note(people: Sequence[Any], up: str, usual: str, label: str, choices: ImportChoices) -> list[Any]:
@@ -163,8 +162,7 @@ def own_clip(rig: RigMotion) -> Clip | None:
     if not set(SMPL22.joint_names) <= set(names) or rig.metres_per_unit != 1.0:
         return None
     order = [names.index(name) for name in SMPL22.joint_names]
-    rotations = None if rig.rotations is None else rig.rotations[:, order]
-    return Clip(rig.positions[:, order], rig.fps, SMPL22, rotations, rig.name, rig.notes)
+    return Clip(rig.positions[:, order], rig.fps, name=rig.name, notes=rig.notes)
 
 
 def _import_rigs(rigs: list[RigMotion], label: str, choices: ImportChoices) -> Imported:
@@ -236,7 +234,4 @@ def _turned(clip: Clip, turn: Array, metres: float) -> Clip:
     if metres == 1.0 and (turn == np.eye(3)).all():
         return clip
     positions = (clip.positions.astype(np.float64) * metres) @ turn.T
-    rotations = None if clip.rotations is None else np.array(clip.rotations)
-    if rotations is not None:
-        rotations[:, 0] = turn @ rotations[:, 0]
-    return replace(clip, positions=positions.astype(np.float32), rotations=rotations)
+    return replace(clip, positions=positions.astype(np.float32))

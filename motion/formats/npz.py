@@ -189,7 +189,7 @@ def _recording(
         if names is not None:
             still = np.zeros((len(names[0]), 3))
             return Recording(
-                tuple(RigMotion(*names, still, person, None, rate, name=label, notes=notes) for person in people)
+                tuple(RigMotion(*names, still, person, rate, name=label, notes=notes) for person in people)
             )
         skeleton, more = _skeleton(named or {}, people, label, choices.order)
         people = people[:, :, : skeleton.num_joints]  # the hands of SMPL's 24 come last

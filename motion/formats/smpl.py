@@ -74,7 +74,7 @@ def read_parameters(arrays: Mapping[str, Array], label: str, fps: float | None) 
         fps: the true frame rate; otherwise the file's, or 30, or 120 for Inter-X.
 
     Returns:
-        a clip with rotations. AMASS is Z up, other files usually Y up.
+        a clip. AMASS is Z up, other files usually Y up.
 
     Raises:
         InputError: one sentence saying what is wrong with the arrays.
@@ -102,9 +102,8 @@ def read_parameters(arrays: Mapping[str, Array], label: str, fps: float | None) 
         notes.append(f"{label} does not give the person's path: they stay in one place.")
     if interx or np.any(numbers(arrays.get("betas", np.zeros(1)), label)):
         notes.append(SHAPE_UNUSED.format(label))
-    positions, rotations = _posed(poses, path)
     amass = "poses" in arrays and "trans" in arrays
-    clip = Clip(positions, rate, SMPL22, rotations, label, tuple(notes))
+    clip = Clip(_posed(poses, path), rate, name=label, notes=tuple(notes))
     return Recording((clip,), "z" if amass else "", on_floor=True)
 
 
@@ -132,17 +131,15 @@ def _vectors(rotations: Array | None, label: str) -> Array:
     return found.reshape(len(found), -1)
 
 
-def _posed(poses: Array, trans: Array) -> tuple[Array, Array]:
-    """(T, 22, 3) positions and (T, 22, 3, 3) rotations in the file's axes."""
-    rotations = np.empty((len(poses), SMPL22.num_joints, 3, 3), dtype=np.float32)
+def _posed(poses: Array, trans: Array) -> Array:
+    """(T, 22, 3) positions in the file's axes."""
     positions = np.empty((len(poses), SMPL22.num_joints, 3), dtype=np.float32)
     for first in range(0, len(poses), _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
         vectors = scipy.spatial.transform.Rotation.from_rotvec(poses[part].reshape(-1, 3))
         turns = vectors.as_matrix().reshape(-1, SMPL22.num_joints, 3, 3)
         positions[part] = forward_kinematics(turns, trans[part] + PELVIS)
-        rotations[part] = turns
-    return positions, rotations
+    return positions
 
 
 def write_smpl(duet: Duet, path: str | Path) -> list[Path]:

@@ -336,4 +336,4 @@ def read_deepmimic(data: bytes, *, name: str = "", fps: float = 30.0) -> RigMoti
     rotations = np.tile(np.eye(3), (len(grid), len(names), 1, 1))
     rotations[:, : len(turns)] = np.stack(turns, axis=1)
     places = forward_kinematics(rotations, root, body)
-    return RigMotion(names, parents, body.offsets, places, None, fps, name=name, up="y")
+    return RigMotion(names, parents, body.offsets, places, fps, name=name, up="y")
