@@ -6,13 +6,12 @@ needs is to know when two bodies would be inside each other.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import Skeleton
+from motion import SMPL22
 
 Array = NDArray[np.floating]
 
@@ -22,9 +21,6 @@ _RADII = {
     "spine3": 0.12,
     "spine2": 0.12,
     "spine1": 0.12,
-    "spine_shoulder": 0.12,
-    "middle_of_spine": 0.12,
-    "torso": 0.12,
     "hip": 0.09,
     "knee": 0.07,
     "ankle": 0.045,
@@ -35,13 +31,11 @@ _RADII = {
     "wrist": 0.035,
 }
 """Radius in metres of the capsule of the bone that ends in a joint, by the joint's name without its side."""
-_OTHER = 0.03
-_HANDS = {"hand", "hand_tip", "thumb"}
 
 
 @dataclass(frozen=True)
 class Capsules:
-    """The capsules of a skeleton.
+    """Capsules on SMPL22's joints.
 
     Attributes:
         starts: (C,) joint at which each capsule begins.
@@ -53,10 +47,13 @@ class Capsules:
     ends: NDArray[np.intp]
     radii: Array
 
-    def part(self, kept: Sequence[bool] | NDArray[np.bool_]) -> Capsules:
+    def are(self, *parts: str) -> NDArray[np.bool_]:
+        """(C,) whether each ends in a joint of these names, of either side, such as "wrist"."""
+        return np.isin(self.ends, [SMPL22.index(name) for name in SMPL22.joint_names if sideless(name) in parts])
+
+    def part(self, kept: NDArray[np.bool_]) -> Capsules:
         """Those capsules for which ``kept`` (C,) is true."""
-        chosen = np.asarray(kept, dtype=bool)
-        return Capsules(self.starts[chosen], self.ends[chosen], self.radii[chosen])
+        return Capsules(self.starts[kept], self.ends[kept], self.radii[kept])
 
     def of_size(self, size: float) -> Capsules:
         """The same around bones of another size, as a share of an adult's."""
@@ -68,18 +65,12 @@ def sideless(joint_name: str) -> str:
     return joint_name.removeprefix("left_").removeprefix("right_")
 
 
-def capsules(skeleton: Skeleton) -> Capsules:
-    """The body of a skeleton: one capsule a bone, hands and fingers left out.
-
-    Hands are left out because people who hold hands are not inside each other.
-    """
-    kept = [(parent, child) for parent, child in skeleton.bones if sideless(skeleton.joint_names[child]) not in _HANDS]
-    names = [sideless(name) for name in skeleton.joint_names]
-    return Capsules(
-        starts=np.array([parent for parent, _ in kept], dtype=np.intp),
-        ends=np.array([child for _, child in kept], dtype=np.intp),
-        radii=np.array([_RADII.get(names[child], _OTHER) for _, child in kept]),
-    )
+CAPSULES = Capsules(
+    starts=np.array([parent for parent, _ in SMPL22.bones], dtype=np.intp),
+    ends=np.array([child for _, child in SMPL22.bones], dtype=np.intp),
+    radii=np.array([_RADII[sideless(SMPL22.joint_names[child])] for _, child in SMPL22.bones]),
+)
+"""The body of an adult: one capsule a bone. It ends at the wrists: people who hold hands are not inside each other."""
 
 
 def point_segment_distance(points: Array, starts: Array, ends: Array) -> Array:

@@ -9,11 +9,12 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from motion import SMPL22, Clip, Duet, Skeleton
+from motion import Clip, Duet
+from motion.skeleton import ARMS, LEGS
 from motion.transforms import facing
 from motion.vectors import runs
 
-from .bodies import Capsules, capsules, point_segment_distance, segment_segment_distance, sideless
+from .bodies import CAPSULES, Capsules, point_segment_distance, segment_segment_distance
 from .quality import bone_drift, foot_skate, jerk, penetration
 
 Array = NDArray[np.floating]
@@ -33,17 +34,19 @@ SKIN_TOUCH = 0.05
 """Metres between a hand or a foot and the surface of the other's body that count as touching."""
 _JOIN_GAP = 0.1
 _SHORTEST = 0.05
+_TOES = [leg[-1] for leg in LEGS]
+_ELBOWS, _WRISTS = [arm[1] for arm in ARMS], [arm[2] for arm in ARMS]
 
 
 def pelvis_distance(duet: Duet) -> Array:
     """(T,) distance of the two roots over the floor plan, metres."""
-    a, b = duet.positions[:, :, _root(duet.skeleton)][..., [0, 2]]
+    a, b = duet.positions[:, :, 0][..., [0, 2]]
     return np.linalg.norm(a - b, axis=-1)
 
 
 def hand_distance(duet: Duet) -> Array:
     """(T,) distance of the nearest pair of hands, one of each person, metres."""
-    return hand_gaps(duet).min(axis=(1, 2))
+    return _hand_gaps(duet).min(axis=(1, 2))
 
 
 def facing_angle(duet: Duet) -> Array:
@@ -52,10 +55,9 @@ def facing_angle(duet: Duet) -> Array:
     0 is straight ahead, 180 behind; over the floor plan.
     """
     found = []
-    root = _root(duet.skeleton)
     for me, other in ((duet.a, duet.b), (duet.b, duet.a)):
-        forward = facing(me.positions, me.skeleton)[..., [0, 2]]
-        towards = (other.positions[:, root] - me.positions[:, root])[..., [0, 2]]
+        forward = facing(me.positions)[..., [0, 2]]
+        towards = (other.positions[:, 0] - me.positions[:, 0])[..., [0, 2]]
         cos = np.sum(forward * towards, axis=-1) / np.maximum(np.linalg.norm(towards, axis=-1), 1e-6)
         found.append(np.degrees(np.arccos(np.clip(cos, -1.0, 1.0))))
     return np.array(found)
@@ -92,73 +94,55 @@ def contact_events(duet: Duet) -> list[Contact]:
     Returns:
         contacts by start.
     """
-    body = capsules(duet.skeleton)
-    feet = _limbs(duet.skeleton, "foot", "ankle")
+    above_ground = CAPSULES.part(~CAPSULES.are("foot", "ankle"))  # feet side by side on the floor are no kick
     nearest = hand_distance(duet)
     meeting = _stretches(nearest < HANDS_TOUCH, duet.fps, loosely=nearest < HANDS_PART)
     found = [Contact(*ends, "hands", "hand on hand") for ends in meeting]
     for me, other in ((0, 1), (1, 0)):
         mine, theirs = "AB"[me], "AB"[other]
-        on_body = hand_touching(duet, me, body)
+        on_body = _hand_touching(duet, me)
         for start, stop in meeting:
             on_body[start:stop] = False  # one contact, not two
         found += [Contact(*ends, "touch", f"hand of {mine} on {theirs}") for ends in _stretches(on_body, duet.fps)]
-        kicks = touching(
-            duet.people[me].positions[:, feet],
-            duet.people[other].positions,
-            above_ground(body, duet.skeleton),
-            margin=SKIN_TOUCH,
-        )
+        kicks = _touching(duet.people[me].positions[:, _TOES], duet.people[other].positions, above_ground)
         found += [Contact(*ends, "foot", f"foot of {mine} on {theirs}") for ends in _stretches(kicks, duet.fps)]
     return sorted(found, key=lambda contact: (contact.start, contact.kind, contact.label))
 
 
-def hand_touching(duet: Duet, me: int, body: Capsules) -> NDArray[np.bool_]:
-    """(T,) whether a hand of person ``me`` (0 or 1) is on these capsules of the other.
+def _hand_touching(duet: Duet, me: int) -> NDArray[np.bool_]:
+    """(T,) whether a hand of person ``me`` (0 or 1) is on the body of the other.
 
     A hand that is near one of the other's hands is not on the forearm behind it.
     """
-    forearms = np.array([sideless(duet.skeleton.joint_names[end]) == "wrist" for end in body.ends])
-    on = _to_bones(hands(duet.people[me]), duet.people[1 - me].positions, body) - body.radii < SKIN_TOUCH
-    meets = hand_gaps(duet).min(axis=2 - me) < HANDS_NEAR  # (T, 2), each hand of mine
-    return np.asarray((on & ~(forearms & meets[..., None])).any(axis=(1, 2)))
+    target = duet.people[1 - me].positions
+    bones = np.stack([target[:, CAPSULES.starts], target[:, CAPSULES.ends]], axis=2)
+    on = _between(_hands(duet.people[me])[:, :, None], bones[:, None]) - CAPSULES.radii < SKIN_TOUCH
+    meets = _hand_gaps(duet).min(axis=2 - me) < HANDS_NEAR  # (T, 2), each hand of mine
+    return np.asarray((on & ~(CAPSULES.are("wrist") & meets[..., None])).any(axis=(1, 2)))
 
 
-def touching(points: Array, target: Array, body: Capsules, *, margin: float) -> NDArray[np.bool_]:
-    """(T,) whether any of points (T, P, 3) is within ``margin`` of the surface of a body (T, J, 3)."""
+def _touching(points: Array, target: Array, body: Capsules) -> NDArray[np.bool_]:
+    """(T,) whether any of points (T, P, 3) is on the surface of a body (T, 22, 3)."""
     gaps = point_segment_distance(points[:, :, None], target[:, None, body.starts], target[:, None, body.ends])
-    return np.asarray((gaps - body.radii < margin).any(axis=(1, 2)))
+    return np.asarray((gaps - body.radii < SKIN_TOUCH).any(axis=(1, 2)))
 
 
-def above_ground(body: Capsules, skeleton: Skeleton) -> Capsules:
-    """The body without feet: feet side by side on the floor are no kick."""
-    return body.part([sideless(skeleton.joint_names[end]) not in ("foot", "ankle") for end in body.ends])
-
-
-def palms(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
-    """(…, T, 2, 3) the middles of the left and the right palm of people (…, T, J, 3)."""
-    wrists, elbows = _limbs(skeleton, "wrist"), _limbs(skeleton, "elbow")
-    forearm = positions[..., wrists, :] - positions[..., elbows, :]
+def palms(positions: Array) -> Array:
+    """(…, T, 2, 3) the middles of the left and the right palm of people (…, T, 22, 3)."""
+    forearm = positions[..., _WRISTS, :] - positions[..., _ELBOWS, :]
     length = np.maximum(np.linalg.norm(forearm, axis=-1, keepdims=True), 1e-6)
-    return positions[..., wrists, :] + PALM * forearm / length
+    return positions[..., _WRISTS, :] + PALM * forearm / length
 
 
-def hands(person: Clip) -> Array:
+def _hands(person: Clip) -> Array:
     """(T, 2, 2, 3) the left and the right hand as lines: wrist and middle of the palm, metres."""
-    wrists = person.positions[:, _limbs(person.skeleton, "wrist")]
-    return np.stack([wrists, palms(person.positions, person.skeleton)], axis=2)
+    return np.stack([person.positions[:, _WRISTS], palms(person.positions)], axis=2)
 
 
-def hand_gaps(duet: Duet) -> Array:
+def _hand_gaps(duet: Duet) -> Array:
     """(T, 2, 2) metres from each hand of a (left, right) to each of b."""
-    a, b = (hands(person) for person in duet.people)
+    a, b = (_hands(person) for person in duet.people)
     return _between(a[:, :, None], b[:, None])
-
-
-def _to_bones(lines: Array, target: Array, body: Capsules) -> Array:
-    """(T, P, C) metres from lines (T, P, 2, 3) to the middle lines of capsules on joints (T, J, 3)."""
-    bones = np.stack([target[:, body.starts], target[:, body.ends]], axis=2)
-    return _between(lines[:, :, None], bones[:, None])
 
 
 def _between(first: Array, second: Array) -> Array:
@@ -166,22 +150,6 @@ def _between(first: Array, second: Array) -> Array:
     first, second = np.broadcast_arrays(first, second)
     ends = [line[..., end, :].reshape(-1, 3) for line in (first, second) for end in (0, 1)]
     return segment_segment_distance(*ends).reshape(first.shape[:-2])
-
-
-def _root(skeleton: Skeleton) -> int:
-    """The joint that represents a person's place: the pelvis, under any of its names."""
-    for name in ("pelvis", "base_of_spine", "torso"):
-        if name in skeleton.joint_names:
-            return skeleton.index(name)
-    return 0
-
-
-def _limbs(skeleton: Skeleton, *parts: str) -> list[int]:
-    """Left and right joint of the first of ``parts`` that the skeleton has."""
-    for part in parts:
-        if f"left_{part}" in skeleton.joint_names:
-            return [skeleton.index(f"left_{part}"), skeleton.index(f"right_{part}")]
-    raise KeyError(f"{skeleton.name} has none of the joints {parts}.")
 
 
 def _stretches(
@@ -314,8 +282,8 @@ def _summary(duet: Duet, contacts: list[Contact]) -> dict[str, float | None]:
     numbers = {
         "foot_skate": skate.speed,
         "skate_ratio": 100 * skate.ratio,
-        "penetration": overlap.mean,
-        "penetration_max": overlap.deepest,
+        "penetration": float(overlap.mean()),
+        "penetration_max": float(overlap.max()),
         "jerk": jerk(duet),
         "bone_drift": bone_drift(duet),
         "distance": float(distance.mean()),

@@ -14,7 +14,7 @@ from motion.looks import size_of
 from motion.transforms import facing
 from motion.vectors import left_of, wrapped
 
-from .bodies import capsules, depths, sideless
+from .bodies import CAPSULES, depths
 
 Array = NDArray[np.floating]
 
@@ -30,41 +30,26 @@ class FootSkate:
     Attributes:
         speed: mean horizontal speed of the feet that stand, in cm/s; 0 if no foot ever stands.
         ratio: share of those foot-frames with more than :data:`SKATE_SPEED`, 0 to 1.
-        contact: share of all foot-frames in which a foot stands, 0 to 1.
     """
 
     speed: float
     ratio: float
-    contact: float
 
 
 def foot_skate(duet: Duet) -> FootSkate:
     """Slides of standing feet, over both feet of both people.
 
     A foot stands from one frame to the next where its toe joint is below 5 cm *and* its ankle joint below
-    12 cm in both: a swinging foot also passes close to the floor, but with its heel lifted. Skeletons that
-    lack one of the two joints are judged by the other.
+    12 cm in both: a swinging foot also passes close to the floor, but with its heel lifted.
     """
-    names = duet.skeleton.joint_names
-    speeds, standing = [], []
-    for side in ("left", "right"):
-        found = [
-            (names.index(f"{side}_{part}"), height)
-            for part, height in (("foot", TOE_HEIGHT), ("ankle", ANKLE_HEIGHT))
-            if f"{side}_{part}" in names
-        ]
-        if not found:
-            continue
-        low = np.all([duet.positions[:, :, joint, 1] < height for joint, height in found], axis=0)
-        path = duet.positions[:, :, found[0][0]][..., [0, 2]].astype(np.float64)
-        speeds.append(np.linalg.norm(np.diff(path, axis=1), axis=-1) * duet.fps)
-        standing.append(low[:, 1:] & low[:, :-1])
-    if not speeds or not np.any(standing):
-        return FootSkate(0.0, 0.0, 0.0)
-    planted = np.array(speeds)[np.array(standing)]
-    return FootSkate(
-        speed=float(planted.mean() * 100), ratio=float((planted > SKATE_SPEED).mean()), contact=float(np.mean(standing))
-    )
+    positions = duet.positions
+    low = (positions[:, :, _TOES, 1] < TOE_HEIGHT) & (positions[:, :, _ANKLES, 1] < ANKLE_HEIGHT)
+    path = positions[:, :, _TOES][..., [0, 2]].astype(np.float64)
+    speeds = np.linalg.norm(np.diff(path, axis=1), axis=-1) * duet.fps
+    planted = speeds[low[:, 1:] & low[:, :-1]]
+    if not len(planted):
+        return FootSkate(0.0, 0.0)
+    return FootSkate(speed=float(planted.mean() * 100), ratio=float((planted > SKATE_SPEED).mean()))
 
 
 def jerk(duet: Duet) -> float:
@@ -82,36 +67,19 @@ def bone_drift(duet: Duet) -> float:
     over the bones of both people; 0 for a rigid skeleton.
     """
     positions = duet.positions.astype(np.float64)
-    parents, children = (list(ends) for ends in zip(*duet.skeleton.bones, strict=True))
+    parents, children = (list(ends) for ends in zip(*SMPL22.bones, strict=True))
     lengths = np.linalg.norm(positions[:, :, children] - positions[:, :, parents], axis=-1)
     mean = lengths.mean(axis=1)
     return float(100 * np.mean(lengths.std(axis=1) / np.maximum(mean, 1e-6)))
 
 
-@dataclass(frozen=True)
-class Penetration:
-    """Penetration depth of the two bodies.
-
-    Attributes:
-        depth: (T,) the deepest overlap of two capsules at each frame, cm.
-        mean: mean of ``depth``, cm.
-        deepest: its largest value, cm.
-    """
-
-    depth: Array
-    mean: float
-    deepest: float
-
-
-def penetration(duet: Duet) -> Penetration:
-    """Overlap of the two people's capsule bodies (see :func:`~motion.metrics.bodies.capsules`).
+def penetration(duet: Duet) -> Array:
+    """(T,) the deepest overlap of the two people's :data:`~motion.metrics.bodies.CAPSULES` at each frame, cm.
 
     A child's body is as thin as it is short.
     """
-    body = capsules(duet.skeleton)
-    one, two = (body.of_size(size_of(look)) for look in duet.looks)
-    depth = 100 * depths(duet.a.positions, one, duet.b.positions, two)
-    return Penetration(depth, float(depth.mean()), float(depth.max()))
+    one, two = (CAPSULES.of_size(size_of(look)) for look in duet.looks)
+    return 100 * depths(duet.a.positions, one, duet.b.positions, two)
 
 
 PHYSICAL = {
@@ -125,7 +93,7 @@ PHYSICAL = {
 
 def physical(duets: Sequence[Duet]) -> dict[str, float]:
     """The mean of each measure of :data:`PHYSICAL` over duets."""
-    values = [(foot_skate(duet).speed, jerk(duet), penetration(duet).mean, bone_drift(duet)) for duet in duets]
+    values = [(foot_skate(duet).speed, jerk(duet), penetration(duet).mean(), bone_drift(duet)) for duet in duets]
     return {key: round(float(mean), 4) for key, mean in zip(PHYSICAL, np.mean(values, axis=0), strict=True)}
 
 
@@ -201,10 +169,10 @@ def standing_foot(positions: Array, fps: float) -> float:
     return float(100 * slower.mean()) if len(slower) else float("nan")
 
 
-def jerk_percentile(positions: Array, fps: float, share: float = 95.0) -> float:
-    """A percentile of the length of the third derivative over all joints and frames, in m/s³."""
+def jerk_percentile(positions: Array, fps: float) -> float:
+    """The 95th percentile of the length of the third derivative over all joints and frames, in m/s³."""
     third = np.diff(positions, n=3, axis=0) * fps**3
-    return float(np.percentile(np.linalg.norm(third, axis=-1), share))
+    return float(np.percentile(np.linalg.norm(third, axis=-1), 95.0))
 
 
 def joint_speeds(positions: Array, fps: float) -> Array:
@@ -245,6 +213,4 @@ def limb_depth(person: Array, other: Array) -> Array:
 
     Hands are no part of it: hands that are held are not in each other.
     """
-    body = capsules(SMPL22)
-    limbs = body.part([sideless(SMPL22.joint_names[end]) in _LIMBS for end in body.ends])
-    return depths(person, limbs, other, body)
+    return depths(person, CAPSULES.part(CAPSULES.are(*_LIMBS)), other, CAPSULES)

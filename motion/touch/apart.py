@@ -10,7 +10,6 @@ the feet stand further apart. A foot that stands is set down elsewhere and stays
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
@@ -18,8 +17,8 @@ from numpy.typing import NDArray
 
 from motion.cleaning import foot_contacts
 from motion.limbs import HIPS, UPPER, over_planted_feet, solve_two_bones
-from motion.metrics.bodies import Capsules, capsules, closest_points, sideless
-from motion.skeleton import LEGS, SMPL22
+from motion.metrics.bodies import CAPSULES, closest_points
+from motion.skeleton import LEGS
 from motion.smoothing import begun_before, eased_marks, minimum_jerk
 from motion.transforms import facing
 from motion.vectors import FLAT, runs, unit
@@ -43,7 +42,7 @@ _LEVEL = 0.4
 """Share of a push that goes over the floor, at least: bodies that lie over each other would go far."""
 _ROOT = 0.4
 """Share of the upper arm that belongs to the body; the rest bends out of the way."""
-_LEG_PARTS = ("ankle", "foot")
+_BODY = CAPSULES.part(~CAPSULES.are("wrist"))
 _RAISED = 0.2
 """Height in metres of a toe from which a leg is raised."""
 
@@ -104,7 +103,7 @@ def _leg_depth(pair: Array, person: int, leg: Sequence[int], way: Array, raised:
     if not len(at):
         return found
     starts, ends, radii, lower = _segments(pair[:, at])
-    own = np.flatnonzero(np.isin(_body().ends, leg[2:]))
+    own = np.flatnonzero(np.isin(_BODY.ends, leg[2:]))
     other = np.flatnonzero(~lower)
     depth = _depth(
         starts[person][:, own],
@@ -174,19 +173,9 @@ def _depth(
 
 def _segments(pair: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """Middle lines from start to end (2, N, C, 3), radii (C,) and which are of shanks and feet (C,)."""
-    body = _body()
-    parts = [sideless(SMPL22.joint_names[end]) for end in body.ends]
-    starts, ends = pair[:, :, body.starts], pair[:, :, body.ends]
-    arm = np.array([part == "elbow" for part in parts])
-    ends = np.where(arm[:, None], starts + _ROOT * (ends - starts), ends)
-    lower = np.array([part in _LEG_PARTS for part in parts])
-    return starts, ends, body.radii, lower
-
-
-@lru_cache(maxsize=1)
-def _body() -> Capsules:
-    body = capsules(SMPL22)
-    return body.part([sideless(SMPL22.joint_names[end]) != "wrist" for end in body.ends])
+    starts, ends = pair[:, :, _BODY.starts], pair[:, :, _BODY.ends]
+    ends = np.where(_BODY.are("elbow")[:, None], starts + _ROOT * (ends - starts), ends)
+    return starts, ends, _BODY.radii, _BODY.are("ankle", "foot")
 
 
 def _stances(person: Array, fps: float) -> tuple[list[tuple[int, int]], ...]:

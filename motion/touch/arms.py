@@ -7,15 +7,13 @@ through. Pushes are smooth in time, shoulders and lengths of bones stay.
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion.limbs import solve_two_bones
-from motion.metrics.bodies import Capsules, capsules, sideless
-from motion.skeleton import ARMS, SMPL22
+from motion.metrics.bodies import CAPSULES
+from motion.skeleton import ARMS
 from motion.vectors import runs
 
 Array = NDArray[np.floating]
@@ -38,7 +36,7 @@ _AROUND = 1e-3
 """Metres from the middle line of a capsule below which a push has no direction of its own."""
 _BENDS = np.array([arm[1:] for arm in ARMS])
 """(side, elbow and wrist) of the joints that are pushed."""
-_THIN = ("ankle", "foot")
+_BODY = CAPSULES.part(~CAPSULES.are("ankle", "foot"))
 
 
 def arms_apart(pair: Array, free: Array | None = None, sizes: tuple[float, float] = (1.0, 1.0)) -> Array:
@@ -128,22 +126,15 @@ def _bent(person: Array, moved: Array, grips: Array) -> Array:
     return result
 
 
-@lru_cache(maxsize=1)
-def _body() -> Capsules:
-    body = capsules(SMPL22)
-    return body.part([sideless(SMPL22.joint_names[end]) not in _THIN for end in body.ends])
-
-
 def _pushes(own: Array, other: Array, grips: Array, own_size: float, other_size: float) -> Array:
     """(N, side, elbow and wrist, 3) metres that take the arms of ``own`` (N, 22, 3) out of ``other``.
 
     An arm that is in the other's arm goes half of the way: the other's goes the rest. Where its hand holds one of the
     other's (``grips`` (N, side)) the other's arms do not push it.
     """
-    body = _body()
-    starts, along = other[:, body.starts], other[:, body.ends] - other[:, body.starts]
+    starts, along = other[:, _BODY.starts], other[:, _BODY.ends] - other[:, _BODY.starts]
     length2 = np.maximum(np.einsum("nci,nci->nc", along, along), 1e-12)
-    an_arm = np.array([sideless(SMPL22.joint_names[end]) in ("elbow", "wrist") for end in body.ends])
+    an_arm = _BODY.are("elbow", "wrist")
     give, soft = np.where(an_arm, 0.5, 1.0), np.where(an_arm, _SOFT_ARMS, SOFT)
     found = np.zeros((len(own), 2, 2, 3))
     for side, (shoulder, elbow, wrist) in enumerate(ARMS):
@@ -158,7 +149,7 @@ def _pushes(own: Array, other: Array, grips: Array, own_size: float, other_size:
         along_it = np.clip(np.einsum("npci,nci->npc", between, along) / length2[:, None], 0, 1)
         out = between - along_it[..., None] * along[:, None]
         distance = np.sqrt(np.einsum("npci,npci->npc", out, out))
-        depth = np.maximum(own_size * _RADII[:, None] + other_size * body.radii - soft - distance, 0.0)
+        depth = np.maximum(own_size * _RADII[:, None] + other_size * _BODY.radii - soft - distance, 0.0)
         if not depth.any():
             continue
         held = grips[:, side, None, None] * np.array([lower for lower, _ in _SHARES])[:, None]

@@ -54,10 +54,6 @@ class Motion:
         """The same motion with the two people exchanged."""
         return Motion(self.positions[::-1], self.fps)
 
-    def reversed(self) -> Motion:
-        """The same motion played backwards."""
-        return Motion(self.positions[:, ::-1], self.fps)
-
     # ---- joints --------------------------------------------------------------------------------------
     def joint(self, who: int, name: str) -> Array:
         """(T, 3) path of a joint."""

@@ -155,7 +155,7 @@ def _leans(m: Motion, who: int, way: str, degrees: float = 0.0) -> str:
     return f"trunk leans{said.get(way, f' {way}')} by {max(0.0, lean_to(m, who, way).max()):.0f}°"
 
 
-@measure("bows", "trunk_upright")
+@measure("bows")
 def _bows(m: Motion, who: int, *_: object, **__: object) -> str:
     return f"trunk leans by {m.lean(who).max():.0f}°"
 

@@ -65,19 +65,6 @@ def hands_apart(m: Motion, who: int, metres: float = 0.8) -> Mask:
 
 
 @predicate
-def wrist_over_pelvis(m: Motion, who: int, metres: float = 0.3) -> Mask:
-    """A wrist is ``metres`` or more above the pelvis, in any pose."""
-    return np.any(m.pair(who, "wrist")[..., 1] - m.joint(who, "pelvis")[:, 1] > metres, axis=0)
-
-
-@predicate
-def reaches_out(m: Motion, who: int, metres: float = 0.35) -> Mask:
-    """A wrist is ``metres`` or more from the pelvis towards the other, at any height."""
-    arm = m.pair(who, "wrist") - m.joint(who, "pelvis")
-    return np.any(flat(arm, m.towards(who)) > metres, axis=0)
-
-
-@predicate
 def arm_level(m: Motion, who: int, side: str = "any") -> Mask:
     """A wrist is 40 cm or more out from its shoulder, in any direction and within 25 cm of its height."""
     arm = m.pair(who, "wrist") - m.pair(who, "shoulder")
@@ -96,12 +83,6 @@ def heels_up(m: Motion, who: int, rise: float = 0.04) -> Mask:
     """Both ankles are ``rise`` metres or more higher over the toes than in the person's flattest stance."""
     over = m.pair(who, "ankle")[..., 1] - m.pair(who, "foot")[..., 1]
     return np.all(over > np.percentile(over, 10, axis=-1, keepdims=True) + rise, axis=0)
-
-
-@predicate
-def trunk_upright(m: Motion, who: int, degrees: float = 15.0) -> Mask:
-    """The trunk is within ``degrees`` of the vertical, whatever the legs do."""
-    return m.lean(who) < degrees
 
 
 @predicate
@@ -245,16 +226,6 @@ def head_up(m: Motion, who: int, degrees: float = 8.0) -> Mask:
     """The head leans back by ``degrees`` more than it mostly does, against the trunk."""
     pitch = _pitch(m, who)
     return pitch < np.percentile(pitch, 80) - degrees
-
-
-@predicate
-def head_aside(m: Motion, who: int, degrees: float = 10.0) -> Mask:
-    """The head leans to a side by ``degrees`` more than it mostly does, against the trunk."""
-    left = m.left(who)
-    parts = (m.joint(who, "head") - m.joint(who, "neck"), m.joint(who, "neck") - m.joint(who, "pelvis"))
-    angles = [np.degrees(np.arctan2(flat(part, left), part[:, 1])) for part in parts]
-    aside = angles[0] - angles[1]
-    return np.abs(aside - np.median(aside)) > degrees
 
 
 @predicate

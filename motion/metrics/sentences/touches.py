@@ -192,22 +192,6 @@ def arm_on(m: Motion, who: int, part: str, gap: float = 0.22) -> Mask:
 
 
 @predicate
-def feet_near(m: Motion, metres: float = 0.3) -> Mask:
-    """A foot of one is within ``metres`` of a foot of the other."""
-    feet = [m.pair(who, "foot") for who in (0, 1)]
-    return np.linalg.norm(feet[0][:, None] - feet[1][None], axis=-1).min(axis=(0, 1)) < metres
-
-
-@predicate
-def shoulders_touch(m: Motion, gap: float = 0.25) -> Mask:
-    """A shoulder of one is within ``gap`` metres of a shoulder of the other, or a back of the other's back."""
-    shoulders = [m.pair(who, "shoulder") for who in (0, 1)]
-    near = np.linalg.norm(shoulders[0][:, None] - shoulders[1][None], axis=-1).min(axis=(0, 1))
-    backs = np.linalg.norm(m.joint(0, "spine3") - m.joint(1, "spine3"), axis=-1)
-    return np.minimum(near, backs) < gap
-
-
-@predicate
 def alike(m: Motion, mirrored: bool = False, lag: float = 0.0, least: float = 0.55) -> Mask:
     """Both move their limbs the same way at once, or b ``lag`` seconds after a.
 

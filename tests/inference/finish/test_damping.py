@@ -127,7 +127,7 @@ def test_bodies_that_overlap_part(model):
     before = people(model, apart=0.1)
 
     def depth(positions: torch.Tensor) -> float:
-        return penetration(Duet.from_positions(positions.numpy(), fps=30.0)).mean
+        return float(penetration(Duet.from_positions(positions.numpy(), fps=30.0)).mean())
 
     assert depth(damped(model, before)) < 0.3 * depth(before)
 

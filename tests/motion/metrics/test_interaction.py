@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, Duet
-from motion.metrics import MEASURES, compare, contact_events, facing_angle, response_delay, summary
+from motion.metrics import MEASURES, compare, contact_events, summary
+from motion.metrics.interaction import facing_angle, response_delay
 from motion.transforms import turn
 
 from .scenes import FPS, duet, face_to_face, put_wrist

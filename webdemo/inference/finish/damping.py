@@ -24,7 +24,7 @@ from models.intergen.compact import Touch
 from models.motion_tokens import foot_contacts
 from models.regennet.compact import CompactReGenNet
 from motion import SMPL22
-from motion.metrics.bodies import capsules
+from motion.metrics.bodies import CAPSULES
 from motion.skeleton import FEET
 
 _WRISTS = torch.tensor([SMPL22.index("left_wrist"), SMPL22.index("right_wrist")])
@@ -44,8 +44,7 @@ def _spheres() -> tuple[Tensor, Tensor]:
     Returns:
         (S, 2) the two joints whose midpoint is each centre, and (S,) radii in metres.
     """
-    body = capsules(SMPL22)
-    around = dict(zip(body.ends.tolist(), body.radii.tolist(), strict=True))
+    around = dict(zip(CAPSULES.ends.tolist(), CAPSULES.radii.tolist(), strict=True))
     joints = [around.get(joint, around[SMPL22.index("spine1")]) for joint in range(SMPL22.num_joints)]
     ends = [(joint, joint) for joint in range(SMPL22.num_joints)] + _LIMBS
     return torch.tensor(ends), torch.tensor(joints + [around[child] for _, child in _LIMBS])
