@@ -31,7 +31,6 @@ def add_render(commands: Any) -> None:
     parser.add_argument("--title", help="title in the picture; the file's name by default")
     parser.add_argument("--fps", type=float, default=30.0, help="film: frames a second")
     parser.add_argument("--size", default="1280x720", help="film: width and height in pixels")
-    parser.add_argument("--trails", action="store_true", help="film: lines behind hands and pelvis")
     parser.add_argument("--still-camera", action="store_true", help="film: the camera does not follow the people")
     parser.add_argument(
         "--frames", default="8", help="contact sheet: how many moments, 1 to 24, or which, as in 0,30,75"
@@ -49,12 +48,7 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
     out = options.out or options.file.with_suffix(".png")
     title = options.file.stem if options.title is None else options.title
     suffix = out.suffix.lower()
-    style = Style(
-        look=options.look,
-        trails=options.trails and suffix in film.SUFFIXES,
-        names=suffix in film.SUFFIXES,
-        theme=options.theme,
-    )
+    style = Style(look=options.look, names=suffix in film.SUFFIXES, theme=options.theme)
     if suffix in film.SUFFIXES:
         beside = [_motion(path, None) for path in options.beside]
         names = [options.file.stem, *(path.stem for path in options.beside)] if beside else [""]

@@ -35,7 +35,6 @@ class RenderEndpoint(Endpoint):
                 gr.Textbox(Style.look, label=" or ".join(LOOKS)),
                 gr.Textbox(Style.theme, label="light or dark"),
                 gr.Textbox("threequarter", label=" or ".join(VIEWS)),
-                gr.Checkbox(False, label="lines behind hands and pelvis, in a film"),
                 gr.Number(FPS, label="frames a second of a film, 1 to 60"),
                 gr.Number(SIZE[0], label="width in pixels: even, 64 to 1920"),
                 gr.Number(SIZE[1], label="height of a film in pixels: even, 64 to 1080"),
@@ -60,7 +59,6 @@ class RenderEndpoint(Endpoint):
         look: str,
         theme: str,
         view: str,
-        trails: bool,
         fps: float,
         width: float,
         height: float,
@@ -85,7 +83,7 @@ class RenderEndpoint(Endpoint):
                 found = read(Path(motion), choices=reading_choices(animation, file_fps, up, order), longest=LONGEST)
             name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
             out = folder / f"{file_name(name, {})}{suffix}"
-            style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS)
+            style = Style(look=look, theme=theme, names=suffix not in SHEETS)
             if suffix in SHEETS:
                 return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
             if suffix == FIGURE:

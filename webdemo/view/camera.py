@@ -12,7 +12,9 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
+from motion.skeleton import SMPL22
 from motion.things import FIXTURES
+from motion.transforms import heading
 
 Array = NDArray[np.floating]
 
@@ -140,9 +142,8 @@ def _reach(
     about a centre c, where x - c <= s (d - z): a reach is the largest x + s z of all points.
     """
     people = stacked_positions(motion).astype(np.float64)
-    if "head" in (names := motion.skeleton.joint_names):
-        crowns = people[:, :, [names.index("head")]] + np.array([0.0, _CROWN, 0.0])
-        people = np.concatenate([people, crowns], axis=2)
+    crowns = people[:, :, [SMPL22.index("head")]] + np.array([0.0, _CROWN, 0.0])
+    people = np.concatenate([people, crowns], axis=2)
     across, up, back = np.moveaxis(np.concatenate(list(people), axis=1) @ axes.T, -1, 0)  # (T, joints) each
     sides = np.stack([across, -across, up, -up], axis=-1) + slopes * back[..., None] + _AROUND
     reach, depth = sides.max(axis=1), back.mean(axis=1)
@@ -194,11 +195,7 @@ def _heading(motion: Clip | Duet) -> float:
     way = people[-1, 0] - people[0, 0]
     if np.hypot(way[0], way[2]) > 0.05:
         return float(np.arctan2(way[0], way[2]))
-    names = motion.skeleton.joint_names
-    if "left_hip" not in names:
-        return 0.0
-    left = people[0, names.index("left_hip")] - people[0, names.index("right_hip")]
-    return float(np.arctan2(left[0], left[2]) - np.pi / 2)
+    return float(heading(people[0]))
 
 
 def _preset(name: str, along: float) -> tuple[float, float]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.body import Body, vertex_normals
-from motion.skeleton import Skeleton
+from motion.skeleton import SMPL22
 from motion.smoothing import smoothstep
 from motion.vectors import unit
 
@@ -26,7 +26,8 @@ _SAMPLES = 3
 THING_SHADE = 0.3
 """Darkness of a thing's shadow for each square metre of its surface, of which a floor sees a quarter or more."""
 _RADII = {"head": 0.09, "spine1": 0.11, "spine2": 0.11, "spine3": 0.11, "hip": 0.09, "knee": 0.07}
-_RADIUS = 0.05
+_BONES = np.array(SMPL22.bones)
+_BONE_RADII = np.array([_RADII.get(SMPL22.joint_names[joint].rpartition("_")[2], 0.05) for _, joint in SMPL22.bones])
 
 
 def shaded(body: Body, vertices: Array, worn: Worn, lamps: Lamps, camera: Camera) -> Array:
@@ -86,8 +87,8 @@ class Shadow:
         span: metres across the picture.
     """
 
-    def __init__(self, poses: Array, skeleton: Skeleton, surfaces: Sequence[Array], spots: Array | None = None) -> None:
-        """Shades the floor under poses (people, J, 3); the soles of surfaces (V, 3) darken it at contact.
+    def __init__(self, poses: Array, surfaces: Sequence[Array], spots: Array | None = None) -> None:
+        """Shades the floor under poses (people, 22, 3); the soles of surfaces (V, 3) darken it at contact.
 
         ``spots`` (N, 4) are places of things in the world and the square metres about each.
         """
@@ -96,15 +97,13 @@ class Shadow:
         self.span = max(float(np.ceil((high - low).max())), _LEAST_SPAN)
         pixel = self.span / SHADOW_SIZE
         self.origin = np.round(((low + high) / 2 - self.span / 2) / pixel) * pixel
-        bones = np.array(skeleton.bones)
-        radii = np.array([_radius(skeleton.joint_names[joint]) for _, joint in bones])
-        starts, ends = poses[:, bones[:, 0]], poses[:, bones[:, 1]]
+        starts, ends = poses[:, _BONES[:, 0]], poses[:, _BONES[:, 1]]
         along = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
         points = starts[:, :, None] + along[:, None] * (ends - starts)[:, :, None]
         height = points[..., 1]
         length = np.linalg.norm(ends - starts, axis=-1)[..., None] / _SAMPLES
         fade = np.maximum(1 - height / _HIGHEST, 0.0)
-        amount = 6 * radii[:, None] * length * fade**2
+        amount = 6 * _BONE_RADII[:, None] * length * fade**2
         field = self._splats(points.reshape(-1, 3), 0.05 + 0.17 * np.maximum(height, 0).ravel(), amount.ravel())
         if spots is not None and len(spots):
             height = np.maximum(spots[:, 1], 0.0)
@@ -148,7 +147,3 @@ class Shadow:
         upper += dark[corner + 1] * t
         lower += dark[corner + SHADOW_SIZE + 1] * t
         return upper + s * (lower - upper), inside
-
-
-def _radius(joint: str) -> float:
-    return _RADII.get(joint.removeprefix("left_").removeprefix("right_"), _RADIUS)

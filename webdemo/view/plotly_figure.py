@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
 from motion.formats.files import write_text
-from motion.skeleton import Skeleton
+from motion.skeleton import SMPL22
 
 from .theme import THEMES, Colour, Theme
 
@@ -40,7 +40,7 @@ def figure(motion: Clip | Duet, *, title: str = "", theme: str = "light", fps: f
     """A :class:`plotly.graph_objects.Figure` of a motion, with a frame for each moment.
 
     Args:
-        motion: one person or two, of any skeleton.
+        motion: one person or two.
         title: stands above; plain text.
         theme: "light" or "dark".
         fps: frames a second of the figure; it plays at the motion's own speed.
@@ -62,7 +62,7 @@ def figure(motion: Clip | Duet, *, title: str = "", theme: str = "light", fps: f
     people = stacked_positions(motion).astype(np.float64)
     names = motion.roles if isinstance(motion, Duet) else (motion.name,)
     colours, moving = THEMES[theme], list(range(1, 1 + 4 * len(people)))
-    still = _tracks(people[:, moments[0]], motion.skeleton)
+    still = _tracks(people[:, moments[0]])
     made = go.Figure(
         data=[
             _floor(people, colours),
@@ -70,7 +70,7 @@ def figure(motion: Clip | Duet, *, title: str = "", theme: str = "light", fps: f
         ],
         frames=[
             go.Frame(
-                data=[go.Scatter3d(**track) for track in _tracks(people[:, moment], motion.skeleton)],
+                data=[go.Scatter3d(**track) for track in _tracks(people[:, moment])],
                 traces=moving,
                 name=f"{moment / motion.fps:.2f}",
             )
@@ -110,11 +110,11 @@ def _moments(motion: Clip | Duet, fps: float) -> list[int]:
     return np.unique(np.rint(times * motion.fps).astype(int)).tolist()
 
 
-def _tracks(places: Array, skeleton: Skeleton) -> list[dict[str, Array]]:
-    """Where four traces of each person are at one moment; ``places`` is (people, J, 3)."""
+def _tracks(places: Array) -> list[dict[str, Array]]:
+    """Where four traces of each person are at one moment; ``places`` is (people, 22, 3)."""
     found: list[Array] = []
     for joints in places:
-        found += [_lines(joints, skeleton, limb) for limb in LIMBS]
+        found += [_lines(joints, limb) for limb in LIMBS]
         found.append(joints[[np.argmax(joints[:, 1])]] + np.array([0.0, _ABOVE_HEAD, 0.0]))
     return [dict(zip("xyz", track.T, strict=True)) for track in found]
 
@@ -132,12 +132,12 @@ def _styles(names: tuple[str, ...], colours: Theme) -> list[dict[str, Any]]:
     return [{**style, "hoverinfo": "skip", "showlegend": False} for style in found]
 
 
-def _lines(joints: Array, skeleton: Skeleton, limb: str) -> Array:
+def _lines(joints: Array, limb: str) -> Array:
     """(3 · bones, 3): both ends of each bone of a limb, then a gap."""
     rows = [
         row
-        for parent, child in skeleton.bones
-        if _limb_of(skeleton.joint_names[child]) == limb
+        for parent, child in SMPL22.bones
+        if _limb_of(SMPL22.joint_names[child]) == limb
         for row in (joints[parent], joints[child], np.full(3, np.nan))
     ]
     return np.round(np.array(rows).reshape(-1, 3), 4)

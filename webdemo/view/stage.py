@@ -23,15 +23,13 @@ from motion.things.thing import Thing
 
 from .camera import Camera, sampled
 from .light import Shadow, lit, shaded
-from .theme import THEMES, Colour, Theme, mix
+from .theme import THEMES, Colour, Theme
 from .things import drawn_things, hands_of, shadow_spots
 
 Array = NDArray[np.floating]
 Picture = NDArray[np.uint8]
 
 LOOKS = ("bodies", "skeletons", "both")
-_TRAIL_SECONDS = 1.0
-_TRAIL_STEPS = 24
 _GRID = 9
 _COARSE = 2
 """The floor and the sky are computed at every second pixel, lines and people at every pixel."""
@@ -40,6 +38,9 @@ _BLOCK = 32
 """Frames whose bodies are posed at once."""
 _TRANSLUCENT = 0.42
 _ABOVE_HEAD = 0.26
+_BONES = np.array(SMPL22.bones)
+_SIDES = [name.startswith("left_") + 2 * name.startswith("right_") for name in SMPL22.joint_names]
+"""Index of each joint's colour in the theme: 0 middle, 1 left, 2 right."""
 
 
 @dataclass(frozen=True)
@@ -64,8 +65,7 @@ class Style:
     """Drawing style of people.
 
     Attributes:
-        look: "bodies", "skeletons" or "both"; bodies need SMPL's 22 joints.
-        trails: whether pelvis and wrists leave a line of their last second.
+        look: "bodies", "skeletons" or "both".
         names: whether roles stand above the heads.
         theme: "light" or "dark".
 
@@ -74,7 +74,6 @@ class Style:
     """
 
     look: str = "bodies"
-    trails: bool = False
     names: bool = True
     theme: str = "light"
 
@@ -115,10 +114,9 @@ class Stage:
     def __post_init__(self) -> None:
         motion = self.pane.motion
         self.people = stacked_positions(motion).astype(np.float64)
-        dressed = self.style.look != "skeletons" and motion.skeleton.joint_names == SMPL22.joint_names
         # Most of a small picture's triangles would be smaller than its pixels.
         small = self.size[1] < 400
-        self.bodies = self.style.worn(motion, small=small) if dressed else ()
+        self.bodies = self.style.worn(motion, small=small) if self.style.look != "skeletons" else ()
         self.things = drawn_things(motion)
 
     def pictures(self, times: Array, cameras: Sequence[Camera]) -> Iterator[Picture]:
@@ -143,15 +141,13 @@ class Stage:
         renderer = RendererAgg(*self.size, 72)
         canvas = np.asarray(renderer.buffer_rgba())
         frame = seconds * motion.fps
-        shadow = Shadow(pose, motion.skeleton, surfaces, shadow_spots(self.things, frame))
+        shadow = Shadow(pose, surfaces, shadow_spots(self.things, frame))
         canvas.view(np.uint32)[..., 0] = _ground(camera, theme, shadow)
         pen = _Pen(renderer, camera)
         pen.grid(theme)
         if self.pane.ghost is not None:
             for points in sampled(stacked_positions(self.pane.ghost), motion.fps, np.array([seconds]))[:, 0]:
-                pen.bones(points, motion.skeleton, [theme.ghost] * len(motion.skeleton.bones), 2.5)
-        if self.style.trails:
-            self._trails(pen, seconds, theme)
+                pen.lines(points[_BONES], [theme.ghost] * len(_BONES), 2.5)
         worn = theme.given_bodies if given else theme.bodies
         alpha = _TRANSLUCENT if self.style.look == "both" else 1.0
         solid = [
@@ -163,26 +159,14 @@ class Stage:
             shades = lit(surface, mesh.faces, mesh.colours / 255, np.ones(len(surface)), theme.lamps, camera)
             solid.append((mesh.faces, surface, shades, 1.0))
         pen.surfaces(solid)
-        if self.style.look != "bodies" or not self.bodies:
+        if self.style.look != "bodies":
             limbs = theme.given if given else theme.people
             order = np.argsort(-pen.camera.project(pose[:, 0])[1])
             for person in order:
-                pen.skeleton(pose[person], motion.skeleton, limbs[person])
+                pen.skeleton(pose[person], limbs[person])
         if self.style.names:
             self._names(canvas, pose, camera, limbs=theme.people)
         return canvas
-
-    def _trails(self, pen: _Pen, seconds: float, theme: Theme) -> None:
-        motion = self.pane.motion
-        times = np.linspace(max(0.0, seconds - _TRAIL_SECONDS), seconds, _TRAIL_STEPS)
-        names = motion.skeleton.joint_names
-        chosen = [0, *(names.index(n) for n in ("left_wrist", "right_wrist") if n in names)]
-        ways = sampled(self.people, motion.fps, times)
-        shares = np.linspace(0, 1, _TRAIL_STEPS)[1:]
-        for person, way in enumerate(ways):
-            for colour, joint in zip(theme.people[person], chosen, strict=False):
-                fading = [mix(theme.horizon, colour, share) for share in shares]
-                pen.lines(np.stack([way[:-1, joint], way[1:, joint]], axis=1), fading, 1 + 2.5 * shares)
 
     def _names(self, canvas: Picture, pose: Array, camera: Camera, *, limbs: Sequence) -> None:
         motion = self.pane.motion
@@ -252,23 +236,17 @@ class _Pen:
         codes = np.tile(np.array([Path.MOVETO, Path.LINETO], dtype=Path.code_type), len(ends) // 2)
         self.renderer.draw_path(pen, Path(ends, codes), self.nowhere)
 
-    def bones(self, points: Array, skeleton, colours: Sequence[Colour], widths: Array | float) -> None:
-        bones = np.array(skeleton.bones)
-        self.lines(points[bones], colours, widths)
-
-    def skeleton(self, points: Array, skeleton, limbs: tuple[Colour, Colour, Colour]) -> None:
+    def skeleton(self, points: Array, limbs: tuple[Colour, Colour, Colour]) -> None:
         """Thin bones with round joints, left lighter and right darker."""
-        sides = [side_of(name) for name in skeleton.joint_names]
-        bones = np.array(skeleton.bones)
-        far = self.camera.project(points[bones].mean(axis=1))[1]
+        far = self.camera.project(points[_BONES].mean(axis=1))[1]
         widths = np.maximum(0.022 * self.camera.focal / np.maximum(far, 0.1), 1.5)
         order = np.argsort(-far)
-        self.lines(points[bones][order], [limbs[sides[bones[i, 1]]] for i in order], widths[order])
+        self.lines(points[_BONES][order], [limbs[_SIDES[_BONES[i, 1]]] for i in order], widths[order])
         depth = self.camera.project(points)[1]
         dots = np.maximum(0.044 * self.camera.focal / np.maximum(depth, 0.1), 3.0)
         self.lines(
             np.repeat(points[:, None], 2, axis=1) + np.array([[0, 0, 0], [1e-4, 0, 0]]),
-            [limbs[side] for side in sides],
+            [limbs[side] for side in _SIDES],
             dots,
         )
 
@@ -297,11 +275,6 @@ class _Pen:
     def _up(self, pixels: Array) -> Array:
         """Agg's origin is the lower left corner."""
         return pixels * np.array([1.0, -1.0]) + np.array([0.0, self.height])
-
-
-def side_of(joint: str) -> int:
-    """Index of a limb's colour in the theme: 0 middle, 1 left, 2 right."""
-    return 1 if joint.startswith("left_") else 2 if joint.startswith("right_") else 0
 
 
 def _ground(camera: Camera, theme: Theme, shadow: Shadow) -> NDArray[np.uint32]:

@@ -181,7 +181,7 @@ def sheet(target: Target, who: str) -> list[Any]:
     """What ``/render`` is given for a contact sheet."""
     path = target.upload(who, "hands.npz", CLIP.read_bytes())
     file = {"path": path, "meta": {"_type": "gradio.FileData"}}
-    return [file, "png", "bodies", "light", "threequarter", False, 24, 640, 360, "", 0, "", ""]
+    return [file, "png", "bodies", "light", "threequarter", 24, 640, 360, "", 0, "", ""]
 
 
 def test_one_person_cannot_stop_the_events_of_others(target: Target) -> None:
