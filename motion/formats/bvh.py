@@ -22,7 +22,7 @@ from motion.rigs import RigMotion
 from motion.skeleton import SMPL22
 
 from .bvh_numbers import Joint, Motion, find_motion, parse_hierarchy, trees
-from .files import MAX_NUMBERS, ascii_bytes, read_bytes
+from .files import MAX_NUMBERS, read_bytes, text_bytes
 
 Array = NDArray[np.floating]
 
@@ -52,10 +52,10 @@ def read_bvh(
         lengths in metres, axes as in the file.
 
     Raises:
-        InputError: one sentence with the line and joint where the file is wrong, and for more than six people.
+        InputError: one sentence saying where the file is wrong, and for more than six people.
     """
     data, label = read_bytes(source, name)
-    data = ascii_bytes(data, label, "a BVH file")
+    data = text_bytes(data, label, "a BVH file")
     if not re.search(rb"^\s*HIERARCHY\b", data[:4096], re.IGNORECASE):
         raise InputError(f"{label} is not a BVH file: it does not begin with HIERARCHY.")
     line = re.compile(rb"^[ \t]*MOTION[ \t]*\r?$", re.MULTILINE | re.IGNORECASE)

@@ -63,36 +63,20 @@ class Motion:
                 piece = self.data[start:stop]
                 found = np.empty(0) if piece.isspace() else np.fromstring(piece, dtype=np.float64, sep=" ")
             except ValueError:
-                raise InputError(self._bad_word(start, stop, done * self.width + len(rest))) from None
+                raise InputError(
+                    f"{self.label}: after frame {done} something is not a number: export it again."
+                ) from None
             found = np.concatenate([rest, found]) if len(rest) else found
             whole = min(len(found) // self.width, self.frames - done)
             block, rest = found[: whole * self.width].reshape(whole, self.width), found[whole * self.width :]
             if not np.abs(block).max(initial=0) <= _LARGEST:
-                frame, column = np.argwhere(~(np.abs(block) <= _LARGEST))[0]
-                joint = _joint_of_column(self.joints, column)
-                raise InputError(
-                    f"{self.label}: joint {joint} has no usable number in frame {done + frame + 1}: remove that frame."
-                )
+                frame = done + int(np.argmax(~(np.abs(block) <= _LARGEST).all(axis=1))) + 1
+                raise InputError(f"{self.label} has no usable number in frame {frame}: remove that frame.")
             start, done = stop, done + whole
             if whole:
                 yield block
         if done < self.frames:
             raise InputError(short.format(done))
-
-    def _bad_word(self, start: int, stop: int, count: int) -> str:
-        """The first word of a piece that is no number, with its line; ``count`` numbers came before it."""
-        number = self.data.count(b"\n", 0, start)
-        for line in self.data[start:stop].split(b"\n"):
-            number += 1
-            for word in line.split():
-                try:
-                    float(word)
-                except ValueError:
-                    joint = _joint_of_column(self.joints, count % self.width)
-                    shown = word[:20].decode("latin-1")
-                    return f"{self.label}, line {number}: {shown!r} ({joint}) is not a number: export it again."
-                count += 1
-        return f"{self.label}, line {number}: something here is not a number: export it again."
 
 
 def find_motion(data: bytes, start: int, joints: list[Joint], label: str, file_fps: float | None = None) -> Motion:
@@ -142,14 +126,6 @@ def _piece_end(data: bytes, start: int) -> int:
         if found >= 0:
             return found + 1
     return start + _PIECE
-
-
-def _joint_of_column(joints: list[Joint], column: int) -> str:
-    for joint in joints:
-        if column < len(joint.channels):
-            return joint.name
-        column -= len(joint.channels)
-    return joints[-1].name
 
 
 # ---- The HIERARCHY part ----------------------------------------------------------------------------------------------

@@ -19,7 +19,6 @@ from motion.skeleton import SMPL22
 
 MAX_BYTES = 50 * 2**20
 MAX_SECONDS = 600.0
-_PIECE = 2**20
 MAX_FRAMES = 72_000
 """Ten minutes at 120 frames a second."""
 MAX_NUMBERS = 20_000_000
@@ -61,47 +60,15 @@ def read_bytes(
     return data, label
 
 
-def decode_text(data: bytes, label: str, kind: str) -> str:
-    """Text in UTF-8, UTF-16 (with or without its mark) or, failing those, Latin-1.
+def text_bytes(data: bytes, label: str, kind: str) -> bytes:
+    """Text without a mark of its encoding, whose lines end in LF or CR LF; what is ASCII in it is ASCII.
 
     Raises:
-        InputError: for binary data, which is no file of this ``kind`` ("a BVH file").
+        InputError: for binary data, UTF-16 too, which is no file of this ``kind`` ("a BVH file").
     """
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        encoding = "utf-16"
-    elif 3 * data[:200].count(0) > len(data[:200]):
-        encoding = "utf-16-le" if data[1:2] == b"\0" else "utf-16-be"
-    else:
-        encoding, data = "utf-8", data.removeprefix(codecs.BOM_UTF8)
-    text = data.decode(encoding if _is_text(data, encoding) else "latin-1")
-    if "\0" in text:
-        raise InputError(f"{label} is not {kind}: it holds binary data.")
-    return text if "\n" in text else text.replace("\r", "\n")
-
-
-def ascii_bytes(data: bytes, label: str, kind: str) -> bytes:
-    """Text whose ASCII is ASCII: UTF-16 as UTF-8, anything else as it is, without a mark of its encoding.
-
-    Raises:
-        InputError: for binary data, which is no file of this ``kind`` ("a BVH file").
-    """
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff") or 3 * data[:200].count(0) > len(data[:200]):
-        return decode_text(data, label, kind).encode("utf-8")
     if b"\0" in data:
-        raise InputError(f"{label} is not {kind}: it holds binary data.")
+        raise InputError(f"{label} is not {kind}: it holds binary data. Save it as UTF-8 if it is text.")
     return (data if b"\n" in data else data.replace(b"\r", b"\n")).removeprefix(codecs.BOM_UTF8)
-
-
-def _is_text(data: bytes, encoding: str) -> bool:
-    """True if data is in this encoding, read in pieces, as an error keeps a copy of its piece."""
-    decoder = codecs.getincrementaldecoder(encoding)()
-    try:
-        for start in range(0, len(data), _PIECE):
-            decoder.decode(data[start : start + _PIECE])
-        decoder.decode(b"", final=True)
-    except UnicodeDecodeError:
-        return False
-    return True
 
 
 def read_json(text: str | bytes) -> Any:

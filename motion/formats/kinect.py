@@ -20,7 +20,7 @@ from motion.errors import InputError
 from motion.skeleton import NTU25, SBU15
 from motion.smoothing import filled
 
-from .files import MAX_FRAMES, MAX_SECONDS, check_duration, decode_text
+from .files import MAX_FRAMES, MAX_SECONDS, check_duration, text_bytes
 from .recording import ImportChoices, Recording
 
 Array = NDArray[np.floating]
@@ -51,7 +51,7 @@ def read_kinect(data: bytes, label: str, choices: ImportChoices) -> Recording:
     Raises:
         InputError: one sentence with the line where the file is wrong.
     """
-    text = decode_text(data, label, "Kinect text")
+    text = text_bytes(data, label, "Kinect text").decode("latin-1")
     del data
     first = next((line for _, line in _lines(text, label)), "")
     if "," in first:

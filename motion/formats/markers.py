@@ -24,7 +24,7 @@ from motion.skeleton import POINTS17
 from motion.smoothing import filled
 from motion.vectors import unit
 
-from .files import MAX_FRAMES, MAX_NUMBERS, MAX_SECONDS, check_duration, decode_text
+from .files import MAX_FRAMES, MAX_NUMBERS, MAX_SECONDS, check_duration, text_bytes
 from .recording import ImportChoices, Recording
 
 Array = NDArray[np.floating]
@@ -176,7 +176,7 @@ def read_trc(data: bytes, label: str, choices: ImportChoices) -> Recording:
     Raises:
         InputError: one sentence with the line where the file is wrong.
     """
-    text = decode_text(data, label, "a .trc file")
+    text = text_bytes(data, label, "a .trc file").decode("latin-1")
     del data
     head, start = _head(text, label)
     mark = next((mark for mark in "\t;," if mark in head[3]), None)

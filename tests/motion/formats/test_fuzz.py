@@ -60,10 +60,8 @@ VALID = {
     "commas.trc": trc_text(keypoints()).replace("\t", ",").encode(),
     "bones.vrma": glb_motion(ROTATIONS, POSITIONS[:, 0], skinned=False),
     "take.bvh": BVH.encode(),
-    "take-16.bvh": BVH.encode("utf-16"),
     "take-latin.bvh": BVH.replace("mixamorig:Head", "Kopf_é").encode("latin-1"),
     "S001.skeleton": skeleton_text(BODIES).encode(),
-    "S001-16.skeleton": skeleton_text(BODIES).encode("utf-16"),
     "skeleton_pos.txt": sbu_text(np.random.default_rng(1).random((5, 90))).encode(),
 }
 PIECES = [
