@@ -36,8 +36,7 @@ def read(
     """Reads one motion file.
 
     Args:
-        path: the file, or a folder with a file of each of two people; or a file's bytes, and then ``name`` must end in
-            its suffix.
+        path: the file, or its bytes, and then ``name`` must end in its suffix.
         name: the file's name in messages, if not its own.
         choices: what is known of the file.
         longest: seconds; a longer motion is refused before its joints are fitted, which takes about 5 ms a

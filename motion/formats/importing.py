@@ -90,8 +90,7 @@ def import_motion(
     """Reads a motion file and says how.
 
     Args:
-        source: the file, or a folder with one of each of two people; or the file's bytes, and then ``name`` must end
-            in its suffix.
+        source: the file, or its bytes, and then ``name`` must end in its suffix.
         name: what to call it in messages.
         choices: what is known of the file.
 

@@ -114,19 +114,10 @@ def _numbers(words: list[str], where: str) -> Array:
     try:
         values = np.array([float(word) for word in words])
     except ValueError:
-        wrong = next(word for word in words if not _is_number(word))
-        raise InputError(f"{where}: {wrong.strip()[:20]!r} is not a number: export it again.") from None
+        raise InputError(f"{where}: something is not a number: export it again.") from None
     if not np.isfinite(values).all():
         raise InputError(f"{where} holds NaN or an infinite number: remove that frame.")
     return values
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
 
 
 # ---- NTU RGB+D ---------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Two people in two files: a folder or a .zip that holds one file of each.
+"""Two people in two files: a .zip that holds one file of each, or a file beside the other.
 
 InterHuman keeps ``person1/12.npy`` and ``person2/12.npy``, Inter-X ``P1.npz`` and ``P2.npz``, BVH exporters
 ``NAME_a.bvh`` and ``NAME_b.bvh``. The order of the names says who comes first.
@@ -20,7 +20,6 @@ Source = tuple[str | Path | bytes, str | None]
 """A file or its bytes, and what to call it."""
 
 MAX_PARTS = 200
-_DEEPEST = 4
 _TEXTS = (".txt",)
 """Beside motions these are captions, although Kinect's text ends so too."""
 
@@ -54,21 +53,6 @@ def in_zip(source: str | Path | bytes, suffixes: Sequence[str], *, name: str | N
         raise
     except ZIP_ERRORS as error:
         raise InputError(f"{label} is not a whole .zip file, or it is damaged: pack it again.") from error
-
-
-def in_folder(folder: Path, suffixes: Sequence[str]) -> list[Source]:
-    """The one or two motion files of a folder, up to four levels deep.
-
-    Raises:
-        InputError: if there are none or more than two.
-    """
-    files = {
-        path.relative_to(folder).as_posix(): path
-        for depth in range(_DEEPEST)
-        for path in folder.glob("*/" * depth + "*")
-        if path.is_file()
-    }
-    return [(files[part], None) for part in _chosen(list(files), suffixes, folder.name or str(folder))]
 
 
 def partner_file(path: Path) -> Path | None:

@@ -18,7 +18,7 @@ from .glb_writer import write_glb
 from .kinect import read_kinect
 from .markers import read_trc
 from .npz import read_npy, read_npz, write_npy, write_npz
-from .pairs import Source, in_folder, in_zip
+from .pairs import Source, in_zip
 from .recording import ImportChoices, Recording
 from .smpl import smpl_bytes, write_smpl
 from .usd import write_usd
@@ -37,7 +37,6 @@ class Format:
 
     Attributes:
         suffix: with its dot, lower case.
-        label: what people call it.
         reader: gives what a file's bytes hold, by its name in messages and what is known of it; ``None`` where it is
             only written.
         writer: ``writer(duet, path)`` gives the paths it wrote; ``None`` where it is only read.
@@ -45,7 +44,6 @@ class Format:
     """
 
     suffix: str
-    label: str
     reader: Callable[[bytes, str, ImportChoices], Recording] | None = None
     writer: Callable[[Duet, Path], list[Path]] | None = None
     alone: Callable[[Clip, Path], list[Path]] | None = None
@@ -73,19 +71,19 @@ def _smpl_alone(clip: Clip, path: Path) -> list[Path]:
 FORMATS: dict[str, Format] = {
     f.suffix: f
     for f in (
-        Format(".npz", "NumPy archive", read_npz, write_npz, write_npz),
-        Format(".bvh", "Biovision BVH", _rigs, write_bvh, _bvh_alone),
-        Format(".npy", "NumPy array", read_npy, write_npy, write_npy),
-        Format(".skeleton", "Kinect v2 text", read_kinect),
-        Format(".txt", "Kinect text", read_kinect),
-        Format(".glb", "glTF binary", _rigs, write_glb),
-        Format(".vrm", "VRM character", _rigs),
-        Format(".vrma", "VRM animation", _rigs),
-        Format(".usda", "USD as text", None, write_usd),
-        Format(".smpl.npz", "SMPL parameters", None, write_smpl, _smpl_alone),
-        Format(".trc", "Marker trajectories", read_trc),
-        Format(".c3d", "C3D points", read_c3d),
-        Format(".zip", "Two people's files", lambda *_: Recording(())),
+        Format(".npz", read_npz, write_npz, write_npz),
+        Format(".bvh", _rigs, write_bvh, _bvh_alone),
+        Format(".npy", read_npy, write_npy, write_npy),
+        Format(".skeleton", read_kinect),
+        Format(".txt", read_kinect),
+        Format(".glb", _rigs, write_glb),
+        Format(".vrm", _rigs),
+        Format(".vrma", _rigs),
+        Format(".usda", None, write_usd),
+        Format(".smpl.npz", None, write_smpl, _smpl_alone),
+        Format(".trc", read_trc),
+        Format(".c3d", read_c3d),
+        Format(".zip", lambda *_: Recording(())),
     )
 }
 READABLE = [f.suffix for f in FORMATS.values() if f.reader]
@@ -94,16 +92,14 @@ ALONE = tuple(f.suffix for f in FORMATS.values() if f.alone)
 
 
 def recordings(source: str | Path | bytes, name: str | None, choices: ImportChoices) -> tuple[list[Recording], str]:
-    """Reads a file, or two files of one folder or archive; also gives what to call it.
+    """Reads a file, or the two files of an archive; also gives what to call it.
 
     Raises:
         InputError: one sentence saying what is wrong with the file.
     """
     label = Path(name or str(source)).name if name or not isinstance(source, bytes) else ""
     sources: list[Source] = [(source, name)]
-    if not isinstance(source, bytes) and Path(source).is_dir():
-        sources, label = in_folder(Path(source), READABLE), Path(source).name
-    elif Path(label).suffix.lower() == ".zip":
+    if Path(label).suffix.lower() == ".zip":
         sources = in_zip(source, READABLE, name=name)
     return [_recording(*each, choices) for each in sources], label
 

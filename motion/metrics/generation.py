@@ -18,17 +18,16 @@ from numpy.typing import NDArray
 Array = NDArray[np.floating]
 
 
-def r_precision(motion: Array, text: Array, *, rng: np.random.Generator, pool: int = 32, top: int = 3) -> Array:
+def r_precision(motion: Array, text: Array, *, rng: np.random.Generator, pool: int = 32) -> Array:
     """Motion-to-text retrieval: how often the motion's own sentence is among the nearest of a pool.
 
     Args:
         motion, text: (N, D), row by row of one pair; N at least ``pool``.
         rng: draws the pools; what does not fill the last pool is left out.
         pool: sentences a motion is compared with, its own among them.
-        top: largest rank that is counted.
 
     Returns:
-        (top,) share of motions whose sentence ranks at most 1, 2, …, ``top``.
+        (3,) share of motions whose sentence ranks at most 1, 2 and 3.
 
     Raises:
         ValueError: if there are fewer pairs than a pool holds.
@@ -44,7 +43,7 @@ def r_precision(motion: Array, text: Array, *, rng: np.random.Generator, pool: i
         # A tie counts against the motion, so that constant features score what chance would.
         ranks.append((distance <= own).sum(axis=1) - 1)
     place = np.concatenate(ranks)
-    return np.array([(place < k).mean() for k in range(1, top + 1)])
+    return np.array([(place < k).mean() for k in (1, 2, 3)])
 
 
 def frechet_distance(first: Array, second: Array) -> float:
@@ -71,12 +70,12 @@ def multimodal_distance(motion: Array, text: Array) -> float:
     return float(np.linalg.norm(motion - text, axis=-1).mean())
 
 
-def diversity(motion: Array, *, rng: np.random.Generator, pairs: int = 300) -> float:
-    """Mean distance between the features of ``pairs`` random pairs of different motions (N, D)."""
+def diversity(motion: Array, *, rng: np.random.Generator) -> float:
+    """Mean distance between the features of 300 random pairs of different motions (N, D)."""
     if len(motion) < 2:
         raise ValueError("Diversity needs two motions or more.")
-    first = rng.integers(len(motion), size=pairs)
-    second = (first + rng.integers(1, len(motion), size=pairs)) % len(motion)
+    first = rng.integers(len(motion), size=300)
+    second = (first + rng.integers(1, len(motion), size=300)) % len(motion)
     return float(np.linalg.norm(motion[first] - motion[second], axis=-1).mean())
 
 
@@ -88,12 +87,12 @@ def multimodality(motion: Array) -> float:
     return float(np.linalg.norm(motion[:, :half] - motion[:, half : 2 * half], axis=-1).mean())
 
 
-def interval(values: Sequence[float], confidence: float = 0.95) -> tuple[float, float]:
-    """Mean of repeats and half the width of its confidence interval (Student's t); 0 for one repeat."""
+def interval(values: Sequence[float]) -> tuple[float, float]:
+    """Mean of repeats and half the width of its 95 % confidence interval (Student's t); 0 for one repeat."""
     found = np.asarray(values, dtype=np.float64)
     if len(found) < 2:
         return float(found.mean()), 0.0
-    width = scipy.stats.t.ppf(0.5 + confidence / 2, len(found) - 1) * found.std(ddof=1) / np.sqrt(len(found))
+    width = scipy.stats.t.ppf(0.975, len(found) - 1) * found.std(ddof=1) / np.sqrt(len(found))
     return float(found.mean()), float(width)
 
 

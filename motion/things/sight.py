@@ -28,6 +28,8 @@ EYES = np.array([0.0, 0.07, 0.1])
 """Metres from the joint of the head to between the eyes, in the head's frame."""
 ROUND = 0.1
 """Metres of flesh about the joints of a person who stands in the way."""
+FARTHEST = 8.0
+"""Metres beyond which nothing is looked at."""
 _HEAD = SMPL22.index("head")
 
 
@@ -50,14 +52,13 @@ def distance(surface: Trimesh, eye: Array, ahead: Array) -> float:
     return float(along[inside].min(initial=np.inf))
 
 
-def looked_at(things: Sequence[Thing], person: Array, other: Array, *, most: float = 8.0) -> NDArray[np.integer]:
+def looked_at(things: Sequence[Thing], person: Array, other: Array) -> NDArray[np.integer]:
     """The number of the thing that a person's face points to in each frame.
 
     Args:
         things: beside them.
         person: (T, 22, 3) metres, who looks.
         other: (T, 22, 3) metres, who may be in the way.
-        most: metres beyond which nothing is looked at.
 
     Returns:
         (T,) an index into ``things``, ``len(things)`` for the other person, and -1 for nothing.
@@ -68,7 +69,7 @@ def looked_at(things: Sequence[Thing], person: Array, other: Array, *, most: flo
         far = [_to_thing(thing, frame, eye, ahead) for thing in things]
         far.append(distance(_body(other[frame]), eye, ahead))
         nearest = int(np.argmin(far))
-        if far[nearest] <= most:
+        if far[nearest] <= FARTHEST:
             found[frame] = nearest
     return found
 

@@ -209,14 +209,12 @@ class Track:
 
     Attributes:
         fps: frames a second.
-        start: seconds of the film at the first frame.
         world: (T, 33, 3) as in :class:`Landmarks`.
         pixels: (T, 33, 2) from the upper left corner.
         seen: (T, 33) 0 to 1; 0 where the person was not found.
     """
 
     fps: float
-    start: float
     world: Array = field(repr=False)
     pixels: Array = field(repr=False)
     seen: Array = field(repr=False)
@@ -256,4 +254,4 @@ def track_of(landmarks: Landmarks) -> Track:
         return mixed
 
     seen = np.nan_to_num(between(landmarks.seen))
-    return Track(fps, float(known[0]), between(landmarks.world), between(landmarks.pixels), seen)
+    return Track(fps, between(landmarks.world), between(landmarks.pixels), seen)

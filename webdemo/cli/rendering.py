@@ -40,7 +40,7 @@ def add_render(commands: Any) -> None:
 
 
 def render(options: argparse.Namespace) -> dict[str, Any]:
-    """Draws a motion file; two people with a file each may be given as two files, by the first, or as a folder."""
+    """Draws a motion file; two people with a file each may be given as two files or by the first."""
     from webdemo.view import film, plotly_figure, sheet
     from webdemo.view.stage import Pane, Style
 

@@ -71,7 +71,7 @@ WRONG = {
     "no Kinect text": (b"hello world", "begins neither"),
     "huge count": (b"999999999\n1\n", "lasts"),
     "cut short": (b"3\n1\nid\n25\n0 0 0", "cut short"),
-    "words": (b"1\n1\nid\n25\n0 a 0\n", "line 5: 'a' is not a number"),
+    "words": (b"1\n1\nid\n25\n0 a 0\n", "line 5: something is not a number"),
     "nan": (b"1\n1\nid\n25\n" + b"0 nan 0\n" * 25, "NaN in every frame"),
     "short row": (b"1,0.5,0.5\n", "90 are needed"),
     "far": (("1," + ",".join(["1e9"] * 90)).encode(), "away"),

@@ -54,4 +54,4 @@ def test_the_nearer_of_two_is_looked_at_and_a_person_is_in_the_way():
     assert looked_at([far, near], facing(0), FAR).tolist() == [1]
     other = facing(180, (0, 0, 0.9))
     assert looked_at([far, near], facing(0), other).tolist() == [2]
-    assert looked_at([far], facing(0), FAR, most=2.0).tolist() == [-1], "it is too far off"
+    assert looked_at([window((0, 0, 9))], facing(0), FAR).tolist() == [-1], "it is too far off"
