@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import io
+import zipfile
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
 
-from .bvh import read_bvh
-from .bvh_writer import bvh_text, write_bvh
+from .arrays import ZIP_ERRORS
+from .bvh import bvh_text, read_bvh, write_bvh
 from .c3d_points import read_c3d
-from .files import read_bytes, write_files
+from .files import MAX_BYTES, read_bytes, write_files
 from .glb_motion import read_glb
 from .glb_writer import write_glb
 from .kinect import read_kinect
 from .markers import read_trc
 from .npz import read_npy, read_npz, write_npy, write_npz
-from .pairs import Source, in_zip
 from .recording import ImportChoices, Recording
 from .smpl import smpl_bytes, write_smpl
 from .usd import write_usd
@@ -98,9 +99,9 @@ def recordings(source: str | Path | bytes, name: str | None, choices: ImportChoi
         InputError: one sentence saying what is wrong with the file.
     """
     label = Path(name or str(source)).name if name or not isinstance(source, bytes) else ""
-    sources: list[Source] = [(source, name)]
+    sources: Sequence[tuple[str | Path | bytes, str | None]] = [(source, name)]
     if Path(label).suffix.lower() == ".zip":
-        sources = in_zip(source, READABLE, name=name)
+        sources = _in_zip(source, name)
     return [_recording(*each, choices) for each in sources], label
 
 
@@ -141,3 +142,77 @@ def unknown(suffix: str, verb: str, known: list[str]) -> str:
     """The message on a suffix that is not read or written."""
     shown = f"Files ending in {suffix!r}" if suffix else "Files without an ending"
     return f"{shown} cannot be {verb}: use {', '.join(known[:-1])} or {known[-1]}."
+
+
+# ---- Two people in two files: a .zip that holds one file of each, or a file beside the other -------------------------
+# InterHuman keeps ``person1/12.npy`` and ``person2/12.npy``, Inter-X ``P1.npz`` and ``P2.npz``, BVH exporters
+# ``NAME_a.bvh`` and ``NAME_b.bvh``. The order of the names says who comes first.
+MAX_PARTS = 200
+_TEXTS = (".txt",)
+"""Beside motions these are captions, although Kinect's text ends so too."""
+
+
+def _in_zip(source: str | Path | bytes, name: str | None) -> list[tuple[bytes, str]]:
+    """The bytes of the one or two motion files of an archive, and what to call each.
+
+    Raises:
+        InputError: for a damaged or large archive, or one without motion or with more than two files of it.
+    """
+    data, label = read_bytes(source, name)
+    if data.count(b"PK\x01\x02") > MAX_PARTS:
+        raise InputError(f"{label} holds more than {MAX_PARTS} parts: pack the two people's files alone.")
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            parts = {info.filename: info for info in archive.infolist() if not info.is_dir()}
+            chosen = _chosen(list(parts), label)
+            if sum(parts[part].file_size for part in chosen) > MAX_BYTES:
+                raise InputError(f"{label} would unpack to more than {MAX_BYTES // 2**20} MB: cut the motion.")
+            found: list[tuple[bytes, str]] = []
+            for part in chosen:
+                with archive.open(parts[part]) as stream:  # gives no more than the size that was checked
+                    found.append((stream.read(MAX_BYTES + 1), _shown(part)))
+            return found
+    except InputError:
+        raise
+    except ZIP_ERRORS as error:
+        raise InputError(f"{label} is not a whole .zip file, or it is damaged: pack it again.") from error
+
+
+def partner_file(path: Path) -> Path | None:
+    """The second person's file beside the first's, by the names that data sets use; None if there is none."""
+    if path.stem.endswith("_a"):
+        other = path.with_stem(path.stem[:-2] + "_b")
+    elif path.name.lower().endswith("_a.smpl.npz"):
+        other = path.with_name(path.name[: -len("_a.smpl.npz")] + "_b.smpl.npz")
+    elif path.parent.name == "person1":
+        other = path.parent.with_name("person2") / path.name
+    elif path.stem == "P1":
+        other = path.with_stem("P2")
+    else:
+        return None
+    return other if other.is_file() else None
+
+
+def _chosen(names: Sequence[str], label: str) -> list[str]:
+    """The names of the motion files, in order."""
+    suffixes = set(READABLE) - {".zip"}
+    motions = sorted(
+        name
+        for name in names
+        if PurePosixPath(name).suffix.lower() in suffixes
+        and not any(part.startswith((".", "__")) for part in PurePosixPath(name).parts)
+    )
+    if len(motions) > 2 or any(not name.lower().endswith(_TEXTS) for name in motions):
+        motions = [name for name in motions if not name.lower().endswith(_TEXTS)]
+    if not 1 <= len(motions) <= 2:
+        raise InputError(
+            f"{label} holds {len(motions) or 'no'} motion files: put the two people of one take into it, such as "
+            "P1.npz and P2.npz."
+        )
+    return motions
+
+
+def _shown(part: str) -> str:
+    """A part's name in messages: printable, its last two steps."""
+    steps = PurePosixPath(part).parts[-2:]
+    return "".join(letter if letter.isprintable() else "?" for letter in "/".join(steps))[-80:]

@@ -8,24 +8,11 @@ from functools import lru_cache
 
 from motion.errors import InputError
 
+from . import kinds
 from .kinds import FIXTURES, FURNITURE, HELD, HIGH, KINDS, LEAVES, WIDE
-from .thing import MOST_FACES, MOST_THINGS, MOST_VERTICES, Mesh, Thing
+from .thing import MOST_THINGS, Mesh, Thing
 
-__all__ = [
-    "FIXTURES",
-    "FURNITURE",
-    "HELD",
-    "HIGH",
-    "KINDS",
-    "LEAVES",
-    "MOST_FACES",
-    "MOST_THINGS",
-    "MOST_VERTICES",
-    "WIDE",
-    "Mesh",
-    "Thing",
-    "shape",
-]
+__all__ = ["FIXTURES", "FURNITURE", "HELD", "KINDS", "MOST_THINGS", "Mesh", "Thing", "kinds", "shape"]
 
 
 @lru_cache(maxsize=64)

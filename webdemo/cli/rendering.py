@@ -86,7 +86,7 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
 def _motion(file: Path, second: Path | None, choices: ImportChoices | None = None) -> Clip | Duet:
     """The motion of a file, or of a pair of files of which the second may be left to be found."""
     from motion.formats import read, read_pair
-    from motion.formats.pairs import partner_file
+    from motion.formats.registry import partner_file
 
     second = second or partner_file(file)
     if second is not None and choices is not None and choices.animation is not None:
