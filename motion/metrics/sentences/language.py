@@ -71,17 +71,6 @@ def _times(m: Motion, mask: Mask) -> int:
 
 
 @condition
-def until(m: Motion, going: Mask, event: Mask, share: float = 0.6) -> bool:
-    """``event`` comes, not at once; ``going`` holds for that share of the second before it, and for less after it."""
-    found = [i for i, j in stretches(event, m.fps) if j - i >= SHORTEST * m.fps and i >= 0.4 * m.fps]
-    if not found:
-        return False
-    before = going[max(0, round(found[0] - m.fps)) : found[0]]
-    after = going[found[0] + round(SLACK * m.fps) :]
-    return bool(before.mean() >= share and (after.size == 0 or after.mean() < share))
-
-
-@condition
 def start(m: Motion, mask: Mask) -> bool:
     """It holds for most of the first half second."""
     return bool(mask[: round(EDGE * m.fps)].mean() > 0.5)

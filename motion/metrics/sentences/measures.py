@@ -12,7 +12,7 @@ import numpy as np
 from .joints import Array, Motion
 from .poses import _lift, _wrist_speed
 from .shapes import lean_to
-from .touches import _hand_gaps, elbow_gap, to_joints
+from .touches import _hand_gaps, to_joints
 
 MEASURES: dict[str, Callable[..., str]] = {}
 """The measures by the name of their predicate."""
@@ -33,9 +33,9 @@ def _cm(metres: float) -> str:
     return f"{100 * metres:.0f} cm" if metres < 1 else f"{metres:.1f} m"
 
 
-def _gone(m: Motion, rate: Array, least: float = 0.1) -> float:
-    """Metres at a rate (m/s) of ``least`` or more."""
-    return float(rate[rate > least].sum() / m.fps)
+def _gone(m: Motion, rate: Array) -> float:
+    """Metres at a rate of 0.1 m/s or more."""
+    return float(rate[rate > 0.1].sum() / m.fps)
 
 
 # ---- two bodies ------------------------------------------------------------------------------------------
@@ -44,21 +44,11 @@ def _hands(m: Motion, *_: object, **__: object) -> str:
     return f"hands {_cm(float(_hand_gaps(m).min()))} apart"
 
 
-@measure("elbows_meet")
-def _elbows(m: Motion, *_: object, **__: object) -> str:
-    return f"elbows {_cm(float(elbow_gap(m).min()))} apart"
-
-
 @measure("hand_on", "both_hands_on", "arm_on")
 def _hand_on(m: Motion, who: int, part: str, side: str = "any", gap: float = 0.0) -> str:
     hands = m.hands(who, side if isinstance(side, str) else "any")
     gaps = to_joints(m, hands, 1 - who, part)
     return f"hand {_cm(float(gaps.min()))} from the {part}"
-
-
-@measure("foot_on")
-def _foot_on(m: Motion, who: int, part: str, gap: float = 0.0) -> str:
-    return f"foot {_cm(float(to_joints(m, m.pair(who, 'foot'), 1 - who, part).min()))} from the {part}"
 
 
 @measure("hand_to_own")
@@ -101,7 +91,7 @@ def _orbits(m: Motion, who: int, *_: object) -> str:
 
 
 # ---- ways ------------------------------------------------------------------------------------------------
-@measure("walks", "goes_at", "goes_ahead", "goes_way", "goes_metres", "sidesteps", "steps_aside", "passes", "follows")
+@measure("walks", "goes_ahead", "goes_way", "goes_metres", "sidesteps", "steps_aside", "passes", "follows")
 def _walks(m: Motion, who: int, *_: object, **__: object) -> str:
     return f"{_NAMES[who]} goes {_gone(m, m.speeds[who]):.1f} m"
 
@@ -133,7 +123,7 @@ def _stays(m: Motion, who: int, metres: float = 0.0) -> str:
     return f"{_NAMES[who]} gets {_cm(float(away))} away from where they began"
 
 
-@measure("turns", "turns_to", "turns_away", "turns_way", "turned", "revolves")
+@measure("turns", "turns_to", "turns_away", "turns_way", "revolves")
 def _turns(m: Motion, who: int, *_: object, **__: object) -> str:
     return f"{_NAMES[who]} turns by {np.ptp(m.headings[who]):.0f}°"
 

@@ -61,16 +61,11 @@ def hands_meet(m: Motion, a_side: str = "any", b_side: str = "any", gap: float =
     return _hand_gaps(m)[np.ix_(rows, columns)].min(axis=(0, 1)) < gap
 
 
-def elbow_gap(m: Motion) -> Array:
-    """(T,) metres between the nearest elbows of the two."""
-    mine, theirs = (m.pair(who, "elbow") for who in (0, 1))
-    return np.asarray(np.linalg.norm(mine[:, None] - theirs[None], axis=-1).min(axis=(0, 1)))
-
-
 @predicate
 def elbows_meet(m: Motion, gap: float = 0.18) -> Mask:
     """An elbow of a and an elbow of b meet, whose joints are inside the arms."""
-    return elbow_gap(m) < gap
+    mine, theirs = (m.pair(who, "elbow") for who in (0, 1))
+    return np.linalg.norm(mine[:, None] - theirs[None], axis=-1).min(axis=(0, 1)) < gap
 
 
 @predicate

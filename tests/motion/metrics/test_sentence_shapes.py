@@ -177,17 +177,12 @@ def test_conditions_are_joined_by_and_and_or() -> None:
         check("not happens(goes_ahead(b))", motion)
 
 
-def test_a_count_is_exact_and_until_needs_an_event_that_ends_it() -> None:
+def test_a_count_is_exact() -> None:
     motion = duet()
     mask = np.zeros(FRAMES, dtype=bool)
     mask[20:30] = mask[60:70] = True
-    exactly, until = CONDITIONS["exactly"], CONDITIONS["until"]
+    exactly = CONDITIONS["exactly"]
     assert exactly(motion, mask, 2) and not exactly(motion, mask, 1) and not exactly(motion, mask, 3)
-    going, event = np.arange(FRAMES) < 62, np.arange(FRAMES) >= 60
-    assert until(motion, going, event)
-    assert not until(motion, np.ones(FRAMES, dtype=bool), event), "it goes on"
-    assert not until(motion, ~going, event), "it had not begun"
-    assert not until(motion, going, ~event & False), "nothing ends it"
 
 
 def test_a_lean_is_measured_in_the_way_that_is_asked_for() -> None:
