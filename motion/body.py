@@ -17,7 +17,6 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .clip import Clip
 from .errors import InputError
 from .hands import NUMBERS, SHAPES, Fingers
 from .kinematics import swing
@@ -105,20 +104,16 @@ def load_body(name: str, *, small: bool = False) -> Body:
         raise InputError(f"The body {path.name} cannot be read ({error}): restore static/bodies.") from error
 
 
-def skin(body: Body, motion: Clip | Array, hands: Array | None = None) -> Array:
+def skin(body: Body, positions: Array, hands: Array | None = None) -> Array:
     """The body's surface in each frame.
 
     Args:
-        motion: a clip on SMPL22, or positions (T, 22, 3) in metres.
+        positions: (T, 22, 3) metres.
         hands: (T, 2, 20) finger shapes as :func:`motion.hands.angles` gives them; relaxed by default.
 
     Returns:
         (T, V, 3) float32 metres.
-
-    Raises:
-        InputError: for joints other than SMPL22's.
     """
-    positions = _positions(motion)
     turned = bone_rotations(positions) @ body.turns
     surface = np.zeros((len(positions), len(body.vertices), 3), dtype=np.float32)
     for joint in range(SMPL22.num_joints):
@@ -152,7 +147,7 @@ def vertex_normals(vertices: Array, faces: NDArray[np.integer]) -> Array:
     return unit(total)
 
 
-def bone_rotations(motion: Clip | Array) -> Array:
+def bone_rotations(positions: Array) -> Array:
     """World rotation of each bone against SMPL22's T-pose, from joint positions only.
 
     Bones point where the positions say. Their twist follows from their neighbours: trunk and pelvis turn with
@@ -161,12 +156,12 @@ def bone_rotations(motion: Clip | Array) -> Array:
     bend; the head turns to the side on which it lies in front of the neck, and looks ahead if only the neck bends.
 
     Args:
-        motion: a clip on SMPL22, or positions (T, 22, 3) in metres, Y up, floor at 0.
+        positions: (T, 22, 3) metres, Y up, floor at 0.
 
     Returns:
         (T, 22, 3, 3) world rotations.
     """
-    positions = _positions(motion)
+    positions = np.asarray(positions, dtype=np.float64)
     world = np.empty((*positions.shape, 3))
     _turn_trunk(positions, world)
     _turn_head(positions, world)
@@ -191,14 +186,6 @@ _STEEP_ARM = (0.25, 0.6)
 """Sines of a forearm's way down between which its hand begins to lie flat and lies flat."""
 _LOW_FOOT = (0.03, 0.1)
 """Heights in metres of the ball of the foot between which a sole stops lying flat."""
-
-
-def _positions(motion: Clip | Array) -> Array:
-    positions = np.asarray(motion.positions if isinstance(motion, Clip) else motion, dtype=np.float64)
-    names = motion.skeleton.joint_names if isinstance(motion, Clip) else SMPL22.joint_names
-    if positions.ndim != 3 or positions.shape[1:] != (22, 3) or names != SMPL22.joint_names:
-        raise InputError(f"Bodies stand on SMPL22's 22 joints, not on {positions.shape}: retarget the motion.")
-    return positions
 
 
 def _toward(positions: Array, a: str, b: str) -> Array:

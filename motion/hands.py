@@ -8,7 +8,7 @@ is said.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import Any
 
 import numpy as np
@@ -71,10 +71,6 @@ class Grip:
             raise InputError(f"A grip is of person 0 or 1, of the left or right hand, and one of {', '.join(SHAPES)}.")
         if not (type(self.start) is int and type(self.stop) is int and 0 <= self.start < self.stop):
             raise InputError("A grip has a first frame and one after its last, from 0 on.")
-
-    def to_list(self) -> list[Any]:
-        """As plain JSON: person, side, shape, start, stop."""
-        return [self.person, self.side, self.shape, self.start, self.stop]
 
 
 def grips_of(values: Any) -> tuple[Grip, ...]:
@@ -183,5 +179,5 @@ class Fingers:
 
 
 def to_lists(grips: Sequence[Grip]) -> list[list[Any]]:
-    """Grips as plain JSON."""
-    return [grip.to_list() for grip in grips]
+    """Grips as plain JSON: person, side, shape, start and stop of each."""
+    return [list(astuple(grip)) for grip in grips]

@@ -35,18 +35,16 @@ class SkeletonFit(NamedTuple):
 
     Attributes:
         positions: (T, 22, 3) metres.
-        rotations: (T, 22, 3, 3) local rotations.
         error: median distance in metres between the recorded joints and the fit.
     """
 
     positions: Array
-    rotations: Array
     error: float
 
 
 def fit_skeleton(
     positions: Array,
-    joints: Layout | Skeleton | str | Sequence[str],
+    joints: Layout | Skeleton | Sequence[str],
     *,
     weights: Array | None = None,
     fps: float = 30.0,
@@ -62,8 +60,7 @@ def fit_skeleton(
 
     Args:
         positions: (T, J, 3) metres, Y up, floor at 0, in the layout's order.
-        joints: a layout, a skeleton that has one (SBU15, K3HI15, NTU25, CMU17), its name, or J names of
-            SMPL22 joints.
+        joints: a layout, a skeleton (SBU15, K3HI15, NTU25, CMU17), or J names of SMPL22 joints.
         weights: trust in each joint, broadcast to (T, J, 3); 0 leaves a joint out, e.g. where it was lost.
         fps: frames a second of ``positions``.
         noise: metres by which a coordinate is uncertain; by default estimated from how much bones stretch,
@@ -94,23 +91,22 @@ def fit_skeleton(
     legs = _leg_length(SMPL22.offsets)
     size = _leg_length(body.offsets) / legs
     root = root / np.array([scale or size, size, scale or size])
-    return SkeletonFit(forward_kinematics(rotations, root), rotations, error)
+    return SkeletonFit(forward_kinematics(rotations, root), error)
 
 
 def pose_bodies(
-    positions: Array, joints: Layout | str, *, body: Skeleton | None = None
+    positions: Array, layout: Layout, *, body: Skeleton | None = None
 ) -> tuple[Array, Array, Skeleton, float]:
     """Poses a body frame by frame, from the directions of its bones: fast, and without regard to other frames.
 
     Args:
         positions: (T, J, 3) metres in the layout's order, finite.
-        joints: a layout or its name.
+        layout: of the joints.
         body: the person's body; measured over the frames by default.
 
     Returns:
         (T, 22, 3, 3) local rotations, (T, 3) the root's path, the body, and the ratio of its legs to SMPL22's.
     """
-    layout = find_layout(joints)
     target = np.asarray(positions, dtype=np.float64)[:, layout.columns]
     if body is None:
         body = _measured_body(target, layout, _noise(target, layout))
@@ -130,7 +126,7 @@ def _check_fit(positions: Array, layout: Layout) -> None:
         raise InputError("A body cannot be posed without both hips and knees: give at least those joints.")
 
 
-def body_scale(positions: Array, joints: Layout | Skeleton | str | Sequence[str]) -> float:
+def body_scale(positions: Array, joints: Layout | Skeleton | Sequence[str]) -> float:
     """Ratio of a person's leg lengths to SMPL22's: 1.05 is a body 5 % larger.
 
     Args:

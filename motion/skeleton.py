@@ -293,20 +293,16 @@ LAYOUTS: dict[str, Layout] = {
 """The layouts that a fit knows by the name of their skeleton."""
 
 
-def find_layout(joints: Layout | Skeleton | str | Sequence[str]) -> Layout:
-    """The layout of a skeleton, of a skeleton's name, or of a list of SMPL22 joint names.
+def find_layout(joints: Layout | Skeleton | Sequence[str]) -> Layout:
+    """The layout of a skeleton, or of a list of SMPL22 joint names.
 
     Raises:
-        InputError: for a skeleton without a layout or a joint that SMPL22 does not have.
+        InputError: for a joint that SMPL22 does not have.
     """
     if isinstance(joints, Layout):
         return joints
     if isinstance(joints, Skeleton):
-        joints = joints.name
-    if isinstance(joints, str):
-        if joints not in LAYOUTS:
-            raise InputError(f"No joint layout is called {joints!r}: use one of {', '.join(sorted(LAYOUTS))}.")
-        return LAYOUTS[joints]
+        return LAYOUTS[joints.name]
     unknown = [name for name in joints if name not in SMPL22.joint_names]
     if unknown:
         raise InputError(f"The joint {unknown[0]!r} is not one of the 22: use {', '.join(SMPL22.joint_names)}.")

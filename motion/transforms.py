@@ -10,7 +10,7 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
-from .skeleton import SMPL22, Skeleton
+from .skeleton import LEGS, SMPL22
 
 Array = NDArray[np.floating]
 
@@ -23,14 +23,13 @@ def heading_matrix(angle: float | Array) -> Array:
     return np.stack(rows, axis=-1).reshape(*angle.shape, 3, 3)
 
 
-def facing(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
+def facing(positions: Array) -> Array:
     """(…, T, 3) unit vector in the XZ plane that the body faces: Y × (left → right reversed).
 
     Across runs from the right hip to the left hip, as in InterGen's canonical frame; a degenerate
     frame (hips above each other) faces +Z.
     """
-    left, right = skeleton.index("left_hip"), skeleton.index("right_hip")
-    across = positions[..., left, :] - positions[..., right, :]
+    across = positions[..., LEGS[0][0], :] - positions[..., LEGS[1][0], :]
     forward = np.stack([-across[..., 2], np.zeros_like(across[..., 0]), across[..., 0]], axis=-1)
     # Y × (right − left) = forward for a body whose left is at +X when it faces +Z.
     length = np.linalg.norm(forward, axis=-1, keepdims=True)
@@ -43,32 +42,28 @@ def heading(positions: Array) -> Array:
     return np.arctan2(forward[..., 0], forward[..., 2])
 
 
-def turn(positions: Array, angle: float, centre: Array | None = None) -> Array:
-    """Turns positions by ``angle`` radians about the vertical axis through ``centre`` (3,)."""
-    matrix = heading_matrix(angle)
-    if centre is None:
-        return positions @ matrix.T
-    return (positions - centre) @ matrix.T + centre
+def turn(positions: Array, angle: float) -> Array:
+    """Turns positions by ``angle`` radians about the vertical axis through the origin."""
+    return positions @ heading_matrix(angle).T
 
 
-def canonicalize(positions: Array, *, frame: int = 0) -> Array:
-    """Moves a scene so that the first person stands at the origin facing +Z at one frame.
+def canonicalize(positions: Array) -> Array:
+    """Moves a scene so that the first person stands at the origin facing +Z at the first frame.
 
     Args:
         positions: (P, T, 22, 3) people of one scene, or (T, 22, 3) for one person.
-        frame: at which frame.
 
     Returns:
         the same shape, with that person's root at XZ = 0, facing +Z. Heights do not change.
     """
     reference = positions[0] if positions.ndim == 4 else positions
-    root = reference[frame, 0] * np.array([1.0, 0.0, 1.0])
-    return turn(positions - root, -float(heading(reference[frame])))
+    root = reference[0, 0] * np.array([1.0, 0.0, 1.0])
+    return turn(positions - root, -float(heading(reference[0])))
 
 
-def mirrored(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
+def mirrored(positions: Array) -> Array:
     """The motion as a mirror in the plane X = 0 shows it: X negated, left and right joints exchanged."""
-    return positions[..., list(skeleton.mirror), :] * np.array([-1.0, 1.0, 1.0])
+    return positions[..., list(SMPL22.mirror), :] * np.array([-1.0, 1.0, 1.0])
 
 
 def resample(positions: Array, fps: float, new_fps: float) -> Array:

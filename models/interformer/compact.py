@@ -36,10 +36,10 @@ from torch import Tensor, nn
 from models.interformer.network import JOINTS, skeleton_mask
 from models.layers import FeedForward, sinusoids
 from models.weights_io import WeightsFolder, load_network
-from motion.skeleton import find_layout
+from motion.skeleton import LAYOUTS
 
 FPS = 15.0
-JOINTS_15 = tuple(find_layout("sbu15").joints)
+JOINTS_15 = LAYOUTS["sbu15"].joints
 """The SMPL22 joint of each of SBU's 15."""
 ROOT = 2
 """The torso, whose position stands for the body's."""

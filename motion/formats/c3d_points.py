@@ -28,7 +28,8 @@ _MOST_BLOCKS = 255
 """Of parameters: their number is one byte."""
 _MOST_POINTS = 1000
 _MOST_VALUES = 16 * 2**20
-_DEC, _MIPS = 85, 86
+_OTHERS = (85, 86)
+"""Kinds of machine, DEC and MIPS, whose numbers are stored in other ways than Intel's."""
 _TYPES = {-1: "S1", 1: "u1", 2: "i2", 4: "f4"}
 
 
@@ -55,13 +56,13 @@ def read_c3d(data: bytes, label: str, choices: ImportChoices) -> Recording:
 def _points(data: bytes, label: str, fps: float | None) -> tuple[list[str], Array, float, str]:
     """Names, (T, P, 3) float32 with NaN where a point was not seen, frames a second and the unit's name."""
     parameters = _BLOCK * (max(data[0], 1) - 1)
-    machine = data[parameters + 3]
-    order = ">" if machine == _MIPS else "<"
-    used, analog, first, last, _, _, start, _ = struct.unpack_from(f"{order}5H4s2H", data, 2)
-    found = dict(_parameters(data[: parameters + _MOST_BLOCKS * _BLOCK], parameters + 4, machine))
-    rate = fps or float(found["POINT:RATE"][0] if "POINT:RATE" in found else _floats(data[20:24], machine)[0])
+    if data[parameters + 3] in _OTHERS:
+        raise InputError(f"{label} holds the numbers of a DEC or MIPS machine: save it again as Intel's.")
+    used, analog, first, last, _, scaled, start, _, often = struct.unpack_from("<5Hf2Hf", data, 2)
+    found = dict(_parameters(data[: parameters + _MOST_BLOCKS * _BLOCK], parameters + 4))
+    rate = fps or float(found["POINT:RATE"][0] if "POINT:RATE" in found else often)
     count = int(found["POINT:USED"][0]) if "POINT:USED" in found else used
-    scale = float(found["POINT:SCALE"][0] if "POINT:SCALE" in found else _floats(data[12:16], machine)[0])
+    scale = float(found["POINT:SCALE"][0] if "POINT:SCALE" in found else scaled)
     if last == 0xFFFF and "TRIAL:ACTUAL_END_FIELD" in found:  # two words, as 16 bits are not enough
         low, high = (int(word) % 2**16 for word in found["TRIAL:ACTUAL_END_FIELD"][:2])
         last = low + 2**16 * high
@@ -75,12 +76,11 @@ def _points(data: bytes, label: str, fps: float | None) -> tuple[list[str], Arra
     check_duration(frames, rate, label)
     if 4 * count * frames > _MOST_VALUES:
         raise InputError(f"{label} holds {frames:,} frames of {count} points: cut it or lower its frame rate.")
-    dtype = np.dtype(f"{order}f4" if scale < 0 else f"{order}i2")
+    dtype = np.dtype("<f4" if scale < 0 else "<i2")
     row, begin = dtype.itemsize * (4 * count + analog), _BLOCK * (start - 1)
     if begin < _BLOCK or begin + frames * row > len(data):
         raise ValueError
-    raw = np.ndarray((frames, count, 4), dtype, data, begin, (row, 4 * dtype.itemsize, dtype.itemsize))
-    values = _floats(np.ascontiguousarray(raw).tobytes(), machine).reshape(raw.shape) if scale < 0 else raw
+    values = np.ndarray((frames, count, 4), dtype, data, begin, (row, 4 * dtype.itemsize, dtype.itemsize))
     places = values[..., :3].astype(np.float32)
     places *= np.float32(1.0 if scale < 0 else scale)
     places[~(values[..., 3] >= 0)] = np.nan  # no camera saw it
@@ -96,16 +96,15 @@ def _names(found: dict[str, Any], count: int) -> list[str]:
     return [*names[:count], *(f"point {number}" for number in range(len(names), count))]
 
 
-def _parameters(data: bytes, at: int, machine: int) -> Iterator[tuple[str, Any]]:
+def _parameters(data: bytes, at: int) -> Iterator[tuple[str, Any]]:
     """ "GROUP:NAME" and values of each parameter; texts are arrays of bytes. None reaches into the next."""
-    order = ">" if machine == _MIPS else "<"
     groups: dict[int, str] = {}
     later: list[tuple[int, str, int, int]] = []
     while at + 4 < len(data):
         length, group = struct.unpack_from("bb", data, at)
         length = abs(length)
         name = data[at + 2 : at + 2 + length].decode("latin-1").strip().upper()
-        (step,) = struct.unpack_from(f"{order}H", data, at + 2 + length)
+        (step,) = struct.unpack_from("<H", data, at + 2 + length)
         if length == 0:
             break
         begin, at = at + 4 + length, (at + 2 + length + step if step else len(data))
@@ -116,11 +115,11 @@ def _parameters(data: bytes, at: int, machine: int) -> Iterator[tuple[str, Any]]
     for group, name, place, end in later:
         kind, count = struct.unpack_from("bB", data, place)
         sizes = data[place + 2 : place + 2 + count]
-        dtype = np.dtype(order + _TYPES.get(kind, "u1"))
+        dtype = np.dtype(_TYPES.get(kind, "u1")).newbyteorder("<")
         total = math.prod(sizes)  # 1 for a scalar
         raw = data[place + 2 + count : min(place + 2 + count + total * dtype.itemsize, end)]
         if len(raw) == total * dtype.itemsize and total:
-            values = _floats(raw, machine) if kind == 4 else np.frombuffer(raw, dtype)
+            values = np.frombuffer(raw, dtype)
             yield (
                 f"{groups.get(group, '')}:{name}",
                 values.reshape(-1, sizes[0] if kind == -1 and sizes else 1) if kind == -1 else values,
@@ -132,11 +131,3 @@ def _texts(values: Any) -> list[str]:
     if values is None or getattr(values, "dtype", None) != np.dtype("S1"):
         return []
     return [row.tobytes().decode("latin-1").strip(" \0") for row in values]
-
-
-def _floats(raw: bytes, machine: int) -> Array:
-    """Numbers of 32 bits as this kind of machine writes them."""
-    if machine != _DEC:
-        return np.frombuffer(raw, ">f4" if machine == _MIPS else "<f4")
-    words = np.frombuffer(raw, "<u2").reshape(-1, 2)[:, ::-1]
-    return np.ascontiguousarray(words).view("<f4")[:, 0] / 4  # its exponents are larger by two

@@ -65,7 +65,7 @@ def test_openusd_reads_the_same_joints_and_bodies(tmp_path: Path) -> None:
         assert cache.Populate(UsdSkel.Root(stage.GetPrimAtPath(person)), Usd.PrimDefaultPredicate)
         skeleton = cache.GetSkelQuery(UsdSkel.Skeleton(stage.GetPrimAtPath(f"{person}/{role}")))
         mesh = stage.GetPrimAtPath(f"{person}/{role}_body")
-        surfaces = skin(load_body(name), clip, angles(grips, number, np.arange(24.0), 30))
+        surfaces = skin(load_body(name), clip.positions, angles(grips, number, np.arange(24.0), 30))
         for frame in (0, 11, 23):
             joints = np.array(skeleton.ComputeJointSkelTransforms(frame))[:22, 3, :3]
             np.testing.assert_allclose(joints, clip.positions[frame], atol=2e-5)
