@@ -77,7 +77,6 @@ READOUTS = (
     ("distance", "Distance m"),
     ("contact_seconds", "Contact s"),
     ("contact_due", "Contact where due %"),
-    ("response_delay", "Delay s"),
     ("foot_skate", "Foot skate cm/s"),
     ("penetration", "Penetration cm"),
 )
@@ -192,8 +191,8 @@ def score(
 def readouts(test: Sequence[Reaction], people: Sequence[Array]) -> dict[str, float | None]:
     """The page's read-outs, each the mean over the test clips that have it.
 
-    ``response_delay`` is a median, since a single distant chance match would distort a mean. ``contact_due`` is the
-    percentage of the clips with recorded contact in which these people touch, too. None if no clip has a value.
+    ``contact_due`` is the percentage of the clips with recorded contact in which these people touch, too. None if no
+    clip has a value.
     """
     recorded, found = (
         [
@@ -203,12 +202,11 @@ def readouts(test: Sequence[Reaction], people: Sequence[Array]) -> dict[str, flo
         for made in ([reaction.people[1] for reaction in test], people)
     )
     for true, one in zip(recorded, found, strict=True):
-        one["contact_due"] = 100.0 * (one["contact_seconds"] > 0) if true["contact_seconds"] > 0 else None
+        one["contact_due"] = 100.0 * (one["contact_seconds"] > 0) if true["contact_seconds"] > 0 else np.nan
     rounded: dict[str, float | None] = {}
     for key, _ in READOUTS:
-        values = [one[key] for one in found if one[key] is not None]
-        middle = np.median if key == "response_delay" else np.mean
-        rounded[key] = round(float(middle(values)), 4) if values else None
+        values = [one[key] for one in found if not np.isnan(one[key])]
+        rounded[key] = round(float(np.mean(values)), 4) if values else None
     return rounded
 
 

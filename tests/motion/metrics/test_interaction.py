@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, Duet
-from motion.metrics import MEASURES, compare, contact_events, summary
-from motion.metrics.interaction import facing_angle, response_delay
+from motion.metrics import MEASURES, compare, contact_events
+from motion.metrics.interaction import facing_angle
 from motion.transforms import turn
 
-from .scenes import FPS, duet, face_to_face, put_wrist
+from .scenes import duet, face_to_face, put_wrist
 
 
 @pytest.mark.parametrize("degrees", [0, 60, 90, 180])
@@ -56,29 +56,6 @@ def test_what_is_compared_is_json_with_every_measure() -> None:
     found = json.loads(json.dumps(compare(None, duet(face_to_face(2.0))), allow_nan=False))
     assert list(found["after"]) == [measure.key for measure in MEASURES] and found["before"] is None
     assert found["after"]["distance"] == pytest.approx(2.0, abs=1e-3)
-
-
-def lift(frames: int, begins: int) -> np.ndarray:
-    """(T,) from 0 to 1 within half a second."""
-    path = np.zeros(frames)
-    share = np.linspace(0, np.pi, FPS // 2)
-    path[begins : begins + FPS // 2] = (1 - np.cos(share)) / 2
-    path[begins + FPS // 2 :] = 1.0
-    return path
-
-
-def answering(delay: int, frames: int = 90, first: int = 35) -> np.ndarray:
-    """Each lifts both arms and trunk by half a metre; the second ``delay`` frames after the first."""
-    scene = face_to_face(2.0, frames=frames)
-    for person, begins in ((0, first), (1, first + delay)):
-        scene[person, :, :, 1] += 0.5 * lift(frames, begins)[:, None]
-    return scene
-
-
-@pytest.mark.parametrize("delay", [-20, -5, 0, 4, 12, 30])
-def test_the_delay_of_an_answer_is_found(delay: int) -> None:
-    assert response_delay(duet(answering(delay))) == pytest.approx(delay / FPS, abs=1.5 / FPS)
-    assert summary(duet(answering(delay)))["response_delay"] == pytest.approx(delay / FPS, abs=1.5 / FPS)
 
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "contacts.npz"

@@ -161,13 +161,13 @@ def test_a_story_under_several_settings_makes_a_grid(tmp_path: Path) -> None:
 
 
 def test_what_cannot_be_measured_is_a_dash_among_the_others() -> None:
-    def result(delay: float | None) -> Result:
-        after = {"foot_skate": 1.0, "response_delay": delay}
+    def result(hands: float | None) -> Result:
+        after = {"foot_skate": 1.0, "hands_min": hands}
         return Result(duets=(), manifest={}, readouts=({"after": after},))
 
     made = grid_table({"plain": result(None), "damped": result(0.2)})
     assert "<td>–</td>" in made and "<b>0.20</b>" in made
-    assert "Response delay" not in grid_table({"plain": result(None), "damped": result(None)})
+    assert "Hands, closest" not in grid_table({"plain": result(None), "damped": result(None)})
 
 
 def test_a_sentence_stands_beside_its_class_and_a_method_beside_a_method(tab: GenerateTab, tmp_path: Path) -> None:
