@@ -7,6 +7,8 @@ one that people take. Here it is found for sampled paths and held to what was ma
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import ArrayLike, NDArray
@@ -32,7 +34,7 @@ def least_jerk(values: Array, weights: Array) -> Array:
     if len(flat) < 4:
         return np.array(values, dtype=np.float64)
     middle = flat.mean(axis=0)  # differences of small numbers
-    banded = _third_differences(len(flat))
+    banded = squared_differences(len(flat), (-1.0, 3.0, -3.0, 1.0))
     banded[-1] += weights
     found = scipy.linalg.solveh_banded(banded, weights[:, None] * (flat - middle), check_finite=False)
     return np.asarray(found + middle).reshape(np.shape(values))
@@ -82,13 +84,13 @@ def frames_from(marked: NDArray[np.bool_]) -> NDArray[np.integer]:
     return np.minimum(np.abs(after - time), np.abs(time - before))
 
 
-def _third_differences(count: int) -> Array:
-    """(4, count) the upper bands of D'D, where D takes third differences, as ``solveh_banded`` reads them."""
-    bands = np.zeros((4, count))
-    coefficients = np.array([-1.0, 3.0, -3.0, 1.0])
-    for i in range(4):
-        for j in range(i, 4):
-            bands[3 - (j - i), j : count - 3 + j] += coefficients[i] * coefficients[j]
+def squared_differences(count: int, coefficients: Sequence[float]) -> Array:
+    """(n, count) the upper bands of D'D for ``solveh_banded``; D takes differences of n coefficients."""
+    last = len(coefficients) - 1
+    bands = np.zeros((last + 1, count))
+    for i in range(last + 1):
+        for j in range(i, last + 1):
+            bands[last - (j - i), j : count - last + j] += coefficients[i] * coefficients[j]
     return bands
 
 

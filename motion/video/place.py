@@ -10,6 +10,7 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion.skeleton import SMPL22
+from motion.smoothing import squared_differences
 
 from .landmarks import INDEX, LIMBS
 
@@ -84,16 +85,9 @@ def smooth(values: Array, fps: float, *, seconds: float) -> Array:
     frames = len(values)
     if frames < 3:
         return np.where(known[:, None], values, 0.0)
-    second = (1.0, -2.0, 1.0)
-    strength = (seconds * fps / (2 * np.pi)) ** 4 * 16
-    bands = np.zeros((3, frames))
-    for row in range(frames - 2):
-        for i in range(3):
-            for j in range(i + 1):
-                bands[i - j, row + j] += strength * second[i] * second[j]
-    bands[0] += known + 1e-9
-    right = np.where(known[:, None], values, 0.0)
-    return scipy.linalg.solveh_banded(bands, right, lower=True)
+    bands = (seconds * fps / (2 * np.pi)) ** 4 * 16 * squared_differences(frames, (1.0, -2.0, 1.0))
+    bands[-1] += known + 1e-9
+    return scipy.linalg.solveh_banded(bands, np.where(known[:, None], values, 0.0))
 
 
 def body_tilt(world: Array, seen: Array) -> float:
