@@ -12,14 +12,11 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
 from .skeleton import ARMS, LEGS, SMPL22
 from .smoothing import smoothstep
 from .transforms import facing
-from .vectors import unit
-
-Array = NDArray[np.floating]
+from .vectors import Array, unit
 
 # Of 772 stretches of 2.5 s in which people walk ahead: means of the medians of four sets of recordings (Bandai-Namco's
 # two, ACCAD and CMU), and quartiles of all.

@@ -23,9 +23,7 @@ from .kinematics import swing
 from .looks import LOOKS
 from .skeleton import SMPL22
 from .smoothing import smoothstep
-from .vectors import rotations_by, square_frame, unit
-
-Array = NDArray[np.floating]
+from .vectors import Array, rotations_by, square_frame, unit
 
 FOLDER = Path(__file__).resolve().parents[1] / "static" / "bodies"
 _J = {name: index for index, name in enumerate(SMPL22.joint_names)}

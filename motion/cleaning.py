@@ -10,9 +10,7 @@ from .limbs import heel_raised, limb_length, sink, solve_two_bones, steadied
 from .skeleton import FEET, LEGS
 from .smoothing import REACH, begun_before, frames_from, led, smoothstep
 from .transforms import facing
-from .vectors import runs
-
-Array = NDArray[np.floating]
+from .vectors import Array, runs
 
 # Heights below which a joint can stand on the floor, as in InterGen's contact features (metres).
 ANKLE_HEIGHT, TOE_HEIGHT = 0.12, 0.05

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .errors import InputError
 from .hands import Grip
@@ -15,8 +14,7 @@ from .hands import cut as cut_grips
 from .looks import UNSAID, checked
 from .skeleton import SMPL22, Skeleton
 from .things.thing import MOST_THINGS, Thing
-
-Array = NDArray[np.floating]
+from .vectors import Array
 
 FPS = 30.0
 """Frames a second of all generated motion."""

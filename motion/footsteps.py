@@ -16,15 +16,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
 from .limbs import solve_two_bones
 from .skeleton import LEGS
 from .smoothing import minimum_jerk
 from .transforms import facing
-from .vectors import floor_speed, runs, wrapped
-
-Array = NDArray[np.floating]
+from .vectors import Array, floor_speed, runs, wrapped
 
 _MOVES = 0.25
 """Metres a second of a body that goes somewhere."""

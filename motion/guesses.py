@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.skeleton import POINTS17, SKELETONS, Skeleton
 from motion.vectors import unit
@@ -18,8 +17,8 @@ from motion.vectors import unit
 from .clip import Clip
 from .rigs import RigMotion, match_joints
 from .skeleton import LAYOUTS, SMPL22
+from .vectors import Array
 
-Array = NDArray[np.floating]
 Places = Mapping[str, Array]
 """(T, 3) of the joints that a person has, by SMPL22's names, in the file's axes and unit."""
 

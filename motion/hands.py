@@ -16,9 +16,7 @@ from numpy.typing import NDArray
 
 from .errors import InputError
 from .smoothing import smoothstep
-from .vectors import rotations_by
-
-Array = NDArray[np.floating]
+from .vectors import Array, rotations_by
 
 SIDES = ("left", "right")
 FINGERS = ("thumb", "index", "middle", "ring", "pinky")

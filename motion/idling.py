@@ -15,16 +15,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
 from .limbs import HIPS, UPPER, limb_length, over_planted_feet, solve_two_bones
 from .skeleton import LEGS, SMPL22
 from .smoothing import begun_before, least_jerk, minimum_jerk, smoothstep
 from .touch.arms import ARMS
 from .transforms import facing
-from .vectors import rotations_by, unit
-
-Array = NDArray[np.floating]
+from .vectors import Array, rotations_by, unit
 
 WEIGHT, BOW = 0.026, 0.012
 """Metres by which the pelvis goes to either side, and forwards and back."""

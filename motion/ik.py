@@ -19,15 +19,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .errors import InputError
 from .ik_solver import MIN_NOISE, solve
 from .kinematics import fit_rotations, forward_kinematics
 from .skeleton import SMPL22, Layout, Skeleton, find_layout
 from .smoothing import filled
-
-Array = NDArray[np.floating]
+from .vectors import Array
 
 
 class SkeletonFit(NamedTuple):

@@ -7,12 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
 from .kinematics import forward_kinematics, global_rotations
 from .skeleton import SMPL22, Layout, Skeleton
-
-Array = NDArray[np.floating]
+from .vectors import Array
 
 _TURNING = [joint for joint, children in enumerate(SMPL22.children) if children]  # leaves turn nothing
 _FREE = np.array(_TURNING[1:])  # turning joints other than the root

@@ -6,12 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
 from .skeleton import SMPL22, Skeleton
-from .vectors import unit
-
-Array = NDArray[np.floating]
+from .vectors import Array, unit
 
 
 def forward_kinematics(rotations: Array, root: Array, skeleton: Skeleton = SMPL22) -> Array:

@@ -10,14 +10,11 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
 from .skeleton import LEGS, SMPL22
 from .smoothing import least_jerk, smoothstep
 from .transforms import facing
-from .vectors import FLAT, unit
-
-Array = NDArray[np.floating]
+from .vectors import FLAT, Array, unit
 
 HIPS = [0, *(leg[0] for leg in LEGS)]
 """The pelvis and both hips."""

@@ -7,13 +7,11 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .clip import Clip
 from .skeleton import SMPL22
 from .transforms import heading, heading_matrix, mirrored
-
-Array = NDArray[np.floating]
+from .vectors import Array
 
 MEDIAN_START_DISTANCE = 1.5
 """Metres between the two people of the median training scene at its first frame; they face each other."""

@@ -8,14 +8,11 @@ dropped. Both people stand in one frame: person a's root over the origin, facing
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .kinematics import fit_rotations
 from .skeleton import FEET
 from .transforms import heading_matrix
-from .vectors import unit
-
-Array = NDArray[np.floating]
+from .vectors import Array, unit
 
 NUM_FEATURES = 262
 RAW_FEATURES = 192

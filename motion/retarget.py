@@ -12,7 +12,6 @@ from dataclasses import replace
 from typing import overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .cleaning import foot_contacts, plant_feet
 from .clip import Clip, Duet
@@ -23,9 +22,7 @@ from .kinematics import project_to_skeleton
 from .rigs import BodyParts, RigMotion, match_joints
 from .skeleton import SMPL22
 from .transforms import resample
-from .vectors import square_frame, unit
-
-Array = NDArray[np.floating]
+from .vectors import Array, square_frame, unit
 
 _J = {name: index for index, name in enumerate(SMPL22.joint_names)}
 _NO_BODY = 1e-3

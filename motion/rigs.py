@@ -17,11 +17,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .errors import InputError
-
-Array = NDArray[np.floating]
+from .vectors import Array
 
 
 @dataclass(frozen=True, eq=False)

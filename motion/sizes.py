@@ -13,16 +13,13 @@ import itertools
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from .limbs import HIPS, UPPER, drawn_in, limb_length, over_planted_feet, sink, solve_two_bones
 from .skeleton import ARMS, LEGS, SMPL22
 from .smoothing import begun_before, eased_marks, smoothstep, without_flicker
 from .touch.arms import arms_apart
 from .transforms import facing
-from .vectors import FLAT, rotations_by, unit
-
-Array = NDArray[np.floating]
+from .vectors import FLAT, Array, rotations_by, unit
 
 _ON_FEET = (0.55, 0.75)
 """Heights in metres of an adult's pelvis up to which the feet go with the body and nobody stoops, and from which they

@@ -13,11 +13,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .errors import InputError
-
-Array = NDArray[np.floating]
+from .vectors import Array
 
 
 class _Indices(dict[str, int]):

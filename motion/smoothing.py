@@ -14,8 +14,7 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
-
-Array = NDArray[np.floating]
+from .vectors import Array
 
 _FIXED = 1e7
 """Weight of a frame that must stay, against third differences whose squared coefficients sum to 20."""

@@ -10,16 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .clip import FPS
 from .limbs import solve_two_bones
 from .skeleton import LEGS, SMPL22
 from .smoothing import minimum_jerk
 from .transforms import facing, heading, heading_matrix
-from .vectors import FLAT, wrapped
-
-Array = NDArray[np.floating]
+from .vectors import FLAT, Array, wrapped
 
 TURN_FROM, TURN_UNTIL = np.radians(35), np.radians(6)
 """Angle to the goal from which the body turns, and at which it has turned; between them the head alone does."""

@@ -10,9 +10,7 @@ from .limbs import solve_two_bones
 from .skeleton import LEGS, SMPL22
 from .smoothing import begun_before, least_jerk
 from .transforms import facing
-from .vectors import floor_speed, runs, unit
-
-Array = NDArray[np.floating]
+from .vectors import Array, floor_speed, runs, unit
 
 _FAST = 0.6
 """Metres a second on the floor from which a foot swings."""

@@ -8,11 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
 from .skeleton import LEGS, SMPL22
-
-Array = NDArray[np.floating]
+from .vectors import Array
 
 
 def heading_matrix(angle: float | Array) -> Array:

@@ -17,18 +17,16 @@ from pathlib import Path
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
 from motion.rigs import RigMotion
 from motion.skeleton import SMPL22
+from motion.vectors import Array
 
 from .bvh_numbers import Joint, Motion, find_motion, parse_hierarchy, trees
 from .files import MAX_NUMBERS, check_smpl, read_bytes, text_bytes, write_files
 from .skinned import rigged
-
-Array = NDArray[np.floating]
 
 _LONGEST_HIERARCHY = 2**20
 _ENOUGH = 50.0

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.errors import InputError
+from motion.vectors import Array
 
 from .files import MAX_NUMBERS, check_duration
 from .recording import MAX_PEOPLE
-
-Array = NDArray[np.floating]
 
 _PIECE = 2**20
 _LARGEST = 1e7

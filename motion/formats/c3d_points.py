@@ -12,15 +12,13 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.errors import InputError
+from motion.vectors import Array
 
 from .files import check_duration
 from .markers import people_of
 from .recording import ImportChoices, Recording
-
-Array = NDArray[np.floating]
 
 _BLOCK = 512
 _UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}

@@ -9,19 +9,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.errors import InputError
 from motion.retarget import leg_scale
 from motion.rigs import RigMotion, match_joints
+from motion.vectors import Array
 
 from .bvh_numbers import MAX_NUMBERS
 from .files import check_duration
 from .glb_file import GlbFile, opened
 from .glb_nodes import Channel, Rig, bind_pose, channels, moves, people, placed, with_those_above
 from .recording import MAX_PEOPLE, Animation, Animations, check_animation, listed
-
-Array = NDArray[np.floating]
 
 _RATES = (10.0, 240.0)
 _RATE = 30.0

@@ -7,14 +7,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.kinematics import quaternions, rotation_matrices
-from motion.vectors import unit
+from motion.vectors import Array, unit
 
 from .glb_file import MOST_JOINTS, GlbFile, Stored, in_order
-
-Array = NDArray[np.floating]
 
 MOST_KEYS = 4_000_000
 """Key frames of all channels together; those that channels share count once."""

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
@@ -20,13 +19,12 @@ from motion.guesses import Places, calibration_frames, find_up, places_of, turn_
 from motion.retarget import rest_axis, retarget, retarget_duet, to_smpl, up_axis
 from motion.rigs import RigMotion, matched_names, without_beginning
 from motion.skeleton import LAYOUTS, SMPL22
+from motion.vectors import Array
 
 from .arrays import says_no_rate
 from .files import check_duration
 from .recording import MAX_PEOPLE, ORDERS, UNITS, Animations, ImportChoices, Recording
 from .registry import RIG_FPS, recordings
-
-Array = NDArray[np.floating]
 
 _TALL = (0.9, 2.0)
 """Metres from ankles to head: the smallest and the tallest person."""

@@ -13,17 +13,16 @@ from collections import defaultdict
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.clip import Clip
 from motion.errors import InputError
 from motion.skeleton import NTU25, SBU15
 from motion.smoothing import filled
+from motion.vectors import Array
 
 from .files import MAX_FRAMES, MAX_SECONDS, check_duration, text_bytes
 from .recording import ImportChoices, Recording
 
-Array = NDArray[np.floating]
 Track = dict[int, Array]
 """(25, 3) joints of a body by frame."""
 

@@ -16,18 +16,16 @@ import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.clip import Clip
 from motion.errors import InputError
 from motion.skeleton import POINTS17
 from motion.smoothing import filled
-from motion.vectors import unit
+from motion.vectors import Array, unit
 
 from .files import MAX_FRAMES, MAX_NUMBERS, MAX_SECONDS, check_duration, text_bytes
 from .recording import ImportChoices, Recording
 
-Array = NDArray[np.floating]
 Points = Mapping[str, Array]
 
 _FARTHEST = 1000.0  # metres

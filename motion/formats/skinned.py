@@ -14,8 +14,7 @@ from motion.hands import FINGERS, SIDES, angles
 from motion.kinematics import local_rotations
 from motion.looks import BODIES as COLOURS
 from motion.skeleton import SMPL22
-
-Array = NDArray[np.floating]
+from motion.vectors import Array
 
 # ---- Fingers: 30 joints more below the wrists, in the order of :class:`motion.hands.Fingers` -------------------------
 FINGER_JOINTS = tuple(f"{side}_{finger}{k}" for side in SIDES for finger in FINGERS for k in (1, 2, 3))

@@ -19,6 +19,7 @@ from motion.clip import Duet
 from motion.kinematics import quaternions
 from motion.looks import hex_of, linear
 from motion.things.thing import Thing
+from motion.vectors import Array
 
 from .files import check_smpl, write_files
 from .glb_writer import ROUGH, names_of, unit_normals
@@ -155,9 +156,6 @@ _PATHS = json.dumps(list(_paths()))
 
 
 # ---- Numbers, names, surfaces and materials as OpenUSD's text has them ----------------------------------------------
-Array = NDArray[np.floating]
-
-
 def identifier(called: str, other: str) -> str:
     """A name as that of a prim: ASCII letters, digits and underscores, no digit first; ``other`` where none is left."""
     name = re.sub(r"\W+", "_", called, flags=re.ASCII).strip("_")[:40] or other

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
-
-Array = NDArray[np.floating]
+from motion.vectors import Array
 
 _RADII = {
     "head": 0.085,

@@ -13,9 +13,8 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
-Array = NDArray[np.floating]
+from motion.vectors import Array
 
 
 def r_precision(motion: Array, text: Array, *, rng: np.random.Generator, pool: int = 32) -> Array:

@@ -11,12 +11,10 @@ from numpy.typing import NDArray
 from motion import Clip, Duet
 from motion.skeleton import ARMS, LEGS
 from motion.transforms import facing
-from motion.vectors import runs
+from motion.vectors import Array, runs
 
 from .bodies import CAPSULES, Capsules, point_segment_distance, segment_segment_distance
 from .quality import bone_drift, foot_skate, jerk, penetration
-
-Array = NDArray[np.floating]
 
 PALM = 0.08
 """Metres from the wrist joint to the middle of the palm, along the forearm: 22 joints end at the wrist.

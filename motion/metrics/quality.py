@@ -6,17 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import SMPL22, Duet
 from motion.cleaning import ANKLE_HEIGHT, TOE_HEIGHT
 from motion.looks import size_of
 from motion.transforms import facing
-from motion.vectors import left_of, wrapped
+from motion.vectors import Array, left_of, wrapped
 
 from .bodies import CAPSULES, depths
-
-Array = NDArray[np.floating]
 
 SKATE_SPEED = 0.5
 """Metres a second above which a planted foot skates: 2.5 cm a frame at 20 fps (Karunratanakul et al.,

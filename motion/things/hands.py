@@ -11,9 +11,7 @@ from numpy.typing import NDArray
 from motion import SMPL22, Duet
 from motion.body import bone_rotations
 from motion.hands import SIDES
-from motion.vectors import FLAT, unit
-
-Array = NDArray[np.floating]
+from motion.vectors import FLAT, Array, unit
 
 PALM, DEEP = 0.085, 0.025
 """Metres from the wrist to the middle of the palm, along the fingers and out of the palm."""

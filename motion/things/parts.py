@@ -6,13 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 
 from motion.looks import rgb
+from motion.vectors import Array
 
 from .thing import Mesh
 
-Array = NDArray[np.floating]
 Part = tuple[trimesh.Trimesh, str]
 """A surface and its colour, "#rrggbb"."""
 

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 
 from motion.body import bone_rotations
 from motion.skeleton import SMPL22
+from motion.vectors import Array
 
 from .thing import Mesh, Thing
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
 
-Array = NDArray[np.floating]
 
 EYES = np.array([0.0, 0.07, 0.1])
 """Metres from the joint of the head to between the eyes, in the head's frame."""

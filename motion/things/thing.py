@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.errors import InputError
-
-Array = NDArray[np.floating]
+from motion.vectors import Array
 
 MOST_THINGS = 12
 """Things beside a motion, at most."""

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from motion.smoothing import smoothstep
-from motion.vectors import FLAT, square_frame, unit
+from motion.vectors import FLAT, Array, square_frame, unit
 
 from .hands import Hands, level, smoothed
 from .thing import Mesh
 
-Array = NDArray[np.floating]
 Track = tuple[Array, Array]
 """Places (T, 3) and rotations (T, 3, 3)."""
 

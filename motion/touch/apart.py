@@ -21,9 +21,7 @@ from motion.metrics.bodies import CAPSULES, closest_points
 from motion.skeleton import LEGS
 from motion.smoothing import begun_before, eased_marks, minimum_jerk
 from motion.transforms import facing
-from motion.vectors import FLAT, runs, unit
-
-Array = NDArray[np.floating]
+from motion.vectors import FLAT, Array, runs, unit
 
 SOFT = 0.012
 """Metres that two bodies may be in each other: clothes and flesh give way as far as that."""

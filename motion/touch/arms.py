@@ -14,9 +14,7 @@ from numpy.typing import NDArray
 from motion.limbs import solve_two_bones
 from motion.metrics.bodies import CAPSULES
 from motion.skeleton import ARMS
-from motion.vectors import runs
-
-Array = NDArray[np.floating]
+from motion.vectors import Array, runs
 
 SOFT = 0.008
 """Metres that an arm may be in the other's body: clothes and flesh give way as far as that."""

@@ -19,11 +19,10 @@ from motion.limbs import HIPS, UPPER, across, bent_towards, over_planted_feet
 from motion.skeleton import ARMS, LEGS, SMPL22
 from motion.smoothing import eased_marks, without_flicker
 from motion.transforms import facing
-from motion.vectors import FLAT, left_of, unit
+from motion.vectors import FLAT, Array, left_of, unit
 
 from .arms import grips_of_hands
 
-Array = NDArray[np.floating]
 Hands = tuple[tuple[float, float, float, float], ...]
 
 CLOSE = 0.29

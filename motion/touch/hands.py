@@ -25,9 +25,7 @@ from motion.limbs import HIPS, UPPER, across, bent_towards, drawn_in, limb_lengt
 from motion.skeleton import ARMS, SMPL22
 from motion.smoothing import eased_marks, without_flicker
 from motion.transforms import facing
-from motion.vectors import FLAT, left_of, rotations_by, unit
-
-Array = NDArray[np.floating]
+from motion.vectors import FLAT, Array, left_of, rotations_by, unit
 
 APART = 0.075
 """Metres between two wrists whose hands hold each other, palm to palm."""

@@ -10,18 +10,15 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.ik import pose_bodies
 from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
-from motion.vectors import FLAT
+from motion.vectors import FLAT, Array
 
 from .landmarks import INDEX, Landmarks
 from .person import LAYOUT, TILTS, layout_points
 from .place import body_tilt, focal_length, towards, translation, upright
-
-Array = NDArray[np.floating]
 
 MEASURED = 8
 """Pictures with a person that come before the first pose."""

@@ -18,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.errors import InputError
-
-Array = NDArray[np.floating]
+from motion.vectors import Array
 
 _SIDES = ("left", "right")
 POINTS = (

@@ -19,11 +19,10 @@ from motion.ik import fit_skeleton
 from motion.kinematics import project_to_skeleton
 from motion.skeleton import SMPL22, Layout
 from motion.transforms import resample
+from motion.vectors import Array
 
 from .landmarks import INDEX, Landmarks
 from .place import body_tilt, focal_length, level, smooth, steady_path, towards, translation, upright
-
-Array = NDArray[np.floating]
 
 TILTS = (-45.0, 60.0)
 """Degrees by which a camera may look down, at least and at most."""

@@ -7,14 +7,12 @@ from __future__ import annotations
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
 from motion.skeleton import SMPL22
 from motion.smoothing import squared_differences
+from motion.vectors import Array
 
 from .landmarks import INDEX, LIMBS
-
-Array = NDArray[np.floating]
 
 LENS = 70.0
 """Degrees from corner to corner of the picture of an ordinary phone's or laptop's camera."""

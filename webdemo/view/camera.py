@@ -15,8 +15,7 @@ from motion.errors import InputError
 from motion.skeleton import SMPL22
 from motion.things import FIXTURES
 from motion.transforms import heading
-
-Array = NDArray[np.floating]
+from motion.vectors import Array
 
 VIEWS = ("threequarter", "front", "side", "top", "a", "b")
 FIELD_OF_VIEW = np.pi / 4

@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 from motion.body import Body, vertex_normals
 from motion.skeleton import SMPL22
 from motion.smoothing import smoothstep
-from motion.vectors import unit
+from motion.vectors import Array, unit
 
 from .camera import Camera
 from .theme import Lamps, Worn
-
-Array = NDArray[np.floating]
 
 _GAMMA = 2.2
 SHADOW_SIZE = 192

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.body import in_base64
 from motion.clip import Clip, Duet, stacked_positions
@@ -22,10 +21,10 @@ from motion.errors import InputError
 from motion.hands import to_lists
 from motion.looks import UNSAID
 from motion.metrics import Contact, contact_events, hand_distance, pelvis_distance
+from motion.vectors import Array
 
 from .things import thing_payload
 
-Array = NDArray[np.floating]
 Payload = dict[str, Any]
 
 FORMAT = 1

@@ -11,19 +11,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
 from motion.formats.files import write_text
 from motion.skeleton import SMPL22
+from motion.vectors import Array
 
 from .theme import THEMES, Colour, Theme
 
 if TYPE_CHECKING:
     from plotly.graph_objects import Figure
 
-Array = NDArray[np.floating]
 
 SUFFIX = ".html"
 FPS = 15.0

@@ -6,17 +6,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
 from motion.formats.files import replacing
+from motion.vectors import Array
 
 from .camera import Camera, cameras
 from .stage import Pane, Picture, Stage, Style, paste, words
-
-Array = NDArray[np.floating]
 
 SUFFIXES = (".png", ".pdf")
 MOMENTS = (1, 24)

@@ -20,13 +20,13 @@ from motion.looks import UNSAID
 from motion.skeleton import SMPL22
 from motion.smoothing import smoothstep
 from motion.things.thing import Thing
+from motion.vectors import Array
 
 from .camera import Camera, sampled
 from .light import Shadow, lit, shaded
 from .theme import THEMES, Colour, Theme
 from .things import drawn_things, hands_of, shadow_spots
 
-Array = NDArray[np.floating]
 Picture = NDArray[np.uint8]
 
 LOOKS = ("bodies", "skeletons", "both")

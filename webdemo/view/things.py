@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.body import in_base64
 from motion.clip import Clip, Duet
@@ -16,8 +15,7 @@ from motion.kinematics import quaternions
 from motion.looks import hex_of
 from motion.things import FIXTURES
 from motion.things.thing import Mesh, Thing
-
-Array = NDArray[np.floating]
+from motion.vectors import Array
 
 _FINE = 0.14
 """Metres of an edge, at most, where triangles are drawn from the farthest to the nearest."""

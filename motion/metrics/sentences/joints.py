@@ -12,9 +12,7 @@ from scipy.ndimage import gaussian_filter1d
 from motion import SMPL22
 from motion.metrics.interaction import palms
 from motion.transforms import facing
-from motion.vectors import FLAT, runs
-
-Array = NDArray[np.floating]
+from motion.vectors import FLAT, Array, runs
 
 _SMOOTH = 0.15
 """Seconds: standard deviation of the filter over root paths and headings, which takes out a step's sway."""
