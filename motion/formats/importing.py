@@ -21,7 +21,6 @@ from motion.rigs import RigMotion, matched_names, without_beginning
 from motion.skeleton import LAYOUTS, SMPL22
 from motion.vectors import Array
 
-from .arrays import says_no_rate
 from .files import check_duration
 from .recording import MAX_PEOPLE, ORDERS, UNITS, Animations, ImportChoices, Recording
 from .registry import RIG_FPS, recordings
@@ -129,7 +128,7 @@ def _imported(recording: Recording, label: str, choices: ImportChoices) -> Impor
     rigs = [person for person in people if isinstance(person, RigMotion)]
     clips = [person for person in people if isinstance(person, Clip)]
     found = _import_rigs(rigs, label, choices) if rigs else _import_clips(clips, recording, label, choices)
-    asks = any(says_no_rate(note) or note.endswith(" if it is wrong.") for note in found.notes)
+    asks = any(note.endswith((" if it is wrong.", " if it differs.")) for note in found.notes)
     return replace(found, animations=recording.animations, beside=recording.beside, asks=asks)
 
 

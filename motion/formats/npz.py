@@ -40,8 +40,7 @@ from motion.rigs import RigMotion
 from motion.skeleton import SKELETONS, SMPL22, Skeleton
 from motion.things.thing import MOST_THINGS, Mesh, Thing
 
-from .arrays import frame_rate, load_array, load_members, no_rate, numbers
-from .files import check_duration, read_json, write_files
+from .files import check_duration, frame_rate, load_array, load_members, no_rate, numbers, read_json, write_files
 from .recording import MAX_PEOPLE, ORDERS, ImportChoices, Recording
 from .smpl import FPS_KEYS, PARAMETER_KEYS, has_parameters, read_parameters
 

@@ -11,10 +11,9 @@ from pathlib import Path, PurePosixPath
 from motion.clip import Clip, Duet
 from motion.errors import InputError
 
-from .arrays import ZIP_ERRORS
 from .bvh import bvh_text, read_bvh, write_bvh
 from .c3d_points import read_c3d
-from .files import MAX_BYTES, read_bytes, write_files
+from .files import MAX_BYTES, ZIP_ERRORS, read_bytes, write_files
 from .glb_motion import read_glb
 from .glb_writer import write_glb
 from .kinect import read_kinect

@@ -23,8 +23,7 @@ from motion.looks import size_of
 from motion.sizes import of_adults
 from motion.skeleton import SMPL22
 
-from .arrays import frame_rate, no_rate, numbers
-from .files import check_duration, check_smpl, write_files
+from .files import check_duration, check_smpl, frame_rate, no_rate, numbers, write_files
 from .recording import Recording
 from .skinned import rigged
 
