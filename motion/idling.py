@@ -17,9 +17,8 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 
 from .limbs import HIPS, UPPER, limb_length, over_planted_feet, solve_two_bones
-from .skeleton import LEGS, SMPL22
+from .skeleton import ARMS, LEGS, SMPL22
 from .smoothing import begun_before, least_jerk, minimum_jerk, smoothstep
-from .touch.arms import ARMS
 from .transforms import facing
 from .vectors import Array, rotations_by, unit
 

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from acts.staging.poses import about
 from motion import SMPL22
-from motion.arm_swing import swinging
 from motion.kinematics import forward_kinematics
 from motion.skeleton import ARMS
+from motion.swings import swinging
 from motion.transforms import heading_matrix
 from motion.vectors import unit
 

@@ -7,8 +7,7 @@ import pytest
 
 from motion import SMPL22
 from motion.metrics.quality import DEEP, jerk_percentile, limb_depth
-from motion.touch.arms import arms_apart
-from motion.touch.embraces import embraced
+from motion.touch.arms import arms_apart, embraced
 from motion.transforms import heading_matrix
 
 J = SMPL22.index

@@ -7,12 +7,11 @@ from numpy.typing import NDArray
 
 from acts.staging.score import Score
 from motion import FPS
-from motion.arm_swing import swinging
 from motion.idling import alive
 from motion.smoothing import eased_marks, smoothstep
+from motion.swings import swinging
 from motion.touch.apart import bodies_apart
-from motion.touch.arms import arms_apart
-from motion.touch.embraces import embraced
+from motion.touch.arms import arms_apart, embraced
 from motion.touch.hands import backs_straight, hands_clasped, palms_met
 from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.plans import BeatFinish
