@@ -15,7 +15,6 @@ from .transforms import heading_matrix
 from .vectors import Array, unit
 
 NUM_FEATURES = 262
-RAW_FEATURES = 192
 POSITIONS, VELOCITIES = slice(0, 66), slice(66, 132)
 ROTATIONS, CONTACTS = slice(132, 258), slice(258, 262)
 CONTACT_SQUARED_SPEED = 0.001
@@ -26,17 +25,9 @@ CONTACT_HEIGHTS = np.array([0.12, 0.05, 0.12, 0.05])
 _Z_UP_TO_Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 
-def read_raw(raw: Array) -> tuple[Array, Array]:
-    """Positions and rotations of the release's raw frames.
-
-    Args:
-        raw: (T, 192): 22 Z-up positions, 6D rotations of joints 1–21.
-
-    Returns:
-        (T, 22, 3) Y-up positions in metres, (T, 21, 6) rotations.
-    """
-    raw = np.asarray(raw, dtype=np.float64)
-    return raw[:, :66].reshape(-1, 22, 3) @ _Z_UP_TO_Y_UP.T, raw[:, 66:].reshape(-1, 21, 6)
+def upright(raw: Array) -> Array:
+    """(T, 22, 3) metres, Y up, of InterHuman's frames (T, 66 or more), which begin with 22 places, Z up."""
+    return raw[:, :66].astype(np.float64).reshape(-1, 22, 3) @ _Z_UP_TO_Y_UP.T
 
 
 def encode_person(positions: Array, rotations: Array | None = None) -> Array:

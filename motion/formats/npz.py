@@ -35,7 +35,7 @@ from motion.errors import InputError
 from motion.guesses import likely_skeleton
 from motion.hands import Grip, grips_of, to_lists
 from motion.looks import UNSAID, checked
-from motion.representation import NUM_FEATURES, RAW_FEATURES, decode_humanml3d, decode_positions, read_raw
+from motion.representation import NUM_FEATURES, decode_humanml3d, decode_positions, upright
 from motion.rigs import RigMotion
 from motion.skeleton import SKELETONS, SMPL22, Skeleton
 from motion.things.thing import MOST_THINGS, Mesh, Thing
@@ -50,7 +50,6 @@ _SMPL24 = 24
 _JOINT_COUNTS = "15 (Kinect v1), 17 (CMU, Human3.6M, COCO), 22 or 24 (SMPL), 25 (Kinect v2), 30 or 77 joints (SOMA)"
 _INTERHUMAN = 492
 """InterHuman's processed frames: 62 joints' positions and 51 joints' rotations, the body's first in both."""
-_BODY_POSITIONS, _BODY_ROTATIONS = slice(0, 66), slice(186, 312)
 _HUMANML3D, _HUMANML3D_FPS = 263, 20.0
 _SOMA_JOINTS = (
     "Hips LeftLeg RightLeg Spine1 LeftShin RightShin Spine2 LeftFoot RightFoot Chest LeftToeBase RightToeBase Neck1 "
@@ -134,8 +133,7 @@ def read_npy(data: bytes, label: str, choices: ImportChoices) -> Recording:
     """A single array: positions of one person or more, features of InterGen or HumanML3D, or InterHuman's frames.
 
     InterGen's features are (T, 262) or (T, 524), HumanML3D's (T, 263). InterHuman's processed files, one person each,
-    are (T, 492): 62 joints' positions, Z up, and 51 joints' rotations. Of these the 22 of the body are read, as they
-    are of the (T, 192) that InterGen's loader cuts out of them.
+    are (T, 492): 62 joints' positions, Z up, and 51 joints' rotations. Of these the 22 of the body are read.
 
     Raises:
         InputError: one sentence saying what is wrong with the file.
@@ -144,20 +142,15 @@ def read_npy(data: bytes, label: str, choices: ImportChoices) -> Recording:
     columns = array.shape[-1] if array.ndim == 2 and len(array) else 0
     rate = choices.fps or (_HUMANML3D_FPS if columns == _HUMANML3D else 30.0)
     notes = () if choices.fps else (no_rate(label, rate),)
-    if columns not in (NUM_FEATURES, 2 * NUM_FEATURES, RAW_FEATURES, _INTERHUMAN, _HUMANML3D):
+    if columns not in (NUM_FEATURES, 2 * NUM_FEATURES, _INTERHUMAN, _HUMANML3D):
         return _recording(array, rate, label, choices, notes)
     check_duration(len(array), rate, label)
     array = numbers(array, label)
-    if columns == _INTERHUMAN:
-        array = np.concatenate([array[:, _BODY_POSITIONS], array[:, _BODY_ROTATIONS]], axis=-1)
-    if columns == _HUMANML3D:
-        positions = numbers(decode_humanml3d(array), label)
-    else:
-        raw = columns in (RAW_FEATURES, _INTERHUMAN)
-        positions = read_raw(array)[0] if raw else decode_positions(array)
+    decode = {_INTERHUMAN: upright, _HUMANML3D: decode_humanml3d}.get(columns, decode_positions)
+    positions = numbers(decode(array), label)
     people = positions if positions.ndim > 3 else positions[None]
     clips = tuple(Clip(person, rate, name=label, notes=notes) for person in people)
-    return Recording(clips, on_floor=columns in (RAW_FEATURES, _INTERHUMAN))
+    return Recording(clips, on_floor=columns == _INTERHUMAN)
 
 
 def _recording(

@@ -36,7 +36,8 @@ def _people(seed: int, frames: int = 12):
 
 @pytest.mark.parametrize("person", "ab")
 def test_canonical_person_equals_the_release(reference, person):
-    positions, rotations = rep.read_raw(reference[f"raw_{person}"])
+    raw = reference[f"raw_{person}"]  # 22 places, Z up, and the rotations of 21 joints
+    positions, rotations = rep.upright(raw), raw[:, 66:].reshape(-1, 21, 6)
     positions -= [0, positions[..., 1].min(), 0]
     features = rep.encode_person(canonicalize(positions), rotations)
     expected = reference["features_a" if person == "a" else "features_b_canonical"]

@@ -64,7 +64,7 @@ def test_npy_forms():
     np.testing.assert_allclose(
         formats.read(_npy(features), name="a.npy").positions, decode_positions(features), atol=1e-6
     )
-    raw = np.random.default_rng(0).normal(size=(5, 192))
+    raw = np.random.default_rng(0).normal(size=(5, 492))
     floor = raw[:, 2:66:3].min()
     np.testing.assert_allclose(formats.read(_npy(raw), name="a.npy").positions[:, 0, 1], raw[:, 2] - floor, atol=1e-6)
 
