@@ -193,7 +193,6 @@ class Measure:
 
 MEASURES = (
     Measure("foot_skate", "Foot skate", "cm/s", 1, "Mean speed of feet while they stand on the floor.", "lower"),
-    Measure("skate_ratio", "Skating frames", "%", 1, "Standing feet that slide faster than 50 cm/s.", "lower"),
     Measure("penetration", "Penetration", "cm", 2, "Mean over time of the deepest overlap of the bodies.", "lower"),
     Measure("penetration_max", "Deepest overlap", "cm", 1, "At the worst frame.", "lower"),
     Measure("jerk", "Jerk", "m/s³", 0, "Mean third derivative of the joints: shaking and snapping.", "lower"),
@@ -213,12 +212,10 @@ def summary(duet: Duet) -> dict[str, float]:
 
 
 def _summary(duet: Duet, contacts: list[Contact]) -> dict[str, float]:
-    skate, overlap = foot_skate(duet), penetration(duet)
-    distance = pelvis_distance(duet)
+    overlap, distance = penetration(duet), pelvis_distance(duet)
     touched = {frame for contact in contacts for frame in range(contact.start, contact.stop)}
     numbers = {
-        "foot_skate": skate.speed,
-        "skate_ratio": 100 * skate.ratio,
+        "foot_skate": foot_skate(duet),
         "penetration": float(overlap.mean()),
         "penetration_max": float(overlap.max()),
         "jerk": jerk(duet),

@@ -15,26 +15,9 @@ from motion.vectors import Array, left_of, wrapped
 
 from .bodies import CAPSULES, depths
 
-SKATE_SPEED = 0.5
-"""Metres a second above which a planted foot skates: 2.5 cm a frame at 20 fps (Karunratanakul et al.,
-Guided Motion Diffusion, ICCV 2023, section 5)."""
 
-
-@dataclass(frozen=True)
-class FootSkate:
-    """Sliding of the feet while they stand.
-
-    Attributes:
-        speed: mean horizontal speed of the feet that stand, in cm/s; 0 if no foot ever stands.
-        ratio: share of those foot-frames with more than :data:`SKATE_SPEED`, 0 to 1.
-    """
-
-    speed: float
-    ratio: float
-
-
-def foot_skate(duet: Duet) -> FootSkate:
-    """Slides of standing feet, over both feet of both people.
+def foot_skate(duet: Duet) -> float:
+    """Mean speed over the floor of standing feet, both feet of both people, in cm/s; 0 if no foot ever stands.
 
     A foot stands from one frame to the next where its toe joint is below 5 cm *and* its ankle joint below
     12 cm in both: a swinging foot also passes close to the floor, but with its heel lifted.
@@ -44,9 +27,7 @@ def foot_skate(duet: Duet) -> FootSkate:
     path = positions[:, :, _TOES][..., [0, 2]].astype(np.float64)
     speeds = np.linalg.norm(np.diff(path, axis=1), axis=-1) * duet.fps
     planted = speeds[low[:, 1:] & low[:, :-1]]
-    if not len(planted):
-        return FootSkate(0.0, 0.0)
-    return FootSkate(speed=float(planted.mean() * 100), ratio=float((planted > SKATE_SPEED).mean()))
+    return float(planted.mean() * 100) if len(planted) else 0.0
 
 
 def jerk(duet: Duet) -> float:
@@ -90,7 +71,7 @@ PHYSICAL = {
 
 def physical(duets: Sequence[Duet]) -> dict[str, float]:
     """The mean of each measure of :data:`PHYSICAL` over duets."""
-    values = [(foot_skate(duet).speed, jerk(duet), penetration(duet).mean(), bone_drift(duet)) for duet in duets]
+    values = [(foot_skate(duet), jerk(duet), penetration(duet).mean(), bone_drift(duet)) for duet in duets]
     return {key: round(float(mean), 4) for key, mean in zip(PHYSICAL, np.mean(values, axis=0), strict=True)}
 
 

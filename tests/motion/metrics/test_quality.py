@@ -18,7 +18,7 @@ from .scenes import FPS, duet, face_to_face, standing
 
 def test_still_people_have_no_skate_no_jerk_and_no_drift() -> None:
     still = duet(face_to_face())
-    assert foot_skate(still).speed == 0
+    assert foot_skate(still) == 0
     assert jerk(still) == pytest.approx(0, abs=1e-6)
     assert bone_drift(still) == pytest.approx(0, abs=1e-6)
 
@@ -27,9 +27,7 @@ def test_sliding_people_skate_at_the_speed_they_slide() -> None:
     scene = face_to_face()
     scene[0, :, :, 0] += 0.30 / FPS * np.arange(60)[:, None]
     scene[1, :, :, 0] += 0.70 / FPS * np.arange(60)[:, None]
-    skate = foot_skate(duet(scene))
-    assert skate.speed == pytest.approx(50, rel=1e-3), "30 and 70 cm/s on average"
-    assert skate.ratio == pytest.approx(0.5), "only one of them is above 50 cm/s"
+    assert foot_skate(duet(scene)) == pytest.approx(50, rel=1e-3), "30 and 70 cm/s on average"
 
 
 def test_jerk_of_a_cubic_path_is_its_third_derivative() -> None:
