@@ -262,17 +262,13 @@ def _turns(positions: Array, feet: Array, forward: Array, fps: float) -> list[Tu
         start = max(low, min(start, stop - least))
         if not lands:  # the last steps may end after the turn
             stop = min(max(stop, start + round(_wanted(yaw[stop - 1] - yaw[start]) * _PIVOT_TIME * fps)), len(yaw))
-        if _mean_speed(positions[start:stop, 0], fps) > _WALKS_ON:
+        steps = np.diff(positions[start:stop, 0][:, [0, 2]], axis=0)
+        if np.linalg.norm(steps, axis=-1).mean() * fps > _WALKS_ON:
             continue  # its steps are those of a walk
         if abs(yaw[stop - 1] - yaw[start]) > _TURNED and stands[start:stop].all() and stop - start >= least:
             found.append(Turn(start, stop, lands))
             low = stop
     return found
-
-
-def _mean_speed(place: Array, fps: float) -> float:
-    """Metres a second over the floor, on the mean, of a joint (T, 3)."""
-    return float(np.linalg.norm(np.diff(place[:, [0, 2]], axis=0), axis=-1).mean() * fps)
 
 
 def _wanted(turned: float) -> int:

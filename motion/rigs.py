@@ -141,9 +141,10 @@ def match_joints(rig: RigMotion) -> BodyParts:
     limbs = {side: _match_limbs(rig, keys, side, helpers) for side in ("left", "right")}
     missing = [f"{side} {part}" for side in limbs for part in _REQUIRED if limbs[side][part] is None]
     if missing:
+        shown = ", ".join(rig.joint_names[:8]) + " …" * (len(rig.joint_names) > 8)
         raise InputError(
             f"{rig.name or 'The file'} has no joint that looks like the {', '.join(missing)} (it has "
-            f"{_shorten(rig.joint_names)}): rename its joints as Mixamo does: LeftArm, LeftForeArm …"
+            f"{shown}): rename its joints as Mixamo does: LeftArm, LeftForeArm …"
         )
     pelvis = rig.common_ancestor(limbs["left"]["hip"], limbs["right"]["hip"])  # type: ignore[arg-type]
     chest = rig.common_ancestor(limbs["left"]["shoulder"], limbs["right"]["shoulder"])  # type: ignore[arg-type]
@@ -199,10 +200,6 @@ def _best(
     if held := [joint for joint in named if joint in above]:
         return min(held, key=lambda joint: (PARTS[part].index(keys[joint][1]), above.index(joint)))
     return min(named, key=lambda joint: (PARTS[part].index(keys[joint][1]), len(rig.path_to_root(joint))), default=None)
-
-
-def _shorten(names: tuple[str, ...]) -> str:
-    return ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
 
 
 # ---- Names -----------------------------------------------------------------------------------------------------------

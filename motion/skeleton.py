@@ -77,7 +77,10 @@ class Skeleton:
     def mirror(self) -> tuple[int, ...]:
         """For every joint, the joint that takes its place when left and right are swapped."""
         index = {name: joint for joint, name in enumerate(self.joint_names)}
-        return tuple(index.get(_other_side(name), joint) for joint, name in enumerate(self.joint_names))
+        sides = {"left": "right", "right": "left"}
+        parts = (name.partition("_") for name in self.joint_names)
+        others = (sides.get(side, side) + mark + rest for side, mark, rest in parts)
+        return tuple(index.get(other, joint) for joint, other in enumerate(others))
 
     @cached_property
     def index(self) -> Callable[[str], int]:
@@ -90,14 +93,6 @@ class Skeleton:
         for parent, joint in self.bones:
             positions[joint] += positions[parent]
         return positions
-
-
-def _other_side(name: str) -> str:
-    if name.startswith("left_"):
-        return "right_" + name[5:]
-    if name.startswith("right_"):
-        return "left_" + name[6:]
-    return name
 
 
 def _topology(name: str, joints: list[tuple[str, str | None]], offsets: Array | None = None) -> Skeleton:

@@ -262,7 +262,8 @@ def swinging(person: Array, fps: float, free: Array, seed: int | Sequence[int] =
     if walks.max() < 1e-3:
         return result
     apart = np.sum((result[:, LEGS[0][2]] - result[:, LEGS[1][2]]) * ahead, axis=-1)
-    foot = _early(_smooth(apart, _STEADY, fps), round(_LEADS * fps))
+    later = np.minimum(np.arange(len(apart)) + round(_LEADS * fps), len(apart) - 1)
+    foot = _smooth(apart, _STEADY, fps)[later]  # an arm is ahead of its foot
     wanted = np.interp(_smooth(speed, _EASES, fps), _SPEEDS, _SWINGS)
     for side, (arm, width) in enumerate(zip(ARMS, _widths(seed), strict=True)):
         with_foot = foot if side else -foot  # the right arm goes with the left foot
@@ -335,11 +336,6 @@ def _turned_back(bone: Array, angle: Array, axis: Array) -> Array:
     """A bone (T, 3) turned back about axes (T, 3) by angles (T,)."""
     turns = scipy.spatial.transform.Rotation.from_rotvec(-angle[:, None] * axis)
     return np.asarray(turns.apply(bone))
-
-
-def _early(values: Array, frames: int) -> Array:
-    """Values (T,) so many frames before their time; the last one stays."""
-    return values[np.minimum(np.arange(len(values)) + frames, len(values) - 1)]
 
 
 def _smooth(values: Array, seconds: float, fps: float) -> Array:

@@ -137,7 +137,8 @@ def replacing(path: Path) -> Iterator[Path]:
         os.close(descriptor)
         yield temporary
         # mkstemp makes private files; a finished one is as readable as any other.
-        os.chmod(temporary, 0o666 & ~_umask())
+        os.umask(mask := os.umask(0))
+        os.chmod(temporary, 0o666 & ~mask)
         os.replace(temporary, path)
     except OSError as error:
         if error.errno in (errno.ENOSPC, errno.EDQUOT):
@@ -168,12 +169,6 @@ def write_files(contents: Mapping[Path, bytes]) -> list[Path]:
         for path, data in contents.items():
             waiting.enter_context(replacing(path)).write_bytes(data)
     return list(contents)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def safe_cell(value: Any) -> Any:

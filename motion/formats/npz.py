@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 from motion.clip import Clip, Duet
 from motion.errors import InputError
 from motion.guesses import likely_skeleton
-from motion.hands import Grip, grips_of, to_lists
+from motion.hands import grips_of, to_lists
 from motion.looks import UNSAID, checked
 from motion.representation import NUM_FEATURES, decode_humanml3d, decode_positions, upright
 from motion.rigs import RigMotion
@@ -93,9 +93,11 @@ def write_npz(motion: Duet | Clip, path: str | Path) -> list[Path]:
             "roles": np.array(motion.roles),
             "manifest": np.array(json.dumps(motion.manifest or {}, ensure_ascii=False)),
             **arrays_of(motion.things),
-            **grips_array(motion.grips),
-            **looks_array(motion.looks),
         }
+        if motion.grips:
+            arrays["grips"] = np.array(json.dumps(to_lists(motion.grips)))
+        if motion.looks != UNSAID:
+            arrays["looks"] = np.array(motion.looks)
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)
     return write_files({Path(path): buffer.getvalue()})
@@ -241,22 +243,22 @@ def _beside(arrays: dict[str, Array], found: Recording, label: str) -> dict[str,
     if len(found.people) != 2:
         return {}
     roles = tuple(str(role)[:40] for role in np.atleast_1d(arrays.get("roles", ("a", "b")))[:2])
-    manifest = None
-    if "manifest" in arrays:
-        try:
-            manifest = read_json(str(arrays["manifest"]))
-        except ValueError as error:
-            raise InputError(f"{label}: its manifest {error}: save it again.") from None
-    return {
-        "roles": (roles[0], roles[1]) if len(roles) == 2 else ("a", "b"),
-        "manifest": manifest if isinstance(manifest, dict) and manifest else None,
-        "things": things_of(arrays, found.people[0].num_frames, label),
-        "grips": grips_in(arrays, label),
-        "looks": looks_in(arrays, label),
-    }
+    try:
+        manifest, grips = (read_json(str(arrays[key])) if key in arrays else None for key in ("manifest", "grips"))
+        return {
+            "roles": (roles[0], roles[1]) if len(roles) == 2 else ("a", "b"),
+            "manifest": manifest if isinstance(manifest, dict) and manifest else None,
+            "things": _things_of(arrays, found.people[0].num_frames),
+            "grips": grips_of(grips) if "grips" in arrays else (),
+            "looks": checked([str(look) for look in np.atleast_1d(arrays.get("looks", UNSAID))[:3]]),
+        }
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None
+    except ValueError as error:
+        raise InputError(f"{label}: a text in it {error}: save it again.") from None
 
 
-# ---- Things, grips and looks -----------------------------------------------------------------------------------------
+# ---- Things ----------------------------------------------------------------------------------------------------------
 
 
 def arrays_of(things: Sequence[Thing]) -> dict[str, Array]:
@@ -276,13 +278,8 @@ def arrays_of(things: Sequence[Thing]) -> dict[str, Array]:
     }
 
 
-def things_of(arrays: Mapping[str, Array], frames: int, label: str) -> tuple[Thing, ...]:
-    """The things of a file whose arrays have been read; () where it holds none.
-
-    Args:
-        arrays: of the file, by name.
-        frames: of its people.
-        label: what to call the file in messages.
+def _things_of(arrays: Mapping[str, Array], frames: int) -> tuple[Thing, ...]:
+    """The things of a file whose arrays have been read, with so many frames; () where it holds none.
 
     Raises:
         InputError: one sentence on what is wrong with them.
@@ -290,26 +287,23 @@ def things_of(arrays: Mapping[str, Array], frames: int, label: str) -> tuple[Thi
     if not any(key in arrays for key in THING_KEYS):
         return ()
     if missing := [key for key in THING_KEYS if key not in arrays]:
-        raise InputError(f"{label} holds things without {missing[0]}: save it again.")
+        raise InputError(f"it holds things without {missing[0]}: save it again.")
     kinds, names = (np.atleast_1d(arrays[key]) for key in ("thing_kinds", "thing_names"))
     count = len(kinds)
     if not 1 <= count <= MOST_THINGS or kinds.shape != (count,) or names.shape != (count,):
-        raise InputError(f"{label} holds {count} things: {MOST_THINGS} are the limit.")
+        raise InputError(f"it holds {count} things: {MOST_THINGS} are the limit.")
     for key, (number, axes) in _SHAPES.items():
         if arrays[key].dtype.kind not in number or arrays[key].ndim != axes:
-            raise InputError(f"{label}, {key}: it is not an array of the right kind: save it again.")
+            raise InputError(f"{key} is not an array of the right kind: save it again.")
     if arrays["thing_places"].shape[:2] != (count, frames) or len(arrays["thing_rotations"]) != count:
-        raise InputError(f"{label}: the tracks of its things are not as long as the motion: save it again.")
+        raise InputError("the tracks of its things are not as long as the motion: save it again.")
     sizes = arrays["thing_sizes"]
     if sizes.shape != (count, 2) or (sizes.astype(np.float64) < 0).any():
-        raise InputError(f"{label}: the sizes of its things are damaged: save it again.")
+        raise InputError("the sizes of its things are damaged: save it again.")
     ends = np.minimum(np.cumsum(sizes.astype(np.float64), axis=0), 1e9).astype(np.int64)
     if ends[-1].tolist() != [len(arrays["thing_vertices"]), len(arrays["thing_faces"])]:
-        raise InputError(f"{label}: the surfaces of its things are cut off: save it again.")
-    try:
-        return tuple(_thing(arrays, i, ends - sizes.astype(np.int64), ends) for i in range(count))
-    except InputError as error:
-        raise InputError(f"{label}: {error}") from None
+        raise InputError("the surfaces of its things are cut off: save it again.")
+    return tuple(_thing(arrays, i, ends - sizes.astype(np.int64), ends) for i in range(count))
 
 
 def _thing(arrays: Mapping[str, Array], i: int, starts: Array, ends: Array) -> Thing:
@@ -318,35 +312,3 @@ def _thing(arrays: Mapping[str, Array], i: int, starts: Array, ends: Array) -> T
     mesh = Mesh(vertices, arrays["thing_faces"][rows], arrays["thing_colours"][rows])
     kind, name = (str(arrays[key][i])[:40] for key in ("thing_kinds", "thing_names"))
     return Thing(kind, mesh, arrays["thing_places"][i], arrays["thing_rotations"][i], name)
-
-
-def grips_array(grips: Sequence[Grip]) -> dict[str, Array]:
-    """The array of some grips; none for none."""
-    return {"grips": np.array(json.dumps(to_lists(grips)))} if grips else {}
-
-
-def grips_in(arrays: Mapping[str, Array], label: str) -> tuple[Grip, ...]:
-    """The grips of a file whose arrays have been read; raises InputError for what is none."""
-    if "grips" not in arrays:
-        return ()
-    try:
-        return grips_of(read_json(str(arrays["grips"])))
-    except InputError as error:
-        raise InputError(f"{label}: {error}") from None
-    except ValueError as error:
-        raise InputError(f"{label}: the text of its grips {error}: save it again.") from None
-
-
-def looks_array(looks: tuple[str, str]) -> dict[str, Array]:
-    """The array of the looks of two people; none where nothing is said."""
-    return {} if looks == UNSAID else {"looks": np.array(looks)}
-
-
-def looks_in(arrays: Mapping[str, Array], label: str) -> tuple[str, str]:
-    """The looks in a file whose arrays have been read; raises InputError for what is none."""
-    if "looks" not in arrays:
-        return UNSAID
-    try:
-        return checked([str(look) for look in np.atleast_1d(arrays["looks"])[:3]])
-    except InputError as error:
-        raise InputError(f"{label}: {error}") from None

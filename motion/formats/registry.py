@@ -60,19 +60,11 @@ def _rigs(data: bytes, label: str, choices: ImportChoices) -> Recording:
     return Recording(read_bvh(data, name=label, fps=RIG_FPS, file_fps=choices.fps))
 
 
-def _bvh_alone(clip: Clip, path: Path) -> list[Path]:
-    return write_files({path: bvh_text(clip).encode()})
-
-
-def _smpl_alone(clip: Clip, path: Path) -> list[Path]:
-    return write_files({path: smpl_bytes(clip)})
-
-
 FORMATS: dict[str, Format] = {
     f.suffix: f
     for f in (
         Format(".npz", read_npz, write_npz, write_npz),
-        Format(".bvh", _rigs, write_bvh, _bvh_alone),
+        Format(".bvh", _rigs, write_bvh, lambda clip, path: write_files({path: bvh_text(clip).encode()})),
         Format(".npy", read_npy, write_npy, write_npy),
         Format(".skeleton", read_kinect),
         Format(".txt", read_kinect),
@@ -80,7 +72,7 @@ FORMATS: dict[str, Format] = {
         Format(".vrm", _rigs),
         Format(".vrma", _rigs),
         Format(".usda", None, write_usd),
-        Format(".smpl.npz", None, write_smpl, _smpl_alone),
+        Format(".smpl.npz", None, write_smpl, lambda clip, path: write_files({path: smpl_bytes(clip)})),
         Format(".trc", read_trc),
         Format(".c3d", read_c3d),
         Format(".zip", lambda *_: Recording(())),

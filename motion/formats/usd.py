@@ -10,7 +10,6 @@ import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -162,11 +161,6 @@ def identifier(called: str, other: str) -> str:
     return f"_{name}" if name[0].isdigit() else name
 
 
-def tuple_of(values: Any) -> str:
-    """Numbers as a tuple."""
-    return str(tuple(np.asarray(values).tolist()))
-
-
 def rows(values: Array) -> str:
     """(N, k) numbers as an array of tuples."""
     return str(list(map(tuple, np.round(values.astype(np.float64), 6).tolist())))
@@ -222,7 +216,7 @@ def materials(colours: Mapping[str, str], place: str, rough: float) -> str:
         def Shader "surface"
         {{
             uniform token info:id = "UsdPreviewSurface"
-            color3f inputs:diffuseColor = {tuple_of(np.round(linear(colour), 5))}
+            color3f inputs:diffuseColor = {tuple(np.round(linear(colour), 5).tolist())}
             float inputs:roughness = {rough}
             token outputs:surface
         }}

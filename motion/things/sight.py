@@ -66,18 +66,15 @@ def looked_at(things: Sequence[Thing], person: Array, other: Array) -> NDArray[n
     eyes, ways = gazes(person)
     found = np.full(len(person), -1)
     for frame, (eye, ahead) in enumerate(zip(eyes, ways, strict=True)):
-        far = [_to_thing(thing, frame, eye, ahead) for thing in things]
+        far = []
+        for thing in things:  # a thing is met in its own frame
+            turned, place = thing.rotations[frame].astype(np.float64), thing.places[frame].astype(np.float64)
+            far.append(distance(_hull(thing.mesh), (eye - place) @ turned, ahead @ turned))
         far.append(distance(_body(other[frame]), eye, ahead))
         nearest = int(np.argmin(far))
         if far[nearest] <= FARTHEST:
             found[frame] = nearest
     return found
-
-
-def _to_thing(thing: Thing, frame: int, eye: Array, ahead: Array) -> float:
-    """Metres to the hull of a thing, which is met in its own frame."""
-    turned, place = thing.rotations[frame].astype(np.float64), thing.places[frame].astype(np.float64)
-    return distance(_hull(thing.mesh), (eye - place) @ turned, ahead @ turned)
 
 
 @lru_cache(maxsize=64)

@@ -63,7 +63,8 @@ def bodies_apart(pair: Array, fps: float, free: Array | None = None) -> Array:
         return result
     way = _way(result)
     bodies, feet = (np.zeros(result.shape[1]) for _ in range(2))
-    stands = [_stances(person, fps) for person in pair]
+    contacts = [foot_contacts(person, fps) for person in pair]
+    stands = [[runs(np.any(foot[:, 2 * side : 2 * side + 2], axis=1)) for side in (0, 1)] for foot in contacts]
     for _ in range(_ROUNDS):
         pushes = _pushes(result, way, near)
         if not any(push.any() for push in pushes):
@@ -174,12 +175,6 @@ def _segments(pair: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     starts, ends = pair[:, :, _BODY.starts], pair[:, :, _BODY.ends]
     ends = np.where(_BODY.are("elbow")[:, None], starts + _ROOT * (ends - starts), ends)
     return starts, ends, _BODY.radii, _BODY.are("ankle", "foot")
-
-
-def _stances(person: Array, fps: float) -> tuple[list[tuple[int, int]], ...]:
-    """(start, stop) of the stances of the left foot and of the right one."""
-    contacts = foot_contacts(person, fps)
-    return tuple(runs(np.any(contacts[:, 2 * side : 2 * side + 2], axis=1)) for side in (0, 1))
 
 
 def _moved(person: Array, bodies: Array, feet: Array, stances: Sequence[Sequence[tuple[int, int]]]) -> Array:

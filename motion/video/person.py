@@ -101,7 +101,8 @@ def person_of(landmarks: Landmarks, *, name: str = "Film") -> Filmed:
     fitted = _fit(points, track)
     lean = body_tilt(points, track.seen)
     tilt = float(np.clip(np.degrees(level(fitted, lean, fps=track.fps)), *TILTS))
-    positions = _finished(fitted @ _flipped(np.radians(tilt)).T, track.fps)
+    turn = upright(np.radians(tilt)) @ np.diag([1.0, -1.0, -1.0])  # from the axes of the fit to the world's
+    positions = _finished(fitted @ turn.T, track.fps)
     clip = Clip(positions - positions[0, 0] * [1, 0, 1], FPS, name=name)
     return Filmed(clip, _confidence(track, len(positions)), tilt, _notes(track, landmarks))
 
@@ -165,11 +166,6 @@ def _fit(points: Array, track: Track) -> Array:
     trust[~track.found] = 0.0
     fit = fit_skeleton(chosen, LAYOUT, weights=trust, fps=track.fps, noise=_NOISE)
     return fit.positions
-
-
-def _flipped(tilt: float) -> Array:
-    """(3, 3) from the axes of :func:`_fit` to the world's."""
-    return upright(tilt) @ np.diag([1.0, -1.0, -1.0])
 
 
 def _finished(positions: Array, fps: float) -> Array:

@@ -136,14 +136,10 @@ def _lines(joints: Array, limb: str) -> Array:
     rows = [
         row
         for parent, child in SMPL22.bones
-        if _limb_of(SMPL22.joint_names[child]) == limb
+        if limb == next((side for side in LIMBS[1:] if SMPL22.joint_names[child].startswith(side)), LIMBS[0])
         for row in (joints[parent], joints[child], np.full(3, np.nan))
     ]
     return np.round(np.array(rows).reshape(-1, 3), 4)
-
-
-def _limb_of(joint: str) -> str:
-    return next((limb for limb in LIMBS[1:] if joint.startswith(f"{limb}_")), LIMBS[0])
 
 
 def _floor(people: Array, colours: Theme) -> Any:

@@ -223,13 +223,9 @@ def points(m: Motion, who: int, side: str = "any") -> Mask:
 @predicate
 def strikes(m: Motion, who: int, side: str = "any", speed: float = 2.5) -> Mask:
     """A hand shoots out towards the other: a punch, a shove or a throw."""
-    fast = np.stack([_near_in_time(s > speed, m.fps) for s in _wrist_speed(m, who)])
+    near = np.ones(2 * round(0.3 * m.fps) + 1)  # frames before and after
+    fast = np.stack([np.convolve(s > speed, near, mode="same") > 0.5 for s in _wrist_speed(m, who)])
     return _of_side((_reach(m, who) > 0.33) & (_lift(m, who) > -0.35) & fast, side)
-
-
-def _near_in_time(mask: Mask, fps: float, seconds: float = 0.3) -> Mask:
-    """The mask grown to both sides."""
-    return np.convolve(mask, np.ones(2 * round(seconds * fps) + 1), mode="same") > 0.5
 
 
 @predicate
