@@ -102,6 +102,8 @@ def _read_sbu(text: str, label: str, fps: float) -> list[Array]:
         if len(words) not in (90, 91):
             raise InputError(f"{label}, line {number}: {len(words)} numbers where a frame's number and 90 are needed.")
         rows[frames] = _numbers(words[-90:], f"{label}, line {number}")
+        if not np.isfinite(rows[frames]).all():
+            raise InputError(f"{label}, line {number} holds NaN or an infinite number: remove that frame.")
         frames += 1
     x, y, z = rows[:frames].reshape(-1, 2, 15, 3).transpose(3, 1, 0, 2)
     metres = np.stack([(1280 - 2560 * x) / 1000, (960 - 1920 * y) / 1000, 10 * z / 7.8125], axis=-1)
@@ -109,14 +111,11 @@ def _read_sbu(text: str, label: str, fps: float) -> list[Array]:
     return [person for person, seen in zip(metres, (x != 0).any((1, 2)), strict=True) if seen] or [metres[0]]
 
 
-def _numbers(words: list[str], where: str) -> Array:
+def _numbers(words: list[str], where: str) -> list[float]:
     try:
-        values = np.array([float(word) for word in words])
+        return [float(word) for word in words]
     except ValueError:
         raise InputError(f"{where}: something is not a number: export it again.") from None
-    if not np.isfinite(values).all():
-        raise InputError(f"{where} holds NaN or an infinite number: remove that frame.")
-    return values
 
 
 # ---- NTU RGB+D ---------------------------------------------------------------------------------------
@@ -142,19 +141,14 @@ class _Lines:
 
     def joints(self) -> Array:
         """(25, 3) float32: the first three numbers of as many lines, NaN for those that are not finite."""
-        rows: list[tuple[int, list[str]]] = []
-        try:
-            for _ in range(25):
-                words = self.words(3)[:3]
-                if len(words) < 3:
-                    raise InputError(f"{self.where}: a joint needs x, y and z.")
-                rows.append((self.number, words))
-            places = np.array([[float(x), float(y), float(z)] for _, (x, y, z) in rows], dtype=np.float32)
-            return np.where(np.isfinite(places), places, np.float32("nan"))
-        except ValueError:  # includes InputError; report the first error in the file
-            for number, words in rows:
-                _numbers(words, f"{self.label}, line {number}")
-            raise
+        rows = []
+        for _ in range(25):
+            words = self.words(3)[:3]
+            if len(words) < 3:
+                raise InputError(f"{self.where}: a joint needs x, y and z.")
+            rows.append(_numbers(words, self.where))
+        places = np.array(rows, dtype=np.float32)
+        return np.where(np.isfinite(places), places, np.float32("nan"))
 
     def count(self, what: str, largest: int) -> int:
         """A line that holds one whole number."""

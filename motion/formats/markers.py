@@ -179,7 +179,10 @@ def read_trc(data: bytes, label: str, choices: ImportChoices) -> Recording:
     head, start = _head(text, label)
     mark = next((mark for mark in "\t;," if mark in head[3]), None)
     settings = dict(zip(_cells(head[1], mark), _cells(head[2], mark), strict=False))
-    rate = choices.fps or _rate(settings.get("DataRate") or settings.get("CameraRate") or "", label)
+    try:
+        rate = choices.fps or float(settings.get("DataRate") or settings.get("CameraRate") or "")
+    except ValueError:
+        raise InputError(f"{label} does not give its DataRate as a number: give its true rate.") from None
     if not 1.0 <= rate <= 1000.0:
         raise InputError(f"{label}: a DataRate of {rate:g} is not possible: give frames a second.")
     unit = settings.get("Units", "mm").strip().lower()
@@ -249,10 +252,3 @@ def _value(cell: str, label: str, number: int) -> float:
         return float(cell) if cell.strip() else np.nan
     except ValueError:
         raise InputError(f"{label}, line {number}: {cell.strip()!r:.20} is not a number.") from None
-
-
-def _rate(word: str, label: str) -> float:
-    try:
-        return float(word)
-    except ValueError:
-        raise InputError(f"{label} does not give its DataRate as a number: give its true rate.") from None
