@@ -8,6 +8,7 @@ where that is a standing one. The root's path is scaled by leg length, so that s
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import overload
 
@@ -59,26 +60,23 @@ def retarget(rig: RigMotion, *, fps: float = 30.0, plant: bool = True) -> Clip:
     Raises:
         InputError: if no human body is found in the rig.
     """
-    positions = _on_smpl(rig, fps, leg_scale(rig))
-    positions[..., 1] -= _floor_height(positions)
-    return replace(_finished(positions, fps, rig.name, plant), notes=rig.notes)
+    return retarget_together([rig], fps=fps, plant=plant)[0]
 
 
-def retarget_duet(a: RigMotion, b: RigMotion, *, fps: float = 30.0) -> Duet:
-    """Brings two rigs that share one world onto SMPL22: one scale, one floor, the shorter one's length.
+def retarget_together(rigs: Sequence[RigMotion], *, fps: float = 30.0, plant: bool = True) -> tuple[Clip, ...]:
+    """Brings rigs that share one world onto SMPL22, as :func:`retarget` does one: one scale, one floor, one length.
 
     Raises:
         InputError: if no human body is found in a rig.
     """
-    scale = (leg_scale(a) + leg_scale(b)) / 2
-    people = [_on_smpl(rig, fps, scale) for rig in (a, b)]
+    scale = float(np.mean([leg_scale(rig) for rig in rigs]))
+    people = [_on_smpl(rig, fps, scale) for rig in rigs]
     frames = min(len(person) for person in people)
-    floor = min(_floor_height(person) for person in people)
-    clips = [
-        replace(_finished(person[:frames] - np.array([0.0, floor, 0.0]), fps, rig.name), notes=rig.notes)
-        for person, rig in zip(people, (a, b), strict=True)
-    ]
-    return Duet(clips[0], clips[1])
+    floor = np.array([0.0, min(_floor_height(person) for person in people), 0.0])
+    return tuple(
+        replace(_finished(person[:frames] - floor, fps, rig.name, plant), notes=rig.notes)
+        for person, rig in zip(people, rigs, strict=True)
+    )
 
 
 @overload

@@ -16,7 +16,7 @@ import numpy as np
 from motion.clip import Clip, Duet
 from motion.errors import InputError
 from motion.guesses import Places, calibration_frames, find_up, places_of, turn_of
-from motion.retarget import rest_axis, retarget, retarget_duet, to_smpl, up_axis
+from motion.retarget import rest_axis, retarget_together, to_smpl, up_axis
 from motion.rigs import RigMotion, matched_names, without_beginning
 from motion.skeleton import LAYOUTS, SMPL22
 from motion.vectors import Array
@@ -180,13 +180,8 @@ def _import_rigs(rigs: list[RigMotion], label: str, choices: ImportChoices) -> I
     rigs = [replace(rig, up=up) for rig in _with_note(rigs, up, rest_axis(first) or "y", label, choices)]
     if up == "y" and scale == 1.0 and all(own):
         people = tuple(clip for clip in own if clip is not None)
-    elif len(rigs) > 1:
-        people = (
-            *retarget_duet(rigs[0], rigs[1], fps=RIG_FPS).people,
-            *(retarget(rig, fps=RIG_FPS) for rig in rigs[2:]),
-        )
     else:
-        people = (retarget(rigs[0], fps=RIG_FPS),)
+        people = retarget_together(rigs, fps=RIG_FPS)
     unit = next((n for n, metres in UNITS.items() if np.isclose(metres, rigs[0].metres_per_unit)), "none")
     return Imported(people, up, unit, first.fps * first.every, tuple(matched_names(rigs[0])))
 

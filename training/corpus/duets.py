@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_opening, uniform_filter1d
 
-from motion import InputError, stacked_positions
-from motion.retarget import retarget_duet
+from motion import InputError
+from motion.retarget import retarget_together
 from motion.skeleton import SMPL22
 from motion.transforms import canonicalize, heading
 from motion.vectors import runs
@@ -75,10 +75,10 @@ def read_takes(root: Path) -> Iterator[tuple[str, Array]]:
             if other == path or other not in files:
                 continue
             try:
-                duet = retarget_duet(read_upright(path), read_upright(other), fps=FPS)
+                people = retarget_together([read_upright(path), read_upright(other)], fps=FPS)
             except InputError:
                 continue
-            yield path.stem.removesuffix("_a"), stacked_positions(duet).astype(np.float64)
+            yield path.stem.removesuffix("_a"), np.stack([person.positions for person in people]).astype(np.float64)
 
 
 def windows(take: str, both: Array) -> Iterator[Scene]:
