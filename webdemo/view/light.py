@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.body import Body, vertex_normals
+from motion.body import vertex_normals
 from motion.skeleton import SMPL22
 from motion.smoothing import smoothstep
 from motion.vectors import Array, unit
 
 from .camera import Camera
-from .theme import Lamps, Worn
+from .theme import Lamps
 
 _GAMMA = 2.2
 SHADOW_SIZE = 192
@@ -26,20 +26,6 @@ THING_SHADE = 0.3
 _RADII = {"head": 0.09, "spine1": 0.11, "spine2": 0.11, "spine3": 0.11, "hip": 0.09, "knee": 0.07}
 _BONES = np.array(SMPL22.bones)
 _BONE_RADII = np.array([_RADII.get(SMPL22.joint_names[joint].rpartition("_")[2], 0.05) for _, joint in SMPL22.bones])
-
-
-def shaded(body: Body, vertices: Array, worn: Worn, lamps: Lamps, camera: Camera) -> Array:
-    """Colours (F, 3, 3) of the corners of a body's triangles, under lamps that move with the camera.
-
-    Args:
-        body: whose faces and zones.
-        vertices: (V, 3) where they are, metres.
-        worn: the colour of each zone; that of the top for others.
-        lamps: of the theme.
-        camera: from which it is seen.
-    """
-    palette = np.array([worn.get(zone, worn["top"]) for zone in body.zones])
-    return lit(vertices, body.faces, palette[body.face_zones], body.sky, lamps, camera)
 
 
 def lit(

@@ -23,7 +23,7 @@ from motion.things.thing import Thing
 from motion.vectors import Array
 
 from .camera import Camera, sampled
-from .light import Shadow, lit, shaded
+from .light import Shadow, lit
 from .theme import THEMES, Colour, Theme
 from .things import drawn_things, hands_of, shadow_spots
 
@@ -150,10 +150,11 @@ class Stage:
                 pen.lines(points[_BONES], [theme.ghost] * len(_BONES), 2.5)
         worn = theme.given_bodies if given else theme.bodies
         alpha = _TRANSLUCENT if self.style.look == "both" else 1.0
-        solid = [
-            (body.faces, surface, shaded(body, surface, worn[person], theme.lamps, camera), alpha)
-            for person, (body, surface) in enumerate(zip(self.bodies, surfaces, strict=True))
-        ]
+        solid = []
+        for body, surface, colours in zip(self.bodies, surfaces, worn, strict=False):
+            palette = np.array([colours.get(zone, colours["top"]) for zone in body.zones])
+            shades = lit(surface, body.faces, palette[body.face_zones], body.sky, theme.lamps, camera)
+            solid.append((body.faces, surface, shades, alpha))
         for thing in self.things:
             mesh, surface = thing.mesh, thing.at(frame)
             shades = lit(surface, mesh.faces, mesh.colours / 255, np.ones(len(surface)), theme.lamps, camera)
