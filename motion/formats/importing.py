@@ -22,9 +22,11 @@ from motion.skeleton import LAYOUTS, SMPL22
 from motion.vectors import Array
 
 from .files import check_duration
-from .recording import MAX_PEOPLE, ORDERS, UNITS, Animations, ImportChoices, Recording
+from .recording import MAX_PEOPLE, ORDERS, Animations, ImportChoices, Recording
 from .registry import RIG_FPS, recordings
 
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
+"""Metres of each unit."""
 _TALL = (0.9, 2.0)
 """Metres from ankles to head: the smallest and the tallest person."""
 _NEAR_FLOOR = (-0.05, 0.15)
@@ -164,21 +166,10 @@ def own_clip(rig: RigMotion) -> Clip | None:
 def _import_rigs(rigs: list[RigMotion], label: str, choices: ImportChoices) -> Imported:
     first = rigs[0]
     check_duration(first.num_frames, first.fps, label)
-    scale = 1.0 if choices.unit is None else UNITS[choices.unit] / first.metres_per_unit
-    if scale != 1.0:
-        rigs = [
-            replace(
-                rig,
-                positions=rig.positions * scale,
-                offsets=rig.offsets * scale,
-                metres_per_unit=UNITS[choices.unit or "m"],
-            )
-            for rig in rigs
-        ]
     own = [own_clip(rig) for rig in rigs]
     up = choices.up or up_axis(*rigs)
     rigs = [replace(rig, up=up) for rig in _with_note(rigs, up, rest_axis(first) or "y", label, choices)]
-    if up == "y" and scale == 1.0 and all(own):
+    if up == "y" and all(own):
         people = tuple(clip for clip in own if clip is not None)
     else:
         people = retarget_together(rigs, fps=RIG_FPS)
@@ -192,7 +183,7 @@ def _import_rigs(rigs: list[RigMotion], label: str, choices: ImportChoices) -> I
 def _import_clips(clips: list[Clip], recording: Recording, label: str, choices: ImportChoices) -> Imported:
     places = [places_of(clip) for clip in clips]
     up = choices.up or find_up(places, recording.usual_up or "y")
-    unit = choices.unit or _unit_of(places[0], up)
+    unit = _unit_of(places[0], up)
     turn, metres = turn_of(up), UNITS[unit]
     people = [_turned(clip, turn, metres) for clip in _with_note(clips, up, recording.usual_up, label, choices)]
     lowest = min(float(clip.positions[..., 1].min()) for clip in people)

@@ -19,8 +19,6 @@ Animation = int | str
 
 _LISTED = 5
 """Animations that a message lists."""
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
-"""Metres of each unit."""
 RATES = (1.0, 1000.0)
 ORDERS = {"sbu15": "SBU", "k3hi15": "K3HI", "cmu17": "CMU", "h36m17": "Human3.6M", "coco17": "COCO"}
 """Display names of joint orders that share a number of joints."""
@@ -32,7 +30,6 @@ class ImportChoices:
 
     Attributes:
         up: what points up: "x", "y", "z", or "-x", "-y", "-z" where that axis points down.
-        unit: "m", "cm", "mm" or "inch".
         fps: frames a second; overrides the file, before anything is checked.
         order: order of joints without names: a key of :data:`~motion.SKELETONS`, such as
             "sbu15" or "h36m17".
@@ -40,7 +37,6 @@ class ImportChoices:
     """
 
     up: str | None = None
-    unit: str | None = None
     fps: float | None = None
     order: str | None = None
     animation: Animation | None = None
@@ -49,8 +45,6 @@ class ImportChoices:
         check_animation(self.animation)
         if self.up is not None and self.up not in AXES:
             raise InputError(f"Up axis {self.up!r:.20} is not known: choose x, y or z, or -x, -y or -z.")
-        if self.unit is not None and self.unit not in UNITS:
-            raise InputError(f"Unit {self.unit!r:.20} is not known: choose one of {', '.join(UNITS)}.")
         if self.fps is not None and not RATES[0] <= self.fps <= RATES[1]:
             raise InputError(f"A frame rate of {self.fps:g} is not possible: give {RATES[0]:g} to 1,000.")
         if self.order is not None and self.order not in SKELETONS:

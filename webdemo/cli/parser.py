@@ -53,7 +53,7 @@ def add_reading(parser: argparse.ArgumentParser, of: str) -> None:
 
 def reading_choices(options: argparse.Namespace) -> ImportChoices:
     """Facts that the options of :func:`add_reading` give of a file."""
-    return ImportChoices(options.file_up, None, options.file_fps, options.file_order, options.animation)
+    return ImportChoices(options.file_up, options.file_fps, options.file_order, options.animation)
 
 
 def with_notes(written: dict[str, Any], motion: Clip | Duet) -> dict[str, Any]:

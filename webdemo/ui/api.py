@@ -37,7 +37,7 @@ PROGRESS = gr.Progress()
 
 def reading_choices(animation: str = "", fps: float = 0.0, up: str = "", order: str = "") -> ImportChoices:
     """Facts that a program gives of its file; empty texts and 0 leave a thing to be found."""
-    return ImportChoices(up or None, None, fps or None, order or None, animation or None)
+    return ImportChoices(up or None, fps or None, order or None, animation or None)
 
 
 class Endpoint:

@@ -14,7 +14,7 @@ from motion import Clip, InputError
 from motion.formats import FORMATS
 from motion.formats.importing import import_motion
 from motion.formats.npz import arrays_of
-from motion.formats.recording import AXES, ORDERS, UNITS, ImportChoices
+from motion.formats.recording import AXES, ORDERS, ImportChoices
 from motion.things import Thing, shape
 from tests.motion.bodies import marching
 from tests.motion.formats.arrays import npy, npz
@@ -111,7 +111,6 @@ EDITS = st.lists(
 CHOICES = st.builds(
     ImportChoices,
     up=st.sampled_from([None, *AXES]),
-    unit=st.sampled_from([None, *UNITS]),
     fps=st.sampled_from([None, 1.0, 30.0, 1000.0]),
     order=st.sampled_from([None, *ORDERS]),
     animation=st.sampled_from([None, 1, 2, 6, 7, 10**12, "3", "IDLE", "x" * 5000, "\u202ewalk\n\ud800", "٣", "²"]),

@@ -13,7 +13,7 @@ from tests.ui.tab_events import changes
 from webdemo.ui.tabs.react import ReactTab
 
 LOADED = ("source", "line", "player", "trim", "person", "start", "end", "found", "go")
-READ = (*LOADED, "up", "unit", "fps", "order", "animation")
+READ = (*LOADED, "up", "fps", "order", "animation")
 FIELDS = {
     "person": "a",
     "start": 0.0,

@@ -61,10 +61,10 @@ def test_a_file_of_one_animation_offers_no_choice(tab: ReactTab, takes: Path, wa
 
 def test_another_is_read_when_it_is_chosen(tab: ReactTab, takes: Path) -> None:
     source = upload(tab, takes)[-1]["source"]
-    *_, again = [changes(READ, u) for u in tab.actor.read_again(source, "auto", "auto", None, "auto", 2)]
+    *_, again = [changes(READ, u) for u in tab.actor.read_again(source, "auto", None, "auto", 2)]
     assert "2 (“glide”) was taken" in again["line"] and offered_animations(again["source"]) == shown(2)
     assert np.abs(again["source"].people[0].positions - source.people[0].positions).max() > 0.1
-    *_, wrong = [changes(READ, u) for u in tab.actor.read_again(again["source"], "auto", "auto", None, "auto", 9)]
+    *_, wrong = [changes(READ, u) for u in tab.actor.read_again(again["source"], "auto", None, "auto", 9)]
     assert "takes.glb has no such animation" in wrong["line"] and wrong["animation"] == shown(2)
 
 

@@ -146,10 +146,10 @@ def test_errors_are_one_sentence_and_the_next_run_works(
 def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, walker: Path) -> None:
     last = upload(tab, walker)[-1]
     assert "22 joints matched, m, Y up, 30 frames a second" in last["found"]
-    *_, again = [changes(READ, u) for u in tab.actor.read_again(last["source"], "auto", "auto", 60, "auto", None)]
+    *_, again = [changes(READ, u) for u in tab.actor.read_again(last["source"], "auto", 60, "auto", None)]
     assert "60 frames a second" in again["found"]
     assert again["source"].seconds == pytest.approx(2.0, abs=0.1)
-    *_, wrong = [changes(READ, u) for u in tab.actor.read_again(again["source"], "auto", "auto", 5000, "auto", None)]
+    *_, wrong = [changes(READ, u) for u in tab.actor.read_again(again["source"], "auto", 5000, "auto", None)]
     assert "not possible" in wrong["line"] and "source" not in wrong
     assert (wrong["up"], wrong["fps"]) == ("auto", 60), "the choices are again those that it was read with"
 
@@ -171,5 +171,5 @@ def test_the_order_of_fifteen_joints_is_found_and_can_be_set(tab: ReactTab, tmp_
     np.save(path, walking(3.0).a.positions[:, joints])
     last = upload(tab, path)[-1]
     assert "in the order of K3HI" in last["found"]
-    *_, again = [changes(READ, u) for u in tab.actor.read_again(last["source"], "auto", "auto", None, "sbu15", None)]
+    *_, again = [changes(READ, u) for u in tab.actor.read_again(last["source"], "auto", None, "sbu15", None)]
     assert "in the order of SBU" in again["found"]

@@ -22,8 +22,8 @@ from .show import GIVEN
 from .upload import animation_labels, animation_list
 
 AUTO = "auto"
-ReadWith = tuple[str, str, float | None, str, int | None]
-"""Up axis, unit, frames a second, order of joints and number of the animation, as the page's controls give them."""
+ReadWith = tuple[str, float | None, str, int | None]
+"""Up axis, frames a second, order of joints and number of the animation, as the page's controls give them."""
 
 
 def react_choices(weights: Path | None = None) -> list[tuple[str, str]]:
@@ -62,7 +62,7 @@ class Source:
         path: the file, so that it can be read anew with other choices; None for a result.
         found: a line on how the file was read, "" for a result.
         notes: sentences about how well it could be read.
-        read_with: what was known of the file: up axis, unit, rate, order of its joints, and its chosen animation.
+        read_with: what was known of the file: up axis, rate, order of its joints, and its chosen animation.
         animations: labels of those in the file, where there is one to choose.
         asks: True if how it was read should be looked at: something was assumed.
     """
@@ -73,7 +73,7 @@ class Source:
     path: Path | None = None
     found: str = ""
     notes: tuple[str, ...] = ()
-    read_with: ReadWith = ("auto", "auto", None, "auto", None)
+    read_with: ReadWith = ("auto", None, "auto", None)
     animations: tuple[str, ...] = ()
     asks: bool = False
     _fitted: dict[Any, tuple[Clip, ...]] = field(default_factory=dict, repr=False, compare=False)
@@ -127,7 +127,7 @@ class Source:
 
 def offered_animations(source: Source | None) -> Any:
     """An update of the list of a source's animations."""
-    return animation_list(source.animations, source.read_with[4]) if source else animation_list((), None)
+    return animation_list(source.animations, source.read_with[3]) if source else animation_list((), None)
 
 
 def read_source(path: str | Path, name: str | None = None, read_with: ReadWith | None = None) -> Source:
@@ -147,11 +147,9 @@ def read_source(path: str | Path, name: str | None = None, read_with: ReadWith |
     )
 
 
-def import_choices(
-    up: str, unit: str, fps: float | None, order: str = AUTO, animation: int | None = None
-) -> ImportChoices:
+def import_choices(up: str, fps: float | None, order: str = AUTO, animation: int | None = None) -> ImportChoices:
     """The page's import controls as choices; "auto" and an empty or zero rate leave a thing to be found."""
-    chosen = {"up": up, "unit": unit, "order": order}
+    chosen = {"up": up, "order": order}
     known = {name: value for name, value in chosen.items() if value != AUTO}
     return ImportChoices(**known, fps=float(fps) if fps else None, animation=animation)
 

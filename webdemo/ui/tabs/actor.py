@@ -8,7 +8,7 @@ from typing import Any
 import gradio as gr
 
 from motion import Duet
-from motion.formats.recording import AXES, ORDERS, UNITS
+from motion.formats.recording import AXES, ORDERS
 from webdemo.inference.method import SECONDS
 from webdemo.inference.methods import methods
 from webdemo.inference.requests.actor import ROLES
@@ -63,18 +63,17 @@ class ActorPanel(SourcePanel):
         with gr.Accordion(say("actor.read"), open=False, visible=False, elem_id="react-import") as self.reading:
             with gr.Row(elem_classes="pd-pair"):
                 self.up = choice(say("actor.up"), "up", [(axis, axis) for axis in AXES])
-                self.unit = choice(say("actor.unit"), "unit", [(unit, unit) for unit in UNITS])
                 self.fps = gr.Number(
                     value=None, label=say("actor.fps"), placeholder=_DETECTED, elem_id="react-fps", min_width=0
                 )
                 self.order = choice(say("actor.order"), "order", [(label, name) for name, label in ORDERS.items()])
             self.found = gr.HTML(elem_id="react-found")
-        self.known = [self.up, self.unit, self.fps, self.order]
+        self.known = [self.up, self.fps, self.order]
 
     def wire(self, record: gr.State, line: gr.HTML, go: gr.Button) -> None:
         """Also what shows the chosen person and part."""
         super().wire(record, line, go)
-        self.file.upload(lambda: (AUTO, AUTO, None, AUTO), outputs=list(self.known), queue=False, **QUIET)
+        self.file.upload(lambda: (AUTO, None, AUTO), outputs=list(self.known), queue=False, **QUIET)
         self.state.change(self.settings_of, inputs=self.state, outputs=self.reading, queue=False, **QUIET)
         gr.on(
             [self.person.input, self.begin.release, self.end.release],
@@ -155,7 +154,7 @@ class ActorPanel(SourcePanel):
             self.file: None,
             self.state: source,
             self.animation: offered_animations(source),
-            **dict(zip(self.known, source.read_with[:4], strict=True)),
+            **dict(zip(self.known, source.read_with[:3], strict=True)),
             **dict(zip(self.more(), self._chosen(source, begin, end), strict=True)),
         }
 

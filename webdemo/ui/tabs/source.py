@@ -37,7 +37,7 @@ class SourcePanel(ABC):
     take_at_end = False
     """Whether a result is taken as a past, up to its end."""
     known: Sequence[Any] = ()
-    """Controls of how a file is read: up axis, unit, frames a second and order of joints, where the panel has them."""
+    """Controls of how a file is read: up axis, frames a second and order of joints, where the panel has them."""
 
     def __init__(self, results: Results, prefix: str) -> None:
         self.results, self.prefix = results, prefix
@@ -175,7 +175,7 @@ class SourcePanel(ABC):
         if source is None or source.path is None:
             return
         *known, animation = chosen
-        read_with: Any = (*(known or source.read_with[:4]), animation)
+        read_with: Any = (*(known or source.read_with[:3]), animation)
         back = (*source.read_with[: len(known)], offered_animations(source))
         for updates in self.load(partial(read_source, source.path, source.name, read_with)):
             failed = updates[0] == gr.skip() and "pd-error" in updates[1]
