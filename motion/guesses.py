@@ -187,13 +187,6 @@ _SHAPE = 0.2
 """Weight of how the parts lie to one another beside how the bones change."""
 
 
-def skeletons_of(joints: int) -> tuple[Skeleton, ...]:
-    """The known skeletons of a number of joints: SBU's order and K3HI's share 15; CMU's, Human3.6M's and COCO's 17."""
-    # Points of markers come with their names.
-    known = (skeleton for skeleton in SKELETONS.values() if skeleton is not POINTS17)
-    return tuple(skeleton for skeleton in known if skeleton.num_joints == joints)
-
-
 def likely_skeleton(positions: Array) -> tuple[Skeleton | None, Skeleton | None]:
     """The skeleton under which the bones change least, left and right are most alike, and the body is a body.
 
@@ -205,7 +198,8 @@ def likely_skeleton(positions: Array) -> tuple[Skeleton | None, Skeleton | None]
     """
     if positions.ndim < 2:
         return None, None
-    known = skeletons_of(positions.shape[-2])
+    # SBU's order and K3HI's share 15 joints; CMU's, Human3.6M's and COCO's 17. Points of markers come with their names.
+    known = [s for s in SKELETONS.values() if s is not POINTS17 and s.num_joints == positions.shape[-2]]
     if len(known) < 2 or positions.ndim < 3 or positions.shape[-1] != 3 or 0 in positions.shape:
         return (known[0] if known else None), None
     some = np.linspace(0, positions.shape[-3] - 1, _SAMPLED).astype(int)

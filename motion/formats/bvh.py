@@ -72,7 +72,8 @@ def read_bvh(
         hierarchy = data[: head.start()].decode("latin-1")
     joints = parse_hierarchy(hierarchy, label)
     motion = find_motion(data, head.end(), joints, label, file_fps)
-    own = any(_is_own(joints[first:stop]) for first, stop in trees(joints, label))
+    people = [{joint.name for joint in joints[first:stop]} for first, stop in trees(joints, label)]
+    own = any(names.issuperset(SMPL22.joint_names) for names in people)
     return _placed(motion, 1 if own or fps is None else _stride(motion.fps, fps))
 
 
@@ -82,10 +83,6 @@ def _stride(file_fps: float, fps: float) -> int:
     if times >= 1 and abs(times - round(times)) < 1e-6:
         return round(times)
     return max(1, int(file_fps / max(fps, _ENOUGH)))
-
-
-def _is_own(joints: list[Joint]) -> bool:
-    return set(SMPL22.joint_names) <= {joint.name for joint in joints}
 
 
 def _placed(motion: Motion, every: int) -> tuple[RigMotion, ...]:

@@ -6,7 +6,7 @@ Matplotlib's Agg renderer fills the triangles and strokes the lines; it needs no
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
@@ -25,7 +25,7 @@ from motion.vectors import Array
 from .camera import Camera, sampled
 from .light import Shadow, lit
 from .theme import THEMES, Colour, Theme
-from .things import drawn_things, hands_of, shadow_spots
+from .things import divided, hands_of, shadow_spots
 
 Picture = NDArray[np.uint8]
 
@@ -117,7 +117,8 @@ class Stage:
         # Most of a small picture's triangles would be smaller than its pixels.
         small = self.size[1] < 400
         self.bodies = self.style.worn(motion, small=small) if self.style.look != "skeletons" else ()
-        self.things = drawn_things(motion)
+        things = motion.things if isinstance(motion, Duet) else ()
+        self.things = tuple(replace(thing, mesh=divided(thing.mesh)) for thing in things)  # to be sorted by depth
 
     def pictures(self, times: Array, cameras: Sequence[Camera]) -> Iterator[Picture]:
         """The pictures (height, width, 4) at moments in seconds, without captions, each from its camera."""

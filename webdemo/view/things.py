@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -21,12 +20,6 @@ _FINE = 0.14
 """Metres of an edge, at most, where triangles are drawn from the farthest to the nearest."""
 _MOST_FINE = 6000
 """Triangles to which a surface is divided, at most."""
-
-
-def drawn_things(motion: Clip | Duet) -> tuple[Thing, ...]:
-    """The things beside a motion, their large triangles divided so that they can be sorted by depth."""
-    things = motion.things if isinstance(motion, Duet) else ()
-    return tuple(replace(thing, mesh=divided(thing.mesh)) for thing in things)
 
 
 def divided(mesh: Mesh) -> Mesh:
