@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion import SKELETONS, SMPL22, Clip, Duet, InputError
+from motion import SMPL22, Clip, Duet, InputError
 from motion.metrics import Contact
 from webdemo.view.payload import (
     Curve,
@@ -91,11 +91,6 @@ def test_looks_are_sent_where_the_words_say_something():
         lambda: pack_positions(np.zeros((2, 0, 22, 3))),
         lambda: pack_positions(np.zeros((4, 22, 3))),
         lambda: pack_positions(np.full((1, 2, 3, 3), np.nan)),
-        lambda: sample_payload(duet(4), curves=[Curve("k", "L", "m", np.zeros(3))]),
-        lambda: sample_payload(duet(4), past_until=5),
-        lambda: sample_payload(
-            duet(), ghost=Duet.from_positions(np.zeros((2, 3, 15, 3)), fps=30, skeleton=SKELETONS["sbu15"])
-        ),
     ],
 )
 def test_refuses_in_one_sentence(make):

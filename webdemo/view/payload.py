@@ -79,38 +79,20 @@ def sample_payload(
         label: names the sample in the player's tabs.
         curves: read-outs under the scene; by default those of :func:`distance_curves`.
         contacts: marks on the timeline; by default those of :func:`~motion.metrics.contact_events`.
-        ghost: a second motion with the same joints drawn pale beside the first, such as what really
-            happened beside a prediction.
+        ghost: a second motion drawn pale beside the first, such as what really happened beside a prediction.
         past_until: the first frame that was predicted; the player marks what came before as given.
-
-    Raises:
-        InputError: if ghost or curves do not fit the motion.
     """
-    people = motion.people if isinstance(motion, Duet) else (motion,)
     roles = motion.roles if isinstance(motion, Duet) else (motion.name or "a",)
-    positions = np.stack([person.positions for person in people])
-    names = people[0].skeleton.joint_names
-    frames = motion.num_frames
     if curves is None:
         curves = distance_curves(motion) if isinstance(motion, Duet) else ()
     if contacts is None:
         contacts = contact_events(motion) if isinstance(motion, Duet) else ()
-    for curve in curves:
-        if np.shape(curve.values) != (frames,):
-            raise InputError(
-                f"Curve {curve.key!r} has shape {np.shape(curve.values)}: give one value for each "
-                f"of the {frames} frames."
-            )
-    if ghost is not None and ghost.skeleton.num_joints != len(names):
-        raise InputError(f"The ghost has {ghost.skeleton.num_joints} joints but the motion {len(names)}: retarget one.")
-    if past_until is not None and not 0 <= past_until <= frames:
-        raise InputError(f"past_until must be a frame from 0 to {frames}, not {past_until}.")
     return {
         "label": label,
         "roles": list(roles),
         "fps": float(motion.fps),
-        "frames": frames,
-        "positions": pack_positions(positions),
+        "frames": motion.num_frames,
+        "positions": pack_positions(stacked_positions(motion)),
         "curves": [
             {"key": c.key, "label": c.label, "unit": c.unit, "values": np.round(c.values, 4).tolist()} for c in curves
         ],
@@ -148,8 +130,6 @@ def build_payload(samples: Sequence[dict[str, Any]], *, skeleton: Any, title: st
         A JSON-ready dictionary; its ``id`` is a digest of the content, so a change of motion always
         changes it.
     """
-    if not samples:
-        raise InputError("There is no motion to show: give at least one sample.")
     payload: Payload = {
         "format": FORMAT,
         "title": title,
