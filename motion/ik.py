@@ -20,7 +20,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .errors import InputError
 from .ik_solver import MIN_NOISE, solve
 from .kinematics import fit_rotations, forward_kinematics
 from .skeleton import SMPL22, Layout, Skeleton, find_layout
@@ -65,13 +64,9 @@ def fit_skeleton(
             which misses the errors of a tracker that keeps its bones rigid itself.
         scale: the factor that the floor path is divided by; by default this person's :func:`body_scale`.
         iterations: Gauss–Newton steps.
-
-    Raises:
-        InputError: for arrays that do not fit the layout, or too few joints to pose a body.
     """
     layout = find_layout(joints)
     positions = np.asarray(positions, dtype=np.float64)
-    _check_fit(positions, layout)
     trust = np.broadcast_to(1.0 if weights is None else weights, positions.shape)[:, layout.columns]
     target = positions[:, layout.columns]
     trust = np.where(np.isfinite(target), trust, 0.0)
@@ -110,18 +105,6 @@ def pose_bodies(
         body = _measured_body(target, layout, _noise(target, layout))
     rotations, root = _start(target, layout, body)
     return rotations, root, body, _leg_length(body.offsets) / _leg_length(SMPL22.offsets)
-
-
-def _check_fit(positions: Array, layout: Layout) -> None:
-    """Raises InputError for what :func:`fit_skeleton` cannot fit."""
-    if positions.ndim != 3 or positions.shape[1:] != (len(layout.joints), 3) or len(positions) == 0:
-        raise InputError(
-            f"Joints of shape {positions.shape} do not fit the layout {layout.name}: "
-            f"give an array of shape (frames, {len(layout.joints)}, 3)."
-        )
-    needed = {SMPL22.index(name) for name in ("left_hip", "right_hip", "left_knee", "right_knee")}
-    if needed - set(layout.observed):
-        raise InputError("A body cannot be posed without both hips and knees: give at least those joints.")
 
 
 def body_scale(positions: Array, joints: Layout | Skeleton | Sequence[str]) -> float:

@@ -14,15 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .errors import InputError
 from .vectors import Array
-
-
-class _Indices(dict[str, int]):
-    """Joints by name."""
-
-    def __missing__(self, name: str) -> int:
-        raise KeyError(f"There is no joint {name!r} among {', '.join(self)}.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,14 +33,6 @@ class Skeleton:
     joint_names: tuple[str, ...]
     parents: tuple[int, ...]
     offsets: Array = field(repr=False)
-
-    def __post_init__(self) -> None:
-        if len(self.joint_names) != len(self.parents):
-            raise ValueError(f"{self.name}: {len(self.joint_names)} names but {len(self.parents)} parents.")
-        if np.shape(self.offsets) != (len(self.parents), 3):
-            raise ValueError(f"{self.name}: offsets must be ({len(self.parents)}, 3).")
-        if any(parent >= joint for joint, parent in enumerate(self.parents)):
-            raise ValueError(f"{self.name}: a parent must come before its children.")
 
     @cached_property
     def num_joints(self) -> int:
@@ -84,8 +68,8 @@ class Skeleton:
 
     @cached_property
     def index(self) -> Callable[[str], int]:
-        """The index of a joint by name; raises ``KeyError`` with the names that exist."""
-        return _Indices({name: joint for joint, name in enumerate(self.joint_names)}).__getitem__
+        """The index of a joint by name; raises ``KeyError`` for another name."""
+        return {name: joint for joint, name in enumerate(self.joint_names)}.__getitem__
 
     def rest_positions(self) -> Array:
         """(J, 3) the T-pose, root at the origin."""
@@ -287,16 +271,9 @@ LAYOUTS: dict[str, Layout] = {
 
 
 def find_layout(joints: Layout | Skeleton | Sequence[str]) -> Layout:
-    """The layout of a skeleton, or of a list of SMPL22 joint names.
-
-    Raises:
-        InputError: for a joint that SMPL22 does not have.
-    """
+    """The layout of a skeleton, or of a list of SMPL22 joint names."""
     if isinstance(joints, Layout):
         return joints
     if isinstance(joints, Skeleton):
         return LAYOUTS[joints.name]
-    unknown = [name for name in joints if name not in SMPL22.joint_names]
-    if unknown:
-        raise InputError(f"The joint {unknown[0]!r} is not one of the 22: use {', '.join(SMPL22.joint_names)}.")
-    return Layout("named", tuple(SMPL22.joint_names.index(name) for name in joints), SMPL22.offsets)
+    return Layout("named", tuple(SMPL22.index(name) for name in joints), SMPL22.offsets)

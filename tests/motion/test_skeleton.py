@@ -9,7 +9,8 @@ from motion.skeleton import SKELETONS, SMPL22, Skeleton
 @pytest.mark.parametrize("skeleton", SKELETONS.values(), ids=list(SKELETONS))
 def test_every_skeleton_is_one_tree_that_mirrors_onto_itself(skeleton: Skeleton) -> None:
     assert skeleton.parents.count(-1) == 1 and len(skeleton.bones) == skeleton.num_joints - 1
-    assert len(set(skeleton.joint_names)) == skeleton.num_joints
+    assert all(parent < joint for joint, parent in enumerate(skeleton.parents))
+    assert len(set(skeleton.joint_names)) == skeleton.num_joints == len(skeleton.offsets)
     assert [skeleton.mirror[i] for i in skeleton.mirror] == list(range(skeleton.num_joints))
     for parent, children in enumerate(skeleton.children):
         assert all(skeleton.parents[child] == parent for child in children)
