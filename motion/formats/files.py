@@ -80,7 +80,7 @@ def text_bytes(data: bytes, label: str, kind: str) -> bytes:
         InputError: for binary data, UTF-16 too, which is no file of this ``kind`` ("a BVH file").
     """
     if b"\0" in data:
-        raise InputError(f"{label} is not {kind}: it holds binary data. Save it as UTF-8 if it is text.")
+        raise InputError(f"{label} is not {kind}: it holds binary data, or text that is not UTF-8.")
     return (data if b"\n" in data else data.replace(b"\r", b"\n")).removeprefix(codecs.BOM_UTF8)
 
 
