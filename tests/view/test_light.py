@@ -5,7 +5,7 @@ import pytest
 
 from motion import SMPL22
 from motion.body import load_body
-from webdemo.view.light import Shadow
+from webdemo.view.theme import Shadow
 
 STANDING = SMPL22.rest_positions() + np.array([0, 0.98, 0])
 

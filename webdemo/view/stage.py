@@ -23,8 +23,7 @@ from motion.things.thing import Thing
 from motion.vectors import Array
 
 from .camera import Camera, sampled
-from .light import Shadow, lit
-from .theme import THEMES, Colour, Theme
+from .theme import THEMES, Colour, Shadow, Theme, lit
 from .things import divided, hands_of, shadow_spots
 
 Picture = NDArray[np.uint8]
