@@ -1,4 +1,4 @@
-"""The player's colours and lamps for pictures that are drawn here, as ``static/player/palette.js`` reads them, and light."""
+"""The player's colours, lamps and light for pictures that are drawn here, as ``static/player/palette.js`` has them."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def _limbs(people: Sequence[Sequence[str]]) -> tuple[tuple[Colour, Colour, Colou
 THEMES = {name: _theme(stored) for name, stored in themes().items()}
 
 
-# ---- Light on surfaces and their shadow on the floor, as in the player (``body.js``, ``ground.js``) -------------------
+# ---- Light on surfaces and their shadow on the floor, as in the player (``body.js``, ``ground.js``) ------------------
 _GAMMA = 2.2
 SHADOW_SIZE = 192
 """Pixels of the shadow's picture, each way."""
