@@ -1,15 +1,11 @@
 """Sight: what a person's face points to, along a ray from between the eyes.
 
-trimesh's own ``ray`` needs rtree or embree, which are no requirements of ours. The things of a scene have a few
-triangles each, so every triangle is tried, with trimesh's plane and barycentric functions. A thing counts with its
-hull: who looks through a window looks at it.
+A thing counts with the box around it: who looks through a window looks at it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +14,7 @@ from motion.body import bone_rotations
 from motion.skeleton import SMPL22
 from motion.vectors import Array
 
-from .thing import Mesh, Thing
-
-if TYPE_CHECKING:
-    from trimesh import Trimesh
-
+from .thing import Thing
 
 EYES = np.array([0.0, 0.07, 0.1])
 """Metres from the joint of the head to between the eyes, in the head's frame."""
@@ -39,17 +31,17 @@ def gazes(positions: Array) -> tuple[Array, Array]:
     return positions[:, _HEAD] + turned @ EYES, turned @ np.array([0.0, 0.0, 1.0])
 
 
-def distance(surface: Trimesh, eye: Array, ahead: Array) -> float:
-    """Metres along a ray to where it meets a surface; infinite where it does not."""
-    from trimesh.intersections import planes_lines
-    from trimesh.triangles import points_to_barycentric
+def distances(eyes: Array, ways: Array, low: Array, high: Array) -> Array:
+    """(T,) metres along rays to where they enter boxes; infinite where they do not.
 
-    corners, count = surface.triangles, len(surface.faces)
-    points, on, along = planes_lines(
-        corners[:, 0], surface.face_normals, np.tile(eye, (count, 1)), np.tile(ahead, (count, 1)), return_distance=True
-    )
-    inside = (points_to_barycentric(corners[on], points) > -1e-9).all(axis=1) & (along > 1e-9)
-    return float(along[inside].min(initial=np.inf))
+    Args:
+        eyes, ways: (T, 3) where the rays begin, and their unit directions.
+        low, high: (3,) or (T, 3) opposite corners of the boxes, whose sides lie along the axes.
+    """
+    ways = np.where(np.abs(ways) < 1e-9, 1e-9, ways)
+    planes = np.stack([low - eyes, high - eyes]) / ways
+    enters, leaves = planes.min(axis=0).max(axis=-1), planes.max(axis=0).min(axis=-1)
+    return np.where((enters <= leaves) & (leaves > 0), np.maximum(enters, 0.0), np.inf)
 
 
 def looked_at(things: Sequence[Thing], person: Array, other: Array) -> NDArray[np.integer]:
@@ -64,29 +56,10 @@ def looked_at(things: Sequence[Thing], person: Array, other: Array) -> NDArray[n
         (T,) an index into ``things``, ``len(things)`` for the other person, and -1 for nothing.
     """
     eyes, ways = gazes(person)
-    found = np.full(len(person), -1)
-    for frame, (eye, ahead) in enumerate(zip(eyes, ways, strict=True)):
-        far = []
-        for thing in things:  # a thing is met in its own frame
-            turned, place = thing.rotations[frame].astype(np.float64), thing.places[frame].astype(np.float64)
-            far.append(distance(_hull(thing.mesh), (eye - place) @ turned, ahead @ turned))
-        far.append(distance(_body(other[frame]), eye, ahead))
-        nearest = int(np.argmin(far))
-        if far[nearest] <= FARTHEST:
-            found[frame] = nearest
-    return found
-
-
-@lru_cache(maxsize=64)
-def _hull(mesh: Mesh) -> Trimesh:
-    import trimesh
-
-    return trimesh.Trimesh(mesh.vertices, mesh.faces).convex_hull
-
-
-def _body(pose: Array) -> Trimesh:
-    """The hull of a person (22, 3)."""
-    import trimesh
-
-    about = ROUND * np.concatenate([np.eye(3), -np.eye(3)])
-    return trimesh.convex.convex_hull((pose[:, None] + about).reshape(-1, 3))
+    far = []
+    for thing in things:  # met in its own frame
+        turned = thing.rotations.astype(np.float64)
+        own = [np.einsum("ti,tij->tj", each, turned) for each in (eyes - thing.places, ways)]
+        far.append(distances(own[0], own[1], thing.mesh.vertices.min(axis=0), thing.mesh.vertices.max(axis=0)))
+    far.append(distances(eyes, ways, other.min(axis=1) - ROUND, other.max(axis=1) + ROUND))
+    return np.where(np.min(far, axis=0) <= FARTHEST, np.argmin(far, axis=0), -1)

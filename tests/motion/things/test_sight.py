@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import trimesh
 
 from motion import SMPL22
 from motion.things import Thing, shape
-from motion.things.sight import distance, looked_at
+from motion.things.sight import distances, looked_at
+from motion.vectors import unit
 
 STANDING = SMPL22.rest_positions() - [0, SMPL22.rest_positions()[:, 1].min(), 0]
 """A person at the origin who faces +Z."""
@@ -29,19 +29,19 @@ FAR = facing(0, (30, 0, 0))
 """A person who is in nobody's way."""
 
 
-def test_a_ray_meets_a_surface_as_far_as_it_is_and_only_ahead():
-    ball = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
+def test_a_ray_meets_a_box_as_far_as_it_is_and_only_ahead():
     rng = np.random.default_rng(0)
-    for _ in range(20):
-        eye, ahead = rng.normal(size=3), rng.normal(size=3)
-        eye, ahead = 2.0 * eye / np.linalg.norm(eye), ahead / np.linalg.norm(ahead)
-        along, miss = (-eye @ ahead, 4.0 - (eye @ ahead) ** 2)  # squared distance of the ray's line from the middle
-        if miss < 0.24 and along > 0:
-            assert distance(ball, eye, ahead) == pytest.approx(along - np.sqrt(0.25 - miss), abs=0.02)
-        elif miss > 0.25 or along < 0:
-            assert distance(ball, eye, ahead) == np.inf
-    assert distance(ball, np.array([0, 0, -2.0]), np.array([0, 0, 1.0])) == pytest.approx(1.5, abs=0.01)
-    assert distance(ball, np.array([0, 0, 2.0]), np.array([0, 0, 1.0])) == np.inf, "it lies behind"
+    high = np.array([0.5, 0.3, 0.4])
+    eyes, ways = (unit(rng.normal(size=(200, 3))) for _ in range(2))
+    far, along = distances(eyes, ways, -high, high), np.linspace(0, 4, 4001)
+    inside = (np.abs(eyes[:, None] + along[:, None] * ways[:, None]) <= high).all(axis=-1)
+    hit = inside.any(axis=1)
+    assert 10 < hit.sum() < 190
+    np.testing.assert_allclose(far[hit], along[inside.argmax(axis=1)][hit], atol=2e-3)
+    assert np.isinf(far[~hit]).mean() > 0.98, "but for rays that graze an edge between two samples"
+    ahead = np.array([[0.0, 0.0, 1.0]])
+    assert distances(-2 * ahead, ahead, -high, high) == pytest.approx(1.6)
+    assert distances(2 * ahead, ahead, -high, high) == np.inf, "it lies behind"
 
 
 @pytest.mark.parametrize(("yaw", "seen"), [(0, 0), (20, 0), (60, -1), (180, -1)])
