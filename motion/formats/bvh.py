@@ -138,10 +138,7 @@ def _forget_empty(joints: list[Joint], values: Array) -> None:
 
 
 def _place(joints: list[Joint], values: Array, positions: Array) -> None:
-    """Writes the joints' places (n, J, 3), in the file's unit, for channels (width, n).
-
-    Turning by one channel changes two columns of a rotation, so matrices (3, 3, n) are never multiplied.
-    """
+    """Writes the joints' places (n, J, 3), in the file's unit, for channels (width, n)."""
     frames = values.shape[1]
     world: dict[int, tuple[Array, Array]] = {}  # rotation and place of joints that have children to come
     last_child = {joint.parent: index for index, joint in enumerate(joints)}
@@ -171,17 +168,12 @@ def _place(joints: list[Joint], values: Array, positions: Array) -> None:
 
 
 def _turned(rotation: Array, turns: list[tuple[int, Array]]) -> Array:
-    """A rotation (3, 3, n) times those about coordinate axes by degrees (n,), as a new array."""
-    rotation = rotation.copy()
-    for axis, degrees in turns:
-        angle = np.radians(degrees)
-        cos, sin = np.cos(angle), np.sin(angle)
-        one, other = rotation[:, (axis + 1) % 3], rotation[:, (axis + 2) % 3]
-        turned = cos * one + sin * other
-        other *= cos
-        other -= sin * one
-        one[...] = turned
-    return rotation
+    """A rotation (3, 3, n) times those about coordinate axes by degrees (n,)."""
+    if not turns:
+        return rotation
+    axes, degrees = "".join("XYZ"[axis] for axis, _ in turns), np.stack([each for _, each in turns], axis=-1)
+    local = scipy.spatial.transform.Rotation.from_euler(axes, degrees, degrees=True).as_matrix()
+    return np.einsum("ijn,njk->ikn", rotation, local)
 
 
 def _metres_per_unit(positions: Array, joints: list[Joint], label: str) -> float:
