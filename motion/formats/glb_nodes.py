@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from motion.kinematics import quaternions, rotation_matrices
+from motion.kinematics import rotation_matrices
 from motion.vectors import Array, unit
 
 from .glb_file import MOST_JOINTS, GlbFile, Stored, in_order
@@ -194,16 +194,6 @@ def _stored_channels(file: GlbFile, animation: Any, nodes: set[int]) -> list[tup
     return list(found.values())
 
 
-def local_parts(file: GlbFile, node: int) -> dict[str, Array]:
-    """Translation (3,), rotation (4,) and scale (3,) of a node at rest."""
-    stored = file.document["nodes"][node]
-    if stored.get("matrix") is not None:
-        matrix = _numbers(file, stored["matrix"], 16).reshape(4, 4).T
-        turn, scale = _split(matrix[None, :3, :3])
-        return {"translation": matrix[:3, 3], "rotation": quaternions(turn)[0], "scale": scale[0]}
-    return {path: _numbers(file, stored.get(path, usual), len(usual)) for path, usual in _DEFAULTS.items()}
-
-
 def _numbers(file: GlbFile, values: Any, count: int) -> Array:
     found = np.array(values, dtype=np.float64)
     if found.shape != (count,) or not np.isfinite(found).all() or np.abs(found).max() > 1e9:
@@ -243,7 +233,8 @@ def placed(
     for each in moved:
         by_node.setdefault(each.node, []).append(each)
     for node in nodes:
-        parts = {path: part[None] for path, part in local_parts(file, node).items()}
+        stored = file.document["nodes"][node]
+        parts = {path: _numbers(file, stored.get(path, rest), len(rest))[None] for path, rest in _DEFAULTS.items()}
         if moments is not None:
             for each in by_node.get(node, ()):
                 course = (id(each.times), id(each.values), each.path, each.way)
@@ -251,14 +242,8 @@ def placed(
                     courses[course] = each.at(moments)
                 parts[each.path] = courses[course]
         local = matrices(parts)
+        if stored.get("matrix") is not None:  # no animation moves such a node
+            local = _numbers(file, stored["matrix"], 16).reshape(1, 4, 4).swapaxes(1, 2)
+            local[:, 3] = (0.0, 0.0, 0.0, 1.0)
         world[node] = world[parents[node]] @ local if parents[node] >= 0 else local
     return world
-
-
-def _split(linear: Array) -> tuple[Array, Array]:
-    """Rotations (T, 3, 3) and scales (T, 3) of (T, 3, 3), the nearest ones where they are sheared."""
-    left, _, right = np.linalg.svd(linear)
-    flips = np.ones((len(linear), 3))
-    flips[:, 2] = np.linalg.det(left @ right)
-    turn = (left * flips[:, None]) @ right
-    return turn, np.einsum("tji,tji->ti", turn, linear)
