@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 
 from motion.kinematics import rotation_matrices
-from motion.vectors import Array, unit
+from motion.vectors import Array
 
 from .glb_file import MOST_JOINTS, GlbFile, Stored, in_order
 
@@ -77,20 +78,9 @@ class Channel:
             )
         if self.path != "rotation":
             return one + share * (other - one)
-        return _slerp(one, other, share)
-
-
-def _slerp(one: Array, other: Array, share: Array) -> Array:
-    one, other = unit(one), unit(other)
-    cosine = np.sum(one * other, axis=-1, keepdims=True)
-    other = np.where(cosine < 0, -other, other)
-    angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
-    sine = np.sin(angle)
-    near = sine < 1e-4
-    safe = np.where(near, 1.0, sine)
-    first = np.where(near, 1.0 - share, np.sin((1.0 - share) * angle) / safe)
-    second = np.where(near, share, np.sin(share * angle) / safe)
-    return first * one + second * other
+        first, second = (scipy.spatial.transform.Rotation.from_quat(each) for each in (one, other))
+        turned = scipy.spatial.transform.Rotation.from_rotvec(share * (first.inv() * second).as_rotvec())
+        return (first * turned).as_quat()
 
 
 def people(file: GlbFile, parents: Sequence[int]) -> list[Rig]:
