@@ -72,15 +72,10 @@ def filled(positions: Array, label: str = "The motion") -> Array:
     return found
 
 
-def frames_from(marked: NDArray[np.bool_]) -> NDArray[np.integer]:
+def frames_from(marked: NDArray[np.bool_]) -> Array:
     """(T,) distance in frames from the nearest frame that is ``marked`` (T,); T where none is."""
-    at = np.flatnonzero(marked)
-    time = np.arange(len(marked))
-    if not len(at):
-        return np.full(len(marked), len(marked))
-    after = at[np.searchsorted(at, time).clip(max=len(at) - 1)]
-    before = at[(np.searchsorted(at, time, side="right") - 1).clip(min=0)]
-    return np.minimum(np.abs(after - time), np.abs(time - before))
+    found = scipy.ndimage.distance_transform_edt(~marked) if marked.any() else np.full(len(marked), float(len(marked)))
+    return np.asarray(found)
 
 
 def squared_differences(count: int, coefficients: Sequence[float]) -> Array:
@@ -111,10 +106,7 @@ def begun_before(need: Array, frames: int, eased: float) -> Array:
 
 def eased_marks(marked: NDArray[np.bool_], frames: int) -> Array:
     """(T,) 1 at marked frames, and along a minimum-jerk course to 0 within so many frames beside them."""
-    if not marked.any():
-        return np.zeros(len(marked))
-    away = scipy.ndimage.distance_transform_edt(~marked)
-    return minimum_jerk(1 - away / (frames + 1))
+    return minimum_jerk(1 - frames_from(marked) / (frames + 1)) * marked.any()
 
 
 # ---- Easing between two states ---------------------------------------------------------------------------------------

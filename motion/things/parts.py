@@ -120,15 +120,10 @@ def joined(parts: Sequence[Part]) -> Mesh:
     """Parts as one surface, with the vertices of sharp edges split."""
     vertices, faces, colours, first = [], [], [], 0
     for part, colour in parts:
-        made = smooth(part)
+        made = trimesh.graph.smooth_shade(part, angle=_SHARP)  # the order of triangles may change
         vertices.append(made.vertices)
         faces.append(made.faces + first)
         shade = np.rint(255 * np.array(rgb(colour))).astype(np.uint8)
         colours.append(np.tile(shade, (len(made.faces), 1)))
         first += len(made.vertices)
     return Mesh(np.concatenate(vertices), np.concatenate(faces), np.concatenate(colours))
-
-
-def smooth(part: trimesh.Trimesh) -> trimesh.Trimesh:
-    """A surface whose vertices are shared only where it is smooth; the order of its triangles may change."""
-    return trimesh.graph.smooth_shade(part, angle=_SHARP)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 import scipy  # its parts are loaded with their first use
 
+from motion.kinematics import swing
 from motion.skeleton import SMPL22
 from motion.smoothing import squared_differences
 from motion.vectors import Array
@@ -35,12 +36,7 @@ def towards(pixels: Array, focal: float) -> Array:
     """
     middle = pixels[:, LIMBS].mean(axis=1)
     sight = np.column_stack([middle, np.full(len(middle), focal)])
-    sight /= np.linalg.norm(sight, axis=-1, keepdims=True)
-    x, y, z = sight.T
-    # The smallest rotation that turns (0, 0, 1) onto the line of sight.
-    share = 1 / (1 + z)
-    rows = [1 - x * x * share, -x * y * share, x, -x * y * share, 1 - y * y * share, y, -x, -y, z]
-    return np.stack(rows, axis=-1).reshape(-1, 3, 3)
+    return swing(np.array([0.0, 0.0, 1.0]), sight)
 
 
 def translation(world: Array, pixels: Array, seen: Array, focal: float) -> Array:
