@@ -46,11 +46,7 @@ def places_of(motion: Clip | RigMotion) -> dict[str, Array]:
     if isinstance(motion, Clip):
         joints = LAYOUTS[motion.skeleton.name].joints
         return {SMPL22.joint_names[ours]: positions[:, its] for its, ours in enumerate(joints) if ours >= 0}
-    parts = match_joints(motion)
-    found = {"head": parts.head, "neck": parts.neck}
-    for side, limb in (("left", parts.left), ("right", parts.right)):
-        found |= {f"{side}_{'foot' if part == 'toe' else part}": joint for part, joint in limb.items()}
-    return {name: positions[:, joint] for name, joint in found.items() if joint is not None}
+    return {name: positions[:, joint] for name, joint in match_joints(motion).joints.items()}
 
 
 def turn_of(up: str) -> Array:

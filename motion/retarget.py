@@ -112,11 +112,11 @@ def to_smpl(motion: Clip | Duet) -> Clip | Duet:
 
 def leg_scale(rig: RigMotion) -> float:
     """SMPL22's leg length over the rig's: what its path is multiplied by so that its steps fit the legs."""
-    parts = match_joints(rig)
+    places = places_of(rig)
     total = 0.0
-    for limb in (parts.left, parts.right):
+    for side in ("left", "right"):
         for upper, lower in (("hip", "knee"), ("knee", "ankle")):
-            bone = rig.positions[:, limb[upper]] - rig.positions[:, limb[lower]]
+            bone = places[f"{side}_{upper}"] - places[f"{side}_{lower}"]
             total += float(np.median(np.linalg.norm(bone, axis=-1))) / 2
     if not total > 0.05:
         raise InputError(f"{rig.name or 'The rig'} has legs of no length: export it with its bones.")
@@ -180,19 +180,12 @@ def _bodies(positions: Array, rig: RigMotion, parts: BodyParts, upright: Array) 
 
     ``spine0``… are the joints of its spine.
     """
-    bodies: dict[str, Array] = {}
-    for side, limb in (("left", parts.left), ("right", parts.right)):
-        for part, joint in limb.items():
-            if joint is not None:
-                bodies[f"{side}_{'foot' if part == 'toe' else part}"] = positions[:, joint] @ upright.T
+    bodies: dict[str, Array] = {name: positions[:, joint] @ upright.T for name, joint in parts.joints.items()}
     if not {"left_collar", "right_collar"} <= set(bodies):  # a single collar does not determine the chest
         bodies = {name: place for name, place in bodies.items() if not name.endswith("_collar")}
     for number, joint in enumerate(parts.spine):
         bodies[f"spine_{number}"] = positions[:, joint] @ upright.T
-    if parts.head is not None:
-        bodies["head"] = positions[:, parts.head] @ upright.T
-    shoulders = (bodies["left_shoulder"] + bodies["right_shoulder"]) / 2
-    bodies["neck"] = shoulders if parts.neck is None else positions[:, parts.neck] @ upright.T
+    bodies.setdefault("neck", (bodies["left_shoulder"] + bodies["right_shoulder"]) / 2)
     return bodies
 
 

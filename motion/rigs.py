@@ -91,26 +91,22 @@ class RigMotion:
 
 @dataclass(frozen=True)
 class BodyParts:
-    """Indices of a rig's joints by part; ``None`` where the rig has no such joint.
+    """Indices of a rig's joints by part.
 
-    ``left`` and ``right`` hold collar, shoulder, elbow, wrist, hip, knee, ankle and toe; ``spine`` is the
-    chain from the pelvis (first) to the joint that carries the shoulders (last).
+    Attributes:
+        spine: the chain from the pelvis (first) to the joint that carries the shoulders (last).
+        joints: neck, head and the joints of the limbs that the rig has, by SMPL22's names.
     """
 
-    pelvis: int
     spine: tuple[int, ...]
-    neck: int | None
-    head: int | None
-    left: dict[str, int | None]
-    right: dict[str, int | None]
+    joints: dict[str, int]
 
 
 _BELOW = {"elbow": "wrist", "shoulder": "elbow", "collar": "shoulder", "knee": "ankle", "hip": "knee"}
 """The next joint down the limb."""
-_LIMB = ("wrist", "elbow", "shoulder", "collar", "ankle", "toe", "knee", "hip")
+_LIMB = ("wrist", "elbow", "shoulder", "collar", "ankle", "foot", "knee", "hip")
 _ONE_PLACE = 1e-3
 """Share of a body's height within which the left and the right of a part are helpers at one place."""
-_SPINE_NAMES = ("spine1", "spine2", "spine3")
 _REQUIRED = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 
 
@@ -121,13 +117,9 @@ def matched_names(rig: RigMotion) -> list[tuple[str, str]]:
         InputError: as :func:`match_joints`.
     """
     parts = match_joints(rig)
-    pairs: list[tuple[int | None, str]] = [(parts.pelvis, "pelvis")]
     # The spine's joints are spread over SMPL22's three; a shorter spine names those it has.
-    pairs += list(zip(parts.spine[1:], _SPINE_NAMES, strict=False))
-    pairs += [(parts.neck, "neck"), (parts.head, "head")]
-    for side, limb in (("left", parts.left), ("right", parts.right)):
-        pairs += [(joint, f"{side}_{'foot' if part == 'toe' else part}") for part, joint in limb.items()]
-    return [(rig.joint_names[joint], name) for joint, name in pairs if joint is not None]
+    spine = dict(zip(("pelvis", "spine1", "spine2", "spine3"), parts.spine, strict=False))
+    return [(rig.joint_names[joint], name) for name, joint in (spine | parts.joints).items()]
 
 
 def match_joints(rig: RigMotion) -> BodyParts:
@@ -155,8 +147,10 @@ def match_joints(rig: RigMotion) -> BodyParts:
     neck, head = (_best(rig, keys, "centre", part) for part in ("neck", "head"))
     if head is None and neck is not None:
         head = next((joint for joint, parent in enumerate(rig.parents) if parent == neck), None)
-    left, right = (limbs["right"], limbs["left"]) if rig.mirrored else (limbs["left"], limbs["right"])
-    return BodyParts(pelvis, tuple(spine), neck, head, left, right)
+    found: dict[str, int | None] = {"neck": neck, "head": head}
+    for side, limb in zip(("right", "left") if rig.mirrored else ("left", "right"), limbs.values(), strict=True):
+        found |= {f"{side}_{part}": joint for part, joint in limb.items()}
+    return BodyParts(tuple(spine), {name: joint for name, joint in found.items() if joint is not None})
 
 
 def _helpers(rig: RigMotion, keys: list[Key]) -> frozenset[int]:
@@ -180,7 +174,7 @@ def _match_limbs(rig: RigMotion, keys: list[Key], side: str, helpers: frozenset[
         taken = helpers.union(joint for joint in found.values() if joint is not None)
         found[part] = _best(rig, keys, side, part, taken, found.get(_BELOW.get(part, "")))
     # A chain that stops at the forearm or the foot still has a tip (BVH's End Site), which is the next joint.
-    for part, carrier in (("wrist", "elbow"), ("toe", "ankle")):
+    for part, carrier in (("wrist", "elbow"), ("foot", "ankle")):
         parent = found[carrier]
         if found[part] is None and parent is not None:
             tips = (joint for joint, name in enumerate(rig.joint_names) if name.endswith("_end"))
@@ -243,15 +237,15 @@ PARTS: dict[str, tuple[str, ...]] = {
     "shoulder": ("upperarm", "uparm", "uarm", "humerus", "arm", "shldr", "shoulder"),
     "collar": ("collar", "collarbone", "clavicle", "clav", "shoulder", "inshoulder"),
     "ankle": ("ankle", "foot"),
-    "toe": ("toe", "toes", "toebase", "ball", "forefoot", "foot"),
+    "foot": ("toe", "toes", "toebase", "ball", "forefoot", "foot"),
     "knee": ("knee", "lowerleg", "lowleg", "shin", "shank", "calf", "tibia", "leg"),
     "hip": ("upleg", "upperleg", "thigh", "femur", "hip", "leg"),
     "neck": ("neck", "lowerneck", "necklower"),
     "head": ("head", "face", "skull"),
 }
-"""Words for each part by preference. Parts earlier in this table claim a joint first: "shoulder" is the upper arm in
-Xsens' rig, where nothing else is, and the collar in Mixamo's, where "arm" is the upper arm. "uarm" and "farm" are
-OptiTrack's, "shldr" is DAZ's."""
+"""Words for each part of SMPL22, whose foot is where toes begin, by preference. Parts earlier in this table claim a
+joint first: "shoulder" is the upper arm in Xsens' rig, where nothing else is, and the collar in Mixamo's, where "arm"
+is the upper arm. "uarm" and "farm" are OptiTrack's, "shldr" is DAZ's."""
 _JAPANESE = {
     "手首": "wrist",
     "ひじ": "elbow",
