@@ -191,29 +191,33 @@ def behind(m: Motion, who: int) -> Mask:
     return m.off(1 - who) > 110
 
 
-def _turning(m: Motion, who: int, rate: float = 20.0) -> tuple[Mask, Mask, Array]:
-    """Masks of turning to the left and to the right, and the heading in degrees."""
-    heading = m.headings[who]
-    speed = np.gradient(heading) * m.fps
-    return speed > rate, speed < -rate, heading
+_TURNS = 20.0
+"""Degrees a second from which somebody turns."""
+
+
+@predicate
+def turns_way(m: Motion, who: int, way: str, degrees: float = 60.0) -> Mask:
+    """Turns by ``degrees`` or more to the "left" or "right"; to either for every other way."""
+    found = np.zeros(m.frames, dtype=bool)
+    for sign in {"left": (1.0,), "right": (-1.0,)}.get(way, (1.0, -1.0)):
+        heading = sign * m.headings[who]
+        turning = np.gradient(heading) * m.fps > _TURNS
+        found |= keep(turning, m.fps, lambda i, j: heading[j - 1] - heading[i] >= degrees, pause=0.4)  # noqa: B023
+    return found
 
 
 @predicate
 def turns(m: Motion, who: int, degrees: float = 90.0) -> Mask:
     """Turns by ``degrees`` or more, on the spot or on the way."""
-    left, right, heading = _turning(m, who)
-
-    def far(i: int, j: int) -> bool:
-        return abs(heading[j - 1] - heading[i]) >= degrees
-
-    return keep(left, m.fps, far, pause=0.4) | keep(right, m.fps, far, pause=0.4)
+    return turns_way(m, who, "any", degrees)
 
 
 @predicate
 def revolves(m: Motion, who: int, rounds: int = 1, way: str = "any") -> Mask:
     """Turns all the way around ``rounds`` times, give or take a third of a turn, to the "left", "right" or "any"."""
-    left, right, heading = _turning(m, who)
-    turning = {"left": left, "right": right}.get(way, left | right)
+    heading = m.headings[who]
+    rate = np.gradient(heading) * m.fps
+    turning = {"left": rate > _TURNS, "right": rate < -_TURNS}.get(way, np.abs(rate) > _TURNS)
 
     def around(i: int, j: int) -> bool:
         return bool(abs(abs(heading[j - 1] - heading[i]) / 360 - rounds) < 0.34)

@@ -150,17 +150,6 @@ def turned(m: Motion, who: int, degrees: float, give: float = 40.0) -> Mask:
 
 
 @predicate
-def turns_way(m: Motion, who: int, way: str, degrees: float = 60.0) -> Mask:
-    """Turns by ``degrees`` or more to the "left" or "right"; to either for every other way."""
-    found = np.zeros(m.frames, dtype=bool)
-    for sign in {"left": (1.0,), "right": (-1.0,)}.get(way, (1.0, -1.0)):
-        heading = sign * m.headings[who]
-        turning = np.gradient(heading) * m.fps > 20.0
-        found |= keep(turning, m.fps, lambda i, j: heading[j - 1] - heading[i] >= degrees, pause=0.4)  # noqa: B023
-    return found
-
-
-@predicate
 def off_floor(m: Motion, who: int, metres: float = 0.2, seconds: float = 0.4) -> Mask:
     """Both feet are ``metres`` or more above the floor for ``seconds``: carried or lifted, not jumping."""
     lowest = m.pair(who, "foot")[..., 1].min(axis=0)
