@@ -7,6 +7,7 @@ from pathlib import Path
 from motion import Clip, Duet, InputError
 from motion.retarget import to_smpl
 
+from .files import write_files
 from .importing import import_motion, import_pair
 from .recording import ImportChoices
 from .registry import ALONE, FORMATS, READABLE, RIGS, can_write, suffix_of, unknown, with_stem
@@ -91,8 +92,9 @@ def write(motion: Duet | Clip, path: str | Path) -> list[Path]:
     known = FORMATS.get(suffix)
     if known is None or known.writer is None:
         raise InputError(unknown(suffix, "written", [f.suffix for f in FORMATS.values() if f.writer]))
-    if isinstance(motion, Duet):
-        return known.writer(motion, path)
-    if known.alone is None:
+    if isinstance(motion, Clip) and not known.alone:
         raise InputError(f"{path.name}: one person is written as {', '.join(ALONE[:-1])} or {ALONE[-1]}: choose one.")
-    return known.alone(motion, path)
+    if isinstance(motion, Clip) or known.apart is None:
+        return write_files({path: known.writer(motion)})
+    people = zip("ab", known.apart(motion), strict=True)
+    return write_files({with_stem(path, f"_{letter}"): known.writer(clip) for letter, clip in people})

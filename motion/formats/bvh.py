@@ -18,14 +18,14 @@ from pathlib import Path
 import numpy as np
 import scipy  # its parts are loaded with their first use
 
-from motion.clip import Clip, Duet
+from motion.clip import Clip
 from motion.errors import InputError
 from motion.rigs import RigMotion
 from motion.skeleton import SMPL22
 from motion.vectors import Array
 
 from .bvh_numbers import Joint, Motion, find_motion, parse_hierarchy, trees
-from .files import MAX_NUMBERS, check_smpl, read_bytes, text_bytes, write_files
+from .files import MAX_NUMBERS, check_smpl, read_bytes, text_bytes
 from .skinned import rigged
 
 _LONGEST_HIERARCHY = 2**20
@@ -205,7 +205,7 @@ def _metres_per_unit(positions: Array, joints: list[Joint], label: str) -> float
     return 1.7 / height
 
 
-# ---- Two people as two files in one world, each with a standing T-pose as its rest pose -----------------------------
+# ---- Writing, with a standing T-pose as the rest pose ----------------------------------------------------------------
 # Where the chains end beyond the last joints, in metres: the crown, the finger tips and the toe tips.
 _TIPS = {
     "head": (0.0, 0.18, 0.02),
@@ -216,26 +216,15 @@ _TIPS = {
 }
 
 
-def write_bvh(duet: Duet, path: str | Path) -> list[Path]:
-    """Writes ``NAME_a.bvh`` and ``NAME_b.bvh`` beside each other for a path ``NAME.bvh``.
+def bvh_bytes(clip: Clip) -> bytes:
+    """One person's BVH: metres, Y up, on bones of the person's own lengths.
 
-    Metres, Y up, both in the duet's world; only the root has position channels and an OFFSET of zero, so
-    that readers which add it and readers which replace it agree. Bones have each person's own lengths.
-
-    Returns:
-        the two paths.
+    Only the root has position channels and an OFFSET of zero, so that readers which add it and readers which replace
+    it agree.
 
     Raises:
-        InputError: for people who are not on SMPL22, or where the files cannot be written.
+        InputError: for joints other than SMPL22's.
     """
-    path = Path(path)
-    stem = path.name[: -len(".bvh")] if path.name.lower().endswith(".bvh") else path.name
-    files = {path.with_name(f"{stem}_{letter}.bvh"): clip for letter, clip in zip("ab", duet.people, strict=True)}
-    return write_files({file: bvh_text(clip).encode("ascii") for file, clip in files.items()})
-
-
-def bvh_text(clip: Clip) -> str:
-    """One person's BVH."""
     check_smpl(clip, "BVH")
     positions = clip.positions.astype(np.float64)
     rotations, offsets = rigged(clip)
@@ -253,7 +242,7 @@ def bvh_text(clip: Clip) -> str:
     lines += ["MOTION", f"Frames: {len(values)}", f"Frame Time: {1.0 / clip.fps:.8f}"]
     pattern = " ".join(["%.6f"] * values.shape[1])
     lines += [pattern % tuple(row) for row in values.tolist()]
-    return "\n".join(lines) + "\n"
+    return ("\n".join(lines) + "\n").encode("ascii")
 
 
 def _write_joint(joint: int, depth: int, offsets: Array, lines: list[str], order: list[int]) -> None:

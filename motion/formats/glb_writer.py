@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,7 @@ from motion.looks import hex_of, linear
 from motion.skeleton import SMPL22
 from motion.things.thing import Thing
 
-from .files import check_smpl, write_files
+from .files import check_smpl
 from .glb_file import packed
 from .skinned import ABOVE, JOINTS, Skinned, skinned
 
@@ -29,25 +28,13 @@ _CHILDREN = [[joint for joint, above in enumerate(ABOVE) if above == parent] for
 """The joints below each."""
 
 
-def write_glb(duet: Duet, path: str | Path) -> list[Path]:
-    """Writes one .glb with both people, named by their roles, and one animation.
-
-    Args:
-        duet: on SMPL22.
-        path: of the file.
-
-    Returns:
-        the path, in a list as for every format.
+def glb_bytes(duet: Duet) -> bytes:
+    """One .glb with both people, named by their roles, and one animation.
 
     Raises:
-        InputError: for people who are not on SMPL22, or where the file cannot be written.
+        InputError: for people who are not on SMPL22.
     """
     check_smpl(duet, "glTF")
-    return write_files({Path(path): glb_bytes(duet)})
-
-
-def glb_bytes(duet: Duet) -> bytes:
-    """The file's bytes."""
     asset: dict[str, Any] = {"version": "2.0", "generator": "Pas de Deux"}
     if duet.manifest:
         asset["extras"] = {"manifest": json.loads(json.dumps(duet.manifest, default=str))}

@@ -24,7 +24,6 @@ import io
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -40,7 +39,7 @@ from motion.rigs import RigMotion
 from motion.skeleton import SKELETONS, SMPL22, Skeleton
 from motion.things.thing import MOST_THINGS, Mesh, Thing
 
-from .files import check_duration, frame_rate, load_array, load_members, no_rate, numbers, read_json, write_files
+from .files import check_duration, frame_rate, load_array, load_members, no_rate, numbers, read_json
 from .recording import MAX_PEOPLE, ORDERS, ImportChoices, Recording
 from .smpl import FPS_KEYS, PARAMETER_KEYS, has_parameters, read_parameters
 
@@ -76,8 +75,8 @@ THING_KEYS = ("thing_kinds", "thing_names", *_SHAPES)
 _KEYS = (*_POSITIONS, "fps", "joint_names", "parents", "roles", "manifest", *THING_KEYS, "grips", "looks")
 
 
-def write_npz(motion: Duet | Clip, path: str | Path) -> list[Path]:
-    """Writes positions (2, T, J, 3) or (T, J, 3) float32 with fps, joint_names and parents.
+def npz_bytes(motion: Duet | Clip) -> bytes:
+    """A .npz of positions (2, T, J, 3) or (T, J, 3) float32 with fps, joint_names and parents.
 
     A duet's roles and manifest, things beside the people, the grips of their hands and their looks are further arrays,
     see above.
@@ -100,14 +99,14 @@ def write_npz(motion: Duet | Clip, path: str | Path) -> list[Path]:
             arrays["looks"] = np.array(motion.looks)
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)
-    return write_files({Path(path): buffer.getvalue()})
+    return buffer.getvalue()
 
 
-def write_npy(motion: Duet | Clip, path: str | Path) -> list[Path]:
-    """Writes only positions (2, T, J, 3) or (T, J, 3) float32; the frame rate is lost."""
+def npy_bytes(motion: Duet | Clip) -> bytes:
+    """A .npy of positions (2, T, J, 3) or (T, J, 3) float32 alone; the frame rate is lost."""
     buffer = io.BytesIO()
     np.save(buffer, motion.positions, allow_pickle=False)
-    return write_files({Path(path): buffer.getvalue()})
+    return buffer.getvalue()
 
 
 def read_npz(data: bytes, label: str, choices: ImportChoices) -> Recording:

@@ -7,21 +7,22 @@ import zipfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
 
-from .bvh import bvh_text, read_bvh, write_bvh
+from .bvh import bvh_bytes, read_bvh
 from .c3d_points import read_c3d
-from .files import MAX_BYTES, ZIP_ERRORS, read_bytes, write_files
+from .files import MAX_BYTES, ZIP_ERRORS, read_bytes
 from .glb_motion import read_glb
-from .glb_writer import write_glb
+from .glb_writer import glb_bytes
 from .kinect import read_kinect
 from .markers import read_trc
-from .npz import read_npy, read_npz, write_npy, write_npz
+from .npz import npy_bytes, npz_bytes, read_npy, read_npz
 from .recording import ImportChoices, Recording
-from .smpl import smpl_bytes, write_smpl
-from .usd import write_usd
+from .smpl import as_adults, smpl_bytes
+from .usd import usd_bytes
 
 RIG_FPS = 30.0
 """Frames a second onto which rigs are brought."""
@@ -39,14 +40,16 @@ class Format:
         suffix: with its dot, lower case.
         reader: gives what a file's bytes hold, by its name in messages and what is known of it; ``None`` where it is
             only written.
-        writer: ``writer(duet, path)`` gives the paths it wrote; ``None`` where it is only read.
-        alone: likewise for one person; ``None`` where a file always holds two.
+        writer: gives the bytes of a file of two people, or of one; ``None`` where it is only read.
+        alone: it also writes one person.
+        apart: gives the people of two files, NAME_a and NAME_b, that share one world; ``None`` where both are in one.
     """
 
     suffix: str
     reader: Callable[[bytes, str, ImportChoices], Recording] | None = None
-    writer: Callable[[Duet, Path], list[Path]] | None = None
-    alone: Callable[[Clip, Path], list[Path]] | None = None
+    writer: Callable[[Any], bytes] | None = None
+    alone: bool = False
+    apart: Callable[[Duet], tuple[Clip, Clip]] | None = None
 
 
 def _rigs(data: bytes, label: str, choices: ImportChoices) -> Recording:
@@ -63,16 +66,16 @@ def _rigs(data: bytes, label: str, choices: ImportChoices) -> Recording:
 FORMATS: dict[str, Format] = {
     f.suffix: f
     for f in (
-        Format(".npz", read_npz, write_npz, write_npz),
-        Format(".bvh", _rigs, write_bvh, lambda clip, path: write_files({path: bvh_text(clip).encode()})),
-        Format(".npy", read_npy, write_npy, write_npy),
+        Format(".npz", read_npz, npz_bytes, alone=True),
+        Format(".bvh", _rigs, bvh_bytes, alone=True, apart=lambda duet: duet.people),
+        Format(".npy", read_npy, npy_bytes, alone=True),
         Format(".skeleton", read_kinect),
         Format(".txt", read_kinect),
-        Format(".glb", _rigs, write_glb),
+        Format(".glb", _rigs, glb_bytes),
         Format(".vrm", _rigs),
         Format(".vrma", _rigs),
-        Format(".usda", None, write_usd),
-        Format(".smpl.npz", None, write_smpl, lambda clip, path: write_files({path: smpl_bytes(clip)})),
+        Format(".usda", None, usd_bytes),
+        Format(".smpl.npz", None, smpl_bytes, alone=True, apart=as_adults),
         Format(".trc", read_trc),
         Format(".c3d", read_c3d),
         Format(".zip", lambda *_: Recording(())),

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import io
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from motion.looks import size_of
 from motion.sizes import of_adults
 from motion.skeleton import SMPL22
 
-from .files import check_duration, check_smpl, frame_rate, no_rate, numbers, write_files
+from .files import check_duration, check_smpl, frame_rate, no_rate, numbers
 from .recording import Recording
 from .skinned import rigged
 
@@ -141,31 +140,19 @@ def _posed(poses: Array, trans: Array) -> Array:
     return positions
 
 
-def write_smpl(duet: Duet, path: str | Path) -> list[Path]:
-    """Writes AMASS' parameters, ``NAME_a.smpl.npz`` and ``NAME_b.smpl.npz``, in one Z-up world.
-
-    A child is written as an adult, on the way of an adult: the body of these files is one.
-
-    Raises:
-        InputError: for joints other than SMPL22's, or where a file cannot be written; no file is left.
-    """
-    path = Path(path)
-    stem = path.name[: -len(SUFFIX)]
+def as_adults(duet: Duet) -> tuple[Clip, Clip]:
+    """Two people of whom a child is an adult, on the way of an adult: the body of these files is one."""
     a, b = (size_of(look) for look in duet.looks)
     if (a, b) != (1.0, 1.0) and duet.skeleton.joint_names == SMPL22.joint_names:
         duet = duet.with_positions(of_adults(duet.positions, (a, b)))
-    files = {
-        path.with_name(f"{stem}_{letter}{SUFFIX}"): smpl_bytes(clip)
-        for letter, clip in zip("ab", duet.people, strict=True)
-    }
-    return write_files(files)
+    return duet.people
 
 
 def smpl_bytes(clip: Clip) -> bytes:
     """One person as AMASS' .npz: ``poses`` (T, 156), ``trans`` (T, 3), ``betas`` (16,), ``gender``, the rate twice.
 
-    Bones point where those of the clip point, and the body is SMPL's neutral one (betas of 0): its bones are about as
-    long as SMPL22's, but not the same, and a person with other bones gets SMPL's.
+    The world is Z up. Bones point where those of the clip point, and the body is SMPL's neutral one (betas of 0): its
+    bones are about as long as SMPL22's, but not the same, and a person with other bones gets SMPL's.
 
     Raises:
         InputError: for joints other than SMPL22's.

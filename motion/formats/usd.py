@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +19,7 @@ from motion.looks import hex_of, linear
 from motion.things.thing import Thing
 from motion.vectors import Array
 
-from .files import check_smpl, write_files
+from .files import check_smpl
 from .glb_writer import ROUGH, names_of, unit_normals
 from .skinned import ABOVE, JOINTS, Skinned, skinned
 
@@ -29,25 +28,13 @@ _AROUND = 0.4
 _ONES = f"[{', '.join(['(1, 1, 1)'] * len(JOINTS))}]"
 
 
-def write_usd(duet: Duet, path: str | Path) -> list[Path]:
-    """Writes one .usda with both people, named by their roles.
-
-    Args:
-        duet: on SMPL22.
-        path: of the file.
-
-    Returns:
-        the path, in a list as for every format.
+def usd_bytes(duet: Duet) -> bytes:
+    """One .usda with both people, named by their roles.
 
     Raises:
-        InputError: for people who are not on SMPL22, or where the file cannot be written.
+        InputError: for people who are not on SMPL22.
     """
     check_smpl(duet, "USD")
-    return write_files({Path(path): usd_text(duet).encode()})
-
-
-def usd_text(duet: Duet) -> str:
-    """The file's text."""
     names = [identifier(role, "person") for role in duet.roles]
     if names[0].lower() == names[1].lower():
         names = [f"{name}_{letter}" for name, letter in zip(names, "ab", strict=True)]
@@ -74,7 +61,7 @@ def Xform "duet" (
 )
 {{
 {"".join(people)}{things_text(duet.things, names)}}}
-"""
+""".encode()
 
 
 def _person(person: Skinned, name: str) -> str:

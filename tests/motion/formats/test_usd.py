@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, Duet, formats
 from motion.body import load_body, skin
-from motion.formats.usd import usd_text
+from motion.formats.usd import usd_bytes
 from motion.hands import Grip, angles
 from motion.transforms import turn
 from tests.motion.bodies import marching
@@ -33,7 +33,7 @@ def samples(text: str, what: str, width: int) -> np.ndarray:
 
 
 def test_rotations_and_places_give_the_joints() -> None:
-    text = usd_text(DUET)
+    text = usd_bytes(DUET).decode()
     turns = samples(text, r"quatf\[\] rotations", 4)
     places = samples(text, r"float3\[\] translations", 3)
     assert turns.shape == (2, 24, 52, 4) and places.shape == (2, 24, 52, 3)

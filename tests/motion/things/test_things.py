@@ -12,7 +12,7 @@ import pytest
 import trimesh
 
 from motion import Duet, InputError, formats
-from motion.formats.usd import usd_text
+from motion.formats.usd import usd_bytes
 from motion.looks import hex_of, linear
 from motion.things import FURNITURE, KINDS, Mesh, Thing, shape
 from tests.motion.bodies import marching
@@ -134,7 +134,7 @@ def test_a_glb_holds_things_at_their_first_frame_in_their_colours(tmp_path):
 
 
 def test_a_usd_stage_holds_things_beside_people():
-    text = usd_text(DUET)
+    text = usd_bytes(DUET).decode()
     assert re.findall(r'^    def (?:Xform|Scope) "(\w+)"', text, flags=re.MULTILINE) == [
         "a",
         "b",
