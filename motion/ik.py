@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .ik_solver import MIN_NOISE, solve
-from .kinematics import fit_rotations, forward_kinematics
+from .kinematics import fit_rotations, forward_kinematics, kabsch
 from .skeleton import SMPL22, Layout, Skeleton, find_layout
 from .smoothing import filled
 from .vectors import Array
@@ -212,10 +212,7 @@ def _start(target: Array, layout: Layout, body: Skeleton) -> tuple[Array, Array]
     trunk = [index(n) for n in trunk_names if index(n) in column]
     seen = target[:, [column[j] for j in trunk]]
     centre, rest_centre = seen.mean(axis=1), rest[trunk].mean(axis=0)
-    covariance = np.swapaxes(seen - centre[:, None], -1, -2) @ (rest[trunk] - rest_centre)
-    u, _, vt = np.linalg.svd(covariance)
-    u[..., 2] *= np.linalg.det(u @ vt)[:, None]
-    turn = u @ vt
+    turn = kabsch(rest[trunk] - rest_centre, seen - centre[:, None])
     placed = centre[:, None] + (rest - rest_centre) @ np.swapaxes(turn, -1, -2)
     for joint in range(SMPL22.num_joints):
         if joint in column:

@@ -81,7 +81,7 @@ def fit_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
         if not children:
             world[joint] = inherited
         elif len(children) > 1:
-            world[joint] = _kabsch(skeleton.offsets[list(children)], np.moveaxis(bones[list(children)], 0, -2))
+            world[joint] = kabsch(skeleton.offsets[list(children)], np.moveaxis(bones[list(children)], 0, -2))
         else:
             (child,) = children
             world[joint] = _swing(inherited @ rest_ways[child], ways[child]) @ inherited
@@ -105,7 +105,7 @@ def followed_rotations(positions: Array) -> Array:
     for joint, children in enumerate(SMPL22.children):
         if len(children) > 1:
             bones = positions[:, list(children)] - positions[:, joint, None]
-            world[:, joint] = _kabsch(SMPL22.offsets[list(children)], bones)
+            world[:, joint] = kabsch(SMPL22.offsets[list(children)], bones)
     if single:
         joints, ends = np.array(single).T
         bones = positions[:, ends] - positions[:, joints]
@@ -143,7 +143,7 @@ def project_to_skeleton(positions: Array) -> tuple[Array, Array]:
     return forward_kinematics(rotations, np.asarray(positions)[..., 0, :]), rotations
 
 
-def _kabsch(rest: Array, observed: Array) -> Array:
+def kabsch(rest: Array, observed: Array) -> Array:
     """(…, 3, 3) rotation R that minimises Σ |R rest_i − observed_i|²; rest (C, 3), observed (…, C, 3)."""
     covariance = np.swapaxes(observed, -1, -2) @ rest
     u, _, vt = np.linalg.svd(covariance)

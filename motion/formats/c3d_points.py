@@ -21,7 +21,6 @@ from .markers import people_of
 from .recording import ImportChoices, Recording
 
 _BLOCK = 512
-_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 _MOST_BLOCKS = 255
 """Of parameters: their number is one byte."""
 _MOST_POINTS = 1000
@@ -45,10 +44,7 @@ def read_c3d(data: bytes, label: str, choices: ImportChoices) -> Recording:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{label} is not a whole C3D file, or it is damaged: export it again.") from None
-    if unit not in _UNITS:
-        raise InputError(f"{label}: the unit {unit!r:.20} is not known: use {', '.join(_UNITS)}.")
-    points *= np.float32(_UNITS[unit])
-    return Recording(people_of(names, points, rate, label), "")
+    return people_of(names, points, rate, unit, label)
 
 
 def _points(data: bytes, label: str, fps: float | None) -> tuple[list[str], Array, float, str]:

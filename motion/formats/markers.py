@@ -28,6 +28,7 @@ from .recording import ImportChoices, Recording
 
 Points = Mapping[str, Array]
 
+_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 _FARTHEST = 1000.0  # metres
 _OFTEN_UNSEEN = 0.2
 """Share of the frames; a joint that is interpolated for longer is mentioned."""
@@ -49,21 +50,25 @@ _NEEDED = ("hip", "knee", "ankle", "shoulder", "elbow", "wrist")
 _SACRUM = ("sacr", "vsacr")
 
 
-def people_of(names: Sequence[str], points: Array, fps: float, label: str) -> tuple[Clip, ...]:
+def people_of(names: Sequence[str], points: Array, fps: float, length: str, label: str) -> Recording:
     """Everybody whom markers show, in the order in which their prefixes appear.
 
     Args:
         names: of P markers.
-        points: (T, P, 3) metres, NaN or all zeros where a marker was not seen; any axis may be up.
+        points: (T, P, 3), NaN or all zeros where a marker was not seen; any axis may be up. They are changed.
         fps: frames a second.
+        length: name of their unit.
         label: the file's name in messages.
 
     Returns:
         clips on :data:`~motion.skeleton.POINTS17`; joints are interpolated while they were not seen.
 
     Raises:
-        InputError: if nobody has the markers of a whole body, or places are not possible.
+        InputError: if nobody has the markers of a whole body, or the unit or places are not possible.
     """
+    if length not in _UNITS:
+        raise InputError(f"{label}: the unit {length!r:.20} is not known: use {', '.join(_UNITS)}.")
+    points *= np.float32(_UNITS[length])
     points[(points == 0).all(axis=-1)] = np.nan
     if max(-np.fmin.reduce(points, axis=None), np.fmax.reduce(points, axis=None)) > _FARTHEST:  # NaN is left out
         raise InputError(f"{label} holds points more than {_FARTHEST:g} m away: is its unit right?")
@@ -80,7 +85,7 @@ def people_of(names: Sequence[str], points: Array, fps: float, label: str) -> tu
             f"{label} has no marker or key point for {missing.replace('_', ' ') or 'a body'} among {shown}, …: use "
             "names such as LKNE, LKnee or LKJC."
         )
-    return tuple(_clip(joints, fps, label) for joints in people)
+    return Recording(tuple(_clip(joints, fps, label) for joints in people), "")
 
 
 def _by_person(names: Sequence[str], points: Array) -> list[dict[str, Array]]:
@@ -162,7 +167,6 @@ def _clip(joints: Mapping[str, Array], fps: float, label: str) -> Clip:
 # ---- marker trajectories as text, ``.trc`` ---------------------------------------------------------
 
 
-_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 _MOST_MARKERS = 1000
 _HEAD = 200_000
 """Characters: the head of a file with so many markers is shorter."""
@@ -185,15 +189,11 @@ def read_trc(data: bytes, label: str, choices: ImportChoices) -> Recording:
         raise InputError(f"{label} does not give its DataRate as a number: give its true rate.") from None
     if not 1.0 <= rate <= 1000.0:
         raise InputError(f"{label}: a DataRate of {rate:g} is not possible: give frames a second.")
-    unit = settings.get("Units", "mm").strip().lower()
-    if unit not in _UNITS:
-        raise InputError(f"{label}: the unit {unit!r:.20} is not known: use {', '.join(_UNITS)}.")
     names = [cell.strip() for cell in _cells(head[3], mark)[2:] if cell.strip()]
     if not 1 <= len(names) <= _MOST_MARKERS:
         raise InputError(f"{label} names {len(names)} markers: give 1 to {_MOST_MARKERS}.")
     values = _rows(text, start, len(names), mark, rate, label)
-    values *= np.float32(_UNITS[unit])
-    return Recording(people_of(names, values, rate, label), "")
+    return people_of(names, values, rate, settings.get("Units", "mm").strip().lower(), label)
 
 
 def _cells(line: str, mark: str | None) -> list[str]:

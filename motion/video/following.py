@@ -11,19 +11,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from motion.clip import FPS
 from motion.ik import pose_bodies
 from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
 from motion.vectors import FLAT, Array
 
 from .landmarks import INDEX, Landmarks
-from .person import LAYOUT, TILTS, layout_points
-from .place import body_tilt, focal_length, towards, translation, upright
+from .person import LAYOUT, TILTS, Track, in_camera, layout_points
+from .place import body_tilt, upright
 
 MEASURED = 8
 """Pictures with a person that come before the first pose."""
 _SEEN = 0.5
-"""A point that is seen less surely than this counts as hidden."""
+"""A point that is seen less surely than this counts as hidden, and a nose is turned away."""
 _POSE = (2.5, 3.0)
 """1 € filter of the joints about the pelvis: lowest cut-off in Hz, and its growth with the speed in m/s."""
 _PATH = (1.2, 1.0)
@@ -107,12 +108,13 @@ class FollowedPerson:
         poses = np.flatnonzero(landmarks.frames == picture)
         if not len(poses):
             return None
-        chosen = int(poses[0])
+        one = Track(FPS, *(values[poses[:1]] for values in (landmarks.world, landmarks.pixels, landmarks.seen)))
+        seen = one.seen[0]
         before = time if self._last is None else self._last
         self._last = time
-        self.seen = float(landmarks.seen[chosen][_LEGS].mean())
+        self.seen = float(seen[_LEGS].mean())
         try:
-            points, seen = _in_camera(landmarks, chosen)
+            points = in_camera(one, landmarks)[0]
             if self._turn is None:
                 self._measure(points, seen)
                 return None
@@ -147,22 +149,8 @@ class FollowedPerson:
         return posed
 
 
-def _in_camera(landmarks: Landmarks, pose: int) -> tuple[Array, Array]:
-    """(33, 3) points in metres along the camera's axes, and (33,) how surely they are seen."""
-    size = np.array([landmarks.width, landmarks.height])
-    focal = focal_length(landmarks.width, landmarks.height)
-    pixels = (landmarks.pixels[pose] - size / 2)[None]
-    seen = landmarks.seen[pose][None]
-    world = np.einsum("tij,tpj->tpi", towards(pixels, focal), landmarks.world[pose][None])
-    depth = translation(world, pixels, seen, focal)[:, 2:]
-    z = np.maximum(world[..., 2] + depth, 0.2)
-    return np.concatenate([pixels * z[..., None] / focal, z[..., None]], axis=-1)[0], seen[0]
-
-
 # ---- The direction of a face, from ears and nose, the only points of a head that the pose network finds --------------
 _NOSE, _EARS = INDEX["nose"], [INDEX["left_ear"], INDEX["right_ear"]]
-_SEEN = 0.5
-"""A nose that is seen less surely than this is turned away."""
 _LEAST = 0.03
 """Metres from between the ears to the nose, over the floor, below which a face points nowhere."""
 

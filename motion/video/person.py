@@ -97,7 +97,7 @@ def person_of(landmarks: Landmarks, *, name: str = "Film") -> Filmed:
     if len(track) / track.fps < SHORTEST:
         raise InputError("The film shows somebody for less than half a second: film for longer.")
     _check_seen(track, landmarks)
-    points = _in_camera(track, landmarks, focal_length(landmarks.width, landmarks.height))
+    points = in_camera(track, landmarks)
     fitted = _fit(points, track)
     lean = body_tilt(points, track.seen)
     tilt = float(np.clip(np.degrees(level(fitted, lean, fps=track.fps)), *TILTS))
@@ -130,8 +130,9 @@ def _legs_seen(track: Track, landmarks: Landmarks) -> NDArray[np.bool_]:
     return np.any(np.all(inside & (track.seen[:, _LEGS] > _SEEN), axis=2), axis=1)
 
 
-def _in_camera(track: Track, landmarks: Landmarks, focal: float) -> Array:
+def in_camera(track: Track, landmarks: Landmarks) -> Array:
     """(T, 33, 3) points in metres along the camera's axes: their place in the picture, at the depth of the body."""
+    focal = focal_length(landmarks.width, landmarks.height)
     pixels = track.pixels - np.array([landmarks.width, landmarks.height]) / 2
     found = track.found
     world = np.full(track.world.shape, np.nan)

@@ -99,7 +99,8 @@ def test_hips_come_from_the_markers_of_a_pelvis() -> None:
         "RPSI": np.full((3, 3), (-0.05, 1.0, -0.1)),
     }
     names = list(markers)
-    (clip,) = people_of(names, np.stack([markers[name] for name in names], axis=1), 100.0, "x.c3d")
+    points = np.stack([markers[name] for name in names], axis=1)
+    (clip,) = people_of(names, points, 100.0, "m", "x.c3d").people
     np.testing.assert_allclose(
         clip.positions[0, POINTS17.index("left_hip")], [0.36 * 0.24, 1.0 - 0.30 * 0.24, 0.1 - 0.19 * 0.24], atol=1e-6
     )
