@@ -53,23 +53,9 @@ def turned(profile: Sequence[Sequence[float]], colour: str, *, sides: int = 16) 
 
 def hoop(radius: float, thick: float, colour: str, *, arc: float = 2 * np.pi, sides: int = 6, steps: int = 20) -> Part:
     """A ring of round wire about the Z axis, or an arc of it that begins on +X."""
-    angles = np.linspace(0.0, arc, steps + 1)
-    around = np.linspace(0.0, 2 * np.pi, sides, endpoint=False)
-    reach = radius + thick * np.cos(around)
-    points = np.stack(
-        [
-            reach * np.cos(angles)[:, None],
-            reach * np.sin(angles)[:, None],
-            np.tile(thick * np.sin(around), (len(angles), 1)),
-        ],
-        axis=-1,
-    ).reshape(-1, 3)
-    faces = []
-    for i in range(steps):
-        for j in range(sides):
-            a, b = i * sides + j, i * sides + (j + 1) % sides
-            faces += [[a, a + sides, b], [b, a + sides, b + sides]]
-    return trimesh.Trimesh(points, faces, process=False), colour
+    around = np.linspace(0.0, 2 * np.pi, sides + 1)
+    profile = np.stack([radius + thick * np.cos(around), thick * np.sin(around)], axis=1)
+    return trimesh.creation.revolve(profile, angle=arc, sections=steps), colour
 
 
 def slab(outline: Array | Sequence[Sequence[float]], thick: float, colour: str) -> Part:
@@ -77,25 +63,6 @@ def slab(outline: Array | Sequence[Sequence[float]], thick: float, colour: str) 
     flat = np.asarray(outline, dtype=float)
     points = np.concatenate([np.c_[flat, np.full(len(flat), z)] for z in (-thick / 2, thick / 2)])
     return trimesh.Trimesh(points, process=False).convex_hull, colour
-
-
-def pleated(line: Array, height: float, thick: float, colour: str) -> Part:
-    """A sheet of this thickness that stands on the floor along a line (N, 2) of x and z, from -X to +X."""
-    count = len(line)
-    rows = [np.insert(line + np.array([0.0, z]), 1, y, axis=1) for z in (thick / 2, -thick / 2) for y in (0.0, height)]
-    i = np.arange(count - 1)
-    front, back = (0, count), (2 * count, 3 * count)  # the first vertices of the lower and the upper row
-    loops = [(front[0], front[1]), (back[1], back[0]), (front[1], back[1]), (back[0], front[0])]
-    faces = [
-        face
-        for low, high in loops
-        for face in (np.stack([low + i, low + i + 1, high + i + 1], 1), np.stack([low + i, high + i + 1, high + i], 1))
-    ]
-    last = count - 1
-    for j, flip in ((0, True), (last, False)):
-        end = np.array([[front[0], back[0], back[1]], [front[0], back[1], front[1]]]) + j
-        faces.append(end[:, ::-1] if flip else end)
-    return trimesh.Trimesh(np.concatenate(rows), np.concatenate(faces), process=False), colour
 
 
 def placed(part: Part, at: Sequence[float] = (0, 0, 0), turns: Sequence[tuple[float, str]] = ()) -> Part:
