@@ -109,7 +109,7 @@ def varied(people: Array, settings: Settings, rng: np.random.Generator) -> Array
     fps = FPS / (1 + settings.speed * rng.uniform(-1, 1))
     people = np.stack([resample(person[first:], RECORDED_FPS, fps) for person in people])[:, : settings.window]
     people = canonicalize(people) * (1 + settings.size * rng.uniform(-1, 1))
-    return turn(people, math.radians(settings.turn) * rng.uniform(-1, 1), np.zeros(3))
+    return turn(people, math.radians(settings.turn) * rng.uniform(-1, 1))
 
 
 def collate(scenes: Sequence[Array]) -> Batch:

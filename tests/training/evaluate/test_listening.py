@@ -25,7 +25,7 @@ def test_what_the_seed_changes_is_told_from_what_the_sentence_changes() -> None:
 
 
 def test_where_people_are_and_where_they_face_is_no_difference() -> None:
-    moved = turn(standing(), 1.0, np.zeros(3)) + np.array([2.0, 0.0, -1.0])
+    moved = turn(standing(), 1.0) + np.array([2.0, 0.0, -1.0])
     assert listening([[standing(), moved], [standing(raised=0.22)]]) == pytest.approx((0.0, 1.0), abs=1e-9)
 
 
