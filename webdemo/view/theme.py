@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion.body import vertex_normals
@@ -220,12 +221,4 @@ class Shadow:
         column = (z.ravel() - np.float32(self.origin[1])) * scale - np.float32(0.5)
         last = SHADOW_SIZE - 1
         inside = np.flatnonzero((row >= 0) & (column >= 0) & (row < last) & (column < last))
-        row, column = row[inside], column[inside]
-        i, j = row.astype(np.int32), column.astype(np.int32)
-        s, t = row - i, column - j
-        corner = i * SHADOW_SIZE + j
-        dark = self.dark.ravel()
-        upper, lower = dark[corner] * (1 - t), dark[corner + SHADOW_SIZE] * (1 - t)
-        upper += dark[corner + 1] * t
-        lower += dark[corner + SHADOW_SIZE + 1] * t
-        return upper + s * (lower - upper), inside
+        return scipy.ndimage.map_coordinates(self.dark, [row[inside], column[inside]], order=1), inside
