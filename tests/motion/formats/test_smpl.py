@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, Duet, InputError, formats
 from motion.formats.importing import import_motion
+from motion.formats.registry import partner_file
 from motion.formats.smpl import PELVIS
 from motion.guesses import turn_of
 from motion.kinematics import fit_rotations
@@ -152,7 +153,10 @@ def test_two_files_keep_one_world(kind: str, packed: bool, tmp_path: Path) -> No
         for name, data in parts.items():
             (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / name).write_bytes(data)
-        duet = formats.read(tmp_path)
+        first = tmp_path / next(iter(parts))
+        other = partner_file(first)
+        assert other is not None
+        duet = formats.read_pair(first, other)
     assert isinstance(duet, Duet) and duet.fps == fps
     frames = duet.num_frames
     assert frames == (20 if kind == "interhuman" else 15)  # the longer one is cut
