@@ -101,6 +101,11 @@ class BodyParts:
     spine: tuple[int, ...]
     joints: dict[str, int]
 
+    @property
+    def matched(self) -> int:
+        """Number of SMPL22's joints that follow from them: its spine has four with the pelvis."""
+        return len(self.joints) + min(len(self.spine), 4)
+
 
 _BELOW = {"elbow": "wrist", "shoulder": "elbow", "collar": "shoulder", "knee": "ankle", "hip": "knee"}
 """The next joint down the limb."""
@@ -108,18 +113,6 @@ _LIMB = ("wrist", "elbow", "shoulder", "collar", "ankle", "foot", "knee", "hip")
 _ONE_PLACE = 1e-3
 """Share of a body's height within which the left and the right of a part are helpers at one place."""
 _REQUIRED = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
-
-
-def matched_names(rig: RigMotion) -> list[tuple[str, str]]:
-    """(joint of the rig, joint of SMPL22) of every part that :func:`match_joints` finds, pelvis first.
-
-    Raises:
-        InputError: as :func:`match_joints`.
-    """
-    parts = match_joints(rig)
-    # The spine's joints are spread over SMPL22's three; a shorter spine names those it has.
-    spine = dict(zip(("pelvis", "spine1", "spine2", "spine3"), parts.spine, strict=False))
-    return [(rig.joint_names[joint], name) for name, joint in (spine | parts.joints).items()]
 
 
 def match_joints(rig: RigMotion) -> BodyParts:

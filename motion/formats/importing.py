@@ -17,7 +17,7 @@ from motion.clip import Clip, Duet
 from motion.errors import InputError
 from motion.guesses import Places, calibration_frames, find_up, places_of, turn_of
 from motion.retarget import rest_axis, retarget_together, to_smpl, up_axis
-from motion.rigs import RigMotion, matched_names, without_beginning
+from motion.rigs import RigMotion, match_joints, without_beginning
 from motion.skeleton import LAYOUTS, SMPL22
 from motion.vectors import Array
 
@@ -45,7 +45,7 @@ class Imported:
         up: what points up in the file, of :data:`motion.guesses.AXES`.
         unit: its unit; "none" if its lengths were scaled to an average person.
         fps: its frames a second.
-        joints: (joint of the file, joint of SMPL22).
+        joints: number of SMPL22's joints that the file has.
         order: joint order of an array, if several orders have that number of joints.
         animations: those of a .glb file, and which of them this is; None for any other file.
         asks: True if a thing was assumed that nobody said: the frame rate, an unusual up axis, the joints' order.
@@ -56,7 +56,7 @@ class Imported:
     up: str
     unit: str
     fps: float
-    joints: tuple[tuple[str, str], ...] = field(repr=False)
+    joints: int
     order: str | None = None
     animations: Animations | None = None
     asks: bool = False
@@ -77,10 +77,7 @@ class Imported:
         unit = "no unit (scaled to a person)" if self.unit == "none" else self.unit
         order = "" if self.order is None else f" in the order of {ORDERS[self.order]}"
         count = f"{len(self.people)} people, " if len(self.people) > 2 else ""
-        return (
-            f"{count}{len(self.joints)} joints matched{order}, {unit}, {self.up.upper()} up, "
-            f"{self.fps:g} frames a second"
-        )
+        return f"{count}{self.joints} joints matched{order}, {unit}, {self.up.upper()} up, {self.fps:g} frames a second"
 
 
 def import_motion(
@@ -174,7 +171,7 @@ def _import_rigs(rigs: list[RigMotion], label: str, choices: ImportChoices) -> I
     else:
         people = retarget_together(rigs, fps=RIG_FPS)
     unit = next((n for n, metres in UNITS.items() if np.isclose(metres, rigs[0].metres_per_unit)), "none")
-    return Imported(people, up, unit, first.fps * first.every, tuple(matched_names(rigs[0])))
+    return Imported(people, up, unit, first.fps * first.every, match_joints(rigs[0]).matched)
 
 
 # ---- clips -------------------------------------------------------------------------------------------
@@ -195,11 +192,7 @@ def _import_clips(clips: list[Clip], recording: Recording, label: str, choices: 
         people = [replace(clip, positions=clip.positions - down) for clip in people]
     check_duration(people[0].num_frames, people[0].fps, label)
     skeleton = people[0].skeleton
-    joints = tuple(
-        (theirs, SMPL22.joint_names[ours])
-        for theirs, ours in zip(skeleton.joint_names, LAYOUTS[skeleton.name].joints, strict=True)
-        if ours >= 0
-    )
+    joints = len(LAYOUTS[skeleton.name].observed)
     order = skeleton.name if skeleton.name in ORDERS else None
     return Imported(tuple(people), up, unit, people[0].fps, joints, order)
 

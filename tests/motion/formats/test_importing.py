@@ -25,7 +25,7 @@ def standing(frames: int = 40) -> np.ndarray:
 def test_arrays_are_reported_and_kept_bit_for_bit() -> None:
     found = import_motion(npy(standing()), name="a.npy")
     assert (found.up, found.unit, found.fps) == ("y", "m", 30.0)
-    assert len(found.joints) == 22
+    assert found.joints == 22
     assert found.motion.positions.tobytes() == standing().tobytes()
     assert found.describe() == "22 joints matched, m, Y up, 30 frames a second"
 
