@@ -192,10 +192,13 @@ class HistoryLike(Protocol):
         """The room that a person uses, and how much they may."""
 
     def weight(self, owner: str, runs: Sequence[str]) -> float:
-        """Bytes of runs: about those that :meth:`export` writes."""
+        """Bytes of runs, or of all of them for none given: about those that :meth:`export` writes."""
 
     def export(self, owner: str, runs: Sequence[str], file: Path) -> int:
-        """Writes the motions of runs into one .zip; returns how many runs."""
+        """Writes the motions of runs, or of all for none given, into one .zip; returns how many runs."""
+
+    def take_in(self, owner: str, files: Sequence[Path], *, address: str = "") -> int:
+        """Adds results to the owner's runs, each from its .npz; returns how many."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,13 +13,14 @@ from webdemo.inference.run import Result
 from webdemo.ui.components.notebook import UNKNOWN, Action, NotebookView, shown
 from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
-from webdemo.ui.history import Found, HistoryLike, Opened, Search, Usage
+from webdemo.ui.history import Found, HistoryLike, Opened, Search
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line, link_line, text
 from webdemo.ui.visitor import Visitor, visitor
 
 from .grids import grid_shown
+from .history_files import FilesPanel, room_html, runs_line
 from .job import JobTab
 from .results import QUIET, Parts, Updates
 from .sharing import SharingPanel
@@ -48,6 +49,7 @@ class HistoryTab:
             raise ValueError("The page has no history.")
         self.page, self.jobs, self.tabs = page, jobs, tabs
         self.history: HistoryLike = page.history
+        self.files = FilesPanel(page, self.history, self.refresh)
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -73,6 +75,7 @@ class HistoryTab:
             self.sharing = SharingPanel(self.page) if self.page.sharing is not None else None
             if self.sharing is not None:
                 self.sharing.build()
+            self.files.build()
         self.removed = gr.State([])
         self._wire(demo, tab, record)
 
@@ -81,6 +84,7 @@ class HistoryTab:
         shown = [self.view, self.who, self.line, self.address, self.saved, self.removed]
         tab.select(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
         self.view.select(self.act, inputs=self.removed, outputs=shown, **quick)
+        self.files.wire(shown[:2], self.line, self.saved, self.removed)
         if self.study is not None:
             self.study.wire(tab, self.view.edit)
         if self.sharing is not None:
@@ -121,7 +125,7 @@ class HistoryTab:
                 link, until = self._link(action.one, owner)
                 line, address = status(until, tone="done"), gr.update(value=link, visible=True)
             elif action.act == "export":
-                line, saved = self._export(action.ids, owner)
+                line, saved = self.files.export(action.ids)
             elif action.act == "remove":
                 count, removed = self.history.remove(action.ids, owner), action.ids
                 line = status(
@@ -156,13 +160,6 @@ class HistoryTab:
             self.history.describe(run, owner, title=action.title, tags=action.tags, note=action.note)
             return "Saved."
         raise InputError(UNKNOWN)
-
-    def _export(self, runs: Sequence[str], owner: str) -> Updates:
-        """Writes runs into one file; a line on it, and the change of the button that gives it."""
-        file = self.page.shelf.folder(self.history.weight(owner, runs)) / "pas-de-deux-results.zip"
-        count = self.history.export(owner, runs, file)
-        line = f"{runs_line(count).capitalize()} in one file of {file.stat().st_size / 2**20:.1f} MB."
-        return status(line, tone="done"), gr.update(value=str(file), visible=True)
 
     def _link(self, run: str, owner: str) -> tuple[str, str]:
         key, until = self.history.link(run, owner)
@@ -250,40 +247,3 @@ def _signed_in(who: Visitor) -> str:
         f'<form class="pd-status pd-account" method="post" action="{text(who.base)}logout">'
         f"{text(f'Signed in as {who.account}')} ·\u2002<button>Sign out</button></form>"
     )
-
-
-def runs_line(count: int) -> str:
-    """A number of runs in words."""
-    return "one run" if count == 1 else f"{count} runs"
-
-
-def room_html(usage: Usage) -> str:
-    """A bar and a line on the room that a person uses and has."""
-    parts = [
-        f"{name} {_megabytes(size)}"
-        for name, size in (
-            ("runs", usage.runs),
-            ("favourites", usage.favourites),
-            ("studies", usage.studies),
-            ("uploads and downloads", usage.temporary),
-        )
-        if size
-    ]
-    what = f": {', '.join(parts)}" if parts else ""
-    full = (
-        f" When runs and studies reach {_megabytes(usage.kept)} MB, your oldest runs make way; favourites and studies "
-        "stay."
-        if usage.used > 0.5 * usage.kept
-        else ""
-    )
-    line = f"{_megabytes(usage.used)} of {_megabytes(usage.allowed)} MB used{what}.{full}"
-    return (
-        f'<p class="pd-status pd-room"><meter min="0" max="{usage.allowed:.0f}" high="{0.7 * usage.allowed:.0f}" '
-        f'value="{usage.used:.0f}" aria-label="Room used"></meter><span>{text(line)}</span></p>'
-    )
-
-
-def _megabytes(size: float) -> str:
-    """Megabytes to read: with one decimal below ten."""
-    megabytes = size / 2**20
-    return f"{megabytes:,.1f}" if 0 < megabytes < 9.95 else f"{megabytes:,.0f}"
