@@ -65,6 +65,25 @@ def slab(outline: Array | Sequence[Sequence[float]], thick: float, colour: str) 
     return trimesh.Trimesh(points, process=False).convex_hull, colour
 
 
+def pleated(line: Array, height: float, thick: float, colour: str) -> Part:
+    """A sheet of this thickness that stands on the floor along a line (N, 2) of x and z, from -X to +X."""
+    count = len(line)
+    rows = [np.insert(line + np.array([0.0, z]), 1, y, axis=1) for z in (thick / 2, -thick / 2) for y in (0.0, height)]
+    i = np.arange(count - 1)
+    front, back = (0, count), (2 * count, 3 * count)  # the first vertices of the lower and the upper row
+    loops = [(front[0], front[1]), (back[1], back[0]), (front[1], back[1]), (back[0], front[0])]
+    faces = [
+        face
+        for low, high in loops
+        for face in (np.stack([low + i, low + i + 1, high + i + 1], 1), np.stack([low + i, high + i + 1, high + i], 1))
+    ]
+    last = count - 1
+    for j, flip in ((0, True), (last, False)):
+        end = np.array([[front[0], back[0], back[1]], [front[0], back[1], front[1]]]) + j
+        faces.append(end[:, ::-1] if flip else end)
+    return trimesh.Trimesh(np.concatenate(rows), np.concatenate(faces), process=False), colour
+
+
 def placed(part: Part, at: Sequence[float] = (0, 0, 0), turns: Sequence[tuple[float, str]] = ()) -> Part:
     """A part turned by angles about "x", "y" or "z", one after another, and then moved."""
     made, colour = part[0].copy(), part[1]

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .kinds import CURTAIN, DOOR_HEIGHT, DOOR_WIDTH, PANE_HEIGHT, PANE_WIDTH, RAIL, SILL
-from .parts import Part, ball, box, hoop, placed, rod, slab, turned, upper
+from .parts import Part, ball, box, hoop, placed, pleated, rod, slab, turned, upper
 
 OAK, WALNUT, STEEL, CLOTH = "#c79a63", "#8a5a34", "#aab2bd", "#6f8fa8"
 CREAM, RED, GREEN, INK, GOLD = "#efe6d6", "#c8453c", "#4f8a4c", "#2b3240", "#d9ab3f"
@@ -255,11 +255,9 @@ def sash() -> list[Part]:
 
 def curtain() -> list[Part]:
     """One of two curtains in folds, down to the floor, about its middle."""
-    wide, deep = CURTAIN / 12, 0.07
-    fold = box((np.hypot(wide, deep), RAIL, 0.007), (0, 0, 0), LINEN)
-    return [
-        placed(fold, ((k - 5.5) * wide, RAIL / 2, 0), [((-1) ** k * np.arctan2(deep, wide), "y")]) for k in range(12)
-    ]
+    across = np.linspace(-CURTAIN / 2, CURTAIN / 2, 13)
+    folds = np.stack([across, 0.035 * (-1.0) ** np.arange(13)], axis=1)
+    return [pleated(folds, RAIL, 0.012, LINEN)]
 
 
 def door_leaf() -> list[Part]:
