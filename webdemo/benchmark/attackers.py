@@ -80,7 +80,7 @@ async def _fill(client: httpx.AsyncClient, counts: Counter[str]) -> None:
     """Sends contact sheets and generations, of which nobody fetches the results."""
     sent = await client.post("gradio_api/upload", files={"files": (Path(_HANDS).name, _HANDS.read_bytes())})
     file = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}
-    sheet = [file, *["png", "bodies", "light", "threequarter"], False, 24, 640, 360, "", 0, "", ""]
+    sheet = [file, "png", "bodies", "light", "threequarter", 24, 640, 360, "", 0, "", ""]
     run = ["Two people dance together.", 5, 0, 2, 3, 20, 0.7, "ddim", "intergen", 1]
 
     async def ask(i: int) -> None:

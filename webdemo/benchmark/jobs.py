@@ -59,7 +59,7 @@ def _prediction(dice: random.Random, steps: int) -> Job:
 
 def _sheet(dice: random.Random, steps: int) -> Job:
     """A contact sheet, which waits in the queue of events."""
-    look = ("png", "bodies", "light", "threequarter", False, 24, dice.choice((480, 640)), 360)
+    look = ("png", "bodies", "light", "threequarter", 24, dice.choice((480, 640)), 360)
     return Job(SHEET, (None, *look, "", 0, "", ""), {}, 1.0)
 
 
