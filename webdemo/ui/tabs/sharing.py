@@ -58,7 +58,9 @@ class SharingPanel:
         """
         quick: dict[str, Any] = {"concurrency_limit": 4, "concurrency_id": "sharing", **QUIET}
         shown = [self.reading, self.which, self.link, self.frame]
-        publish(self.publish, outputs=[self.fold, self.line, *shown], trigger_mode="once", **quick)
+        published = publish(self.publish, outputs=[self.fold, self.line, *shown], trigger_mode="once", **quick)
+        # What a fold holds takes no value before it is open.
+        published.then(self.show, inputs=self.which, outputs=shown, **quick)
         tab.select(self.show, inputs=self.which, outputs=shown, **quick)
         self.which.input(self.show, inputs=self.which, outputs=shown, **quick)
         self.end.click(self.revoke, inputs=self.which, outputs=[self.line, *shown], **quick)
