@@ -326,9 +326,8 @@ def _waiting_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[in
     course, at = stretch.course(person), stretch.every(_DRAFTED)
     around = np.clip(at + np.array([[-_RESTS], [_RESTS]]), 0, stretch.frames - 1)
     first, last = course.places[around]
-    at = at[
-        (np.linalg.norm(last - first, axis=-1) < _STAYS) & (np.abs(np.ptp(course.headings[around], axis=0)) < _FACES)
-    ]
+    moved, turned = np.linalg.norm(last - first, axis=-1), np.ptp(course.headings[around], axis=0)
+    at = at[(moved < _STAYS) & (turned < _FACES)]
     if len(at) < 2:
         return []
     poses = standing_by(course.places[at], course.headings[at], at + stretch.start, seed=2 * seed + person)

@@ -13,7 +13,6 @@ A row of zeros is padding, and a sentence of zeros is missing.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import cast
 
 import torch
@@ -24,14 +23,6 @@ from models.known import KNOWN_FEATURES
 from models.motion_tokens import FEATURES
 
 from .network import Block, InterGenConfig, InterGenDenoiser, attend, padding
-
-
-def join_conditions(conditions: Sequence[Tensor]) -> Tensor:
-    """Conditions (B, 3, R, C) of different R in one batch, or such of another network as they are, (B, …)."""
-    if conditions[0].dim() == 4:
-        longest = max(condition.shape[2] for condition in conditions)
-        conditions = [F.pad(condition, (0, 0, 0, longest - condition.shape[2])) for condition in conditions]
-    return torch.cat(list(conditions))
 
 
 class WordAttention(nn.Module):
