@@ -31,7 +31,9 @@ DATA = Path(__file__).parent / "data" / "golden.npz"
 KEY_FRAMES = 8
 """Frames of a motion that are kept, from its first to its last at equal distances."""
 TOLERANCE = 1e-4
-"""Metres by which a joint may differ."""
+"""Metres by which the joints may differ on average."""
+FARTHEST = 2e-3
+"""Metres by which one joint may differ: processors round differently, and clean-up makes more of it."""
 
 Array = NDArray[np.float32]
 
@@ -204,7 +206,7 @@ def kept() -> dict[str, Array]:
 
 
 def difference(golden: Array | None, motion: Array) -> str:
-    """What differs between two motions, as words; "" where no joint differs by more than :data:`TOLERANCE`."""
+    """What differs between two motions, as words; "" within :data:`TOLERANCE` and :data:`FARTHEST`."""
     if golden is None:
         return "new"
     if golden.shape != motion.shape:
@@ -212,7 +214,9 @@ def difference(golden: Array | None, motion: Array) -> str:
     if not np.isfinite(motion).all():
         return "no numbers"
     apart = np.linalg.norm(golden - motion, axis=-1)
-    return f"up to {apart.max():.4f} m, {apart.mean():.4f} on average" if apart.max() > TOLERANCE else ""
+    if apart.mean() <= TOLERANCE and apart.max() <= FARTHEST:
+        return ""
+    return f"up to {apart.max():.4f} m, {apart.mean():.4f} on average"
 
 
 def main(argv: Sequence[str]) -> None:

@@ -23,8 +23,8 @@ Array = NDArray[np.floating]
 
 _GOING = {"away", "past", "around", "along", "to", "behind"}
 """Ways on which somebody can be followed."""
-FAR_APART = 1.8
-"""Metres between two people beyond which one comes up to do something within the other's reach."""
+FAR_BEYOND = 0.4
+"""Metres by which two people may be further apart than what they do needs before they come up to each other for it."""
 _COMES = ("to", "behind", "beside", "stay", "face")
 _WAITS = ("stay", "averted", "face", "turn")
 
@@ -173,12 +173,14 @@ def coming(score: Score, stand: Standing, down: Collection[int]) -> tuple[Move, 
     The other turns to them, and both stay there. Their arms are left to the network.
 
     Args:
-        told: of the beat.
+        score: of the beat.
         stand: where the people are when it begins.
         down: those who are not on their feet.
     """
     found = score.moves
-    if found or score.touch or score.has_places or score.strike or not score.reaching or stand.gap() < FAR_APART:
+    if found or score.touch or score.has_places or score.strike or not score.reaching:
+        return found
+    if stand.gap() < min(score.reaching.values()) + FAR_BEYOND:
         return found
     comes = sorted(who for who in score.reaching if "ab".index(who) not in down)
     turned = [

@@ -1,11 +1,13 @@
 """Verbs of motion become moves, and nothing else does."""
 
+import numpy as np
 import pytest
 
-from acts.staging.moves import fastest
+from acts.staging.moves import coming, fastest
+from acts.staging.places import Standing
 from acts.staging.score import Move, goes
 
-from .staged_words import moves
+from .staged_words import moves, score
 
 
 def moves_of(sentence: str) -> str:
@@ -76,3 +78,13 @@ def test_who_walks_and_runs_away_at_once_runs() -> None:
     walk, run, turn = Move("a", "away", 1.1), Move("a", "away", 2.2), Move("a", "turn")
     assert fastest([walk, turn, run, walk]) == [run, turn]
     assert fastest([walk, Move("b", "away", 2.2)]) == [walk, Move("b", "away", 2.2)]
+
+
+@pytest.mark.parametrize(("words", "near"), [("They hug.", 0.4), ("They shake hands.", 0.75)])
+def test_who_is_out_of_reach_steps_up_instead_of_leaning(words: str, near: float) -> None:
+    def come(apart: float) -> list[tuple[str, str, float]]:
+        stand = Standing(np.array([[0.0, 0.0], [0.0, apart]]), np.array([0.0, np.pi]))
+        return [(move.person, move.way, move.near) for move in coming(score(words), stand, ())]
+
+    assert come(1.25) == [("a", "to", near), ("b", "to", near)]
+    assert come(near + 0.2) == []
