@@ -21,7 +21,6 @@ import shutil
 import sys
 import tempfile
 import threading
-from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -50,35 +49,6 @@ KEPT = 6
 """Translations in the cache folder, of 60 MB each; the least recently used are removed first."""
 
 
-class TwoPersonInputs(ABC):
-    """What :func:`compile_network` asks of a denoiser of two people, whose inputs are x (B, T, 2F), t (B,), cond (B, C)
-    and mask (B, T, 2)."""
-
-    @property
-    def varying(self) -> dict[str, tuple[int, ...]]:
-        """For each input of ``forward``, in order: the axes whose sizes differ between calls."""
-        return {"x": (0, 1), "t": (0,), "cond": (0,), "mask": (0, 1)}
-
-    @property
-    @abstractmethod
-    def widths(self) -> tuple[int, int]:
-        """2F and C."""
-
-    def filled(self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None) -> tuple[Tensor, ...]:
-        """The arguments of ``forward`` in the order of ``varying``; without a mask, all tokens are real."""
-        real = torch.ones(*x.shape[:2], 2, dtype=torch.bool) if mask is None else mask != 0
-        return x, t, cond, real
-
-    def example(self) -> tuple[Tensor, ...]:
-        """All arguments of ``forward``, for a batch of two."""
-        features, width = self.widths
-        draw = torch.Generator().manual_seed(0)
-        x, cond = torch.randn(2, 12, features, generator=draw), torch.randn(2, width, generator=draw)
-        mask = torch.ones(2, 12, 2, dtype=torch.bool)
-        mask[1, 9:] = False
-        return x, torch.tensor([999, 500]), cond, mask
-
-
 def cache_folder() -> Path:
     """The folder of compiled networks: ``$XDG_CACHE_HOME/pas-de-deux/compiled``, by default in ``~/.cache``."""
     return Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")) / "pas-de-deux" / "compiled"
@@ -97,7 +67,7 @@ def compile_network(network: nn.Module, key: str, cache: Path | None = None, *, 
     it has no gradients.
 
     Args:
-        network: a network with :class:`TwoPersonInputs` in eval mode.
+        network: a :class:`models.diffusion.TwoPersonDenoiser` in eval mode.
         key: names its weights, such as :attr:`models.weights_io.WeightsFolder.digest`.
         cache: where translations are kept; :func:`cache_folder` by default. It need not be writable.
         precision: of the matrix products.

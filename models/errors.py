@@ -3,50 +3,61 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TypeVar
 
 import torch
 from torch import Tensor, nn
 
 from motion.errors import InputError
 
+Network = TypeVar("Network", bound=nn.Module)
+
 
 class WeightsError(InputError):
     """A weights file or dict is missing, altered, or belongs to another network."""
 
 
-def as_tensors(weights: Mapping[str, object]) -> dict[str, Tensor]:
-    """name → float32 CPU tensor (integers stay integers), from tensors or numpy arrays."""
-    tensors = {name: torch.as_tensor(value) for name, value in weights.items()}
-    return {name: v.float() if v.is_floating_point() else v for name, v in tensors.items()}
+class Released(dict[str, Tensor]):
+    """The released tensors of a network by name: float32 on the CPU, integers stay integers.
 
+    Args:
+        weights: tensors or numpy arrays by name.
+        network: its name, for messages.
+    """
 
-def shape_of(weights: Mapping[str, Tensor], name: str, *, network: str) -> tuple[int, ...]:
-    """The shape of a named tensor; WeightsError if it is absent."""
-    if name not in weights:
-        raise WeightsError(f"These are not {network} weights: {name} is missing. Choose another file.")
-    return tuple(weights[name].shape)
+    def __init__(self, weights: Mapping[str, object], network: str) -> None:
+        tensors = {name: torch.as_tensor(value) for name, value in weights.items()}
+        super().__init__({name: v.float() if v.is_floating_point() else v for name, v in tensors.items()})
+        self.network = network
+
+    def shape(self, name: str) -> tuple[int, ...]:
+        """The shape of a named tensor; WeightsError if it is absent."""
+        if name not in self:
+            raise WeightsError(f"These are not {self.network} weights: {name} is missing. Choose another file.")
+        return tuple(self[name].shape)
+
+    def layers(self, prefix: str) -> int:
+        """Number of layers `prefix`0., `prefix`1., … among the names."""
+        return count_layers(self, prefix)
+
+    def loaded(self, module: Network) -> Network:
+        """The module with every tensor, none missing, left over or misshapen, in eval mode.
+
+        Raises WeightsError that names the first offender.
+        """
+        expected = module.state_dict()
+        for name, value in expected.items():
+            if self.shape(name) != tuple(value.shape):
+                raise WeightsError(
+                    f"These are not {self.network} weights of one size: {name} is {self.shape(name)}, "
+                    f"and {tuple(value.shape)} was expected. Choose another file."
+                )
+        if unknown := next((name for name in self if name not in expected), None):
+            raise WeightsError(f"These are not {self.network} weights: {unknown} is unknown. Choose another file.")
+        module.load_state_dict(dict(self))
+        return module.eval()
 
 
 def count_layers(weights: Mapping[str, Tensor], prefix: str) -> int:
     """Number of layers `prefix`0., `prefix`1., … among the names."""
-    numbers = {name[len(prefix) :].split(".")[0] for name in weights if name.startswith(prefix)}
-    return len(numbers)
-
-
-def load_strictly(module: nn.Module, weights: Mapping[str, Tensor], *, network: str) -> None:
-    """Load every tensor by name, allow none missing, left over or misshapen; then eval mode.
-
-    Raises WeightsError that names the first offender.
-    """
-    expected = module.state_dict()
-    for name in expected:
-        if shape_of(weights, name, network=network) != tuple(expected[name].shape):
-            raise WeightsError(
-                f"These are not {network} weights of one size: {name} is {tuple(weights[name].shape)}, "
-                f"and {tuple(expected[name].shape)} was expected. Choose another file."
-            )
-    for name in weights:
-        if name not in expected:
-            raise WeightsError(f"These are not {network} weights: {name} is unknown. Choose another file.")
-    module.load_state_dict(dict(weights))
-    module.eval()
+    return len({name[len(prefix) :].split(".")[0] for name in weights if name.startswith(prefix)})

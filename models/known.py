@@ -12,6 +12,7 @@ Shapes: B motions, T frames that fill a number of tokens, K knots, 70 numbers a 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,10 +20,10 @@ from typing import NamedTuple
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
 from models.motion_tokens import FEATURES, TokenLayout, feature_rows, foot_contacts, pack, unpack
-from models.turning import Turning
 from motion import SMPL22
 
 FLOOR = (0, 2)
@@ -38,6 +39,14 @@ is met within 0.1 % of the move, and a control point on which a known frame bare
 
 _RETURN = 0.02
 """Weight of a bend's size against its curvature; the bend dies out over (4 / 0.02)^¼ ≈ 4 knots, half a second."""
+DIES_OUT = 30
+"""Frames from a held heading to where a body faces as it was predicted, unless another frame says how it faces."""
+_JOINTS = slice(3, JOINT_NUMBERS)
+_LEFT, _RIGHT = SMPL22.index("left_hip"), SMPL22.index("right_hip")
+_HIPS = [3 * hip + axis for hip in (_LEFT, _RIGHT) for axis in FLOOR]
+_TRUNK = 3 * SMPL22.index("neck")
+_CLOSE = 1e-4
+"""Metres between the hips on the floor under which a body faces nowhere."""
 
 
 @dataclass
@@ -119,7 +128,15 @@ class Known:
             self.rows[:, person, at, own] = rows[:, own]
             self.mask[:, person, at, own] = True
 
-    def add_path(self, person: int, frames: Iterable[int], places: Tensor, headings: Tensor | None = None) -> None:
+    def add_path(
+        self,
+        person: int,
+        frames: Iterable[int],
+        places: Tensor,
+        headings: Tensor | None = None,
+        *,
+        turned: bool = False,
+    ) -> None:
         """Marks a person's place at some frames, and the heading there, as known in all motions.
 
         Args:
@@ -127,14 +144,20 @@ class Known:
             frames: N of them.
             places: (N, 2) x and z of the pelvis in metres.
             headings: (N,) radians from +Z towards +X.
+            turned: the places of the hips beside the pelvis are known, too, so that the person faces the headings.
         """
         at = torch.tensor(list(frames), dtype=torch.long)
-        for axis, column in enumerate(FLOOR):
-            self.rows[:, person, at, column] = places[:, axis]
-            self.mask[:, person, at, column] = True
+        columns = dict(zip(FLOOR, places.T, strict=True))
         if headings is not None:
-            self.heading[:, person, at] = torch.stack([headings.sin(), headings.cos()], -1)
+            sine, cosine = headings.sin(), headings.cos()
+            self.heading[:, person, at] = torch.stack([sine, cosine], -1)
             self.heading_mask[:, person, at] = True
+            for hip in (_LEFT, _RIGHT) if turned else ():
+                across, along = (float(SMPL22.offsets[hip, axis]) for axis in FLOOR)
+                columns |= {3 * hip: across * cosine + along * sine, 3 * hip + 2: along * cosine - across * sine}
+        for column, values in columns.items():
+            self.rows[:, person, at, column] = values
+            self.mask[:, person, at, column] = True
 
 
 class Group(NamedTuple):
@@ -151,6 +174,20 @@ class Group(NamedTuple):
     move: Tensor | None
 
 
+class Turned(NamedTuple):
+    """One person's held headings.
+
+    Attributes:
+        row: the person, of the motions' people in a row (B·2).
+        frames: (N,) in order, at which it is known how they face, also those whose whole pose is given.
+        across: (N,) angles of the line between the hips as given.
+    """
+
+    row: int
+    frames: NDArray[np.integer]
+    across: NDArray[np.floating]
+
+
 class Hold:
     """Writes the known part of motions into samples, in a network's space.
 
@@ -162,24 +199,30 @@ class Hold:
     Attributes:
         features: what a network sees of the known part, see :meth:`Known.features`.
         groups: how the columns of control points in which something is known are moved, those of one mask together.
+        turned: the people whose bodies are turned to held headings.
     """
 
     def __init__(self, known: Known, layout: TokenLayout, mean: Tensor, std: Tensor) -> None:
-        self.layout, self.batch = layout, len(known.rows)
+        self.layout, self.mean, self.std, self.batch = layout, mean, std, len(known.rows)
         frames = known.rows.shape[2]
         self.tokens = layout.num_tokens(frames)
-        rows = torch.where(known.mask, (known.rows - mean) / std, 0.0)
         self.features = known.features(layout, mean, std)
-        basis = layout.basis(self.tokens)
-        columns = rows.transpose(2, 3).reshape(-1, frames)
+        self._basis = layout.basis(self.tokens)
+        # Where in a sample the control points of each person's numbers are, and the way back.
+        shape = (1, self.tokens, 2 * layout.token_features)
+        places = unpack(torch.arange(math.prod(shape)).view(shape), layout).transpose(2, 3)
+        self._places, self._back = places.flatten(0, 2), places.flatten().argsort()
+        self._wanted = torch.where(known.mask, (known.rows - mean) / std, 0.0).transpose(2, 3).reshape(-1, frames)
         masks = known.mask.transpose(2, 3).reshape(-1, frames)
-        self._masks, self._wanted, self._basis = _alike(masks), columns, basis
-        self._turning = Turning(known.rows, known.mask, layout, mean, std)
+        self._masks = _alike(masks)
         self._whole: Tensor | None = None
         if any(mask.all() for _, mask in self._masks):
             control = torch.stack([layout.fit(self.tokens) @ person for person in known.rows.flatten(0, 1)])
             self._whole = ((control - mean) / std).transpose(1, 2).reshape(len(masks), -1)
-        self.groups: list[Group] = self._solved(torch.eye(basis.shape[1], dtype=torch.double))
+        self.groups: list[Group] = self._solved(torch.eye(self._basis.shape[1], dtype=torch.double))
+        people = enumerate(zip(known.rows.flatten(0, 1), known.mask.flatten(0, 1), strict=True))
+        found = (_turned(i, rows, mask) for i, (rows, mask) in people)
+        self.turned = [turned for turned in found if turned is not None]
 
     def _solved(self, cost: Tensor) -> list[Group]:
         """The moves of least cost that write what is known; columns that are known throughout are replaced."""
@@ -200,13 +243,11 @@ class Hold:
     @property
     def frozen(self) -> Tensor:
         """(B, tokens, 2·token_features) true where a number is fixed and must not change."""
-        knots = self.tokens * self.layout.knots_per_token
-        whole = torch.zeros(self.batch * 2 * FEATURES, dtype=torch.bool)
+        whole = torch.zeros(1, self.batch * 2 * FEATURES, self._places.shape[1], dtype=torch.bool)
         for at, _, move in self.groups:
             if move is None:
-                whole[at] = True
-        whole = whole.view(self.batch, 2, 1, FEATURES).expand(-1, -1, knots, -1)
-        return pack(whole, self.layout)
+                whole[:, at] = True
+        return self._sample(whole)
 
     @property
     def shares(self) -> Tensor:
@@ -225,27 +266,64 @@ class Hold:
 
     def __call__(self, x: Tensor) -> Tensor:
         """x (B, tokens, 2·token_features) with the known part written in; any B if one motion is known."""
-        return self._write(x, self.groups)
+        return self._sample(_moved(self._columns(x), self.groups))
 
     def bend(self, x: Tensor) -> Tensor:
         """As :meth:`__call__`, with a move that has little curvature and dies out over about half a second.
 
-        Who is held by the hips is turned there as a whole.
+        A person held by the hips is turned there as a whole.
 
         Where a network's motion does not arrive at what is known, the least move of the control points leaves a
         jolt beside it. This one spreads the difference in place and speed (Witkin and Popović 1995, "Motion
         Warping"). It is for predictions of x0; what the network is given is held as in training.
         """
-        return self._write(self._turning(x), self._bends)
+        return self._sample(_moved(self._turn(self._columns(x)), self._bends))
 
-    def _write(self, x: Tensor, groups: list[Group]) -> Tensor:
-        control = unpack(x, self.layout)  # (B, 2, K, 70)
-        columns = control.transpose(2, 3).reshape(-1, self.batch * 2 * FEATURES, control.shape[2])
-        held = columns.clone()
-        for at, offset, move in groups:
-            offset = offset.to(x)
-            held[:, at] = offset if move is None else offset + columns[:, at] @ move.to(x).T
-        return pack(held.view(control.transpose(2, 3).shape).transpose(2, 3), self.layout)
+    def _columns(self, x: Tensor) -> Tensor:
+        """The control points of each number of a sample: (…, B·2·70, K)."""
+        return x.flatten(1)[:, self._places].view(-1, self.batch * 2 * FEATURES, self._places.shape[1])
+
+    def _sample(self, columns: Tensor) -> Tensor:
+        """Inverse of :meth:`_columns`."""
+        return columns.reshape(-1, len(self._back))[:, self._back].unflatten(1, (self.tokens, -1))
+
+    def _turn(self, columns: Tensor) -> Tensor:
+        """Columns (copies, B·2·70, K) with the bodies turned to the headings at which their hips are held.
+
+        A held heading is a place of both hips, and the least move would turn the pelvis alone: so the whole body is
+        turned about its pelvis first, by an angle that changes linearly from one held frame to the next.
+        """
+        if not self.turned:
+            return columns
+        mean, std = self.mean[:, None], self.std[:, None]
+        people = columns.unflatten(1, (-1, FEATURES)) * std + mean
+        for turned in self.turned:
+            body = people[:, turned.row]
+            angles = self._angles(turned, body)[:, None]  # (copies, 1, K)
+            ahead, up, along = body[:, _JOINTS].unflatten(1, (-1, 3)).unbind(2)
+            sine, cosine = angles.sin(), angles.cos()
+            there = torch.stack([ahead * cosine + along * sine, up, along * cosine - ahead * sine], 2)
+            people[:, turned.row, _JOINTS] = there.flatten(1, 2)
+        return ((people - mean) / std).view_as(columns)
+
+    def _angles(self, turned: Turned, body: Tensor) -> Tensor:
+        """(copies, K) radians by which control points (copies, 70, K) are turned."""
+        hips = self._basis[torch.from_numpy(turned.frames)] @ body[:, _HIPS].mT
+        apart = np.exp(1j * (turned.across - _across(hips.double().numpy())))
+        first, last = turned.frames[0] - DIES_OUT, turned.frames[-1] + DIES_OUT
+        frames = np.concatenate([[first], turned.frames, [last]])
+        knots = self.layout.frames_per_knot * (np.arange(body.shape[2]) - 1)
+        found = [np.interp(knots, frames, np.pad(each, 1)) for each in np.unwrap(np.angle(apart))]
+        return torch.from_numpy(np.stack(found)).to(body)
+
+
+def _moved(columns: Tensor, groups: list[Group]) -> Tensor:
+    """Columns (copies, B·2·70, K) with the moves of groups."""
+    held = columns.clone()
+    for at, offset, move in groups:
+        offset = offset.to(columns)
+        held[:, at] = offset if move is None else offset + columns[:, at] @ move.to(columns).T
+    return held
 
 
 def _stiffness(knots: int) -> Tensor:
@@ -260,3 +338,20 @@ def _alike(masks: Tensor) -> list[tuple[Tensor, Tensor]]:
     for i, packed in enumerate(np.packbits(masks.numpy(), axis=1)):
         found.setdefault(packed.tobytes(), []).append(i)
     return [(torch.tensor(at), masks[at[0]]) for at in found.values() if masks[at[0]].any()]
+
+
+def _turned(row: int, values: Tensor, known: Tensor) -> Turned | None:
+    """The held headings of a person with rows (T, 70); None where none is held."""
+    hips = known[:, _HIPS].all(-1)
+    if not (hips & ~known[:, _TRUNK]).any():
+        return None
+    frames = hips.nonzero()[:, 0].numpy()
+    return Turned(row, frames, _across(values[frames][:, _HIPS].double().numpy()))
+
+
+def _across(hips: NDArray[np.floating]) -> NDArray[np.floating]:
+    """(…) radians of the line from the right to the left hip, of (…, 4) places on the floor; turns with the heading."""
+    line = hips[..., :2] - hips[..., 2:]
+    length = np.hypot(line[..., 0], line[..., 1])
+    angle = np.arctan2(line[..., 0], line[..., 1])
+    return np.where(length > _CLOSE, angle, 0.0)

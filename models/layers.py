@@ -30,9 +30,9 @@ def _rows(positions: Tensor, width: int) -> Tensor:
     return torch.stack([angles.sin(), angles.cos()], dim=-1).flatten(1)[:, :width]
 
 
-def sinusoids(length: int, width: int, *, device: torch.device | str = "cpu", start: int = 0) -> Tensor:
-    """Rows start … start + length − 1 of the sinusoid table, (length, width)."""
-    return sinusoids_at(torch.arange(start, start + length, device=device), width)
+def sinusoids(length: int, width: int, *, device: torch.device | str = "cpu") -> Tensor:
+    """The first rows of the sinusoid table, (length, width)."""
+    return sinusoids_at(torch.arange(length, device=device), width)
 
 
 class TimestepEmbedding(nn.Module):

@@ -18,7 +18,7 @@ from functools import lru_cache
 
 import numpy as np
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 
 from motion.skeleton import FEET, SMPL22
 
@@ -150,6 +150,53 @@ def unpack(x: Tensor, layout: TokenLayout) -> Tensor:
     batch, tokens, _ = x.shape
     people = x.reshape(batch, tokens, 2, layout.knots_per_token, FEATURES)
     return people.transpose(1, 2).reshape(batch, 2, tokens * layout.knots_per_token, FEATURES)
+
+
+class DuetSpace(nn.Module):
+    """The space in which two people's tokens are diffused, and the way back to metres.
+
+    ``mean`` and ``std`` (70,) are those of one person's control point.
+    """
+
+    mean: Tensor
+    std: Tensor
+    reads_known = False
+    """Whether the denoiser takes ``known``, the features of what is known (:attr:`models.known.Hold.features`)."""
+    reads_drafts = False
+    """Whether it sees a draft behind them."""
+
+    def __init__(self, layout: TokenLayout) -> None:
+        super().__init__()
+        self.layout = layout
+        self.register_buffer("mean", torch.zeros(FEATURES))
+        self.register_buffer("std", torch.ones(FEATURES))
+
+    @property
+    def scale(self) -> Tensor:
+        """(2·token_features,) metres to a unit of network space."""
+        return self.std.repeat(2 * self.layout.knots_per_token)
+
+    def shown(self, known: Tensor | None, draft: Tensor | None = None) -> Tensor | None:
+        """What the denoiser sees of what is known, and of a draft where it reads drafts.
+
+        Args:
+            known, draft: (B, tokens, features) of :meth:`models.known.Known.features`; None where there is nothing.
+        """
+        seen = known if draft is None else draft
+        if not self.reads_drafts or seen is None:
+            return known
+        nothing = torch.zeros_like(seen)
+        parts = [nothing if part is None else part for part in (known, draft)]
+        people = [part.view(*part.shape[:2], 2, -1) for part in parts]
+        return torch.cat(people, -1).flatten(2)
+
+    def control(self, x: Tensor) -> Tensor:
+        """Network space (B, tokens, 2·token_features) → control points (B, 2, knots, 70) in metres."""
+        return unpack(x, self.layout) * self.std + self.mean
+
+    def positions(self, x: Tensor) -> tuple[Tensor, Tensor]:
+        """Network space → positions (B, 2, T, 22, 3) in metres and contact scores (B, 2, T, 4)."""
+        return decode(self.control(x), self.layout)
 
 
 def canonical_control(control: Tensor) -> Tensor:

@@ -15,13 +15,6 @@ from torch import Tensor
 
 from models.errors import WeightsError
 
-MARKS = {
-    "InterGen": "decoder.net.blocks.",
-    "ReGenNet": "cmo_process.poseEmbedding.",
-    "InterFormer": "decoder.layers.0.attn_space_1.",
-    "BiGraphDiff": "temporal_decoder_blocks.0.ca_block_1.",
-}
-"""Part of a tensor's name by which the released file of each network is known."""
 WRAPPED = ("module.", "model.", "net.")
 """Prefixes that trainers put before all names of a network."""
 HARMLESS = (
@@ -71,11 +64,6 @@ def read_tensors(path: str | Path, *, network: str) -> dict[str, Tensor]:
     return dict(found)
 
 
-def network_of(names: Mapping[str, Any]) -> str | None:
-    """The network whose released file has these tensor names; None for any other file."""
-    return next((network for network, mark in MARKS.items() if any(mark in name for name in names)), None)
-
-
 def without_wrapper(tensors: Mapping[str, Tensor], mark: str) -> dict[str, Tensor]:
     """The tensors without a prefix of :data:`WRAPPED` that stands before the name which begins with ``mark``."""
     for prefix in WRAPPED:
@@ -85,26 +73,10 @@ def without_wrapper(tensors: Mapping[str, Tensor], mark: str) -> dict[str, Tenso
     return dict(tensors)
 
 
-def with_prefix(tensors: Mapping[str, Tensor], prefix: str, *, name: str, network: str) -> dict[str, Tensor]:
-    """The tensors of a PyTorch Lightning file whose names start with a prefix, without it; ``name`` is the file's.
-
-    Position tables (``….pe``) are left out: they are computed, not learned.
-
-    Raises:
-        WeightsError: where the file holds no such tensor.
-    """
-    found = {
-        key.removeprefix(prefix): tensor
-        for key, tensor in tensors.items()
-        if key.startswith(prefix) and not key.endswith(".pe")
-    }
-    if not found:
-        other = network_of(tensors)
-        known = f" It is a checkpoint of {other}." if other else ""
-        raise WeightsError(
-            f"{name} holds no {prefix}* tensors, so it is no {network} checkpoint: use the released one.{known}"
-        )
-    return found
+def with_prefix(tensors: Mapping[str, Tensor], prefix: str) -> dict[str, Tensor]:
+    """The tensors whose names start with a prefix, without it, and without position tables, which are computed."""
+    own = {name: tensor for name, tensor in tensors.items() if name.startswith(prefix) and not name.endswith(".pe")}
+    return {name.removeprefix(prefix): tensor for name, tensor in own.items()}
 
 
 def _records(checkpoint: Any) -> Iterator[Mapping[str, Tensor]]:

@@ -18,10 +18,9 @@ import torch
 from torch import Tensor, nn
 
 from models.bigraphdiff import BiGraphDiff, BiGraphDiffConfig
-from models.compiled import TwoPersonInputs
-from models.diffusion import Guided
-from models.intergen.compact import DuetSpace, Touch, as_touches
-from models.motion_tokens import TokenLayout
+from models.diffusion import TwoPersonDenoiser
+from models.intergen.compact import Touch, as_touches
+from models.motion_tokens import DuetSpace, TokenLayout
 from models.weights_io import WeightsFolder, load_network
 
 
@@ -53,7 +52,7 @@ class CompactBiGraphDiffConfig:
             set_(self, "layout", TokenLayout(**self.layout))
 
 
-class LabelDenoiser(nn.Module, TwoPersonInputs, Guided):
+class LabelDenoiser(TwoPersonDenoiser):
     """BiGraphDiff with one vector for the class, called as InterGen's denoiser is."""
 
     def __init__(self, config: BiGraphDiffConfig) -> None:
@@ -76,7 +75,7 @@ class LabelDenoiser(nn.Module, TwoPersonInputs, Guided):
 
     @property
     def widths(self) -> tuple[int, int]:
-        """Widths of x and of a class' vector, see :class:`models.compiled.TwoPersonInputs`."""
+        """Widths of x and of a class' vector, see :class:`models.diffusion.TwoPersonDenoiser`."""
         return 2 * self.network.config.input_features, self.network.config.text_dim
 
 

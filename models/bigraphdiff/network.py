@@ -24,7 +24,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.errors import as_tensors, count_layers, load_strictly, shape_of
+from models.errors import Released
 
 NETWORK = "BiGraphDiff"
 NODE_GRID = 4  # a frame's d features are d/16 channels over a 4 × 4 grid in the bipartite unit
@@ -322,31 +322,29 @@ def from_released(weights: Mapping[str, Tensor], *, num_heads: int) -> BiGraphDi
 
     Raises WeightsError if a tensor is missing, unknown or of another size.
     """
-    tensors = _own_names(as_tensors(weights))
+    tensors = Released(_own_names(weights), NETWORK)
     block = "temporal_decoder_blocks.0."
-    latent_dim, features = shape_of(tensors, "joint_embed_1.weight", network=NETWORK)
-    embed_dim, text_dim = shape_of(tensors, "text_proj.weight", network=NETWORK)
+    latent_dim, features = tensors.shape("joint_embed_1.weight")
+    embed_dim, text_dim = tensors.shape("text_proj.weight")
     config = BiGraphDiffConfig(
         input_features=features,
         latent_dim=latent_dim,
-        ff_size=shape_of(tensors, f"{block}ffn_1.linear1.weight", network=NETWORK)[0],
-        num_layers=count_layers(tensors, "temporal_decoder_blocks."),
+        ff_size=tensors.shape(f"{block}ffn_1.linear1.weight")[0],
+        num_layers=tensors.layers("temporal_decoder_blocks."),
         num_heads=num_heads,
         text_dim=text_dim,
-        max_frames=shape_of(tensors, "sequence_embedding", network=NETWORK)[0],
-        num_nodes=shape_of(tensors, f"{block}bipartite_graph.conv_proj.weight", network=NETWORK)[0],
+        max_frames=tensors.shape("sequence_embedding")[0],
+        num_nodes=tensors.shape(f"{block}bipartite_graph.conv_proj.weight")[0],
         embed_dim=0 if embed_dim == 4 * latent_dim else embed_dim,
     )
     text_side = None
     if any(name.startswith("text_side.") for name in tensors):
         layers = "text_side.textTransEncoder.layers."
         text_side = TextSide(
-            clip_dim=shape_of(tensors, "text_side.text_pre_proj.weight", network=NETWORK)[1],
+            clip_dim=tensors.shape("text_side.text_pre_proj.weight")[1],
             text_dim=text_dim,
-            ff_size=shape_of(tensors, f"{layers}0.linear1.weight", network=NETWORK)[0],
-            num_layers=count_layers(tensors, layers),
+            ff_size=tensors.shape(f"{layers}0.linear1.weight")[0],
+            num_layers=tensors.layers(layers),
             num_heads=TEXT_HEADS,
         )
-    network = BiGraphDiff(config, text_side=text_side)
-    load_strictly(network, tensors, network=NETWORK)
-    return network
+    return tensors.loaded(BiGraphDiff(config, text_side=text_side))

@@ -12,8 +12,8 @@ import torch
 from torch import Tensor
 
 from models.errors import WeightsError
-from models.released import read_tensors, without_wrapper
-from models.text.clip import ClipTokenizer, ClipTower, VocabularyError, tower_from_released
+from models.released import read_tensors, with_prefix, without_wrapper
+from models.text.clip import ClipTokenizer, ClipTower, tower_from_released
 from models.weights_io import Uninitialised
 from motion.skeleton import NTU25
 
@@ -32,25 +32,17 @@ class ReleasedBiGraphDiff:
         network: ε_θ with its text side.
         tower: CLIP's frozen text tower.
         tokenizer: of the tower.
-
-    Raises:
-        VocabularyError: if the tokenizer has other tokens than the tower.
     """
 
     def __init__(self, network: BiGraphDiff, tower: ClipTower, tokenizer: ClipTokenizer) -> None:
         self.network, self.tower, self.tokenizer = network, tower, tokenizer
-        known, used = len(tower.token_embedding.weight), tokenizer.tokenizer.get_vocab_size()
-        if known != used:
-            raise VocabularyError(
-                f"The checkpoint's text side knows {known:,} tokens and the vocabulary has {used:,}: use CLIP's own."
-            )
 
     @torch.no_grad()
     def condition(self, prompts: Sequence[str]) -> tuple[Tensor, Tensor]:
         """Features of the tokens (B, 77, C) and of the whole sentences (B, C)."""
         tokens = self.tokenizer(prompts)
         assert self.network.text_side is not None  # load_released refuses a file without one
-        features: tuple[Tensor, Tensor] = self.network.text_side(self.tower(tokens), tokens.argmax(-1))
+        features: tuple[Tensor, Tensor] = self.network.text_side(self.tower.token_features(tokens), tokens.argmax(-1))
         return features
 
 
@@ -66,7 +58,7 @@ def load_released(checkpoint: Path, vocabulary: Path) -> ReleasedBiGraphDiff:
         VocabularyError: if the vocabulary is not CLIP's.
     """
     tensors = without_wrapper(read_tensors(checkpoint, network=NETWORK), "joint_embed_1.")
-    frozen = {name.removeprefix(CLIP): value for name, value in tensors.items() if name.startswith(CLIP)}
+    frozen = with_prefix(tensors, CLIP)
     if not frozen:
         raise WeightsError(f"{checkpoint.name} holds no {CLIP}* tensors, CLIP's tower: use the released file.")
     latent_dim = len(tensors.get("joint_embed_1.weight", ()))
@@ -80,5 +72,4 @@ def load_released(checkpoint: Path, vocabulary: Path) -> ReleasedBiGraphDiff:
             f"{checkpoint.name} was trained on {network.config.input_features} numbers a person and frame, and "
             f"{JOINTS} joints have {3 * JOINTS}: use the checkpoint for NTU RGB+D."
         )
-    tokenizer = ClipTokenizer(vocabulary, context_length=len(tower.positional_embedding))
-    return ReleasedBiGraphDiff(network, tower, tokenizer)
+    return ReleasedBiGraphDiff(network, tower, ClipTokenizer(vocabulary, tower))

@@ -1,17 +1,6 @@
 """The diffusion that every network here trains and samples with: schedule, guidance and sampling loop."""
 
-from .sampling import (
-    Guided,
-    SamplingStep,
-    Term,
-    classifier_free,
-    denoise,
-    guide,
-    sample_noise,
-    sample_steps,
-    terms,
-    weighted,
-)
+from .sampling import SamplingStep, TwoPersonDenoiser, classifier_free, denoise, guide, sample_noise, sample_steps
 from .schedule import (
     TRAIN_TIMESTEPS,
     NoiseSchedule,
@@ -24,12 +13,11 @@ from .schedule import (
 
 __all__ = [
     "TRAIN_TIMESTEPS",
-    "Guided",
     "NoiseSchedule",
     "SamplerError",
     "SamplerName",
     "SamplingStep",
-    "Term",
+    "TwoPersonDenoiser",
     "classifier_free",
     "cosine_betas",
     "denoise",
@@ -37,7 +25,5 @@ __all__ = [
     "make_scheduler",
     "sample_noise",
     "sample_steps",
-    "terms",
     "top_timesteps",
-    "weighted",
 ]

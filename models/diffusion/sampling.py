@@ -5,13 +5,14 @@ The words ``x0``, ``xt`` and ``t`` are those of :mod:`models.diffusion.schedule`
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 
 if TYPE_CHECKING:
     from models.diffusion.schedule import Scheduler
@@ -78,11 +79,16 @@ def guide(conditional: Tensor, unconditional: Tensor, scale: float) -> Tensor:
 
 
 def classifier_free(
-    predict: Callable[..., Tensor], *inputs: Tensor | None, cond: Tensor, scale: float, nothing: Tensor | None = None
+    predict: Callable[..., Tensor],
+    *inputs: Tensor | None,
+    cond: Tensor,
+    scale: float,
+    nothing: Tensor | None = None,
+    settled: Tensor | None = None,
 ) -> Tensor:
     """:func:`guide` on both predictions of a network, made in one batch.
 
-    At scale 1 the unconditional half has no weight and is not run.
+    A half without weight, as the unconditional one at scale 1, is not run.
 
     Args:
         predict: D, called with all of `inputs` and then the condition.
@@ -90,33 +96,54 @@ def classifier_free(
         cond: (B, …).
         scale: s of the papers.
         nothing: (B, …) what stands for no condition; zeros by default.
+        settled: true at the numbers that stay as the condition alone has them; none by default.
 
     Returns:
         (B, …) as `predict` gives.
     """
-    if scale == 1:
-        return predict(*inputs, cond)
     nothing = torch.zeros_like(cond) if nothing is None else nothing
+    if scale == 1 or (scale == 0 and settled is None):
+        return predict(*inputs, cond if scale else nothing)
     twice = (None if value is None else torch.cat([value, value]) for value in inputs)
     conditional, unconditional = predict(*twice, torch.cat([cond, nothing])).chunk(2)
-    return guide(conditional, unconditional, scale)
+    guided = guide(conditional, unconditional, scale)
+    return guided if settled is None else torch.where(settled, conditional, guided)
 
 
-@dataclass(frozen=True)
-class Term:
-    """One prediction of a guided sum: its weight, and whether the network reads the words for it."""
+class TwoPersonDenoiser(nn.Module, ABC):
+    """A denoiser of two people that its condition guides, and that OpenVINO can run (:mod:`models.compiled`).
 
-    weight: float
-    words: bool
+    The inputs of its ``forward`` are x (B, T, 2F), t (B,), cond (B, C) and mask (B, T, 2), nonzero where a person's
+    token is real.
+    """
 
+    @property
+    @abstractmethod
+    def widths(self) -> tuple[int, int]:
+        """2F and C."""
 
-def terms(scale: float) -> list[Term]:
-    """The sum of predictions in :func:`guide`, without those that have no weight."""
-    return [term for term in (Term(scale, True), Term(1 - scale, False)) if term.weight]
+    @property
+    def varying(self) -> dict[str, tuple[int, ...]]:
+        """For each input of ``forward``, in order: the axes whose sizes differ between calls."""
+        return {"x": (0, 1), "t": (0,), "cond": (0,), "mask": (0, 1)}
 
+    def filled(self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None) -> tuple[Tensor, ...]:
+        """The arguments of ``forward`` in the order of ``varying``; without a mask, all tokens are real."""
+        real = torch.ones(*x.shape[:2], 2, dtype=torch.bool) if mask is None else mask != 0
+        return x, t, cond, real
 
-class Guided:
-    """A denoiser of two people that its condition guides."""
+    def example(self) -> tuple[Tensor, ...]:
+        """All arguments of ``forward``, for a batch of two."""
+        features, width = self.widths
+        draw = torch.Generator().manual_seed(0)
+        x, cond = torch.randn(2, 12, features, generator=draw), torch.randn(2, width, generator=draw)
+        mask = torch.ones(2, 12, 2, dtype=torch.bool)
+        mask[1, 9:] = False
+        return x, torch.tensor([999, 500]), cond, mask
+
+    def settled(self, known: Tensor) -> Tensor | None:
+        """True at the numbers (B, tokens, features) that guidance leaves as the words alone would have them."""
+        return None
 
     def guided(
         self,
@@ -128,27 +155,13 @@ class Guided:
         *,
         scale: float = 3.5,
     ) -> Tensor:
-        """The sum of :func:`terms` of this network's predictions, made in one batch.
-
-        Shapes are as in its ``forward``; ``known`` may have one row.
-        """
-        network = cast(Callable[..., Tensor], self)
-        sum_of = terms(scale)
-        many = len(sum_of)
-        seen = {} if known is None else {"known": known.expand(len(x), -1, -1).repeat(many, 1, 1)}
-        words = torch.cat([cond if term.words else torch.zeros_like(cond) for term in sum_of])
-        masks = None if mask is None else mask.repeat(many, 1, 1)
-        made = network(x.repeat(many, 1, 1), t.repeat(many), words, masks, **seen).chunk(many)
+        """:func:`classifier_free` on the words; shapes are as in ``forward``, and ``known`` may have one row."""
+        if known is None:
+            return classifier_free(lambda x, t, mask, cond: self(x, t, cond, mask), x, t, mask, cond=cond, scale=scale)
+        known = known.expand(len(x), -1, -1)
         settled = self.settled(known)
-        guided = weighted(sum_of, made)
-        return guided if settled is None else torch.where(settled, made[0], guided)
 
-    def settled(self, known: Tensor | None) -> Tensor | None:
-        """True at the numbers (B, tokens, features) that guidance leaves as the words alone would have them."""
-        return None
+        def predict(x: Tensor, t: Tensor, mask: Tensor | None, known: Tensor, cond: Tensor) -> Tensor:
+            return self(x, t, cond, mask, known=known)
 
-
-def weighted(sum_of: Sequence[Term], predictions: Sequence[Tensor]) -> Tensor:
-    """The guided sum of its terms' predictions."""
-    parts = (term.weight * made for term, made in zip(sum_of, predictions, strict=True))
-    return sum(parts, start=torch.zeros(())) if len(sum_of) > 1 else predictions[0]
+        return classifier_free(predict, x, t, mask, known, cond=cond, scale=scale, settled=settled)

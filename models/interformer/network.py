@@ -31,7 +31,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.errors import as_tensors, count_layers, load_strictly, shape_of
+from models.errors import Released
 from motion.skeleton import SBU15
 
 NETWORK = "InterFormer"
@@ -348,14 +348,11 @@ def from_released(weights: Mapping[str, Tensor], *, num_heads: int = 3) -> Inter
 
     Raises WeightsError if a tensor is missing, unknown or of another size.
     """
-    tensors = as_tensors(weights)
-    network = InterFormer(
-        InterFormerConfig(
-            num_layers=count_layers(tensors, "encoder.layers."),
-            num_heads=num_heads,
-            ff_size=shape_of(tensors, "encoder.layers.0.ff.linear_1.weight", network=NETWORK)[0],
-            max_length=shape_of(tensors, "encoder.pe.pe", network=NETWORK)[1],
-        )
+    tensors = Released(weights, NETWORK)
+    config = InterFormerConfig(
+        num_layers=tensors.layers("encoder.layers."),
+        num_heads=num_heads,
+        ff_size=tensors.shape("encoder.layers.0.ff.linear_1.weight")[0],
+        max_length=tensors.shape("encoder.pe.pe")[1],
     )
-    load_strictly(network, tensors, network=NETWORK)
-    return network
+    return tensors.loaded(InterFormer(config))

@@ -19,7 +19,7 @@ from torch import Tensor, nn
 
 from models.intergen import InterGenConfig, InterGenDenoiser
 from models.known import KNOWN_FEATURES
-from models.motion_tokens import FEATURES, TokenLayout, decode, unpack
+from models.motion_tokens import DuetSpace, TokenLayout
 from models.text import TextConditioner, TextConditionerConfig, TokenFeatures
 from models.weights_io import WeightsFolder, load_network, save_network
 from motion.errors import InputError
@@ -89,53 +89,6 @@ class TouchReader(nn.Module):
         due = 1 - probability[:, 0] >= sure
         best = probability[:, 1:].argmax(-1) + 1
         return [self.touches[int(i)] if d else () for d, i in zip(due, best, strict=True)]
-
-
-class DuetSpace(nn.Module):
-    """The space in which two people's tokens are diffused, and the way back to metres.
-
-    ``mean`` and ``std`` (70,) are those of one person's control point, see :mod:`models.motion_tokens`.
-    """
-
-    mean: Tensor
-    std: Tensor
-    reads_known = False
-    """Whether the denoiser takes ``known``, the features of what is known (:attr:`models.known.Hold.features`)."""
-    reads_drafts = False
-    """Whether it sees a draft behind them."""
-
-    def __init__(self, layout: TokenLayout) -> None:
-        super().__init__()
-        self.layout = layout
-        self.register_buffer("mean", torch.zeros(FEATURES))
-        self.register_buffer("std", torch.ones(FEATURES))
-
-    @property
-    def scale(self) -> Tensor:
-        """(2·token_features,) metres to a unit of network space."""
-        return self.std.repeat(2 * self.layout.knots_per_token)
-
-    def shown(self, known: Tensor | None, draft: Tensor | None = None) -> Tensor | None:
-        """What the denoiser sees of what is known, and of a draft where it reads drafts.
-
-        Args:
-            known, draft: (B, tokens, features) of :meth:`models.known.Known.features`; None where there is nothing.
-        """
-        seen = known if draft is None else draft
-        if not self.reads_drafts or seen is None:
-            return known
-        nothing = torch.zeros_like(seen)
-        parts = [nothing if part is None else part for part in (known, draft)]
-        people = [part.view(*part.shape[:2], 2, -1) for part in parts]
-        return torch.cat(people, -1).flatten(2)
-
-    def control(self, x: Tensor) -> Tensor:
-        """Network space (B, tokens, 2·token_features) → control points (B, 2, knots, 70) in metres."""
-        return unpack(x, self.layout) * self.std + self.mean
-
-    def positions(self, x: Tensor) -> tuple[Tensor, Tensor]:
-        """Network space → positions (B, 2, T, 22, 3) in metres and contact scores (B, 2, T, 4)."""
-        return decode(self.control(x), self.layout)
 
 
 class CompactInterGen(DuetSpace):

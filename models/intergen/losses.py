@@ -148,28 +148,11 @@ def relative_orientation(positions: Tensor) -> Tensor:
 def relative_orientation_loss(pred: Tensor, true: Tensor, mask: Tensor | None = None) -> Tensor:
     """Squared error of how the people are turned to each other (eq. 13) → (B,).
 
-    O is taken as (cos, sin) of the angle, which is smooth where people face each other.
+    O is taken as (cos, sin) of the angle, which is smooth where people face each other. The release takes two numbers
+    of a quaternion, which jump in sign there.
     """
     error = (relative_orientation(pred) - relative_orientation(true)).square().mean(-1)
     return masked_mean(error, _pair_mask(mask))
-
-
-def released_orientation_loss(pred: Tensor, true: Tensor, mask: Tensor | None = None) -> Tensor:
-    """The orientation term as the released code computes it → scalar, over all samples, never damped.
-
-    O is (w, y) of the quaternion between the two facings. It jumps in sign where people face each other, and
-    its cross product runs along the first axis of length 3, which is not the coordinates where B or T is 3.
-    Kept to reproduce reported losses; train with `relative_orientation_loss`.
-    """
-
-    def quaternion(positions: Tensor) -> Tensor:
-        a, b = facing(positions).unbind(2)
-        w = 1 + (a * b).sum(-1, keepdim=True)
-        return F.normalize(torch.cat([w, torch.linalg.cross(a, b, dim=a.shape.index(3))], -1), dim=-1)
-
-    error = (quaternion(pred) - quaternion(true))[..., [0, 2]].square().mean(-1)
-    mask = _pair_mask(mask)
-    return error.mean() if mask is None else (error * mask).sum() / (mask.sum() + EPSILON)
 
 
 def damped_mean(values: Tensor, t: Tensor, t_bar: int) -> Tensor:
@@ -205,7 +188,6 @@ class InterGenLoss:
         weights: λ of each term.
         t_bar: the damping threshold t̄ as a timestep: all terms but *simple* count only where t ≤ t̄.
         near_by: see `distance_map_loss`.
-        released_orientation: use `released_orientation_loss` for the orientation term.
     """
 
     def __init__(
@@ -214,12 +196,9 @@ class InterGenLoss:
         *,
         t_bar: int = 700,
         near_by: Literal["prediction", "truth"] = "prediction",
-        released_orientation: bool = False,
     ) -> None:
-        self.weights = weights or LossWeights()
-        self.t_bar = t_bar
+        self.weights, self.t_bar = weights or LossWeights(), t_bar
         self.near_by: Literal["prediction", "truth"] = near_by
-        self.released_orientation = released_orientation
 
     def regularizers(self, pred: Tensor, true: Tensor, t: Tensor, mask: Tensor | None = None) -> dict[str, Tensor]:
         """Every term but *simple*, weighted and damped: positions (B, T, 2, J, 3), t (B,) → scalars."""
@@ -231,17 +210,13 @@ class InterGenLoss:
             "distance_map": lambda: distance_map_loss(pred, true, mask, near_by=self.near_by),
             "joint_affinity": lambda: joint_affinity_loss(pred, true, mask),
             "contact": lambda: contact_loss(pred, true, mask),
+            "relative_orientation": lambda: relative_orientation_loss(pred, true, mask),
         }
-        terms = {
+        return {
             name: weight * damped_mean(term(), t, self.t_bar)
             for name, term in damped.items()
             if (weight := getattr(w, name))
         }
-        if self.released_orientation:
-            orientation = released_orientation_loss(pred, true, mask)
-        else:
-            orientation = damped_mean(relative_orientation_loss(pred, true, mask), t, self.t_bar)
-        return terms | {"relative_orientation": w.relative_orientation * orientation}
 
     def __call__(
         self,

@@ -19,9 +19,8 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.compiled import TwoPersonInputs
-from models.diffusion import Guided
-from models.errors import as_tensors, count_layers, load_strictly, shape_of
+from models.diffusion import TwoPersonDenoiser
+from models.errors import Released
 from models.layers import FeedForward, TimestepEmbedding, sinusoids
 
 NETWORK = "InterGen"
@@ -196,7 +195,7 @@ def padding(mask: Tensor | None) -> tuple[Tensor | None, Tensor | None]:
     return real.flatten(0, 1), real.flip(0).flatten(0, 1)
 
 
-class InterGenDenoiser(nn.Module, TwoPersonInputs, Guided):
+class InterGenDenoiser(TwoPersonDenoiser):
     """D_θ of eq. 8 for both people at once."""
 
     def __init__(self, config: InterGenConfig) -> None:
@@ -250,7 +249,7 @@ class InterGenDenoiser(nn.Module, TwoPersonInputs, Guided):
 
     @property
     def widths(self) -> tuple[int, int]:
-        """Widths of x and of the text vector, see :class:`models.compiled.TwoPersonInputs`."""
+        """Widths of x and of the text vector, see :class:`models.diffusion.TwoPersonDenoiser`."""
         return 2 * self.config.input_features, self.config.cond_dim
 
 
@@ -259,18 +258,16 @@ def from_released(weights: Mapping[str, Tensor], *, num_heads: int) -> InterGenD
 
     Raises WeightsError if a tensor is missing, unknown or of another size.
     """
-    tensors = as_tensors(weights)
-    latent_dim, input_features = shape_of(tensors, "motion_embed.weight", network=NETWORK)
+    tensors = Released(weights, NETWORK)
+    latent_dim, input_features = tensors.shape("motion_embed.weight")
     config = InterGenConfig(
         input_features=input_features,
         latent_dim=latent_dim,
-        ff_size=shape_of(tensors, "blocks.0.ffn.linear1.weight", network=NETWORK)[0],
-        num_layers=count_layers(tensors, "blocks."),
+        ff_size=tensors.shape("blocks.0.ffn.linear1.weight")[0],
+        num_layers=tensors.layers("blocks."),
         num_heads=num_heads,
-        cond_dim=shape_of(tensors, "text_embed.weight", network=NETWORK)[1],
+        cond_dim=tensors.shape("text_embed.weight")[1],
         role_embedding="role_embedding" in tensors,
         role_text="role_text.weight" in tensors,
     )
-    network = InterGenDenoiser(config)
-    load_strictly(network, tensors, network=NETWORK)
-    return network
+    return tensors.loaded(InterGenDenoiser(config))

@@ -16,7 +16,7 @@ from torch import Tensor
 
 from models.errors import WeightsError
 from models.released import read_tensors, with_prefix
-from models.text.clip import PARTS, ClipTextEncoder, ClipTokenizer, VocabularyError
+from models.text.clip import ClipTextEncoder, ClipTokenizer
 from models.text.clip import from_released as text_from_released
 from models.weights_io import Uninitialised
 from motion.representation import CONTACTS, NUM_FEATURES, POSITIONS, VELOCITIES, encode_person
@@ -47,9 +47,6 @@ class ReleasedInterGen:
         text: sentence → condition.
         tokenizer: of the text side.
         mean, std: (262,) normaliser.
-
-    Raises:
-        VocabularyError: if the tokenizer has other tokens than the text side.
     """
 
     reads_known = False
@@ -59,11 +56,6 @@ class ReleasedInterGen:
     ) -> None:
         self.denoiser, self.text, self.tokenizer = denoiser, text, tokenizer
         self.mean, self.std, self.layout = mean, std, FrameLayout()
-        known, used = len(text.token_embedding.weight), tokenizer.tokenizer.get_vocab_size()
-        if known != used:
-            raise VocabularyError(
-                f"The checkpoint's text side knows {known:,} tokens and the vocabulary has {used:,}: use CLIP's own."
-            )
 
     @property
     def scale(self) -> Tensor:
@@ -108,7 +100,7 @@ def load_released(checkpoint: Path, mean: Path, std: Path, vocabulary: Path) -> 
     """
     normaliser = read_normaliser(mean, std, NUM_FEATURES)
     tensors = read_tensors(checkpoint, network=NETWORK)
-    own = with_prefix(tensors, DENOISER, name=checkpoint.name, network=NETWORK)
+    own = with_prefix(tensors, DENOISER)
     latent_dim = own["motion_embed.weight"].shape[0] if "motion_embed.weight" in own else RELEASED_HEADS
     with Uninitialised():
         denoiser = from_released(own, num_heads=max(1, min(RELEASED_HEADS, latent_dim // HEAD_WIDTH)))
@@ -117,11 +109,9 @@ def load_released(checkpoint: Path, mean: Path, std: Path, vocabulary: Path) -> 
             f"{checkpoint.name} was trained on {denoiser.config.input_features} numbers a person and frame, and "
             f"InterGen's representation has {NUM_FEATURES}: use the released checkpoint."
         )
-    others = with_prefix(tensors, WHOLE, name=checkpoint.name, network=NETWORK)
     with Uninitialised():
-        text = text_from_released({name: value for name, value in others.items() if name.startswith(PARTS)})
-    tokenizer = ClipTokenizer(vocabulary, context_length=len(text.positional_embedding))
-    return ReleasedInterGen(denoiser.requires_grad_(False), text, tokenizer, *normaliser)
+        text = text_from_released(with_prefix(tensors, WHOLE))
+    return ReleasedInterGen(denoiser.requires_grad_(False), text, ClipTokenizer(vocabulary, text), *normaliser)
 
 
 def read_normaliser(mean: Path, std: Path, width: int) -> tuple[Tensor, Tensor]:

@@ -150,9 +150,9 @@ class WordDenoiser(InterGenDenoiser):
             h = block.read(h, emb, keep, keep_other, text, real)
         return (self.out(h) + followed).permute(1, 2, 0, 3).reshape(b, length, -1)
 
-    def settled(self, known: Tensor | None) -> Tensor | None:
+    def settled(self, known: Tensor) -> Tensor | None:
         """Those that a draft says: guidance would exaggerate them."""
-        if known is None or self.draft is None:
+        if self.draft is None:
             return None
         width = self.known_embed.in_features
         draft = known.unflatten(-1, (2, -1))[..., width:].unflatten(-1, (-1, KNOWN_FEATURES))
@@ -160,19 +160,18 @@ class WordDenoiser(InterGenDenoiser):
 
     @property
     def varying(self) -> dict[str, tuple[int, ...]]:
-        """See :class:`models.compiled.TwoPersonInputs`."""
+        """See :class:`models.diffusion.TwoPersonDenoiser`."""
         return super().varying | {"cond": (0, 2), "known": (0, 1)}
 
     def filled(
         self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None, known: Tensor | None = None
     ) -> tuple[Tensor, ...]:
-        """See :class:`models.compiled.TwoPersonInputs`; zeros say that nothing is known."""
-        if known is None:
-            known = x.new_zeros(*x.shape[:2], 2 * self.seen_features)
-        return (*super().filled(x, t, cond, mask), known)
+        """See :class:`models.diffusion.TwoPersonDenoiser`; zeros say that nothing is known."""
+        real = torch.ones(*x.shape[:2], 2, dtype=torch.bool) if mask is None else mask != 0
+        return x, t, cond, real, x.new_zeros(*x.shape[:2], 2 * self.seen_features) if known is None else known
 
     def example(self) -> tuple[Tensor, ...]:
-        """See :class:`models.compiled.TwoPersonInputs`: the second motion has no words for each and less known."""
+        """See :class:`models.diffusion.TwoPersonDenoiser`: the second motion has no words for each and less known."""
         x, t, cond, mask = super().example()
         draw = torch.Generator().manual_seed(1)
         cond = torch.randn(2, 3, 4, cond.shape[1], generator=draw)

@@ -22,7 +22,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.diffusion import classifier_free, denoise, make_scheduler
-from models.errors import as_tensors, count_layers, load_strictly, shape_of
+from models.errors import Released
 from models.layers import TimestepEmbedding, sinusoids
 from motion.errors import InputError
 
@@ -288,21 +288,19 @@ def from_released(weights: Mapping[str, Tensor], *, num_heads: int) -> ReGenNet:
 
     Raises WeightsError if a tensor is missing, unknown or of another size.
     """
-    tensors = {name: value for name, value in as_tensors(weights).items() if not name.endswith(POSITIONS)}
-    latent_dim, features = shape_of(tensors, "input_process.poseEmbedding.weight", network=NETWORK)
+    kept = {name: value for name, value in weights.items() if not name.endswith(POSITIONS)}
+    tensors = Released(kept, NETWORK)
+    latent_dim, features = tensors.shape("input_process.poseEmbedding.weight")
     online = any(name.startswith("seqTransDecoder.") for name in tensors)
     layers = "seqTransDecoder.layers." if online else "seqTransEncoder.layers."
     actions = tensors.get("embed_action.action_embedding")
-    network = ReGenNet(
-        ReGenNetConfig(
-            rows=features // ROW_WIDTH,
-            latent_dim=latent_dim,
-            ff_size=shape_of(tensors, f"{layers}0.linear1.weight", network=NETWORK)[0],
-            num_layers=count_layers(tensors, layers),
-            num_heads=num_heads,
-            num_actions=0 if actions is None else len(actions),
-            online=online,
-        )
+    config = ReGenNetConfig(
+        rows=features // ROW_WIDTH,
+        latent_dim=latent_dim,
+        ff_size=tensors.shape(f"{layers}0.linear1.weight")[0],
+        num_layers=tensors.layers(layers),
+        num_heads=num_heads,
+        num_actions=0 if actions is None else len(actions),
+        online=online,
     )
-    load_strictly(network, tensors, network=NETWORK)
-    return network
+    return tensors.loaded(ReGenNet(config))

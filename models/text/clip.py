@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import torch
 from torch import Tensor, nn
 
-from models.errors import as_tensors, count_layers, load_strictly, shape_of
+from models.errors import Released
 from motion.errors import InputError
 
 if TYPE_CHECKING:
@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 NETWORK = "CLIP text"
 HEAD_WIDTH = 64  # CLIP's towers all have heads of 64 channels
 ENCODER_HEADS = 8
-PARTS = ("clip_transformer.", "token_embedding.", "positional_embedding", "ln_final.", "clipTransEncoder.", "clip_ln.")
+TOWER_PARTS = ("transformer.", "token_embedding.", "positional_embedding", "ln_final.")
+PARTS = (*TOWER_PARTS, "clipTransEncoder.", "clip_ln.")
 START, END = "<|startoftext|>", "<|endoftext|>"
 VOCABULARY_PACKAGE = "open-clip-torch"
 VOCABULARY_FILE = "open_clip/bpe_simple_vocab_16e6.txt.gz"
@@ -65,13 +66,19 @@ class ClipTokenizer:
 
     Args:
         path: of CLIP's own ``bpe_simple_vocab_16e6.txt.gz``.
+        tower: whose tokens and length these are.
 
-    Raises VocabularyError if it is another file.
+    Raises VocabularyError if it is another file, or has other tokens than the tower.
     """
 
-    def __init__(self, path: Path, *, context_length: int = 77) -> None:
+    def __init__(self, path: Path, tower: ClipTower) -> None:
         self.tokenizer = _read_merges(path)
-        self.context_length = context_length
+        self.context_length = len(tower.positional_embedding)
+        known, used = len(tower.token_embedding.weight), self.tokenizer.get_vocab_size()
+        if known != used:
+            raise VocabularyError(
+                f"The checkpoint's text side knows {known:,} tokens and the vocabulary has {used:,}: use CLIP's own."
+            )
         self.start, self.end = self.tokenizer.token_to_id(START), self.tokenizer.token_to_id(END)
 
     def __call__(self, prompts: Sequence[str]) -> Tensor:
@@ -145,53 +152,8 @@ class Tower(nn.Module):
         return x
 
 
-class ClipTextEncoder(nn.Module):
-    """Token numbers → the 768-vector `cond` of `models.intergen`, by the released names."""
-
-    def __init__(
-        self, *, vocabulary: int, context_length: int, width: int, num_layers: int, ff_size: int, encoder_layers: int
-    ) -> None:
-        super().__init__()
-        self.token_embedding = nn.Embedding(vocabulary, width)
-        self.positional_embedding = nn.Parameter(torch.zeros(context_length, width))
-        self.clip_transformer = Tower(width, num_layers)
-        self.ln_final = nn.LayerNorm(width)
-        layer = nn.TransformerEncoderLayer(width, ENCODER_HEADS, ff_size, activation="gelu", batch_first=True)
-        self.clipTransEncoder = nn.TransformerEncoder(layer, encoder_layers, enable_nested_tensor=False)
-        self.clip_ln = nn.LayerNorm(width)
-
-    def token_features(self, tokens: Tensor) -> Tensor:
-        """The frozen part: (B, 77) int64 → (B, 77, C)."""
-        x = self.token_embedding(tokens) + self.positional_embedding
-        return self.ln_final(self.clip_transformer(x))
-
-    def forward(self, tokens: Tensor) -> Tensor:
-        """(B, 77) int64 → (B, C), read at the end-of-text token, which has the largest number."""
-        features = self.clip_ln(self.clipTransEncoder(self.token_features(tokens)))
-        return features[torch.arange(len(tokens), device=tokens.device), tokens.argmax(-1)]
-
-
-def from_released(weights: Mapping[str, Tensor]) -> ClipTextEncoder:
-    """The encoder whose released tensors these are; eval mode, float32.
-
-    Raises WeightsError if a tensor is missing, unknown or of another size.
-    """
-    tensors = as_tensors(weights)
-    vocabulary, width = shape_of(tensors, "token_embedding.weight", network=NETWORK)
-    encoder = ClipTextEncoder(
-        vocabulary=vocabulary,
-        context_length=shape_of(tensors, "positional_embedding", network=NETWORK)[0],
-        width=width,
-        num_layers=count_layers(tensors, "clip_transformer.resblocks."),
-        ff_size=shape_of(tensors, "clipTransEncoder.layers.0.linear1.weight", network=NETWORK)[0],
-        encoder_layers=count_layers(tensors, "clipTransEncoder.layers."),
-    )
-    load_strictly(encoder, tensors, network=NETWORK)
-    return encoder.requires_grad_(False)
-
-
 class ClipTower(nn.Module):
-    """CLIP's frozen text tower alone, by OpenAI's names, as BiGraphDiff's released file holds it.
+    """CLIP's frozen text tower, by OpenAI's names.
 
     Args:
         vocabulary, context_length: sizes of the tables of tokens and positions.
@@ -205,27 +167,58 @@ class ClipTower(nn.Module):
         self.transformer = Tower(width, num_layers)
         self.ln_final = nn.LayerNorm(width)
 
-    def forward(self, tokens: Tensor) -> Tensor:
+    def token_features(self, tokens: Tensor) -> Tensor:
         """(B, 77) int64 → features of every token (B, 77, C) after the last norm."""
         x = self.token_embedding(tokens) + self.positional_embedding
         return self.ln_final(self.transformer(x))
 
 
-TOWER_PARTS = ("transformer.", "token_embedding.", "positional_embedding", "ln_final.")
+class ClipTextEncoder(ClipTower):
+    """Token numbers → the 768-vector `cond` of `models.intergen`: the tower, and InterGen's trained layers behind it.
+
+    Args:
+        ff_size, encoder_layers: of the trained layers.
+        sizes: of the tower.
+    """
+
+    def __init__(self, *, width: int, ff_size: int, encoder_layers: int, **sizes: int) -> None:
+        super().__init__(width=width, **sizes)
+        layer = nn.TransformerEncoderLayer(width, ENCODER_HEADS, ff_size, activation="gelu", batch_first=True)
+        self.clipTransEncoder = nn.TransformerEncoder(layer, encoder_layers, enable_nested_tensor=False)
+        self.clip_ln = nn.LayerNorm(width)
+
+    def forward(self, tokens: Tensor) -> Tensor:
+        """(B, 77) int64 → (B, C), read at the end-of-text token, which has the largest number."""
+        features = self.clip_ln(self.clipTransEncoder(self.token_features(tokens)))
+        return features[torch.arange(len(tokens), device=tokens.device), tokens.argmax(-1)]
+
+
+def from_released(weights: Mapping[str, Tensor]) -> ClipTextEncoder:
+    """The encoder whose released tensors are among these; eval mode, float32.
+
+    Raises WeightsError if a tensor is missing or of another size.
+    """
+    named = {name.replace("clip_transformer.", "transformer."): value for name, value in weights.items()}
+    tensors = Released({name: value for name, value in named.items() if name.startswith(PARTS)}, NETWORK)
+    encoder = ClipTextEncoder(
+        **_sizes(tensors),
+        ff_size=tensors.shape("clipTransEncoder.layers.0.linear1.weight")[0],
+        encoder_layers=tensors.layers("clipTransEncoder.layers."),
+    )
+    return tensors.loaded(encoder).requires_grad_(False)
 
 
 def tower_from_released(weights: Mapping[str, Tensor]) -> ClipTower:
     """The text tower among CLIP's tensors, whose picture side is left out; eval mode, float32.
 
-    Raises WeightsError if a tensor is missing, unknown or of another size.
+    Raises WeightsError if a tensor is missing or of another size.
     """
-    tensors = as_tensors({name: value for name, value in weights.items() if name.startswith(TOWER_PARTS)})
-    vocabulary, width = shape_of(tensors, "token_embedding.weight", network=NETWORK)
-    tower = ClipTower(
-        vocabulary=vocabulary,
-        context_length=shape_of(tensors, "positional_embedding", network=NETWORK)[0],
-        width=width,
-        num_layers=count_layers(tensors, "transformer.resblocks."),
-    )
-    load_strictly(tower, tensors, network=NETWORK)
-    return tower.requires_grad_(False)
+    tensors = Released({name: value for name, value in weights.items() if name.startswith(TOWER_PARTS)}, NETWORK)
+    return tensors.loaded(ClipTower(**_sizes(tensors))).requires_grad_(False)
+
+
+def _sizes(tensors: Released) -> dict[str, int]:
+    """The sizes of a tower."""
+    vocabulary, width = tensors.shape("token_embedding.weight")
+    length, layers = tensors.shape("positional_embedding")[0], tensors.layers("transformer.resblocks.")
+    return {"vocabulary": vocabulary, "context_length": length, "width": width, "num_layers": layers}

@@ -21,7 +21,7 @@ from torch import Tensor
 from torch.nn.attention import SDPBackend, sdpa_kernel
 
 from models.diffusion import NoiseSchedule
-from models.errors import load_strictly
+from models.errors import Released
 from models.intergen.compact import load_folder as load_intergen
 from models.intergen.losses import bone_lengths, facing, joint_distances, masked_mean
 from models.motion_tokens import FEATURES, NUM_CONTACTS
@@ -213,7 +213,7 @@ class Trainer(SceneTrainer):
             self.data.normalize(self.model)
         else:
             known = {k: v for k, v in shipped.state_dict().items() if not k.startswith("touch_reader.")}
-            load_strictly(self.model, known, network="ReGenNet")
+            Released(known, "ReGenNet").loaded(self.model)
         self.model.to(device).conditioner.requires_grad_(False)
         self.ema = CompactReGenNet(self.config).to(device).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())

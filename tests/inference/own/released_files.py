@@ -58,7 +58,9 @@ def write_intergen(
         encoder_layers=2,
     )
     state = {f"model.decoder.net.{name}": value for name, value in drawn(denoiser).items()}
-    state |= {f"model.{name}": value for name, value in drawn(text).items()}
+    state |= {
+        f"model.{name.replace('transformer.', 'clip_transformer.')}": value for name, value in drawn(text).items()
+    }
     state["model.decoder.net.sequence_pos_encoder.pe"] = torch.zeros(4, 1, 8)
     folder.mkdir(parents=True, exist_ok=True)
     paths = {role: folder / name for role, name in FILES.items()}

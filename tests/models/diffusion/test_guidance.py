@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import torch
 
-from models.diffusion import Guided, classifier_free, guide
+from models.diffusion import TwoPersonDenoiser, classifier_free, guide
 
 
 def test_both_halves_run_in_one_pass_and_are_mixed_by_the_scale():
@@ -30,15 +30,16 @@ def test_what_stands_for_no_condition_may_be_given():
     assert found.item() == 1.0
 
 
-class Adding(Guided):
+class Adding(TwoPersonDenoiser):
     """A network whose prediction says whether it read words."""
 
-    passes: list[int]
+    widths = (1, 1)
 
     def __init__(self) -> None:
-        self.passes = []
+        super().__init__()
+        self.passes: list[int] = []
 
-    def __call__(self, x, t, cond, mask=None, known=None):
+    def forward(self, x, t, cond, mask=None):
         self.passes.append(len(x))
         return x + (10 + cond[:, 0])[:, None, None]
 

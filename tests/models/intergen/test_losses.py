@@ -34,21 +34,14 @@ def close(found, expected) -> bool:
 
 def test_all_terms_equal_the_reference(ref):
     t, mask = ref["timesteps"], ref["mask"][..., 0]
-    loss = InterGenLoss(t_bar=int(ref["t_bar"]), released_orientation=True)
-    terms = loss(ref["prediction"], ref["target"], t, mask)
-    names = {"simple": "simple", "DM": "distance_map", "JA": "joint_affinity", "RO": "relative_orientation"}
+    terms = InterGenLoss(t_bar=int(ref["t_bar"]))(ref["prediction"], ref["target"], t, mask)
+    names = {"simple": "simple", "DM": "distance_map", "JA": "joint_affinity"}
     for short, name in names.items():
         assert close(terms[name], ref[f"inter/{short}"]), name
     for short, name in {"VEL": "velocity", "FC": "foot_contact", "BL": "bone_length"}.items():
         assert close(terms[name], ref[f"geometric/{short}_A"] + ref[f"geometric/{short}_B"]), name
-    assert close(terms["total"], ref["inter/total"] + ref["geometric/A"] + ref["geometric/B"])
-
-
-def test_the_default_orientation_is_the_only_difference_to_the_release(ref):
-    inputs = ref["prediction"], ref["target"], ref["timesteps"], ref["mask"][..., 0]
-    ours, theirs = InterGenLoss()(*inputs), InterGenLoss(released_orientation=True)(*inputs)
-    differing = {name for name in ours if not torch.equal(ours[name], theirs[name])}
-    assert differing == {"relative_orientation", "total"}
+    alike = terms["total"] - terms["relative_orientation"]  # which is another than the release's
+    assert close(alike, ref["inter/total"] + ref["geometric/A"] + ref["geometric/B"] - ref["inter/RO"])
 
 
 def test_damping_leaves_out_samples_above_the_threshold():

@@ -9,7 +9,7 @@ import torch
 from torch import nn
 
 from models.errors import WeightsError
-from models.text.clip import ClipTextEncoder, ClipTokenizer, VocabularyError, from_released
+from models.text.clip import ClipTextEncoder, ClipTokenizer, ClipTower, VocabularyError, from_released
 from tests.models.reference_arrays import Reference, assert_equal
 
 
@@ -41,7 +41,7 @@ def test_the_tower_equals_torch_layers(encoder):
     x = torch.randn(2, 12, 128)
     expected = x
     causal = nn.Transformer.generate_square_subsequent_mask(12)
-    for block in encoder.clip_transformer.resblocks:
+    for block in encoder.transformer.resblocks:
         layer = nn.TransformerEncoderLayer(
             128, 2, 512, activation=lambda h: h * torch.sigmoid(1.702 * h), batch_first=True, norm_first=True
         ).eval()
@@ -55,7 +55,7 @@ def test_the_tower_equals_torch_layers(encoder):
         }
         layer.load_state_dict(state)
         expected = layer(expected, src_mask=causal)
-    assert_equal(encoder.clip_transformer(x), expected.detach(), 1e-4)
+    assert_equal(encoder.transformer(x), expected.detach(), 1e-4)
 
 
 def test_a_tensor_that_is_missing_is_named():
@@ -66,7 +66,8 @@ def test_a_tensor_that_is_missing_is_named():
 def test_clips_own_file_of_merges_is_read(tmp_path):
     path = tmp_path / "bpe_simple_vocab_16e6.txt.gz"
     path.write_bytes(gzip.compress(b'"version: 0.2\nh i</w>\nt h\nth e</w>\n'))
-    rows = ClipTokenizer(path, context_length=8)(["Hi  the a", "é"])
+    tower = ClipTower(vocabulary=517, context_length=8, width=64, num_layers=1)
+    rows = ClipTokenizer(path, tower)(["Hi  the a", "é"])
     start, end = 512 + 3, 512 + 4
     # Printable bytes come first in CLIP's list: "!" is 0, "a" 64; with the end of a word 256 more.
     assert rows[0].tolist() == [start, 512, 514, 256 + 64, end, 0, 0, 0]
@@ -74,4 +75,4 @@ def test_clips_own_file_of_merges_is_read(tmp_path):
     assert rows[1].tolist()[:4] == [start, 127, 256 + 102, end]
     path.write_bytes(gzip.compress(b"title\nthree words here\n"))
     with pytest.raises(VocabularyError, match="is not CLIP's vocabulary"):
-        ClipTokenizer(path)
+        ClipTokenizer(path, tower)

@@ -91,9 +91,10 @@ def test_the_shell_writes_a_predictor(kind: str, corpus: Path, tmp_path: Path) -
     ]
     folders = ["--data", str(corpus), "--out", str(tmp_path / "run"), "--export", str(tmp_path / "folder")]
     assert main([*asked, *folders]) == 0
-    predictor = load_predictor(tmp_path / "folder")
-    assert (predictor.past, predictor.future, predictor.joints) == (10, 8, 22)
-    assert predictor.training is not None and predictor.training["steps"] == settings.steps
+    predictor, source = load_predictor(tmp_path / "folder")
+    sizes = predictor.config
+    assert (sizes.past, sizes.future, sizes.joints) == (10, 8, 22)
+    assert source.meta["training"]["steps"] == settings.steps
     assert main([*asked, *folders, "--data", str(tmp_path)]) == 2
 
 

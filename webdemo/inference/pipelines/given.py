@@ -13,8 +13,8 @@ from torch import Tensor
 
 from acts.staging.given import places_of
 from acts.staging.window import KnownFrames, Part
-from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
+from models.motion_tokens import DuetSpace
 from motion import FPS, SMPL22, Clip, Duet, InputError
 from motion.kinematics import project_to_skeleton
 from motion.metrics import compare
@@ -34,7 +34,6 @@ FADE = 12
 """Frames over which what clean-up changed at a given frame is taken back beside it."""
 _APART = 30
 """Frames between two poses of a draft beyond which it says nothing of what is between them."""
-_HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
 
 
 class Given(Protocol):
@@ -330,20 +329,9 @@ def hold_of(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Hold:
                 known.add_person(part.person, poses, at)
         else:
             headings = None if part.headings is None else torch.from_numpy(np.asarray(part.headings)).float()
-            known.add_path(part.person, at, torch.from_numpy(np.asarray(part.places)).float(), headings)
-            if part.turned and headings is not None:
-                _hold_hips(known, part.person, at, headings)
+            places = torch.from_numpy(np.asarray(part.places)).float()
+            known.add_path(part.person, at, places, headings, turned=part.turned)
     return Hold(known, model.layout, model.mean, model.std)
-
-
-def _hold_hips(known: Known, person: int, at: list[int], headings: torch.Tensor) -> None:
-    """Marks the places of the hips beside the pelvis as known, so that the person faces the headings."""
-    for hip in _HIPS:
-        across, along = (float(SMPL22.offsets[hip, axis]) for axis in (0, 2))
-        turned = (across * headings.cos() + along * headings.sin(), along * headings.cos() - across * headings.sin())
-        for axis, values in zip((0, 2), turned, strict=True):
-            known.rows[:, person, at, 3 * hip + axis] = values
-            known.mask[:, person, at, 3 * hip + axis] = True
 
 
 def _frames(part: Part, total: int) -> list[int]:

@@ -111,9 +111,11 @@ class PredictorPipeline:
     """
 
     def __init__(self, folder: Path | None) -> None:
-        self.predictor: Predictor | None = None if folder is None else load_predictor(folder)
-        self.name = folder.name if folder else "still"
-        self.digest = self.predictor.digest if self.predictor else ""
+        self.predictor: Predictor | None = None
+        self.name, self.digest = "still", ""
+        if folder is not None:
+            self.predictor, source = load_predictor(folder)
+            self.name, self.digest = folder.name, source.digest
 
     def predict(self, past: Array, frames: int) -> Array:
         """Predicts the frames that follow a past.
@@ -156,11 +158,11 @@ class PredictorPipeline:
 
     def _next(self, whole: Array) -> Array:
         assert self.predictor is not None
-        past = whole[:, -self.predictor.past :]
+        past = whole[:, -self.predictor.config.past :]
         local, turn, shift = to_last_pose(past)
-        made = self.predictor(torch.from_numpy(local.astype(np.float32))).numpy()
-        future = to_world(made.astype(np.float64), turn, shift)
-        return joined(past, future)
+        with torch.no_grad():
+            made = self.predictor(torch.from_numpy(local.astype(np.float32))).numpy()
+        return joined(past, to_world(made.astype(np.float64), turn, shift))
 
     def run(self, request: PredictRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`PredictResult` without a manifest."""

@@ -15,8 +15,9 @@ from models.bigraphdiff.compact import CompactBiGraphDiff
 from models.compiled import compile_network
 from models.diffusion import SamplerName, make_scheduler, sample_noise, sample_steps
 from models.diffusion.schedule import Spacing
-from models.intergen.compact import CompactInterGen, DuetSpace, Touch
+from models.intergen.compact import CompactInterGen, Touch
 from models.intergen.released import ReleasedInterGen
+from models.motion_tokens import DuetSpace
 from models.weights_io import WeightsFolder
 from motion import Duet, InputError
 from motion.metrics import compare
