@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Generator, Iterable
 from dataclasses import dataclass, field
 from time import monotonic
 from typing import Any
@@ -157,3 +158,17 @@ class StageTimer:
         now = time.perf_counter()
         self.stages[stage] = round(self.stages.get(stage, 0.0) + now - self._lapped, 4)
         self._lapped = now
+
+    def sampled(self, steps: Iterable[Any], cancel: CancelToken) -> Generator[Progress, None, Any]:
+        """The progress of denoising, a step at a time until it is cancelled; returns the last step's sample.
+
+        Args:
+            steps: one or more, as :func:`models.diffusion.sample_steps` gives them.
+            cancel: looked at before every step.
+        """
+        cancel.raise_if_cancelled()
+        for step in steps:
+            yield self.progress("sample", step.step, step.total)
+            cancel.raise_if_cancelled()
+        self.lap("sample")
+        return step.sample

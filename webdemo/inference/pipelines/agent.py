@@ -93,7 +93,7 @@ class Eye:
 
     def __init__(self, folder: Path, predictor: PredictorPipeline) -> None:
         self.recogniser, source = load_folder(folder)
-        self.predictor, self.digest, self.meta = predictor, source.digest, source.meta
+        self.predictor, self.digest = predictor, source.digest
 
     def looks(self, positions: Array) -> list[Look]:
         """Every moment at which the agent looks at a person (T, 22, 3), in metres at 30 fps; T is 30 or more.
@@ -180,7 +180,7 @@ class AgentPipeline:
 
     def __init__(self, folder: Path, predictor: PredictorPipeline, answers: InterGenPipeline) -> None:
         self.eye, self.answers = Eye(folder, predictor), answers
-        self.name, self.meta = folder.name, self.eye.meta
+        self.name = folder.name
         parts = (self.eye.digest, predictor.digest, answers.digest)
         self.digest = hashlib.sha256(" ".join(parts).encode()).hexdigest()
 

@@ -83,13 +83,9 @@ class ReleasedBiGraphDiffPipeline:
         def predict(x: Tensor, t: Tensor) -> Tensor:
             return self.model.network(x, t, text, vector)
 
-        x = sample_noise(request.seed, request.samples, (frames, 6 * JOINTS))
+        noise = sample_noise(request.seed, request.samples, (frames, 6 * JOINTS))
         draw = torch.Generator().manual_seed(request.seed)
-        for step in sample_steps(predict, x, self._scheduler(request), generator=draw):
-            x = step.sample
-            yield timer.progress("sample", step.step, step.total)
-            cancel.raise_if_cancelled()
-        timer.lap("sample")
+        x = yield from timer.sampled(sample_steps(predict, noise, self._scheduler(request), generator=draw), cancel)
         yield timer.progress("finish")
         people = (x * self.std + self.mean).double().numpy().reshape(len(x), frames, 2, JOINTS, 3)
         if not np.isfinite(people).all():

@@ -21,8 +21,7 @@ from motion.metrics import compare
 from motion.placement import Placement
 from motion.smoothing import minimum_jerk, smoothstep
 from webdemo.inference.finish.joining import PASSING, joined, passing
-from webdemo.inference.requests import GenerateRequest, ReactRequest
-from webdemo.inference.requests.actor import ROLES
+from webdemo.inference.requests import ReactRequest
 from webdemo.inference.run import Result
 
 Array = NDArray[np.floating]
@@ -101,29 +100,6 @@ class Reaction(Scene):
         people = [Clip(made, FPS, self.clip.skeleton, name=NAMES[1 - self.place])]
         people.insert(self.place, self.clip)
         return Duet(people[0], people[1], NAMES)
-
-
-def scene_of(request: GenerateRequest | ReactRequest, given: Callable[[Array, int], Given]) -> Scene:
-    """The scene that a request asks for.
-
-    Args:
-        request: what is asked for.
-        given: a person's positions (T, 22, 3) in the network's frame, and 0 for a or 1 for b → the known part.
-    """
-    if isinstance(request, GenerateRequest):
-        return Scene(round(request.seconds * FPS))
-    placement = Placement.of(request.actor, request.role, request.prompt)
-    place = ROLES.index(request.role)
-    known = given(placement.to_network(request.actor.positions), place)
-    return Reaction(request.actor.num_frames, known, clip=request.actor, place=place, placement=placement)
-
-
-def given_person(model: DuetSpace, positions: Array, place: int) -> Hold:
-    """The known part for a person (T, 22, 3) in the network's frame, given at every frame."""
-    frames = model.layout.num_frames(model.layout.num_tokens(len(positions)))
-    # The last token extends up to seven frames beyond the motion; there the last pose is held.
-    whole = np.pad(positions, ((0, frames - len(positions)), (0, 0), (0, 0)), mode="edge")
-    return hold_of(model, frames, [KnownFrames(place, range(frames), whole)])
 
 
 @dataclass(frozen=True)

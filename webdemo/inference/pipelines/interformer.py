@@ -9,7 +9,6 @@ section 3.5), in the frame of the actor's place at that moment, as in training.
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -59,7 +58,7 @@ class InterFormerPipeline:
 
     def __init__(self, folder: Path) -> None:
         self.model, source = load_folder(folder)
-        self.name, self.digest, self.meta = folder.name, source.digest, source.meta
+        self.name, self.digest = folder.name, source.digest
 
     def run(self, request: ReactRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`Result` without a manifest.
@@ -79,7 +78,11 @@ class InterFormerPipeline:
         raw = raw + settle(first_pose - raw[:, :1], np.arange(frames))
         shown = np.stack([clean_person(person) for person in raw]) if request.cleanup else raw
         raw, shown = placement.to_world(raw), placement.to_world(shown)
-        yield reacted(request, raw, shown, (_NO_WORDS,) if request.prompt.strip() else ())
+        yield reacted(request, raw, shown, self.notes(request))
+
+    def notes(self, request: ReactRequest) -> tuple[str, ...]:
+        """Sentences on what the network made of the request."""
+        return (_NO_WORDS,) if request.prompt.strip() else ()
 
     def _first_pose(self, actor: Array) -> Array:
         """(22, 3) a person who stands in front of the actor, clear of their path, and faces their first place."""
@@ -91,21 +94,30 @@ class InterFormerPipeline:
         self, request: ReactRequest, actor: Array, first_pose: Array, cancel: CancelToken, timer: StageTimer
     ) -> Generator[Progress, None, Array]:
         """Returns the network's frames (samples, T', 15, 3), which cover the actor's motion."""
-        noise = sample_noise(request.seed, request.samples, (self.model.config.noise,))
         slow = resample(actor, FPS, NETWORK_FPS)
         reaction = [np.repeat(first_pose[None, list(JOINTS_15)], request.samples, axis=0)]
         total = len(slow) - 1
         while (begun := len(reaction) - 1) < total:
-            window = slow[begun : begun + self.model.config.window]
+            window = slow[begun : begun + self._longest]
             here = Placement.of(Clip(window, NETWORK_FPS, SMPL22), "a")
-            seen = torch.tensor(here.to_network(window)[:, list(JOINTS_15)], dtype=torch.float32)
-            first = torch.tensor(here.to_network(reaction[-1]), dtype=torch.float32)
-            actors = seen.expand(request.samples, -1, -1, -1)
-            for pose in self.model.poses_after(actors, first, noise):
-                reaction.append(here.to_world(pose.double().numpy()))
+            seen = here.to_network(window)[:, list(JOINTS_15)]
+            for poses in self._poses(seen, here.to_network(reaction[-1]), request.seed):
+                reaction.append(here.to_world(poses))
                 yield timer.progress("sample", len(reaction) - 1, total, "frame")
                 cancel.raise_if_cancelled()
         return np.stack(reaction, axis=1)
+
+    @property
+    def _longest(self) -> int:
+        """Frames of a sub-sequence."""
+        return self.model.config.window
+
+    def _poses(self, seen: Array, first: Array, seed: int) -> Iterator[Array]:
+        """The poses (samples, 15, 3) that follow the first ones, from the actor's (T, 15, 3) of a sub-sequence."""
+        noise = sample_noise(seed, len(first), (self.model.config.noise,))
+        actors = torch.tensor(seen, dtype=torch.float32).expand(len(first), -1, -1, -1)
+        for pose in self.model.poses_after(actors, torch.tensor(first, dtype=torch.float32), noise):
+            yield pose.double().numpy()
 
 
 def on_smpl22(joints: Array, frames: int) -> Array:
@@ -124,40 +136,26 @@ class ReleasedInterFormerPipeline(InterFormerPipeline):
     def __init__(self, entry: Entry) -> None:
         checkpoint = entry.file("checkpoint")
         self.network = load_released(checkpoint)
-        self.name, self.digest, self.meta = entry.name, entry.digest("checkpoint"), {}
+        self.name, self.digest = entry.name, entry.digest("checkpoint")
 
-    def run(self, request: ReactRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
-        """As :meth:`InterFormerPipeline.run`; the result's notes say what the conversion lost."""
-        for event in super().run(request, cancel, timer):
-            if isinstance(event, Result):
-                notes = [CONVERTED]
-                notes += [STARTED] if request.first_pose is None else []
-                notes += [ALIKE] if request.samples > 1 else []
-                event = replace(event, notes=(*event.notes, *notes))
-            yield event
+    def notes(self, request: ReactRequest) -> tuple[str, ...]:
+        """What the conversion lost, too, and what was not asked for or not done."""
+        started = [STARTED] if request.first_pose is None else []
+        return (*super().notes(request), CONVERTED, *started, *([ALIKE] if request.samples > 1 else []))
 
     def _first_pose(self, actor: Array) -> Array:
         """(22, 3) the actor's first pose, turned round, in front of them."""
         facing = actor[0] @ heading_matrix(np.pi).T
         return facing + np.array([0.0, 0.0, RECORDED_START_DISTANCE])
 
-    def _sample(
-        self, request: ReactRequest, actor: Array, first_pose: Array, cancel: CancelToken, timer: StageTimer
-    ) -> Generator[Progress, None, Array]:
-        """Returns the network's frames (samples, T', 15, 3), which cover the actor's motion."""
-        slow = resample(actor, FPS, NETWORK_FPS)
-        reaction = [first_pose[list(JOINTS_15)]]
-        total, longest = len(slow) - 1, self.network.config.max_length - 2
-        while (begun := len(reaction) - 1) < total:
-            cancel.raise_if_cancelled()
-            window = slow[begun : begun + longest]
-            here = Placement.of(Clip(window, NETWORK_FPS, SMPL22), "a")
-            seen = here.to_network(window)[:, list(JOINTS_15)]
-            made = self._answer(_numbers(seen), _numbers(here.to_network(reaction[-1])[None])[0])
-            poses = made.double().numpy().reshape(-1, 3, len(JOINTS_15)).swapaxes(1, 2)
-            reaction += list(here.to_world(poses[1:]))
-            yield timer.progress("sample", len(reaction) - 1, total)
-        return np.repeat(np.stack(reaction)[None], request.samples, axis=0)
+    @property
+    def _longest(self) -> int:
+        return self.network.config.max_length - 2
+
+    def _poses(self, seen: Array, first: Array, seed: int) -> Iterator[Array]:
+        made = self._answer(_numbers(seen), _numbers(first[:1])[0])
+        for pose in made.double().numpy().reshape(-1, 3, len(JOINTS_15)).swapaxes(1, 2)[1:]:
+            yield np.repeat(pose[None], len(first), axis=0)
 
     def _answer(self, source: Tensor, first: Tensor) -> Tensor:
         """The actor (T, 45) and a first pose (45,) → the reaction (T, 45), which begins with that pose."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,7 +26,7 @@ from motion.representation import NUM_FEATURES
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.scene import finish_of, in_touch
 from webdemo.inference.own.entries import Entry
-from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.requests.acting import with_plan
 from webdemo.inference.requests.plans import BeatFinish, KeptPlan
 from webdemo.inference.requests.predict import PredictRequest, predicted
@@ -36,7 +36,7 @@ from webdemo.inference.story.beats import SHORTEST
 from webdemo.inference.story.request import SceneProgress, SceneRequest
 from webdemo.inference.story.sentences import as_scene
 
-from .given import Finish, Scene, scene_of
+from .given import Scene
 from .predictor import PredictorPipeline
 from .scene import SceneMaker
 from .two_person import Conditioning, TwoPersonPipeline
@@ -181,7 +181,7 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
         vocabulary = entry.file("vocabulary") if "vocabulary" in entry.files else find_vocabulary()
         checkpoint, mean, std = (entry.file(role) for role in ("checkpoint", "mean", "std"))
         self.model = load_released(checkpoint, mean, std, vocabulary)
-        self.name, self.digest, self.meta = entry.name, entry.digest("checkpoint", "mean", "std"), {}
+        self.name, self.digest = entry.name, entry.digest("checkpoint", "mean", "std")
         self.compiled = compiled_near(self.model.denoiser, self.digest, precision_of(entry))
 
     def condition(self, prompt: str) -> tuple[Tensor, None]:
@@ -194,25 +194,25 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
             return Conditioning(self.model.no_condition(), 1.0)
         return Conditioning(self.condition(request.prompt)[0], request.guidance)
 
-    def run(
-        self,
-        request: GenerateRequest | ReactRequest,
-        cancel: CancelToken,
-        timer: StageTimer,
-        scene: Scene | None = None,
-    ) -> Iterator[Progress | Result]:
-        """As :meth:`TwoPersonPipeline.run`; the result's notes say what the conversion lost."""
-        measured = Measured(scene or self.scene(request))
-        for event in super().run(request, cancel, timer, measured):  # type: ignore[arg-type]
-            if isinstance(event, Result):
-                notes = [CONVERTED, measured.note(request.cleanup)]
-                notes += [NOT_TUNED] if isinstance(request, ReactRequest) else []
-                event = replace(event, notes=(*event.notes, *notes))
-            yield event
+    def given(self, positions: Array, place: int) -> GivenPerson:
+        """As :meth:`TwoPersonPipeline.given`, in the paper's representation."""
+        return GivenPerson(self.model.encode(positions), place)
 
-    def scene(self, request: GenerateRequest | ReactRequest) -> Scene:
-        """As :meth:`TwoPersonPipeline.scene`, in the paper's representation."""
-        return scene_of(request, lambda positions, place: GivenPerson(self.model.encode(positions), place))
+    def cleaned(self, person: Array) -> Array:
+        """A person after the release's smoothing, too."""
+        return clean_person(scipy.ndimage.gaussian_filter1d(person, SMOOTHING, axis=0, mode="nearest"))
+
+    def lost(self, settings: SamplingRequest, before: Sequence[Duet], after: Sequence[Duet]) -> tuple[str, ...]:
+        """What the conversion lost, and by how much the joints moved on their way onto constant bones."""
+        said = "The positions are as the network gave them."
+        if settings.cleanup:
+            pairs = [(old.positions, new.positions) for old, new in zip(before, after, strict=True)]
+            moved = np.concatenate([np.linalg.norm(new - old, axis=-1).mean((1, 2)) for old, new in pairs])
+            said = (
+                f"Smoothing (σ = {SMOOTHING:g} frame), constant bones and planted feet moved the joints by "
+                f"{100 * moved[moved > 0].mean():.1f} cm on average."
+            )
+        return (CONVERTED, said, *([NOT_TUNED] if isinstance(settings, ReactRequest) else []))
 
 
 class GivenPerson:
@@ -262,38 +262,6 @@ def compiled_near(network: nn.Module, key: str, precision: Precision) -> bool:
     if precision != "f32" and compile_network(network, f"{key} {precision}", precision=precision):
         return True
     return compile_network(network, f"{key} f32")
-
-
-class Measured:
-    """A scene that measures by how much the joints move on their way onto constant bones.
-
-    Args:
-        scene: whose duets are made.
-    """
-
-    def __init__(self, scene: Scene) -> None:
-        self.frames, self.given, self.draft, self._scene = scene.frames, scene.given, scene.draft, scene
-        self.given_at = scene.given_at
-        self.moved: list[float] = []
-        """Mean distance in metres, one of each generated person."""
-
-    def duet(self, pair: Array, finish: Finish) -> Duet:
-        """As the scene's own; a clean-up is measured, and comes after the release's smoothing."""
-        return self._scene.duet(pair, self._cleaned if finish is clean_person else finish)
-
-    def _cleaned(self, person: Array) -> Array:
-        cleaned = clean_person(scipy.ndimage.gaussian_filter1d(person, SMOOTHING, axis=0, mode="nearest"))
-        self.moved.append(float(np.linalg.norm(cleaned - person, axis=-1).mean()))
-        return cleaned
-
-    def note(self, cleanup: bool) -> str:
-        """Says in a sentence what the clean-up changed."""
-        if not cleanup:
-            return "The positions are as the network gave them."
-        return (
-            f"Smoothing (σ = {SMOOTHING:g} frame), constant bones and planted feet moved the joints by "
-            f"{100 * float(np.mean(self.moved)):.1f} cm on average."
-        )
 
 
 # ---- both people at once -------------------------------------------------------------------------

@@ -109,7 +109,7 @@ class NearestPipeline:
         source = WeightsFolder(folder)
         for name in source.files:
             source.read(name)  # as its checksums say
-        self.bank, self.digest, self.meta = read_bank(folder), source.digest, source.meta
+        self.bank, self.digest = read_bank(folder), source.digest
         if own:
             self.bank = read_bank(Path(own).expanduser())
             self.digest = hashlib.sha256(

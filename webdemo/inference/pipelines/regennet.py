@@ -8,8 +8,7 @@ after frame i.
 from __future__ import annotations
 
 import time
-from collections.abc import Generator, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Generator, Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -19,13 +18,13 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from models.diffusion import make_scheduler, sample_noise, sample_steps
+from models.diffusion import SamplingStep, make_scheduler, sample_noise, sample_steps
 from models.motion_tokens import FEATURES
 from models.regennet.compact import CompactReGenNet, load_folder
 from models.regennet.network import ROW_WIDTH, ReGenNet
 from models.regennet.released import ROWS, decode, encode, load_released
 from models.text import MiniLM
-from motion import FPS, SMPL22, Clip, InputError
+from motion import FPS, Clip, InputError
 from motion.placement import Placement
 from webdemo.inference.finish.cleanup import FollowingCleanup, clean_person
 from webdemo.inference.finish.damping import Beside, Damping
@@ -37,6 +36,7 @@ from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from .given import reacted, settle
 
 Array = NDArray[np.floating]
+Answer = Callable[[Array], tuple[Array, Array]]
 CONVERTED = (
     "The given person's 22 joints became rotations of SMPL-X's 55: jaw, eyes and fingers are at rest, and twists about "
     "the bones are the least that the positions allow. Of the answer, the 22 joints of the body were kept."
@@ -53,7 +53,7 @@ class ReGenNetPipeline:
     def __init__(self, folder: Path) -> None:
         self.model: CompactReGenNet
         self.model, source = load_folder(folder)
-        self.name, self.digest, self.meta = folder.name, source.digest, source.meta
+        self.name, self.digest = folder.name, source.digest
 
     @cached_property
     def encoder(self) -> MiniLM:
@@ -86,7 +86,11 @@ class ReGenNetPipeline:
         yield timer.progress("finish")
         if not np.isfinite(made).all():
             raise InputError("The motion diverged: lower the guidance scale or take more steps.")
-        yield reacted(request, raw, made)
+        yield reacted(request, raw, made, self.notes(request))
+
+    def notes(self, request: ReactRequest) -> tuple[str, ...]:
+        """Sentences on what the network made of the request."""
+        return ()
 
     def _begin(self, request: ReactRequest, placement: Placement) -> Tensor | None:
         """(samples, 67) the network's input for the reactor's first pose, if one is given."""
@@ -98,11 +102,28 @@ class ReGenNetPipeline:
     # ---- offline ---------------------------------------------------------------------------------
 
     def _offline(
-        self, request: ReactRequest, condition: Tensor, cancel: CancelToken, timer: StageTimer
+        self, request: ReactRequest, condition: Any, cancel: CancelToken, timer: StageTimer
     ) -> Generator[Progress, None, tuple[Array, Array]]:
         """Returns (before damping and clean-up, shown), each (samples, T, 22, 3) in the actor's world."""
-        model, placement = self.model, Placement.of(request.actor, "a", request.prompt)
-        frames = request.actor.num_frames
+        placement = Placement.of(request.actor, "a", request.prompt)
+        steps, decoded = self._denoising(request, condition, placement)
+        raw, made = decoded((yield from timer.sampled(steps, cancel)))
+        if not np.isfinite(made).all():
+            return raw, made
+        if request.first_pose is not None:
+            first, frames = placement.to_network(request.first_pose), np.arange(request.actor.num_frames)
+            raw, made = (one + settle(first - one[:, :1], frames) for one in (raw, made))
+        finish = clean_person if request.cleanup else np.asarray
+        return placement.to_world(raw), placement.to_world(np.stack([finish(person) for person in made]))
+
+    def _denoising(
+        self, request: ReactRequest, condition: Any, placement: Placement
+    ) -> tuple[Iterator[SamplingStep], Callable[[Tensor], tuple[Array, Array]]]:
+        """The steps of a reaction, and what turns the last one's sample into positions (samples, T, 22, 3).
+
+        These are before damping, and after it, in the network's frame.
+        """
+        model, frames = self.model, request.actor.num_frames
         given = torch.from_numpy(placement.to_network(request.actor.positions)).float()
         with torch.no_grad():
             seen = model.actor_rows(given[None]).expand(request.samples, -1, -1)
@@ -115,32 +136,22 @@ class ReGenNetPipeline:
             timesteps=scheduler.timesteps.tolist(),
             touches=model.touches(condition) if request.prompt.strip() else (),
         )
-        noise = sample_noise(request.seed, request.samples, (model.num_rows(frames), FEATURES))
+        uncorrected = noise = sample_noise(request.seed, request.samples, (model.num_rows(frames), FEATURES))
 
         def predict(x: Tensor, t: Tensor) -> Tensor:
             return model.guided(x, t, seen, condition, scale=request.guidance, begin=begin)
-
-        uncorrected = noise
 
         def correct(x0: Tensor, timestep: int) -> Tensor:
             nonlocal uncorrected
             uncorrected = x0
             return damping(x0, timestep)
 
-        x = noise
-        for step in sample_steps(predict, noise, scheduler, correct=correct):
-            x = step.sample
-            yield timer.progress("sample", step.step, step.total)
-            cancel.raise_if_cancelled()
-        with torch.no_grad():
-            raw, made = (model.positions(one, frames)[0].double().numpy() for one in (uncorrected, x))
-        if not np.isfinite(made).all():
+        def decoded(x: Tensor) -> tuple[Array, Array]:
+            with torch.no_grad():
+                raw, made = (model.positions(one, frames)[0].double().numpy() for one in (uncorrected, x))
             return raw, made
-        if request.first_pose is not None:
-            first, place = placement.to_network(request.first_pose), np.arange(frames)
-            raw, made = (one + settle(first - one[:, :1], place) for one in (raw, made))
-        finish = clean_person if request.cleanup else np.asarray
-        return placement.to_world(raw), placement.to_world(np.stack([finish(person) for person in made]))
+
+        return sample_steps(predict, noise, scheduler, correct=correct), decoded
 
     # ---- online ----------------------------------------------------------------------------------
 
@@ -149,12 +160,7 @@ class ReGenNetPipeline:
         condition = self.condition(request.prompt, request.samples)
         return self._live(request, condition)
 
-    def _live(self, request: ReactRequest, condition: Tensor) -> Iterator[LiveFrame]:
-        frames, model = request.actor.num_frames, self.model
-        # A last frame on a knot starts an interval that offline sampling does not need.
-        rows = model.num_rows(frames) + 1
-        noise = iter(sample_noise(request.seed, request.samples, (rows, FEATURES)).transpose(0, 1))
-        stream = None
+    def _live(self, request: ReactRequest, condition: Any) -> Iterator[LiveFrame]:
         off: Array | None = None
         finish = [FollowingCleanup() for _ in range(request.samples)]
         placement: Placement | None = None
@@ -162,27 +168,32 @@ class ReGenNetPipeline:
             began = time.perf_counter()
             if placement is None:  # from the first frame only
                 placement = Placement.of(Clip(frame[None], FPS, request.actor.skeleton), "a")
-                stream = model.stream(
-                    condition,
-                    steps=request.steps,
-                    scale=request.guidance,
-                    max_frames=frames,
-                    begin=self._begin(request, placement),
-                )
-            assert stream is not None  # opened with the first frame
-            given = torch.from_numpy(placement.to_network(frame)).float()
-            made, contacts = stream.step(given, noise=noise)
-            raw = made.double().numpy()
+                answer = self._stream(request, condition, placement)
+            raw, contacts = answer(placement.to_network(frame))
             if request.first_pose is not None:
                 if off is None:
                     off = placement.to_network(request.first_pose) - raw
                 raw = raw + settle(off, np.array([index]))[:, 0]
             shown = raw
             if request.cleanup and np.isfinite(raw).all():
-                people = zip(finish, raw, contacts.numpy(), strict=True)
+                people = zip(finish, raw, contacts, strict=True)
                 shown = np.stack([clean(person, standing) for clean, person, standing in people])
             raw, shown = placement.to_world(raw), placement.to_world(shown)
             yield LiveFrame(index, raw, shown, time.perf_counter() - began)
+
+    def _stream(self, request: ReactRequest, condition: Any, placement: Placement) -> Answer:
+        """Answers an actor's pose (22, 3) by poses (samples, 22, 3) and contact scores (samples, 4) of the feet."""
+        frames, model = request.actor.num_frames, self.model
+        # A last frame on a knot starts an interval that offline sampling does not need.
+        noise = sample_noise(request.seed, request.samples, (model.num_rows(frames) + 1, FEATURES))
+        rows, begin = iter(noise.transpose(0, 1)), self._begin(request, placement)
+        stream = model.stream(condition, steps=request.steps, scale=request.guidance, max_frames=frames, begin=begin)
+
+        def answer(pose: Array) -> tuple[Array, Array]:
+            made, contacts = stream.step(torch.from_numpy(pose).float(), noise=rows)
+            return made.double().numpy(), contacts.numpy()
+
+        return answer
 
     def _online(
         self, request: ReactRequest, condition: Tensor, cancel: CancelToken, timer: StageTimer
@@ -210,7 +221,7 @@ class ReleasedReGenNetPipeline(ReGenNetPipeline):
     def __init__(self, entry: Entry) -> None:
         checkpoint = entry.file("checkpoint")
         self.network: ReGenNet = load_released(checkpoint)
-        self.name, self.digest, self.meta = entry.name, entry.digest("checkpoint"), {}
+        self.name, self.digest = entry.name, entry.digest("checkpoint")
         self.labels = entry.labels
         actions = self.network.config.num_actions
         if self.labels and len(self.labels) != actions:
@@ -235,55 +246,35 @@ class ReleasedReGenNetPipeline(ReGenNetPipeline):
             raise InputError(f"{self.name} has no action {prompt.strip()!r:.60}: choose one of: {named}.")
         return torch.full((samples,), number)
 
-    def run(self, request: ReactRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
-        """As :meth:`ReGenNetPipeline.run`; the result's notes say what the conversion lost."""
-        for event in super().run(request, cancel, timer):
-            if isinstance(event, Result):
-                unheard = bool(request.prompt.strip()) and not self.network.config.num_actions
-                notes = (CONVERTED, NO_ACTIONS) if unheard else (CONVERTED,)
-                event = replace(event, notes=(*event.notes, *notes))
-            yield event
+    def notes(self, request: ReactRequest) -> tuple[str, ...]:
+        """What the conversion lost, and whether the words were heard."""
+        unheard = bool(request.prompt.strip()) and not self.network.config.num_actions
+        return (CONVERTED, NO_ACTIONS) if unheard else (CONVERTED,)
 
-    def _offline(
-        self, request: ReactRequest, condition: Any, cancel: CancelToken, timer: StageTimer
-    ) -> Generator[Progress, None, tuple[Array, Array]]:
-        """Returns (before the clean-up, shown), each (samples, T, 22, 3) in the actor's world."""
-        placement = Placement.of(request.actor, "a", request.prompt)
+    def _denoising(
+        self, request: ReactRequest, condition: Any, placement: Placement
+    ) -> tuple[Iterator[SamplingStep], Callable[[Tensor], tuple[Array, Array]]]:
         given = encode(placement.to_network(request.actor.positions))
         actor = given.expand(request.samples, -1, -1, -1)
         noise = sample_noise(request.seed, request.samples, (request.actor.num_frames, *given.shape[:2]))
-        scheduler = make_scheduler("ddim", request.steps)
 
         def predict(x: Tensor, t: Tensor) -> Tensor:
             if condition is None:
                 return self.network(x, t, actor)
             return self.network.guided(x, t, actor, condition, scale=request.guidance)
 
-        x = noise.permute(0, 2, 3, 1)  # a frame's noise does not depend on the length
-        for step in sample_steps(predict, x, scheduler):
-            x = step.sample
-            yield timer.progress("sample", step.step, step.total)
-            cancel.raise_if_cancelled()
-        raw = decode(x)
-        finish = clean_person if request.cleanup else np.asarray
-        shown = np.stack([finish(person) for person in raw])
-        return placement.to_world(raw), placement.to_world(shown)
+        # A frame's noise does not depend on the length.
+        steps = sample_steps(predict, noise.permute(0, 2, 3, 1), make_scheduler("ddim", request.steps))
+        return steps, lambda x: (decode(x),) * 2
 
-    def _live(self, request: ReactRequest, condition: Any) -> Iterator[LiveFrame]:
+    def _stream(self, request: ReactRequest, condition: Any, placement: Placement) -> Answer:
         frames = request.actor.num_frames
-        noise = sample_noise(request.seed, request.samples, (frames, ROWS, ROW_WIDTH))
+        noise = iter(sample_noise(request.seed, request.samples, (frames, ROWS, ROW_WIDTH)).transpose(0, 1))
         stream = self.network.stream(steps=request.steps, batch=request.samples, action=condition, max_frames=frames)
-        finish = [FollowingCleanup() for _ in range(request.samples)]
-        placement: Placement | None = None
-        for index, frame in enumerate(request.actor.positions):
-            began = time.perf_counter()
-            if placement is None:  # from the first frame only
-                placement = Placement.of(Clip(frame[None], FPS, SMPL22), "a")
-            seen = encode(placement.to_network(frame[None]))[..., 0].expand(request.samples, -1, -1)
-            raw = decode(stream.step(seen, noise=noise[:, index])[..., None])[:, 0]
-            shown = raw
-            if request.cleanup and np.isfinite(raw).all():
-                standing = np.zeros(4)  # the network says nothing of the feet
-                shown = np.stack([clean(person, standing) for clean, person in zip(finish, raw, strict=True)])
-            raw, shown = placement.to_world(raw), placement.to_world(shown)
-            yield LiveFrame(index, raw, shown, time.perf_counter() - began)
+
+        def answer(pose: Array) -> tuple[Array, Array]:
+            seen = encode(pose[None])[..., 0].expand(request.samples, -1, -1)
+            made = decode(stream.step(seen, noise=next(noise))[..., None])[:, 0]
+            return made, np.zeros((request.samples, 4))  # the network says nothing of the feet
+
+        return answer

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
+from acts.staging.window import KnownFrames
 from models.bigraphdiff.compact import CompactBiGraphDiff
 from models.compiled import compile_network
 from models.diffusion import SamplerName, make_scheduler, sample_noise, sample_steps
@@ -19,15 +21,18 @@ from models.intergen.compact import CompactInterGen, Touch
 from models.intergen.released import ReleasedInterGen
 from models.motion_tokens import DuetSpace
 from models.weights_io import WeightsFolder
-from motion import Duet, InputError
+from motion import FPS, Duet, InputError
 from motion.metrics import compare
+from motion.placement import Placement
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.damping import Damping
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
+from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
-from .given import Finish, Scene, given_person, scene_of
+from .given import Finish, Given, Reaction, Scene, hold_of
 
+Array = NDArray[np.floating]
 Network = TypeVar("Network", CompactInterGen, CompactBiGraphDiff, ReleasedInterGen)
 
 
@@ -60,14 +65,34 @@ class TwoPersonPipeline(ABC, Generic[Network]):
     """How the timesteps are spread, see :func:`models.diffusion.make_scheduler`."""
 
     def __init__(self, source: WeightsFolder, model: Network) -> None:
-        self.name, self.digest, self.meta = source.folder.name, source.digest, source.meta
+        self.name, self.digest = source.folder.name, source.digest
         self.model: Network = model
         self.compiled = compile_network(model.denoiser, source.digest)
 
     def scene(self, request: GenerateRequest | ReactRequest) -> Scene:
         """The known part of the motion that a request asks for, and how samples become duets."""
-        model = cast(DuetSpace, self.model)
-        return scene_of(request, lambda positions, place: given_person(model, positions, place))
+        if isinstance(request, GenerateRequest):
+            return Scene(round(request.seconds * FPS))
+        actor, place = request.actor, ROLES.index(request.role)
+        placement = Placement.of(actor, request.role, request.prompt)
+        given = self.given(placement.to_network(actor.positions), place)
+        return Reaction(actor.num_frames, given, clip=actor, place=place, placement=placement)
+
+    def given(self, positions: Array, place: int) -> Given:
+        """The known part for a person (T, 22, 3) in the network's frame, 0 for a or 1 for b, given at every frame."""
+        layout = cast(DuetSpace, self.model).layout
+        frames = layout.num_frames(layout.num_tokens(len(positions)))
+        # The last token extends up to seven frames beyond the motion; there the last pose is held.
+        whole = np.pad(positions, ((0, frames - len(positions)), (0, 0), (0, 0)), mode="edge")
+        return hold_of(cast(DuetSpace, self.model), frames, [KnownFrames(place, range(frames), whole)])
+
+    def cleaned(self, person: Array) -> Array:
+        """A generated person (T, 22, 3) after the clean-up."""
+        return clean_person(person)
+
+    def lost(self, settings: SamplingRequest, before: Sequence[Duet], after: Sequence[Duet]) -> tuple[str, ...]:
+        """Sentences on what became of the network's own numbers, from the motion before and after the clean-up."""
+        return ()
 
     @abstractmethod
     def conditioning(self, request: GenerateRequest | ReactRequest) -> Conditioning:
@@ -115,7 +140,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             cancel, timer: as in :meth:`run`.
             measured: the read-outs compare its duets with what they were; all say what damping moved, as ``damped``.
         """
-        layout, given = self.model.layout, scene.given
+        layout = self.model.layout
         x = sample_noise(*noise, (layout.num_tokens(scene.frames), 2 * layout.token_features))
         scheduler = make_scheduler(cast(SamplerName, settings.sampler), settings.steps, spacing=self.spacing)
         damping = Damping(
@@ -123,45 +148,47 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             settings.damping,
             frames=scene.frames,
             timesteps=scheduler.timesteps.tolist(),
-            frozen=None if given is None else given.frozen[0],
+            frozen=None if scene.given is None else scene.given.frozen[0],
             touches=(conditioning.touch,) * len(x),
         )
         condition = conditioning.condition.expand(len(x), *conditioning.condition.shape[1:])
         uncorrected, done = x, 0
+        # What is known is clean at every timestep, as in training (InterGen, section 5.4), and shown to a network that
+        # reads it.
+        held = [scene.given_at(step, settings.steps) for step in range(settings.steps)]
+        seen = {given: self._seen(given, scene) for given in dict.fromkeys(held)}
 
         def predict(x: Tensor, t: Tensor) -> Tensor:
-            # What is known is clean at every timestep, as in training (InterGen, section 5.4), and shown to a network
-            # that reads it.
-            given = scene.given_at(done, settings.steps)
-            features = None if given is None else given.features
-            shown = cast(DuetSpace, self.model).shown(features, scene.draft) if self.model.reads_known else None
-            seen = {} if shown is None else {"known": shown}
-            return self.model.denoiser.guided(
-                given(x) if given else x, t, condition, scale=conditioning.guidance, **seen
-            )
+            given = held[done]
+            x = given(x) if given else x
+            return self.model.denoiser.guided(x, t, condition, scale=conditioning.guidance, **seen[given])
 
         def correct(x0: Tensor, timestep: int) -> Tensor:
-            nonlocal uncorrected
-            given = scene.given_at(done, settings.steps)
-            uncorrected = given.bend(x0) if given else x0
+            nonlocal uncorrected, done
+            given = held[done]
+            uncorrected, done = given.bend(x0) if given else x0, done + 1
             damped = damping(uncorrected, timestep)
             return given(damped) if given else damped
 
-        cancel.raise_if_cancelled()
-        for step in sample_steps(predict, x, scheduler, correct=correct):
-            x, done = step.sample, step.step
-            yield timer.progress("sample", step.step, step.total)
-            cancel.raise_if_cancelled()
-        timer.lap("sample")
+        x = yield from timer.sampled(sample_steps(predict, x, scheduler, correct=correct), cancel)
         yield timer.progress("finish")
-        duets = self._duets(x, scene, clean_person if settings.cleanup else _as_is)
+        duets = self._duets(x, scene, self.cleaned if settings.cleanup else _as_is)
         moved = [0.0] * len(duets) if damping.moved is None else damping.moved.tolist()
         readouts: list[dict[str, Any]] = [{"damped": metres} for metres in moved]
+        notes = conditioning.notes
         if measured:
             before = self._duets(uncorrected, scene, _as_is)
             readouts = [compare(*pair) | each for *pair, each in zip(before, duets, readouts, strict=True)]
+            notes = (*notes, *self.lost(settings, before, duets))
         timer.lap("finish")
-        yield Result(duets=duets, readouts=tuple(readouts), notes=conditioning.notes)
+        yield Result(duets=duets, readouts=tuple(readouts), notes=notes)
+
+    def _seen(self, given: Given | None, scene: Scene) -> dict[str, Tensor]:
+        """The denoiser's input on what is known of a scene, where it reads any."""
+        if not self.model.reads_known:
+            return {}
+        known = cast(DuetSpace, self.model).shown(None if given is None else given.features, scene.draft)
+        return {} if known is None else {"known": known}
 
     def _duets(self, x: Tensor, scene: Scene, finish: Finish) -> tuple[Duet, ...]:
         with torch.no_grad():
