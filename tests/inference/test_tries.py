@@ -15,7 +15,6 @@ from tests.motion.metrics.test_sentence_shapes import duet, put, shift, spin
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Progress, Result, SceneRequest
 from webdemo.inference.engine.tries import judged, note, run_tries
 from webdemo.inference.requests import MAX_SEED, replayed
-from webdemo.inference.run import StageTimer
 from webdemo.inference.story import Beat
 
 SENTENCE = "A raises the left arm and turns around."
@@ -52,7 +51,7 @@ class Runs:
 
 
 def tried(request: Any, runs: Runs, cancel: CancelToken | None = None) -> list[Progress | Result]:
-    return list(run_tries(request, runs, cancel or CancelToken(), StageTimer.start()))
+    return list(run_tries(request, runs, cancel or CancelToken()))
 
 
 def result(request: Any, runs: Runs) -> Result:
@@ -86,7 +85,7 @@ def test_where_none_does_all_the_best_is_kept_of_equals_the_first() -> None:
 def test_cancelling_ends_the_tries_between_two() -> None:
     cancel, runs = CancelToken(), Runs(STILL, STILL, STILL, STILL)
     with pytest.raises(Cancelled):
-        for _ in run_tries(REQUEST, runs, cancel, StageTimer.start()):
+        for _ in run_tries(REQUEST, runs, cancel):
             cancel.cancel()  # at the first try's progress; the try itself does not look
     assert len(runs.asked) == 1
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 from acts import read
 from motion import Duet, InputError
 from motion.formats.recording import ImportChoices
-from webdemo.inference.requests import SamplingRequest
+from webdemo.inference.requests.sampling import SETTINGS
 from webdemo.inference.story import SceneRequest, read_story, split_sentence
 from webdemo.inference.story.request import MOST_SECONDS
 
@@ -47,13 +46,10 @@ def scene(options: argparse.Namespace) -> dict[str, Any]:
     """Runs a :class:`SceneRequest` and writes its duets."""
     check_out(options.out)
     asked = _story(options)
-    for field in fields(SamplingRequest):
-        if getattr(options, field.name, None) is not None:
-            asked[field.name] = getattr(options, field.name)
+    given = {name: getattr(options, name, None) for name in (*SETTINGS, "strictness")}
+    asked |= {name: value for name, value in given.items() if value is not None}
     if options.no_plan:
         asked["planned"] = False
-    if options.strictness is not None:
-        asked["strictness"] = options.strictness
     choices = reading_choices(options)
     if choices != ImportChoices() and options.motion is None:
         raise InputError("--animation and --file-… say how a motion is read: give --motion as well, or leave them out.")

@@ -50,7 +50,7 @@ def test_a_story_is_read_and_written() -> None:
         ('[[beat]]\nwords = "x"\nseconds = "long"\n', "Line 3: seconds must be a number"),
         ("sede = 3\n", "Line 1: there is no key 'sede' in a story; did you mean 'seed'"),
         ("seed = 1.5\n", "Line 1: seed must be a whole number"),
-        ('[[path]]\nperson = "a"\npoints = [[0, 1], [1]]\n', "Line 3: point 2 of points"),
+        ('[[path]]\nperson = "a"\npoints = [[0, 1], [1]]\n', "Line 3: Point 2 of a path"),
         ('[[pose]]\nperson = "a"\nfile = "x.npz"\n', "Line 3: a file is only read from the shell"),
     ],
 )
@@ -85,8 +85,8 @@ def unread(text: str) -> str:
 
 
 TOO_LARGE = [
-    ("[[path]]\n" * 2000, "more than 102 tables"),
-    ("x = 1\n" + "a." * 70_000 + "a = 1", "Line 2: a key has 9 parts"),
+    ("[[path]]\n" * 2000, "2000 paths: keep to 2"),
+    ("x = 1\n" + "a." * 70_000 + "a = 1", "Line 2: 'a.a.a.a.a.a.a.a.a' … is longer than any key"),
     ("seed = " + "[" * 70_000, "nested too deeply"),
     ("seed = " + "9" * 5000, "longer than any key or number"),
     ("beat = [" + '{words="a"},' * 10_000 + "]", "10000 beats"),

@@ -20,13 +20,11 @@ from typing import Any, cast
 
 from motion import Duet, InputError
 from webdemo.inference import methods
-from webdemo.inference.finish.cleanup import standing_clear
-from webdemo.inference.finish.looks import as_given, enlarged, furnished
+from webdemo.inference.finish.looks import enlarged
 from webdemo.inference.live.partner import LivePartner
 from webdemo.inference.method import Pipeline
 from webdemo.inference.methods import WEIGHTS
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
-from webdemo.inference.requests.acting import plans_of, with_plan
 from webdemo.inference.requests.live import PARTNERS, LiveFrame, LiveTake
 from webdemo.inference.requests.predict import PredictRequest
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
@@ -93,16 +91,17 @@ class Engine:
         yield timer.progress("load")
         pipeline = self.pipeline(request.model)
         _take_threads(pipeline)
-        request = with_plan(request)
+        if isinstance(request, SamplingRequest):
+            request = request.with_plan()
         timer.lap("load")
         cancel.raise_if_cancelled()
-        if isinstance(request, LiveTake):  # its motion is there
-            events = _with_things(request.results(timer), request)
-        else:
-            events = run_tries(
-                request, lambda one: _with_things(pipeline.run(enlarged(one), cancel, timer), one), cancel, timer
-            )
-        for event in events:
+
+        def run(one: Request) -> Iterator[Progress | Result]:
+            if isinstance(one, LiveTake):  # its motion is there
+                return one.results(timer)
+            return pipeline.run(enlarged(one), cancel, timer)
+
+        for event in run_tries(request, run, cancel):
             if isinstance(event, Result):
                 timer.lap("finish")
                 manifest = _manifest(request, pipeline) | event.manifest
@@ -165,17 +164,6 @@ class Engine:
                 _take_threads()
                 self._pipelines[name] = found.load(self.weights / (found.weights or name), *parts)
             return self._pipelines[name]
-
-
-def _with_things(events: Iterator[Progress | Result], request: Any) -> Iterator[Progress | Result]:
-    """The events of a run, whose result has people at their own sizes and the things of the request's words."""
-    given = getattr(request, "motion", None) is not None
-    for event in events:
-        if isinstance(event, Result):
-            if isinstance(request, ReactRequest):
-                event = standing_clear(event, request)
-            event = furnished(as_given(event, request), list(plans_of(request)), given=given)
-        yield event
 
 
 def _take_threads(pipeline: Pipeline | None = None) -> None:

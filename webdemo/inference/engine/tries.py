@@ -6,20 +6,21 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from acts import Plan
 from acts.accounting import unread_words
 from acts.checking import NO_RULE, checked, describe
+from acts.things.furnishing import PlanFrames
 from acts.things.judging import judge_things
 from motion import SMPL22, Clip, Duet
 from motion.metrics.sentences.joints import Motion
-from webdemo.inference.finish.looks import lengths_of
-from webdemo.inference.requests.acting import plans_of
+from webdemo.inference.finish.cleanup import standing_clear
+from webdemo.inference.finish.looks import as_given, furnished, lengths_of
+from webdemo.inference.requests import ReactRequest, SamplingRequest
 from webdemo.inference.requests.limits import MAX_SEED
-from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
+from webdemo.inference.run import CancelToken, Progress, Result
 
 
 def run_tries(
-    request: Any, run: Callable[[Any], Iterator[Progress | Result]], cancel: CancelToken, timer: StageTimer
+    request: Any, run: Callable[[Any], Iterator[Progress | Result]], cancel: CancelToken
 ) -> Iterator[Progress | Result]:
     """The progress of up to ``request.tries`` runs and the result of the first that does all that was said.
 
@@ -31,7 +32,6 @@ def run_tries(
         request: what is asked for; every try is this request with ``tries=1`` and its own seed.
         run: makes one try.
         cancel: ends the tries, also between two.
-        timer: of all tries together.
     """
     plan = getattr(request, "plan", None)
     asked = 1 if plan is not None and plan.of_result else getattr(request, "tries", 1)
@@ -45,18 +45,31 @@ def run_tries(
             if not isinstance(event, Result):
                 yield event if asked == 1 else replace(event, attempt=made, attempts=asked)
                 continue
-            found = judged(one, event)
+            found = judged(one, _finished(one, event))
             if best is None or found.share > best.share:
                 best, won = found, made
     assert best is not None
-    yield _finished(best, request, timer, None if asked == 1 else {"asked": asked, "made": made, "won": won})
+    yield _told(best, request, None if asked == 1 else {"asked": asked, "made": made, "won": won})
 
 
 def _seed(first: int, number: int) -> int:
     return (first + number) % (MAX_SEED + 1)
 
 
-def _finished(best: Judged, request: Any, timer: StageTimer, tries: dict[str, Any] | None) -> Result:
+def _finished(request: Any, result: Result) -> Result:
+    """A result whose people have their own sizes and looks, and the things of the request's words."""
+    if isinstance(request, ReactRequest):
+        result = standing_clear(result, request)
+    given = getattr(request, "motion", None) is not None
+    return furnished(as_given(result, request), _plans(request), given=given)
+
+
+def _plans(request: Any) -> list[PlanFrames]:
+    return list(request.spans()) if isinstance(request, SamplingRequest) else []
+
+
+def _told(best: Judged, request: Any, tries: dict[str, Any] | None) -> Result:
+    """A result with the note on what it shows."""
     result = best.result
     if tries is not None:
         tries["seed"] = _seed(request.seed, tries["won"] - 1)
@@ -104,7 +117,7 @@ class Judged:
 
 def judged(request: Any, result: Result) -> Judged:
     """A result with the verdicts on the acts of its request's words; unchanged where there are none to judge."""
-    plans = list(plans_of(request))
+    plans = _plans(request)
     lengths = lengths_of(result.manifest)
     unread = tuple(dict.fromkeys(words for plan, *_ in plans for words in unread_words(plan)))
     found = [_judged_sample(plans, duet, lengths) for duet in result.duets] if plans else []
@@ -126,9 +139,7 @@ def kept_rows(duet: Duet) -> dict[str, Any]:
     return {key: manifest[key] for key in ("checked", "told", "unread", "things") if key in manifest}
 
 
-def _judged_sample(
-    plans: Sequence[tuple[Plan, int, int | None, int | None]], duet: Duet | Clip, lengths: Sequence[float]
-) -> dict[str, Any]:
+def _judged_sample(plans: Sequence[PlanFrames], duet: Duet | Clip, lengths: Sequence[float]) -> dict[str, Any]:
     """The verdicts on a sample, ``checked``, and what happens in it in words, ``told``."""
     if not isinstance(duet, Duet) or duet.skeleton.joint_names != SMPL22.joint_names:
         return {"checked": []}

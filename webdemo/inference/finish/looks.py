@@ -23,7 +23,6 @@ from motion.looks import SIZES, UNSAID, grown_up, looks_of, size_of
 from motion.metrics import compare
 from motion.sizes import at_sizes, bones_of, floor_scale, of_adults
 from motion.smoothing import smoothstep
-from webdemo.inference.requests.acting import plans_of
 from webdemo.inference.requests.paths import FloorPath
 from webdemo.inference.requests.predict import PredictRequest, PredictResult, compared
 from webdemo.inference.run import Result
@@ -124,7 +123,7 @@ def enlarged(request: Any) -> Any:
     if isinstance(request, SceneRequest) and given is not None:
         looks = given.looks
     elif getattr(request, "paths", ()) or getattr(request, "poses", ()):
-        looks = looks_in(plan for plan, *_ in plans_of(request))
+        looks = looks_in(plan for plan, *_ in request.spans())
     else:
         return request
     sizes = _sizes(looks)

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from motion import InputError
-from webdemo.inference.method import Input, Method, Pipeline, Task, load_pipeline
+from webdemo.inference.method import Method, Pipeline, load_pipeline
 
 from .entries import Entry
 
@@ -28,27 +27,17 @@ class Release:
     """A network whose authors released a checkpoint.
 
     Attributes:
-        network: its name.
-        mark: part of its tensors' names, as in :data:`models.released.MARKS`.
-        pipeline: module and class in :mod:`webdemo.inference.pipelines`.
-        summary: one sentence on what it does.
+        method: what it does; its label is the network's name, and its pipeline is loaded from an entry.
+        mark: part of its tensors' names.
         loss: one sentence on what its representation loses here.
-        tasks, takes, seconds, samplers, defaults, fixed: as in :class:`Method`.
         needed: roles of the files that it cannot do without.
         kept: beginnings of the names of tensors that are loaded; all by default.
         modes: outline → the method's modes, mode → ending of its label.
     """
 
-    network: str
+    method: Method
     mark: str
-    pipeline: str
-    summary: str
     loss: str
-    tasks: tuple[Task, ...]
-    takes: frozenset[Input]
-    samplers: tuple[str, ...] = ("ddim", "dpm++")
-    defaults: Mapping[str, Any] = field(default_factory=dict)
-    fixed: Mapping[str, Any] = field(default_factory=dict)
     needed: tuple[str, ...] = ("checkpoint",)
     kept: tuple[str, ...] = ("",)
     modes: Callable[[Outline], dict[str, str]] = lambda outline: {"offline": ""}
@@ -59,57 +48,70 @@ def _regennet_modes(outline: Outline) -> dict[str, str]:
     return {"offline": ", whole motion", "online": ", frame by frame"} if online else {"offline": ""}
 
 
-RELEASES: dict[str, Release] = {
-    "intergen": Release(
-        network="InterGen",
+_RELEASES = (
+    Release(
+        method=Method(
+            name="intergen",
+            label="InterGen",
+            summary="The authors' InterGen: two people from a sentence, or a partner for a given person.",
+            tasks=("generate", "react"),
+            takes=frozenset({"words", "actor", "either role"}),
+            defaults={"guidance": 3.5, "steps": 50},
+            fixed={"damping": 0.0},
+            load=partial(load_pipeline, "intergen.ReleasedInterGenPipeline"),
+        ),
         mark="decoder.net.blocks.",
-        pipeline="intergen.ReleasedInterGenPipeline",
-        summary="The authors' InterGen: two people from a sentence, or a partner for a given person.",
         loss="Of its 262 numbers a person and frame the positions are kept.",
-        tasks=("generate", "react"),
-        takes=frozenset({"words", "actor", "either role"}),
-        defaults={"guidance": 3.5, "steps": 50},
-        fixed={"damping": 0.0},
         needed=("checkpoint", "mean", "std"),
         kept=("model.",),
     ),
-    "regennet": Release(
-        network="ReGenNet",
+    Release(
+        method=Method(
+            name="regennet",
+            label="ReGenNet",
+            summary="The authors' ReGenNet: the person who reacts to a given one.",
+            tasks=("react",),
+            takes=frozenset({"actor"}),
+            samplers=("ddim",),
+            defaults={"steps": 5, "guidance": 1.0},
+            fixed={"damping": 0.0},
+            load=partial(load_pipeline, "regennet.ReleasedReGenNetPipeline"),
+        ),
         mark="cmo_process.poseEmbedding.",
-        pipeline="regennet.ReleasedReGenNetPipeline",
-        summary="The authors' ReGenNet: the person who reacts to a given one.",
         loss="Of SMPL-X's 55 joints the 22 of the body are kept.",
-        tasks=("react",),
-        takes=frozenset({"actor"}),
-        samplers=("ddim",),
-        defaults={"steps": 5, "guidance": 1.0},
-        fixed={"damping": 0.0},
         modes=_regennet_modes,
     ),
-    "interformer": Release(
-        network="InterFormer",
+    Release(
+        method=Method(
+            name="interformer",
+            label="InterFormer",
+            summary="The authors' InterFormer: the person who reacts, pose after pose.",
+            tasks=("react",),
+            takes=frozenset({"actor", "first pose"}),
+            samplers=("ddim",),
+            defaults={"steps": 1},
+            fixed={"steps": 1, "guidance": 1.0, "damping": 0.0, "sampler": "ddim"},
+            load=partial(load_pipeline, "interformer.ReleasedInterFormerPipeline"),
+        ),
         mark="decoder.layers.0.attn_space_1.",
-        pipeline="interformer.ReleasedInterFormerPipeline",
-        summary="The authors' InterFormer: the person who reacts, pose after pose.",
         loss="It sees 15 of the 22 joints, at 15 frames a second.",
-        tasks=("react",),
-        takes=frozenset({"actor", "first pose"}),
-        samplers=("ddim",),
-        defaults={"steps": 1},
-        fixed={"steps": 1, "guidance": 1.0, "damping": 0.0, "sampler": "ddim"},
     ),
-    "bigraphdiff": Release(
-        network="BiGraphDiff",
+    Release(
+        method=Method(
+            name="bigraphdiff",
+            label="BiGraphDiff",
+            summary="The authors' BiGraphDiff: two people from a sentence; 1000 steps sample as in the paper.",
+            tasks=("generate",),
+            takes=frozenset({"words"}),
+            defaults={"guidance": 1.0, "steps": 50},
+            fixed={"damping": 0.0, "guidance": 1.0},
+            load=partial(load_pipeline, "bigraphdiff.ReleasedBiGraphDiffPipeline"),
+        ),
         mark="temporal_decoder_blocks.0.ca_block_1.",
-        pipeline="bigraphdiff.ReleasedBiGraphDiffPipeline",
-        summary="The authors' BiGraphDiff: two people from a sentence; 1000 steps sample as in the paper.",
         loss="A Kinect's 25 joints become 22 on constant bones.",
-        tasks=("generate",),
-        takes=frozenset({"words"}),
-        defaults={"guidance": 1.0, "steps": 50},
-        fixed={"damping": 0.0, "guidance": 1.0},
     ),
-}
+)
+RELEASES = {release.method.name: release for release in _RELEASES}
 """By the name that a table of the settings gives as its method."""
 
 
@@ -125,22 +127,19 @@ def released_method(entry: Entry) -> Method:
         raise InputError(f"there is no method {entry.method!r:.40}: choose one of {', '.join(RELEASES)}.")
     for role in release.needed:
         entry.file(role)
-    outline = outline_of(entry.file("checkpoint"), release.network)
+    outline = outline_of(entry.file("checkpoint"), release.method.label)
     _check_network(entry, release, outline)
     parameters = sum(math.prod(shape) for name, shape in outline.items() if name.startswith(release.kept))
     loading = 4 * parameters * LOADING + RESERVE
     _check_memory(entry.name, loading, total_memory())
-    return Method(
+    return replace(
+        release.method,
         name=entry.name,
         label=entry.label,
-        summary=f"{release.summary} {release.loss} {parameters / 1e6:.0f} million parameters, about "
+        summary=f"{release.method.summary} {release.loss} {parameters / 1e6:.0f} million parameters, about "
         f"{loading / 1e9:.1f} GB of memory.",
-        tasks=release.tasks,
-        takes=release.takes | ({"words"} if entry.labels else set()),
+        takes=release.method.takes | ({"words"} if entry.labels else set()),
         modes={mode: f"{entry.label}{ending}" for mode, ending in release.modes(outline).items()},
-        defaults=release.defaults,
-        fixed=release.fixed,
-        samplers=release.samplers,
         load=partial(_load, entry, release, loading),
     )
 
@@ -150,9 +149,9 @@ def _check_network(entry: Entry, release: Release, outline: Outline) -> None:
         return
     name = entry.files["checkpoint"].name
     other = next((o for o in RELEASES.values() if any(o.mark in name for name in outline)), None)
-    known = f"it is {other.network}'s" if other else f"it has no {release.mark}* tensors"
+    known = f"it is {other.method.label}'s" if other else f"it has no {release.mark}* tensors"
     raise InputError(
-        f"{name} is not a checkpoint of {release.network}: {known}. Correct `method` or `files` of "
+        f"{name} is not a checkpoint of {release.method.label}: {known}. Correct `method` or `files` of "
         f"[models.{entry.name}]."
     )
 
@@ -160,7 +159,7 @@ def _check_network(entry: Entry, release: Release, outline: Outline) -> None:
 def _load(entry: Entry, release: Release, loading: float, folder: Path) -> Pipeline:
     """The pipeline; ``folder`` is that of shipped weights, which it does not need."""
     _check_memory(entry.name, loading, free_memory())
-    return load_pipeline(release.pipeline, entry)
+    return release.method.load(entry)
 
 
 # ---- what a checkpoint holds and takes --------------------------------------------------------------

@@ -27,9 +27,8 @@ from motion import FPS, SMPL22, Clip, Duet
 from motion.placement import MEDIAN_START_DISTANCE, Placement
 from webdemo.inference.finish.joining import joined
 from webdemo.inference.requests import ReactRequest
-from webdemo.inference.requests.plans import KeptPlan
+from webdemo.inference.requests.plans import KeptPlan, plan_of_words
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
-from webdemo.inference.story.beats import plan_of_words
 
 from .given import NAMES, Finish, Reaction, hold_of, settle
 from .intergen import InterGenPipeline

@@ -27,7 +27,6 @@ from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.scene import finish_of, in_touch
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
-from webdemo.inference.requests.acting import with_plan
 from webdemo.inference.requests.plans import BeatFinish, KeptPlan
 from webdemo.inference.requests.predict import PredictRequest, predicted
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
@@ -82,8 +81,8 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         if isinstance(request, SceneRequest):
             return self.scenes.run(request, cancel, timer)
         if isinstance(request, GenerateRequest) and scene is None:
-            return self._generate(with_plan(request), cancel, timer)
-        return super().run(with_plan(request), cancel, timer, scene)
+            return self._generate(request.with_plan(), cancel, timer)
+        return super().run(request.with_plan(), cancel, timer, scene)
 
     def _generate(
         self, request: GenerateRequest, cancel: CancelToken, timer: StageTimer
@@ -131,7 +130,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         """The text vector and the touches that the text asks for; nothing without text."""
         if not request.prompt.strip():
             return self.words("", Plan(), ("", ""), request.guidance)
-        kept = with_plan(request).plan
+        kept = request.with_plan().plan
         assert kept is not None
         plan = kept.acts[0]
         alone = kept.alone if isinstance(request, GenerateRequest) else of_each(plan.acts, lexicon())

@@ -16,6 +16,33 @@ DAMPING = (0.0, 1.0)
 STRICTNESS = (0.0, 1.0)
 MAX_SEED = 2**32 - 1
 SAMPLERS = ("ddim", "dpm++")
+_NUMBERS: dict[str, tuple[str, float, float]] = {
+    "guidance": ("Guidance scale", *GUIDANCE),
+    "damping": ("Damping threshold", *DAMPING),
+    "strictness": ("Strictness", *STRICTNESS),
+}
+_WHOLE: dict[str, tuple[str, int, int]] = {
+    "seed": ("Seed", 0, MAX_SEED),
+    "samples": ("Samples", *SAMPLES),
+    "tries": ("Tries", *TRIES),
+    "steps": ("DDIM steps", *STEPS),
+}
+"""Fields of requests that are numbers, and whole ones, with what messages call them and their limits."""
+
+
+def check_settings(request: object) -> None:
+    """Sets those of a request's fields that are numbers to numbers, and checks its sampler.
+
+    Raises:
+        InputError: one sentence on a value that is none, or outside of its limits.
+    """
+    for name, limits in _WHOLE.items():
+        if hasattr(request, name):
+            object.__setattr__(request, name, whole(limits[0], getattr(request, name), *limits[1:]))
+    for name, bounds in _NUMBERS.items():
+        if hasattr(request, name):
+            object.__setattr__(request, name, number(bounds[0], getattr(request, name), *bounds[1:]))
+    choice("Sampler", getattr(request, "sampler", SAMPLERS[0]), SAMPLERS)
 
 
 def number(name: str, value: Any, low: float, high: float, unit: str = "") -> float:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -165,17 +165,24 @@ def meeting(paths: Sequence[FloorPath]) -> tuple[float, float] | None:
 
 
 def path_of(values: Mapping[str, Any]) -> FloorPath:
-    """A path from its fields; a point may be a mapping or ``[seconds, x, z]`` with or without a heading."""
-    return FloorPath(values.get("person", ""), tuple(map(point_of, values.get("points", ()))))
+    """A path from its fields; a point may be a mapping or ``[seconds, x, z]`` with or without a heading.
+
+    Raises:
+        InputError: if there are too many points, or one is none.
+    """
+    points = values.get("points", ())
+    if len(points) > MOST_POINTS:
+        raise InputError(f"A path has {len(points)} points: keep to {MOST_POINTS} or fewer.")
+    return FloorPath(values.get("person", ""), tuple(_point_of(point, i) for i, point in enumerate(points, 1)))
 
 
-def point_of(values: Mapping[str, Any] | Sequence[float]) -> FloorPoint:
-    """A point of a path; raises InputError if it is none."""
-    if isinstance(values, Mapping):
-        return FloorPoint(**{f.name: values[f.name] for f in fields(FloorPoint) if f.name in values})
-    if len(values) == 2:
-        return FloorPoint(values[0], values[1])
-    if len(values) not in (3, 4):
-        raise InputError("A point of a path is [x, z], [seconds, x, z] or [seconds, x, z, heading].")
-    seconds, x, z = values[:3]
-    return FloorPoint(x, z, seconds, values[3] if len(values) == 4 else None)
+def _point_of(values: Any, number: int) -> FloorPoint:
+    names = ("x", "z") if isinstance(values, Sequence) and len(values) == 2 else ("seconds", "x", "z", "heading")
+    known = values if isinstance(values, Mapping) else dict(zip(names, values, strict=False))
+    given = [value for value in known.values() if value is not None]
+    numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in given)
+    if not numbers or len(known) < len(values) or not {"x", "z"} <= known.keys() <= {*names, "seconds", "heading"}:
+        raise InputError(
+            f"Point {number} of a path must be [x, z], [seconds, x, z] or [seconds, x, z, heading], all numbers."
+        )
+    return FloorPoint(**known)

@@ -1,8 +1,8 @@
 """The plan of a request and of its result: what its words are read as, and what that gives the network.
 
-Words are read once, when a run begins (:mod:`.acting`), and their plan of acts travels in the request. The run adds its
-windows and finishes, and the result's manifest keeps the whole. A result that is made again takes its plan from there:
-a later version may read its words in another way.
+Words are read once, when a run begins (:meth:`.sampling.SamplingRequest.with_plan`), and their plan of acts travels in
+the request. The run adds its windows and finishes, and the result's manifest keeps the whole. A result that is made
+again takes its plan from there: a later version may read its words in another way.
 
 Positions are kept in hundredths of a millimetre. A plan is rounded to them before its first use, so a replayed plan
 gives the network the same numbers.
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, PlainSerializer, PlainValidator, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 
+from acts import read
 from acts.plan import Plan, plan_of, problem
 from acts.staging.window import KnownFrames, KnownPath, Part
 from motion import SMPL22, InputError
@@ -217,6 +218,14 @@ class KeptPlan:
 
 
 _JSON = TypeAdapter(KeptPlan)
+
+
+def plan_of_words(text: str) -> Plan:
+    """The plan of a text; an empty one where it says nothing, is too long, or no parser is installed."""
+    try:
+        return read(text) if text.strip() else Plan()
+    except InputError:
+        return Plan()
 
 
 def kept_plan(manifest: Mapping[str, Any]) -> KeptPlan | None:

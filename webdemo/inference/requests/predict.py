@@ -15,7 +15,7 @@ from webdemo.inference import methods
 from webdemo.inference.run import Result
 
 from .actor import at_30_fps
-from .limits import MAX_SEED, number, whole
+from .limits import check_settings, number
 
 Array = NDArray[np.floating]
 
@@ -49,7 +49,7 @@ class PredictRequest:
         set_ = object.__setattr__
         method = methods.method(self.model, "predict")
         set_(self, "seconds", number("Length", self.seconds, *method.seconds, " seconds"))
-        set_(self, "seed", whole("Seed", self.seed, 0, MAX_SEED))
+        check_settings(self)
         set_(self, "motion", check_motion(self.motion))
         if "two people" in method.takes and not isinstance(self.motion, Duet):
             raise InputError(

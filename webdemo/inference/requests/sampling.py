@@ -3,36 +3,24 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
-from typing import Any
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acts.captions import in_words
 from acts.plan import Plan, plan_of
+from acts.things.furnishing import PlanFrames
 from motion import Clip, InputError
 from webdemo.inference import methods
 from webdemo.inference.method import Method
 
 from .actor import ROLES, check_actor
-from .limits import (
-    DAMPING,
-    GUIDANCE,
-    MAX_SEED,
-    SAMPLERS,
-    SAMPLES,
-    STEPS,
-    STRICTNESS,
-    TRIES,
-    choice,
-    number,
-    prompt_of,
-    whole,
-)
+from .limits import check_settings, choice, number, prompt_of
 from .paths import FloorPath, path_of, timed_paths
-from .plans import KeptPlan
+from .plans import KeptPlan, plan_of_words
 
 
 def _others(needed: str) -> str:
@@ -60,6 +48,7 @@ class SamplingRequest:
         cleanup: project the result onto constant bones and planted feet.
         tries: of a sentence or a story, the seeds from ``seed`` on that are tried until a motion shows all that is
             said; the best is kept (:mod:`.tries`).
+        plan: of the words, or of an earlier result of this request; by default the words are read when the run begins.
     """
 
     seed: int = 0
@@ -71,29 +60,45 @@ class SamplingRequest:
     model: str = "intergen"
     cleanup: bool = True
     tries: int = 1
+    plan: KeptPlan | None = field(default=None, compare=False, repr=False)
 
     @property
     def sampling(self) -> dict[str, Any]:
-        """The settings by their names."""
-        return {f.name: getattr(self, f.name) for f in fields(SamplingRequest)}
+        """The settings by their names, without the plan."""
+        return {name: getattr(self, name) for name in SETTINGS}
+
+    def with_plan(self) -> Self:
+        """The request with its words read; the same one where they are, or where its method takes none."""
+        plan = self.plan or KeptPlan()
+        if plan.acts or "words" not in methods.method(self.model).takes:
+            return self
+        return replace(self, plan=replace(plan, acts=self._read()))
+
+    def spans(self) -> Iterator[PlanFrames]:
+        """The plans of what people do by which a result is judged, with the frames of each and the number of its beat.
+
+        Of what is said in one beat there is no number. A reaction is not judged by its words.
+        """
+        return iter(())
+
+    def _read(self) -> tuple[Plan, ...]:
+        """The plans of the words."""
+        return ()
 
     def _check(self, method: Method) -> None:
-        set_ = object.__setattr__
         if self.steps is None:
-            set_(self, "steps", method.steps)
+            object.__setattr__(self, "steps", method.steps)
         for name, value in method.fixed.items():
-            set_(self, name, value)
-        set_(self, "seed", whole("Seed", self.seed, 0, MAX_SEED))
-        set_(self, "samples", whole("Samples", self.samples, *SAMPLES))
-        set_(self, "tries", whole("Tries", self.tries, *TRIES))
-        set_(self, "guidance", number("Guidance scale", self.guidance, *GUIDANCE))
-        set_(self, "steps", whole("DDIM steps", self.steps, *STEPS))
-        set_(self, "damping", number("Damping threshold", self.damping, *DAMPING))
-        choice("Sampler", self.sampler, SAMPLERS)
+            object.__setattr__(self, name, value)
+        check_settings(self)
         if self.sampler not in method.samplers:
             raise InputError(
                 f"{method.label} does not sample with {self.sampler}: choose {' or '.join(method.samplers)}."
             )
+
+
+SETTINGS = tuple(f.name for f in fields(SamplingRequest) if f.name != "plan")
+"""The names of the settings of every job that denoises a motion."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +117,6 @@ class GenerateRequest(SamplingRequest):
         acts: what the two do, as a plan that was written or edited by hand; the words are then read by nobody. Where
             there are no words, they follow from the acts. Only with ``split`` and ``planned``.
         paths: on the floor, one for a person at most; only with ``split``, by a model that makes scenes.
-        plan: of the words, or of an earlier result of this request; by default the words are read when the run begins.
     """
 
     prompt: str = ""
@@ -122,7 +126,6 @@ class GenerateRequest(SamplingRequest):
     strictness: float = 0.7
     acts: Plan | None = None
     paths: tuple[FloorPath, ...] = ()
-    plan: KeptPlan | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         method = methods.method(self.model, "generate")
@@ -132,7 +135,6 @@ class GenerateRequest(SamplingRequest):
                 object.__setattr__(self, "prompt", in_words(self.acts))
         prompt_of(self.prompt, needed=True)
         object.__setattr__(self, "seconds", number("Length", self.seconds, *method.seconds, " seconds"))
-        object.__setattr__(self, "strictness", number("Strictness", self.strictness, *STRICTNESS))
         self._check(method)
         if self.paths:
             self._check_paths(method)
@@ -150,6 +152,16 @@ class GenerateRequest(SamplingRequest):
         paths = {"paths": [asdict(path) for path in self.paths]} if self.paths else {}
         acts = {} if self.acts is None else {"acts": self.acts.model_dump(mode="json", exclude_defaults=True)}
         return {"kind": "generate", **plain, **acts, **paths}
+
+    def spans(self) -> Iterator[PlanFrames]:
+        """One plan, of all frames, where its method takes words and these say something."""
+        whole = self.with_plan().plan
+        for plan in whole.acts if whole is not None else ():
+            if plan.sentence or plan.acts:
+                yield plan, 0, None, None
+
+    def _read(self) -> tuple[Plan, ...]:
+        return (plan_of_words(self.prompt) if self.acts is None else self.acts,)
 
 
 def clip_facts(clip: Clip) -> dict[str, Any]:
@@ -183,7 +195,6 @@ class ReactRequest(SamplingRequest):
             depends only on the given person's frames so far.
         first_pose: (22, 3) metres, the generated person's first pose in the actor's world; free by default. Not for
             InterGen and the virtual agent.
-        plan: as of :class:`GenerateRequest`.
     """
 
     actor: Clip
@@ -192,7 +203,6 @@ class ReactRequest(SamplingRequest):
     role: str = "a"
     mode: str = "offline"
     first_pose: NDArray[np.floating] | None = field(default=None, compare=False)
-    plan: KeptPlan | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         prompt_of(self.prompt, needed=False)
@@ -213,6 +223,9 @@ class ReactRequest(SamplingRequest):
         object.__setattr__(self, "tries", 1)  # a reaction is not judged by its words
         if self.mode == "online":  # a frame that was already sent cannot be corrected
             object.__setattr__(self, "damping", 0.0)
+
+    def _read(self) -> tuple[Plan, ...]:
+        return (plan_of_words(self.prompt),)
 
     def _check_first_pose(self, method: Method) -> None:
         if "first pose" not in method.takes:

@@ -8,13 +8,14 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from acts import Plan, read
+from acts import Plan
 from acts.captions import sentence
 from acts.lexicon import lexicon
-from acts.plan import MOST_ACTS, Act, beats, problem
+from acts.plan import MOST_ACTS, Act, beats, plan_of, problem
 from acts.reading.wording import begins_with_subject
 from motion import InputError
 from webdemo.inference.requests.limits import MAX_PROMPT, MAX_SEED
+from webdemo.inference.requests.plans import kept_plan, plan_of_words
 
 SHORTEST, LONGEST = 0.5, 30.0
 """Seconds of one beat."""
@@ -115,14 +116,6 @@ def _of_person(text: str, who: str) -> str:
     return f"{who} {text[:1].lower()}{text[1:]}"
 
 
-def plan_of_words(text: str) -> Plan:
-    """The plan of a text; an empty one where it says nothing, is too long, or no parser is installed."""
-    try:
-        return read(text) if text.strip() else Plan()
-    except InputError:
-        return Plan()
-
-
 def plan_of_beat(beat: Beat) -> Plan:
     """The plan of a beat: of its acts alone, without their relations to acts of other beats, or of its words."""
     if not beat.acts:
@@ -136,6 +129,22 @@ def beat_of(values: Mapping[str, Any]) -> Beat:
     """A beat from its fields; raises InputError for acts that are none."""
     plain = {f.name: values[f.name] for f in fields(Beat) if values.get(f.name) is not None}
     return Beat(**{**plain, "acts": acts_of(plain.get("acts", ()))})
+
+
+def plans_of_result(manifest: Mapping[str, Any]) -> tuple[Plan, ...]:
+    """The plans of a result's words, of each beat where it is of a story; read now, if a version kept none.
+
+    Raises:
+        InputError: if they are damaged.
+    """
+    if (kept := kept_plan(manifest)) is not None and kept.acts:
+        return kept.acts
+    asked = manifest.get("request") or {}
+    if asked.get("acts"):
+        return (plan_of(asked["acts"]),)
+    if asked.get("beats"):
+        return tuple(plan_of_beat(beat_of(beat)) for beat in asked["beats"])
+    return (plan_of_words(str(asked.get("prompt") or "")),)
 
 
 def acts_of(values: Sequence[Any]) -> tuple[Act, ...]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -17,13 +17,14 @@ from acts.staging.score import Score
 from acts.staging.stage import scores_of
 from acts.staging.take import Take
 from acts.staging.window import AFTER, MOST_FRAMES, PAST, Window
+from acts.things.furnishing import PlanFrames
 from motion import FPS, Duet, InputError
 from webdemo.inference import methods
-from webdemo.inference.requests import GenerateRequest, SamplingRequest
-from webdemo.inference.requests.limits import STRICTNESS, number
+from webdemo.inference.requests.limits import number
 from webdemo.inference.requests.paths import FloorPath, path_of, timed_paths
 from webdemo.inference.requests.plans import KeptPlan
 from webdemo.inference.requests.predict import check_motion
+from webdemo.inference.requests.sampling import SETTINGS, GenerateRequest, SamplingRequest
 from webdemo.inference.run import Progress
 
 from .beats import MOST_BEATS, SHORTEST, Beat, beat_of, plan_of_beat, seconds_of_acts
@@ -56,7 +57,6 @@ class SceneRequest(SamplingRequest):
         motion: a given motion of two people on SMPL22's joints, of up to three minutes.
         start: second of the given motion at which the beats begin; its end by default.
         end: second at which the given motion goes on.
-        plan: of the beats, or of an earlier result of this request; by default the words are read.
     """
 
     beats: tuple[Beat, ...] = ()
@@ -68,12 +68,10 @@ class SceneRequest(SamplingRequest):
     motion: Duet | None = None
     start: float | None = None
     end: float | None = None
-    plan: KeptPlan | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
         self._check(methods.method(self.model, "scene"))
-        set_(self, "strictness", number("Strictness", self.strictness, *STRICTNESS))
         set_(self, "beats", tuple(self.beats))
         self._check_beats()
         if self.motion is None:
@@ -213,6 +211,16 @@ class SceneRequest(SamplingRequest):
         kept = self.plan.acts if self.plan is not None else ()
         return kept if len(kept) == len(self.beats) else tuple(map(plan_of_beat, self.beats))
 
+    def spans(self) -> Iterator[PlanFrames]:
+        """The plan of each beat that says something."""
+        several, edges = len(self.beats) > 1, self.edges
+        for i, plan in enumerate(self.plans):
+            if plan.sentence or plan.acts:
+                yield plan, edges[i], edges[i + 1], i + 1 if several else None
+
+    def _read(self) -> tuple[Plan, ...]:
+        return self.plans
+
     @cached_property
     def scores(self) -> tuple[Score, ...]:
         """The score of each beat, in the take of its seed."""
@@ -265,7 +273,7 @@ class SceneRequest(SamplingRequest):
         Raises:
             InputError: for values that are no longer taken.
         """
-        plain = {f.name: values[f.name] for f in fields(SamplingRequest) if f.name in values}
+        plain = {name: values[name] for name in SETTINGS if name in values}
         return cls(
             **plain,
             beats=tuple(beat_of(beat) for beat in values.get("beats", ())),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,13 +18,13 @@ from acts.staging.stage import score_of
 from acts.things import is_fixture
 from motion import FPS, InputError
 from webdemo.inference import methods
-from webdemo.inference.requests import GenerateRequest, SamplingRequest
-from webdemo.inference.requests.acting import with_plan
+from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.requests.limits import MAX_PROMPT
 from webdemo.inference.requests.paths import FloorPath
+from webdemo.inference.requests.plans import plan_of_words
 from webdemo.inference.run import CancelToken
 
-from .beats import MOST_BEATS, SHORTEST, Beat, beat_of, plan_of_beat, plan_of_words, seconds_of_acts
+from .beats import MOST_BEATS, SHORTEST, Beat, beat_of, plan_of_beat, seconds_of_acts
 from .request import SceneRequest
 
 MOST_WORDS = MOST_BEATS * MAX_PROMPT
@@ -275,7 +275,7 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
     if not request.split or "scene" not in methods.method(request.model).tasks:
         return None
     go_on()
-    request = with_plan(request)
+    request = request.with_plan()
     assert request.plan is not None
     whole, replays = request.plan.acts[0], request.plan.of_result
     beats = tuple(beat_of(beat) for beat in request.plan.beats) if replays else _beats(request, whole)
@@ -298,7 +298,7 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
         planned=request.planned,
         strictness=request.strictness,
         plan=replace(request.plan, acts=plans),
-        **{f.name: getattr(request, f.name) for f in fields(SamplingRequest)},
+        **request.sampling,
     )
 
 

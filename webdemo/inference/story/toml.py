@@ -26,7 +26,6 @@ import difflib
 import re
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -37,9 +36,9 @@ import tomlkit
 from motion import Duet, InputError
 from motion.formats import read
 from webdemo.inference.methods import method
-from webdemo.inference.requests import SamplingRequest
 from webdemo.inference.requests.actor import ROLES
-from webdemo.inference.requests.paths import MOST_POINTS, FloorPath, FloorPoint, path_of
+from webdemo.inference.requests.paths import FloorPath, FloorPoint, path_of
+from webdemo.inference.requests.sampling import SETTINGS
 
 from .beats import MOST_BEATS, Beat, beat_of
 from .poses import MOST_POSES, Pose
@@ -48,20 +47,14 @@ from .sentences import split_sentence
 
 MOST_CHARACTERS = 150_000
 """Of a story in TOML; the longest there is, with all its paths and poses written in full, has fewer."""
-MOST_DEEP = 8
-"""Lists and tables in each other; a story has three."""
-MOST_PARTS = 8
-"""Parts of a dotted key; a story's keys have one."""
-LONGEST_WORD = 100
-"""Characters of a number or a bare key."""
-_TOKEN = re.compile(
-    r'(?P<text>"""(?:[^"\\]|\\.|"(?!""))*+"{3,5}'
-    r"|'''(?:[^']|'(?!''))*+'{3,5}"
-    r'|"(?:[^"\\\n]|\\[^\n])*+"'
-    r"|'[^'\n]*+')"
-    r"|(?P<comment>#[^\n]*+)|(?P<space>[ \t\r]++)|(?P<word>[\w+-]++)|(?P<sign>.)",
+_ASIDE = re.compile(
+    r'''"""(?:[^"\\]|\\.|"(?!""))*+"{3,5}|"(?:[^"\\\n]|\\[^\n])*+"|'[^'\n]*+'|#[^\n]*+'''
+    r"|'''(?:[^']|'(?!''))*+'{3,5}",
     re.DOTALL,
 )
+"""Strings and comments."""
+_TOO_LONG = re.compile(r'[\w+-]{101}|[\w"-]++(?:[ \t]*+\.[ \t]*+[\w"-]++){8}')
+"""Words longer than any key or number of a story, and keys of more parts."""
 _HEADER = re.compile(r"^\s*\[\[?\s*\"?([\w-]+)\"?\s*\]\]?")
 _KEY = re.compile(r"^\s*(?:\"([^\"]*)\"|'([^']*)'|([\w-]+))\s*[.=]")
 _LOOKS_LIKE_TOML = re.compile(r"^[ \t]*+(?:\[\[?[ \t]*\w++[ \t]*\]|\w++[ \t]*=)", re.MULTILINE)
@@ -117,7 +110,7 @@ def read_story(text: str, folder: Path | None = None) -> dict[str, Any]:
     """
     if len(text) > MOST_CHARACTERS:
         raise InputError(f"The story has {len(text):,} characters: shorten it to {MOST_CHARACTERS:,}.")
-    check_outline(text, sum(most for _, most in _TABLES.values()))
+    _check_words(text)
     try:
         found = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -134,7 +127,7 @@ def read_story(text: str, folder: Path | None = None) -> dict[str, Any]:
             if not isinstance(entry, Mapping):
                 raise InputError(f"{lines.where('', 0, table)}{table} must be written as [[{table}]].")
             _check_keys(entry, known, lines, table, i, f"a {table}")
-    plain = {f.name: found[f.name] for f in fields(SamplingRequest) if f.name in found}
+    plain = {name: found[name] for name in SETTINGS if name in found}
     return plain | {
         "beats": tuple(_beat(entry, i, lines) for i, entry in enumerate(found.get("beat", ()))),
         "paths": tuple(_path(entry, i, lines) for i, entry in enumerate(found.get("path", ()))),
@@ -162,11 +155,10 @@ def write_story(request: SceneRequest) -> str:
     """A story as TOML text that :func:`read_story` reads as the same fields; a given motion is not part of it."""
     story = tomlkit.document()
     story["seed"] = request.seed
-    for f in fields(SamplingRequest):
-        value = getattr(request, f.name)
-        default = method(request.model, "scene").steps if f.name == "steps" else f.default
-        if f.name != "seed" and value != default:
-            story[f.name] = value
+    defaults = {name: getattr(SceneRequest, name) for name in SETTINGS if name != "seed"}
+    for name, default in (defaults | {"steps": method(request.model, "scene").steps}).items():
+        if getattr(request, name) != default:
+            story[name] = getattr(request, name)
     if not request.planned:
         story["planned"] = False
     if request.strictness != SceneRequest.strictness:
@@ -243,21 +235,11 @@ def _beat(entry: Mapping[str, Any], index: int, lines: Lines) -> Beat:
 
 
 def _path(entry: Mapping[str, Any], index: int, lines: Lines) -> FloorPath:
-    points = entry.get("points", [])
     where = lines.where("path", index, "points") or "A path: "
-    if len(points) > MOST_POINTS:
-        raise InputError(f"{where}there are {len(points)} points: keep to {MOST_POINTS} or fewer.")
-    keys = {"seconds", "x", "z", "heading"}
-    for number, point in enumerate(points, 1):
-        values = list(point.values()) if isinstance(point, Mapping) else point
-        listed = isinstance(point, list) and 2 <= len(point) <= 4
-        shaped = {"x", "z"} <= set(point) <= keys if isinstance(point, Mapping) else listed
-        if not shaped or not all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in values):
-            raise InputError(
-                f"{where}point {number} of points must be [x, z], [seconds, x, z] or "
-                "[seconds, x, z, heading], all numbers."
-            )
-    return path_of({"person": entry.get("person", ""), "points": points})
+    try:
+        return path_of(entry)
+    except InputError as error:
+        raise InputError(f"{where}{error}") from None
 
 
 def _pose(entry: Mapping[str, Any], index: int, lines: Lines, folder: Path | None) -> Pose:
@@ -290,40 +272,16 @@ def _pose(entry: Mapping[str, Any], index: int, lines: Lines, folder: Path | Non
     return Pose(person, seconds, np.asarray(clip.positions[frame], dtype=np.float64))
 
 
-# ---- the outline -----------------------------------------------------------------------------------------
-def check_outline(text: str, most_tables: int) -> None:
-    """Raises InputError for a text with more tables, or keys and lists in each other, than a story can have.
+def _check_words(text: str) -> None:
+    """Raises InputError for a text with a longer word or key than a story can have.
 
-    `tomllib` takes quadratic time for a key of many parts and has no limits, so a stranger's text is looked through
-    once, in linear time, before it is parsed.
-
-    Args:
-        text: TOML, valid or not.
-        most_tables: table headers, as ``[[beat]]``.
+    `tomllib` takes quadratic time and memory for a key of many parts, so a stranger's text is looked through before it
+    is parsed.
     """
-    line, tables, depth, dots, begins = 1, 0, 0, 0, True
-    for token in _TOKEN.finditer(text):
-        kind, found = token.lastgroup, token[0]
-        line += found.count("\n") if kind in ("text", "sign") else 0
-        if kind == "word" and len(found) > LONGEST_WORD:
-            raise InputError(f"Line {line}: {found[:20]!r} … is longer than any key or number: shorten it.")
-        if kind == "sign" and found == ".":
-            dots += 1
-            if dots >= MOST_PARTS:
-                raise InputError(f"Line {line}: a key has {dots + 1} parts or more: a story's keys have one.")
-        elif kind == "sign":
-            dots = 0
-        if kind == "sign" and found in "[{":
-            tables += found == "[" and begins
-            depth += 1
-            if tables > most_tables:
-                raise InputError(f"The story has more than {most_tables} tables, more than any scene can: shorten it.")
-            if depth > MOST_DEEP:
-                raise InputError("The story is no valid TOML: its lists are nested too deeply.")
-        elif kind == "sign" and found in "]}":
-            depth = max(depth - 1, 0)
-        if kind not in ("space", "comment"):
-            begins = found == "\n" and not depth
+    outline = _ASIDE.sub(lambda found: '""' + "\n" * found[0].count("\n"), text)
+    if found := _TOO_LONG.search(outline):
+        line = outline.count("\n", 0, found.start()) + 1
+        raise InputError(f"Line {line}: {found[0][:20]!r} … is longer than any key or number of a story: shorten it.")
 
 
 class Lines:

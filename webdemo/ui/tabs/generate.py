@@ -12,9 +12,9 @@ from motion import InputError
 from webdemo.inference.method import SECONDS
 from webdemo.inference.methods import installed, label_of, method
 from webdemo.inference.requests import GenerateRequest
-from webdemo.inference.requests.acting import plans_of_result
 from webdemo.inference.requests.paths import path_of
 from webdemo.inference.run import Result
+from webdemo.inference.story.beats import plans_of_result
 from webdemo.ui.components.gallery import Gallery
 from webdemo.ui.components.reading import Reading, checked, drawn_paths, edited_plan, shown
 from webdemo.ui.components.settings import looked_up
