@@ -172,16 +172,16 @@ class TwoPersonPipeline(ABC, Generic[Network]):
 
         x = yield from timer.sampled(sample_steps(predict, x, scheduler, correct=correct), cancel)
         yield timer.progress("finish")
-        duets = self._duets(x, scene, self.cleaned if settings.cleanup else _as_is)
+        duets: tuple[Duet, ...] = self._duets(x, scene, self.cleaned if settings.cleanup else _as_is)
         moved = [0.0] * len(duets) if damping.moved is None else damping.moved.tolist()
         readouts: list[dict[str, Any]] = [{"damped": metres} for metres in moved]
-        notes = conditioning.notes
+        notes: list[str] = list(conditioning.notes)
         if measured:
-            before = self._duets(uncorrected, scene, _as_is)
+            before: tuple[Duet, ...] = self._duets(uncorrected, scene, _as_is)
             readouts = [compare(*pair) | each for *pair, each in zip(before, duets, readouts, strict=True)]
-            notes = (*notes, *self.lost(settings, before, duets))
+            notes += self.lost(settings, before, duets)
         timer.lap("finish")
-        yield Result(duets=duets, readouts=tuple(readouts), notes=notes)
+        yield Result(duets=duets, readouts=tuple(readouts), notes=tuple(notes))
 
     def _seen(self, given: Given | None, scene: Scene) -> dict[str, Tensor]:
         """The denoiser's input on what is known of a scene, where it reads any."""
