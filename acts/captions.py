@@ -125,8 +125,8 @@ def naming(act: Act, entry: Entry, other: str) -> str:
 def caption_of(act: Act, entry: Entry) -> str:
     """The caption that fits an act: its entry's first, or the first without the other where one person acts alone."""
     alone = len(act.agents) == 1 and act.patient is None and entry.to != "other" and not entry.mutual
-    own = (text for text in entry.caption if "{b}" not in text and not text.startswith("{a+b}"))
-    return next(own, entry.caption[0]) if alone else entry.caption[0]
+    own = [text for text in entry.caption if "{b}" not in text and not text.startswith("{a+b}")]
+    return own[0] if alone and own else entry.caption[0]
 
 
 def beats(plan: Plan, known: Lexicon) -> list[str]:

@@ -8,8 +8,18 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from motion.skeleton import Skeleton
+
 TRACED_ROWS = 1024
 """Positions and timesteps that a traced network knows: all 1000 timesteps, and more tokens than any motion has."""
+
+
+def neighbours(skeleton: Skeleton) -> Tensor:
+    """(J, J) bool: each joint of a skeleton with itself and the joints it hangs on (Chopin's thesis, eq. 3.6)."""
+    mask = torch.eye(skeleton.num_joints, dtype=torch.bool)
+    for parent, child in skeleton.bones:
+        mask[parent, child] = mask[child, parent] = True
+    return mask
 
 
 def sinusoids_at(positions: Tensor, width: int) -> Tensor:

@@ -8,6 +8,7 @@ linear blend skinning. ``static/player/pose.js`` and ``body.js`` do the same in 
 from __future__ import annotations
 
 import base64
+import itertools
 import json
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 
 from .errors import InputError
 from .hands import NUMBERS, SHAPES, Fingers
-from .kinematics import swing
+from .kinematics import swing_of_units
 from .looks import LOOKS
 from .skeleton import SMPL22
 from .smoothing import smoothstep
@@ -160,12 +161,12 @@ def bone_rotations(positions: Array) -> Array:
         (T, 22, 3, 3) world rotations.
     """
     positions = np.asarray(positions, dtype=np.float64)
-    world = np.empty((*positions.shape, 3))
-    _turn_trunk(positions, world)
-    _turn_head(positions, world)
+    world, ways = np.empty((*positions.shape, 3)), _ways(positions)
+    _turn_trunk(positions, ways, world)
+    _turn_head(ways, world)
     for side, sign in (("left", -1.0), ("right", 1.0)):
-        _turn_arm(positions, world, side, sign)
-        _turn_leg(positions, world, side)
+        _turn_arm(positions, ways, world, side, sign)
+        _turn_leg(positions, ways, world, side)
     return world
 
 
@@ -186,61 +187,74 @@ _LOW_FOOT = (0.03, 0.1)
 """Heights in metres of the ball of the foot between which a sole stops lying flat."""
 
 
-def _toward(positions: Array, a: str, b: str) -> Array:
-    """(T, 3) unit vector from joint ``a`` to joint ``b``."""
-    return unit(positions[:, _J[b]] - positions[:, _J[a]])
+_PAIRS = (
+    ("right_hip", "left_hip"),
+    ("right_collar", "left_collar"),
+    *itertools.pairwise(("spine1", "spine2", "spine3", "neck", "head")),
+    *(
+        (f"{side}_{first}", f"{side}_{second}")
+        for side in ("left", "right")
+        for limb in (("collar", "shoulder", "elbow", "wrist"), ("hip", "knee", "ankle", "foot"))
+        for first, second in itertools.pairwise(limb)
+    ),
+)
+Ways = dict[tuple[str, str], Array]
 
 
-def _rest_toward(a: str, b: str) -> Array:
-    """(3,) unit vector from joint ``a`` to joint ``b`` in the T-pose."""
-    return unit(_REST[_J[b]] - _REST[_J[a]])
+def _ways(poses: Array) -> Ways:
+    """(…, 3) unit vectors from one joint to another, by :data:`_PAIRS`, of poses (…, 22, 3)."""
+    starts, ends = np.array([(_J[a], _J[b]) for a, b in _PAIRS]).T
+    return dict(zip(_PAIRS, np.moveaxis(unit(poses[..., ends, :] - poses[..., starts, :]), -2, 0), strict=True))
 
 
-def _follow(positions: Array, base: Array, a: str, b: str) -> Array:
+_REST_WAYS = _ways(_REST)
+
+
+def _follow(ways: Ways, base: Array, a: str, b: str) -> Array:
     """(T, 3, 3) ``base`` turned by the least rotation that points its bone from ``a`` to ``b`` as it lies."""
-    return swing(base @ _rest_toward(a, b), _toward(positions, a, b)) @ base
+    return swing_of_units(base @ _REST_WAYS[a, b], ways[a, b]) @ base
 
 
-def _turn_trunk(positions: Array, world: Array) -> None:
+def _turn_trunk(positions: Array, ways: Ways, world: Array) -> None:
     """Pelvis and chest turn with hips and collars; the spine between them shares their difference."""
     middle = (positions[:, _J["left_hip"]] + positions[:, _J["right_hip"]]) / 2
     rest_middle = (_REST[_J["left_hip"]] + _REST[_J["right_hip"]]) / 2
-    pelvis = square_frame(positions[:, _J["spine1"]] - middle, _toward(positions, "right_hip", "left_hip"))
-    pelvis = pelvis @ square_frame(_REST[_J["spine1"]] - rest_middle, _rest_toward("right_hip", "left_hip")).T
-    chest = square_frame(_toward(positions, "spine3", "neck"), _toward(positions, "right_collar", "left_collar"))
-    chest = chest @ square_frame(_rest_toward("spine3", "neck"), _rest_toward("right_collar", "left_collar")).T
+    pelvis = square_frame(positions[:, _J["spine1"]] - middle, ways["right_hip", "left_hip"])
+    pelvis = pelvis @ square_frame(_REST[_J["spine1"]] - rest_middle, _REST_WAYS["right_hip", "left_hip"]).T
+    chest = square_frame(ways["spine3", "neck"], ways["right_collar", "left_collar"])
+    chest = chest @ square_frame(_REST_WAYS["spine3", "neck"], _REST_WAYS["right_collar", "left_collar"]).T
     world[:, _J["pelvis"]], world[:, _J["spine3"]] = pelvis, chest
     between = scipy.spatial.transform.Rotation.from_matrix(np.swapaxes(pelvis, -1, -2) @ chest).as_rotvec()
     for name, child, share in (("spine1", "spine2", 1 / 3), ("spine2", "spine3", 2 / 3)):
-        world[:, _J[name]] = _follow(positions, pelvis @ rotations_by(share * between), name, child)
+        world[:, _J[name]] = _follow(ways, pelvis @ rotations_by(share * between), name, child)
 
 
-def _turn_head(positions: Array, world: Array) -> None:
+def _turn_head(ways: Ways, world: Array) -> None:
     """Neck and head turn to the side on which the head lies, and the face takes back a part of its pitch."""
     chest = world[:, _J["spine3"]]
     # The head joint lies in front of the neck, so its place shows to which side the face turns.
-    ahead = np.einsum("tji,tj->ti", chest, _toward(positions, "neck", "head"))
+    ahead = np.einsum("tji,tj->ti", chest, ways["neck", "head"])
     yaw = np.clip(np.arctan2(ahead[:, 0], np.maximum(ahead[:, 2], _LEAST_AHEAD)), -_MOST_YAW, _MOST_YAW)
     for name, share in (("neck", 0.5), ("head", 1.0)):
         turned = chest @ rotations_by(share * yaw[:, None] * np.array([0.0, 1.0, 0.0]))
-        world[:, _J[name]] = _follow(positions, turned, "neck", "head")
+        world[:, _J[name]] = _follow(ways, turned, "neck", "head")
     # People who bend their necks go on looking ahead.
     pitch = -np.arcsin(np.clip(world[:, _J["head"], 1, 2], -1.0, 1.0))
     level = _MOST_LEVEL * np.tanh(0.6 * pitch / _MOST_LEVEL)
     world[:, _J["head"]] = world[:, _J["head"]] @ rotations_by(level[:, None] * np.array([-1.0, 0.0, 0.0]))
 
 
-def _turn_arm(positions: Array, world: Array, side: str, sign: float) -> None:
+def _turn_arm(positions: Array, ways: Ways, world: Array, side: str, sign: float) -> None:
     """The elbow bends about one axis, which gives the twist; ``sign`` is that of the axis in the T-pose."""
     collar, shoulder, elbow, wrist = (f"{side}_{n}" for n in ("collar", "shoulder", "elbow", "wrist"))
-    world[:, _J[collar]] = _follow(positions, world[:, _J["spine3"]], collar, shoulder)
-    straight = _follow(positions, world[:, _J[collar]], shoulder, elbow)
-    upper = _toward(positions, shoulder, elbow)
+    world[:, _J[collar]] = _follow(ways, world[:, _J["spine3"]], collar, shoulder)
+    straight = _follow(ways, world[:, _J[collar]], shoulder, elbow)
+    upper = ways[shoulder, elbow]
     hinge = straight @ np.array([0.0, sign, 0.0])
-    twist = _hinge_twist(upper, _toward(positions, elbow, wrist), hinge, _ARM_BEND)
+    twist = _hinge_twist(upper, ways[elbow, wrist], hinge, _ARM_BEND)
     # Half of the twist sits in the upper arm, all of it in the forearm: shoulders keep their shape.
     world[:, _J[shoulder]] = rotations_by(0.5 * twist[:, None] * upper) @ straight
-    world[:, _J[elbow]] = _follow(positions, rotations_by(twist[:, None] * upper) @ straight, elbow, wrist)
+    world[:, _J[elbow]] = _follow(ways, rotations_by(twist[:, None] * upper) @ straight, elbow, wrist)
     world[:, _J[wrist]] = _flat_hand(positions[:, _J[wrist], 1], world[:, _J[elbow]], sign)
 
 
@@ -260,21 +274,21 @@ def _flat_hand(height: Array, forearm: Array, sign: float) -> Array:
     return rotations_by(bent[:, None] * unit(axis)) @ forearm
 
 
-def _turn_leg(positions: Array, world: Array, side: str) -> None:
+def _turn_leg(positions: Array, ways: Ways, world: Array, side: str) -> None:
     """The knee and the foot give the twist of the leg; a sole near the floor lies flat and its toes bend."""
     hip, knee, ankle, foot = (f"{side}_{n}" for n in ("hip", "knee", "ankle", "foot"))
-    straight = _follow(positions, world[:, _J["pelvis"]], hip, knee)
-    thigh, shin = _toward(positions, hip, knee), _toward(positions, knee, ankle)
-    sole, rest_sole = _toward(positions, ankle, foot), _rest_toward(ankle, foot)
+    straight = _follow(ways, world[:, _J["pelvis"]], hip, knee)
+    thigh, shin = ways[hip, knee], ways[knee, ankle]
+    sole, rest_sole = ways[ankle, foot], _REST_WAYS[ankle, foot]
     bend = _bend(thigh, shin, _LEG_BEND)
     by_knee = _hinge_twist(thigh, shin, straight @ np.array([1.0, 0.0, 0.0]), _LEG_BEND)
-    by_foot = _angle_about(shin, _follow(positions, straight, knee, ankle) @ rest_sole, sole)
+    by_foot = _angle_about(shin, _follow(ways, straight, knee, ankle) @ rest_sole, sole)
     twist = np.clip(by_knee, -1.2, 1.2) + (1 - bend) * 0.6 * np.clip(by_foot, -_MOST_SHIN, _MOST_SHIN)
     world[:, _J[hip]] = rotations_by(twist[:, None] * thigh) @ straight
-    lower = _follow(positions, world[:, _J[hip]], knee, ankle)
+    lower = _follow(ways, world[:, _J[hip]], knee, ankle)
     by_foot = np.clip(_angle_about(shin, lower @ rest_sole, sole), -_MOST_SHIN, _MOST_SHIN)
     world[:, _J[knee]] = rotations_by(by_foot[:, None] * shin) @ lower
-    loose = _follow(positions, world[:, _J[knee]], ankle, foot)
+    loose = _follow(ways, world[:, _J[knee]], ankle, foot)
     low = 1 - smoothstep(positions[:, _J[foot], 1], *_LOW_FOOT)
     up = np.broadcast_to(np.array([0.0, 1.0, 0.0]), sole.shape)
     roll = np.clip(_angle_about(sole, loose[:, :, 1], up), -_MOST_ROLL, _MOST_ROLL)

@@ -154,7 +154,9 @@ def _pins(
         kept.extend(_split(joint, start, stop, blend))
     for start, stop in kept:
         goal[start:stop] = _goal(joint, start, stop, stands & held, heights)
-    for start, stop in _with_room_to_step(goal - joint, sorted([*kept, *runs(held)]), held, stands & held):
+    for start, stop in _with_room_to_step(
+        goal - joint, sorted([*kept, *(runs(held) if held.any() else ())]), held, stands & held
+    ):
         fixed[start:stop] = True
     goal[~fixed] = joint[~fixed]
     return goal, fixed

@@ -84,7 +84,7 @@ def fit_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
             world[joint] = kabsch(skeleton.offsets[list(children)], np.moveaxis(bones[list(children)], 0, -2))
         else:
             (child,) = children
-            world[joint] = _swing(inherited @ rest_ways[child], ways[child]) @ inherited
+            world[joint] = swing_of_units(inherited @ rest_ways[child], ways[child]) @ inherited
     return local_rotations(np.moveaxis(world, 0, -3), skeleton.bones)
 
 
@@ -154,10 +154,10 @@ def kabsch(rest: Array, observed: Array) -> Array:
 
 def swing(source: Array, target: Array) -> Array:
     """(…, 3, 3) the smallest rotation that turns ``source`` onto the direction of ``target`` (…, 3)."""
-    return _swing(unit(source), unit(target))
+    return swing_of_units(unit(source), unit(target))
 
 
-def _swing(source: Array, target: Array) -> Array:
+def swing_of_units(source: Array, target: Array) -> Array:
     """As :func:`swing`, of unit vectors."""
     x, y, z = _cross(source, target)
     cos = np.sum(source * target, axis=-1)[..., None, None]

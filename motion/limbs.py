@@ -65,13 +65,13 @@ def solve_two_bones(
     distance = np.clip(distance, np.abs(upper - lower) + 1e-6, upper + lower - 1e-6)
     along = (distance**2 + upper**2 - lower**2) / (2 * distance)
     aside = np.sqrt(np.maximum(upper**2 - along**2, 0.0))
-    bend = middle - root
-    bend = bend - _along(bend, unit(end - root))
+    bend = _beside(middle - root, end - root)
     # What the limb bends more than before goes towards the pole: the direction in which a nearly straight
     # limb bends is noise. A limb that need not bend more keeps its own.
     more = np.maximum(aside - np.linalg.norm(bend, axis=-1, keepdims=True), 0.0)
-    bend = bend + more * pole
-    return root + along * axis + aside * unit(bend - _along(bend, axis)), root + distance * axis
+    side = _beside(bend + more * pole, axis)
+    side = side / np.maximum(np.linalg.norm(side, axis=-1, keepdims=True), 1e-12)
+    return root + along * axis + aside * side, root + distance * axis
 
 
 def bent_towards(root: Array, middle: Array, end: Array, goal: Array, pole: Array) -> tuple[Array, Array]:
@@ -145,6 +145,12 @@ def open_limb(root: Array, middle: Array, end: Array) -> Array:
 
 def _along(vector: Array, axis: Array) -> Array:
     return np.asarray(np.sum(vector * axis, axis=-1, keepdims=True) * axis)
+
+
+def _beside(vector: Array, line: Array) -> Array:
+    """A vector without its part along a line of any length."""
+    length2 = np.maximum(np.sum(line * line, axis=-1, keepdims=True), 1e-24)
+    return np.asarray(vector - np.sum(vector * line, axis=-1, keepdims=True) / length2 * line)
 
 
 def heel_raised(hip: Array, ankle: Array, toe: Array, leg: Array) -> Array:

@@ -93,10 +93,10 @@ def _words_of(text: str) -> tuple[str, ...]:
     return tuple(word.lower() for word, _, _ in tokens(text))
 
 
-def tokens(text: str) -> Iterator[tuple[str, int, int]]:
+def tokens(text: str) -> list[tuple[str, int, int]]:
     """The words, numbers and marks of a text, with plain quotes, and their offsets in it."""
-    for match in _TOKEN.finditer(text):
-        yield "".join(_QUOTES.get(c, c) for c in match[0]), match.start(), match.end()
+    found = _TOKEN.finditer(text)
+    return [("".join(_QUOTES.get(c, c) for c in match[0]), match.start(), match.end()) for match in found]
 
 
 def without_speech(tokens: list[tuple[str, int, int]]) -> list[tuple[str, int, int]]:

@@ -113,12 +113,19 @@ def is_act(noun: str) -> bool:
     return noun in vocabulary().verbs["nouns"] or wordnet.is_act(noun)
 
 
-def closed(name: str) -> frozenset[str]:
-    """A closed class of words, by its name in ``words.toml``: those with which an owner is named, say."""
-    return vocabulary().classes[name]
-
-
 @cache
 def vocabulary() -> Vocabulary:
     """The vocabulary, read once."""
     return Vocabulary(tomllib.loads(Path(__file__).with_name("words.toml").read_text(encoding="utf-8")))
+
+
+class _Classes(dict[str, frozenset[str]]):
+    """Those of the vocabulary, which is read when a first one is looked up."""
+
+    def __missing__(self, name: str) -> frozenset[str]:
+        self.update(vocabulary().classes)
+        return vocabulary().classes[name]
+
+
+closed = _Classes().__getitem__
+"""A closed class of words, by its name in ``words.toml``: those with which an owner is named, say."""

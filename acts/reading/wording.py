@@ -5,6 +5,7 @@ Each change keeps the offsets, so that what was understood can be shown in the t
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -43,12 +44,16 @@ class _Preparation:
     """Goes through the words of a text once."""
 
     def __init__(self, text: str, speller: Speller) -> None:
-        self._text, self._mended, self._is_verb = text, speller.mended, speller.is_form
+        self._text, self._mended, self._is_verb = text, speller.mended, speller.forms.__contains__
         self._is_deed, self._forms = speller.is_deed, speller.forms
         self._words = vocabulary()
-        self._tokens = without_request(without_speech(list(tokens(text))))
+        self._tokens = without_request(without_speech(tokens(text)))
         self._letters = names([word for word, _, _ in self._tokens], self._is_verb)
-        self._ellipsis = Ellipsis(lambda i: self._letters.get(i, self._lower(i)).lower(), speller)
+        small = [word.lower() for word, _, _ in self._tokens]
+        self._lower = defaultdict(str, enumerate(small)).__getitem__
+        """The words by their number, in small letters; "" beyond the ends."""
+        named = (self._letters.get(i, word).lower() for i, word in enumerate(small))
+        self._ellipsis = Ellipsis(defaultdict(str, enumerate(named)).__getitem__, speller)
         self._pieces: list[tuple[str, int, int]] = []
 
     def text(self) -> Text:
@@ -77,9 +82,6 @@ class _Preparation:
             _, first, last = self._pieces.pop()
             self._pieces.append(("and" if verb.split()[0].endswith("s") else ".", first, last))
         self._pieces.append((verb, start, start))
-
-    def _lower(self, i: int) -> str:
-        return self._tokens[i][0].lower() if 0 <= i < len(self._tokens) else ""
 
     def _phrase(self, i: int) -> int:
         """Several words that join clauses as one does, as "as soon as"; how many they were, or 0."""

@@ -11,7 +11,7 @@ from motion import SMPL22
 from motion.kinematics import forward_kinematics
 from motion.limbs import bent_towards
 from motion.smoothing import minimum_jerk
-from motion.transforms import heading, heading_matrix
+from motion.transforms import heading
 
 Array = NDArray[np.floating]
 
@@ -71,14 +71,14 @@ def standing(place: Array, angle: float, seconds: Array, *, seed: int = 0) -> Ar
         for period, phase in zip((5.3, 3.9, 7.1, 4.4), phases, strict=True)
     ]
     turns: Turns = {
-        "pelvis": heading_matrix(angle) @ about(2, 0.012 * sway[0]),
-        "spine2": about(2, -0.02 * sway[0]) @ heading_matrix(0.03 * sway[1]),
+        "pelvis": about(1, angle) @ about(2, 0.012 * sway[0]),
+        "spine2": about(2, -0.02 * sway[0]) @ about(1, 0.03 * sway[1]),
         "neck": about(0, 0.05 + 0.02 * sway[1]),
-        "head": heading_matrix(0.1 * sway[2]),
+        "head": about(1, 0.1 * sway[2]),
     }
     for (side, sign), arm, (close, ahead, bent) in zip(BOTH_SIDES, (sway[3], sway[1]), hangs, strict=True):
         turns[f"{side}_shoulder"] = about(2, -sign * (1.4 + close + 0.015 * arm)) @ about(0, 0.05 + ahead + 0.03 * arm)
-        turns[f"{side}_elbow"] = heading_matrix(-sign * (0.3 + bent + 0.06 * arm))
+        turns[f"{side}_elbow"] = about(1, -sign * (0.3 + bent + 0.06 * arm))
         turns[f"{side}_hip"] = about(2, -sign * 0.02 - 0.012 * sway[0]) @ about(0, STANDS["hip"])
         turns[f"{side}_knee"] = about(0, STANDS["knee"])
         turns[f"{side}_ankle"] = about(0, STANDS["ankle"])
@@ -142,7 +142,7 @@ def leaning(poses: Array, angle: float, lean: Array | float) -> Array:
 
 def _tilt(angle: float, lean: Array | float) -> Array:
     """(…, 3, 3) what points (N, 3) are multiplied by to turn forward, for a heading, by so many radians (…)."""
-    return np.swapaxes(heading_matrix(angle) @ about(0, lean) @ heading_matrix(-angle), -1, -2)
+    return np.swapaxes(about(1, angle) @ about(0, lean) @ about(1, -angle), -1, -2)
 
 
 def stooping(place: Array, angle: float, share: float = 1.0) -> Array:
@@ -175,7 +175,7 @@ def kneeling(place: Array, angle: float) -> Array:
 def lying(place: Array, angle: float) -> Array:
     """A person lying on the back, the feet about where they stood: (22, 3) metres."""
     pose = _pose_of(0.0, _LIES)
-    pose = (pose - pose[0]) @ (heading_matrix(angle) @ about(0, -np.pi / 2)).T
+    pose = (pose - pose[0]) @ (about(1, angle) @ about(0, -np.pi / 2)).T
     pose[:, 1] += 0.08 - pose[:, 1].min()
     return pose + np.array([place[0], 0.0, place[1]]) - LYING * np.array([np.sin(angle), 0.0, np.cos(angle)])
 
@@ -184,7 +184,7 @@ def at_rest(poses: Array) -> Array:
     """Poses (N, 22, 3) of a person lying on the back, with the right hand on the belly."""
     found = np.array(poses)
     arm = [JOINT[f"right_{joint}"] for joint in ("shoulder", "elbow", "wrist")]
-    turns = np.swapaxes(heading_matrix(heading(found)), -1, -2)
+    turns = np.swapaxes(about(1, heading(found)), -1, -2)
     goal, pole = (np.asarray(way) @ turns for way in (_BELLY, _ELBOW_LIES))
     shoulder, elbow, wrist = (found[:, joint] for joint in arm)
     found[:, arm[1]], found[:, arm[2]] = bent_towards(shoulder, elbow, wrist, found[:, 0] + goal, pole)
@@ -195,7 +195,7 @@ def _reclining(place: Array, angle: float, share: float) -> Array:
     """A person between sitting with the feet under them and lying on the back, by a share from 0 to 1."""
     ends = _on_floor(_pose_of(angle, _SITS_UP)[None], place, angle)[0], lying(place, angle)
     pose = _pose_of(0.0, {name: (1 - share) * up + share * _LIES[name] for name, up in _SITS_UP.items()})
-    pose = (pose - pose[0]) @ (heading_matrix(angle) @ about(0, -share * np.pi / 2)).T
+    pose = (pose - pose[0]) @ (about(1, angle) @ about(0, -share * np.pi / 2)).T
     lowest = [float(end[:, 1].min()) for end in ends]
     pose[:, 1] += (1 - share) * lowest[0] + share * lowest[1] - pose[:, 1].min()
     return pose + ((1 - share) * ends[0][0] + share * ends[1][0]) * [1, 0, 1]
@@ -268,14 +268,10 @@ def bowed(poses: Array, angle: float, seconds: Array, length: float, times: int 
 
 def _pose_of(angle: float, left: Mapping[str, float], right: Mapping[str, float] | None = None) -> Array:
     """A pose (22, 3) around the origin by angles in radians: flexed hips are negative, flexed knees positive."""
-    turns: Turns = {
-        "pelvis": heading_matrix(angle),
-        "spine1": about(0, left["spine"]),
-        "spine2": about(0, left["spine"]),
-    }
+    turns: Turns = {"pelvis": about(1, angle), "spine1": about(0, left["spine"]), "spine2": about(0, left["spine"])}
     for (side, sign), angles in zip(BOTH_SIDES, (left, right or left), strict=True):
         turns[f"{side}_shoulder"] = about(2, -sign * angles["shoulder"])
-        turns[f"{side}_elbow"] = heading_matrix(-sign * angles["elbow"])
+        turns[f"{side}_elbow"] = about(1, -sign * angles["elbow"])
         turns[f"{side}_hip"] = about(2, -sign * 0.02) @ about(0, angles["hip"])
         turns |= {f"{side}_{joint}": about(0, angles[joint]) for joint in ("knee", "ankle")}
     return poses_of(turns)[0]
@@ -298,12 +294,12 @@ def _on_floor(poses: Array, place: Array, angle: float) -> Array:
 
 
 def about(axis: int, angle: Array | float) -> Array:
-    """(…, 3, 3) rotations about X (0) or Z (2)."""
+    """(…, 3, 3) rotations about X (0), Y (1) or Z (2)."""
     angle = np.asarray(angle, dtype=np.float64)
     cos, sin, one, zero = np.cos(angle), np.sin(angle), np.ones_like(angle), np.zeros_like(angle)
     rows = (
-        [one, zero, zero, zero, cos, -sin, zero, sin, cos]
-        if axis == 0
-        else [cos, -sin, zero, sin, cos, zero, zero, zero, one]
+        [one, zero, zero, zero, cos, -sin, zero, sin, cos],
+        [cos, zero, sin, zero, one, zero, -sin, zero, cos],
+        [cos, -sin, zero, sin, cos, zero, zero, zero, one],
     )
-    return np.stack(rows, axis=-1).reshape(*angle.shape, 3, 3)
+    return np.stack(rows[axis], axis=-1).reshape(*angle.shape, 3, 3)

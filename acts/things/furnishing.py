@@ -88,16 +88,8 @@ _SHORTEST = 0.15
 """Seconds of a touch, at least."""
 _BOTH = frozenset(("clap", "pray", "push", "hands-on-hips", "rub-hands", "surrender"))
 """Acts for which both hands take the shape."""
-_BONES = [
-    (SMPL22.index(a), SMPL22.index(b))
-    for a, b in (
-        ("pelvis", "spine2"),
-        ("spine2", "neck"),
-        ("left_shoulder", "right_shoulder"),
-        ("left_shoulder", "left_elbow"),
-        ("right_shoulder", "right_elbow"),
-    )
-]
+_STARTS = [SMPL22.index(name) for name in ("pelvis", "spine2", "left_shoulder", "left_shoulder", "right_shoulder")]
+_ENDS = [SMPL22.index(name) for name in ("spine2", "neck", "right_shoulder", "left_elbow", "right_elbow")]
 """What palms are laid on, as lines between joints."""
 _HELD = {
     "sword": ("fist", "fist"),
@@ -161,7 +153,7 @@ def grips_of_contact(hands: Hands) -> Iterator[Grip]:
         body = hands.positions[1 - person]
         for side in (0, 1):
             palm = hands.palms[person, side]
-            near = np.stack([point_segment_distance(palm, body[:, i], body[:, j]) for i, j in _BONES]).min(axis=0)
+            near = point_segment_distance(palm[:, None], body[:, _STARTS], body[:, _ENDS]).min(axis=1)
             for i, j in _spans(near < LAID, hands.fps):
                 yield Grip(person, SIDES[side], "flat", i, j)
     yield from _clasps(hands, TOUCH)

@@ -18,7 +18,7 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from models.layers import sinusoids
+from models.layers import neighbours, sinusoids
 from models.weights_io import WeightsFolder, load_network
 from motion.skeleton import SMPL22
 
@@ -50,14 +50,6 @@ class RecogniserConfig:
     def __post_init__(self) -> None:
         for name in ("labels", "sentences"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
-
-
-def graph() -> Tensor:
-    """(J, J) bool, true where two joints may not attend to each other: all but neighbours and themselves."""
-    mask = ~torch.eye(JOINTS, dtype=torch.bool)
-    for parent, child in SMPL22.bones:
-        mask[parent, child] = mask[child, parent] = False
-    return mask
 
 
 def sampled(positions: Tensor) -> Tensor:
@@ -97,7 +89,7 @@ class Recogniser(nn.Module):
             nn.Dropout(config.dropout),
             nn.Linear(config.latent_dim, len(config.labels)),
         )
-        self.register_buffer("graph", graph(), persistent=False)
+        self.register_buffer("graph", ~neighbours(SMPL22), persistent=False)  # true where two may not attend
 
     def forward(self, positions: Tensor) -> Tensor:
         """(B, FRAMES, J, 3) of :func:`sampled` → logits (B, L)."""

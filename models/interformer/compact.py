@@ -33,10 +33,10 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.interformer.network import JOINTS, skeleton_mask
-from models.layers import FeedForward, sinusoids
+from models.interformer.network import JOINTS
+from models.layers import FeedForward, neighbours, sinusoids
 from models.weights_io import WeightsFolder, load_network
-from motion.skeleton import LAYOUTS
+from motion.skeleton import LAYOUTS, SBU15
 
 FPS = 15.0
 JOINTS_15 = LAYOUTS["sbu15"].joints
@@ -232,7 +232,7 @@ class CompactInterFormer(nn.Module):
             self.register_buffer(f"{name}_std", torch.ones(JOINTS, features))
         self.register_buffer("step_std", torch.ones(JOINTS, 3))
         self.register_buffer("stance", torch.zeros(22, 3))
-        self.register_buffer("graph", skeleton_mask().float(), persistent=False)
+        self.register_buffer("graph", neighbours(SBU15).float(), persistent=False)
         self.register_buffer("positions", sinusoids(config.window, d), persistent=False)
         self.embed_actor, self.embed_reactor = nn.Linear(_ACTOR_FEATURES, w), nn.Linear(_REACTOR_FEATURES, w)
         self.joints = nn.Parameter(0.5 * torch.randn(2, d))

@@ -32,6 +32,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.errors import Released
+from models.layers import neighbours
 from motion.skeleton import SBU15
 
 NETWORK = "InterFormer"
@@ -53,14 +54,6 @@ class InterFormerConfig:
     num_heads: int = 3
     ff_size: int = 2048
     max_length: int = 200
-
-
-def skeleton_mask() -> Tensor:
-    """(J, J) bool: each joint with itself and the joints it hangs on (eq. 3.6: I + In + Out)."""
-    mask = torch.eye(JOINTS, dtype=torch.bool)
-    for parent, child in SBU15.bones:
-        mask[parent, child] = mask[child, parent] = True
-    return mask
 
 
 def joint_distances(source: Tensor, target: Tensor) -> Tensor:
@@ -297,7 +290,7 @@ class InterFormer(nn.Module):
         self.config = config = config or InterFormerConfig()
         self.encoder, self.decoder = Encoder(config), Decoder(config)
         self.out = nn.Linear(WIDTH, WIDTH)
-        self.register_buffer("graph", skeleton_mask(), persistent=False)
+        self.register_buffer("graph", neighbours(SBU15), persistent=False)
 
     def forward(
         self, source: Tensor, target_input: Tensor, distances: Tensor, source_mask: Tensor, target_mask: Tensor

@@ -77,11 +77,9 @@ def _from_hub(name: str) -> Path:
 
 def checked(path: Path, sha256: str) -> Path:
     """The same path, if the file there has the SHA-256 that it should; TextEncoderError otherwise."""
-    digest = hashlib.sha256()
     try:
         with path.open("rb") as file:
-            while block := file.read(1 << 20):
-                digest.update(block)
+            digest = hashlib.file_digest(file, "sha256")
     except OSError as error:
         raise TextEncoderError(f"{path} cannot be read ({error.strerror}): install it again.") from error
     if digest.hexdigest() != sha256:

@@ -53,7 +53,8 @@ class Hands:
         shape = (2, 2, duet.num_frames, 3)
         palms, fingers, out, thumbs = (np.empty(shape) for _ in range(4))
         ahead = np.empty((2, duet.num_frames, 3))
-        for person, world in enumerate(map(bone_rotations, positions)):
+        worlds = bone_rotations(positions.reshape(-1, *positions.shape[2:]))
+        for person, world in enumerate(worlds.reshape(*positions.shape, 3)):
             ahead[person] = level(world[:, _J["spine3"]] @ np.array([0.0, 0.0, 1.0]))
             for side, name in enumerate(SIDES):
                 turn = world[:, _J[f"{name}_wrist"]]

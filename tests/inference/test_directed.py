@@ -97,7 +97,7 @@ def test_the_stricter_a_plan_the_nearer_are_its_poses(reading_engine: Engine) ->
     for strictness in (0.0, 0.3, 0.55, 0.8):
         scene = directed(model, FRAMES, parts, strictness)
         scene = replace(scene, poses=scene.poses or directed(model, FRAMES, parts, 0.5).poses)
-        held = [scene.given_at(step, total) for step in range(total)]
+        held = scene.held(total)
         off.append(sum(float((given(x) - scene.poses(x)).abs().mean()) for given in held))
     assert off == sorted(off, reverse=True) and len({round(each, 6) for each in off}) == len(off)
     strict = directed(model, FRAMES, parts, 1.0)

@@ -14,16 +14,7 @@ from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
 
-from .parser import (
-    add_plan,
-    add_reading,
-    add_sampling,
-    add_tries,
-    names_of,
-    reading_choices,
-    sampling_fields,
-    with_notes,
-)
+from .parser import add_reading, add_sampling, names_of, reading_choices, sampling_fields, with_notes
 from .running import check_out, run, write_result
 
 MOST_PLAN_BYTES = 200_000
@@ -41,9 +32,7 @@ def add_generate(commands: Any) -> None:
     parser.add_argument(
         "--no-split", action="store_true", help="give a sentence of several beats to the network at once"
     )
-    add_plan(parser, GenerateRequest.strictness)
     add_sampling(parser, "generate")
-    add_tries(parser, GenerateRequest.tries)
     parser.set_defaults(job=generate)
 
 

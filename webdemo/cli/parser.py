@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from dataclasses import fields
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -12,7 +11,7 @@ from motion import Clip, Duet, InputError
 from motion.formats.recording import AXES, ORDERS, ImportChoices
 from webdemo.inference.method import Task
 from webdemo.inference.methods import AUTOMATIC, method, methods
-from webdemo.inference.requests import ReactRequest, SamplingRequest
+from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
 
 
 class Parser(argparse.ArgumentParser):
@@ -66,45 +65,38 @@ def with_notes(written: dict[str, Any], motion: Clip | Duet) -> dict[str, Any]:
 
 
 def add_sampling(parser: argparse.ArgumentParser, task: Task) -> None:
-    """The options of a :class:`SamplingRequest`, and where its result goes."""
-    asked = ReactRequest if task == "react" else SamplingRequest
-    default = {field.name: field.default for field in fields(asked)}
+    """The options of a request that denoises a motion, and where its result goes.
+
+    Those of a scene have no defaults here: what is not given is the story's own.
+    """
+    asked: Any = {"generate": GenerateRequest, "react": ReactRequest}.get(task)
+
+    def add(option: str, kind: type, words: str, **more: Any) -> None:
+        default = getattr(asked, option, None)
+        own = "" if default is not None else "; the story's own if not given" if asked is None else "; the model's own"
+        parser.add_argument(f"--{option}", type=kind, default=default, help=f"{words}{own}", **more)
+
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
-    parser.add_argument("--seed", type=int, default=default["seed"])
-    parser.add_argument("--samples", type=int, default=default["samples"], help="how many motions to generate")
-    parser.add_argument("--guidance", type=float, help="guidance scale s; the model's own default if not given")
-    parser.add_argument("--steps", type=int, help="denoising steps; the model's own default if not given")
-    parser.add_argument("--damping", type=float, default=default["damping"], help="damping threshold, 0 to 1")
-    parser.add_argument("--sampler", default=default["sampler"], help="ddim or dpm++")
-    parser.add_argument("--model", default=default["model"], help=names_of(task))
-    parser.add_argument("--no-cleanup", action="store_true", help="keep bones and feet as the network outputs them")
-
-
-def add_tries(parser: argparse.ArgumentParser, default: int | None = None) -> None:
-    """The option that tries further seeds; without a ``default`` it is the story's own."""
-    parser.add_argument(
-        "--tries",
-        type=int,
-        default=default,
-        metavar="N",
-        help="try up to N seeds (1 to 4) until the motion shows all that is said, and keep the best",
-    )
-
-
-def add_plan(parser: argparse.ArgumentParser, default: float | None = None) -> None:
-    """The options that say how a sentence's plan is followed; without a ``default`` it is the story's own."""
+    add("seed", int, "seed of what is drawn")
+    add("samples", int, "how many motions to generate")
+    parser.add_argument("--guidance", type=float, help=f"guidance scale s; the {'model' if asked else 'story'}'s own")
+    add("steps", int, "denoising steps")
+    add("damping", float, "damping threshold, 0 to 1")
+    add("sampler", str, "ddim or dpm++")
+    add("model", str, names_of(task))
+    if asked is not None:
+        parser.add_argument("--no-cleanup", action="store_true", help="keep bones and feet as the network outputs them")
+    if task == "react":
+        return
+    tries = "try up to N seeds (1 to 4) until the motion shows all that is said, and keep the best"
+    add("tries", int, tries, metavar="N")
     parser.add_argument(
         "--no-plan",
         action="store_true",
         help="do not read from the words where people go and whether they stand by, sit down or jump",
     )
-    parser.add_argument(
-        "--strictness",
-        type=float,
-        default=default,
-        metavar="SHARE",
-        help="share of the steps in which the network is held to the plan's poses; 0 shows them as a draft",
-    )
+    held = "share of the steps in which the network is held to the plan's poses; 0 shows them as a draft"
+    add("strictness", float, held, metavar="SHARE")
 
 
 def sampling_fields(options: argparse.Namespace) -> dict[str, Any]:

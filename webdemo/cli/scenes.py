@@ -13,7 +13,7 @@ from webdemo.inference.requests.sampling import SETTINGS
 from webdemo.inference.story import SceneRequest, read_story, split_sentence
 from webdemo.inference.story.request import MOST_SECONDS
 
-from .parser import add_plan, add_reading, add_tries, names_of, reading_choices, with_notes
+from .parser import add_reading, add_sampling, reading_choices, with_notes
 from .running import check_out, run, write_result
 
 
@@ -28,17 +28,7 @@ def add_scene(commands: Any) -> None:
         "--start", type=float, help="with --motion: second at which the story begins; the end by default"
     )
     parser.add_argument("--end", type=float, help="with --motion: second at which the motion goes on unchanged")
-    parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
-    add_plan(parser)
-    default = "the story's own if not given"
-    parser.add_argument("--seed", type=int, help=default)
-    parser.add_argument("--samples", type=int, help=f"how many scenes or futures to generate; {default}")
-    parser.add_argument("--guidance", type=float, help=default)
-    parser.add_argument("--steps", type=int, help=default)
-    parser.add_argument("--damping", type=float, help=default)
-    parser.add_argument("--sampler", help=f"ddim or dpm++; {default}")
-    parser.add_argument("--model", help=f"{names_of('scene')}; {default}")
-    add_tries(parser)
+    add_sampling(parser, "scene")
     parser.set_defaults(job=scene)
 
 

@@ -6,16 +6,8 @@ from pathlib import Path
 
 import torch
 
-from models.agent.recogniser import (
-    FRAMES,
-    OBSERVED,
-    PREDICTED,
-    Recogniser,
-    RecogniserConfig,
-    graph,
-    load_folder,
-    sampled,
-)
+from models.agent.recogniser import FRAMES, OBSERVED, PREDICTED, Recogniser, RecogniserConfig, load_folder, sampled
+from models.layers import neighbours
 from models.weights_io import save_network
 from motion import SMPL22
 
@@ -25,7 +17,7 @@ CONFIG = RecogniserConfig(
 
 
 def test_joints_see_their_neighbours_alone() -> None:
-    seen = ~graph()
+    seen = neighbours(SMPL22)
     assert torch.equal(seen, seen.T) and seen.diagonal().all()
     assert int(seen.sum()) == SMPL22.num_joints + 2 * len(SMPL22.bones)
     elbow = [SMPL22.index(name) for name in ("left_shoulder", "left_elbow", "left_wrist")]

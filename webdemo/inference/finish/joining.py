@@ -31,42 +31,43 @@ _CALM, _QUIET = 30.0, 0.8
 """Weights of accelerations, and of the limbs' speeds, that should vanish where a loop closes."""
 
 
-def joined(positions: Array, frames: Frames, given: Array) -> Array:
+def joined(
+    positions: Array,
+    frames: Frames,
+    given: Array,
+    *,
+    reach: int = REACH,
+    slack: float = _SLACK,
+    held: NDArray[np.bool_] | None = None,
+) -> Array:
     """Positions (T, 22, 3) that are ``given`` (N, 22, 3) at ``frames`` (N,) but for planted feet, and lead there.
 
-    Only frames within :data:`REACH` of a given one are smoothed. Feet that stand at given frames stay there.
+    Only frames within ``reach`` of a given one are smoothed. Feet that stand at given frames stay there.
 
     Args:
         positions: metres, on bones of constant lengths.
         frames: different frames, in any order.
         given: metres.
+        reach: frames beside a given one that may move.
+        slack: weight of what was made right beside one, see :data:`_SLACK`.
+        held: (T,) further frames that must stay.
     """
     wanted = np.array(positions, dtype=np.float64)
     wanted[frames] = given
     away = np.abs(np.arange(len(wanted))[:, None] - frames).min(1)
-    free = np.flatnonzero((away > 0) & (away <= REACH))
-    found = _turned(wanted, free, away[free])
-    return plant_feet(found, foot_contacts(found, FPS), held=away == 0)
+    stays = np.zeros(len(wanted), dtype=bool) if held is None else held
+    free = np.flatnonzero((away > 0) & (away <= reach) & ~stays)
+    found = _turned(wanted, free, away[free], reach=reach, slack=slack)
+    return plant_feet(found, foot_contacts(found, FPS), held=stays | (away == 0))
 
 
 def passing(positions: Array, frames: Frames, given: Array, held: NDArray[np.bool_]) -> Array:
-    """Positions (T, 22, 3) that pass through single poses, ``given`` (N, 22, 3) at ``frames`` (N,), without a jolt.
+    """As :func:`joined`, through single poses without a jolt; the frames of these need not be among those held.
 
     A pose alone says nothing about speed, so what is made on both sides of it is smoothed over :data:`PASSING` frames.
     Places are smoothed rather than rotations, which a limb that is nearly straight leaves open.
-
-    Args:
-        positions: metres, on bones of constant lengths.
-        frames: different frames, in any order.
-        given: metres.
-        held: (T,) frames that must stay; the poses' own need not be among them.
     """
-    wanted = np.array(positions, dtype=np.float64)
-    wanted[frames] = given
-    away = np.abs(np.arange(len(wanted))[:, None] - frames).min(1)
-    free = np.flatnonzero((away > 0) & (away <= PASSING) & ~held)
-    found = _turned(wanted, free, away[free], reach=PASSING, slack=_PASSING_SLACK)
-    return plant_feet(found, foot_contacts(found, FPS), held=held | (away == 0))
+    return joined(positions, frames, given, reach=PASSING, slack=_PASSING_SLACK, held=held)
 
 
 def closed(positions: Array, fixed: Frames) -> Array:

@@ -24,7 +24,7 @@ from motion.metrics import compare
 from motion.sizes import at_sizes, bones_of, floor_scale, of_adults
 from motion.smoothing import smoothstep
 from webdemo.inference.requests.paths import FloorPath
-from webdemo.inference.requests.predict import PredictRequest, PredictResult, compared
+from webdemo.inference.requests.predict import PredictRequest, PredictResult, predicted
 from webdemo.inference.run import Result
 from webdemo.inference.story.poses import Pose
 from webdemo.inference.story.request import SceneRequest
@@ -167,8 +167,7 @@ def _predicted(result: Result, given: Duet, request: PredictRequest) -> Result:
     kept = given.positions[:, :first], given.positions[:, :0]
     duets = [_as_given(duet, given, kept, (first, frames)) for duet in result.duets]
     futures = [stacked_positions(duet)[:, first:] for duet in duets]
-    curves = compared(request, futures)
-    return replace(result, duets=tuple(duets), truth=request.truth, **curves)
+    return replace(predicted(request, futures), duets=tuple(duets), notes=result.notes)
 
 
 def _as_given(duet: Duet | Clip, given: Duet, kept: tuple[Array, Array], made: tuple[int, int]) -> Duet | Clip:

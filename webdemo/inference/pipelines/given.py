@@ -71,9 +71,9 @@ class Scene:
     given: Given | None = None
     draft: Tensor | None = None
 
-    def given_at(self, step: int, total: int) -> Given | None:
-        """What is known at a denoising step of so many."""
-        return self.given
+    def held(self, steps: int) -> list[Given | None]:
+        """What is known at each of so many denoising steps."""
+        return [self.given] * steps
 
     def duet(self, pair: Array, finish: Finish) -> Duet:
         """The duet of one sample (2, T, 22, 3) in metres; ``finish`` cleans up a generated person."""
@@ -143,12 +143,13 @@ class Directed(Scene):
     poses: Hold | None = None
     strictness: float = 0.0
 
-    def given_at(self, step: int, total: int) -> Given | None:
+    def held(self, steps: int) -> list[Given | None]:
         """The places and, while the plan is strict, the poses."""
-        share = min(max(self.strictness * total - step, 0.0), 1.0)
-        if self.poses is None or self.given is None or not share:
-            return self.given
-        return self.poses if share == 1 else Between(self.given, self.poses, share)
+        places, poses = self.given, self.poses
+        if poses is None or places is None:
+            return [places] * steps
+        shares = (min(max(self.strictness * steps - step, 0.0), 1.0) for step in range(steps))
+        return [poses if s == 1 else Between(places, poses, s) if s else places for s in shares]
 
     @property
     def shares(self) -> Tensor:

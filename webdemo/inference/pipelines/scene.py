@@ -183,7 +183,7 @@ class SceneMaker:
             if isinstance(event, Result):
                 positions = setting.made(event.duets[0].positions)
                 notes = tuple(_of_beat(note, request, window) for note in event.notes)
-                made = Made(positions, setting.share(self.pipeline), event.readouts[0]["damped"], notes)
+                made = Made(positions, setting.share(self.pipeline, scene), event.readouts[0]["damped"], notes)
                 self.parts.keep(key, made)
                 return made
             if event.stage == "sample":

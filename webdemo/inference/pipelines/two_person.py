@@ -155,7 +155,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         uncorrected, done = x, 0
         # What is known is clean at every timestep, as in training (InterGen, section 5.4), and shown to a network that
         # reads it.
-        held = [scene.given_at(step, settings.steps) for step in range(settings.steps)]
+        held = scene.held(settings.steps)
         seen = {given: self._seen(given, scene) for given in dict.fromkeys(held)}
 
         def predict(x: Tensor, t: Tensor) -> Tensor:

@@ -93,9 +93,10 @@ class Setting:
         """As the pipeline takes it."""
         return directed(pipeline.model, self.frames, self.parts, self.strictness)
 
-    def share(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> float:
-        """The share of the new frames that the plan lays out, see :attr:`models.known.Hold.shares`."""
-        scene = directed(pipeline.model, self.frames, self.plan.parts, self.strictness)
+    def share(self, pipeline: TwoPersonPipeline[CompactInterGen], scene: Directed) -> float:
+        """The share of the new frames of its scene that the plan lays out, see :attr:`models.known.Hold.shares`."""
+        if len(self.parts) > len(self.plan.parts):  # the frames around it lay out some, too
+            scene = directed(pipeline.model, self.frames, self.plan.parts, self.strictness)
         return float(scene.shares[self._own].mean())
 
     def made(self, positions: Array) -> Array:

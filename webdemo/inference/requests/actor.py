@@ -166,6 +166,19 @@ def check_actor(clip: Any, seconds: tuple[float, float]) -> Clip:
     return actor
 
 
+def check_pose(pose: Any, what: str) -> Array:
+    """(22, 3) a pose of an adult in metres, checked like an actor who holds it for a second; ``what`` names it.
+
+    Raises:
+        InputError: one sentence that says what is wrong and what to do.
+    """
+    found = np.asarray(pose, dtype=np.float64)
+    if found.shape != (SMPL22.num_joints, 3) or not np.isfinite(found).all():
+        raise InputError(f"{what} needs the positions of SMPL's 22 joints as finite numbers, in metres.")
+    check_actor(Clip(np.repeat(found[None], 30, axis=0), FPS), (0.0, 2.0))
+    return found
+
+
 def check_length(clip: Clip, seconds: tuple[float, float]) -> None:
     """Raises InputError if a motion is shorter or longer than what the networks take."""
     shortest, longest = seconds

@@ -58,18 +58,15 @@ class PredictRequest:
             )
         length = self.motion.seconds
         marker = length if self.marker is None else number("Marker", self.marker, 0.0, 1e6, " seconds")
-        if round(length * FPS) < round(PAST_SECONDS * FPS):
-            raise InputError(
-                f"The past is {length:.2f} s long, and {PAST_SECONDS:g} s or more is needed: give a longer motion."
-            )
         if marker > length + 0.5 / FPS:
             raise InputError(f"The marker, {marker:g} s, is after the end of the motion, which lasts {length:.2f} s.")
+        marker = min(marker, length)
         if round(marker * FPS) < round(PAST_SECONDS * FPS):
+            short = round(length * FPS) < round(PAST_SECONDS * FPS)
             raise InputError(
                 f"The past is {marker:.2f} s long, and {PAST_SECONDS:g} s or more is needed: "
-                "move the marker to the right."
+                f"{'give a longer motion' if short else 'move the marker to the right'}."
             )
-        marker = min(marker, length)
         set_(self, "marker", marker)
         _check_steps(self.past, marker)
 
@@ -184,18 +181,6 @@ def predicted(request: PredictRequest, futures: Sequence[Array]) -> PredictResul
     """The result of a request and its futures, each (people, F, 22, 3) metres in the world of the past."""
     past = stacked_positions(request.past).astype(np.float64)
     whole = np.stack([np.concatenate([past, future], axis=1) for future in futures])  # (N, people, T, 22, 3)
-    return PredictResult(
-        duets=tuple(with_people(request.motion, each) for each in whole),
-        past_frames=past.shape[1],
-        truth=request.truth,
-        **compared(request, futures),
-    )
-
-
-def compared(request: PredictRequest, futures: Sequence[Array]) -> dict[str, Any]:
-    """The curves of a :class:`PredictResult`: ``error``, ``speed`` and ``true_speed`` of its futures."""
-    past = stacked_positions(request.past).astype(np.float64)
-    whole = np.stack([np.concatenate([past, future], axis=1) for future in futures])  # (N, people, T, 22, 3)
     first = past.shape[1]
     truth, error, true_speed = request.truth, np.empty(0), np.empty(0)
     if truth is not None:
@@ -203,8 +188,11 @@ def compared(request: PredictRequest, futures: Sequence[Array]) -> dict[str, Any
         error = np.linalg.norm(whole[:, :, first : first + real.shape[1]] - real, axis=-1).mean(axis=(0, 1, 3))
         true_speed = mean_steps(np.concatenate([past[:, -1:], real], axis=1)).mean(0)
     speed = mean_steps(whole[:, :, first - 1 :]).mean(axis=(0, 1))
-    return {
-        "error": tuple((1000 * error).round(2).tolist()),
-        "speed": tuple((1000 * speed).round(3).tolist()),
-        "true_speed": tuple((1000 * true_speed).round(3).tolist()),
-    }
+    return PredictResult(
+        duets=tuple(with_people(request.motion, each) for each in whole),
+        past_frames=first,
+        truth=truth,
+        error=tuple((1000 * error).round(2).tolist()),
+        speed=tuple((1000 * speed).round(3).tolist()),
+        true_speed=tuple((1000 * true_speed).round(3).tolist()),
+    )

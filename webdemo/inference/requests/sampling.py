@@ -17,7 +17,7 @@ from motion import Clip, InputError
 from webdemo.inference import methods
 from webdemo.inference.method import Method
 
-from .actor import ROLES, check_actor
+from .actor import ROLES, check_actor, check_pose
 from .limits import check_settings, choice, number, prompt_of
 from .paths import FloorPath, path_of, timed_paths
 from .plans import KeptPlan, plan_of_words
@@ -230,11 +230,7 @@ class ReactRequest(SamplingRequest):
     def _check_first_pose(self, method: Method) -> None:
         if "first pose" not in method.takes:
             raise InputError(f"{method.label} takes no first pose: leave it out, or choose {_others('first pose')}.")
-        pose = np.asarray(self.first_pose, dtype=np.float64)
-        if pose.shape != (22, 3) or not np.isfinite(pose).all():
-            raise InputError("The first pose must be finite and of 22 joints, in metres of the actor's world.")
-        # Checked like an actor who holds this pose for a second.
-        check_actor(Clip(np.repeat(pose[None], 30, axis=0), 30.0), (0.0, 2.0))
+        pose = check_pose(self.first_pose, "The first pose")
         object.__setattr__(self, "first_pose", pose.round(5))  # as in the manifest
 
     def to_dict(self) -> dict[str, Any]:

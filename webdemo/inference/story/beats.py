@@ -14,7 +14,7 @@ from acts.lexicon import lexicon
 from acts.plan import MOST_ACTS, Act, beats, plan_of, problem
 from acts.reading.wording import begins_with_subject
 from motion import InputError
-from webdemo.inference.requests.limits import MAX_PROMPT, MAX_SEED
+from webdemo.inference.requests.limits import MAX_PROMPT, MAX_SEED, number, whole
 from webdemo.inference.requests.plans import kept_plan, plan_of_words
 
 SHORTEST, LONGEST = 0.5, 30.0
@@ -74,26 +74,18 @@ class Beat:
             return self.seconds
         return seconds_of_acts(plan_of_beat(self).acts)
 
-    def check(self, number: int) -> None:
-        """Raises InputError if something is wrong with it; ``number`` from 1 is for the message."""
-        which = f"Beat {number}"
+    def check(self, place: int) -> None:
+        """Raises InputError if something is wrong with it; ``place`` from 1 is for the message."""
+        which = f"Beat {place}"
         for name in ("words", "a", "b"):
             if not isinstance(getattr(self, name), str):
                 raise InputError(f"{which}: {name} must be text, not {getattr(self, name)!r:.40}.")
         if len(self.sentence) > MAX_PROMPT:
             raise InputError(f"{which} has {len(self.sentence):,} characters: shorten it to {MAX_PROMPT}, or split it.")
-        if self.seconds is not None and (
-            isinstance(self.seconds, bool)
-            or not isinstance(self.seconds, (int, float))
-            or not SHORTEST <= self.seconds <= LONGEST
-        ):
-            raise InputError(
-                f"{which}: its length must be from {SHORTEST:g} to {LONGEST:g} seconds, not {self.seconds!r:.20}."
-            )
-        if self.seed is not None and (
-            isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed <= MAX_SEED
-        ):
-            raise InputError(f"{which}: its seed must be a whole number from 0 to {MAX_SEED:,}, not {self.seed!r:.20}.")
+        if self.seconds is not None:
+            number(f"{which}: its length", self.seconds, SHORTEST, LONGEST, " seconds")
+        if self.seed is not None:
+            whole(f"{which}: its seed", self.seed, 0, MAX_SEED)
 
 
 def story_title(beats: Sequence[Mapping[str, Any]]) -> str:

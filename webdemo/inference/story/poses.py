@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import FPS, SMPL22, Clip, InputError
+from motion import FPS, SMPL22, InputError
 from motion.kinematics import swing
 from motion.vectors import unit
-from webdemo.inference.requests.actor import ROLES, check_actor
+from webdemo.inference.requests.actor import ROLES, check_pose
 from webdemo.inference.requests.paths import FLOOR, MOST_SPEED, FloorPath
 
 Array = NDArray[np.floating]
@@ -54,10 +54,7 @@ class Pose:
                 f"A pose of person {self.person} is at {self.seconds!r:.20} s, but the scene lasts "
                 f"{total:g} s: give a time in it."
             )
-        positions = np.asarray(self.positions, dtype=np.float64)
-        if positions.shape != (SMPL22.num_joints, 3) or not np.isfinite(positions).all():
-            raise InputError("A pose needs the positions of SMPL's 22 joints as finite numbers, in metres.")
-        check_actor(Clip(np.repeat(positions[None], 30, axis=0), FPS), (0.0, 2.0))
+        positions = check_pose(self.positions, "A pose")
         parents, children = np.array(SMPL22.bones).T
         lengths = np.linalg.norm(positions[children] - positions[parents], axis=-1)
         if (np.abs(lengths / np.asarray(SMPL22.bone_lengths)[children] - 1) > 0.3).any():

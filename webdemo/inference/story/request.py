@@ -188,7 +188,7 @@ class SceneRequest(SamplingRequest):
         """True where words become ways and poses; spans and loops are left to the network."""
         return self.planned and self.end is None and not self.loop
 
-    @property
+    @cached_property
     def edges(self) -> tuple[int, ...]:
         """Frames at which the beats begin, and at which the last ends."""
         first = round((self.start or 0.0) * FPS)
