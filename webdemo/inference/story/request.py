@@ -153,6 +153,8 @@ class SceneRequest(SamplingRequest):
         object.__setattr__(self, "beats", tuple(beats))
 
     def _check_wishes(self) -> None:
+        if not (self.paths or self.poses):
+            return
         set_, total = object.__setattr__, self.total_seconds
         if len(self.poses) > MOST_POSES:
             raise InputError(f"There are {len(self.poses)} poses: keep to {MOST_POSES} or fewer.")

@@ -48,12 +48,14 @@ from .sentences import split_sentence
 MOST_CHARACTERS = 150_000
 """Of a story in TOML; the longest there is, with all its paths and poses written in full, has fewer."""
 _ASIDE = re.compile(
-    r'''"""(?:[^"\\]|\\.|"(?!""))*+"{3,5}|"(?:[^"\\\n]|\\[^\n])*+"|'[^'\n]*+'|#[^\n]*+'''
-    r"|'''(?:[^']|'(?!''))*+'{3,5}",
+    r'"""(?:[^"\\]|\\.|"(?!""))*+"{3,5}'
+    r"|'''(?:[^']|'(?!''))*+'{3,5}"
+    r'|"(?:[^"\\\n]|\\[^\n])*+"'
+    r"|'[^'\n]*+'|#[^\n]*+",
     re.DOTALL,
 )
 """Strings and comments."""
-_TOO_LONG = re.compile(r'[\w+-]{101}|[\w"-]++(?:[ \t]*+\.[ \t]*+[\w"-]++){8}')
+_TOO_LONG = re.compile(r'[\w+-]{101}|(?<![\w"-])[\w"-]++(?:[ \t]*+\.[ \t]*+[\w"-]++){8}')
 """Words longer than any key or number of a story, and keys of more parts."""
 _HEADER = re.compile(r"^\s*\[\[?\s*\"?([\w-]+)\"?\s*\]\]?")
 _KEY = re.compile(r"^\s*(?:\"([^\"]*)\"|'([^']*)'|([\w-]+))\s*[.=]")
