@@ -7,6 +7,10 @@ OpenVINO translates the trace, so no network is written twice. A translation tak
 it for the next start.
 
 A compiled network gives each row of a batch the same result, to the last bit, as if the row were alone.
+
+PyTorch's own threads are set with each run (:func:`take_threads`). One is as fast as two for all that is small, which
+is everything but a denoiser that OpenVINO does not run. Several wait for each other, spinning, after every product:
+beside a busy core a pass of two threads takes four times as long as one of one.
 """
 
 from __future__ import annotations
@@ -38,7 +42,9 @@ log = logging.getLogger(__name__)
 Precision = Literal["f32", "bf16"]
 TOLERANCE: dict[Precision, float] = {"f32": 1e-4, "bf16": 5e-2}
 """Largest accepted difference from the plain network, relative to the largest output; measured: 5e-6 in float32."""
-THREADS = min(torch.get_num_threads(), usable_cores(), 8)
+CORES = min(torch.get_num_threads(), usable_cores())
+"""PyTorch's default number of threads, one per core or ``OMP_NUM_THREADS``; no more than the process may use."""
+THREADS = min(CORES, 8)
 """Threads of a pass: PyTorch's default, up to 8; more do not help with products of a few hundred rows."""
 STREAMS = min(THREADS, 2)
 """Passes that run in parallel, each with a share of the threads. A single pass of several rows is split into as many
@@ -47,6 +53,28 @@ FILE = "network.blob"
 """A compiled network in its folder of the cache."""
 KEPT = 6
 """Translations in the cache folder, of 60 MB each; the least recently used are removed first."""
+
+
+def free_cores(load: Path = Path("/proc/loadavg")) -> int:
+    """Cores that nothing else uses at this moment, one at least; all of them where the system does not tell.
+
+    Args:
+        load: Linux' file; its fourth field is ``running/all`` threads, this one among those that run.
+    """
+    try:
+        running = int(load.read_text().split()[3].partition("/")[0])
+    except (OSError, ValueError, IndexError):
+        return CORES
+    return max(1, min(CORES, CORES - (running - 1)))
+
+
+def take_threads(*, plain_denoiser: bool) -> None:
+    """Sets PyTorch's threads for a run that begins in this thread.
+
+    Args:
+        plain_denoiser: the run has a large network that PyTorch runs.
+    """
+    torch.set_num_threads(free_cores() if plain_denoiser else 1)
 
 
 def cache_folder() -> Path:

@@ -21,7 +21,6 @@ from torch import Tensor
 
 from motion.skeleton import SMPL22
 
-NUM_JOINTS = SMPL22.num_joints
 FEET = tuple(SMPL22.index(name) for name in ("left_ankle", "left_foot", "right_ankle", "right_foot"))
 LEFT_HIP, RIGHT_HIP = SMPL22.index("left_hip"), SMPL22.index("right_hip")
 CONTACT_HEIGHTS = (0.12, 0.05, 0.12, 0.05)  # metres, of the joints in FEET
@@ -218,32 +217,6 @@ class InterGenLoss:
             if (weight := getattr(w, name))
         }
 
-    def __call__(
-        self,
-        pred: Tensor,
-        true: Tensor,
-        t: Tensor,
-        mask: Tensor | None = None,
-        *,
-        denormalize: Callable[[Tensor], Tensor] | None = None,
-    ) -> dict[str, Tensor]:
-        """All terms of the 262-number representation.
-
-        Args:
-            pred, true: (B, T, 2, 262) features, normalised as the network sees them.
-            t: (B,) timesteps.
-            mask: (B, T) or (B, T, 2), nonzero where real.
-            denormalize: gives features in metres; the features are taken to be in metres where absent.
-
-        Returns:
-            weighted scalars by name, and their sum under ``total``.
-        """
-        terms = {"simple": self.weights.simple * simple_loss(pred, true, mask)}
-        if denormalize is not None:
-            pred, true = denormalize(pred), denormalize(true)
-        terms |= self.regularizers(_positions(pred), _positions(true), t, mask)
-        return terms | {"total": torch.stack(list(terms.values())).sum()}
-
 
 def simple_loss(pred: Tensor, true: Tensor, mask: Tensor | None = None) -> Tensor:
     """Mean squared error over the real frames of the whole batch (eq. 8): (B, T, 2, F) → scalar."""
@@ -253,8 +226,3 @@ def simple_loss(pred: Tensor, true: Tensor, mask: Tensor | None = None) -> Tenso
         return error.mean()
     real = (mask != 0).to(error.dtype)
     return (error * real).sum() / (real.sum() + EPSILON)
-
-
-def _positions(features: Tensor) -> Tensor:
-    """The joint positions that open the 262-number representation: (B, T, 2, F) → (B, T, 2, J, 3)."""
-    return features[..., : 3 * NUM_JOINTS].unflatten(-1, (NUM_JOINTS, 3))

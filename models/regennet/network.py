@@ -258,20 +258,18 @@ class ReactionStream:
         return next(iter(self.passes.values())).length
 
     @torch.no_grad()
-    def step(self, actor: Tensor, *, noise: Tensor | None = None, generator: torch.Generator | None = None) -> Tensor:
+    def step(self, actor: Tensor, *, noise: Tensor) -> Tensor:
         """The reaction's next frame.
 
         Args:
             actor: (B, R, 6) the actor's frame.
-            noise: (B, R, 6) what the frame is denoised from; drawn from `generator` where absent.
+            noise: (B, R, 6) what the frame is denoised from.
 
         Returns:
             (B, R, 6). Raises StreamError after `max_frames` frames.
         """
         if self.length == self.max_frames:
             raise StreamError(f"The stream was opened for {self.max_frames} frames: open another.")
-        if noise is None:
-            noise = torch.randn(actor.shape, generator=generator, device=self.device)
         seen = actor.flatten(1)
 
         def predict(x: Tensor, t: Tensor) -> Tensor:

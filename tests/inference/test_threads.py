@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from models import threads
+from models import compiled as threads
 from webdemo.inference.engine import Engine
 from webdemo.inference.requests import GenerateRequest
 
@@ -23,8 +23,7 @@ def load(folder):
     return types.SimpleNamespace()
 methods.method = lambda name: types.SimpleNamespace(needs=(), weights=None, load=load)
 Engine().pipeline("any")
-from models.compiled import THREADS
-from models.threads import CORES
+from models.compiled import CORES, THREADS
 print(seen[0], THREADS, CORES)
 """
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from models.threads import CORES
+from models.compiled import CORES
 from motion import FPS, SMPL22, Clip, Duet
 from webdemo.inference.engine import Engine
 from webdemo.inference.methods import methods

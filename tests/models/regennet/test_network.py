@@ -72,7 +72,7 @@ def test_the_stream_gives_the_frames_of_the_whole_motion(name):
     assert_equal(torch.stack(frames, dim=-1), whole.sample)
     assert stream.length == 18
     with pytest.raises(StreamError, match="18 frames"):
-        stream.step(actor[..., 0])
+        stream.step(actor[..., 0], noise=noise[..., 0])
 
 
 def test_an_offline_network_cannot_stream():

@@ -168,7 +168,7 @@ class Engine:
 
 def _take_threads(pipeline: Pipeline | None = None) -> None:
     """Sets PyTorch's threads for a run that begins in this thread, or for loading."""
-    from models.threads import take_threads  # needs PyTorch, which the engine itself does not
+    from models.compiled import take_threads  # needs PyTorch, which the engine itself does not
 
     take_threads(plain_denoiser=not getattr(pipeline, "compiled", True))
 

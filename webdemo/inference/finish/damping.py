@@ -14,14 +14,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Protocol
 
 import torch
 from torch import Tensor
 
 from models.diffusion import TRAIN_TIMESTEPS
 from models.intergen.compact import Touch
-from models.motion_tokens import foot_contacts
+from models.intergen.released import ReleasedInterGen
+from models.motion_tokens import DuetSpace, foot_contacts
 from models.regennet.compact import CompactReGenNet
 from motion import SMPL22
 from motion.metrics.bodies import CAPSULES
@@ -189,22 +189,6 @@ def _turned_away(person: Tensor, other: Tensor) -> Tensor:
     return ((1 - cos) * nearly).sum(1)
 
 
-class Space(Protocol):
-    """The space that a network diffuses in, as the correction needs it.
-
-    It is that of the two people of :class:`models.intergen.compact.CompactInterGen`, or :class:`Beside`.
-    """
-
-    @property
-    def scale(self) -> Tensor:
-        """(F,) metres to a unit of each number."""
-        ...
-
-    def positions(self, x: Tensor) -> tuple[Tensor, Tensor]:
-        """(B, tokens, F) → positions (B, 2, T, 22, 3) in metres and foot contacts (B, 2, T, 4)."""
-        ...
-
-
 class Beside:
     """ReGenNet's space, which holds the reactor only, extended by the given actor.
 
@@ -227,6 +211,10 @@ class Beside:
             torch.stack([self.actor.expand_as(made), made], dim=1),
             torch.stack([self.contacts.expand_as(contacts), contacts], dim=1),
         )
+
+
+Space = DuetSpace | ReleasedInterGen | Beside
+"""The space that a network diffuses in, as the correction needs it: its ``scale``, and its way back to positions."""
 
 
 def shares(threshold: float, timesteps: Sequence[int]) -> dict[int, float]:

@@ -15,9 +15,9 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from models.compiled import take_threads
 from models.diffusion import sample_noise
 from models.motion_tokens import FEATURES
-from models.threads import take_threads
 from motion import FPS, SMPL22, Clip
 from motion.placement import Placement
 from motion.steering import Goal, Steering

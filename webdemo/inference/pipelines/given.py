@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import torch
@@ -19,6 +18,7 @@ from motion import FPS, SMPL22, Clip, Duet, InputError
 from motion.kinematics import project_to_skeleton
 from motion.metrics import compare
 from motion.placement import Placement
+from motion.representation import NUM_FEATURES
 from motion.smoothing import minimum_jerk, smoothstep
 from webdemo.inference.finish.joining import PASSING, joined, passing
 from webdemo.inference.requests import ReactRequest
@@ -35,26 +35,65 @@ _APART = 30
 """Frames between two poses of a draft beyond which it says nothing of what is between them."""
 
 
-class Given(Protocol):
-    """Writes the known part of a motion into samples (B, tokens, features)."""
+class GivenPerson:
+    """Writes a given person's numbers into samples, in place of :class:`models.known.Hold`.
 
-    @property
-    def features(self) -> Tensor | None:
-        """The known part as a network sees it that reads it, see :attr:`models.known.Hold.features`."""
-        ...
+    Args:
+        numbers: (T − 1, 262) normalised.
+        place: 0 if they are person a, 1 if b.
+    """
+
+    features: Tensor | None = None
+
+    def __init__(self, numbers: Tensor, place: int) -> None:
+        self.numbers = numbers
+        self.part = slice(place * NUM_FEATURES, (place + 1) * NUM_FEATURES)
 
     @property
     def frozen(self) -> Tensor:
-        """(1, tokens, features) true where a number is given."""
-        ...
+        """(1, T − 1, 524) true where a number is given."""
+        fixed = torch.zeros(1, len(self.numbers), 2 * NUM_FEATURES, dtype=torch.bool)
+        fixed[..., self.part] = True
+        return fixed
 
     def __call__(self, x: Tensor) -> Tensor:
-        """A sample with the known part in its place."""
-        ...
+        """A sample or prediction (B, T − 1, 524) with the given person in their place."""
+        held = x.clone()
+        held[..., self.part] = self.numbers
+        return held
+
+    bend = __call__  # the whole person is given, so there is nothing to lead up to
+
+
+@dataclass(frozen=True)
+class Between:
+    """Samples that are held to a plan's poses in part: a share of the way from the hold to places."""
+
+    places: Hold
+    poses: Hold
+    share: float
+
+    @property
+    def features(self) -> Tensor | None:
+        """Of the places: the poses are a draft."""
+        return self.places.features
+
+    @property
+    def frozen(self) -> Tensor:
+        """As of both."""
+        return self.places.frozen
+
+    def __call__(self, x: Tensor) -> Tensor:
+        """See :class:`models.known.Hold`."""
+        return torch.lerp(self.places(x), self.poses(x), self.share)
 
     def bend(self, x: Tensor) -> Tensor:
-        """A prediction that leads up to the known part."""
-        ...
+        """See :class:`models.known.Hold`."""
+        return torch.lerp(self.places.bend(x), self.poses.bend(x), self.share)
+
+
+Given = Hold | GivenPerson | Between
+"""Writes the known part of a motion into samples (B, tokens, features), and lets a prediction lead up to it."""
 
 
 @dataclass(frozen=True)
@@ -102,33 +141,6 @@ class Reaction(Scene):
         return Duet(people[0], people[1], NAMES)
 
 
-@dataclass(frozen=True)
-class Between:
-    """Samples that are held to a plan's poses in part: a share of the way from the hold to places."""
-
-    places: Given
-    poses: Given
-    share: float
-
-    @property
-    def features(self) -> Tensor | None:
-        """Of the places: the poses are a draft."""
-        return self.places.features
-
-    @property
-    def frozen(self) -> Tensor:
-        """As of both."""
-        return self.places.frozen
-
-    def __call__(self, x: Tensor) -> Tensor:
-        """See :class:`Given`."""
-        return torch.lerp(self.places(x), self.poses(x), self.share)
-
-    def bend(self, x: Tensor) -> Tensor:
-        """See :class:`Given`."""
-        return torch.lerp(self.places.bend(x), self.poses.bend(x), self.share)
-
-
 @dataclass(frozen=True, kw_only=True)
 class Directed(Scene):
     """Both people are made around what is given.
@@ -146,7 +158,7 @@ class Directed(Scene):
     def held(self, steps: int) -> list[Given | None]:
         """The places and, while the plan is strict, the poses."""
         places, poses = self.given, self.poses
-        if poses is None or places is None:
+        if poses is None or not isinstance(places, Hold):
             return [places] * steps
         shares = (min(max(self.strictness * steps - step, 0.0), 1.0) for step in range(steps))
         return [poses if s == 1 else Between(places, poses, s) if s else places for s in shares]

@@ -22,7 +22,6 @@ from models.intergen.released import ReleasedInterGen, load_released
 from models.text import MiniLM
 from models.text.clip import find_vocabulary
 from motion import FPS, Clip, Duet, stacked_positions
-from motion.representation import NUM_FEATURES
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.scene import finish_of, in_touch
 from webdemo.inference.own.entries import Entry
@@ -35,7 +34,7 @@ from webdemo.inference.story.beats import SHORTEST
 from webdemo.inference.story.request import SceneProgress, SceneRequest
 from webdemo.inference.story.sentences import as_scene
 
-from .given import Scene
+from .given import GivenPerson, Scene
 from .predictor import PredictorPipeline
 from .scene import SceneMaker
 from .two_person import Conditioning, TwoPersonPipeline
@@ -183,15 +182,11 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
         self.name, self.digest = entry.name, entry.digest("checkpoint", "mean", "std")
         self.compiled = compiled_near(self.model.denoiser, self.digest, precision_of(entry))
 
-    def condition(self, prompt: str) -> tuple[Tensor, None]:
-        """The condition (1, 768) of a prompt."""
-        return self.model.condition([prompt]), None
-
     def conditioning(self, request: GenerateRequest | ReactRequest) -> Conditioning:
         """The text vector; nothing without text."""
         if not request.prompt.strip():
             return Conditioning(self.model.no_condition(), 1.0)
-        return Conditioning(self.condition(request.prompt)[0], request.guidance)
+        return Conditioning(self.model.condition([request.prompt]), request.guidance)
 
     def given(self, positions: Array, place: int) -> GivenPerson:
         """As :meth:`TwoPersonPipeline.given`, in the paper's representation."""
@@ -212,36 +207,6 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
                 f"{100 * moved[moved > 0].mean():.1f} cm on average."
             )
         return (CONVERTED, said, *([NOT_TUNED] if isinstance(settings, ReactRequest) else []))
-
-
-class GivenPerson:
-    """Writes a given person's numbers into samples, in place of :class:`models.known.Hold`.
-
-    Args:
-        numbers: (T − 1, 262) normalised.
-        place: 0 if they are person a, 1 if b.
-    """
-
-    features: Tensor | None = None
-
-    def __init__(self, numbers: Tensor, place: int) -> None:
-        self.numbers = numbers
-        self.part = slice(place * NUM_FEATURES, (place + 1) * NUM_FEATURES)
-
-    @property
-    def frozen(self) -> Tensor:
-        """(1, T − 1, 524) true where a number is given."""
-        fixed = torch.zeros(1, len(self.numbers), 2 * NUM_FEATURES, dtype=torch.bool)
-        fixed[..., self.part] = True
-        return fixed
-
-    def __call__(self, x: Tensor) -> Tensor:
-        """A sample or prediction (B, T − 1, 524) with the given person in their place."""
-        held = x.clone()
-        held[..., self.part] = self.numbers
-        return held
-
-    bend = __call__  # the whole person is given, so there is nothing to lead up to
 
 
 def precision_of(entry: Entry) -> Precision:

@@ -5,7 +5,7 @@ These dataclasses import no torch, so the page, the shell and the API build them
 
 from .limits import DAMPING, GUIDANCE, MAX_PROMPT, MAX_SEED, SAMPLES, STEPS, STRICTNESS, TRIES
 from .predict import PredictRequest, PredictResult
-from .sampling import OWN_STEPS, GenerateRequest, ReactRequest, SamplingRequest, clip_facts, replayed
+from .sampling import OWN_STEPS, GenerateRequest, ReactRequest, SamplingRequest, replayed
 
 __all__ = [
     "DAMPING",
@@ -22,6 +22,5 @@ __all__ = [
     "PredictResult",
     "ReactRequest",
     "SamplingRequest",
-    "clip_facts",
     "replayed",
 ]

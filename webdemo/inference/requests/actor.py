@@ -5,6 +5,7 @@ No torch here: the page and the shell choose and trim before any network loads.
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import FPS, SMPL22, Clip, InputError
+from motion import FPS, SMPL22, Clip, Duet, InputError, stacked_positions
 from motion.formats import ImportChoices
 from motion.formats.importing import import_motion
 from motion.retarget import to_smpl
@@ -164,6 +165,14 @@ def check_actor(clip: Any, seconds: tuple[float, float]) -> Clip:
     if np.abs(actor.positions).max() > _FARTHEST:
         raise InputError(f"The actor is more than {_FARTHEST:g} m from the origin: move the motion there.")
     return actor
+
+
+def motion_facts(motion: Clip | Duet) -> dict[str, Any]:
+    """A motion in a manifest: its name, length and the SHA-256 that represents its positions."""
+    first = motion.a if isinstance(motion, Duet) else motion
+    positions = np.ascontiguousarray(stacked_positions(motion))
+    digest = hashlib.sha256(positions.tobytes()).hexdigest()
+    return {"name": first.name[:100], "frames": motion.num_frames, "fps": motion.fps, "sha256": digest}
 
 
 def check_pose(pose: Any, what: str) -> Array:

@@ -16,7 +16,7 @@ from motion import Clip, Duet, InputError
 from motion.metrics import compare
 from webdemo.inference.run import Progress, Result, StageTimer
 
-from .sampling import clip_facts
+from .actor import motion_facts
 
 Array = NDArray[np.floating]
 
@@ -81,7 +81,7 @@ class LiveTake:
 
     def to_dict(self) -> dict[str, Any]:
         """All fields except the motion, which its SHA-256 represents."""
-        actor = clip_facts(self.actor)
+        actor = motion_facts(self.actor)
         return {"kind": "react", "live": True, "model": self.model, "mode": self.mode, "actor": actor}
 
     def results(self, timer: StageTimer) -> Iterator[Progress | Result]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -14,7 +13,7 @@ from motion import FPS, SMPL22, Clip, Duet, InputError, stacked_positions
 from webdemo.inference import methods
 from webdemo.inference.run import Result
 
-from .actor import at_30_fps
+from .actor import at_30_fps, motion_facts
 from .limits import check_settings, number
 
 Array = NDArray[np.floating]
@@ -88,17 +87,10 @@ class PredictRequest:
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but the motion, which is named by its SHA-256."""
-        positions = np.ascontiguousarray(stacked_positions(self.motion))
-        motion = {
-            "name": (self.motion.name if isinstance(self.motion, Clip) else self.motion.a.name)[:100],
-            "people": len(positions),
-            "frames": self.motion.num_frames,
-            "fps": self.motion.fps,
-            "sha256": hashlib.sha256(positions.tobytes()).hexdigest(),
-        }
+        people = len(self.motion.people) if isinstance(self.motion, Duet) else 1
         return {
             "kind": "predict",
-            "motion": motion,
+            "motion": {**motion_facts(self.motion), "people": people},
             "marker": self.marker,
             "seconds": self.seconds,
             "seed": self.seed,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, Self
@@ -17,7 +16,7 @@ from motion import Clip, InputError
 from webdemo.inference import methods
 from webdemo.inference.method import Method
 
-from .actor import ROLES, check_actor, check_pose
+from .actor import ROLES, check_actor, check_pose, motion_facts
 from .limits import check_settings, choice, number, prompt_of
 from .paths import FloorPath, path_of, timed_paths
 from .plans import KeptPlan, plan_of_words
@@ -164,16 +163,6 @@ class GenerateRequest(SamplingRequest):
         return (plan_of_words(self.prompt) if self.acts is None else self.acts,)
 
 
-def clip_facts(clip: Clip) -> dict[str, Any]:
-    """A person's motion in a manifest: its name, length and the SHA-256 that represents its positions."""
-    return {
-        "name": clip.name[:100],
-        "frames": clip.num_frames,
-        "fps": clip.fps,
-        "sha256": hashlib.sha256(np.ascontiguousarray(clip.positions).tobytes()).hexdigest(),
-    }
-
-
 @dataclass(frozen=True, kw_only=True)
 class ReactRequest(SamplingRequest):
     """Generates a second person for a given one.
@@ -239,7 +228,7 @@ class ReactRequest(SamplingRequest):
         del plain["tries"]  # a reaction is not judged by its words
         if self.first_pose is not None:
             plain["first_pose"] = np.asarray(self.first_pose).tolist()
-        return {"kind": "react", "actor": clip_facts(self.actor), **plain}
+        return {"kind": "react", "actor": motion_facts(self.actor), **plain}
 
 
 def replayed(request: Mapping[str, Any], manifest: Mapping[str, Any]) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 from motion.metrics import MEASURES, Measure
@@ -141,9 +142,7 @@ def _asked(result: Result) -> str:
         ("Tries", tries if (tries := request.get("tries", 1)) != 1 else None),
         ("Plan from the words", "off" if request.get("planned") is False else None),
     ]
-    items = "".join(
-        f"<div><dt>{text(label)}</dt><dd>{text(value)}</dd></div>" for label, value in shown if value is not None
-    )
+    items = "".join(f"<div><dt>{label}</dt><dd>{text(value)}</dd></div>" for label, value in shown if value is not None)
     return f'<dl class="pd-asked">{items}</dl>'
 
 
@@ -160,7 +159,8 @@ def _measures(caption: str, measures: Sequence[Measure], samples: Sequence[tuple
     """A table: a row a measure, a column a sample."""
     heads = [f"Sample {i + 1}" for i in range(len(samples))] if len(samples) > 1 else ["Value"]
     rows = "".join(
-        _row(measure, "".join(_cell(measure, before or {}, after) for before, after in samples)) for measure in measures
+        f"{_head(measure)}{''.join(_cell(measure, before or {}, after) for before, after in samples)}</tr>"
+        for measure in measures
     )
     return _table(caption, heads, rows)
 
@@ -186,10 +186,12 @@ def _value(measure: Measure, values: Summary) -> str:
     return "–" if value is None else number(value, measure.digits)
 
 
-def _row(measure: Measure, cells: str) -> str:
+@cache
+def _head(measure: Measure) -> str:
+    """The beginning of a measure's row."""
     unit = f" <small>{text(measure.unit)}</small>" if measure.unit else ""
     meaning, label = measure.meaning, measure.label
-    return f'<tr title="{text(meaning)}"><th scope="row">{text(label)}{unit}</th>{cells}</tr>'
+    return f'<tr title="{text(meaning)}"><th scope="row">{text(label)}{unit}</th>'
 
 
 def _table(caption: str, head: Sequence[str], rows: str) -> str:
