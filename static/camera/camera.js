@@ -7,11 +7,10 @@ import { Landmarks } from "./landmarks.js";
 import { Panel } from "./panel.js";
 import { closeWebcam, countDown, openWebcam, record } from "./webcam.js";
 import { loadStyles } from "../player/loader.js";
-import { say, translate } from "../texts.js";
+import { say } from "../texts.js";
 
 /** `element` holds camera.html; `send(text)` hands landmarks to the page's Python side. */
 export function mount(element, send, { folder }) {
-  translate(element);
   loadStyles(new URL("camera.css", import.meta.url).href);
   new CameraPanel(element.querySelector(".pdcam"), send, detectorOf(folder));
 }

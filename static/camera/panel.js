@@ -9,11 +9,15 @@ export class Panel {
     this.run = 0; // number of what is being done: a later one stops it
     for (const name of ["open", "body", "stage", "video", "drawing", "begin", "stop", "line", ...names])
       this[name] = root.querySelector(`.pdcam-${name}, .pdlive-${name}`);
+    const { body } = this;
     this.open.onclick = () => {
-      this.body.hidden = !this.body.hidden;
-      this.open.setAttribute("aria-expanded", String(!this.body.hidden));
-      if (this.body.hidden) this.rest();
+      body.hidden = !body.hidden;
+      this.open.setAttribute("aria-expanded", String(!body.hidden));
+      if (body.hidden) this.rest();
     };
+    root.closest(".pd-ask")?.addEventListener("click", ({ target }) => {
+      if (!body.contains(target) && this.line.dataset.tone === "error") this.say(""); // something else is asked
+    });
     panels.add(this);
     this.open.disabled = false; // before, nobody would hear
   }

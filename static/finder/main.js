@@ -2,7 +2,7 @@
 
 import { search } from "./finder.js";
 import { node } from "../player/node.js";
-import { say, translate } from "../texts.js";
+import { say } from "../texts.js";
 
 const PATIENCE = 8000; // ms until the prompt must be on the page
 
@@ -102,14 +102,12 @@ class Finder {
     if (!entry) return;
     this.dialog.close();
     if (entry.sentence) return write(entry.sentence);
-    const lang = new URLSearchParams(window.location.search).get("lang"); // which the address may ask for
-    window.location.search = new URLSearchParams({ run: entry.run, ...(lang && { lang }) });
+    window.location.search = new URLSearchParams({ run: entry.run });
   }
 }
 
 /** `element` holds finder.html; `props` are the component's, watched by `watch`; `trigger` tells Python. */
 export function mount(element, props, watch, trigger) {
-  translate(element);
   const root = element.querySelector(".pdq");
   const finder = new Finder(root, () => trigger("input"));
   const sync = () => props.known && finder.load(props.known);

@@ -2,7 +2,6 @@
 
 import { play } from "../notebook/thumbnail.js";
 import { node } from "../player/node.js";
-import { translate } from "../texts.js";
 
 const SIZE = 240; // pixels of a thumbnail
 
@@ -20,7 +19,6 @@ function card(scene, take) {
 
 /** Lets a button open the drawer, whose scenes are fetched when it first opens. */
 export function mount(element, props, watch, trigger) {
-  translate(element);
   const dialog = element.querySelector("dialog");
   const list = element.querySelector("ul");
   const failed = element.querySelector(".pdx-failed");

@@ -9,7 +9,7 @@ import { node } from "../player/node.js";
 import { Stream } from "../player/stream.js";
 import { Connection, LiveError } from "./connection.js";
 import { Person, Webcam } from "./sources.js";
-import { say, translate } from "../texts.js";
+import { say } from "../texts.js";
 
 const WAITING = 8; // pictures that wait for the server; older ones are dropped
 const TOGETHER = 6; // pictures that are sent as one message
@@ -20,7 +20,6 @@ const NAMES = { agent: "agent", regennet: "reactor" };
  * streams, `mediapipe` of the detector's files.
  */
 export function mount(element, keep, { address, mediapipe }) {
-  translate(element);
   for (const name of ["../camera/camera.css", "live.css"]) loadStyles(new URL(name, import.meta.url).href);
   new LivePanel(element, keep, address, mediapipe);
 }

@@ -4,7 +4,7 @@
 import { play } from "./thumbnail.js";
 import { node } from "../player/node.js";
 import { loadStyles } from "../player/loader.js";
-import { say, translate } from "../texts.js";
+import { say } from "../texts.js";
 
 const MOST_RETRIES = 3;
 const WAIT = 300; // ms after the last key before a search
@@ -198,7 +198,6 @@ export class Notebook {
 
 /** `element` holds notebook.html; `props` are the component's, watched by `watch`; `trigger` tells Python. */
 export function mount(element, props, watch, trigger) {
-  translate(element);
   loadStyles(new URL("notebook.css", import.meta.url).href);
   const events = { open: "submit", compare: "like", study: "edit", publish: "apply" }; // the others are "select"
   const notebook = new Notebook(element.querySelector(".pdn"), (action) => trigger(events[action.act] ?? "select", action));

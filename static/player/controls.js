@@ -3,13 +3,12 @@
 
 import { actionFor, attach, belongsToControl } from "./input.js";
 import { node } from "./node.js";
-import { say, translate } from "../texts.js";
+import { say } from "../texts.js";
 
 export class Controls {
   constructor(root) {
     this.root = root;
     this.find = (selector) => root.querySelector(selector);
-    translate(root.parentElement ?? root);
   }
 
   /** Hands what is pressed, dragged and typed to the player, which outlives none of these listeners. */

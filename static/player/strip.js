@@ -44,8 +44,8 @@ export class Strip {
     for (const contact of sample.contacts.slice(0, TOO_MANY_TICKS)) {
       const tick = node("button", "pdd-tick");
       tick.dataset.kind = contact.kind;
-      tick.style.left = `${(100 * contact.start) / span}%`;
-      tick.style.width = `${(100 * Math.max(contact.stop - 1 - contact.start, 0)) / span}%`;
+      tick.style.setProperty("--from", `${(100 * contact.start) / span}cqw`);
+      tick.style.setProperty("--length", `${(100 * Math.max(contact.stop - 1 - contact.start, 0)) / span}cqw`);
       const text = say("player.contact", { label: contact.label, from: (contact.start / sample.fps).toFixed(1), to: (contact.stop / sample.fps).toFixed(1) });
       tick.title = text;
       tick.setAttribute("aria-label", text);

@@ -6,7 +6,7 @@ import { people, pieces, spoken, summary, wordsOf } from "./marks.js";
 import { Paths } from "./paths.js";
 import * as edits from "./plan.js";
 import { node } from "../player/node.js";
-import { say, translate } from "../texts.js";
+import { say } from "../texts.js";
 
 const NAMES = { a: "A", b: "B", ab: say("reading.a_and_b") };
 const MARKS = { true: ["✓", say("reading.done")], false: ["✗", say("reading.not_done")], null: ["–", say("reading.not_measured")] };
@@ -368,7 +368,6 @@ class View {
 
 /** `element` holds reading.html; `props` are the component's, watched by `watch`; `trigger` tells the server. */
 export function mount(element, props, watch, trigger) {
-  translate(element);
   const root = element.querySelector(".pdr");
   const keep = (value) => (props.value = value);
   const view = new View(root, { keep, ask: () => trigger("input"), editable: props.editable });

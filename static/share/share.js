@@ -1,16 +1,12 @@
 // A public page (webdemo/ui/public_html.py): plays its motion.
 
 import { mount } from "../player/main.js";
-import { language, translate } from "../texts.js";
 
 const asked = new URLSearchParams(location.search).get("theme"); // an embedding page may ask for one
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const paint = () => document.body.classList.toggle("dark", asked === "dark" || (asked !== "light" && dark.matches));
 dark.addEventListener("change", paint);
 paint();
-
-document.documentElement.lang = language;
-translate(document);
 
 const motion = document.getElementById("motion");
 if (motion) {

@@ -154,7 +154,7 @@ export class Editor {
     const { story, selected } = this;
     if (act === "add") {
       this.selected = story.beats.length ? selected + 1 : 0;
-      this.edit(edits.add(story, selected));
+      this.edit(edits.add(story, selected, say("story.new_words")));
       this.write(this.selected, "words");
     } else if (act === "undo" || act === "redo") this.travel(act);
     else if (act === "no-span") this.edit({ ...story, span: null });

@@ -51,9 +51,10 @@ function withBeats(story, beats, origins = beats.map((_, i) => i)) {
 
 const numbers = (story) => story.beats.map((_, i) => i);
 
-export function add(story, after) {
+/** A beat of these words more, after the one of number `after`. */
+export function add(story, after, words) {
   const beats = [...story.beats];
-  beats.splice(after + 1, 0, { words: "", a: "", b: "", seconds: null, seed: null });
+  beats.splice(after + 1, 0, { words, a: "", b: "", seconds: null, seed: null });
   return withBeats(story, beats, numbers(story).toSpliced(after + 1, 0, -1));
 }
 

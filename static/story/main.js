@@ -1,11 +1,9 @@
 // Mounts the editor of a story in its component.
 
 import { Editor } from "./editor.js";
-import { translate } from "../texts.js";
 
 /** `element` holds story.html; `props` are the component's, watched by `watch`; `trigger` tells the server. */
 export function mount(element, props, watch, trigger) {
-  translate(element);
   const root = element.querySelector(".pds");
   const editor = new Editor(root, props, (story) => (props.value = story), () => trigger("input"));
   const sync = () => {

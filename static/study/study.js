@@ -1,13 +1,11 @@
 // A person votes: pairs come one after the other, and the keys 1, 2 and = answer (webdemo/server/http/study_pages.py).
 
 import { mount } from "../player/main.js";
-import { language, say, translate } from "../texts.js";
+import { say } from "../texts.js";
 
 const NARROW = 640; // pixels: below, the two stand above each other
 const SOONEST = 1000; // milliseconds before which nobody has seen a pair: a key that is pressed twice is one answer
 
-document.documentElement.lang = language;
-translate(document);
 const main = document.querySelector(".pst");
 const find = (selector) => main.querySelector(selector);
 const { here, plotly } = main.dataset;

@@ -70,7 +70,7 @@ def said(page: Page, job: str, argument: Any = None) -> str:
 
 def test_a_camera_that_is_refused_absent_or_taken(page: Page) -> None:
     for error, sentence in (
-        ("NotAllowedError", "The camera may not be used: allow it beside the page's address and try again."),
+        ("NotAllowedError", "The browser blocks the camera: allow it in the address bar and try again."),
         ("NotFoundError", "No camera was found: connect one, or choose a video."),
         ("NotReadableError", "The camera does not start: close other programs that use it and try again."),
     ):
@@ -78,7 +78,7 @@ def test_a_camera_that_is_refused_absent_or_taken(page: Page) -> None:
         opens = "await openWebcam(document.querySelector('video'));"
         assert said(page, refused + opens) == f"FilmError: {sentence}"
     hidden = "Object.defineProperty(navigator, 'mediaDevices', { value: undefined, configurable: true });"
-    assert "open the page by https" in said(page, hidden + "await openWebcam(document.querySelector('video'));")
+    assert "over https" in said(page, hidden + "await openWebcam(document.querySelector('video'));")
 
 
 def test_nobody_is_told(page: Page) -> None:

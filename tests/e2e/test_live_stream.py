@@ -47,7 +47,7 @@ def keep_it(page: Page) -> None:
     assert page.evaluate("window.__pasdedeux.positions.length") == 2
     assert len(before) == 2 and frame is not None
     expect(page.locator(f"{PANEL} .pdlive-keep")).to_be_hidden()
-    expect(page.locator(f"{PANEL} .pdcam-line")).to_have_text("Kept: see the result beside this.")
+    expect(page.locator(f"{PANEL} .pdcam-line")).to_have_text("Kept: the result is on the stage.")
 
 
 def test_a_recorded_person_is_answered_as_they_move(
@@ -59,7 +59,10 @@ def test_a_recorded_person_is_answered_as_they_move(
     line = page.locator(f"{PANEL} .pdcam-line")
     page.click(f"{PANEL} .pdcam-open")
 
-    for name, sentence in (("NotAllowedError", "The camera may not be used"), ("NotFoundError", "No camera was found")):
+    for name, sentence in (
+        ("NotAllowedError", "The browser blocks the camera"),
+        ("NotFoundError", "No camera was found"),
+    ):
         page.evaluate(
             "name => { navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('', name)); }", name
         )
@@ -68,13 +71,14 @@ def test_a_recorded_person_is_answered_as_they_move(
         expect(page.locator(f"{PANEL} .pdcam-begin")).to_be_visible()
 
     page.get_by_role("button", name="Push").click()
+    expect(line).to_be_empty()  # the camera is no longer asked for
     page.wait_for_function("window.__pasdedeux?.positions?.length === 1", timeout=SLOW)
     page.route("**/live/*", late)
     start(page, "clip")
     two_people(page)
     expect(page.locator(f"{PANEL} .pdlive-text")).to_contain_text("push", timeout=SLOW)
     expect(page.locator(f"{PANEL} .pdlive-chances li").first).to_contain_text("push")
-    expect(line).to_contain_text("The end. What happened can be played again", timeout=SLOW)
+    expect(line).to_contain_text("The end. You can play it again", timeout=SLOW)
     page.unroute("**/live/*")
     shown = page.evaluate("[window.__pasdedeux.player.sample.frames, window.__pasdedeux.playing]")
     assert shown == [150, True], "five seconds, which play again"

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from .playing import settled_box
 
@@ -41,6 +42,7 @@ def rest(page: Any) -> None:
 
 
 def test_a_story_from_sentence_to_futures(page: Any) -> None:
+    expect(page.locator("#scene-remake")).to_be_hidden()  # there is no motion to make a part of
     page.locator("#scene-prompt textarea").fill("They meet. Then they hug. Finally they bow.")
     page.locator("#scene-generate").click()
     page.wait_for_selector("#scene-status .pd-done")
@@ -104,6 +106,10 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.locator("#scene-take").click()
     page.wait_for_function("window.__pasdedeux?.player?.data.samples.length === 1")
     assert "number 2" in page.locator("#scene-status").inner_text()
+    expect(page.locator("#scene-take")).to_be_hidden()
+    page.get_by_role("button", name="Add beat").click()
+    page.keyboard.press("Enter")
+    assert "They look at each other." in words(), "a beat has words from the start"
 
 
 def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, TypeVar
@@ -14,7 +12,6 @@ from webdemo.ui.components.exports import Shelf
 from webdemo.ui.context import PageContext
 from webdemo.ui.runs import Loader, Runs
 from webdemo.ui.tabs.job import JobTab
-from webdemo.ui.text.texts import translations
 
 from .stub_engine import StubEngine
 
@@ -28,11 +25,6 @@ def built(kind: type[Tab], files: Path) -> Tab:
     with gr.Blocks():
         tab.build()
     return tab
-
-
-def in_english(shown: str) -> str:
-    """What a component was given to show, as an English browser shows it."""
-    return re.sub(r"__i18n__(\{.*?\})", lambda mark: translations()["en"][json.loads(mark[1])["key"]], shown)
 
 
 def changes(names: Iterable[str], updates: Iterable[Any]) -> dict[str, Any]:

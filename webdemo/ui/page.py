@@ -26,7 +26,7 @@ from webdemo.ui.tabs.react import ReactTab
 from webdemo.ui.tabs.results import QUIET
 from webdemo.ui.tabs.scene import SceneTab
 from webdemo.ui.text.panels import model_state
-from webdemo.ui.text.texts import say, translations
+from webdemo.ui.text.texts import say
 
 from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint
 from .context import PageContext
@@ -208,7 +208,7 @@ def launch_options() -> dict[str, Any]:
         "head": HEAD,
         "footer_links": [],
         "run_history": False,
-        "i18n": gr.I18n(**translations()),
+        "i18n": gr.I18n(en={"common.upload": "Add files"}),
         "ssr_mode": False,
         "show_error": True,
         "max_file_size": MAX_BYTES,

@@ -19,7 +19,7 @@ from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS
 from webdemo.ui.components.prediction_view import prediction_payload
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.history import Entry, Opened
-from webdemo.ui.text.texts import TEXTS_FOLDER, TEXTS_JS, english
+from webdemo.ui.text.texts import TEXTS, TEXTS_JS, say
 from webdemo.view.payload import Payload
 
 SHARE_FOLDER = PLAYER_FOLDER.parent / "share"
@@ -29,8 +29,7 @@ FILES = {
     "player/player.css": PLAYER_FOLDER / "player.css",
     **{f"player/{path.relative_to(PLAYER_FOLDER).as_posix()}": path for path in sorted(PLAYER_FOLDER.rglob("*.js"))},
     **{f"bodies/{path.name}": path for path in sorted(BODIES_FOLDER.glob("*.json"))},
-    TEXTS_JS.name: TEXTS_JS,
-    **{f"texts/{path.name}": path for path in sorted(TEXTS_FOLDER.glob("*.json"))},
+    **{path.name: path for path in (TEXTS_JS, TEXTS)},
 }
 """All that the pages load, by the names under which they do."""
 
@@ -96,14 +95,9 @@ def _embed_code(entry: Entry, place: Place) -> str:
         return ""
     code = _text(frame_code(place.embed, entry.title))
     return (
-        f'<details class="psh-more"><summary {_said("share.own_page")}</summary><textarea readonly rows="3" '
-        f'aria-label="{english("share.frame")}" data-say-aria-label="share.frame">{code}</textarea></details>\n'
+        f'<details class="psh-more"><summary>{say("share.own_page")}</summary><textarea readonly rows="3" '
+        f'aria-label="{say("share.frame")}">{code}</textarea></details>\n'
     )
-
-
-def _said(key: str) -> str:
-    """The end of a tag and its text, in English; the browser puts it into its language."""
-    return f'data-say="{key}">{english(key)}'
 
 
 def _end(until: float) -> str:

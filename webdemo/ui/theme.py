@@ -11,58 +11,38 @@ STYLE = Path(__file__).resolve().parents[2] / "static" / "ui.css"
 _SANS = ("system-ui", "-apple-system", "Segoe UI", "Roboto", "Noto Sans", "Helvetica Neue", "Arial", "sans-serif")
 _MONO = ("ui-monospace", "SFMono-Regular", "Menlo", "Consolas", "DejaVu Sans Mono", "monospace")
 
+_COLOURS = {
+    "body_background_fill": "bg",
+    "background_fill_primary": "panel",
+    "background_fill_secondary": "bg",
+    "body_text_color": "text",
+    "body_text_color_subdued": "soft",
+    "block_title_text_color": "text",
+    "border_color_primary": "line",
+    "input_background_fill": "field",
+    "input_border_color": "edge",
+    "input_border_color_focus": "a",
+    "slider_color": "a",
+    "button_primary_background_fill": "press",
+    "button_primary_background_fill_hover": "press-hover",
+    "button_secondary_background_fill": "panel",
+    "button_secondary_background_fill_hover": "hover",
+    "button_secondary_border_color": "edge",
+}
+"""Gradio's variables, each with a colour of the style sheet, which has them for the light and the dark page."""
 _VALUES = {
-    "body_background_fill": "#f4f6fa",
-    "body_background_fill_dark": "#0f131a",
-    "background_fill_primary": "#ffffff",
-    "background_fill_primary_dark": "#181d27",
-    "background_fill_secondary": "#f6f7f9",
-    "background_fill_secondary_dark": "#0f131a",
     "block_background_fill": "transparent",
     "block_background_fill_dark": "transparent",
     "block_border_width": "0px",
-    "block_border_width_dark": "0px",
-    "block_shadow": "none",
     "block_padding": "0px",
     "block_label_text_weight": "600",
     "block_title_text_weight": "600",
     "block_title_text_size": "13px",
-    "block_title_text_color": "*body_text_color",
-    "block_title_text_color_dark": "*body_text_color",
     "block_info_text_size": "12px",
-    "block_info_text_color": "*body_text_color_subdued",
-    "block_info_text_color_dark": "*body_text_color_subdued",
-    "body_text_color": "#1e2733",
-    "body_text_color_dark": "#e5e9f0",
-    "body_text_color_subdued": "#5b6677",
-    "body_text_color_subdued_dark": "#98a3b5",
-    "border_color_primary": "#dde2ea",
-    "border_color_primary_dark": "#2a3240",
-    "form_gap_width": "0px",
-    "input_background_fill": "#ffffff",
-    "input_background_fill_dark": "#0f131a",
-    "input_border_color": "#ccd3de",
-    "input_border_color_dark": "#313a4a",
-    "input_border_color_focus": "*primary_500",
-    "input_border_color_focus_dark": "*primary_400",
     "input_border_width": "1px",
-    "slider_color": "#2468d8",
-    "slider_color_dark": "#5b97f5",
-    "button_primary_background_fill": "#2468d8",
-    "button_primary_background_fill_hover": "#1b55b8",
-    "button_primary_background_fill_dark": "#2f6fdd",
-    "button_primary_background_fill_hover_dark": "#4a86ea",
-    "button_primary_text_color": "#ffffff",
-    "button_secondary_background_fill": "#ffffff",
-    "button_secondary_background_fill_dark": "#1c2330",
-    "button_secondary_background_fill_hover": "#eef2f7",
-    "button_secondary_background_fill_hover_dark": "#263042",
-    "button_secondary_border_color": "#ccd3de",
-    "button_secondary_border_color_dark": "#313a4a",
     "button_border_width": "1px",
-    "button_large_text_weight": "600",
 }
-"""Gradio's variables as this page sets them; a name that ends in ``_dark`` is for the dark page."""
+"""Gradio's variables as this page sets them."""
 
 HEAD = """<style>
 /* Gradio scopes our style sheet below its container, whose hidden overflow would keep the stage from sticking. */
@@ -134,7 +114,9 @@ def theme() -> gr.themes.Base:
         radius_size=gr.themes.sizes.radius_md,
         font=list(_SANS),
         font_mono=list(_MONO),
-    ).set(**_VALUES)
+    ).set(
+        **_VALUES, **{f"{name}{dark}": f"var(--pd-{own})" for name, own in _COLOURS.items() for dark in ("", "_dark")}
+    )
 
 
 def style_sheet() -> str:

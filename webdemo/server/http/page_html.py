@@ -23,11 +23,6 @@ _ANY = b"any-host.invalid"
 """Stands for the name by which a visitor calls this server; the guard lets no name in that is more than a name."""
 _LEVEL = 5
 """Of packing: a third of the time of the highest, which saves two per cent."""
-_ASKED = b"""<script>{
-  const asked = new URLSearchParams(location.search).get("lang");
-  if (/^[a-z]{2,3}(-[a-z0-9]+)*$/i.test(asked ?? "")) Object.defineProperty(navigator, "language", { value: asked });
-}</script>"""
-"""Stands before Gradio's scripts, which take the browser's language: ``?lang=fr`` in the address goes before it."""
 
 
 class PageCache:
@@ -73,7 +68,7 @@ class PageCache:
         return bytes(self._made[path, scheme].body).replace(_ANY, host)
 
     async def _make(self, scope: Scope, receive: Receive) -> Response:
-        """The application's own answer; :data:`_ASKED` is put at the beginning of a page's head."""
+        """The application's own answer."""
         made: list[Message] = []
 
         async def keep(message: Message) -> None:
@@ -84,7 +79,7 @@ class PageCache:
         await self.app({**scope, "headers": [*heard, (b"host", _ANY)], "query_string": b""}, receive, keep)
         body = b"".join(message.get("body", b"") for message in made)
         start = next(message for message in made if message["type"] == "http.response.start")
-        answer = Response(body.replace(b"<head>", b"<head>" + _ASKED, 1), status_code=start["status"])
+        answer = Response(body, status_code=start["status"])
         answer.raw_headers = list(start["headers"])
         return answer
 

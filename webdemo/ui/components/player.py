@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import gradio as gr
 
-from webdemo.ui.text.texts import TEXTS_FOLDER, TEXTS_JS
+from webdemo.ui.text.texts import TEXTS, TEXTS_JS
 from webdemo.view.payload import Payload
 
 from .part import STATIC, Part, on_load
@@ -24,7 +24,7 @@ EMPTY_TEXT = "player.empty"
 """Key of the text that says what there is to do, and on a second line what comes of it."""
 
 # Only these become reachable over the network: the player's files, its bodies, plotly.js and the texts.
-gr.set_static_paths([BODIES_FOLDER, PLOTLY_JS, TEXTS_JS, TEXTS_FOLDER])
+gr.set_static_paths([BODIES_FOLDER, PLOTLY_JS, TEXTS_JS, TEXTS])
 
 _MOUNT = "import(file(%s)).then((player) => player.mount(element, props, watch, { plotly: file(%s), empty: %s }));"
 
@@ -50,7 +50,7 @@ def busy(text: str = "", *, progress: float | None = None) -> dict[str, Any]:
     """An update that lays a message over the player; without text it takes the message away.
 
     Args:
-        text: in English, such as ``"Step 12 of 50"``; the visitor gets it in their language.
+        text: such as ``"Step 12 of 50"``.
         progress: 0 to 1 for the bar under it, None for none.
     """
     return gr.update(busy=text, progress=progress)

@@ -26,7 +26,7 @@ from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.classes import installed_classes, takes_class
 from webdemo.ui.text.examples import ARRIVAL, CLIPS, EXAMPLES
-from webdemo.ui.text.texts import say, worded
+from webdemo.ui.text.texts import say
 
 from .grids import PLAN, SENTENCES, methods_kind
 from .job import JobTab
@@ -148,7 +148,7 @@ class GenerateTab(JobTab):
         classes = installed_classes()
         choices = generate_choices()
         self.model = gr.Radio(
-            [(worded("way", label), name) for label, name in choices],
+            [(label, name) for label, name in choices],
             value=GenerateRequest.model,
             show_label=False,
             container=False,
@@ -168,7 +168,7 @@ class GenerateTab(JobTab):
             )
             with gr.Row(elem_classes="pd-chips"):
                 self.gallery = Gallery(elem_id="gallery", elem_classes="pd-gallery", min_width=0)
-                self.chips = [chip(worded("examples", name)) for name, _ in EXAMPLES]
+                self.chips = [chip(name) for name, _ in EXAMPLES]
             self.reading = Reading(editable=True, elem_id="reading", elem_classes="pd-reading")
         self.class_name = gr.Dropdown(
             classes,

@@ -28,7 +28,7 @@ from webdemo.ui.components.sweep import (
 from webdemo.ui.components.upload import chip
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import notes_lines, status, total
-from webdemo.ui.text.texts import say, worded
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import seconds
 
 from .results import QUIET, Updates
@@ -74,10 +74,10 @@ class Grids:
     def build(self) -> None:
         """Lays out the menu, folded: grids that are one press away, and the settings of a grid."""
         tab = self.tab
-        choices = [(say("sweeps.nothing"), ""), *((worded("swept", kind.label), kind.field) for kind in tab.kinds())]
+        choices = [(say("sweeps.nothing"), ""), *((kind.label, kind.field) for kind in tab.kinds())]
         with gr.Accordion(say("sweeps.compare"), open=False, elem_id=f"{tab.prefix}grid", elem_classes="pd-menu"):
             with gr.Row(elem_classes="pd-chips"):
-                self.chips = [chip(worded("preset", label)) for label in tab.presets()]
+                self.chips = [chip(label) for label in tab.presets()]
             gr.HTML(f'<p class="pd-method">{say("sweeps.info", most=MOST)}</p>')
             self.swept: list[Any] = []
             for side in _SIDES:
@@ -85,12 +85,7 @@ class Grids:
                 with gr.Row(elem_classes="pd-pair"):
                     self.swept += [
                         gr.Dropdown(
-                            choices,
-                            value="",
-                            label=worded("side", side.capitalize()),
-                            elem_id=name,
-                            min_width=0,
-                            filterable=False,
+                            choices, value="", label=side.capitalize(), elem_id=name, min_width=0, filterable=False
                         ),
                         gr.Textbox(label=say("sweeps.values"), lines=1, elem_id=f"{name}-values", min_width=0),
                     ]

@@ -41,6 +41,8 @@ MOST_BACK = 20
 """Runs of a tab that can be gone back to."""
 _ASKED = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role", "model")
 """Fields of a request that a tab may have a control of the same name for."""
+_FORGIVEN = """() => document.querySelector("#%s .pd-error") ? "" : { __type__: "update" }"""
+"""JavaScript that takes an error away once something else is asked; to be filled with the id of the line."""
 Watch = Callable[[Progress], dict[str, Any] | None]
 
 
@@ -130,15 +132,18 @@ class JobTab(ABC):
         return self.prefix + name
 
     def lay_out(self, ask: Callable[[], None], settings: Callable[[], None], **stage: Any) -> None:
-        """Two columns: what ``ask`` lays out, the figures and the ``settings``; and the stage with its options."""
+        """What ``ask`` lays out, then the stage, then the figures and the ``settings``: the order of the Tab key.
+
+        The style sheet puts the stage beside the others where there is room.
+        """
         with gr.Row(elem_classes="pd-lab", equal_height=False):
+            with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
+                ask()
+            self.results.build_stage(compare=self.grids.build, **stage)
             with gr.Column(elem_classes="pd-controls", min_width=0):
-                with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-                    ask()
                 self.results.build_readouts()
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     settings()
-            self.results.build_stage(compare=self.grids.build, **stage)
 
     def build_go(self, verb: str, beside: Callable[[], None] = lambda: None) -> None:
         """The buttons that start a run and cancel it, with what ``beside`` lays out between them, and the line."""
@@ -177,6 +182,8 @@ class JobTab(ABC):
             self.sampling.wire(self.results.another, self.go)
         self.wire_start(self.start, triggers, first=self.first)
         self.stop.click(self.cancel, queue=False, **QUIET)
+        asked = [self.controls[name].input for name in self._knobs()]
+        gr.on(asked, None, outputs=self.line, js=_FORGIVEN % self.line.elem_id, **QUIET)
         undone = list({part._id: part for part in (*self.parts(), self.trail, self.results.back)}.values())
         self.results.back.click(self.go_back, inputs=[self.results.own, self.trail], outputs=undone, **QUIET)
         self.grids.wire()

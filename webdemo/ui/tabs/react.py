@@ -17,7 +17,7 @@ from webdemo.ui.components.sweep import Kind
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import method_line, notes_lines, status
-from webdemo.ui.text.texts import english, say, worded
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import seconds
 
 from .actor import ActorPanel
@@ -26,7 +26,7 @@ from .job import JobTab
 from .results import QUIET, Updates
 from .sampling import Sampling
 
-_AUTOMATIC = english("method.automatic")
+_AUTOMATIC = say("method.automatic")
 _WORDS = say("react.words")
 _STREAM = """(method) => {
   const panel = document.querySelector("#react-live .pdlive");
@@ -128,7 +128,7 @@ class ReactTab(JobTab):
         """The method, and what the given person does in the reaction."""
         with gr.Row(elem_classes="pd-rows"):
             self.method = gr.Dropdown(
-                [(worded("way", label), key) for label, key in react_choices()],
+                [(label, key) for label, key in react_choices()],
                 value=AUTOMATIC,
                 label=say("react.method"),
                 elem_id="react-method",

@@ -26,7 +26,7 @@ from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, m
 from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.context import PageContext
 from webdemo.ui.text.panels import status
-from webdemo.ui.text.texts import say, worded
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line, link_line
 from webdemo.ui.visitor import visitor
 from webdemo.view.payload import Payload
@@ -137,7 +137,7 @@ class Results:
         name = self._id("downloads")
         with gr.Accordion(say("result.export"), open=False, elem_id=name, elem_classes="pd-menu") as self.menu:
             for purpose, keys in PURPOSES.items():
-                gr.HTML(f'<p class="pd-purpose">{worded("purpose", purpose)}</p>', padding=False)
+                gr.HTML(f'<p class="pd-purpose">{purpose}</p>', padding=False)
                 with gr.Row(elem_classes="pd-downloads"):
                     for key in keys:
                         self._download(key)
@@ -149,7 +149,7 @@ class Results:
 
     def _download(self, key: str) -> None:
         """The button of one kind of file."""
-        self._buttons[key] = self._saved(worded("files", KINDS[key]), key.replace(".", "-"), visible=offered(key))
+        self._buttons[key] = self._saved(KINDS[key], key.replace(".", "-"), visible=offered(key))
 
     @property
     def downloads(self) -> list[gr.DownloadButton]:

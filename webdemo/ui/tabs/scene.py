@@ -22,7 +22,7 @@ from webdemo.ui.components.upload import chip
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
-from webdemo.ui.text.texts import say, worded
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line, tries_line
 from webdemo.view.payload import player_payload
 
@@ -104,16 +104,15 @@ class SceneTab(JobTab):
             label=say("scene.prompt"), placeholder=EXAMPLES[0][1], lines=1, max_lines=8, elem_id=self._id("prompt")
         )
         with gr.Row(elem_classes="pd-chips"):
-            self.chips = [
-                chip(worded("examples", name), elem_id=self._id(f"example-{i}")) for i, (name, _) in enumerate(EXAMPLES)
-            ]
+            self.chips = [chip(name, elem_id=self._id(f"example-{i}")) for i, (name, _) in enumerate(EXAMPLES)]
             self.last = chip(say("scene.last"), elem_id=self._id("last"))
         self.reading = Reading(elem_id=self._id("reading"), elem_classes="pd-reading")
         self.build_go(say("scene.go"))
 
     def _story(self) -> None:
         self.line_up = StoryLine(elem_id=self._id("story"), elem_classes="pd-story")
-        with gr.Row(elem_classes="pd-panel pd-parts"):
+        with gr.Row(elem_classes="pd-panel pd-parts", visible=False) as self.spans:
+            gr.HTML(f'<p class="pd-method">{say("scene.part_info")}</p>')
             self.words = gr.Textbox(
                 label=say("scene.part"),
                 placeholder=say("scene.part"),
@@ -125,12 +124,23 @@ class SceneTab(JobTab):
             small: dict[str, Any] = {"size": "sm", "min_width": 0, "scale": 0}
             self.remake = gr.Button(say("scene.remake"), elem_id=self._id("remake"), **small)
             self.futures = gr.Button(say("scene.futures", count=FUTURES), elem_id=self._id("futures"), **small)
-            self.take = gr.Button(say("scene.take"), elem_id=self._id("take"), **small)
+            self.take = gr.Button(say("scene.take"), visible=False, elem_id=self._id("take"), **small)
         self.shown_at = gr.Textbox(visible=False)
 
     def more_outputs(self) -> dict[str, Any]:
-        """The story with its words, and their verdicts."""
-        return {"story": self.line_up, "prompt": self.prompt, "reading": self.reading}
+        """The story with its words, their verdicts, and what can be done with parts of the motion."""
+        return {
+            "story": self.line_up,
+            "prompt": self.prompt,
+            "reading": self.reading,
+            "spans": self.spans,
+            "take": self.take,
+        }
+
+    def shown(self, result: Result, title: str) -> dict[str, Any]:
+        """Also what can be done with parts of the motion, or with one of several."""
+        several = gr.update(visible=len(result.duets) > 1)
+        return {**super().shown(result, title), "spans": gr.update(visible=True), "take": several}
 
     def starts(self) -> dict[str, gr.Button]:
         """Also those of parts."""
@@ -216,7 +226,9 @@ class SceneTab(JobTab):
         assert record is not None
         shown = self.shown(record.result, record.prompt)
         shown["line"] = status("Select a span of it, or ask for continuations.")
-        return {self.outputs[name]: shown[name] for name in ("player", "line", "under", "readouts", "own")}
+        return {
+            self.outputs[name]: shown[name] for name in ("player", "line", "under", "readouts", "own", "spans", "take")
+        }
 
     def take_shown(self, record: Record | None, trail: list[str], shown: str) -> Parts:
         """Keeps one of several futures as the motion; the choice can be gone back to."""
@@ -230,7 +242,7 @@ class SceneTab(JobTab):
             return {self.line: status("This is the motion already.")}
         kept = self.shown(only_sample(record.result, sample), record.prompt)
         kept["line"] = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
-        found = {self.outputs[name]: kept[name] for name in ("player", "line", "record", "own")}
+        found = {self.outputs[name]: kept[name] for name in ("player", "line", "record", "own", "take")}
         return found | {self.trail: [*trail, record.result.run]}
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:

@@ -18,7 +18,7 @@ from webdemo.ui.components.show import ROUNDS
 from webdemo.ui.components.upload import animation_field, chip, file_field
 from webdemo.ui.text.examples import example_clips
 from webdemo.ui.text.panels import status
-from webdemo.ui.text.texts import say, worded
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line
 
 from .results import QUIET, Results, Updates
@@ -67,7 +67,7 @@ class SourcePanel(ABC):
         """Lays out where a motion can come from; ``cameras`` lays out more beside the camera's panel."""
         self.file = file_field(self.named, elem_id=f"{self.prefix}file")
         with gr.Row(elem_classes="pd-chips pd-sources"):
-            self.chips = [chip(worded("examples", name)) for name, _ in self.examples]
+            self.chips = [chip(name) for name, _ in self.examples]
             self.take = chip(say("source.take"), elem_id=f"{self.prefix}take")
             self.camera = CameraPanel(elem_id=f"{self.prefix}camera")
             cameras()

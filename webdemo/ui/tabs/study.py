@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Sequence
 from functools import wraps
 from pathlib import Path
@@ -16,7 +17,7 @@ from webdemo.ui.components.notebook import Action, settings
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
-from webdemo.ui.text.texts import SAY, say
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line, text
 from webdemo.ui.visitor import visitor
 
@@ -25,7 +26,7 @@ from .results import QUIET
 QUESTION = "Which does what the sentence says?"
 Parts = dict[Any, Any]
 """New values of components, by the component."""
-_DELETE = f"(study) => {{ {SAY} return confirm(say('study.delete_sure')) ? study : ''; }}"
+_DELETE = f"(study) => confirm({json.dumps(say('study.delete_sure'))}) ? study : ''"
 
 
 def _said(event: Callable[..., Parts]) -> Callable[..., Parts]:

@@ -10,7 +10,7 @@ from motion.metrics import MEASURES, Measure
 from webdemo.inference.methods import label_of
 from webdemo.inference.run import Result
 
-from .texts import say, worded
+from .texts import say
 from .words import number, seconds, text
 
 Summary = Mapping[str, float]
@@ -81,8 +81,7 @@ def effect_line(results: Iterable[Result]) -> str:
 
 def method_line(summary: str) -> str:
     """One line on a method, under the place where it is chosen."""
-    known = worded("method", summary)
-    return f'<p class="pd-method">{text(summary) if known == summary else known}</p>'
+    return f'<p class="pd-method">{text(summary)}</p>'
 
 
 def model_state(state: str, error: str | None = None) -> str:

@@ -101,9 +101,9 @@ def error_line(error: Exception) -> str:
 
 def link_line(until: float) -> str:
     """A sentence on who can open a new link, and until when."""
-    last = time.strftime("%d %B %Y", time.localtime(until))
+    last = time.strftime("%d %B %Y", time.localtime(until)).lstrip("0")
     signed = " and can sign in here" if visitor().account else ""
-    return f"Anyone who has this link{signed} can see the motion until {last}, or until you end its links."
+    return f"Anyone who has this link{signed} can see the motion until {last}, unless you end its links first."
 
 
 def number(value: float, digits: int) -> str:
