@@ -17,7 +17,6 @@ import argparse
 import functools
 import os
 import sys
-import tempfile
 import threading
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -34,10 +33,8 @@ import gradio as gr
 from acts import read
 from motion import Duet
 from motion.formats import read as read_motion
+from tests.ui.stub_page import stub_context
 from webdemo.inference import Engine, GenerateRequest, ReactRequest
-from webdemo.ui.components.exports import Shelf
-from webdemo.ui.context import PageContext
-from webdemo.ui.runs import Loader, Runs
 from webdemo.ui.tabs.generate import GenerateTab
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -107,9 +104,7 @@ def forget() -> None:
 def walks(prompt: str) -> dict[str, Walk]:
     """The walks of a sentence by name, and that of the engine without the correction as "undamped"."""
     engine = Engine()
-    tab = GenerateTab(
-        PageContext(engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(Path(tempfile.mkdtemp())))
-    )
+    tab = GenerateTab(stub_context(engine))
     with gr.Blocks():
         tab.build(gr.Blocks())
 

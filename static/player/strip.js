@@ -41,17 +41,19 @@ export class Strip {
       this.readouts.push(value);
     });
     const span = Math.max(sample.frames - 1, 1);
-    for (const contact of sample.contacts.slice(0, TOO_MANY_TICKS)) {
+    const share = (frames) => `${(100 * Math.max(frames, 0)) / span}cqw`;
+    sample.contacts.slice(0, TOO_MANY_TICKS).forEach((contact, i, { [i + 1]: next }) => {
       const tick = node("button", "pdd-tick");
       tick.dataset.kind = contact.kind;
-      tick.style.setProperty("--from", `${(100 * contact.start) / span}cqw`);
-      tick.style.setProperty("--length", `${(100 * Math.max(contact.stop - 1 - contact.start, 0)) / span}cqw`);
+      tick.style.setProperty("--from", share(contact.start));
+      tick.style.setProperty("--length", share(contact.stop - 1 - contact.start));
+      tick.style.setProperty("--room", share((next?.start ?? 1e6) - contact.start)); // until the next tick
       const text = say("player.contact", { label: contact.label, from: (contact.start / sample.fps).toFixed(1), to: (contact.stop / sample.fps).toFixed(1) });
       tick.title = text;
       tick.setAttribute("aria-label", text);
       tick.addEventListener("click", () => this.onSeek(contact.start));
       this.ticks.append(tick);
-    }
+    });
     const given = sample.past_until;
     this.past.hidden = !given;
     if (given) this.past.style.width = `${(100 * Math.min(given, span)) / span}%`;

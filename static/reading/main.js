@@ -304,14 +304,15 @@ class View {
 
   unread(part, number) {
     const row = node("li", "");
-    row.append(node("q", "pdr-lost", wordsOf(this.shown.plan.sentence, part.words)), ` ${this.whyOf(number)}`);
-    const near = part.nearest.filter((name) => this.shown.nearest[name]);
+    row.append(node("q", "pdr-lost", wordsOf(this.shown.plan.sentence, part.words)), `: ${this.whyOf(number)}`);
+    const said = (name) => this.shown.nearest[name]?.said;
+    const near = part.nearest.filter((name, i, all) => said(name) && all.findIndex((each) => said(each) === said(name)) === i);
     if (near.length && this.editable) {
       const buttons = node("span", "pdr-near");
       buttons.append(`${say("reading.put_in")} `, ...near.map((name) => this.nearest(name, number)));
       row.append(buttons);
     } else if (near.length) {
-      row.append(` ${say("reading.nearest", { names: near.map((name) => this.shown.nearest[name].said).join(", ") })}`);
+      row.append(` ${say("reading.nearest", { names: near.map(said).join(", ") })}`);
     }
     return row;
   }

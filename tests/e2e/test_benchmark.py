@@ -18,8 +18,9 @@ import os, sys, tempfile
 from pathlib import Path
 sys.path.insert(0, {str(REPOSITORY)!r})
 from tests.ui.stub_engine import StubEngine
+from tests.ui.stub_page import stub_context
 from webdemo.ui.page import build_page, launch_options
-page = build_page(StubEngine(pause=0.1), files=Path(tempfile.mkdtemp(dir=Path(__file__).parent)))
+page = build_page(stub_context(StubEngine(pause=0.1), Path(tempfile.mkdtemp(dir=Path(__file__).parent))))
 page.launch(server_name="127.0.0.1", server_port=int(os.environ["PASDEDEUX_PORT"]), **launch_options())
 """
 

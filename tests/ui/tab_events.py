@@ -8,12 +8,10 @@ from typing import Any, TypeVar
 
 import gradio as gr
 
-from webdemo.ui.components.exports import Shelf
-from webdemo.ui.context import PageContext
-from webdemo.ui.runs import Loader, Runs
 from webdemo.ui.tabs.job import JobTab
 
 from .stub_engine import StubEngine
+from .stub_page import stub_context
 
 Tab = TypeVar("Tab", bound=JobTab)
 
@@ -21,7 +19,7 @@ Tab = TypeVar("Tab", bound=JobTab)
 def built(kind: type[Tab], files: Path) -> Tab:
     """A tab of this kind, laid out on a page of its own, with the stub engine; its files go to a folder."""
     engine = StubEngine()
-    tab = kind(PageContext(engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(files)))
+    tab = kind(stub_context(engine, files))
     with gr.Blocks():
         tab.build()
     return tab

@@ -26,13 +26,14 @@ from webdemo.ui.components import film
 from webdemo.ui.page import build_page, launch_options
 
 from .stub_engine import StubEngine, walking
+from .stub_page import stub_context
 
 pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    page = build_page(StubEngine(), files=tmp_path_factory.mktemp("files"))
+    page = build_page(stub_context(StubEngine(), tmp_path_factory.mktemp("files")))
     _, url, _ = page.launch(prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options())
     yield Client(url, verbose=False, download_files=str(tmp_path_factory.mktemp("client")))
     page.close()

@@ -9,7 +9,8 @@ from webdemo.ui.history import Entry, Found
 
 
 def test_every_act_comes_with_a_sentence_that_has_it() -> None:
-    acts = known(None)["acts"]
+    nothing: Any = SimpleNamespace(search=lambda owner, wanted: Found((), 0))
+    acts = known(nothing)["acts"]
     assert len(acts) > 300 and acts == sorted(acts)
     (sentence,) = [sentence for name, sentence in acts if name == "hugs"]
     assert [act.act for act in read(sentence).acts] == ["hug"]

@@ -8,20 +8,16 @@ import pytest
 
 from motion.formats import read, write
 from webdemo.inference.story import sentences
-from webdemo.ui.components.exports import Shelf
-from webdemo.ui.context import PageContext
-from webdemo.ui.runs import Loader, Runs
 from webdemo.ui.scene_api import SceneEndpoint
 
 from .stub_engine import StubEngine, walking
+from .stub_page import stub_context
 
 
 @pytest.fixture
 def endpoint(tmp_path: Path) -> SceneEndpoint:
     engine = StubEngine()
-    return SceneEndpoint(
-        PageContext(engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(tmp_path / "files"))
-    )
+    return SceneEndpoint(stub_context(engine, tmp_path / "files"))
 
 
 def test_sentences_and_toml_give_files(endpoint: SceneEndpoint) -> None:

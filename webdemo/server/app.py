@@ -34,6 +34,8 @@ from webdemo.server.live.streams import live_routes
 from webdemo.server.queue.events import FairEvents
 from webdemo.server.queue.recorder import Recorder
 from webdemo.server.store.scratch import Scratch, keep_files_apart, visitors_folder
+from webdemo.ui.components.exports import Shelf
+from webdemo.ui.context import PageContext
 from webdemo.ui.page import build_page, launch_options, start_queue
 from webdemo.ui.places import READING
 from webdemo.ui.runs import EngineLike, Loader
@@ -73,16 +75,19 @@ def create_app(settings: Settings, *, engine: EngineLike | None = None, scratch:
     if engine is None:
         engine = engine_of(settings)
     lab = make_lab(settings, engine, scratch)
+    shelf = Shelf(
+        Path(get_upload_folder()), owner=visitors_folder, admit=lambda size: lab.storage.admit(visitor(), size)
+    )
     page = build_page(
-        engine,
-        loader=Loader(engine),
-        runs=Recorder(lab.queue, lab.history),
-        history=lab.history,
-        studies=lab.studies,
-        sharing=lab.publishing,
-        files=Path(get_upload_folder()),
-        owner=visitors_folder,
-        admit=lambda size: lab.storage.admit(visitor(), size),
+        PageContext(
+            engine=engine,
+            loader=Loader(engine),
+            runs=Recorder(lab.queue, lab.history),
+            shelf=shelf,
+            history=lab.history,
+            studies=lab.studies,
+            sharing=lab.publishing,
+        )
     )
     app = FastAPI(title="Pas de Deux", docs_url=None, redoc_url=None, openapi_url=None, lifespan=_lifespan)
     app.state.lab = lab

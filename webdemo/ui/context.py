@@ -20,15 +20,15 @@ class PageContext:
         runs: every session's run, and the line they wait in.
         loader: loads the networks in the background.
         shelf: where files for downloads are put.
-        history: runs that can be found again; None where nothing is kept.
-        studies: blind studies of those runs; None where nothing is kept.
-        sharing: public pages of those runs; None where nothing is kept.
+        history: runs that can be found again.
+        studies: blind studies of those runs.
+        sharing: public pages of those runs.
     """
 
     engine: EngineLike
     runs: RunsLike
     loader: Loader
     shelf: Shelf
-    history: HistoryLike | None = None
-    studies: StudiesLike | None = None
-    sharing: SharingLike | None = None
+    history: HistoryLike
+    studies: StudiesLike
+    sharing: SharingLike

@@ -7,15 +7,12 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import gradio as gr
 from gradio.queueing import Queue
 
 from motion.formats.files import MAX_BYTES
-from webdemo.study import StudiesLike
-from webdemo.ui.components.exports import Shelf
 from webdemo.ui.components.finder import Finder
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.ui.tabs.history import LABEL as HISTORY
@@ -31,10 +28,10 @@ from webdemo.ui.text.texts import say
 from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint
 from .context import PageContext
 from .frames import let_rest
-from .history import HistoryLike, SharingLike
+from .history import HistoryLike
 from .read_api import ReadEndpoint
 from .render_api import RenderEndpoint
-from .runs import EngineLike, Loader, Runs, RunsLike
+from .runs import Loader
 from .scene_api import SceneEndpoint
 from .theme import HEAD, style_sheet, theme
 
@@ -71,43 +68,11 @@ _LOOK = 0.02
 """Seconds between two looks at a queue of events in which nothing waits."""
 
 
-def build_page(
-    engine: EngineLike,
-    *,
-    loader: Loader | None = None,
-    files: Path | None = None,
-    owner: Callable[[], str] | None = None,
-    admit: Callable[[float], None] | None = None,
-    runs: RunsLike | None = None,
-    history: HistoryLike | None = None,
-    studies: StudiesLike | None = None,
-    sharing: SharingLike | None = None,
-) -> gr.Blocks:
-    """Builds the page for an engine.
+def build_page(page: PageContext) -> gr.Blocks:
+    """Builds the page of what its parts share; launch it with :func:`launch_options`.
 
-    Args:
-        engine: answers the page's requests; nothing of it is loaded before the page is up.
-        loader: loads the engine's networks; by default the first visit starts one.
-        files: folder for the files that users take home; by default in the system's temporary folder.
-        owner: names the folder in ``files`` of the person whose event is answered; by default all share one.
-        admit: makes room there for a file of so many bytes, or raises InputError; by default there is room.
-        runs: the line that requests wait in; by default one of the page's own, one run at a time.
-        history: runs that can be found again, in a tab of its own; none by default.
-        studies: blind studies of those runs; none by default.
-        sharing: public pages of those runs; none by default.
-
-    Returns:
-        the page; launch it with :func:`launch_options`.
+    Nothing of the engine is loaded before the page is up.
     """
-    page = PageContext(
-        engine=engine,
-        runs=runs or Runs(engine),
-        loader=loader or Loader(engine),
-        shelf=Shelf(files, owner=owner, admit=admit),
-        history=history,
-        studies=studies,
-        sharing=sharing,
-    )
 
     def leave(request: gr.Request) -> None:
         page.runs.cancel(str(request.session_hash))
@@ -119,7 +84,7 @@ def build_page(
     with gr.Blocks(title=TITLE, delete_cache=_CACHE, fill_width=True, analytics_enabled=False) as demo:
         for endpoint in ENDPOINTS:
             endpoint(page).publish()
-        mark = _build_header(history)
+        mark = _build_header(page.history)
         _build_tabs(page, demo)
         demo.load(loading, outputs=mark, concurrency_limit=None, **QUIET)
         demo.unload(leave)
@@ -127,7 +92,7 @@ def build_page(
     return demo
 
 
-def _build_header(history: HistoryLike | None) -> gr.HTML:
+def _build_header(history: HistoryLike) -> gr.HTML:
     """The title, the search and the mark that says whether the model is ready, which is returned."""
     with gr.Row(elem_classes="pd-header", equal_height=True):
         gr.HTML(_HEADER)
@@ -163,7 +128,7 @@ def start_queue(page: gr.Blocks, make: Callable[..., Queue]) -> None:
 
 
 def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
-    """A tab for every job, and the history where there is one."""
+    """A tab for every job, and the history."""
     record = gr.State(None, time_to_live=3600)
     jobs: dict[str, JobTab] = {kind.label.lower(): kind(page) for kind in TABS}
     with gr.Tabs(elem_classes="pd-tabs") as tabs:
@@ -181,9 +146,8 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
         assert isinstance(react, ReactTab)
         react.actor.wire_arrival(shown["react"], record, react.label)
         predict.wire_page(shown["predict"], tabs, [job.results for job in jobs.values()])
-        if page.history is not None:
-            with gr.Tab(say("tabs.history"), id=HISTORY.lower()) as past:
-                HistoryTab(page, jobs, tabs).build(demo, past, record)
+        with gr.Tab(say("tabs.history"), id=HISTORY.lower()) as past:
+            HistoryTab(page, jobs, tabs).build(demo, past, record)
 
 
 def watch_loading(loader: Loader, *, interval: float = 0.3) -> Iterator[str]:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import logging
 import threading
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from acts import read
 from motion import InputError
-from webdemo.inference.run import Cancelled, CancelToken, Progress, Result
+from webdemo.inference.run import CancelToken, Progress, Result
 
 log = logging.getLogger(__name__)
 
@@ -42,79 +41,21 @@ class Waiting(Progress):
 
 
 class RunsLike(Protocol):
-    """The interface with which tabs and endpoints run a request, see :class:`Runs`."""
+    """The interface with which tabs and endpoints run a request; an earlier run of the session is cancelled.
 
-    def cancel(self, session: str) -> bool:
-        """Stops the session's run within one step; False where it has none."""
-
-    def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
-        """Runs a request: its progress, then its result."""
-
-
-class Runs:
-    """The runs of all sessions of one page.
-
-    Args:
-        engine: what runs them.
-        parallel: how many run at the same time; on few cores two runs at once are slower than one after
-            the other. Those that wait say so and can be cancelled.
+    Closing the iterator cancels the run.
     """
 
-    def __init__(self, engine: EngineLike, *, parallel: int = 1) -> None:
-        self.engine = engine
-        self._places = threading.Semaphore(parallel)
-        self._tokens: dict[str, CancelToken] = {}
-        self._lock = threading.Lock()
-
     def cancel(self, session: str) -> bool:
         """Stops the session's run within one step; False where it has none."""
-        with self._lock:
-            token = self._tokens.get(session)
-        if token is not None:
-            token.cancel()
-        return token is not None
 
     def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
-        """Runs a request: its progress, with the stage "queue" while others run, then its result.
-
-        An earlier run of the same session is cancelled. Closing the iterator cancels the run.
+        """Runs a request: its progress, with the stage "queue" while it waits, then its result.
 
         Raises:
             InputError: for what the engine cannot do.
             Cancelled: where the run was cancelled.
         """
-        token = CancelToken()
-        with self._lock:
-            if (earlier := self._tokens.get(session)) is not None:
-                earlier.cancel()
-            self._tokens[session] = token
-        try:
-            yield from self._wait_for_place(token)
-            try:
-                yield from self._guarded(request, token)
-            finally:
-                self._places.release()
-        finally:
-            token.cancel()
-            with self._lock:
-                if self._tokens.get(session) is token:
-                    del self._tokens[session]
-
-    def _guarded(self, request: Any, token: CancelToken) -> Iterator[Progress | Result]:
-        for event in self.engine.run(request, cancel=token):
-            yield event
-            if isinstance(event, Result):
-                return
-        # An engine stops without a result only after a cancellation.
-        raise Cancelled("The run ended without a result.")
-
-    def _wait_for_place(self, token: CancelToken) -> Iterator[Progress]:
-        started = time.monotonic()
-        if self._places.acquire(blocking=False):
-            return
-        while not self._places.acquire(timeout=0.25):
-            token.raise_if_cancelled()
-            yield Progress(stage="queue", elapsed=time.monotonic() - started)
 
 
 class Loader:

@@ -17,6 +17,7 @@ from starlette.routing import Mount
 from tests.server.attacks.target import Target
 from tests.server.clients import FIELDS, settings_for
 from tests.server.lab import ROOT, stub_module
+from tests.ui.stub_page import stub_context
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.app import create_app
 from webdemo.server.http.health import Figures
@@ -164,7 +165,7 @@ def test_whoever_waits_takes_no_thread_from_others(tmp_path: Path) -> None:
 
 def test_nothing_that_computes_goes_past_the_queue() -> None:
     """What is called directly sets buttons or stops a run: it takes nothing that a client could make large."""
-    page = build_page(stub_module().StubEngine())
+    page = build_page(stub_context(stub_module().StubEngine()))
     assert not page.api_open
     for fn in page.fns.values():
         if fn.fn is not None and not fn.queue:

@@ -12,13 +12,13 @@ import pytest
 
 from motion import InputError
 from tests.ui.stub_engine import StubEngine
+from tests.ui.stub_page import stub_context
 from tests.ui.tab_events import built, changes
 from tests.ui.tabs.generating import FIELDS, result_of, run
 from webdemo.inference.requests import GenerateRequest
-from webdemo.inference.run import Cancelled, Result
 from webdemo.ui.history import Entry, Kept, Opened
 from webdemo.ui.page import build_page, watch_loading
-from webdemo.ui.runs import Loader, Runs
+from webdemo.ui.runs import Loader
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.ui.tabs.sampling import FAITHFUL, FAST
 
@@ -118,33 +118,6 @@ def test_an_empty_seed_is_drawn_and_shown(tab: GenerateTab) -> None:
     assert len(seeds) == 2
 
 
-def test_a_second_run_waits_for_the_first_and_can_be_cancelled_in_the_line() -> None:
-    engine = StubEngine(pause=0.05)
-    runs = Runs(engine)
-    request = GenerateRequest(prompt="two people walk", steps=20, seconds=1)
-    first = runs.run("one", request)
-    next(first)
-    second = runs.run("two", request)
-    assert next(second).stage == "queue"
-    runs.cancel("two")
-    with pytest.raises(Cancelled):
-        list(second)
-    assert isinstance(list(first)[-1], Result), "the first was not disturbed"
-    assert isinstance(list(runs.run("two", request))[-1], Result)
-
-
-def test_a_new_run_of_a_session_cancels_its_earlier_one() -> None:
-    runs = Runs(StubEngine(pause=0.01), parallel=2)
-    request = GenerateRequest(prompt="two people walk", seconds=1, steps=200)
-    earlier = runs.run("me", request)
-    next(earlier)
-    later = runs.run("me", request)
-    next(later)
-    with pytest.raises(Cancelled):
-        list(earlier)
-    assert next(later).stage == "sample", "the end of the earlier run does not stop the later one"
-
-
 def test_loading_is_shown_until_it_is_done_or_failed() -> None:
     marks = list(watch_loading(Loader(StubEngine(load=0.2)), interval=0.02))
     assert "Loading model" in marks[0]
@@ -159,7 +132,7 @@ def test_loading_is_shown_until_it_is_done_or_failed() -> None:
 
 
 def test_build_page_offers_an_endpoint_a_job(tmp_path: Path) -> None:
-    demo = build_page(StubEngine(), files=tmp_path)
+    demo = build_page(stub_context(StubEngine(), tmp_path))
     assert list(demo.get_api_info()["named_endpoints"]) == [
         "/predict",
         "/generate",

@@ -29,7 +29,7 @@ MAX_GROUPS = 8
 
 
 class FairQueue:
-    """Runs for all sessions; the same use as :class:`webdemo.ui.runs.Runs`.
+    """Runs for all sessions; a :class:`webdemo.ui.runs.RunsLike`.
 
     Args:
         engine: runs the requests.

@@ -21,7 +21,7 @@ log = logging.getLogger(__name__)
 
 
 class Recorder:
-    """Runs requests in a queue and keeps every one of them; the same use as :class:`webdemo.ui.runs.Runs`.
+    """Runs requests in a queue and keeps every one of them; a :class:`webdemo.ui.runs.RunsLike`.
 
     Args:
         queue: runs them.

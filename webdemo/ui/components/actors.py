@@ -26,9 +26,9 @@ ReadWith = tuple[str, float | None, str, int | None]
 """Up axis, frames a second, order of joints and number of the animation, as the page's controls give them."""
 
 
-def react_choices(weights: Path | None = None) -> list[tuple[str, str]]:
+def react_choices() -> list[tuple[str, str]]:
     """(label, key) of the ways to react whose weights are there, in each of their modes; automatic first."""
-    found = [(v.label, v.key) for method in installed("react", weights) for v in method.variants]
+    found = [(v.label, v.key) for method in installed("react") for v in method.variants]
     return [("Automatic", AUTOMATIC), *found]
 
 

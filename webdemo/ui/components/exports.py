@@ -87,22 +87,15 @@ class Shelf:
     """A folder with one folder a run.
 
     Args:
-        root: created when first needed; by default a folder of this user in the system's temporary one.
+        root: created when first needed.
         owner: names the folder in it for the person whose event is answered; by default there is one for all.
         admit: makes room for a file of so many bytes, or raises InputError; by default there is room.
-        max_age: seconds after which a run's folder is removed when another is made.
     """
 
     def __init__(
-        self,
-        root: Path | None = None,
-        *,
-        owner: Callable[[], str] | None = None,
-        admit: Callable[[float], None] | None = None,
-        max_age: float = MAX_AGE,
+        self, root: Path, *, owner: Callable[[], str] | None = None, admit: Callable[[float], None] | None = None
     ) -> None:
-        self.root = root or Path(tempfile.gettempdir()) / f"pas-de-deux-{os.getuid()}"
-        self.owner, self.admit, self.max_age = owner, admit, max_age
+        self.root, self.owner, self.admit = root, owner, admit
 
     def folder(self, size: float = 0.0) -> Path:
         """A new empty folder; those that are too old are removed.
@@ -121,8 +114,8 @@ class Shelf:
         return Path(tempfile.mkdtemp(prefix="run-", dir=parent))
 
     def clean(self) -> None:
-        """Removes the folders of runs older than ``max_age``."""
-        oldest = time.time() - self.max_age
+        """Removes the folders of runs older than :data:`MAX_AGE`."""
+        oldest = time.time() - MAX_AGE
         for folder in self.root.glob("*/run-*" if self.owner else "run-*"):
             try:
                 if folder.stat().st_mtime < oldest:

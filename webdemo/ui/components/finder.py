@@ -33,19 +33,19 @@ class Finder(Part):
     style = scoped(FINDER_FOLDER / "finder.css")
     declared: ClassVar = {"known": None}
 
-    def wire(self, history: HistoryLike | None, **quiet: Any) -> None:
+    def wire(self, history: HistoryLike, **quiet: Any) -> None:
         """Answers the browser, which asks whenever the dialog opens; ``quiet`` are the options of the page's events."""
         self.input(lambda: gr.update(known=known(history)), outputs=self, concurrency_limit=4, **quiet)
 
 
-def known(history: HistoryLike | None) -> dict[str, Any]:
+def known(history: HistoryLike) -> dict[str, Any]:
     """What the search finds.
 
     Returns:
         ``acts``, each act that bodies show in a few words and a sentence that has it; ``runs``, the id, the title and
         the kind of the visitor's newest runs that can be opened.
     """
-    runs = history.search(visitor().owner, Search(limit=_RUNS)).entries if history is not None else ()
+    runs = history.search(visitor().owner, Search(limit=_RUNS)).entries
     done = [[run.id, run.title, run.kind] for run in runs if run.state == "done"]
     return {"acts": _acts(), "runs": done}
 

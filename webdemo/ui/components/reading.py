@@ -15,6 +15,7 @@ from pydantic import TypeAdapter
 
 from acts import Act, Plan, lexicon, read
 from acts.captions import short
+from acts.checking import NO_RULE
 from acts.plan import plan_of
 from motion import InputError
 from webdemo.inference.requests.paths import FloorPath, path_of
@@ -201,6 +202,7 @@ def _mark(row: Mapping[str, Any]) -> bool | None:
 
 
 def _measured(row: Mapping[str, Any]) -> str:
-    if row.get("wrote"):
+    if row.get("done") is not False and row.get("wrote"):
         return f"“{row['wrote']}” was read as this"
-    return "; ".join(row.get("unchecked") or ()) or str(row.get("measure") or "")
+    measure = str(row.get("measure") or "")
+    return "; ".join(row.get("unchecked") or ()) or ("" if measure == NO_RULE else measure)

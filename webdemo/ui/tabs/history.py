@@ -45,8 +45,6 @@ class HistoryTab:
     """
 
     def __init__(self, page: PageContext, jobs: Mapping[str, JobTab], tabs: gr.Tabs) -> None:
-        if page.history is None:
-            raise ValueError("The page has no history.")
         self.page, self.jobs, self.tabs = page, jobs, tabs
         self.history: HistoryLike = page.history
         self.files = FilesPanel(page, self.history, self.refresh)
@@ -69,12 +67,10 @@ class HistoryTab:
             self.saved = gr.DownloadButton(say("history.save"), visible=False, elem_id="history-saved", size="sm")
             self.view = NotebookView(elem_id="history-notebook")
             self.who = gr.HTML(elem_id="history-who")
-            self.study = StudyPanel(self.page, self.line) if self.page.studies is not None else None
-            if self.study is not None:
-                self.study.build()
-            self.sharing = SharingPanel(self.page) if self.page.sharing is not None else None
-            if self.sharing is not None:
-                self.sharing.build()
+            self.study = StudyPanel(self.page, self.line)
+            self.study.build()
+            self.sharing = SharingPanel(self.page.sharing)
+            self.sharing.build()
             self.files.build()
         self.removed = gr.State([])
         self._wire(demo, tab, record)
@@ -85,10 +81,8 @@ class HistoryTab:
         tab.select(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
         self.view.select(self.act, inputs=self.removed, outputs=shown, **quick)
         self.files.wire(shown[:2], self.line, self.saved, self.removed)
-        if self.study is not None:
-            self.study.wire(tab, self.view.edit)
-        if self.sharing is not None:
-            self.sharing.wire(tab, self.view.apply)
+        self.study.wire(tab, self.view.edit)
+        self.sharing.wire(tab, self.view.apply)
         parts = [self.tabs, record, self.line, *(c for job in self.jobs.values() for c in job.parts())]
         self.opened = list({part._id: part for part in parts}.values())
         named = gr.Textbox(visible=False)

@@ -328,7 +328,7 @@ class JobTab(ABC):
         if record is not None and trail[-1:] == [record.result.run]:
             trail = trail[:-1]
         try:
-            if self.page.history is None or not trail:
+            if not trail:
                 raise InputError("There is no motion before this one.")
             found = self.opened(self.page.history.open(trail[-1], visitor().owner))
         except Exception as error:
@@ -389,7 +389,7 @@ class JobTab(ABC):
 
     def _keep(self, record: Record, fields: Mapping[str, Any]) -> None:
         """Writes down how the tab was set, so that the run opens as it was."""
-        if self.page.history is None or not record.result.run:
+        if not record.result.run:
             return
         source = fields.get("source")
         controls = {name: fields.get(name) for name in self._knobs()}

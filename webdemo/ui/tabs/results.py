@@ -108,7 +108,7 @@ class Results:
                     self.another = self._button("result.another", "another", visible=another)
                     self.onward = self._button("result.next", "continue")
                     compare()
-                    self.share = self._button("result.share", "share", visible=self.page.history is not None)
+                    self.share = self._button("result.share", "share")
                     self._export()
                     self.address = gr.Textbox(
                         label=say("result.link"),
@@ -124,8 +124,8 @@ class Results:
         """All figures of a result; nothing until there is one."""
         self.readouts = gr.HTML(elem_id=self._id("readouts"), elem_classes="pd-panel pd-under")
 
-    def _button(self, text: str, name: str, classes: str | None = None, **options: Any) -> gr.Button:
-        return gr.Button(say(text), size="sm", min_width=0, elem_id=self._id(name), elem_classes=classes, **options)
+    def _button(self, text: str, name: str, **options: Any) -> gr.Button:
+        return gr.Button(say(text), size="sm", min_width=0, elem_id=self._id(name), **options)
 
     def _saved(self, label: str, name: str, **options: Any) -> gr.DownloadButton:
         return gr.DownloadButton(
@@ -194,7 +194,7 @@ class Results:
     def make_link(self, record: Record | None, shown: str) -> Updates:
         """Makes a link to the shown run, at the moment and from the side that the player shows."""
         try:
-            if self.page.history is None or record is None or not record.result.run:
+            if record is None or not record.result.run:
                 raise InputError("This motion is not in your history: make it once more.")
             key, until = self.page.history.link(record.result.run, visitor().owner)
         except Exception as error:

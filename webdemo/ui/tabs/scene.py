@@ -92,7 +92,7 @@ class SceneTab(JobTab):
 
     def build(self, record: gr.State | None = None) -> None:
         """See :meth:`JobTab.build`."""
-        self.lay_out(self._ask, self.sampling.build, below=self._story)
+        self.lay_out(self._ask, self._settings, below=self._story)
         self.controls = {"prompt": self.prompt, "story": self.line_up, **self.sampling.controls}
         self.wire([self.go.click, self.prompt.submit], record)
         self._wire_parts()
@@ -125,7 +125,10 @@ class SceneTab(JobTab):
             self.remake = gr.Button(say("scene.remake"), elem_id=self._id("remake"), **small)
             self.futures = gr.Button(say("scene.futures", count=FUTURES), elem_id=self._id("futures"), **small)
             self.take = gr.Button(say("scene.take"), visible=False, elem_id=self._id("take"), **small)
-        self.shown_at = gr.Textbox(visible=False)
+
+    def _settings(self) -> None:
+        self.sampling.build()
+        self.shown_at = gr.Textbox(visible=False)  # made last: Gradio passes inputs in the order in which they are made
 
     def more_outputs(self) -> dict[str, Any]:
         """The story with its words, their verdicts, and what can be done with parts of the motion."""

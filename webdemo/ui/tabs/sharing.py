@@ -9,7 +9,6 @@ import gradio as gr
 
 from motion import InputError
 from webdemo.ui.components.notebook import Action
-from webdemo.ui.context import PageContext
 from webdemo.ui.history import PublicPage, SharingLike
 from webdemo.ui.public_html import frame_code
 from webdemo.ui.text.panels import status
@@ -24,13 +23,11 @@ class SharingPanel:
     """The part of the History tab where public pages are made and ended.
 
     Args:
-        page: what the tabs share; its public pages are there.
+        sharing: keeps the pages.
     """
 
-    def __init__(self, page: PageContext) -> None:
-        if page.sharing is None:
-            raise ValueError("The page keeps no public pages.")
-        self.sharing: SharingLike = page.sharing
+    def __init__(self, sharing: SharingLike) -> None:
+        self.sharing = sharing
 
     # ---- layout ----------------------------------------------------------------------------------
 

@@ -51,8 +51,6 @@ class StudyPanel:
     """
 
     def __init__(self, page: PageContext, line: gr.HTML) -> None:
-        if page.history is None or page.studies is None:
-            raise ValueError("The page keeps no studies.")
         self.page, self.line, self.history, self.studies = page, line, page.history, page.studies
 
     def build(self) -> None:

@@ -17,6 +17,6 @@ EXAMPLES: tuple[tuple[str, str], ...] = (
 """(what the chip says, the prompt it puts into the box); each is one that the default model does well"""
 
 
-def example_clips(folder: Path = CLIPS) -> list[tuple[str, Path]]:
+def example_clips() -> list[tuple[str, Path]]:
     """(what the chip says, file) of every example actor, by name; empty where none are shipped."""
-    return [(path.stem.replace("-", " ").capitalize(), path) for path in sorted(folder.glob("*.npz"))]
+    return [(path.stem.replace("-", " ").capitalize(), path) for path in sorted(CLIPS.glob("*.npz"))]
