@@ -80,7 +80,8 @@ export class Notebook {
     card.dataset.id = entry.id;
     card.tabIndex = 0;
     const box = Object.assign(node("input"), { type: "checkbox", ariaLabel: say("notebook.choose", { title: entry.title }) });
-    box.dataset.choose = "";
+    const pick = node("span", "pdn-pick"); // more to press than the box
+    pick.append(box);
     const picture = Object.assign(node("canvas", "pdn-thumb"), { width: 88, height: 88 });
     picture.setAttribute("aria-hidden", "true");
     play(picture, entry.thumbnail);
@@ -97,7 +98,7 @@ export class Notebook {
     more.append(node("summary", "", say("notebook.details")));
     more.addEventListener("toggle", () => more.open && more.children.length === 1 && this.fill(more, entry));
     text.append(more);
-    card.append(box, picture, text);
+    card.append(pick, picture, text);
     return card;
   }
 
@@ -135,7 +136,7 @@ export class Notebook {
       this.choose(card, {});
       return this.act("open");
     }
-    if (card) this.choose(card, { several: "choose" in event.target.dataset || event.ctrlKey || event.metaKey, range: event.shiftKey });
+    if (card) this.choose(card, { several: event.target.closest(".pdn-pick") || event.ctrlKey || event.metaKey, range: event.shiftKey });
   }
 
   type(event) {
@@ -171,7 +172,7 @@ export class Notebook {
     for (const card of this.root.querySelectorAll(".pdn-card")) {
       const on = this.chosen.has(card.dataset.id);
       card.classList.toggle("pdn-on", on);
-      card.querySelector("[data-choose]").checked = on;
+      card.querySelector("input").checked = on;
     }
     const chosen = [...this.chosen].map((id) => this.entries.get(id)).filter(Boolean);
     const [one] = chosen.length === 1 ? chosen : [null];

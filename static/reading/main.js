@@ -82,7 +82,7 @@ class View {
     this.answer(props.shown);
     this.typed(props.text ?? "");
     this.answer(props.shown);
-    this.judge(props.checked ?? null);
+    this.judge(props.checked?.text ? props.checked : null);
     if (this.shown) this.draw();
   }
 

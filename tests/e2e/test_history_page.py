@@ -146,7 +146,7 @@ def test_a_notebook_is_searched_written_in_and_taken_along(lab: str, open_page: 
     page.fill("[data-find=words]", "rehearsal")
     expect(cards).to_have_count(2, timeout=SLOW)
 
-    page.check(".pdn-card >> nth=1 >> [data-choose]")
+    page.check(".pdn-card >> nth=1 >> .pdn-pick input")
     page.click("#history-export")
     page.wait_for_selector("#history-status :text('2 runs in one file')")
     with page.expect_download(timeout=SLOW) as download:

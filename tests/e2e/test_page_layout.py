@@ -77,7 +77,7 @@ def test_what_is_pressed_is_24_pixels_high_and_wide(server: SimpleNamespace, ope
 
 _SMALL = """() => [...document.querySelectorAll("button, summary, input[type=range], input[type=checkbox], select")]
     .filter((each) => each.checkVisibility({ checkOpacity: true }) && !each.matches(".pdd-tick"))
-    .map((each) => [each, (each.closest("label") ?? each).getBoundingClientRect()])
+    .map((each) => [each, (each.closest("label, .pdn-pick") ?? each).getBoundingClientRect()])
     .filter(([, { width, height }]) => width > 1 && height > 1 && (width < 23.5 || height < 23.5))
     .map(([each]) => each.outerHTML.slice(0, 120))"""
 """What is smaller: not Gradio's copies of its tabs' buttons, a pixel high, nor touches that lie close together."""

@@ -43,7 +43,7 @@ def test_a_grid_is_linked_compared_and_voted_on(lab: str, open_page: Callable, t
     owner.click("#generate:enabled")
     expect(owner.locator("#player .pdd-title")).to_have_text("They bow.", timeout=SLOW)
     owner.get_by_role("tab", name="History").click()
-    owner.check(".pdn-card >> nth=1 >> [data-choose]")
+    owner.check(".pdn-card >> nth=1 >> .pdn-pick input")
     owner.click("#history-compare")
     owner.wait_for_function(f"{CELLS} === 2")
     expect(owner.locator("#player .pdd-cell-text").first).to_have_text("They bow., seed 0")
@@ -56,7 +56,7 @@ def test_a_grid_is_linked_compared_and_voted_on(lab: str, open_page: Callable, t
     owner.wait_for_function(f"{CELLS} === 2 && window.__pasdedeux?.player?.focus === null")
 
     owner.get_by_role("tab", name="History").click()
-    owner.check(".pdn-card:has-text('grid of 2') [data-choose]")
+    owner.check(".pdn-card:has-text('grid of 2') .pdn-pick input")
     expect(owner.locator(".pdn-count")).to_contain_text("2 of ")
     owner.click("#history-study")
     owner.click("#study-make")

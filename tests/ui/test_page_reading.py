@@ -104,7 +104,7 @@ def test_marks_are_of_the_acts_that_were_checked() -> None:
         ],
         "unread": ["slowly"],
     }
-    assert checked("They hug.", {}) is None
+    assert checked("They hug.", {}) == {}
 
 
 def test_a_reading_says_how_long_its_beats_take() -> None:

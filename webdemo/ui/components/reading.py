@@ -80,7 +80,7 @@ class Reading(Part):
     template = READING_FOLDER / "reading.html"
     script = on_load(MOUNT, READING_FOLDER / "main.js")
     style = scoped(READING_FOLDER / "reading.css")
-    declared: ClassVar = {"text": "", "shown": None, "checked": None, "editable": False}
+    declared: ClassVar = {"text": "", "shown": None, "checked": {}, "editable": False}
 
     def read_first(self, prompt: gr.Textbox, seconds: gr.Slider, inputs: Iterable[gr.Component]) -> str:
         """JavaScript for a run of ``inputs``, a set, that waits until its prompt is read and takes the length then."""
@@ -183,8 +183,10 @@ def entry_facts(name: str) -> dict[str, Any]:
     }
 
 
-def checked(text: str, manifest: Mapping[str, Any]) -> dict[str, Any] | None:
-    """The verdicts on a result's acts, as the component marks them; None where there are none.
+def checked(text: str, manifest: Mapping[str, Any]) -> dict[str, Any]:
+    """The verdicts on a result's acts, as the component marks them; {} where there are none.
+
+    Not None, for which Gradio's page leaves a prop as it is.
 
     Args:
         text: its prompt.
@@ -193,7 +195,7 @@ def checked(text: str, manifest: Mapping[str, Any]) -> dict[str, Any] | None:
     """
     rows = manifest.get("checked") or ()
     acts = [{"act": row.get("act"), "done": _mark(row), "measure": _measured(row)} for row in rows]
-    return {"text": text, "acts": acts, "unread": list(manifest.get("unread") or ())} if acts else None
+    return {"text": text, "acts": acts, "unread": list(manifest.get("unread") or ())} if acts else {}
 
 
 def _mark(row: Mapping[str, Any]) -> bool | None:

@@ -234,7 +234,7 @@ class GenerateTab(JobTab):
 
     def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
         """The verdicts of the last result go: the cells have their own, in the table."""
-        return {"reading": gr.update(checked=None)}
+        return {"reading": gr.update(checked={})}
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also what was asked by: a sentence or a class."""

@@ -81,7 +81,7 @@ class SceneTab(JobTab):
         return {
             "story": gr.update(value=value_of(request)),
             "prompt": _changed(fields),
-            "reading": gr.update(checked=None),
+            "reading": gr.update(checked={}),
         }
 
     def title(self, request: SceneRequest) -> str:
@@ -194,7 +194,7 @@ class SceneTab(JobTab):
             yield self.updates(**laid, story=gr.update(value=fields["story"]))
         title = fields["record"].prompt if part is not None else self.title(wanted)
         result = yield from self.made(session, wanted, watch=partial(self._watch, title))
-        verdicts = checked(str(fields["prompt"]), result.manifest) if part is None else None
+        verdicts = checked(str(fields["prompt"]), result.manifest) if part is None else {}
         shown = self.shown(result, title) | {"reading": gr.update(checked=verdicts)}
         if part == "futures":
             story = went_on(fields["story"], wanted)
@@ -263,7 +263,7 @@ class SceneTab(JobTab):
             found[self.line_up] = gr.update(value=story)
             said = said_of(str(run.kept.controls.get("prompt") or ""), story)
             found[self.prompt] = gr.update(value=said)
-            found[self.reading] = gr.update(checked=None if motion is not None else checked(said, run.result.manifest))
+            found[self.reading] = gr.update(checked={} if motion is not None else checked(said, run.result.manifest))
         return found
 
 
