@@ -71,6 +71,8 @@ def test_what_is_pressed_is_24_pixels_high_and_wide(server: SimpleNamespace, ope
     small = page.evaluate(_SMALL)
     for tab in ("Scene", "React", "Predict", "History"):
         page.get_by_role("tab", name=tab, exact=True).click()
+        if tab == "History":  # whose style sheet comes with it
+            page.wait_for_function("getComputedStyle(document.querySelector('.pdn-bar')).display === 'flex'")
         small += page.evaluate(_SMALL)
     assert not small, small
 

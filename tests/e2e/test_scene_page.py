@@ -10,6 +10,7 @@ import pytest
 from playwright.sync_api import expect
 
 from .playing import settled_box
+from .serving import live
 
 pytestmark = pytest.mark.slow
 TIMEOUT = 30_000
@@ -18,7 +19,7 @@ TIMEOUT = 30_000
 @pytest.fixture(scope="module")
 def scene(lab: str, kept_tabs: Any) -> Any:
     """The tab Scene, which the tests share."""
-    page = kept_tabs.open(lab, width=1300, height=1500)
+    page = live(kept_tabs.open(lab, width=1300, height=1500))
     page.set_default_timeout(TIMEOUT)
     page.get_by_role("tab", name="Scene").click()
     return page
