@@ -14,6 +14,7 @@ export class Connection {
     this.wanted = wanted;
     this.id = null;
     this.closed = false;
+    this.leaving = new AbortController();
   }
 
   /** Opens the stream; returns the payload that its frames belong to. */
@@ -33,15 +34,17 @@ export class Connection {
   close() {
     this.closed = true;
     const { id } = this;
+    if (id) this.leaving.abort(); // what is on its way would be refused
     this.id = null;
     if (id) fetch(`${this.address}/${id}`, { method: "DELETE", keepalive: true }).catch(() => {});
   }
 
   async _ask(path, content, patience) {
     let answer;
+    const signal = AbortSignal.any([this.leaving.signal, AbortSignal.timeout(patience)]);
     try {
       answer = await fetch(this.address + path, {
-        method: "POST", body: JSON.stringify(content), headers: { "Content-Type": "application/json" }, signal: AbortSignal.timeout(patience),
+        method: "POST", body: JSON.stringify(content), headers: { "Content-Type": "application/json" }, signal,
       });
     } catch {
       throw new LiveError(say("live.unreachable"));

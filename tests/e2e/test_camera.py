@@ -64,10 +64,7 @@ def partner(page: Page) -> None:
     people(page, 2)
 
 
-def test_a_video_and_then_the_webcam_become_an_actor_who_gets_a_partner(
-    filming: Page, expected_errors: list[str]
-) -> None:
-    expected_errors.append("410 from /live/")  # of a message on its way when its stream ends
+def test_a_video_and_then_the_webcam_become_an_actor_who_gets_a_partner(filming: Page) -> None:
     line = filming.locator("#react-camera .pdcam-line")
     file = filming.locator("#react-camera input[type=file]")
     for name, kind, sentence in (
