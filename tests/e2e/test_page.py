@@ -237,6 +237,7 @@ def test_undo_brings_the_motion_before_and_its_words(page: Page) -> None:
     with page.expect_download() as waiting:
         page.click("#download-json:enabled")
     assert waiting.value.suggested_filename.startswith("two-people-nod-seed")
+    page.focus("#player .pdd")
     page.keyboard.press("Escape")
     expect(page.locator("#download-json")).to_be_hidden()
 

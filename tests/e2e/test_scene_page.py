@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -111,6 +112,7 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.get_by_role("button", name="Add beat").click()
     page.keyboard.press("Enter")
     assert "They look at each other." in words(), "a beat has words from the start"
+    expect(page.locator("#scene-prompt textarea")).to_have_value(re.compile("They look at each other"))
 
 
 def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any) -> None:

@@ -68,7 +68,7 @@ const shut = ({ type, key, target }) => {
 };
 document.addEventListener("click", shut);
 document.addEventListener("pointerdown", shut);
-document.addEventListener("keydown", shut);
+document.addEventListener("keydown", shut, { capture: true }); // the player keeps its keys to itself
 // A menu under a resting mouse is open until the mouse leaves it; a press in it keeps it open, one on its name shut.
 {
   const label = (menu) => menu?.querySelector(":scope > .label-wrap");
@@ -98,7 +98,7 @@ document.addEventListener("keydown", shut);
   }, { capture: true });
   document.addEventListener("keydown", ({ key }) => {
     if (key === "Escape") [closed, rested] = [rested, null];
-  });
+  }, { capture: true });
 }
 </script>"""
 
