@@ -73,6 +73,7 @@ def test_what_is_pressed_is_24_pixels_high_and_wide(server: SimpleNamespace, ope
         page.get_by_role("tab", name=tab, exact=True).click()
         if tab == "History":  # whose style sheet comes with it
             page.wait_for_function("getComputedStyle(document.querySelector('.pdn-bar')).display === 'flex'")
+            page.wait_for_selector(".pdn-card")
         small += page.evaluate(_SMALL)
     assert not small, small
 

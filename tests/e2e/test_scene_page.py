@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -76,6 +75,10 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     assert words() == ["They meet.", "They hug.", "They bow."]
     page.get_by_role("button", name="Redo").click()
     assert words() == ["They meet.", "They bow.", "They hug."]
+    page.get_by_role("button", name="Add beat").click()
+    page.keyboard.press("Enter")
+    assert "They look at each other." in words(), "a beat has words from the start"
+    page.get_by_role("button", name="Undo", exact=True).click()
     # A beat is stretched from the keyboard.
     page.locator(".pds [data-field=seconds]").fill("6.5")
     page.keyboard.press("Tab")
@@ -109,10 +112,6 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.wait_for_function("window.__pasdedeux?.player?.data.samples.length === 1")
     assert "number 2" in page.locator("#scene-status").inner_text()
     expect(page.locator("#scene-take")).to_be_hidden()
-    page.get_by_role("button", name="Add beat").click()
-    page.keyboard.press("Enter")
-    assert "They look at each other." in words(), "a beat has words from the start"
-    expect(page.locator("#scene-prompt textarea")).to_have_value(re.compile("They look at each other"))
 
 
 def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any) -> None:
