@@ -17,6 +17,7 @@ from webdemo.inference.run import Result
 from webdemo.ui.components.notebook import MOST_SHOWN, STEP, Action, facts, settings, shown
 from webdemo.ui.history import Entry, Found, Opened, Search, Usage
 from webdemo.ui.tabs.history import EMPTY, NOTHING_FOUND, HistoryTab, compared
+from webdemo.ui.tabs.history_files import room_html
 
 WHEN = time.strftime("%d %b %Y %H:%M", time.localtime(0))
 
@@ -180,3 +181,9 @@ def test_chosen_runs_are_compared_in_a_grid() -> None:
     fewer = Clip(np.zeros((30, 15, 3)), 30, SKELETONS["sbu15"])
     with pytest.raises(InputError, match="different joints"):
         compared([*runs, Opened(entry=entry("sit"), result=replace(result, duets=(fewer,)))])
+
+
+def test_room_is_told_once_half_of_it_is_used() -> None:
+    assert room_html(Usage(runs=40 * 2**20, allowed=100 * 2**20, kept=75 * 2**20)) == ""
+    told = room_html(Usage(runs=60 * 2**20, allowed=100 * 2**20, kept=75 * 2**20))
+    assert "60 of 100 MB used: runs 60. When runs and studies reach 75 MB" in told and "<meter" in told

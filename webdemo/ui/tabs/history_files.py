@@ -93,7 +93,9 @@ def runs_line(count: int) -> str:
 
 
 def room_html(usage: Usage) -> str:
-    """A bar and a line on the room that a person uses and has."""
+    """A bar and a line on the room that a person uses and has; "" while it is less than half."""
+    if usage.used < usage.allowed / 2:
+        return ""
     parts = [
         f"{name} {_megabytes(size)}"
         for name, size in (

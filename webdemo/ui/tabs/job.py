@@ -182,8 +182,8 @@ class JobTab(ABC):
             self.sampling.wire(self.results.another, self.go)
         self.wire_start(self.start, triggers, first=self.first)
         self.stop.click(self.cancel, queue=False, **QUIET)
-        asked = [self.controls[name].input for name in self._knobs()]
-        gr.on(asked, None, outputs=self.line, js=_FORGIVEN % self.line.elem_id, **QUIET)
+        knobs: list[Any] = [self.controls[name] for name in self._knobs()]
+        gr.on([knob.input for knob in knobs], None, outputs=self.line, js=_FORGIVEN % self.line.elem_id, **QUIET)
         undone = list({part._id: part for part in (*self.parts(), self.trail, self.results.back)}.values())
         self.results.back.click(self.go_back, inputs=[self.results.own, self.trail], outputs=undone, **QUIET)
         self.grids.wire()
