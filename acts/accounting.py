@@ -183,7 +183,8 @@ def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
         return token.dep_ == "nummod" and head.lower_ not in words.both and not words.is_person(_lemma(head, parsed))
     if token.pos_ in ("NOUN", "PROPN") and (words.is_person(lemma) or words.is_person(token.lower_)):
         said = {lemma, token.lower_} & (names | ANYONE) or words.is_person(_lemma(token.head, parsed))
-        said = said or token.tag_ == "NNS" or any(c.lower_ in closed("of two") for c in token.children)
+        owned = any(c.tag_ == "PRP$" for c in token.children)  # "with their guards up"
+        said = said or (token.tag_ == "NNS" and not owned) or any(c.lower_ in closed("of two") for c in token.children)
         return is_likeness(token) or not said  # "acts like a king", "keeps his guard up"
     if token.pos_ == "PROPN" and not token.text.islower():
         return names.isdisjoint((lemma, token.lower_, token.head.lower_))

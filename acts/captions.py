@@ -20,8 +20,10 @@ from .things import kind_of
 
 _VERB = re.compile(r"\[([a-z-]+)\]")
 _SLOT = re.compile(r"\{([a-z_]+)\} ?")
+_BY_FOOT = re.compile(r"\[(?:kick|step|hop|walk|run|march|limp|stumble|stamp)\]")
 _NAMES = {"a": "person A", "b": "person B"}
 _COUNTS = {1: "once", 2: "twice", 3: "three times"}
+_PRONOUNS = frozenset(("it", "them", "something"))
 _PLAIN = frozenset(("a", "an", "the", "their"))
 _BEFORE_PEOPLE = frozenset(("to", "with", "at", "of"))
 _LEAN = frozenset(("to", "with", "at", "of", "on", "by", "in", "past", "from", "around", "behind", "into"))
@@ -102,7 +104,7 @@ def _by_hand(act: Act, caption: str) -> str:
     told = any(slot in caption for slot in ("{side}", "{limb}", "{part}", "{direction}"))
     if act.side not in ("left", "right") or act.side == act.direction or act.part or told:
         return ""
-    return f" with the {act.side} {'foot' if '[kick]' in caption else 'hand'}"
+    return f" with the {act.side} {'foot' if _BY_FOOT.search(caption) else 'hand'}"
 
 
 def with_thing(act: Act, caption: str) -> tuple[Act, str]:
@@ -112,7 +114,8 @@ def with_thing(act: Act, caption: str) -> tuple[Act, str]:
         if act.thing and article == "a" and kind_of(noun):
             caption = " ".join([*words[:i], "{thing}", *words[i + 2 :]])
             break
-    return (act.model_copy(update={"thing": f"the {act.thing}"}) if act.thing else act), caption
+    named = act.thing if act.thing in _PRONOUNS else f"the {act.thing}"
+    return (act.model_copy(update={"thing": named}) if act.thing else act), caption
 
 
 def naming(act: Act, entry: Entry, other: str) -> str:

@@ -149,7 +149,8 @@ class Arguments:
         states = {phrase.i for phrase, _ in states_of(token)} if person else set()
         for child in token.children:
             if child.dep_ in ("compound", "amod"):
-                event.words.append(child.lemma_.lower())
+                sided = child.lower_ in ("left", "right") and self._words.part(token.lemma_.lower())
+                event.words += [] if sided else [child.lemma_.lower()]
                 if self._words.directions.get(child.lower_) in closed("of the clock"):
                     self._direction(child.lower_, event)
                 if child.lower_ in ("left", "right") and is_act(token.lemma_.lower()) and not self._others(token, who):
@@ -271,7 +272,7 @@ class Arguments:
 
     def _amount(self, noun: Token, otherwise: float = 1.0) -> float:
         """The number that stands with a noun, and another where none does."""
-        for child in noun.children:
+        for child in sorted(noun.children, key=lambda each: each.tag_ == "DT"):  # "a few steps" are not one
             if child.lower_ in self._words.numbers:
                 return float(self._words.numbers[child.lower_])
             if child.like_num:

@@ -176,7 +176,7 @@ def seated(event: Event, found: Found, known: Lexicon, told: Iterable[str]) -> E
 
 def formations(event: Event, names: Iterable[str]) -> Iterator[Event]:
     """The ways to stand or move together that stand beside a verb, as events: "face each" for "face to face"."""
-    if event.distance is not None and "apart" in event.words:
+    if event.distance is not None and event.times is None and "apart" in event.words:
         names = (*names, "keep apart")
     who = event.subject if event.subject is not None and len(event.subject.who) == 2 else Ref("person", "ab")
     if event.denied:  # "they never touch, always two metres apart"
@@ -186,18 +186,13 @@ def formations(event: Event, names: Iterable[str]) -> Iterator[Event]:
         verb = event.lemma if event.lemma in _OWN.get(noun, ()) else verb
         ongoing = event.ongoing and verb == event.lemma
         formed = Event(verb, who, first=event.first, last=event.last, ongoing=ongoing)
+        formed.distance = event.distance if noun == "apart" else None
         if verb == "follow":
             formed.subject, formed.object = Ref("person", "b"), Ref("person", "a")
-        elif noun == "each":
-            formed.object = _EACH
-        elif noun == "apart":
-            formed.words, formed.distance = ["apart"], event.distance
-        elif noun == "close":
-            formed.words = ["close"]
-        elif noun == "back":
-            formed.words = ["back", "to", "back"]
-        elif noun == "line":
-            formed.object = Ref("thing", lemma=noun)
+        elif noun in ("apart", "close", "back"):
+            formed.words = ["back", "to", "back"] if noun == "back" else [noun]
+        elif noun in ("each", "line"):
+            formed.object = _EACH if noun == "each" else Ref("thing", lemma=noun)
         else:
             formed.prepositions = [("in", Ref("thing", lemma=noun))]
         yield formed
@@ -221,6 +216,9 @@ def held(event: Event, found: Found, known: Lexicon, find: Find) -> Iterator[tup
     for preposition, ref in rest:
         open_ = not ref.who and (preposition == "with" or (_carries(ref) and ref.family != "knee"))
         if ref.kind != "part" or not (open_ or ref.who == agents) or (preposition == "on" and not _carries(ref)):
+            continue
+        walks = event.lemma in vocabulary().verbs["goes"] | vocabulary().gaits.keys()
+        if walks and ref.family in ("leg", "foot"):  # "limps on the left foot"
             continue
         words = [word for word in event.words if word in closed("arms held")]
         if preposition in ("to", "from") or (preposition == "with" and not words):  # "from foot to foot" rises to none

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from acts.frames import PREPOSITIONS
 
+from .people import A_NAME, B_NAME
 from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 _ENDS = frozenset(("", ",", ";", ":", ".", "!", "?", "-", "then", "and"))
 _JOINS = frozenset((",", "and", "then"))
+_SIDES = frozenset(("left", "right", "forward", "forwards", "backward", "backwards"))
 PERFORM = "perform"
 """The verb of a noun that has none, which the parser takes for nothing else."""
 _LONGEST = 5
@@ -46,14 +48,19 @@ class Ellipsis:
 
     def before(self, i: int) -> str:
         """The verb to supply before the word ``i``; "" for none. Asked for each word in order."""
-        word = self._lower(i)
         if self._lower(i - 1) in ("", ".", "!", "?", ";"):
             self._last = ""
         verb = self._listed_side(i) or self._deed(i)
-        if verb or self._acts(i):
-            self._last = verb.partition(" ")[0] or word
-            self._behind = i if verb else i + 1
+        if verb:
+            self._last, self._behind = verb.partition(" ")[0], i
+        else:
+            self.passed(i)
         return verb
+
+    def passed(self, i: int) -> None:
+        """Takes note of a word that may be the sentence's last verb."""
+        if self._acts(i):
+            self._last, self._behind = self._lower(i), i + 1
 
     def has_acted(self) -> bool:
         """True if the sentence has a verb before the word that was asked for last."""
@@ -95,7 +102,8 @@ class Ellipsis:
             return False
         *before, noun = [self._lower(k) for k in range(i, at)]
         one = noun.removesuffix("s")
-        people = any(map(self._words.is_person, (*before, one))) or any(word.endswith("s") for word in before)
+        named = any(word in (A_NAME.lower(), B_NAME.lower()) or word.endswith("s") for word in before)
+        people = named or any(map(self._words.is_person, (*before, one)))
         alone = noun in self._forms and not before  # "jumps" is a verb
         alone = alone or any(self._ending(word) in ("", "s") for word in before)  # "do jumps"
         return noun != one and not people and not alone and self._is_deed(one)
@@ -105,6 +113,7 @@ class Ellipsis:
         word = self._lower(i)
         if word.isdecimal() and len(word) < 4:
             return int(word)
+        word = self._lower(i + 1) if self._lower(i + 1) in ("few", "couple") else word  # "a few steps"
         return 1 if word in closed("one of many") else self._words.numbers.get(word, 0)
 
     def _ending(self, word: str) -> str | None:
@@ -129,7 +138,7 @@ class Ellipsis:
         """True for a word that is a verb where it stands."""
         word, before = self._lower(i), self._lower(i - 1)
         ending = self._ending(word)
-        if ending is None or self._words.named_part(word):
+        if ending is None or self._words.named_part(word) or self._forms[word][0] in self._words.verbs["seems"]:
             return False
         if before in closed("owners") | closed("one of many") | PREPOSITIONS or before in self._words.numbers:
             return False
@@ -155,13 +164,13 @@ class Ellipsis:
         at = i - 1
         while self._lower(at) in _JOINS or self._lower(at) == "first":
             at -= 1
-        noun = self._lower(at) not in ("left", "right")
+        noun = self._lower(at) not in _SIDES
         first = at - noun
-        if self._lower(first) not in ("left", "right") or (noun and not self._is_sided(at)):
+        if self._lower(first) not in _SIDES or (noun and not self._is_sided(at)):
             return ""
         own = self._lower(i) in closed("before sides")
         side = i + own + (self._lower(i + own) in closed("owners"))
-        last = side + (self._lower(side) in ("left", "right"))
+        last = side + (self._lower(side) in _SIDES)
         more = noun and self._is_sided(last)
         if last == side or self._lower(last + more) not in _ENDS | closed("clause begins") | {"again", "side"}:
             return ""
@@ -206,6 +215,17 @@ class Absolute:
     verb: str
     state: Token
 
+    def placed(self) -> Iterator[Token]:
+        """The preposition right behind it of where the part is, if the parser hung it on another word.
+
+        As in "walks with the arms out to the sides".
+        """
+        last = max(self.part, self.state, key=lambda token: token.i)
+        after = last.doc[last.i + 1] if last.i + 1 < len(last.doc) else last
+        parts = (c for c in after.children if c.dep_ == "pobj" and vocabulary().part(c.lemma_.lower()))
+        if after.dep_ == "prep" and after.head != self.state and any(parts):
+            yield after
+
 
 def absolutes(doc: Doc) -> Iterator[Absolute]:
     """The phrases of a text, in its order."""
@@ -249,7 +269,8 @@ def _behind(preposition: Token) -> Absolute | None:
     if after.lower_ == "in" and any(t.lower_ == "air" for t in doc[at + 2 : at + 4]):
         return Absolute(preposition, part, "raise", after)
     alone = after.lower_ == "behind" or _acts_alone(preposition)
-    if after.lower_ in PREPOSITIONS - {"of", "to"} and alone and not ends:
+    laid = after.lower_ != "to" or any(t.lemma_ == "side" for t in doc[at + 2 : at + 4])
+    if after.lower_ in PREPOSITIONS - {"of"} and laid and alone and not ends:
         return Absolute(preposition, part, "put", after)
     return None
 

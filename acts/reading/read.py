@@ -343,7 +343,7 @@ class _Planner:
             already=self._goes_on(event, match.agents) and not self._known.entries[name].moment,
             seconds=event.seconds,
             side=side if side in ("left", "right", "both") else None,  # type: ignore[arg-type]
-            times=event.times,
+            times=None if event.distance and not name.startswith("step") else event.times,
             manner=tuple(event.adverbs[:8]),
             speed=min(max(speed, 0.2), 3.0),
             direction=None if answers else event.direction,

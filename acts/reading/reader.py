@@ -41,9 +41,10 @@ class Reader:
         self.events: list[Event] = []
         self._absolutes = {found.preposition.i: found for found in absolutes(doc)}
         held = {token.i for found in self._absolutes.values() for token in (found.state, found.part)}
+        placed = {phrase.i for found in self._absolutes.values() for phrase in found.placed()}
         self._tree = ClauseTree(doc, verbs, lemmas, forms, held)
         self._subjects = Subjects(self._tree, self.cast, self._event_of)
-        self._arguments = Arguments(self.cast, verbs, held | self._absolutes.keys())
+        self._arguments = Arguments(self.cast, verbs, held | self._absolutes.keys() | placed)
         self._words, self._known = vocabulary(), known
         self._of: dict[int, int] = {}
         self._joints: list[tuple[Event, Token, str, int | None]] = []
@@ -119,6 +120,8 @@ class Reader:
             else:
                 for phrase in (c for c in found.state.children if c.dep_ in ("prep", "advmod")):
                     self._arguments.place(phrase, who, event)
+            for phrase in found.placed():
+                self._arguments.place(phrase, who, event)
             self._joints.append((event, found.preposition, "with", clause.i if clause is not None else None))
             self.events.append(event)
 

@@ -70,11 +70,13 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
 
 def suspects(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[str, str]]:
     """Forms of verbs that the parser takes for something else, rightly or not: offset → (a safe verb, its lemma)."""
+    part = vocabulary().part
     return {
         token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0])
         for token in doc
         if token.lower_ in forms
         and not is_noun_or_side(token)
+        and not (token.dep_ == "conj" and part(token.lemma_.lower()) and part(token.head.lemma_.lower()))
         and forms[token.lower_][1] in ("", "s", "ed")
         and (token.pos_ not in ("VERB", "AUX", "ADP", "ADV") or token.dep_ in ("compound", "amod", "nmod"))
     }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import lru_cache
+from string import ascii_lowercase
 from typing import TYPE_CHECKING
 
 from acts.captions import gerund, past, singular
@@ -27,6 +28,7 @@ class Speller:
         about = frozenset().union(*(verbs[kind] for kind in ("tried", "pretended", "begins", "ends")))
         self.forms = _forms(frozenset(known.frames) | about)
         self._deeds = deeds(known)
+        self._mendable = {*self.forms, *vocabulary().directions, "person", "something", "circle", "position"}
 
     def is_form(self, word: str) -> bool:
         """True for a form of a verb of the lexicon."""
@@ -41,18 +43,14 @@ class Speller:
         return word in self.forms or is_verb_form(word) or self.is_deed(word.removesuffix("s"))
 
     def mended(self, word: str) -> str | None:
-        """The verb's form that a word without meaning is nearest to, within one letter or two; None to leave it."""
+        """The verb's form, or the like, that a word without meaning is nearest to, by a letter; None to leave it."""
         if is_word(word) or word in self.forms or len(word) < 4:
             return None
         if vocabulary().is_person(word.rstrip("s")) or is_verb_form(word):
             return None
-        found = [form for form in self.forms if abs(len(form) - len(word)) < 2 and form[0] == word[0]]
-        near = [
-            (sorted(word) != sorted(form), form)  # swapped letters are likelier than wrong ones
-            for form in found
-            if _distance(word, form) <= 1
-        ]
-        return min(near)[1] if near else None
+        near = (form for form in self._mendable & _edited(word) if form[0] == word[0])
+        # swapped letters are likelier than wrong ones
+        return min(near, key=lambda form: (sorted(word) != sorted(form), form), default=None)
 
     def verbs_found(self, doc: Doc) -> dict[int, tuple[str, str]]:
         """Verbs that were taken for something else: offset → (a safe verb in the same form, the true lemma)."""
@@ -97,18 +95,11 @@ def is_verb_form(word: str) -> bool:
     return any(wordnet.is_verb(stem) for stem in stems)
 
 
-def _distance(one: str, other: str) -> int:
-    """Edits, of which a swap of neighbours is one, between two words; 2 for two or more."""
-    if one == other:
-        return 0
-    if len(one) == len(other):
-        differ = [i for i, (x, y) in enumerate(zip(one, other, strict=True)) if x != y]
-        if len(differ) == 1:
-            return 1
-        swapped = len(differ) == 2 and differ[1] == differ[0] + 1
-        return 1 if swapped and one[differ[0]] == other[differ[1]] and one[differ[1]] == other[differ[0]] else 2
-    short, long = sorted((one, other), key=len)
-    return 1 if any(long[:i] + long[i + 1 :] == short for i in range(len(long))) else 2
+def _edited(word: str) -> set[str]:
+    """The words that a wrong, a missing, a further letter or two swapped ones make of one."""
+    halves = [(word[:i], word[i:]) for i in range(len(word) + 1)]
+    changed = {f"{a}{c}{b[n:]}" for a, b in halves for c in (*ascii_lowercase, "") for n in (0, 1)}
+    return changed | {f"{a}{b[1]}{b[0]}{b[2:]}" for a, b in halves if len(b) > 1}
 
 
 # ---- language ------------------------------------------------------------------------------------------

@@ -28,7 +28,14 @@ def names_one(doc: Doc) -> bool:
     words_of = vocabulary()
     nouns = [t for t in doc if t.lower_ in _SOMEBODY or words_of.is_usual_person(t.lemma_.lower())]
     nouns = [t for t in nouns if t.pos_ not in ("VERB", "ADV", "ADJ") and t.dep_ != "amod"]
-    words = {t.lower_ for t in doc if not _is_of_thing(t)}
+    words = {t.lower_ for t in doc if not (_is_of_thing(t) or (t.lower_ == "second" and t.dep_ == "pobj"))}
+    if not nouns:
+        told = next((t for t in doc if t.pos_ in ("VERB", "NOUN")), None)  # "walks forward and sits"
+        part = told is not None and told.dep_ == "nsubj" and bool(words_of.part(told.lemma_.lower()))
+        acts = told is not None and told.tag_ == "VBZ"
+        acts = acts or (told is not None and told.tag_ == "VBG" and told.lemma_ in words_of.verbs["goes"] - {"dance"})
+        others = closed("company") | closed("they") | words_of.both | PRONOUN_SEX.keys() | {"together"}
+        return (part or acts) and words.isdisjoint(others - {"his"}) and all(t.pos_ != "PROPN" for t in doc)
     if any(t.lower_ == "one" and words_of.part(t.nbor().lemma_) for t in doc[:-1]):
         words -= {"other"}  # "one foot in front of the other"
     new = sum(any(c.lower_ in ("a", "an") for c in t.children) for t in nouns)
@@ -226,8 +233,11 @@ class Subjects:
             return self._found.get(main)
         if token.dep_ == "ROOT" or head is None:
             # "grab her by the wrist" is said to one
-            alone = self._cast.alone or any(
-                t.lower_ in closed("somebody") or self._is_someone(t) for t in token.subtree
+            one = token.tag_ == "VBZ" and {"each", "together", "both"}.isdisjoint(t.lower_ for t in token.sent)
+            alone = (
+                self._cast.alone
+                or one
+                or any(t.lower_ in closed("somebody") or self._is_someone(t) for t in token.subtree)
             )
             if alone:
                 self._cast.address("a")
@@ -280,6 +290,8 @@ class Subjects:
     def _is_someone(self, noun: Token) -> bool:
         """True for one person to whom something is done, but not for "your partner", whom both have."""
         lemma = noun.lemma_.lower()
+        if lemma == "other" and any(c.lower_ == "the" for c in noun.children):
+            return True
         done_to = noun.dep_ in ("dobj", "dative", "poss") and noun.tag_ == "NN" and lemma != "partner"
         return done_to and self._words.is_person(lemma)
 

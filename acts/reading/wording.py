@@ -64,7 +64,10 @@ class _Preparation:
                 self._supply(verb, i)
             if self._named_again(i):
                 self._pieces.append((",", self._tokens[i][1], self._tokens[i][1]))
-            i += self._phrase(i) or self._pair(i) or self._single(i)
+            taken = self._phrase(i) or self._pair(i) or self._single(i)
+            for within in range(i + 1, i + taken):
+                self._ellipsis.passed(within)
+            i += taken
         return Text(self._text, self._pieces)
 
     def _named_again(self, i: int) -> bool:
@@ -87,39 +90,31 @@ class _Preparation:
         """Several words that join clauses as one does, as "as soon as"; how many they were, or 0."""
         swung = next((words for words in _TO_SIDES if self._stand_at(i, words)), ())
         if swung and self._words.named_part(self._lower(i - 1)):
-            last = self._tokens[i + len(swung) - 1]
-            self._pieces.append(("sideways", self._tokens[i][1], last[2]))  # "shakes his head left and right"
-            return len(swung)
+            return self._as_one("sideways", i, len(swung))  # "shakes his head left and right"
         for phrase, word in self._words.phrases.get(self._lower(i), ()):
             if self._stand_at(i, phrase):
-                self._pieces.append((word, self._tokens[i][1], self._tokens[i + len(phrase) - 1][2]))
-                return len(phrase)
+                return self._as_one(word, i, len(phrase))
         if mimed := self._mimed(i):
             return mimed
-        if self._stand_at(i, ("both", "of")):  # "takes both of her hands"
-            self._pieces.append(("both", self._tokens[i][1], self._tokens[i + 1][2]))
-            return 2
-        if self._lower(i) == "in" and self._lower(i + 1) == "front" and self._lower(i + 2) != "of":
-            self._pieces.append(("ahead", self._tokens[i][1], self._tokens[i + 1][2]))
-            return 2
-        if self._lower(i) == "'" and self._lower(i + 1) == "s":  # "person 2's"
-            self._pieces.append(("'s", self._tokens[i][1], self._tokens[i + 1][2]))
-            return 2
+        if self._stand_at(i, ("in", "front")) and self._lower(i + 2) != "of":
+            return self._as_one("ahead", i, 2)
         ends = not self._lower(i + 1).isalpha() or self._lower(i + 1) in ("and", "then", "while", "until")
         if self._lower(i) == "round" and ends and self._is_verb(self._lower(i - 1)):
-            self._pieces.append(("around", *self._tokens[i][1:]))  # the adverb, and no noun: "and spin round"
-            return 1
+            return self._as_one("around", i, 1)  # the adverb, and no noun: "and spin round"
         owned = self._lower(i - 1).endswith("'s") and self._lower(i - 1) not in ("he's", "she's", "it's")
         laid = self._lower(i - 2) == "on" and self._lower(i - 3).startswith(_LIES)
         turned = self._lower(i - 1) == "her" and (self._lower(i + 1) in closed("behind back") or laid)
         if self._lower(i) == "back" and (owned or turned):
-            self._pieces.append(("spine", *self._tokens[i][1:]))  # the noun, and no adverb
-            return 1
+            return self._as_one("spine", i, 1)  # the noun, and no adverb
         pointed = self._lower(i) in ("the", "these", "those") and self._lower(i + 1) == "two"
         if pointed and self._is_verb(self._lower(i + 2)):
-            self._pieces.append(("they", self._tokens[i][1], self._tokens[i + 1][2]))  # "the two circle round"
-            return 2
+            return self._as_one("they", i, 2)  # "the two circle round"
         return 0
+
+    def _as_one(self, word: str, i: int, count: int) -> int:
+        """Puts a word in the place of several tokens, of which it gives the number."""
+        self._pieces.append((word, self._tokens[i][1], self._tokens[i + count - 1][2]))
+        return count
 
     def _mimed(self, i: int) -> int:
         """How many words "makes a throwing motion", "in a chopping motion" or "does the motion of digging" begin with.
@@ -136,8 +131,7 @@ class _Preparation:
         if going != "ing" or last == i + 1:
             return 0
         said = f"pretend{ending.removeprefix('e')} to {lemma}" if makes else f"as if to {lemma}"
-        self._pieces.append((said, self._tokens[i][1], self._tokens[last][2]))
-        return last + 1 - i
+        return self._as_one(said, i, last + 1 - i)
 
     def _stand_at(self, i: int, words: Sequence[str]) -> bool:
         return all(self._lower(i + k) == word for k, word in enumerate(words))
@@ -164,10 +158,7 @@ class _Preparation:
             and self._is_verb(lower + following)
         ):
             word = lower + following
-        if not word:
-            return 0
-        self._pieces.append((word, self._tokens[i][1], self._tokens[i + 1][2]))
-        return 2
+        return self._as_one(word, i, 2) if word else 0
 
     def _keeps(self, i: int) -> bool:
         """True for a direction, and for a noun: "turn right past her", "the way up"."""

@@ -35,6 +35,7 @@ from webdemo.inference.engine.tries import note
         ("She is in a hurry and pulls him.", ("in a hurry",)),
         ("A pair of skaters dance.", ()),
         ("The other dancer bows.", ()),
+        ("They circle each other with their guards up.", ("with their guards",)),
     ],
 )
 def test_words_that_are_in_no_act_are_reported(sentence: str, unread: tuple[str, ...]) -> None:

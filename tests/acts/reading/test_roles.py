@@ -118,8 +118,15 @@ def test_a_pronoun_behind_what_two_do_together_goes_on_with_its_subject(text: st
 
 def test_slow_circles_are_done_and_nothing_slows() -> None:
     assert said("He does slow arm circles.") == ["a circle-arms"]
-    assert said("does slow arm circles") == ["ab circle-arms"]
+    assert said("does slow arm circles") == ["a circle-arms"]
     assert said("They do shake hands.") == ["ab shake-hands"]
+
+
+def test_steps_are_a_length_and_no_repetition() -> None:
+    few = last("a person walks a few steps forward.")
+    assert (few.times, few.distance) == (3, pytest.approx(2.1))
+    jogs = last("a person jogs 2 steps to the right.")
+    assert (jogs.times, jogs.distance) == (None, pytest.approx(1.4))
 
 
 def test_a_count_behind_a_part_is_no_part_of_it() -> None:

@@ -63,6 +63,27 @@ from tests.acts.reading.reading import told
         ("a person moves objects on a shelf", [("move-thing", "a", None)]),
         ("a person loses his balance", [("stumble", "a", None)]),
         ("a person returns to a standing position", [("stand-still", "a", None)]),
+        # a sentence that names nobody is about one, where its verb says so
+        ("B waves.", [("wave", "b", "a")]),
+        ("walks forward and sits", [("walk-ahead", "a", None), ("sit-down", "a", None)]),
+        ("raises left arm and scratches his head", [("raise-arm", "a", None), ("scratch-head", "a", None)]),
+        ("walking in a circular motion.", [("walk-in-circle", "a", None)]),
+        ("pushes the other away", [("push", "a", "b")]),
+        ("walks up to each other and hugs", [("walk-up", "ab", None), ("hug", "ab", None)]),
+        # words that are misspelt, also those of directions and people
+        ("a perosn walks foward in a cricle", [("walk-in-circle", "a", None)]),
+        # where arms are while one walks, and a side that is said after a pair of words
+        ("a man walks backwards with his arms out to his side", [("step-back", "a", None), ("arms-out", "a", None)]),
+        ("a man side steps to the left and then to the right", [("step-aside", "a", None), ("step-aside", "a", None)]),
+        ("a person walks forward and then backwards.", [("walk-ahead", "a", None), ("step-back", "a", None)]),
+        ("a person limps on their left foot.", [("limp-along", "a", None)]),
+        ("a person spins their right arm.", [("circle-arms", "a", None)]),
+        ("a man takes a sitting position.", [("sit-down", "a", None)]),
+        ("a person stands in a t-pose.", [("arms-out", "a", None)]),
+        (
+            "a person walks forward picks up an object and walks back",
+            [("walk-ahead", "a", None), ("pick-up-thing", "a", None), ("go-back", "a", None)],
+        ),
         # captions of one person, where the other hand, another ball and the first step name nobody else
         ("a person crosses one foot over the other", [("cross-legs", "a", None)]),
         ("a person catches a ball, then throws another ball", [("catch-thing", "a", None), ("throw-ball", "a", "b")]),
