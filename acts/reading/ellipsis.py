@@ -292,7 +292,7 @@ def stands_absolutely(lower: Callable[[int], str], has_verb: Callable[[int], boo
     words = vocabulary()
     if lower(i - 1) not in _BEFORE:  # "cuffs the thief hands behind his back"
         behind = lower(i + 3) if lower(i + 2) in closed("before parts") else lower(i + 2)
-        own = words.part(lower(i).removesuffix("s")) and words.part(behind) and lower(i + 1) in closed("laid")
+        own = lower(i + 1) in closed("laid") and words.part(lower(i).removesuffix("s")) and words.part(behind)
         return bool(own) and words.is_person(lower(i - 1)) and lower(i).endswith("s")
     at = i
     while lower(at) in closed("before parts") and at < i + 3:

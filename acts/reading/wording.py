@@ -147,7 +147,7 @@ class _Preparation:
             and (owner or _ends_name(self._tokens, i + 2, self._tokens[i + 1][0]))
         ):
             word = (A_NAME if _NUMBERED[letter] else B_NAME) + owner
-        elif self._words.part(lower) and following in ("height", "level") and lower != "eye":
+        elif following in ("height", "level") and self._words.part(lower) and lower != "eye":
             word = following  # "to shoulder height", where nobody shoulders anything
         elif lower in ("right", "way") and following in closed("intensified") and not self._keeps(i):
             word = "around" if following == "round" else following  # "walks right past him", "way up"

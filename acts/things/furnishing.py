@@ -141,7 +141,7 @@ def _spans(mask: NDArray[np.bool_], fps: float, first: int = 0, last: int | None
     """The stretches of a mask that overlap some frames, with a moment before each in which fingers get ready."""
     stop = len(mask) if last is None else min(last + round(0.5 * fps), len(mask))
     begin = max(first - round(0.5 * fps), 0)
-    for i, j in stretches(mask, fps, pause=0.3):
+    for i, j in stretches(mask, fps, pause=0.3) if mask.any() else ():
         i, j = max(i - round(0.1 * fps), begin), min(j, stop)
         if j - i >= _SHORTEST * fps:
             yield i, j

@@ -68,17 +68,20 @@ def efficient_attention(query: Tensor, key: Tensor, value: Tensor, num_heads: in
     return torch.einsum("bthd,bhde->bthe", q, features).flatten(2)
 
 
-class SelfAttention(nn.Module):
-    """A stream's attention to itself."""
+class Attention(nn.Module):
+    """A stream's attention to rows of some width, stylised."""
 
-    def __init__(self, latent_dim: int, num_heads: int, embed_dim: int, *, dropout: float = 0.0) -> None:
+    def __init__(self, latent_dim: int, width: int, num_heads: int, embed_dim: int, *, dropout: float = 0.0) -> None:
         super().__init__()
         self.num_heads = num_heads
         self.norm = nn.LayerNorm(latent_dim)
         self.query = nn.Linear(latent_dim, latent_dim)
-        self.key = nn.Linear(latent_dim, latent_dim)
-        self.value = nn.Linear(latent_dim, latent_dim)
+        self.key, self.value = nn.Linear(width, latent_dim), nn.Linear(width, latent_dim)
         self.proj_out = StylizationBlock(latent_dim, embed_dim, dropout=dropout)
+
+
+class SelfAttention(Attention):
+    """A stream's attention to itself."""
 
     def forward(self, x: Tensor, emb: Tensor, mask: Tensor) -> Tensor:
         """x (B, T, d), emb (B, E), mask (B, T, 1), 1 where a frame is real → (B, T, d)."""
@@ -88,18 +91,12 @@ class SelfAttention(nn.Module):
         return x + self.proj_out(out, emb)
 
 
-class CrossAttention(nn.Module):
+class CrossAttention(Attention):
     """A stream's attention to the text tokens."""
 
-    def __init__(self, latent_dim: int, text_dim: int, num_heads: int, embed_dim: int, *, dropout: float = 0.0) -> None:
-        super().__init__()
-        self.num_heads = num_heads
-        self.norm = nn.LayerNorm(latent_dim)
-        self.text_norm = nn.LayerNorm(text_dim)
-        self.query = nn.Linear(latent_dim, latent_dim)
-        self.key = nn.Linear(text_dim, latent_dim)
-        self.value = nn.Linear(text_dim, latent_dim)
-        self.proj_out = StylizationBlock(latent_dim, embed_dim, dropout=dropout)
+    def __init__(self, latent_dim: int, width: int, num_heads: int, embed_dim: int, *, dropout: float = 0.0) -> None:
+        super().__init__(latent_dim, width, num_heads, embed_dim, dropout=dropout)
+        self.text_norm = nn.LayerNorm(width)
 
     def forward(self, x: Tensor, text: Tensor, emb: Tensor) -> Tensor:
         """x (B, T, d), text (B, L, C), emb (B, E) → (B, T, d)."""
@@ -195,21 +192,12 @@ class Layer(nn.Module):
 
     def __init__(self, config: BiGraphDiffConfig) -> None:
         super().__init__()
-        d, emb, dropout = config.latent_dim, config.embedding, config.dropout
-
-        def attention() -> SelfAttention:
-            return SelfAttention(d, config.num_heads, emb, dropout=dropout)
-
-        def text_attention() -> CrossAttention:
-            return CrossAttention(d, config.text_dim, config.num_heads, emb, dropout=dropout)
-
-        def feed_forward() -> FeedForward:
-            return FeedForward(d, config.ff_size, emb, dropout=dropout)
-
-        self.sa_block_1, self.sa_block_2 = attention(), attention()
-        self.ca_block_1, self.ca_block_2 = text_attention(), text_attention()
+        d, heads, wide, drop = config.latent_dim, config.num_heads, config.embedding, config.dropout
+        text = config.text_dim
+        self.sa_block_1, self.sa_block_2 = (SelfAttention(d, d, heads, wide, dropout=drop) for _ in range(2))
+        self.ca_block_1, self.ca_block_2 = (CrossAttention(d, text, heads, wide, dropout=drop) for _ in range(2))
         self.bipartite_graph = BipartiteGraph(d // NODE_GRID**2, config.num_nodes)
-        self.ffn_1, self.ffn_2 = feed_forward(), feed_forward()
+        self.ffn_1, self.ffn_2 = (FeedForward(d, config.ff_size, wide, dropout=drop) for _ in range(2))
 
     def forward(self, a: Tensor, b: Tensor, text: Tensor, emb: Tensor, mask: Tensor) -> tuple[Tensor, Tensor]:
         """a and b (B, T, d), text (B, L, C), emb (B, E), mask (B, T, 1) → a and b."""

@@ -90,13 +90,9 @@ class TemporalAttention(nn.Module):
         self.heads = config.heads
         self.query, self.memory, self.out = nn.Linear(d, d), nn.Linear(d, 2 * d), nn.Linear(d, d)
 
-    def remember(self, x: Tensor) -> tuple[Tensor, Tensor]:
-        """Keys and values of frames (B, T, D), each (B, heads, T, D / heads)."""
-        keys, values = self.memory(x).chunk(2, dim=-1)
-        return _split(keys, self.heads), _split(values, self.heads)
-
-    def forward(self, x: Tensor, keys: Tensor, values: Tensor, mask: Tensor | None) -> Tensor:
-        """x (B, T, D); mask (…, T, S) bool, true where seen → (B, T, D)."""
+    def forward(self, x: Tensor, source: Tensor, mask: Tensor | None) -> Tensor:
+        """x (B, T, D), source (B, S, D) of keys and values; mask (…, T, S) bool, true where seen → (B, T, D)."""
+        keys, values = (_split(part, self.heads) for part in self.memory(source).chunk(2, dim=-1))
         seen = F.scaled_dot_product_attention(_split(self.query(x), self.heads), keys, values, mask)
         return self.out(seen.transpose(1, 2).flatten(2))
 
@@ -112,15 +108,12 @@ class SpatialAttention(nn.Module):
         self.query, self.memory = nn.Linear(w, w), nn.Linear(w, 2 * w)
         self.out = nn.Linear(config.width, config.width)
 
-    def remember(self, x: Tensor) -> tuple[Tensor, Tensor]:
-        """Keys and values of frames (B, T, D), each (B, T, heads, J, w)."""
-        keys, values = self.memory(x.unflatten(-1, (JOINTS, self.width))).chunk(2, dim=-1)
-        return _split(keys, self.heads), _split(values, self.heads)
-
     def forward(
-        self, x: Tensor, keys: Tensor, values: Tensor, *, graph: Tensor | None = None, distances: Tensor | None = None
+        self, x: Tensor, source: Tensor, *, graph: Tensor | None = None, distances: Tensor | None = None
     ) -> Tensor:
-        """x (B, T, D), graph (J, J) of 0 and 1, distances (B, T, 1, J, J) → (B, T, D)."""
+        """x and source (B, T, D), graph (J, J) of 0 and 1, distances (B, T, 1, J, J) → (B, T, D)."""
+        parts = self.memory(source.unflatten(-1, (JOINTS, self.width))).chunk(2, dim=-1)
+        keys, values = (_split(part, self.heads) for part in parts)
         query = _split(self.query(x.unflatten(-1, (JOINTS, self.width))), self.heads)
         # A softmax written out: PyTorch's takes several times as long for rows as short as a skeleton.
         weights = ((query * self.scale) @ keys.mT).clamp(max=LARGEST).exp()
@@ -145,8 +138,7 @@ class EncoderLayer(nn.Module):
     def forward(self, x: Tensor, mask: Tensor, graph: Tensor) -> Tensor:
         """x (B, T, D), mask (…, T, T) bool, graph (J, J) of 0 and 1 → (B, T, D)."""
         y = self.norm_1(x)
-        both = self.time(y, *self.time.remember(y), mask) + self.space(y, *self.space.remember(y), graph=graph)
-        x = x + self.drop(both)
+        x = x + self.drop(self.time(y, y, mask) + self.space(y, y, graph=graph))
         return x + self.drop(self.ff(self.norm_2(x)))
 
 
@@ -167,14 +159,10 @@ class DecoderLayer(nn.Module):
     ) -> Tensor:
         """x (B, T, D), encoded (B, S, D) with S > T: frame t sees the joints of the actor's frame t + 1."""
         y = self.norm_1(x)
-        both = self.time(y, *self.time.remember(y), causal) + self.space(y, *self.space.remember(y), graph=graph)
-        x = x + self.drop(both)
+        x = x + self.drop(self.time(y, y, causal) + self.space(y, y, graph=graph))
         y = self.norm_2(x)
         coming = encoded[:, 1 : x.shape[1] + 1]
-        both = self.other_time(y, *self.other_time.remember(encoded), mask) + self.other_space(
-            y, *self.other_space.remember(coming), distances=distances
-        )
-        x = x + self.drop(both)
+        x = x + self.drop(self.other_time(y, encoded, mask) + self.other_space(y, coming, distances=distances))
         return x + self.drop(self.ff(self.norm_3(x)))
 
 

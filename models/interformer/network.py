@@ -23,12 +23,12 @@ What the released weights depend on, and the text leaves open:
 from __future__ import annotations
 
 import math
+from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import cast
 
 import torch
-import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.errors import Released
@@ -161,16 +161,10 @@ class SpatialAttention(nn.Module):
         return self.out(seen.mT.flatten(-2))
 
 
-class PositionwiseFeedForward(nn.Module):
-    """Linear, ReLU, Linear."""
-
-    def __init__(self, ff_size: int) -> None:
-        super().__init__()
-        self.linear_1, self.linear_2 = nn.Linear(WIDTH, ff_size), nn.Linear(ff_size, WIDTH)
-
-    def forward(self, x: Tensor) -> Tensor:
-        """(…, 45) → (…, 45)."""
-        return self.linear_2(F.relu(self.linear_1(x)))
+def feed_forward(ff_size: int) -> nn.Sequential:
+    """Linear, ReLU, Linear: (…, 45) → (…, 45)."""
+    first, second = nn.Linear(WIDTH, ff_size), nn.Linear(ff_size, WIDTH)
+    return nn.Sequential(OrderedDict(linear_1=first, relu=nn.ReLU(), linear_2=second))
 
 
 class EncoderLayer(nn.Module):
@@ -180,7 +174,7 @@ class EncoderLayer(nn.Module):
         super().__init__()
         self.norm_1, self.norm_space_1, self.norm_2 = Norm(), Norm(), Norm()
         self.attn, self.attn_space = TemporalAttention(config.num_heads), SpatialAttention()
-        self.ff = PositionwiseFeedForward(config.ff_size)
+        self.ff = feed_forward(config.ff_size)
 
     def forward(self, x: Tensor, mask: Tensor, graph: Tensor) -> Tensor:
         """x (B, T, 45), padding mask and skeleton graph (J, J) → (B, T, 45)."""
@@ -199,7 +193,7 @@ class DecoderLayer(nn.Module):
         self.norm_space_1, self.norm_space_2 = Norm(), Norm()
         self.attn_1, self.attn_2 = (TemporalAttention(config.num_heads) for _ in range(2))
         self.attn_space_1, self.attn_space_2 = SpatialAttention(), SpatialAttention()
-        self.ff = PositionwiseFeedForward(config.ff_size)
+        self.ff = feed_forward(config.ff_size)
 
     def forward(
         self, x: Tensor, kept: LayerMemory, distances: Tensor, source_mask: Tensor, mask: Tensor | None, graph: Tensor

@@ -12,6 +12,7 @@ as one batch and the counterpart of each is a flip of the first axis.
 from __future__ import annotations
 
 import math
+from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -113,34 +114,24 @@ class ZeroAttention(nn.MultiheadAttention):
         return self.out_proj(attend(q, k, v, keep, num_heads=self.num_heads, dropout=dropout))
 
 
-class SelfAttentionBlock(nn.Module):
-    """Attention of each person to themselves (eq. 9)."""
+class AttentionBlock(nn.Module):
+    """Attention of each person to themselves (eq. 9) or, if mutual, to the other's states a layer before (eq. 10)."""
 
-    def __init__(self, config: InterGenConfig) -> None:
+    def __init__(self, config: InterGenConfig, *, mutual: bool = False) -> None:
         super().__init__()
         self.norm = AdaLayerNorm(config.latent_dim)
+        if mutual:
+            self.xf_norm = AdaLayerNorm(config.latent_dim)
         self.attention = ZeroAttention(config.latent_dim, config.num_heads, config.dropout)
 
-    def forward(self, h: Tensor, emb: Tensor, keep: Tensor | None) -> Tensor:
-        """Both people's states h (2, B, T, d), conditioned on emb; ``keep`` masks padding. Same shape out."""
+    def forward(self, h: Tensor, emb: Tensor, keep: Tensor | None, previous: Tensor | None = None) -> Tensor:
+        """Both people's states h (2, B, T, d), conditioned on emb; ``keep`` masks padding. Same shape out.
+
+        With ``previous``, states of the same shape, each person attends to the other's.
+        """
         query = self.norm(h, emb).flatten(0, 1)
-        return self.attention(query, query, keep).view_as(h)
-
-
-class MutualAttentionBlock(nn.Module):
-    """Attention of each person to the other's states of the previous layer (eq. 10)."""
-
-    def __init__(self, config: InterGenConfig) -> None:
-        super().__init__()
-        self.norm = AdaLayerNorm(config.latent_dim)
-        self.xf_norm = AdaLayerNorm(config.latent_dim)
-        self.attention = ZeroAttention(config.latent_dim, config.num_heads, config.dropout)
-
-    def forward(self, h: Tensor, previous: Tensor, emb: Tensor, keep: Tensor | None) -> Tensor:
-        """Each person's states h (2, B, T, d) attend to the other's ``previous`` ones. Same shape out."""
-        query = self.norm(h, emb).flatten(0, 1)
-        counterpart = self.xf_norm(previous.flip(0), emb).flatten(0, 1)
-        return self.attention(query, counterpart, keep).view_as(h)
+        source = query if previous is None else self.xf_norm(previous.flip(0), emb).flatten(0, 1)
+        return self.attention(query, source, keep).view_as(h)
 
 
 class AdaFeedForward(FeedForward):
@@ -162,29 +153,15 @@ class Block(nn.Module):
 
     def __init__(self, config: InterGenConfig) -> None:
         super().__init__()
-        self.sa_block = SelfAttentionBlock(config)
-        self.ca_block = MutualAttentionBlock(config)
+        self.sa_block = AttentionBlock(config)
+        self.ca_block = AttentionBlock(config, mutual=True)
         self.ffn = AdaFeedForward(config)
 
     def forward(self, h: Tensor, emb: Tensor, keep: Tensor | None, keep_other: Tensor | None) -> Tensor:
         """h (2, B, T, d) → the same shape; ``keep`` masks a person's padding, ``keep_other`` the other's."""
         attended = h + self.sa_block(h, emb, keep)
-        attended = attended + self.ca_block(attended, h, emb, keep_other)
+        attended = attended + self.ca_block(attended, emb, keep_other, h)
         return attended + self.ffn(attended, emb)
-
-
-class OutputLayer(nn.Module):
-    """Linear back to the features, zero at the start of training."""
-
-    def __init__(self, config: InterGenConfig) -> None:
-        super().__init__()
-        self.linear = nn.Linear(config.latent_dim, config.input_features)
-        nn.init.zeros_(self.linear.weight)
-        nn.init.zeros_(self.linear.bias)
-
-    def forward(self, h: Tensor) -> Tensor:
-        """h (…, d) → (…, features)."""
-        return self.linear(h)
 
 
 def padding(mask: Tensor | None) -> tuple[Tensor | None, Tensor | None]:
@@ -206,7 +183,10 @@ class InterGenDenoiser(TwoPersonDenoiser):
         self.motion_embed = nn.Linear(config.input_features, d)
         self.text_embed = nn.Linear(config.cond_dim, d)
         self.blocks = nn.ModuleList(Block(config) for _ in range(config.num_layers))
-        self.out = OutputLayer(config)
+        linear = nn.Linear(d, config.input_features)  # back to the features, zero at the start of training
+        nn.init.zeros_(linear.weight)
+        nn.init.zeros_(linear.bias)
+        self.out = nn.Sequential(OrderedDict(linear=linear))
         if config.role_embedding:
             self.role_embedding = nn.Parameter(torch.randn(2, d) / math.sqrt(d))
         if config.role_text:

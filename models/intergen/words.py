@@ -60,7 +60,7 @@ class WordBlock(Block):
         """As `Block.forward`, with the text (2B, S, C) and its real rows (2B, S)."""
         attended = h + self.sa_block(h, emb, keep)
         attended = attended + self.words(attended, text, real)
-        attended = attended + self.ca_block(attended, h, emb, keep_other)
+        attended = attended + self.ca_block(attended, emb, keep_other, h)
         return attended + self.ffn(attended, emb)
 
 

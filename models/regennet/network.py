@@ -13,6 +13,7 @@ encoder that sees all frames.
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -55,42 +56,6 @@ class ReGenNetConfig:
     dropout: float = 0.1
 
 
-class PoseEmbedding(nn.Module):
-    """A frame's numbers to the latent width."""
-
-    def __init__(self, features: int, latent_dim: int) -> None:
-        super().__init__()
-        self.poseEmbedding = nn.Linear(features, latent_dim)
-
-    def forward(self, frames: Tensor) -> Tensor:
-        """Frames (…, features) → (…, d)."""
-        return self.poseEmbedding(frames)
-
-
-class PoseOutput(nn.Module):
-    """The latent width back to a frame's numbers."""
-
-    def __init__(self, latent_dim: int, features: int) -> None:
-        super().__init__()
-        self.poseFinal = nn.Linear(latent_dim, features)
-
-    def forward(self, h: Tensor) -> Tensor:
-        """h (…, d) → frames (…, features)."""
-        return self.poseFinal(h)
-
-
-class ActionEmbedding(nn.Module):
-    """One learned vector an action label."""
-
-    def __init__(self, num_actions: int, latent_dim: int) -> None:
-        super().__init__()
-        self.action_embedding = nn.Parameter(torch.randn(num_actions, latent_dim))
-
-    def forward(self, action: Tensor) -> Tensor:
-        """(B,) or (B, 1) int64 → (B, d)."""
-        return self.action_embedding[action.flatten()]
-
-
 class ReGenNet(nn.Module):
     """The denoiser of section 3.2."""
 
@@ -98,8 +63,9 @@ class ReGenNet(nn.Module):
         super().__init__()
         self.config = config = config or ReGenNetConfig()
         features, d = config.rows * ROW_WIDTH, config.latent_dim
-        self.input_process = PoseEmbedding(features, d)
-        self.cmo_process = PoseEmbedding((config.actor_rows or config.rows) * ROW_WIDTH, d)
+        self.input_process = nn.Sequential(OrderedDict(poseEmbedding=nn.Linear(features, d)))
+        actor_features = (config.actor_rows or config.rows) * ROW_WIDTH
+        self.cmo_process = nn.Sequential(OrderedDict(poseEmbedding=nn.Linear(actor_features, d)))
         self.fuse_process = nn.Linear(2 * d, d)
         sizes: dict[str, Any] = {"dropout": config.dropout, "activation": "gelu", "batch_first": True}
         if config.online:
@@ -110,15 +76,15 @@ class ReGenNet(nn.Module):
             self.seqTransEncoder = nn.TransformerEncoder(encoder, config.num_layers, enable_nested_tensor=False)
         self.embed_timestep = TimestepEmbedding(d)
         if config.num_actions:
-            self.embed_action = ActionEmbedding(config.num_actions, d)
-        self.output_process = PoseOutput(d, features)
+            self.embed_action = nn.ParameterDict({"action_embedding": torch.randn(config.num_actions, d)})
+        self.output_process = nn.Sequential(OrderedDict(poseFinal=nn.Linear(d, features)))
 
     def embed(self, t: Tensor, action: Tensor | None, unconditional: bool | Tensor) -> Tensor:
         """The condition of a pass, (B, d): timestep plus action, the action left out where unconditional."""
         emb = self.embed_timestep(t)
         if self.config.num_actions and action is not None:
             keep = ~torch.as_tensor(unconditional, device=t.device).expand(t.shape[0])
-            emb = emb + keep[:, None] * self.embed_action(action)
+            emb = emb + keep[:, None] * self.embed_action["action_embedding"][action.flatten()]
         return emb
 
     def fuse(self, x: Tensor, actor: Tensor) -> Tensor:

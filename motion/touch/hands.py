@@ -115,6 +115,8 @@ def palms_met(pair: Array, free: Array | None = None) -> Array:
     result = np.array(pair, dtype=np.float64)
     way = unit((result[1, :, _SPINE] - result[0, :, _SPINE]) * FLAT)
     for mine, theirs in itertools.product(ARMS, ARMS):
+        if not _near(result, mine, theirs).any():
+            continue
         aside = _aside(way, mine, theirs)
         against, clasped = (
             without_flicker(meets(result, mine, theirs), shortest)
@@ -131,17 +133,20 @@ def palms_met(pair: Array, free: Array | None = None) -> Array:
 
 def _raised(pair: Array, mine: Arm, theirs: Arm) -> NDArray[np.bool_]:
     """(T,) frames at which two wrists meet above the chest of both people."""
-    near = np.linalg.norm(pair[0, :, mine[-1]] - pair[1, :, theirs[-1]], axis=-1) < _MEETS
     raised = [pair[i, :, arm[-1], 1] > pair[i, :, _SPINE, 1] for i, arm in enumerate((mine, theirs))]
-    return np.asarray(near & raised[0] & raised[1])
+    return np.asarray(_near(pair, mine, theirs) & raised[0] & raised[1])
 
 
 def shaken(pair: Array, mine: Arm, theirs: Arm) -> NDArray[np.bool_]:
     """(T,) frames at which two wrists meet, not both above the chest, whose forearms point at each other."""
-    near = np.linalg.norm(pair[0, :, mine[-1]] - pair[1, :, theirs[-1]], axis=-1) < _MEETS
     ahead = [_forearm(pair[i], arm) for i, arm in enumerate((mine, theirs))]
     against = np.einsum("ti,ti->t", *ahead) < _AGAINST
-    return np.asarray(near & against & ~_raised(pair, mine, theirs))
+    return np.asarray(_near(pair, mine, theirs) & against & ~_raised(pair, mine, theirs))
+
+
+def _near(pair: Array, mine: Arm, theirs: Arm) -> NDArray[np.bool_]:
+    """(T,) frames at which two wrists meet."""
+    return np.asarray(np.linalg.norm(pair[0, :, mine[-1]] - pair[1, :, theirs[-1]], axis=-1) < _MEETS)
 
 
 def _aside(way: Array, mine: Arm, theirs: Arm) -> Array:

@@ -59,6 +59,15 @@ class Result:
     run: str = ""
 
 
+def until_result(events: Iterable[Progress | Result]) -> Generator[Progress, None, Result]:
+    """Passes the progress of a run on and returns its result."""
+    for event in events:
+        if isinstance(event, Result):
+            return event
+        yield event
+    raise AssertionError("A pipeline ends with its result.")
+
+
 class Cancelled(Exception):
     """The run was cancelled by its owner; nothing was written."""
 

@@ -27,7 +27,7 @@ def check(ref: Reference, part: str, module: torch.nn.Module, *inputs: str) -> N
 
 
 def test_self_attention_equals_the_reference(ref):
-    check(ref, "self_attention", bigraphdiff.SelfAttention(64, 4, 96), "x", "emb", "mask")
+    check(ref, "self_attention", bigraphdiff.SelfAttention(64, 64, 4, 96), "x", "emb", "mask")
 
 
 def test_cross_attention_equals_the_reference(ref):

@@ -12,7 +12,7 @@ see the person's face, which in the thesis decides whether to respond; live it s
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -28,7 +28,7 @@ from motion.placement import MEDIAN_START_DISTANCE, Placement
 from webdemo.inference.finish.joining import joined
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.plans import KeptPlan, plan_of_words
-from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
+from webdemo.inference.run import CancelToken, Progress, Result, StageTimer, until_result
 
 from .given import NAMES, Finish, Reaction, hold_of, settle
 from .intergen import InterGenPipeline
@@ -199,25 +199,15 @@ class AgentPipeline:
         asked = replace(request, model=self.answers.name, prompt=said[0], plan=KeptPlan(plans[:1]))
         if answers:  # all samples continue the same past
             first = replace(asked, samples=1)
-            waits = yield from self._made(first, self._attending(first), cancel, timer)
+            waits = yield from until_result(self.answers.run(first, cancel, timer, self._attending(first)))
             past = np.asarray(waits.duets[0].b.positions)[:frame]  # type: ignore[union-attr]
             asked = replace(asked, prompt=said[1], plan=KeptPlan(plans[1:]))
             scene: Reaction = self._answering(asked, past)
         else:
             scene = self._attending(asked)
-        result = yield from self._made(asked, scene, cancel, timer)
+        result = yield from until_result(self.answers.run(asked, cancel, timer, scene))
         plan = {"plan": KeptPlan(plans).to_dict()}
         yield replace(result, notes=(*notes, *result.notes), manifest=plan)
-
-    def _made(
-        self, request: ReactRequest, scene: Reaction, cancel: CancelToken, timer: StageTimer
-    ) -> Generator[Progress, None, Result]:
-        """Passes progress on and returns InterGen's result."""
-        for event in self.answers.run(request, cancel, timer, scene=scene):
-            if isinstance(event, Result):
-                return event
-            yield event
-        raise AssertionError("A pipeline ends with its result.")
 
     def _attending(self, request: ReactRequest) -> Reaction:
         """A person who stands in front of the other and faces the place where they began.

@@ -26,6 +26,7 @@ import difflib
 import re
 import tomllib
 from collections.abc import Callable, Mapping
+from dataclasses import fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -38,7 +39,6 @@ from motion.formats import read
 from webdemo.inference.methods import method
 from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.paths import FloorPath, FloorPoint, path_of
-from webdemo.inference.requests.sampling import SETTINGS
 
 from .beats import MOST_BEATS, Beat, beat_of
 from .poses import MOST_POSES, Pose
@@ -61,31 +61,17 @@ _HEADER = re.compile(r"^\s*\[\[?\s*\"?([\w-]+)\"?\s*\]\]?")
 _KEY = re.compile(r"^\s*(?:\"([^\"]*)\"|'([^']*)'|([\w-]+))\s*[.=]")
 _LOOKS_LIKE_TOML = re.compile(r"^[ \t]*+(?:\[\[?[ \t]*\w++[ \t]*\]|\w++[ \t]*=)", re.MULTILINE)
 _NUMBER, _TEXT = (int, float), (str,)
-_TOP: dict[str, tuple[type, ...]] = {
-    "seed": (int,),
-    "samples": (int,),
-    "guidance": _NUMBER,
-    "steps": (int,),
-    "damping": _NUMBER,
-    "sampler": _TEXT,
-    "model": _TEXT,
-    "cleanup": (bool,),
-    "tries": (int,),
-    "loop": (bool,),
-    "planned": (bool,),
-    "strictness": _NUMBER,
-    "beat": (list,),
-    "path": (list,),
-    "pose": (list,),
-}
-_BEAT: dict[str, tuple[type, ...]] = {
-    "words": _TEXT,
-    "a": _TEXT,
-    "b": _TEXT,
-    "seconds": _NUMBER,
-    "seed": (int,),
-    "acts": (list,),
-}
+_TYPES: dict[Any, tuple[type, ...]] = {"int": (int,), "float": _NUMBER, "str": _TEXT, "bool": (bool,)}
+
+
+def _plain(of: type[SceneRequest] | type[Beat]) -> dict[str, tuple[type, ...]]:
+    """The fields of a dataclass that are numbers, texts and marks, with what they may be."""
+    named = {f.name: str(f.type).removesuffix(" | None") for f in fields(of)}
+    return {name: _TYPES[kind] for name, kind in named.items() if kind in _TYPES}
+
+
+_SETTINGS = {name: kinds for name, kinds in _plain(SceneRequest).items() if name not in ("start", "end")}
+_BEAT = _plain(Beat) | {"acts": (list,)}
 _PATH: dict[str, tuple[type, ...]] = {"person": _TEXT, "points": (list,)}
 _POSE: dict[str, tuple[type, ...]] = {
     "person": _TEXT,
@@ -97,6 +83,7 @@ _POSE: dict[str, tuple[type, ...]] = {
 }
 _TABLES = {"beat": (_BEAT, MOST_BEATS), "path": (_PATH, len(ROLES)), "pose": (_POSE, MOST_POSES)}
 """The keys of each table, and how many of it a story may have."""
+_TOP = _SETTINGS | dict.fromkeys(_TABLES, (list,))
 _KINDS = {str: "text in quotes", int: "a whole number", float: "a number", bool: "true or false", list: "a list"}
 
 
@@ -129,15 +116,16 @@ def read_story(text: str, folder: Path | None = None) -> dict[str, Any]:
             if not isinstance(entry, Mapping):
                 raise InputError(f"{lines.where('', 0, table)}{table} must be written as [[{table}]].")
             _check_keys(entry, known, lines, table, i, f"a {table}")
-    plain = {name: found[name] for name in SETTINGS if name in found}
-    return plain | {
-        "beats": tuple(_beat(entry, i, lines) for i, entry in enumerate(found.get("beat", ()))),
-        "paths": tuple(_path(entry, i, lines) for i, entry in enumerate(found.get("path", ()))),
-        "poses": tuple(_pose(entry, i, lines, folder) for i, entry in enumerate(found.get("pose", ()))),
-        "loop": found.get("loop", False),
-        "planned": found.get("planned", SceneRequest.planned),
-        "strictness": found.get("strictness", SceneRequest.strictness),
-    }
+    given = {name: found[name] for name in _SETTINGS if name in found}
+    return (
+        {"loop": SceneRequest.loop, "planned": SceneRequest.planned}
+        | given
+        | {
+            "beats": tuple(_beat(entry, i, lines) for i, entry in enumerate(found.get("beat", ()))),
+            "paths": tuple(_path(entry, i, lines) for i, entry in enumerate(found.get("path", ()))),
+            "poses": tuple(_pose(entry, i, lines, folder) for i, entry in enumerate(found.get("pose", ()))),
+        }
+    )
 
 
 def read_words(text: str, go_on: Callable[[], None] = lambda: None) -> dict[str, Any]:
@@ -157,16 +145,10 @@ def write_story(request: SceneRequest) -> str:
     """A story as TOML text that :func:`read_story` reads as the same fields; a given motion is not part of it."""
     story = tomlkit.document()
     story["seed"] = request.seed
-    defaults = {name: getattr(SceneRequest, name) for name in SETTINGS if name != "seed"}
+    defaults = {name: getattr(SceneRequest, name) for name in _SETTINGS if name != "seed"}
     for name, default in (defaults | {"steps": method(request.model, "scene").steps}).items():
         if getattr(request, name) != default:
             story[name] = getattr(request, name)
-    if not request.planned:
-        story["planned"] = False
-    if request.strictness != SceneRequest.strictness:
-        story["strictness"] = request.strictness
-    if request.loop:
-        story["loop"] = True
     tables = {
         "beat": [_beat_table(beat) for beat in request.beats],
         "path": [{"person": path.person, "points": list(map(_point, path.points))} for path in request.paths],
