@@ -143,6 +143,8 @@ def test_threads_share_a_network(tmp_path: Path) -> None:
 
 
 def test_coarser_numbers_stay_near(tmp_path: Path) -> None:
+    if not compiled.has_bfloat16():
+        pytest.skip("This processor has no bfloat16, and OpenVINO computes in float32.")
     plain, coarse = network(), network()
     if not compile_network(coarse, "coarse", tmp_path, precision="bf16"):
         assert find_spec("openvino") is None

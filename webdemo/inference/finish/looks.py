@@ -118,9 +118,7 @@ def _is_undressed(duet: Duet | Clip) -> TypeGuard[Duet]:
 def enlarged(request: Any) -> Any:
     """A request whose paths, poses and given motion are those of two adults; the same one where both are adults."""
     given = getattr(request, "motion", None)
-    if isinstance(request, PredictRequest):
-        return _of_adults(request)
-    if isinstance(request, SceneRequest) and given is not None:
+    if isinstance(given, Duet):
         looks = given.looks
     elif getattr(request, "paths", ()) or getattr(request, "poses", ()):
         looks = looks_in(plan for plan, *_ in request.spans())
@@ -129,13 +127,14 @@ def enlarged(request: Any) -> Any:
     sizes = _sizes(looks)
     if sizes == (1.0, 1.0):
         return request
-    way = 1 / floor_scale(sizes)
-    changes: dict[str, Any] = {"paths": tuple(_path(path, way) for path in request.paths)}
+    way, changes = 1 / floor_scale(sizes), dict[str, Any]()
+    if isinstance(given, Duet):
+        adults = given.with_positions(of_adults(given.positions, sizes))
+        changes["motion"] = replace(adults, looks=grown_up(looks))
+    if not isinstance(request, PredictRequest):
+        changes["paths"] = tuple(_path(path, way) for path in request.paths)
     if isinstance(request, SceneRequest):
         changes["poses"] = tuple(_pose(pose, way) for pose in request.poses)
-    if given is not None:
-        motion = given.with_positions(of_adults(given.positions, sizes))
-        changes["motion"] = replace(motion, looks=grown_up(looks))
     return replace(request, **changes)
 
 
@@ -148,15 +147,6 @@ def as_given(result: Result, request: Any) -> Result:
         return _predicted(result, given, request)
     kept, made = request.kept(given), request.made
     return replace(result, duets=tuple(_as_given(duet, given, kept, made) for duet in result.duets))
-
-
-def _of_adults(request: PredictRequest) -> PredictRequest:
-    """A prediction from the same two people as adults."""
-    given = request.motion
-    if not isinstance(given, Duet) or (sizes := _sizes(given.looks)) == (1.0, 1.0):
-        return request
-    motion = given.with_positions(of_adults(given.positions, sizes))
-    return replace(request, motion=replace(motion, looks=grown_up(given.looks)))
 
 
 def _predicted(result: Result, given: Duet, request: PredictRequest) -> Result:

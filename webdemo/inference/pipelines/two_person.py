@@ -172,12 +172,12 @@ class TwoPersonPipeline(ABC, Generic[Network]):
 
         x = yield from timer.sampled(sample_steps(predict, x, scheduler, correct=correct), cancel)
         yield timer.progress("finish")
-        duets: tuple[Duet, ...] = self._duets(x, scene, self.cleaned if settings.cleanup else _as_is)
+        duets: tuple[Duet, ...] = self._duets(x, scene, self.cleaned if settings.cleanup else np.asarray)
         moved = [0.0] * len(duets) if damping.moved is None else damping.moved.tolist()
         readouts: list[dict[str, Any]] = [{"damped": metres} for metres in moved]
         notes: list[str] = list(conditioning.notes)
         if measured:
-            before: tuple[Duet, ...] = self._duets(uncorrected, scene, _as_is)
+            before: tuple[Duet, ...] = self._duets(uncorrected, scene, np.asarray)
             readouts = [compare(*pair) | each for *pair, each in zip(before, duets, readouts, strict=True)]
             notes += self.lost(settings, before, duets)
         timer.lap("finish")
@@ -196,7 +196,3 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         if not np.isfinite(positions).all():
             raise InputError("The motion diverged: lower the guidance scale or take more steps.")
         return tuple(scene.duet(pair, finish) for pair in positions)
-
-
-def _as_is(x: Any) -> Any:
-    return x

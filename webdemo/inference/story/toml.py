@@ -27,7 +27,6 @@ import re
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import fields
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -200,11 +199,7 @@ def _check_keys(
             where = lines.where(table, index, key)
             near = difflib.get_close_matches(key[:40], known, n=1)
             hint = f"did you mean {near[0]!r}?" if near else f"it takes {', '.join(known)}."
-            raise InputError(
-                f"{where}there is no key {key!r:.40} in {what}; {hint}"
-                if where
-                else f"There is no key {key!r:.40} in {what}; {hint}"
-            )
+            raise InputError(f"{where}{'there' if where else 'There'} is no key {key!r:.40} in {what}; {hint}")
         kinds = known[key]
         if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
             wanted = _KINDS[kinds[-1]]
@@ -268,31 +263,25 @@ def _check_words(text: str) -> None:
         raise InputError(f"Line {line}: {found[0][:20]!r} … is longer than any key or number of a story: shorten it.")
 
 
-class Lines:
-    """The lines of a text's keys.
+class Lines(dict[tuple[str, int, str], int]):
+    """The first line of each (table, index of its entry, key) of a text; a table's own name is a key of the text.
 
     Args:
         text: valid TOML.
     """
 
     def __init__(self, text: str) -> None:
-        self.text = text
-
-    def where(self, table: str, index: int, key: str) -> str:
-        """``"Line 4: "`` for a key of the table's ``index``-th entry; "" if it is not found."""
-        line = self._found.get((table, index, key))
-        return f"Line {line}: " if line else ""
-
-    @cached_property
-    def _found(self) -> dict[tuple[str, int, str], int]:
-        """The first line of each (table, index of its entry, key); a table's own name is a key of the text."""
-        found: dict[tuple[str, int, str], int] = {}
+        super().__init__()
         current, counts = "", {"": 0}
-        for number, line in enumerate(self.text.splitlines(), 1):
+        for number, line in enumerate(text.splitlines(), 1):
             if header := _HEADER.match(line):
                 current = header[1]
                 counts[current] = counts.get(current, -1) + 1
-                found.setdefault(("", 0, current), number)
+                self.setdefault(("", 0, current), number)
             elif key := _KEY.match(line):
-                found.setdefault((current, counts[current], key[1] or key[2] or key[3] or ""), number)
-        return found
+                self.setdefault((current, counts[current], key[1] or key[2] or key[3] or ""), number)
+
+    def where(self, table: str, index: int, key: str) -> str:
+        """``"Line 4: "`` for a key of the table's ``index``-th entry; "" if it is not found."""
+        line = self.get((table, index, key))
+        return f"Line {line}: " if line else ""
