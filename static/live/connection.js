@@ -50,6 +50,7 @@ export class Connection {
       throw new LiveError(say("live.unreachable"));
     }
     const fields = await answer.json().catch(() => ({})); // a proxy has a page of its own
+    if (fields.ended) throw new LiveError(fields.ended);
     if (answer.ok) return fields;
     if ([502, 504].includes(answer.status)) throw new LiveError(say("live.unreachable"));
     if (!path && answer.status === 404) throw new LiveError(say("live.no_streams"));

@@ -99,10 +99,12 @@ def test_where_a_look_takes_long_the_last_one_is_told(monkeypatch: pytest.Monkey
     wait_for(lambda: health.ready)
     first = asyncio.run(health.look())
     slow.clear()
-    assert asyncio.run(health.look()) is first
+    before = threading.active_count()
+    assert first[0] and asyncio.run(health.look()) == first
     health.broken(RuntimeError())
-    threading.Timer(0.1, slow.set).start()
     assert "failed" in asyncio.run(health.look())[1]["checks"]["generation"], "what broke is told at once"
+    assert threading.active_count() <= before, "the start of a thread would wait until that has had its first turn"
+    slow.set()
 
 
 def test_a_health_check_that_never_ends_is_stuck() -> None:

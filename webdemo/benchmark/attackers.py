@@ -116,7 +116,7 @@ async def _flood(client: httpx.AsyncClient, counts: Counter[str]) -> None:
                 waiting.append(client.post(address, json={"times": times, "poses": data}))
             for answer in await asyncio.gather(*waiting):
                 counts[outcomes.get(answer.status_code, "messages_refused")] += 1
-                ended |= answer.status_code in (404, 410)
+                ended |= answer.status_code == 404 or b'"ended"' in answer.content
             await asyncio.sleep(0.2)
 
 

@@ -33,7 +33,7 @@ from webdemo.server.lab import Lab, engine_of, make_lab
 from webdemo.server.live.streams import live_routes
 from webdemo.server.queue.events import FairEvents
 from webdemo.server.queue.recorder import Recorder
-from webdemo.server.store.scratch import Scratch, keep_files_apart, visitors_folder
+from webdemo.server.store.scratch import Scratch, keep_files_apart, move_files_in_threads, visitors_folder
 from webdemo.ui.components.exports import Shelf
 from webdemo.ui.context import PageContext
 from webdemo.ui.page import build_page, launch_options, start_queue
@@ -135,6 +135,7 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
     (mounted,) = [r.app for r in app.routes if isinstance(r, Mount) and isinstance(r.app, App)]
     keep_states_lean(mounted, page)
     keep_files_apart(mounted)
+    move_files_in_threads()
 
 
 def _add_routes(app: FastAPI, lab: Lab) -> None:
@@ -144,7 +145,7 @@ def _add_routes(app: FastAPI, lab: Lab) -> None:
         return JSONResponse(report, status_code=200 if whole else 503, headers={"Cache-Control": "no-store"})
 
     @app.get("/metrics")
-    async def metrics(request: Request) -> Response:
+    def metrics(request: Request) -> Response:
         address = request.client.host if request.client else ""
         if not may_read_figures(lab.settings, address, request.headers.get("authorization", "")):
             return JSONResponse({"detail": "These figures are not public."}, status_code=403)

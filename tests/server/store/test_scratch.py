@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import errno
 import os
 import re
@@ -12,6 +13,7 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from gradio import processing_utils
 
 from motion import InputError, formats
 from tests.server.clients import FIELDS, HERE, UPLOAD, client_of, events_of, lab_of, settings_for
@@ -160,3 +162,17 @@ def test_an_error_does_not_say_where_the_files_are(local: TestClient, monkeypatc
     assert "event: error" in said
     assert re.search(r"road-seed0-[0-9a-f]{4}\.\w+ could not be written because the disk is full", said)
     assert "/" not in said.partition("data: ")[2]
+
+
+def test_files_of_an_event_are_copied_beside_the_event_loop(local: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Some hundred questions about each file's place kept every other request waiting, /healthz for over a second."""
+    move, moved = processing_utils.move_files_to_cache, []
+
+    def noted(data: Any, *where: Any, **options: Any) -> Any:
+        if "gradio.FileData" in str(data):
+            moved.append(asyncio._get_running_loop() is None)
+        return move(data, *where, **options)
+
+    monkeypatch.setattr(processing_utils, "move_files_to_cache", noted)
+    assert "event: complete" in events_of(local, "generate", FIELDS)
+    assert moved and all(moved)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import queue
 import resource
 import shutil
 import sys
@@ -31,9 +32,9 @@ Report = tuple[bool, dict[str, Any]]
 PAUSE = 30.0
 """Seconds between two tries after one that failed."""
 PATIENCE = 0.2
-"""Seconds after which the report of the last look is given while the next one goes on."""
+"""Seconds after which the answer holds what the last look found, while the next one goes on."""
 STALE = 30.0
-"""Seconds for which a report is good enough for that."""
+"""Seconds for which a look is good enough for that."""
 
 
 def check_disk(folder: Path, least: float) -> None:
@@ -76,8 +77,11 @@ class Health:
         self.error = ""
         self._works = False
         self._tried_at = -PAUSE
-        self._looking: Future[Report] | None = None
-        self._last: tuple[float, Report] | None = None
+        self._asked: queue.SimpleQueue[Future[None]] = queue.SimpleQueue()
+        self._looking: Future[None] | None = None
+        self._looker: threading.Thread | None = None
+        self._found: dict[str, str] = {}
+        self._found_at = -STALE
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
 
@@ -98,43 +102,37 @@ class Health:
 
     def broken(self, error: BaseException) -> None:
         """A run ended in an error that was not its user's."""
-        self._works, self._last = False, None  # the next look is waited for
+        self._works = False
         self.error = f"a run ended in {type(error).__name__}"
 
     async def look(self) -> Report:
         """Whether all is well, and the state of each part.
 
-        A thread of its own looks, so that it waits for nothing that other threads wait for. Whoever asks meanwhile gets
-        the same answer, so there is one at most; and where it takes long, since other threads compute, they get the
-        last one.
+        A thread of its own looks, so that it waits for nothing that other threads wait for. It stays, since the start
+        of a thread waits until that has had its first turn. Whoever asks meanwhile waits for the same look; and where
+        it takes long, since other threads compute, they get what the last one found.
         """
         if self._looking is None or self._looking.done():
             self._looking = Future()
-            threading.Thread(target=self._look, args=(self._looking,), name="look", daemon=True).start()
-        last = self._last
-        recent = last is not None and time.monotonic() - last[0] < STALE
+            self._asked.put(self._looking)
+        if self._looker is None:
+            self._looker = threading.Thread(target=self._look, name="look", daemon=True)
+            self._looker.start()
+        recent = time.monotonic() - self._found_at < STALE
         await asyncio.wait([asyncio.wrap_future(self._looking)], timeout=PATIENCE if recent else None)
-        return last[1] if last is not None and not self._looking.done() else self._looking.result()
+        return self.report()
 
-    def _look(self, looking: Future[Report]) -> None:
-        try:
-            self._last = (time.monotonic(), report := self.report())
-            looking.set_result(report)
-        except BaseException as error:
-            looking.set_exception(error)
+    def _look(self) -> None:
+        while True:
+            looking = self._asked.get()
+            self.probe()
+            self._found = {name: _state_of(check) for name, check in self.wants.items()}
+            self._found_at = time.monotonic()
+            looking.set_result(None)
 
     def report(self) -> Report:
-        """Looks at each part, and tries a generation where none has worked yet."""
-        self.probe()
-        checks: dict[str, str] = {}
-        for name, check in self.wants.items():
-            try:
-                check()
-                checks[name] = "ok"
-            except InputError as error:
-                checks[name] = f"failed: {error}"
-            except Exception as error:
-                checks[name] = f"failed ({type(error).__name__})"
+        """What the last look has found, and how runs are."""
+        checks = dict(self._found)
         checks["generation"] = "ok" if self._works else f"failed: {self.error}" if self.error else "loading"
         checks["progress"] = f"failed: {stuck}" if (stuck := self.stuck()) else "ok"
         whole = self.ready and all(state == "ok" for state in checks.values())
@@ -168,6 +166,17 @@ class Health:
             self.error = f"a tiny generation ended in {type(error).__name__}"
         else:
             self._works, self.error = True, ""
+
+
+def _state_of(check: Callable[[], Any]) -> str:
+    """What /healthz says of a check."""
+    try:
+        check()
+    except InputError as error:
+        return f"failed: {error}"
+    except Exception as error:
+        return f"failed ({type(error).__name__})"
+    return "ok"
 
 
 # ---- figures for Prometheus ----------------------------------------------------------------------

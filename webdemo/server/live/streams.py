@@ -2,6 +2,7 @@
 
 ``POST live`` opens one, ``POST live/ID`` sends poses and is answered with the partner's, ``DELETE live/ID`` ends it.
 A message is an ordinary request, so it passes the same checks as all others, and every proxy lets it through.
+Once a stream has ended, the answer is ``{"ended": sentence}``, since a page may have sent its last message before that.
 """
 
 from __future__ import annotations
@@ -251,7 +252,7 @@ async def _answered(job: Awaitable[dict[str, Any]]) -> Response:
     except StreamUnknown as error:
         status, answer = 404, {"detail": str(error)}
     except StreamEnded as error:
-        status, answer = 410, {"detail": str(error)}
+        answer = {"ended": str(error)}
     except Replaced as error:
         status, answer = 409, {"detail": str(error)}
     except InputError as error:

@@ -8,10 +8,16 @@ import shutil
 import time
 from collections.abc import Collection, Iterator
 from contextvars import ContextVar
+from functools import partial
 from pathlib import Path
+from typing import Any
 
+from gradio import processing_utils
+from gradio.data_classes import GradioModel, GradioRootModel
 from gradio.routes import App
 from gradio.utils import get_upload_folder
+from gradio_client.utils import is_file_obj_with_meta, traverse
+from starlette.concurrency import run_in_threadpool
 
 from motion import InputError
 from webdemo.server.accounts.quotas import ADDRESS_SHARE
@@ -170,6 +176,22 @@ def keep_files_apart(app: App) -> None:
     """Makes a mounted Gradio application a :class:`PersonalApp`; it is made deep inside of Gradio."""
     del app.uploaded_file_dir
     app.__class__ = PersonalApp
+
+
+async def _move_files(data: Any, *where: Any, **options: Any) -> Any:
+    files: list[Any] = []
+    traverse(data, files.append, is_file_obj_with_meta)
+    move = partial(processing_utils.move_files_to_cache, data, *where, **options)
+    return await run_in_threadpool(move) if files or isinstance(data, GradioModel | GradioRootModel) else move()
+
+
+def move_files_in_threads() -> None:
+    """Makes Gradio check and copy the files of events in threads.
+
+    It asks the system some hundred times about a file's place and reads all of it. On the event loop, which would wait
+    for the interpreter lock after each of these, the files of one result kept every other request waiting for a second.
+    """
+    processing_utils.async_move_files_to_cache = _move_files
 
 
 def folder_of(person: str) -> Path:
