@@ -80,7 +80,6 @@ def make_server(settings: Settings, *, scratch: bool = False, **parts: Any) -> S
         timeout_graceful_shutdown=CLOSING_SECONDS,
         timeout_keep_alive=30,
         loop="asyncio",
-        h11_max_incomplete_event_size=32 * 1024,
         backlog=512,
     )
     return Server(config, app.state.lab)

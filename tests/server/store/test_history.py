@@ -98,6 +98,16 @@ def test_others_see_nothing_but_by_a_link_that_lasts(history: Notebook) -> None:
         history.open(key, OTHER)
 
 
+def test_a_run_has_so_many_links_at_a_time(history: Notebook, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("webdemo.server.store.history.MOST_LINKS", 2)
+    run = kept(history)
+    links = [history.link(run, ME) for _ in range(2)]
+    with pytest.raises(InputError, match="2 links to this run already"):
+        history.link(run, ME)
+    assert history.revoke(run, ME) == len(links)
+    history.link(run, ME)
+
+
 def test_a_link_ends(history: Notebook) -> None:
     key, _ = history.link(kept(history), ME)
     with history.database.session.begin() as session:

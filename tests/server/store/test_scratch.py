@@ -21,7 +21,7 @@ from tests.server.lab import stub_module
 from tests.server.queue.test_queue import wait_for
 from webdemo.server import app as app_module
 from webdemo.server.app import create_app
-from webdemo.server.store.scratch import KEPT_SECONDS, Scratch
+from webdemo.server.store.scratch import KEPT_SECONDS, LEAST_BYTES, Scratch
 from webdemo.ui.history import Search
 
 MB = 2**20
@@ -72,6 +72,15 @@ def test_a_person_s_own_files_make_way_and_no_others(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no room for 3 MB more"):  # all together have too much, but he has no old ones
         scratch.admit("bob", "", 3 * MB, 100 * MB)
     assert all(path.exists() for path in eve)
+
+
+def test_many_tiny_files_are_as_much_as_a_large_one(tmp_path: Path) -> None:
+    """Each upload counts all files: half a million of a byte each, which an hour brought, took seconds every time."""
+    scratch = Scratch(tmp_path / "s", 100 * MB)
+    for i in range(40):
+        put(scratch.uploads / "ada", str(i), age=1000 - i, size=1)
+    scratch.admit("ada", "", 1, MB)
+    assert sum(path.is_file() for path in scratch.uploads.rglob("*")) <= MB // LEAST_BYTES
 
 
 def test_new_names_bring_no_more_room_to_an_address(tmp_path: Path) -> None:

@@ -123,6 +123,16 @@ def test_nobody_reads_or_changes_what_is_not_theirs(studies: Studies, tmp_path: 
     assert not (tmp_path / "theirs.csv").exists() and len(studies.mine(ME)) == 1
 
 
+def test_strangers_cannot_vote_without_end(studies: Studies, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("webdemo.server.store.studies.MOST_VOTES", 4)
+    key = new(studies, pairs=2).key
+    for i in range(4):
+        press(studies, key, f"cookie {i}")
+    with pytest.raises(InputError, match="has all the votes"):
+        press(studies, key, "one cookie more")
+    assert studies.mine(ME)[0].voters == 4
+
+
 def test_a_deleted_study_is_gone(studies: Studies) -> None:
     study = new(studies)
     press(studies, study.key, "ada")

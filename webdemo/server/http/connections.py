@@ -3,16 +3,41 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import socket
 import struct
 from collections import Counter
 from typing import Any
 
+import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from webdemo.server.accounts.quotas import Quota, network_of
 from webdemo.server.accounts.visitors import trusted_hosts
 from webdemo.server.settings import Settings
+
+HEAD_BYTES = 32 * 1024
+"""Most bytes of a request's head."""
+PIECES, PIECE_BYTES = 200, 512
+"""Pieces of a body that may be of any size, and the bytes that all further ones must have on average: reading a piece
+takes 11 µs, so in pieces of one byte a few megabits a second would keep the server from doing anything else."""
+
+
+class BoundedPieces(h11.Connection):
+    """A connection that fails where a body comes in pieces that are too small."""
+
+    pieces = 0.0
+
+    def next_event(self) -> Any:
+        """The next event; raises RemoteProtocolError for the piece that is too much."""
+        event = super().next_event()
+        if isinstance(event, h11.Request):
+            self.pieces = 0.0
+        elif isinstance(event, h11.Data):
+            self.pieces += 1 - len(event.data) / PIECE_BYTES
+            if self.pieces > PIECES:
+                raise h11.RemoteProtocolError("The body comes in pieces that are too small.")
+        return event
 
 
 def bounded_protocol(settings: Settings, quota: Quota) -> type[H11Protocol]:
@@ -33,6 +58,10 @@ def bounded_protocol(settings: Settings, quota: Quota) -> type[H11Protocol]:
         waiting: asyncio.TimerHandle | None = None
         looking: asyncio.TimerHandle | None = None
         moved = 0.0
+
+        def __init__(self, *config: Any, **more: Any) -> None:
+            super().__init__(*config, **more)
+            self.conn = BoundedPieces(h11.SERVER, HEAD_BYTES)
 
         def connection_made(self, transport: Any) -> None:
             super().connection_made(transport)
@@ -85,6 +114,11 @@ def bounded_protocol(settings: Settings, quota: Quota) -> type[H11Protocol]:
                 self.transport.abort()
                 return
             self.looking = self.loop.call_later(settings.answer_seconds / 4, self._look)
+
+        def send_400_response(self, msg: str) -> None:
+            with contextlib.suppress(h11.LocalProtocolError):  # an answer has begun
+                super().send_400_response(msg)
+            self.transport.close()
 
         def resume_writing(self) -> None:
             super().resume_writing()

@@ -53,8 +53,10 @@ class Payloads:
             person: who sends it; files must be theirs.
         """
         for text in _texts(fields):
-            if not text.isascii() and any("\ud800" <= c <= "\udfff" for c in text):
-                raise Refused(400, "The text contains an incomplete character: write it again.", "bad body")
+            try:
+                text.encode()
+            except UnicodeEncodeError:
+                raise Refused(400, "The text contains an incomplete character: write it again.", "bad body") from None
         function = fields.get("fn_index")
         if function is None:
             function = endpoint

@@ -47,6 +47,8 @@ log = logging.getLogger(__name__)
 DAY = 86_400.0
 STEADY_SECONDS = 3600.0
 """A clock that has jumped is trusted after so much time without another jump."""
+MOST_LINKS = 50
+"""Links to one run at a time."""
 UNDO_SECONDS = 600.0
 """For so long a removed run can be brought back."""
 _TRUTH = "truth.npz"
@@ -246,6 +248,8 @@ class History:
             found = self._own(session, run, owner)
             if found.state != "done":
                 raise InputError(f"This run has no result to show: it is {found.state}.")
+            if len(found.links) >= MOST_LINKS:
+                raise InputError(f"There are {MOST_LINKS} links to this run already: use one of them, or end them all.")
             session.add(Link(token=token, run_id=found.id, until=until))
         audit("link-made", run=run, link=fingerprint(token))
         return token, until

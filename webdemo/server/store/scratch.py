@@ -28,8 +28,10 @@ KEPT_SECONDS = 7200.0
 """Seconds after which a file is removed; the history keeps what is needed to make it again."""
 IN_USE_SECONDS = 60.0
 """Files younger than this are kept in any case, since they may be in use."""
+LEAST_BYTES = 2**15
+"""What a file weighs at least: each takes blocks of the disk and time at every count, also where it is empty."""
 _File = tuple[float, int, str]
-"""When it was made, its bytes and its path."""
+"""When it was made, its weight in bytes and its path."""
 
 
 class Scratch:
@@ -64,7 +66,7 @@ class Scratch:
         os.environ["GRADIO_TEMP_DIR"] = str(self.uploads)
 
     def used(self, person: str) -> int:
-        """Bytes of the files in the folder of this name."""
+        """Bytes that the files in the folder of this name weigh."""
         return sum(size for _, size, _ in _files(self.uploads / person))
 
     def admit(self, person: str, address: str, size: float, allowed: float) -> None:
@@ -145,7 +147,7 @@ def _files(folder: Path) -> Iterator[_File]:
                 status = os.stat(path)
             except OSError:  # gone meanwhile
                 continue
-            yield status.st_mtime, status.st_size, path
+            yield status.st_mtime, max(status.st_size, LEAST_BYTES), path
 
 
 def _remove(path: str) -> bool:

@@ -15,7 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple, cast
 
-from sqlalchemy import ColumnElement, select
+from sqlalchemy import ColumnElement, func, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
@@ -29,6 +29,8 @@ from .database import Database, Study, Vote, locked, sentences
 from .storage import Storage
 
 LONGEST_QUESTION, LONGEST_NAME = 300, 100
+MOST_VOTES = 20_000
+"""Votes of a study: a stranger with ever new cookies could send any number."""
 Clock = Callable[[], float]
 COLUMNS = ("voter", "pair", "sentence", "left", "right", "chosen", "time")
 _PRESSED = {"1": FIRST, "2": SECOND, "=": TIE}
@@ -152,7 +154,7 @@ class Studies:
         with self.database.session() as session:
             row = _find(session, Study.key == key)
             voter = _hashed(row, person)
-            done = {vote.pair for vote in _votes(session, row) if vote.person == voter}
+            done = set(session.scalars(select(Vote.pair).where(Vote.study_id == row.id, Vote.person == voter)))
         captions, plan = json.loads(row.captions), _plan(row, voter)
         for number, swapped in plan.items():
             if number not in done:
@@ -175,6 +177,8 @@ class Studies:
                 answer, swapped = _PRESSED.get(pressed), _plan(row, voter).get(number)
                 if answer is None or swapped is None:
                     raise InputError("An answer is 1, 2 or = to a pair of the study: reload the page.")
+                if (session.scalar(select(func.count()).where(Vote.study_id == row.id)) or 0) >= MOST_VOTES:
+                    raise InputError("This study has all the votes that it takes: thank you all the same.")
                 if swapped:
                     answer = {FIRST: SECOND, SECOND: FIRST}.get(answer, answer)
                 told = {"answer": answer, "swapped": swapped, "at": self.clock()}
