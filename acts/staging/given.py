@@ -195,7 +195,7 @@ class _Beat:
         """The parts of people who stay where they are, and a pose (22, 3) of those whose hands are still free.
 
         A figure comes before limbs, these before a bow, a bow before standing by, and that before a posture. Who
-        stands by has a place, and no pose.
+        stands by has a place, and no pose. A jump is never a draft: of one, the network's feet stay on the floor.
         """
         score, seed = self.score, self.story.seed
         gone = {move.person for move in moves if move.way not in ("stay", "back to back")}
@@ -225,7 +225,8 @@ class _Beat:
                 poses = self._postures(person, stretch)
                 if len(poses) > 1:
                     posed[person] = poses[-1][1]
-                parts += softened(posture_parts(poses, person, score, stretch, self.window.tail(self.story.edges[-1])))
+                posture = posture_parts(poses, person, score, stretch, self.window.tail(self.story.edges[-1]))
+                parts += posture if who in score.jumps else softened(posture)
         return parts, posed
 
     def on_the_way(
@@ -248,9 +249,8 @@ class _Beat:
                 parts += softened(low_gait_parts(gait, person, self.down, stretch))
             else:
                 parts += softened(step_parts(gait, person, score, stretch)) if free else stretch.known_way(way)
-            if free and gait is None:
-                joints = TRUNK if "ab"[person] in score.gestures else (*TRUNK, *HANDS)
-                parts += _waiting_parts(person, stretch, self.story.seed, joints)
+            if free and gait is None and "ab"[person] in score.loose:
+                parts += _waiting_parts(person, stretch, self.story.seed, (*TRUNK, *HANDS))
         leads = "ring" if any(move.backwards for move in moves) and score.by_both_hands else ""
         if (hold := score.hold or leads) and len(ways) == 2:
             parts += hold_parts(hold, stretch)

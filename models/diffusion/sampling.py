@@ -73,6 +73,10 @@ def sample_noise(seed: int, samples: int, shape: tuple[int, ...]) -> Tensor:
 # ---- classifier-free guidance (Ho & Salimans 2022), as every network here uses it ----------------
 
 
+DRAFTED = 0.5
+"""Share of the guidance beyond 1 that acts on drafted numbers: all of it would exaggerate what the draft says."""
+
+
 def guide(conditional: Tensor, unconditional: Tensor, scale: float) -> Tensor:
     """scale · D(x, cond) + (1 − scale) · D(x, nothing), from both predictions."""
     return scale * conditional + (1 - scale) * unconditional
@@ -84,7 +88,7 @@ def classifier_free(
     cond: Tensor,
     scale: float,
     nothing: Tensor | None = None,
-    settled: Tensor | None = None,
+    drafted: Tensor | None = None,
 ) -> Tensor:
     """:func:`guide` on both predictions of a network, made in one batch.
 
@@ -96,18 +100,18 @@ def classifier_free(
         cond: (B, …).
         scale: s of the papers.
         nothing: (B, …) what stands for no condition; zeros by default.
-        settled: true at the numbers that stay as the condition alone has them; none by default.
+        drafted: true at the numbers that stay as the condition alone has them; none by default.
 
     Returns:
         (B, …) as `predict` gives.
     """
     nothing = torch.zeros_like(cond) if nothing is None else nothing
-    if scale == 1 or (scale == 0 and settled is None):
+    if scale == 1 or (scale == 0 and drafted is None):
         return predict(*inputs, cond if scale else nothing)
     twice = (None if value is None else torch.cat([value, value]) for value in inputs)
     conditional, unconditional = predict(*twice, torch.cat([cond, nothing])).chunk(2)
     guided = guide(conditional, unconditional, scale)
-    return guided if settled is None else torch.where(settled, conditional, guided)
+    return guided if drafted is None else torch.where(drafted, torch.lerp(conditional, guided, DRAFTED), guided)
 
 
 class TwoPersonDenoiser(nn.Module, ABC):
@@ -141,8 +145,8 @@ class TwoPersonDenoiser(nn.Module, ABC):
         mask[1, 9:] = False
         return x, torch.tensor([999, 500]), cond, mask
 
-    def settled(self, known: Tensor) -> Tensor | None:
-        """True at the numbers (B, tokens, features) that guidance leaves as the words alone would have them."""
+    def drafted(self, known: Tensor) -> Tensor | None:
+        """True at the numbers (B, tokens, features) of which a draft says something; None without one."""
         return None
 
     def guided(
@@ -159,9 +163,9 @@ class TwoPersonDenoiser(nn.Module, ABC):
         if known is None:
             return classifier_free(lambda x, t, mask, cond: self(x, t, cond, mask), x, t, mask, cond=cond, scale=scale)
         known = known.expand(len(x), -1, -1)
-        settled = self.settled(known)
+        drafted = self.drafted(known)
 
         def predict(x: Tensor, t: Tensor, mask: Tensor | None, known: Tensor, cond: Tensor) -> Tensor:
             return self(x, t, cond, mask, known=known)
 
-        return classifier_free(predict, x, t, mask, known, cond=cond, scale=scale, settled=settled)
+        return classifier_free(predict, x, t, mask, known, cond=cond, scale=scale, drafted=drafted)

@@ -150,8 +150,8 @@ class WordDenoiser(InterGenDenoiser):
             h = block.read(h, emb, keep, keep_other, text, real)
         return (self.out(h) + followed).permute(1, 2, 0, 3).reshape(b, length, -1)
 
-    def settled(self, known: Tensor) -> Tensor | None:
-        """Those that a draft says: guidance would exaggerate them."""
+    def drafted(self, known: Tensor) -> Tensor | None:
+        """See :meth:`models.diffusion.sampling.TwoPersonDenoiser.drafted`."""
         if self.draft is None:
             return None
         width = self.known_embed.in_features

@@ -100,7 +100,12 @@ def test_who_bends_down_to_a_shoe_kneels_down_to_it_at_once() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["They walk up to each other but do not kiss.", "They bow. They walk up to each other but do not kiss."]
+    "text",
+    [
+        "They walk up to each other but do not kiss.",
+        "They bow. They walk up to each other but do not kiss.",
+        "She does not want to be kissed and pushes him away.",
+    ],
 )
 def test_the_network_is_not_told_what_is_not_done(text: str) -> None:
     scene = as_scene(GenerateRequest(prompt=text, seconds=8.0))

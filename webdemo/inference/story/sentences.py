@@ -287,7 +287,7 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
             raise
         return None
     plans = tuple(plan_of_beat(beat) if beat.acts else whole for beat in beats)
-    as_it_is = len(beats) == 1 and not _in_captions(request, whole) and not request.paths and not replays
+    as_it_is = [beat.words for beat in beats] == [request.prompt] and not request.paths and not replays
     if not beats or (as_it_is and not (request.planned and score_of(plans[0].acts).is_planned)):
         return None
     if not replays:

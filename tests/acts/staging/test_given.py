@@ -1,0 +1,38 @@
+"""What a window is given: which poses are held, which are drafts, and which are left to the network."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from acts import read
+from acts.staging.given import Story, plan_parts
+from acts.staging.stage import scores_of
+from acts.staging.window import KnownFrames, Window
+from motion import FPS
+from motion.placement import Placement
+
+SECONDS = 5.0
+FRAMES = round(SECONDS * FPS)
+
+
+def poses_of(words: str) -> list[KnownFrames]:
+    """The poses that the only window of a sentence is given."""
+    story = Story(scores_of([read(words).acts]), [SECONDS], [0, FRAMES], seed=0)
+    placement = Placement(np.eye(3), np.zeros(3), np.zeros(3))
+    parts = plan_parts(story, Window(0, 0, 0, FRAMES), np.zeros((2, FRAMES, 22, 3)), placement)
+    return [part for part in parts if isinstance(part, KnownFrames)]
+
+
+def test_jumps_are_held_and_postures_are_drafts() -> None:
+    assert all(not part.soft for part in poses_of("A jumps.") if part.person == 0)
+    assert all(part.soft for part in poses_of("A kneels.") if part.person == 0)
+
+
+@pytest.mark.parametrize("words", ["They walk up to each other and hug.", "A turns away while B is talking to A."])
+def test_whose_hands_are_busy_is_not_drafted_as_waiting(words: str) -> None:
+    assert not [part for part in poses_of(words) if part.person == 1]
+
+
+def test_who_has_arrived_waits_as_recorded_people_do() -> None:
+    assert [part for part in poses_of("B walks up to A.") if part.person == 1 and part.free]
