@@ -100,7 +100,7 @@ def classifier_free(
         cond: (B, …).
         scale: s of the papers.
         nothing: (B, …) what stands for no condition; zeros by default.
-        drafted: true at the numbers that stay as the condition alone has them; none by default.
+        drafted: true at the numbers on which guidance acts by :data:`DRAFTED`; none by default.
 
     Returns:
         (B, …) as `predict` gives.

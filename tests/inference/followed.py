@@ -31,7 +31,7 @@ class Follower:
 
     def __init__(self, patch: pytest.MonkeyPatch) -> None:
         patch.setattr(Setting, "scene", lambda setting, pipeline: setting)
-        patch.setattr(Setting, "share", lambda setting, pipeline: 0.0)
+        patch.setattr(Setting, "share", lambda *_: 0.0)
         self.settings: list[Setting] = []
 
     def sample(self, settings: Any, words: Any, given: Any, *_: Any, **__: Any) -> Iterator[Result]:

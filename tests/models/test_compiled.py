@@ -13,7 +13,7 @@ from torch import Tensor, nn
 
 from models import compiled
 from models.bigraphdiff.compact import CompactBiGraphDiff, CompactBiGraphDiffConfig
-from models.compiled import compile_network
+from models.compiled import compile_network, has_bfloat16
 from models.intergen import InterGenConfig, InterGenDenoiser
 from models.intergen.words import WordDenoiser
 
@@ -152,4 +152,5 @@ def test_coarser_numbers_stay_near(tmp_path: Path) -> None:
     given = inputs(plain, 2, 9)
     expected = plain(*given)
     off = (coarse(*given) - expected).abs().max() / expected.abs().max()
-    assert 1e-5 < off < 5e-2  # coarse numbers cannot be exact: they are at work
+    assert off < 5e-2
+    assert (off > 1e-5) == has_bfloat16(), "coarse numbers cannot be exact where they are at work"
