@@ -21,7 +21,7 @@ def built(kind: type[Tab], files: Path) -> Tab:
     engine = StubEngine()
     tab = kind(stub_context(engine, files))
     with gr.Blocks():
-        tab.build()
+        tab.build(gr.State())
     return tab
 
 

@@ -15,7 +15,7 @@ from webdemo.view.payload import Curve, Payload, build_payload, sample_payload
 from .show import with_shown_roles
 
 Array = NDArray[np.floating]
-_NO_TRUTH = "Nothing follows the marker to compare with."
+_NO_TRUTH = "The recording ends here, so there is nothing to compare with."
 
 
 def prediction_payload(result: PredictResult, *, title: str = "") -> Payload:

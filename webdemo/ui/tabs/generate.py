@@ -120,7 +120,7 @@ class GenerateTab(JobTab):
 
     # ---- layout ----------------------------------------------------------------------------------
 
-    def build(self, record: gr.State | None = None) -> None:
+    def build(self, record: gr.State) -> None:
         """See :meth:`JobTab.build`."""
         self.lay_out(self._ask, self._settings, first=arrival_payload(CLIPS / ARRIVAL))
         self.controls = {

@@ -75,11 +75,11 @@ class JobTab(ABC):
     # ---- what a tab says -------------------------------------------------------------------------
 
     @abstractmethod
-    def build(self, record: gr.State | None = None) -> None:
+    def build(self, record: gr.State) -> None:
         """Lays out the tab and wires its events.
 
         Args:
-            record: keeps the session's last result, of this tab or another; by default a state of the tab's own.
+            record: keeps the session's last result, of this tab or another.
         """
 
     @abstractmethod
@@ -159,9 +159,9 @@ class JobTab(ABC):
 
     # ---- events ----------------------------------------------------------------------------------
 
-    def wire(self, triggers: Sequence[Any], record: gr.State | None) -> None:
+    def wire(self, triggers: Sequence[Any], record: gr.State) -> None:
         """Wires what every tab has; ``triggers`` start a run with the values of ``controls``."""
-        self.record = record or gr.State(None, time_to_live=3600)
+        self.record = record
         self.trail = gr.State([], time_to_live=3600)
         self.outputs = {
             "player": self.results.player,

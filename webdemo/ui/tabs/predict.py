@@ -158,7 +158,7 @@ class PredictTab(JobTab):
 
     # ---- layout ----------------------------------------------------------------------------------
 
-    def build(self, record: gr.State | None = None) -> None:
+    def build(self, record: gr.State) -> None:
         """See :meth:`JobTab.build`."""
         self.lay_out(self._ask, self._settings, another=False)
         self.controls = {

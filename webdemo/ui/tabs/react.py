@@ -77,7 +77,7 @@ class ReactTab(JobTab):
 
     # ---- layout ----------------------------------------------------------------------------------
 
-    def build(self, record: gr.State | None = None) -> None:
+    def build(self, record: gr.State) -> None:
         """See :meth:`JobTab.build`."""
         self.lay_out(self._ask, self.sampling.build)
         self.controls = {

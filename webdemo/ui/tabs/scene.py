@@ -90,7 +90,7 @@ class SceneTab(JobTab):
 
     # ---- layout ----------------------------------------------------------------------------------
 
-    def build(self, record: gr.State | None = None) -> None:
+    def build(self, record: gr.State) -> None:
         """See :meth:`JobTab.build`."""
         self.lay_out(self._ask, self._settings, below=self._story)
         self.controls = {"prompt": self.prompt, "story": self.line_up, **self.sampling.controls}
