@@ -106,7 +106,7 @@ def walks(prompt: str) -> dict[str, Walk]:
     engine = Engine()
     tab = GenerateTab(stub_context(engine))
     with gr.Blocks():
-        tab.build(gr.Blocks())
+        tab.build(gr.State())
 
     def page(words: str, seed: int) -> None:
         for _ in tab.run("walk", {**FIELDS, "prompt": words, "seed": seed}):
