@@ -163,6 +163,9 @@ def heel_raised(hip: Array, ankle: Array, toe: Array, leg: Array) -> Array:
     Returns:
         (T, 3) as far from the toe as before; what is in reach, or before the hip, stays.
     """
+    short = np.linalg.norm(ankle - hip, axis=-1, keepdims=True) > leg
+    if not short.any():
+        return ankle
     foot, line = ankle - toe, hip - toe
     length, far = (np.linalg.norm(each, axis=-1, keepdims=True) for each in (foot, line))
     axis = line / np.maximum(far, 1e-9)
@@ -170,7 +173,6 @@ def heel_raised(hip: Array, ankle: Array, toe: Array, leg: Array) -> Array:
     out = unit(foot - np.sum(foot * axis, axis=-1, keepdims=True) * axis)
     raised = toe + along * axis + np.sqrt(np.maximum(length**2 - along**2, 0.0)) * out
     ahead = np.sum((hip - ankle) * unit((toe - ankle) * FLAT), axis=-1, keepdims=True)
-    short = np.linalg.norm(ankle - hip, axis=-1, keepdims=True) > leg
     turned = toe + (ankle - toe) + short * smoothstep(ahead / _BEHIND) * (raised - ankle)
     bone = turned - toe
     return np.asarray(toe + bone * length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9))

@@ -141,17 +141,15 @@ class LiveAgent:
         """Takes a look, and begins, changes or ends the answer from the next frame on."""
         (look,) = self.eye.looks(np.stack(self._seen))
         self._looks.append(Look(self.frame, look.chances))
-        if self._away >= IGNORED or self._gone:
+        if self._gone or self._away >= IGNORED or not self._addressed:
             self._looks.clear()
             self._rest()
-            left = Belief("left", "The person has looked away for long, so the agent leaves.")
-            waits = Belief("ignored", "The person looks away, so the agent waits.")
-            self.belief = left if self._gone else waits
-            return
-        if not self._addressed:
-            self._looks.clear()
-            self._rest()
-            self.belief = Belief("ignored", "The person looks elsewhere, so the agent waits to be addressed.")
+            if self._gone:
+                self.belief = Belief("left", "The person has looked away for long, so the agent leaves.")
+            elif self._away >= IGNORED:
+                self.belief = Belief("ignored", "The person looks away, so the agent waits.")
+            else:
+                self.belief = Belief("ignored", "The person looks elsewhere, so the agent waits to be addressed.")
             return
         decision = self.eye.decide(list(self._looks))
         if decision.sure and decision.place is not None:

@@ -66,24 +66,16 @@ class Segment:
         person: (22, 3) the person's first pose.
         begin: (22, 3) the partner's pose at that time; None where it is open.
         seed: of the noise.
-        guidance: scale of the guidance on the words.
     """
 
     def __init__(
-        self,
-        pipeline: ReGenNetPipeline,
-        condition: Tensor,
-        *,
-        person: Array,
-        begin: Array | None,
-        seed: int,
-        guidance: float,
+        self, pipeline: ReGenNetPipeline, condition: Tensor, person: Array, begin: Array | None, seed: int
     ) -> None:
-        model = pipeline.model
+        model, scale = pipeline.model, ReactRequest.guidance
         self.condition = condition
         self._placement = Placement.of(Clip(np.asarray(person)[None], FPS, SMPL22), "a")
         own = None if begin is None else model.begin_row(self._given(begin))[None]
-        self._stream = model.stream(condition, steps=STEPS, scale=guidance, max_frames=SEGMENT, begin=own)
+        self._stream = model.stream(condition, steps=STEPS, scale=scale, max_frames=SEGMENT, begin=own)
         rows = model.num_rows(SEGMENT) + 1
         self._noise = iter(sample_noise(seed, 1, (rows, FEATURES)).transpose(0, 1))
 
@@ -165,14 +157,7 @@ class ReactingPartner:
 
     def _segment(self, person: Array, begin: Array | None) -> Segment:
         self._segments += 1
-        return Segment(
-            self.pipeline,
-            self.condition,
-            person=person,
-            begin=begin,
-            seed=self.seed + self._segments,
-            guidance=ReactRequest.guidance,
-        )
+        return Segment(self.pipeline, self.condition, person, begin, self.seed + self._segments)
 
     def _renew(self, *, pushed: bool) -> None:
         """Begins the next segment where one is needed, and goes on with its replay."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from acts import Plan
@@ -13,7 +14,7 @@ from acts.captions import sentence
 from acts.lexicon import lexicon
 from acts.plan import MOST_ACTS, Act, beats, plan_of, problem
 from acts.reading.wording import begins_with_subject
-from motion import InputError
+from motion import FPS, InputError
 from webdemo.inference.requests.limits import MAX_PROMPT, MAX_SEED, number, whole
 from webdemo.inference.requests.plans import kept_plan, plan_of_words
 
@@ -166,6 +167,13 @@ def seconds_of_acts(acts: Sequence[Act]) -> float:
         ]
         total += max(lengths, default=DEFAULT_SECONDS)
     return min(max(round(2 * total) / 2, 1.5), 10.0)
+
+
+def filling(seconds: float, lengths: Sequence[float]) -> list[float]:
+    """Lengths of beats that share some seconds by the lengths that they would have, in whole frames."""
+    factor = seconds / sum(lengths)
+    edges = np.round(np.cumsum([0.0, *(length * factor for length in lengths)]) * FPS) / FPS
+    return [round(float(length), 4) for length in np.diff(edges)]
 
 
 def seconds_of(words: str) -> float:

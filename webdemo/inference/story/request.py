@@ -27,7 +27,7 @@ from webdemo.inference.requests.predict import check_motion
 from webdemo.inference.requests.sampling import SETTINGS, GenerateRequest, SamplingRequest
 from webdemo.inference.run import Progress
 
-from .beats import MOST_BEATS, SHORTEST, Beat, beat_of, plan_of_beat, seconds_of_acts
+from .beats import MOST_BEATS, SHORTEST, Beat, beat_of, filling, plan_of_beat, seconds_of_acts
 from .poses import MOST_POSES, Pose, check_together, pose_of
 
 MOST_SECONDS = 180.0
@@ -142,14 +142,12 @@ class SceneRequest(SamplingRequest):
         ]
         if self.end is not None:
             span = self.end - (self.start or 0.0)
-            factor = span / sum(beat.length for beat in beats)
-            edges = np.round(np.cumsum([0.0, *(beat.length * factor for beat in beats)]) * FPS) / FPS
-            lengths = np.diff(edges)
-            if lengths.min() < SHORTEST - 1e-6:
+            lengths = filling(span, [beat.length for beat in beats])
+            if min(lengths) < SHORTEST - 1e-6:
                 raise InputError(
                     f"{len(beats)} beats do not fit into a span of {span:.1f} s: use fewer, or a longer span."
                 )
-            beats = [replace(beat, seconds=round(float(s), 4)) for beat, s in zip(beats, lengths, strict=True)]
+            beats = [replace(beat, seconds=length) for beat, length in zip(beats, lengths, strict=True)]
         object.__setattr__(self, "beats", tuple(beats))
 
     def _check_wishes(self) -> None:

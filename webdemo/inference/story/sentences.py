@@ -24,7 +24,7 @@ from webdemo.inference.requests.paths import FloorPath
 from webdemo.inference.requests.plans import plan_of_words
 from webdemo.inference.run import CancelToken
 
-from .beats import MOST_BEATS, SHORTEST, Beat, beat_of, plan_of_beat, seconds_of_acts
+from .beats import MOST_BEATS, SHORTEST, Beat, beat_of, filling, plan_of_beat, seconds_of_acts
 from .request import SceneRequest
 
 MOST_WORDS = MOST_BEATS * MAX_PROMPT
@@ -104,14 +104,23 @@ def _beats_in(text: str) -> list[Beat]:
 
 def _unread_sentences(plan: Plan) -> Iterator[tuple[int, Beat]]:
     """The sentences of a plan's text of which nothing is known that somebody does, and where they begin."""
-    start = 0
-    for part in _ENDS.split(plan.sentence):
-        start = plan.sentence.index(part, start)
-        stop = start + len(part)
-        acts = any(act.words and act.words.start < stop and start < act.words.stop for act in plan.acts)
-        if not acts and any(start <= each.words.start < stop for each in plan.unread):
+    for part, start, stop in _sentences(plan.sentence):
+        if not _tells(plan.acts, start, stop) and any(start <= each.words.start < stop for each in plan.unread):
             yield start, Beat(part)
-        start = stop
+
+
+def _sentences(text: str) -> Iterator[tuple[str, int, int]]:
+    """The sentences of a text, and where each begins and ends."""
+    stop = 0
+    for part in _ENDS.split(text):
+        start = text.index(part, stop)
+        stop = start + len(part)
+        yield part, start, stop
+
+
+def _tells(acts: Sequence[Act], start: int, stop: int) -> bool:
+    """True if one of some acts is told between two places of the text."""
+    return any(act.words and act.words.start < stop and start < act.words.stop for act in acts)
 
 
 def beats_of(plan: Plan, *, own_words: bool = True) -> tuple[Beat, ...]:
@@ -143,18 +152,10 @@ def _own_sentences(plan: Plan, found: Sequence[Sequence[Act]]) -> dict[int, str]
     """The whole sentences of the text that tell a beat's acts and no other's, by the number of the beat."""
     if any(act.words is None for act in plan.acts):  # of a plan that somebody edited
         return {}
-    told: list[tuple[str, set[int]]] = []
-    start = 0
-    for part in _ENDS.split(plan.sentence):
-        start = plan.sentence.index(part, start)
-        stop = start + len(part)
-        within = {
-            i
-            for i, acts in enumerate(found)
-            if any(act.words and act.words.start < stop and start < act.words.stop for act in acts)
-        }
-        told.append((part, within))
-        start = stop
+    told = [
+        (part, {i for i, acts in enumerate(found) if _tells(acts, start, stop)})
+        for part, start, stop in _sentences(plan.sentence)
+    ]
     shared = {i for _, within in told if len(within) > 1 for i in within}
     own: dict[int, str] = {}
     for part, within in told:
@@ -305,11 +306,8 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
 def _filling(seconds: float, beats: Sequence[Beat], plans: Sequence[Plan]) -> tuple[Beat, ...]:
     """Beats that share some seconds by the lengths of their acts, in whole frames."""
     lengths = [seconds_of_acts(beat.acts or plan.acts) for beat, plan in zip(beats, plans, strict=True)]
-    factor = seconds / sum(lengths)
-    edges = np.round(np.cumsum([0.0, *(length * factor for length in lengths)]) * FPS) / FPS
-    return tuple(
-        replace(beat, seconds=round(max(float(s), SHORTEST), 4)) for beat, s in zip(beats, np.diff(edges), strict=True)
-    )
+    filled = zip(beats, filling(seconds, lengths), strict=True)
+    return tuple(replace(beat, seconds=max(length, SHORTEST)) for beat, length in filled)
 
 
 def _staying(paths: Sequence[FloorPath], beats: Sequence[Beat]) -> tuple[FloorPath, ...]:
