@@ -157,9 +157,13 @@ class Block(nn.Module):
         self.ca_block = AttentionBlock(config, mutual=True)
         self.ffn = AdaFeedForward(config)
 
-    def forward(self, h: Tensor, emb: Tensor, keep: Tensor | None, keep_other: Tensor | None) -> Tensor:
+    def heard(self, h: Tensor, *text: Tensor) -> Tensor:
+        """States h (2, B, T, d) behind self-attention, with what the block reads of a text; this one reads none."""
+        return h
+
+    def forward(self, h: Tensor, emb: Tensor, keep: Tensor | None, keep_other: Tensor | None, *text: Tensor) -> Tensor:
         """h (2, B, T, d) → the same shape; ``keep`` masks a person's padding, ``keep_other`` the other's."""
-        attended = h + self.sa_block(h, emb, keep)
+        attended = self.heard(h + self.sa_block(h, emb, keep), *text)
         attended = attended + self.ca_block(attended, emb, keep_other, h)
         return attended + self.ffn(attended, emb)
 

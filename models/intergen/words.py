@@ -13,8 +13,6 @@ A row of zeros is padding, and a sentence of zeros is missing.
 
 from __future__ import annotations
 
-from typing import cast
-
 import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
@@ -54,14 +52,9 @@ class WordBlock(Block):
         super().__init__(config)
         self.words = WordAttention(config)
 
-    def read(
-        self, h: Tensor, emb: Tensor, keep: Tensor | None, keep_other: Tensor | None, text: Tensor, real: Tensor
-    ) -> Tensor:
-        """As `Block.forward`, with the text (2B, S, C) and its real rows (2B, S)."""
-        attended = h + self.sa_block(h, emb, keep)
-        attended = attended + self.words(attended, text, real)
-        attended = attended + self.ca_block(attended, emb, keep_other, h)
-        return attended + self.ffn(attended, emb)
+    def heard(self, h: Tensor, *text: Tensor) -> Tensor:
+        """As `Block.heard`, of the text (2B, S, C) and its real rows (2B, S)."""
+        return h + self.words(h, *text)
 
 
 class Draft(nn.Module):
@@ -144,10 +137,10 @@ class WordDenoiser(InterGenDenoiser):
             if self.draft is not None:
                 into, followed = self.draft(seen[..., width:], emb)
                 h = h + into
-        text, real = self.text_of_each(cond)
+        text = self.text_of_each(cond)
         keep, keep_other = padding(mask)
-        for block in cast(list[WordBlock], self.blocks):
-            h = block.read(h, emb, keep, keep_other, text, real)
+        for block in self.blocks:
+            h = block(h, emb, keep, keep_other, *text)
         return (self.out(h) + followed).permute(1, 2, 0, 3).reshape(b, length, -1)
 
     def drafted(self, known: Tensor) -> Tensor | None:
