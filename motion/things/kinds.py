@@ -25,16 +25,8 @@ KINDS = (*FURNITURE, *HELD)
 LEAVES = ("sash", "door")
 """Parts of fixtures that move, beside curtains."""
 
-
-HIGH = ("chair", "bench", "table", "bed", "door frame", "box")
-"""Kinds whose height can be chosen."""
-WIDE = (*HIGH, "ball")
-"""Kinds whose width can be chosen."""
-
-SILL, PANE_WIDTH, PANE_HEIGHT = 0.9, 0.54, 1.14
-"""Height of a window's sill over the floor, and width and height of each of its two sashes."""
-RAIL = 2.14
-"""Height of a curtain rail."""
+SILL, PANE_WIDTH = 0.9, 0.54
+"""Height of a window's sill over the floor, and width of each of its two sashes."""
 CURTAIN = 0.58
 """Width of one of two curtains."""
-DOOR_WIDTH, DOOR_HEIGHT = 0.95, 2.05
+DOOR_WIDTH = 0.95
