@@ -49,6 +49,16 @@ def places_of(motion: Clip | RigMotion) -> dict[str, Array]:
     return {name: positions[:, joint] for name, joint in match_joints(motion).joints.items()}
 
 
+def leg_length(places: Places) -> float:
+    """The median length of a person's thighs and shins together, the mean of both legs."""
+    bones = [
+        np.linalg.norm(places[f"{side}_{upper}"] - places[f"{side}_{lower}"], axis=-1)
+        for side in ("left", "right")
+        for upper, lower in (("hip", "knee"), ("knee", "ankle"))
+    ]
+    return float(np.median(bones, axis=-1).sum()) / 2
+
+
 def turn_of(up: str) -> Array:
     """(3, 3) rotation that turns an axis of :data:`AXES` to Y."""
     sign = -1.0 if up[0] == "-" else 1.0
@@ -94,12 +104,7 @@ class _Body:
         count = len(places["left_hip"])
         some = np.unique(np.linspace(0, count - 1, min(count, _FRAMES)).astype(int))
         at = {name: np.asarray(place[some], dtype=np.float64) for name, place in places.items()}
-        legs = [
-            np.linalg.norm(at[f"{side}_{upper}"] - at[f"{side}_{lower}"], axis=-1)
-            for side in ("left", "right")
-            for upper, lower in (("hip", "knee"), ("knee", "ankle"))
-        ]
-        self.leg = max(float(np.median(np.sum(legs, axis=0))) / 2, 1e-9)
+        self.leg = max(leg_length(at), 1e-9)
         self.ankles = np.stack([at["left_ankle"], at["right_ankle"]], axis=1)
         self.pelvis: Array = (at["left_hip"] + at["right_hip"]) / 2
         self.joints = np.stack(list(at.values()), axis=1)

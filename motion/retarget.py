@@ -17,7 +17,7 @@ import numpy as np
 from .cleaning import foot_contacts, plant_feet
 from .clip import Clip, Duet
 from .errors import InputError
-from .guesses import axis_of, find_up, places_of, turn_of
+from .guesses import axis_of, find_up, leg_length, places_of, turn_of
 from .ik import body_scale, fit_skeleton
 from .kinematics import project_to_skeleton
 from .rigs import BodyParts, RigMotion, match_joints
@@ -41,6 +41,10 @@ _spine += [float(SMPL22.bone_lengths[_J[name]]) for name in ("spine1", "spine2",
 _STRAIGHT, _TALL = 0.9, 1.2
 """A rest pose stands if this share of the way from its ankles to its neck lies along one axis, and if that is so many
 times the length of its legs."""
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
+"""Metres of each unit, the likeliest first."""
+_LEGS = (0.6, 1.7)
+"""Length of an average person's legs over that of people's."""
 _BLOCK = 2048
 """Frames whose rotations are fitted at once."""
 _SPINE_FRACTIONS = np.cumsum(_spine) / np.sum(_spine)
@@ -112,15 +116,16 @@ def to_smpl(motion: Clip | Duet) -> Clip | Duet:
 
 def leg_scale(rig: RigMotion) -> float:
     """SMPL22's leg length over the rig's: what its path is multiplied by so that its steps fit the legs."""
-    places = places_of(rig)
-    total = 0.0
-    for side in ("left", "right"):
-        for upper, lower in (("hip", "knee"), ("knee", "ankle")):
-            bone = places[f"{side}_{upper}"] - places[f"{side}_{lower}"]
-            total += float(np.median(np.linalg.norm(bone, axis=-1))) / 2
-    if not total > 0.05:
+    length = leg_length(places_of(rig))
+    if not length > 0.05:
         raise InputError(f"{rig.name or 'The rig'} has legs of no length: export it with its bones.")
-    return _LEG / total
+    return _LEG / length
+
+
+def metres_per_unit(rig: RigMotion) -> float:
+    """The unit of a rig's lengths: one of :data:`UNITS` in which its legs are a person's, or what makes them so."""
+    scale = leg_scale(rig)
+    return next((unit for unit in UNITS.values() if _LEGS[0] <= scale / unit <= _LEGS[1]), scale)
 
 
 def _on_smpl(rig: RigMotion, fps: float, scale: float) -> Array:
@@ -164,14 +169,7 @@ def rest_axis(rig: RigMotion) -> str:
     """The axis along which a rig's rest pose stands; empty for one that does not stand."""
     rest = _bodies(_rest_positions(rig)[None], rig, match_joints(rig), np.eye(3))
     tall = np.mean([rest["neck"] - rest[f"{side}_ankle"] for side in ("left", "right")], axis=(0, 1))
-    legs = np.mean(
-        [
-            np.linalg.norm(rest[f"{side}_{upper}"] - rest[f"{side}_{lower}"])
-            for side in ("left", "right")
-            for upper, lower in (("hip", "knee"), ("knee", "ankle"))
-        ]
-    )
-    stands = np.abs(tall).max() > max(_STRAIGHT * np.linalg.norm(tall), _TALL * 2 * legs)
+    stands = np.abs(tall).max() > max(_STRAIGHT * np.linalg.norm(tall), _TALL * leg_length(rest))
     return axis_of(tall) if stands else ""
 
 

@@ -2,8 +2,7 @@
 
 BVH gives each joint a list of channels; rotations apply in the order in which they are listed
 (``Zrotation Xrotation Yrotation`` is R = Rz·Rx·Ry) and position channels replace the joint's OFFSET.
-Neither the unit nor the up axis is written in the file: the unit is found from the size of the body here,
-the up axis in :mod:`motion.retarget`.
+Neither the unit nor the up axis is written in the file: :mod:`motion.retarget` finds both from the body.
 
 Frames are read and placed block after block: beside the file only the joints' places are held.
 """
@@ -13,13 +12,16 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
 
 from motion.clip import Clip
 from motion.errors import InputError
+from motion.retarget import metres_per_unit
 from motion.rigs import RigMotion
 from motion.skeleton import SMPL22
 from motion.vectors import Array
@@ -31,10 +33,6 @@ from .skinned import rigged
 _LONGEST_HIERARCHY = 2**20
 _ENOUGH = 50.0
 """Frames a second: what is left of a faster file that is no whole multiple of the wanted rate, at least."""
-_UNITS = {1.0: "m", 0.01: "cm", 0.001: "mm", 0.0254: "inch"}
-# A person's height over the longest chain below the hips (leg and foot) or above (spine and arm).
-_HEIGHT_PER_CHAIN = 1.7
-_PERSON_HEIGHT = (1.2, 2.2)
 
 
 def read_bvh(
@@ -92,30 +90,29 @@ def _placed(motion: Motion, every: int) -> tuple[RigMotion, ...]:
     if 3 * kept * len(joints) > MAX_NUMBERS:
         raise InputError(f"{label} holds {len(joints)} joints in {kept:,} frames, too many: lower its frame rate.")
     positions = np.empty((kept, len(joints), 3), dtype=np.float32)
-    people = trees(joints, label)
     done = 0
     for values, begun in _every_nth(motion, every):
         if not done:
             _forget_empty(joints, values)
-        _place(joints, values.T, positions[begun : begun + len(values)])
+        _place(joints, values, positions[begun : begun + len(values)])
         done = begun + len(values)
     assert done == kept
-    scale = _metres_per_unit(positions, joints[: people[0][1]], label)
-    positions *= scale
-    return tuple(
+    rigs = [
         RigMotion(
             tuple(joint.name for joint in joints[first:stop]),
             tuple(max(joint.parent - first, -1) for joint in joints[first:stop]),
-            np.array([joint.offset for joint in joints[first:stop]]) * scale,
+            np.array([joint.offset for joint in joints[first:stop]]),
             positions[:, first:stop],
             motion.fps / every,
-            scale,
-            label,
+            name=label,
             every=every,
             y_up=True,
         )
-        for first, stop in people
-    )
+        for first, stop in trees(joints, label)
+    ]
+    scale = metres_per_unit(rigs[0])
+    positions *= scale
+    return tuple(replace(rig, offsets=rig.offsets * scale, metres_per_unit=scale) for rig in rigs)
 
 
 def _every_nth(motion: Motion, every: int) -> Iterator[tuple[Array, int]]:
@@ -138,71 +135,26 @@ def _forget_empty(joints: list[Joint], values: Array) -> None:
 
 
 def _place(joints: list[Joint], values: Array, positions: Array) -> None:
-    """Writes the joints' places (n, J, 3), in the file's unit, for channels (width, n)."""
-    frames = values.shape[1]
-    world: dict[int, tuple[Array, Array]] = {}  # rotation and place of joints that have children to come
-    last_child = {joint.parent: index for index, joint in enumerate(joints)}
+    """Writes the joints' places (n, J, 3), in the file's unit, for channels (n, width)."""
+    world: list[tuple[Any, Array]] = []  # each joint's rotation and place
     column = 0
     for index, joint in enumerate(joints):
-        local = list(joint.offset)
-        turns = []
-        for kind, axis in joint.channels:
-            if kind == "position":
-                local[axis] = joint.offset[axis] if joint.keeps_offset else values[column]
-            else:
-                turns.append((axis, values[column]))
-            column += 1
-        if joint.parent < 0:
-            rotation: Array = np.repeat(np.eye(3)[..., None], frames, axis=2)
-            place: Array = np.empty((3, frames))
-            for axis in range(3):
-                place[axis] = local[axis]
-        else:
-            rotation, start = world[joint.parent]
-            place = start + rotation[:, 0] * local[0] + rotation[:, 1] * local[1] + rotation[:, 2] * local[2]
-            if last_child[joint.parent] == index:
-                del world[joint.parent]
-        positions[:, index] = place.T
-        if index in last_child:
-            world[index] = _turned(rotation, turns), place
-
-
-def _turned(rotation: Array, turns: list[tuple[int, Array]]) -> Array:
-    """A rotation (3, 3, n) times those about coordinate axes by degrees (n,)."""
-    if not turns:
-        return rotation
-    axes, degrees = "".join("XYZ"[axis] for axis, _ in turns), np.stack([each for _, each in turns], axis=-1)
-    local = scipy.spatial.transform.Rotation.from_euler(axes, degrees, degrees=True).as_matrix()
-    return np.einsum("ijn,njk->ikn", rotation, local)
-
-
-def _metres_per_unit(positions: Array, joints: list[Joint], label: str) -> float:
-    """The file's unit in metres, from the longest chain of bones that leaves the tree's first fork.
-
-    Bone lengths do not depend on the pose, so a crouching or lying person is measured as well as a
-    standing one. Files in no unit at all (CMU's) are scaled to an average person.
-    """
-    parents = [joint.parent for joint in joints]
-    bones = np.zeros(len(parents))
-    for index, joint in enumerate(joints):
-        if joint.parent >= 0 and not joint.keeps_offset and any(kind == "position" for kind, _ in joint.channels):
-            bone = positions[:, index] - positions[:, joint.parent]
-            bones[index] = np.median(np.linalg.norm(bone, axis=-1))
-        elif joint.parent >= 0:
-            bones[index] = np.linalg.norm(joint.offset)
-    fork = next((joint for joint in range(len(parents)) if parents.count(joint) > 1), 0)
-    reach = np.full(len(parents), -np.inf)
-    reach[fork] = 0.0
-    for index, parent in enumerate(parents):
-        if index > fork and parent >= 0:
-            reach[index] = reach[parent] + bones[index]
-    height = _HEIGHT_PER_CHAIN * float(reach.max())
-    if not height > 0:
-        raise InputError(f"{label}: all joints are at one point, so the skeleton has no size.")
-    for unit in _UNITS:
-        if _PERSON_HEIGHT[0] <= height * unit <= _PERSON_HEIGHT[1]:
-            return unit
-    return 1.7 / height
+        its = values[:, column : column + len(joint.channels)]
+        column += len(joint.channels)
+        place, axes, degrees = np.tile(joint.offset, (len(values), 1)), "", []
+        for (kind, axis), value in zip(joint.channels, its.T, strict=True):
+            if kind == "rotation":
+                axes, degrees = axes + "XYZ"[axis], [*degrees, value]
+            elif not joint.keeps_offset:
+                place[:, axis] = value
+        rotation = scipy.spatial.transform.Rotation.identity(len(values))
+        if axes:
+            rotation = scipy.spatial.transform.Rotation.from_euler(axes, np.stack(degrees, axis=-1), degrees=True)
+        if joint.parent >= 0:
+            above, start = world[joint.parent]
+            place, rotation = start + above.apply(place), above * rotation
+        positions[:, index] = place
+        world.append((rotation, place))
 
 
 # ---- Writing, with a standing T-pose as the rest pose ----------------------------------------------------------------

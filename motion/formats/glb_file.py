@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
@@ -255,23 +255,3 @@ def packed(document: Mapping[str, Any], blob: bytes) -> bytes:
     size = 12 + 8 + len(text) + 8 + len(blob)
     head = struct.pack("<III", _MAGIC, 2, size) + struct.pack("<II", len(text), _JSON)
     return head + text + struct.pack("<II", len(blob), _BIN) + blob
-
-
-def in_order(nodes: Sequence[int], parents: Sequence[int]) -> tuple[list[int], list[int]]:
-    """Nodes with those above before those below, and for each the place of the nearest above it; -1 for none."""
-    ordered = sorted(nodes, key=lambda node: _depth(parents, node))
-    rank = {node: place for place, node in enumerate(ordered)}
-    above = []
-    for node in ordered:
-        at = parents[node]
-        while at >= 0 and at not in rank:
-            at = parents[at]
-        above.append(rank[at] if at >= 0 else -1)
-    return ordered, above
-
-
-def _depth(parents: Sequence[int], node: int) -> int:
-    depth = 0
-    while parents[node] >= 0:
-        node, depth = parents[node], depth + 1
-    return depth

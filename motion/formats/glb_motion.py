@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from motion.errors import InputError
-from motion.retarget import leg_scale
+from motion.retarget import metres_per_unit
 from motion.rigs import RigMotion, match_joints
 from motion.vectors import Array
 
@@ -27,9 +27,6 @@ _MOST = 60.0
 _AT_ONCE = 400_000
 """Nodes that are placed at once, over all frames of a block."""
 _FARTHEST = 1e6
-_UNITS = (1.0, 0.01, 0.001, 0.0254)
-_LEGS = (0.6, 1.7)
-"""Length of an average person's legs over that of people's."""
 
 
 def read_glb(
@@ -137,12 +134,6 @@ class _Person:
     def _joints(self, world: dict[int, Array], frames: int) -> Array:
         places = [np.broadcast_to(world[node][:, :3, 3], (frames, 3)) for node in self.rig.nodes]
         return np.stack(places, axis=1)
-
-
-def metres_per_unit(rig: RigMotion) -> float:
-    """The file's unit: metres, as glTF has it, or another in which the legs have a person's length, if not theirs."""
-    scale = leg_scale(rig)
-    return next((unit for unit in _UNITS if _LEGS[0] <= scale / unit <= _LEGS[1]), scale)
 
 
 def _clock(file: GlbFile, moved: Sequence[Sequence[Channel]], nodes: int) -> tuple[Array, float, int]:

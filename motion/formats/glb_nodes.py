@@ -12,7 +12,7 @@ import scipy  # its parts are loaded with their first use
 from motion.kinematics import rotation_matrices
 from motion.vectors import Array
 
-from .glb_file import MOST_JOINTS, GlbFile, Stored, in_order
+from .glb_file import MOST_JOINTS, GlbFile, Stored
 
 MOST_KEYS = 4_000_000
 """Key frames of all channels together; those that channels share count once."""
@@ -99,7 +99,15 @@ def people(file: GlbFile, parents: Sequence[int]) -> list[Rig]:
         file.refuse(f"it has no joints, or more than {MOST_JOINTS}")
     found = []
     for joints, its_skins in groups:
-        ordered, above = in_order(sorted(joints), parents)
+        nearest = {-1: -1}  # for each node, the place of the joint that it is, or that is next above it
+        ordered: list[int] = []
+        above: list[int] = []
+        for node in with_those_above(sorted(joints), parents):
+            nearest[node] = nearest[parents[node]]
+            if node in joints:
+                above.append(nearest[node])
+                nearest[node] = len(ordered)
+                ordered.append(node)
         found.append(Rig(tuple(ordered), tuple(above), tuple(sorted(its_skins))))
     return found
 

@@ -16,7 +16,7 @@ import numpy as np
 from motion.clip import Clip, Duet
 from motion.errors import InputError
 from motion.guesses import Places, calibration_frames, find_up, places_of, turn_of
-from motion.retarget import rest_axis, retarget_together, to_smpl, up_axis
+from motion.retarget import UNITS, rest_axis, retarget_together, to_smpl, up_axis
 from motion.rigs import RigMotion, match_joints, without_beginning
 from motion.skeleton import LAYOUTS, SMPL22
 from motion.vectors import Array
@@ -25,8 +25,6 @@ from .files import check_duration
 from .recording import MAX_PEOPLE, ORDERS, Animations, ImportChoices, Recording
 from .registry import RIG_FPS, recordings
 
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
-"""Metres of each unit."""
 _TALL = (0.9, 2.0)
 """Metres from ankles to head: the smallest and the tallest person."""
 _NEAR_FLOOR = (-0.05, 0.15)

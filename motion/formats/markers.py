@@ -19,6 +19,7 @@ import numpy as np
 
 from motion.clip import Clip
 from motion.errors import InputError
+from motion.retarget import UNITS
 from motion.skeleton import POINTS17
 from motion.smoothing import filled
 from motion.vectors import Array, unit
@@ -28,7 +29,6 @@ from .recording import ImportChoices, Recording
 
 Points = Mapping[str, Array]
 
-_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 _FARTHEST = 1000.0  # metres
 _OFTEN_UNSEEN = 0.2
 """Share of the frames; a joint that is interpolated for longer is mentioned."""
@@ -66,9 +66,9 @@ def people_of(names: Sequence[str], points: Array, fps: float, length: str, labe
     Raises:
         InputError: if nobody has the markers of a whole body, or the unit or places are not possible.
     """
-    if length not in _UNITS:
-        raise InputError(f"{label}: the unit {length!r:.20} is not known: use {', '.join(_UNITS)}.")
-    points *= np.float32(_UNITS[length])
+    if length not in UNITS:
+        raise InputError(f"{label}: the unit {length!r:.20} is not known: use {', '.join(UNITS)}.")
+    points *= np.float32(UNITS[length])
     points[(points == 0).all(axis=-1)] = np.nan
     if max(-np.fmin.reduce(points, axis=None), np.fmax.reduce(points, axis=None)) > _FARTHEST:  # NaN is left out
         raise InputError(f"{label} holds points more than {_FARTHEST:g} m away: is its unit right?")
