@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
+from numpy.typing import NDArray
 
 from .limbs import solve_two_bones
 from .skeleton import LEGS
@@ -32,7 +33,7 @@ _GLIDES = 0.55
 UPRIGHT, ON_FLOOR = 0.7, 0.08
 """Heights in metres of the pelvis at least, and of the lower toe at most: people who run, jump or lie do not glide."""
 _GAP, _SHORTEST, _WAY = 0.2, 0.15, 0.1
-"""Seconds between two glides that are one, seconds of the shortest, and metres of its way."""
+"""Seconds between two glides or turns that are one, seconds of the shortest glide, and metres of its way."""
 _PERIOD = (0.36, 0.75)
 """Seconds of a step; in it a foot swings for the share :data:`SWING`."""
 SWING = 0.8
@@ -111,10 +112,8 @@ def _glides(positions: Array, feet: Array, fps: float) -> list[tuple[int, int]]:
     slower = np.minimum(*(floor_speed(feet[:, side, 1], fps) for side in (0, 1)))
     low = np.minimum(feet[:, 0, 1, 1], feet[:, 1, 1, 1]) < ON_FLOOR
     gliding = (body > _MOVES) & (slower > _GLIDES * body) & low & (positions[:, 0, 1] > UPRIGHT) & (slower > 0.15)
-    closing = np.ones(2 * round(_GAP * fps / 2) + 1)
-    gliding = scipy.ndimage.binary_closing(np.pad(gliding, len(closing)), closing)[len(closing) : -len(closing)]
     found: list[tuple[int, int]] = []
-    for start, stop in runs(gliding):
+    for start, stop in runs(_closed(gliding, fps)):
         way = np.linalg.norm((positions[stop - 1, 0] - positions[start, 0])[[0, 2]])
         if stop - start < _SHORTEST * fps or way < _WAY or body[start:stop].mean() > _RUNS:
             continue
@@ -122,6 +121,12 @@ def _glides(positions: Array, feet: Array, fps: float) -> list[tuple[int, int]]:
         start = max(found[-1][1] if found else 0, start - more)
         found.append((start, min(len(positions), stop + more)))
     return found
+
+
+def _closed(marked: NDArray[np.bool_], fps: float) -> NDArray[np.bool_]:
+    """Marked frames (T,) without gaps of less than 0.2 s."""
+    closing = np.ones(2 * round(_GAP * fps / 2) + 1)
+    return np.asarray(scipy.ndimage.binary_closing(np.pad(marked, len(closing)), closing)[len(closing) : -len(closing)])
 
 
 def _steps(feet: Array, pelvis: Array, start: int, stop: int, fps: float) -> list[Step]:
@@ -188,8 +193,6 @@ _LATER = 0.7
 """Seconds before and after within which feet stand under the hips."""
 _WALKS_ON = 0.9
 """Metres a second of a body that walks a curve and does not turn on the spot."""
-_TURN_GAP = 0.2
-"""Seconds between two stretches that are one."""
 _PIVOT, _PIVOT_TIME, _QUICKEST_PIVOT = math.radians(75.0), 0.3, 0.2
 """Radians of a turn in one step, seconds of a step where there is time, and at least."""
 _BESIDE, _OUT = 0.1, math.radians(8.0)
@@ -247,11 +250,9 @@ def _turns(positions: Array, feet: Array, forward: Array, fps: float) -> list[Tu
     stands = (positions[:, 0, 1] > UPRIGHT) & (feet[:, :, 1, 1].min(axis=1) < ON_FLOOR)
     behind, under = stands & ((apart < _CROSSED) | (off > _TWISTED)), (apart > _OPEN) & (off < _ALONG)
     at_rest = under & (off < _BEGINS)
-    closing = np.ones(2 * round(_TURN_GAP * fps / 2) + 1)
-    behind = scipy.ndimage.binary_closing(np.pad(behind, len(closing)), closing)[len(closing) : -len(closing)]
     found: list[Turn] = []
     room, least, low = round(_LATER * fps), round(2 * _PIVOT_TIME * fps), 0
-    for first, last in runs(behind):
+    for first, last in runs(_closed(behind, fps)):
         if first < low:
             continue
         before, after = np.flatnonzero(at_rest[low:first]), np.flatnonzero(under[last : last + room])

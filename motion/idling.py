@@ -17,7 +17,7 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 
 from .limbs import HIPS, UPPER, limb_length, over_planted_feet, solve_two_bones
-from .skeleton import ARMS, LEGS, SMPL22
+from .skeleton import ARMS, SMPL22, TOES
 from .smoothing import begun_before, least_jerk, minimum_jerk, smoothstep
 from .transforms import facing
 from .vectors import Array, rotations_by, unit
@@ -72,7 +72,6 @@ _WRISTS = [wrist for *_, wrist in ARMS]
 _HEAD, _NECK, _CHEST, _WAIST = (_J(name) for name in ("head", "neck", "spine3", "spine2"))
 _ABOVE = [joint for joint in UPPER if joint not in (_J("spine1"), _J("spine2"))]
 """Joints that turn with the chest, about the lower spine."""
-_TOES = [leg[-1] for leg in LEGS]
 
 
 def alive(pair: Array, fps: float, seed: int = 0, free: Array | None = None, loose: Array | None = None) -> Array:
@@ -188,7 +187,7 @@ def _rested(own: Array, other: Array, fps: float, rest: Array, manner: _Manner) 
     """A person (T, 22, 3) who rests by ``rest`` (T,) in a manner of their own."""
     forward, up = facing(own), np.array([0.0, 1.0, 0.0])
     left = np.cross(up, forward)
-    stands = smoothstep(own[:, 0, 1], *_STANDS) * (own[:, _TOES, 1].max(axis=1) < _SOLE)
+    stands = smoothstep(own[:, 0, 1], *_STANDS) * (own[:, TOES, 1].max(axis=1) < _SOLE)
     stands = rest * scipy.ndimage.gaussian_filter1d(stands.astype(np.float64), _SETTLES / 3)
     result = own.copy()
     shift = (stands * WEIGHT * manner.body[:, 0])[:, None] * left
@@ -273,7 +272,7 @@ def _apart(pair: Array) -> Array:
 
 def _body_speed(person: Array, fps: float) -> Array:
     """(T,) metres a second of the pelvis, the chest or a foot, whichever is fastest."""
-    parts = person[:, [0, _CHEST, *_TOES]]
+    parts = person[:, [0, _CHEST, *TOES]]
     return np.max([_speed(parts[:, i], fps) for i in range(parts.shape[1])], axis=0)
 
 

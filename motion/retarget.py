@@ -17,7 +17,7 @@ import numpy as np
 from .cleaning import foot_contacts, plant_feet
 from .clip import Clip, Duet
 from .errors import InputError
-from .guesses import axis_of, find_up, leg_length, places_of, turn_of
+from .guesses import Places, axis_of, find_up, leg_length, places_of, turn_of
 from .ik import body_scale, fit_skeleton
 from .kinematics import project_to_skeleton
 from .rigs import BodyParts, RigMotion, match_joints
@@ -43,8 +43,8 @@ _STRAIGHT, _TALL = 0.9, 1.2
 times the length of its legs."""
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
 """Metres of each unit, the likeliest first."""
-_LEGS = (0.6, 1.7)
-"""Length of an average person's legs over that of people's."""
+_LEGS = (0.59, 1.67)
+"""Length of people's legs over that of an average person's."""
 _BLOCK = 2048
 """Frames whose rotations are fitted at once."""
 _SPINE_FRACTIONS = np.cumsum(_spine) / np.sum(_spine)
@@ -124,8 +124,14 @@ def leg_scale(rig: RigMotion) -> float:
 
 def metres_per_unit(rig: RigMotion) -> float:
     """The unit of a rig's lengths: one of :data:`UNITS` in which its legs are a person's, or what makes them so."""
-    scale = leg_scale(rig)
-    return next((unit for unit in UNITS.values() if _LEGS[0] <= scale / unit <= _LEGS[1]), scale)
+    unit = unit_of(places_of(rig))
+    return UNITS[unit] if unit else leg_scale(rig)
+
+
+def unit_of(places: Places) -> str:
+    """The first of :data:`UNITS` in which a person's legs are as long as people's; "" where there is none."""
+    legs = leg_length(places)
+    return next((unit for unit, metres in UNITS.items() if _LEGS[0] <= metres * legs / _LEG <= _LEGS[1]), "")
 
 
 def _on_smpl(rig: RigMotion, fps: float, scale: float) -> Array:

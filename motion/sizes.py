@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 
 from .limbs import HIPS, UPPER, drawn_in, limb_length, over_planted_feet, sink, solve_two_bones
-from .skeleton import ARMS, LEGS, SMPL22
+from .skeleton import ARMS, LEGS, SMPL22, TOES
 from .smoothing import begun_before, eased_marks, smoothstep, without_flicker
 from .touch.arms import arms_apart
 from .transforms import facing
@@ -41,7 +41,6 @@ _CARRIES = 0.9
 _SHORTEST, _RISES = 12, 10
 """Frames of the shortest lift, which is longer than a jump, and those in which one begins and ends."""
 _CHEST = SMPL22.index("spine3")
-_TOES = [leg[-1] for leg in LEGS]
 
 
 def at_sizes(pair: Array, sizes: tuple[float, float]) -> Array:
@@ -122,8 +121,8 @@ def on_legs(person: Array, ankles: list[Array], forward: Array) -> Array:
 
 def _lifted(own: Array, other: Array) -> Array:
     """(T,) how far a person is in the air beside the other, who stands: 0 to 1."""
-    up = (own[:, _TOES, 1].min(axis=1) > _LIFTED) & (own[:, 0, 1] > _HELD_UP)
-    stands = other[:, _TOES, 1].min(axis=1) <= _LIFTED
+    up = (own[:, TOES, 1].min(axis=1) > _LIFTED) & (own[:, 0, 1] > _HELD_UP)
+    stands = other[:, TOES, 1].min(axis=1) <= _LIFTED
     near = np.linalg.norm((own[:, 0] - other[:, 0]) * FLAT, axis=-1) < _CARRIES
     return eased_marks(without_flicker(up & stands & near, _SHORTEST), _RISES)
 
@@ -133,7 +132,7 @@ def _raised(made: Array, small: Array, person: int, way: float) -> Array:
     between = made[person, :, _CHEST] - made[1 - person, :, _CHEST]
     goal = small[1 - person, :, _CHEST] + between * [way, 1.0, way]
     shift = goal - small[person, :, _CHEST]
-    shift[:, 1] = np.maximum(shift[:, 1], -small[person, :, _TOES, 1].min(axis=0))
+    shift[:, 1] = np.maximum(shift[:, 1], -small[person, :, TOES, 1].min(axis=0))
     return np.asarray(shift[:, None])
 
 

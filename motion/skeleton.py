@@ -8,7 +8,7 @@ network works on, carries the proportions of an average adult.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -122,6 +122,7 @@ ARMS = tuple(tuple(SMPL22.index(f"{side}_{n}") for n in ("shoulder", "elbow", "w
 """Shoulder, elbow and wrist of the left arm and of the right one."""
 LEGS = tuple(tuple(SMPL22.index(f"{side}_{n}") for n in ("hip", "knee", "ankle", "foot")) for side in ("left", "right"))
 """Hip, knee, ankle and toe of the left leg and of the right one."""
+TOES = [leg[-1] for leg in LEGS]
 
 
 def _chains(name: str, chains: str) -> Skeleton:
@@ -221,28 +222,21 @@ class Layout:
 # a flat rigid plate of neck, shoulders and hips with "torso" in its middle, and "foot" is the ankle.
 _OPENNI = {
     "left_hip": (0.100, -0.050, 0.0),
-    "right_hip": (-0.100, -0.050, 0.0),
     "spine1": (0.0, 0.080, 0.0),
     "spine2": (0.0, 0.087, 0.0),
     "spine3": (0.0, 0.083, 0.0),
     "neck": (0.0, 0.134, 0.0),
     "head": (0.0, 0.212, 0.0),
     "left_collar": (0.053, 0.100, 0.0),
-    "right_collar": (-0.053, 0.100, 0.0),
     "left_shoulder": (0.100, 0.034, 0.0),
-    "right_shoulder": (-0.100, 0.034, 0.0),
     "left_elbow": (0.287, 0.0, 0.0),
-    "right_elbow": (-0.287, 0.0, 0.0),
     "left_wrist": (0.287, 0.0, 0.0),
-    "right_wrist": (-0.287, 0.0, 0.0),
     "left_knee": (0.0, -0.435, 0.0),
-    "right_knee": (0.0, -0.435, 0.0),
     "left_ankle": (0.0, -0.415, 0.0),
-    "right_ankle": (0.0, -0.415, 0.0),
 }
 _OPENNI_NAMES = {"torso": "spine2", "left_foot": "left_ankle", "right_foot": "right_ankle"}
 # Kinect v2: "base of spine" lies between the hips, "spine shoulder" at the height of the shoulders.
-_KINECT2 = {"left_hip": (0.080, -0.030, 0.0), "right_hip": (-0.080, -0.030, 0.0)}
+_KINECT2 = {"left_hip": (0.080, -0.030, 0.0)}
 _KINECT2_NAMES = {"base_of_spine": "pelvis", "middle_of_spine": "spine2"}
 
 
@@ -251,10 +245,16 @@ def _layout(
 ) -> Layout:
     wanted = [names.get(name, name) for name in source.joint_names]
     joints = tuple(SMPL22.joint_names.index(n) if n in SMPL22.joint_names else -1 for n in wanted)
-    body = SMPL22.offsets.copy()
-    for name, offset in offsets.items():
-        body[SMPL22.index(name)] = offset
-    return Layout(source.name, joints, body, variety)
+    return Layout(source.name, joints, offsets_of(offsets), variety)
+
+
+def offsets_of(changed: Mapping[str, tuple[float, float, float]]) -> Array:
+    """(22, 3) SMPL22's offsets, of which some are others: metres by joint; the right side mirrors the left."""
+    found = SMPL22.offsets.copy()
+    for name, offset in changed.items():
+        found[SMPL22.mirror[SMPL22.index(name)]] = np.array(offset) * [-1.0, 1.0, 1.0]
+        found[SMPL22.index(name)] = offset
+    return found
 
 
 LAYOUTS: dict[str, Layout] = {

@@ -120,19 +120,17 @@ def _raised(ankle: Array, toe: Array, lift: Array, forward: Array) -> Array:
 # ---- Bodies that lie, fall and get up --------------------------------------------------------------------------------
 _DEEP = {
     "pelvis": 0.08,
-    "left_hip": 0.05,
-    "right_hip": 0.05,
+    "hip": 0.05,
     "spine1": 0.07,
     "spine2": 0.07,
     "spine3": 0.07,
     "neck": 0.05,
     "head": 0.07,
-    "left_collar": 0.05,
-    "right_collar": 0.05,
-    "left_shoulder": 0.05,
-    "right_shoulder": 0.05,
+    "collar": 0.05,
+    "shoulder": 0.05,
 }
-"""Metres from the joints of the trunk and the head to the skin of a body that lies."""
+"""Metres from the joints of the trunk and the head, of either side, to the skin of a body that lies."""
+_TRUNK = {j: _DEEP[part] for j, name in enumerate(SMPL22.joint_names) if (part := name.split("_")[-1]) in _DEEP}
 _LIMBS = (("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle"))
 _THIN = 0.03
 """The same for elbows, wrists and knees."""
@@ -153,8 +151,7 @@ def above_floor(positions: Array) -> Array:
         (T, J, 3) with the bone lengths of the input.
     """
     result = np.array(positions, dtype=np.float64)
-    trunk = [SMPL22.index(name) for name in _DEEP]
-    need = np.max(np.array(list(_DEEP.values())) - result[:, trunk, 1], axis=1).clip(min=0.0)
+    need = np.max(np.array([*_TRUNK.values()]) - result[:, [*_TRUNK], 1], axis=1).clip(min=0.0)
     if need.any():
         result[..., 1] += begun_before(need, _REACH, 0.5 * _REACH)[:, None]
     for parts in _LIMBS:

@@ -61,9 +61,7 @@ def read(
     return found.motion
 
 
-def read_pair(
-    a: str | Path, b: str | Path, *, choices: ImportChoices | None = None, roles: tuple[str, str] = ("a", "b")
-) -> Duet:
+def read_pair(a: str | Path, b: str | Path, *, choices: ImportChoices | None = None) -> Duet:
     """Reads two files of one person each that share one world, such as ``NAME_a.bvh`` and ``NAME_b.bvh``.
 
     The longer one is cut to the length of the other.
@@ -72,7 +70,7 @@ def read_pair(
         InputError: if a file cannot be read, holds two people, or the rates differ.
     """
     first, second = import_pair(a, b, choices=choices).people
-    return to_smpl(Duet(first, second, roles))
+    return to_smpl(Duet(first, second))
 
 
 def write(motion: Duet | Clip, path: str | Path) -> list[Path]:

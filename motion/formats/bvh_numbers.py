@@ -140,6 +140,7 @@ class Joint:
     name: str
     parent: int
     line: int
+    index: int
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     channels: list[tuple[str, int]] = field(default_factory=list)
     is_end: bool = False
@@ -153,13 +154,38 @@ def parse_hierarchy(text: str, label: str) -> list[Joint]:
     Raises:
         InputError: one sentence with the line and joint where it is wrong.
     """
-    parser = _Parser(label)
+    joints: list[Joint] = []
+    opened: list[Joint] = []  # the joints whose braces are open, the innermost last
+    pending: Joint | None = None  # the joint whose "{" has not come yet
     for number, line in enumerate(text.splitlines(), 1):
+        where = f"{label}, line {number}"
         # Braces may share a line with other words.
-        for piece in re.findall(r"[{}]|[^{}]+", line):
-            if words := piece.split():
-                parser.take(words, number)
-    joints = parser.finished()
+        for words in (piece.split() for piece in re.findall(r"[{}]|[^{}]+", line) if piece.strip()):
+            keyword = words[0].upper()
+            if keyword in ("ROOT", "JOINT", "END"):
+                above = opened[-1] if opened else None
+                pending = _joint(words, joints, above, number, where)
+                joints.append(pending)
+                if sum(not joint.is_end for joint in joints) > MAX_JOINTS or len(joints) > 2 * MAX_JOINTS:
+                    raise InputError(f"{where}: more than {MAX_JOINTS} joints; export the body without extras.")
+            elif keyword == "{":
+                if pending is None:
+                    raise InputError(f"{where}: '{{' without a joint before it.")
+                opened, pending = [*opened, pending], None
+            elif keyword == "}":
+                if not opened:
+                    raise InputError(f"{where}: one '}}' too many.")
+                opened.pop()
+            elif keyword == "OFFSET" and opened:
+                opened[-1].offset = _three_numbers(words[1:], where, opened[-1].name)
+            elif keyword == "CHANNELS" and opened:
+                opened[-1].channels = _channels(words[1:], where, opened[-1].name)
+            elif keyword != "HIERARCHY":
+                raise InputError(f"{where}: {words[0][:40]!r} is not understood in the HIERARCHY part.")
+    if last := (opened or [pending])[-1]:
+        raise InputError(f"{label}: joint {last.name} (line {last.line}) is never closed by '}}'.")
+    if not joints:
+        raise InputError(f"{label} has no ROOT joint.")
     for first, stop in trees(joints, label):
         names = [joint.name for joint in joints[first:stop]]
         for joint in joints[first:stop]:
@@ -168,62 +194,16 @@ def parse_hierarchy(text: str, label: str) -> list[Joint]:
     return joints
 
 
-class _Parser:
-    """Takes a HIERARCHY part a statement at a time; every error is one sentence with its line."""
-
-    def __init__(self, label: str) -> None:
-        self.label = label
-        self.joints: list[Joint] = []
-        self.stack: list[int] = []
-        """The joints whose braces are open, the innermost last."""
-        self.pending: int | None = None
-        """The joint whose "{" has not come yet."""
-
-    def take(self, words: list[str], number: int) -> None:
-        """Takes one statement, split into words, of a line."""
-        where, keyword = f"{self.label}, line {number}", words[0].upper()
-        if keyword in ("ROOT", "JOINT", "END"):
-            self._joint(keyword, words, number, where)
-        elif keyword == "{":
-            if self.pending is None:
-                raise InputError(f"{where}: '{{' without a joint before it.")
-            self.stack.append(self.pending)
-            self.pending = None
-        elif keyword == "}":
-            if not self.stack:
-                raise InputError(f"{where}: one '}}' too many.")
-            self.stack.pop()
-        elif keyword == "OFFSET" and self.stack:
-            joint = self.joints[self.stack[-1]]
-            joint.offset = _three_numbers(words[1:], where, joint.name)
-        elif keyword == "CHANNELS" and self.stack:
-            joint = self.joints[self.stack[-1]]
-            joint.channels = _channels(words[1:], where, joint.name)
-        elif keyword != "HIERARCHY":
-            raise InputError(f"{where}: {words[0][:40]!r} is not understood in the HIERARCHY part.")
-
-    def _joint(self, keyword: str, words: list[str], number: int, where: str) -> None:
-        if keyword != "ROOT" and not self.stack:
-            what = "an End Site" if keyword == "END" else f"JOINT {' '.join(words[1:])}"
-            raise InputError(f"{where}: {what} has no parent.")
-        parent = self.stack[-1] if self.stack else -1
-        is_end = keyword == "END"
-        name = f"{self.joints[parent].name}_end" if is_end else " ".join(words[1:])[:_LONGEST_NAME]
-        if not name:
-            raise InputError(f"{where}: a joint has no name.")
-        self.joints.append(Joint(name, parent, number, is_end=is_end))
-        self.pending = len(self.joints) - 1
-        if sum(not joint.is_end for joint in self.joints) > MAX_JOINTS or len(self.joints) > 2 * MAX_JOINTS:
-            raise InputError(f"{where}: more than {MAX_JOINTS} joints; export the body without extras.")
-
-    def finished(self) -> list[Joint]:
-        """All joints; raises InputError if there are none or a brace is open."""
-        if self.stack or self.pending is not None:
-            joint = self.joints[self.stack[-1] if self.stack else self.pending or 0]
-            raise InputError(f"{self.label}: joint {joint.name} (line {joint.line}) is never closed by '}}'.")
-        if not self.joints:
-            raise InputError(f"{self.label} has no ROOT joint.")
-        return self.joints
+def _joint(words: list[str], joints: list[Joint], above: Joint | None, number: int, where: str) -> Joint:
+    """The joint of a ROOT, JOINT or End Site statement in the braces of the one ``above``."""
+    is_end = words[0].upper() == "END"
+    if above is None and words[0].upper() != "ROOT":
+        what = "an End Site" if is_end else f"JOINT {' '.join(words[1:])}"
+        raise InputError(f"{where}: {what} has no parent.")
+    name = f"{above.name}_end" if is_end and above else " ".join(words[1:])[:_LONGEST_NAME]
+    if not name:
+        raise InputError(f"{where}: a joint has no name.")
+    return Joint(name, -1 if above is None else above.index, number, index=len(joints), is_end=is_end)
 
 
 def trees(joints: list[Joint], label: str) -> list[tuple[int, int]]:

@@ -16,7 +16,7 @@ import numpy as np
 from motion.errors import InputError
 from motion.vectors import Array
 
-from .files import check_duration
+from .files import check_duration, check_rate
 from .markers import people_of
 from .recording import ImportChoices, Recording
 
@@ -61,8 +61,7 @@ def _points(data: bytes, label: str, fps: float | None) -> tuple[list[str], Arra
         low, high = (int(word) % 2**16 for word in found["TRIAL:ACTUAL_END_FIELD"][:2])
         last = low + 2**16 * high
     frames = last - first + 1
-    if not 1.0 <= rate <= 1000.0:
-        raise InputError(f"{label}: a frame rate of {rate:g} is not possible: export it again.")
+    check_rate(rate, label)
     if not 1 <= count <= _MOST_POINTS:
         raise InputError(f"{label} holds {count} points: give 1 to {_MOST_POINTS}.")
     if frames < 1:

@@ -285,8 +285,13 @@ def frame_rate(stored: Array | None, given: float | None, label: str, *, usual: 
         rate = float(np.asarray(stored).reshape(()))
     except (TypeError, ValueError):
         raise InputError(f"{label}: its frame rate is not one number: save fps as a number.") from None
+    return check_rate(rate, label)
+
+
+def check_rate(rate: float, label: str) -> float:
+    """The rate; raises InputError where it is none of 1 to 1,000 frames a second."""
     if not 1.0 <= rate <= 1000.0:
-        raise InputError(f"{label}: a frame rate of {rate:g} is not possible: save frames a second.")
+        raise InputError(f"{label}: a frame rate of {rate:g} is not possible: save it with its frames a second.")
     return rate
 
 

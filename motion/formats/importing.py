@@ -15,8 +15,8 @@ import numpy as np
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
-from motion.guesses import Places, calibration_frames, find_up, places_of, turn_of
-from motion.retarget import UNITS, rest_axis, retarget_together, to_smpl, up_axis
+from motion.guesses import calibration_frames, find_up, places_of, turn_of
+from motion.retarget import UNITS, rest_axis, retarget_together, to_smpl, unit_of, up_axis
 from motion.rigs import RigMotion, match_joints, without_beginning
 from motion.skeleton import LAYOUTS, SMPL22
 from motion.vectors import Array
@@ -25,8 +25,6 @@ from .files import check_duration
 from .recording import MAX_PEOPLE, ORDERS, Animations, ImportChoices, Recording
 from .registry import RIG_FPS, recordings
 
-_TALL = (0.9, 2.0)
-"""Metres from ankles to head: the smallest and the tallest person."""
 _NEAR_FLOOR = (-0.05, 0.15)
 """Metres: people whose lowest joint is between these are left at their height."""
 _UP_TAKEN = "{}: {} was taken as up, by how the body stands, and not {} as is usual: choose the up axis if it is wrong."
@@ -178,7 +176,7 @@ def _import_rigs(rigs: list[RigMotion], label: str, choices: ImportChoices) -> I
 def _import_clips(clips: list[Clip], recording: Recording, label: str, choices: ImportChoices) -> Imported:
     places = [places_of(clip) for clip in clips]
     up = choices.up or find_up(places, recording.usual_up or "y")
-    unit = _unit_of(places[0], up)
+    unit = unit_of(places[0]) or "m"
     turn, metres = turn_of(up), UNITS[unit]
     people = [_turned(clip, turn, metres) for clip in _with_note(clips, up, recording.usual_up, label, choices)]
     lowest = min(float(clip.positions[..., 1].min()) for clip in people)
@@ -193,13 +191,6 @@ def _import_clips(clips: list[Clip], recording: Recording, label: str, choices: 
     joints = len(LAYOUTS[skeleton.name].observed)
     order = skeleton.name if skeleton.name in ORDERS else None
     return Imported(tuple(people), up, unit, people[0].fps, joints, order)
-
-
-def _unit_of(places: Places, up: str) -> str:
-    """The unit in which a standing person is as tall as people are; metres where none fits."""
-    ankles = (places["left_ankle"] + places["right_ankle"]) / 2
-    tall = abs(float(np.median(places["head"] - ankles, axis=0)["xyz".index(up[-1])]))
-    return next((unit for unit, metres in UNITS.items() if _TALL[0] <= tall * metres <= _TALL[1]), "m")
 
 
 def _turned(clip: Clip, turn: Array, metres: float) -> Clip:

@@ -24,7 +24,7 @@ from motion.skeleton import POINTS17
 from motion.smoothing import filled
 from motion.vectors import Array, unit
 
-from .files import MAX_FRAMES, MAX_NUMBERS, MAX_SECONDS, check_duration, text_bytes
+from .files import MAX_FRAMES, MAX_NUMBERS, MAX_SECONDS, check_duration, check_rate, text_bytes
 from .recording import ImportChoices, Recording
 
 Points = Mapping[str, Array]
@@ -187,8 +187,7 @@ def read_trc(data: bytes, label: str, choices: ImportChoices) -> Recording:
         rate = choices.fps or float(settings.get("DataRate") or settings.get("CameraRate") or "")
     except ValueError:
         raise InputError(f"{label} does not give its DataRate as a number: give its true rate.") from None
-    if not 1.0 <= rate <= 1000.0:
-        raise InputError(f"{label}: a DataRate of {rate:g} is not possible: give frames a second.")
+    check_rate(rate, label)
     names = [cell.strip() for cell in _cells(head[3], mark)[2:] if cell.strip()]
     if not 1 <= len(names) <= _MOST_MARKERS:
         raise InputError(f"{label} names {len(names)} markers: give 1 to {_MOST_MARKERS}.")

@@ -2,20 +2,8 @@
 
 Uploads are never unpickled, and nothing is unpacked before the sizes that a file declares have been checked.
 
-Beside the people's positions, a two-person .npz may hold:
-
-========================  ======================================================================================
-``thing_kinds``           (K,) text, such as "chair"
-``thing_names``           (K,) text, what the words call each
-``thing_places``          (K, T, 3) float32 metres
-``thing_rotations``       (K, T, 3, 3) float32
-``thing_sizes``           (K, 2) vertices and triangles of each
-``thing_vertices``        (V, 3) float32 metres, one thing after another, each in its own frame
-``thing_faces``           (F, 3) int32, counted from each thing's own first vertex
-``thing_colours``         (F, 3) uint8 sRGB
-``grips``                 JSON text: person, side, shape, first frame and last frame of each, see :mod:`motion.hands`
-``looks``                 (2,) text, the bodies that the two wear, see :mod:`motion.looks`; absent where nothing is said
-========================  ======================================================================================
+``docs/files.md`` lists the arrays that a two-person .npz may hold beside positions: things, grips (JSON text, see
+:mod:`motion.hands`) and looks (:mod:`motion.looks`).
 """
 
 from __future__ import annotations

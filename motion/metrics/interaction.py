@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import Clip, Duet
-from motion.skeleton import ARMS, LEGS
+from motion.skeleton import ARMS, TOES
 from motion.transforms import facing
 from motion.vectors import Array, runs
 
@@ -31,7 +31,6 @@ SKIN_TOUCH = 0.05
 """Metres between a hand or a foot and the surface of the other's body that count as touching."""
 _JOIN_GAP = 0.1
 _SHORTEST = 0.05
-_TOES = [leg[-1] for leg in LEGS]
 _ELBOWS, _WRISTS = [arm[1] for arm in ARMS], [arm[2] for arm in ARMS]
 
 
@@ -101,7 +100,7 @@ def contact_events(duet: Duet) -> list[Contact]:
         for start, stop in meeting:
             on_body[start:stop] = False  # one contact, not two
         found += [Contact(*ends, "touch", f"hand of {mine} on {theirs}") for ends in _stretches(on_body, duet.fps)]
-        kicks = _touching(duet.people[me].positions[:, _TOES], duet.people[other].positions, above_ground)
+        kicks = _touching(duet.people[me].positions[:, TOES], duet.people[other].positions, above_ground)
         found += [Contact(*ends, "foot", f"foot of {mine} on {theirs}") for ends in _stretches(kicks, duet.fps)]
     return sorted(found, key=lambda contact: (contact.start, contact.kind, contact.label))
 

@@ -10,6 +10,7 @@ import numpy as np
 from motion import SMPL22, Duet
 from motion.cleaning import ANKLE_HEIGHT, TOE_HEIGHT
 from motion.looks import size_of
+from motion.skeleton import TOES
 from motion.transforms import facing
 from motion.vectors import Array, left_of, wrapped
 
@@ -23,8 +24,8 @@ def foot_skate(duet: Duet) -> float:
     12 cm in both: a swinging foot also passes close to the floor, but with its heel lifted.
     """
     positions = duet.positions
-    low = (positions[:, :, _TOES, 1] < TOE_HEIGHT) & (positions[:, :, _ANKLES, 1] < ANKLE_HEIGHT)
-    path = positions[:, :, _TOES][..., [0, 2]].astype(np.float64)
+    low = (positions[:, :, TOES, 1] < TOE_HEIGHT) & (positions[:, :, _ANKLES, 1] < ANKLE_HEIGHT)
+    path = positions[:, :, TOES][..., [0, 2]].astype(np.float64)
     speeds = np.linalg.norm(np.diff(path, axis=1), axis=-1) * duet.fps
     planted = speeds[low[:, 1:] & low[:, :-1]]
     return float(planted.mean() * 100) if len(planted) else 0.0
@@ -83,7 +84,6 @@ SLOW = 1.0
 """Hertz below which people's arms have most of their energy (Hogan and Sternad 2007 hold jerk to be set by tempo)."""
 TWISTED = 60.0
 """Degrees between shoulders and hips beyond which a spine hardly turns."""
-_TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
 _ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
 _HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
 _SHOULDERS = (SMPL22.index("left_shoulder"), SMPL22.index("right_shoulder"))
@@ -140,8 +140,8 @@ def standing_foot(positions: Array, fps: float) -> float:
     A foot is on the floor where its toe joint is below 5 cm and its ankle joint below 12. No speed is asked of it, so
     that a foot that glides is not taken for one that swings.
     """
-    low = (positions[:, _TOES, 1] < TOE_HEIGHT) & (positions[:, _ANKLES, 1] < ANKLE_HEIGHT)
-    speed = np.linalg.norm(np.diff(positions[:, _TOES][..., [0, 2]], axis=0), axis=-1) * fps
+    low = (positions[:, TOES, 1] < TOE_HEIGHT) & (positions[:, _ANKLES, 1] < ANKLE_HEIGHT)
+    speed = np.linalg.norm(np.diff(positions[:, TOES][..., [0, 2]], axis=0), axis=-1) * fps
     slower = np.where(low[1:] & low[:-1], speed, np.inf).min(axis=1)
     slower = slower[np.isfinite(slower)]
     return float(100 * slower.mean()) if len(slower) else float("nan")

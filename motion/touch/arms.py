@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from motion.kinematics import swing
 from motion.limbs import HIPS, UPPER, across, bent_towards, over_planted_feet, solve_two_bones
 from motion.metrics.bodies import CAPSULES
-from motion.skeleton import ARMS, LEGS, SMPL22
+from motion.skeleton import ARMS, SMPL22, TOES
 from motion.smoothing import eased_marks, without_flicker
 from motion.transforms import facing
 from motion.vectors import FLAT, Array, left_of, runs, unit
@@ -210,7 +210,6 @@ _FACES = 0.5
 _LIFTED = 0.12
 """Height in metres of the lifted person's lower toe."""
 _SPINE = SMPL22.index("spine3")
-_TOES = [leg[-1] for leg in LEGS]
 
 
 def embraced(pair: Array, free: Array | None = None) -> Array:
@@ -289,7 +288,7 @@ def _eased(marked: NDArray[np.bool_], pair: Array) -> Array:
 
 def _on_their_feet(marked: NDArray[np.bool_], pair: Array) -> NDArray[np.bool_]:
     """Marked frames but for those at which, or next to which, somebody is lifted."""
-    lifted = (pair[:, :, _TOES, 1].min(axis=2) > _LIFTED).any(axis=0)
+    lifted = (pair[:, :, TOES, 1].min(axis=2) > _LIFTED).any(axis=0)
     near = scipy.ndimage.binary_dilation(lifted, np.ones(2 * _EASE + 1)) if lifted.any() else lifted
     stretches, _ = scipy.ndimage.label(marked)
     return marked & ~np.isin(stretches, stretches[near])

@@ -14,7 +14,7 @@ import numpy as np
 from motion.clip import FPS
 from motion.ik import pose_bodies
 from motion.kinematics import forward_kinematics
-from motion.skeleton import SMPL22
+from motion.skeleton import SMPL22, TOES
 from motion.vectors import FLAT, Array
 
 from .landmarks import INDEX, Landmarks
@@ -33,7 +33,6 @@ _FLOOR = 45
 """Pictures over which the lowest place of the feet is the floor."""
 _UP = np.diag([1.0, -1.0, -1.0])
 """From a camera's axes, y down and z away from it, to y up and z towards it."""
-_TOES = [SMPL22.index(f"{side}_foot") for side in ("left", "right")]
 _LEGS = [INDEX[f"{side}_{part}"] for side in ("left", "right") for part in ("knee", "ankle")]
 
 
@@ -144,7 +143,7 @@ class FollowedPerson:
         posed = forward_kinematics(rotations, root / self._size, SMPL22)[0] @ turn.T
         path = self._path(posed[:1] - self._origin, seconds)
         posed = self._pose(posed - posed[:1], seconds) + path
-        self._low.append(float(posed[_TOES, 1].min()))
+        self._low.append(float(posed[TOES, 1].min()))
         posed[:, 1] -= float(np.percentile(self._low, 20))
         return posed
 

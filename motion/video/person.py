@@ -17,7 +17,7 @@ from motion.clip import FPS, Clip
 from motion.errors import InputError
 from motion.ik import fit_skeleton
 from motion.kinematics import project_to_skeleton
-from motion.skeleton import SMPL22, Layout
+from motion.skeleton import SMPL22, Layout, offsets_of
 from motion.transforms import resample
 from motion.vectors import Array
 
@@ -39,26 +39,17 @@ _SEEN = 0.5
 _LEGS = [[INDEX[f"{side}_{part}"] for part in ("knee", "ankle")] for side in ("left", "right")]
 
 POINT_OF = {
-    "left_hip": "left_hip",
-    "left_knee": "left_knee",
-    "left_ankle": "left_ankle",
-    "left_foot": "left_foot_index",
-    "left_shoulder": "left_shoulder",
-    "left_elbow": "left_elbow",
-    "left_wrist": "left_wrist",
+    f"{side}_{part}": f"{side}_{part}{'_index' * (part == 'foot')}"
+    for side in ("left", "right")
+    for part in ("hip", "knee", "ankle", "foot", "shoulder", "elbow", "wrist")
 }
-POINT_OF |= {ours.replace("left", "right"): its.replace("left", "right") for ours, its in POINT_OF.items()}
+"""The network's point of each joint."""
 
 
 def _layout() -> Layout:
     """The body as the network sees one: wide hips, shoulders further out, ears instead of the skull's base."""
-    offsets = SMPL22.offsets.copy()
-    for name, offset in _SEEN_BODY.items():
-        offsets[SMPL22.index(name)] = offset
-        if name.startswith("left"):
-            offsets[SMPL22.index(name.replace("left", "right"))] = np.array(offset) * [-1, 1, 1]
-    names = [*POINT_OF, "head"]
-    return Layout("mediapipe", tuple(SMPL22.index(name) for name in names), offsets, variety=0.15)
+    joints = tuple(SMPL22.index(name) for name in (*POINT_OF, "head"))
+    return Layout("mediapipe", joints, offsets_of(_SEEN_BODY), variety=0.15)
 
 
 _SEEN_BODY = {"left_hip": (0.09, -0.06, -0.01), "head": (0.0, 0.15, 0.03), "left_foot": (0.045, -0.065, 0.16)}

@@ -9,7 +9,7 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 
 from motion.kinematics import swing
-from motion.skeleton import SMPL22
+from motion.skeleton import SMPL22, TOES
 from motion.smoothing import squared_differences
 from motion.vectors import Array
 
@@ -110,7 +110,6 @@ def upright(tilt: float) -> Array:
 
 # ---- The floor: how the camera is tilted, and a path on which standing feet stay where they are ----------------------
 _ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
-_TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
 _LEAN = np.radians(6.0)
 """By how much people lean on the whole, and by how much the network tilts them."""
 _UNEVEN = 0.04
@@ -175,7 +174,7 @@ def steady_path(positions: Array, fps: float) -> Array:
 
 def _standing(positions: Array, fps: float, reach: float) -> tuple[Array, Array]:
     """(T, 2) velocity of the foot that stands, m/s, and (T,) how surely one stands, 0 to 1."""
-    feet = (positions[:, _ANKLES] + positions[:, _TOES]) / 2
+    feet = (positions[:, _ANKLES] + positions[:, TOES]) / 2
     velocity = np.gradient(feet[..., [0, 2]], axis=0) * fps
     lifted = feet[..., 1] - feet[..., 1].min(axis=1, keepdims=True)
     speed = np.linalg.norm(velocity, axis=-1)
@@ -202,7 +201,7 @@ def _shift(drift: Array, share: Array, fps: float) -> Array:
 
 def _ground(positions: Array, fps: float) -> Array:
     """(T,) the height of the floor under the person: the low points of the lower foot, smoothed."""
-    low = np.minimum(positions[:, _TOES, 1].min(axis=1), positions[:, _ANKLES, 1].min(axis=1) - 0.06)
+    low = np.minimum(positions[:, TOES, 1].min(axis=1), positions[:, _ANKLES, 1].min(axis=1) - 0.06)
     window = max(3, round(1.2 * fps)) | 1
     lowest = scipy.ndimage.percentile_filter(low, 20, size=min(window, 2 * len(low) - 1), mode="nearest")
     return smooth(lowest[:, None], fps, seconds=1.0)[:, 0]

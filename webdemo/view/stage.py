@@ -23,7 +23,7 @@ from motion.things.thing import Thing
 from motion.vectors import Array
 
 from .camera import Camera, sampled
-from .theme import THEMES, Colour, Shadow, Theme, lit
+from .theme import REACH, THEMES, Colour, Shadow, Theme, lit
 from .things import divided, hands_of, shadow_spots
 
 Picture = NDArray[np.uint8]
@@ -87,11 +87,6 @@ class Style:
         """The colours of its theme."""
         return THEMES[self.theme]
 
-    def worn(self, motion: Clip | Duet, *, small: bool) -> tuple[Body, ...]:
-        """The body of each person; ``small`` gives a third of the triangles where there is a choice."""
-        looks = motion.looks if isinstance(motion, Duet) else UNSAID[:1]
-        return tuple(load_body(look, small=small) for look in looks)
-
 
 @dataclass
 class Stage:
@@ -115,7 +110,8 @@ class Stage:
         self.people = stacked_positions(motion).astype(np.float64)
         # Most of a small picture's triangles would be smaller than its pixels.
         small = self.size[1] < 400
-        self.bodies = self.style.worn(motion, small=small) if self.style.look != "skeletons" else ()
+        looks = motion.looks if isinstance(motion, Duet) else UNSAID[:1]
+        self.bodies = tuple(load_body(look, small=small) for look in looks if self.style.look != "skeletons")
         things = motion.things if isinstance(motion, Duet) else ()
         self.things = tuple(replace(thing, mesh=divided(thing.mesh)) for thing in things)  # to be sorted by depth
 
@@ -142,7 +138,7 @@ class Stage:
         canvas = np.asarray(renderer.buffer_rgba())
         frame = seconds * motion.fps
         shadow = Shadow(pose, surfaces, shadow_spots(self.things, frame))
-        canvas.view(np.uint32)[..., 0] = _ground(camera, theme, shadow)
+        canvas[..., :3], canvas[..., 3] = _ground(camera, theme, shadow), 255
         pen = _Pen(renderer, camera)
         pen.grid(theme)
         if self.pane.ghost is not None:
@@ -278,8 +274,8 @@ class _Pen:
         return pixels * np.array([1.0, -1.0]) + np.array([0.0, self.height])
 
 
-def _ground(camera: Camera, theme: Theme, shadow: Shadow) -> NDArray[np.uint32]:
-    """(height, width) floor, horizon and sky with the shadow, a number a pixel: red, green, blue, 255."""
+def _ground(camera: Camera, theme: Theme, shadow: Shadow) -> Picture:
+    """(height, width, 3) floor, horizon and sky with the shadow."""
     width, height = (-(-side // _COARSE) for side in camera.size)
     right, up, forward = camera.axes.astype(np.float32)
     x = (((np.arange(width) + 0.5) * _COARSE - camera.size[0] / 2) / camera.focal).astype(np.float32)
@@ -287,38 +283,27 @@ def _ground(camera: Camera, theme: Theme, shadow: Shadow) -> NDArray[np.uint32]:
     rows = forward + y[:, None] * up  # the camera never leans, so that a row has one slope
     slope = rows[:, 1]
     first = int(np.searchsorted(-slope, 1e-4))  # of the rows that show floor
-    picture = np.empty((height, width), dtype=np.uint32)
+    picture = np.empty((height, width, 3), dtype=np.float32)
     rise = np.arctan(slope[:first] / np.hypot(rows[:first, 0], rows[:first, 2]))
-    picture[:first] = _ramp(theme.horizon, theme.sky)[_levels(smoothstep(rise, 0.0, 0.55))][:, None]
+    picture[:first] = _mixed(theme.horizon, theme.sky, smoothstep(rise, 0.0, 0.55)[:, None])
     if first < height:
         reach = (camera.eye[1] / -slope[first:])[:, None].astype(np.float32)
         # Metres from what the camera looks at, along X and Z.
         east = reach * (rows[first:, :1] + x * right[0]) + np.float32(camera.eye[0] - camera.target[0])
         south = reach * (rows[first:, 2:] + x * right[2]) + np.float32(camera.eye[2] - camera.target[2])
-        t = np.minimum(np.sqrt(east * east + south * south) / np.float32(theme.reach), np.float32(1))
-        floor = _ramp(theme.floor, theme.far)[_levels(smoothstep(t))]
+        away = np.sqrt(east * east + south * south)
+        picture[first:] = _mixed(theme.floor, theme.far, smoothstep(away, 0.0, np.float32(REACH)))
         dark, hidden = shadow.at(east + np.float32(camera.target[0]), south + np.float32(camera.target[2]))
-        plain = floor.ravel()[hidden].view(np.uint8).reshape(-1, 4)
-        lost = dark[:, None] * np.array([*(1 - np.array(theme.shade)), 0], dtype=np.float32)
-        floor.ravel()[hidden] = (plain * (1 - lost)).astype(np.uint8).view(np.uint32)[:, 0]
-        picture[first:] = floor
-    return picture.repeat(_COARSE, axis=0).repeat(_COARSE, axis=1)[: camera.size[1], : camera.size[0]]
+        lost = (1 - np.array(theme.shade)).astype(np.float32)
+        picture[first:].reshape(-1, 3)[hidden] *= 1 - dark[:, None].astype(np.float32) * lost
+    pixels = (255 * picture + 0.5).astype(np.uint8)
+    return pixels.repeat(_COARSE, axis=0).repeat(_COARSE, axis=1)[: camera.size[1], : camera.size[0]]
 
 
-_LEVELS = 1023
-
-
-def _levels(shares: Array) -> NDArray[np.integer]:
-    return (shares * _LEVELS).astype(np.int16)
-
-
-@lru_cache(maxsize=8)
-def _ramp(first: Colour, second: Colour) -> NDArray[np.uint32]:
-    """(1024,) from one colour to another, as pixels."""
-    shares = np.linspace(0, 1, _LEVELS + 1)[:, None]
-    colours = 255 * (np.array(first) + shares * (np.array(second) - np.array(first))) + 0.5
-    pixels = np.concatenate([colours, np.full((len(colours), 1), 255.0)], axis=1).astype(np.uint8)
-    return pixels.view(np.uint32)[:, 0]
+def _mixed(first: Colour, second: Colour, share: Array) -> Array:
+    """(…, 3) from one colour to another by shares (…)."""
+    one, other = (np.array(colour, dtype=np.float32) for colour in (first, second))
+    return one + share[..., None].astype(np.float32) * (other - one)
 
 
 def paste(canvas: Picture, label: Picture, x: int, y: int) -> None:

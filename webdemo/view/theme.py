@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from .camera import Camera
 
 Worn = Mapping[str, Colour]
 
-_REACH = 18.0
+REACH = 18.0
 """Metres from the camera's target after which the floor is as dim as it gets."""
 
 
@@ -43,7 +43,6 @@ class Theme:
         sky, horizon: of the sky high up and right above the floor.
         floor, far: of the floor at the camera's target and in the distance.
         grid, grid_strong: of the lines on it.
-        reach: metres from the camera's target after which the floor is as in the distance.
         shade: what full shadow multiplies the floor by.
         ghost, ink: of a pale figure, and of captions.
         lamps: the light on bodies.
@@ -64,7 +63,6 @@ class Theme:
     bodies: tuple[Worn, Worn]
     people: tuple[tuple[Colour, Colour, Colour], ...]
     given: tuple[tuple[Colour, Colour, Colour], ...]
-    reach: float
 
     @property
     def given_bodies(self) -> tuple[Worn, Worn]:
@@ -72,42 +70,27 @@ class Theme:
         return _greyer(self.bodies[0]), _greyer(self.bodies[1])
 
 
-def mix(first: Colour, second: Colour, share: float) -> Colour:
-    """A colour ``share`` of the way from the first to the second."""
-    a, b, c = (one + share * (other - one) for one, other in zip(first, second, strict=True))
-    return a, b, c
-
-
 def _greyer(zones: Worn) -> Worn:
     found = {}
-    for zone, (red, green, blue) in zones.items():
-        grey = 0.75 * (0.3 * red + 0.55 * green + 0.15 * blue) + 0.14
-        found[zone] = mix((red, green, blue), (grey, grey, grey), 0.72)
+    for zone, colour in zones.items():
+        grey = 0.75 * (0.3 * colour[0] + 0.55 * colour[1] + 0.15 * colour[2]) + 0.14
+        red, green, blue = (part + 0.72 * (grey - part) for part in colour)
+        found[zone] = (red, green, blue)
     return found
 
 
-def _worn(zones: Mapping[str, str]) -> Worn:
-    return {zone: rgb(colour) for zone, colour in zones.items()}
+def _coloured(stored: Any) -> Any:
+    """Parts of a theme as the file has them, with numbers for each "#rrggbb" and tuples for lists."""
+    if isinstance(stored, str):
+        return rgb(stored)
+    if isinstance(stored, dict):
+        return {key: _coloured(each) for key, each in stored.items()}
+    return tuple(map(_coloured, stored)) if isinstance(stored, list) else stored
 
 
 def _theme(stored: Mapping[str, Any]) -> Theme:
-    lamps = dict(stored["lamps"])
-    a, b = (_worn(zones) for zones in stored["bodies"])
-    plain = ("sky", "horizon", "far", "floor", "grid", "ghost", "ink")
-    return Theme(
-        **{name: rgb(stored[name]) for name in plain},
-        grid_strong=rgb(stored["gridStrong"]),
-        shade=tuple(stored["shade"]),
-        lamps=Lamps(shine=lamps.pop("shine"), **{name: tuple(light) for name, light in lamps.items()}),
-        bodies=(a, b),
-        people=_limbs(stored["people"]),
-        given=_limbs(stored["given"]),
-        reach=_REACH,
-    )
-
-
-def _limbs(people: Sequence[Sequence[str]]) -> tuple[tuple[Colour, Colour, Colour], ...]:
-    return tuple((rgb(middle), rgb(left), rgb(right)) for middle, left, right in people)
+    found = _coloured({**stored, "grid_strong": stored["gridStrong"]}) | {"lamps": Lamps(**_coloured(stored["lamps"]))}
+    return Theme(**{part.name: found[part.name] for part in fields(Theme)})
 
 
 THEMES = {name: _theme(stored) for name, stored in themes().items()}

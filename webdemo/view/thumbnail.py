@@ -17,19 +17,8 @@ FRAMES = 20
 JOINTS = tuple(
     SMPL22.index(name)
     for name in (
-        "pelvis",
-        "neck",
-        "head",
-        "left_shoulder",
-        "right_shoulder",
-        "left_elbow",
-        "right_elbow",
-        "left_wrist",
-        "right_wrist",
-        "left_knee",
-        "right_knee",
-        "left_ankle",
-        "right_ankle",
+        *("pelvis", "neck", "head"),
+        *(f"{s}_{part}" for part in ("shoulder", "elbow", "wrist", "knee", "ankle") for s in ("left", "right")),
     )
 )
 _LEVELS = 255
