@@ -31,7 +31,7 @@ def red(picture: np.ndarray) -> int:
 
 def drawn(duet: Duet, **style: object) -> np.ndarray:
     (views,) = cameras([PEOPLE], size=(320, 240), times=np.zeros(1))
-    return next(iter(Stage(Pane(duet), Style(**style), (320, 240)).pictures(np.zeros(1), views)))
+    return np.asarray(next(Stage(Pane(duet), Style(**style), (320, 240)).pictures(np.zeros(1), views)))
 
 
 @pytest.mark.parametrize("look", ["bodies", "skeletons", "both"])

@@ -13,14 +13,13 @@ from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
+from PIL import Image, ImageDraw
 
 from motion.errors import InputError
 from motion.formats.files import replacing
 
 from .camera import Camera, cameras
-from .stage import Pane, Picture, Stage, Style, paste, words
-from .theme import Colour
+from .stage import Pane, Stage, Style, in_pixels, write
 
 SUFFIXES = (".mp4", ".webm", ".gif")
 SIZES = (64, 3840)
@@ -143,56 +142,37 @@ def _draw(
     times: NDArray[np.floating],
     views: list[list[Camera]],
     title: str,
-) -> Iterator[Picture]:
-    """The pictures (height, width, 4) of a film at moments in seconds; ``views`` has a pane's cameras, one a moment."""
-    cell = _cell(size, len(panes))
-    stages = [Stage(pane, style, cell).pictures(times, ways) for pane, ways in zip(panes, views, strict=True)]
+) -> Iterator[Image.Image]:
+    """The pictures of a film at moments in seconds; ``views`` has a pane's cameras, one a moment."""
+    (wide, tall), (columns, rows) = _cell(size, len(panes)), _shape(len(panes))
+    stages = [Stage(pane, style, (wide, tall)).pictures(times, ways) for pane, ways in zip(panes, views, strict=True)]
+    ink, small = style.colours.ink, max(round(size[1] / 48), 9)
     for seconds, shown in zip(times, zip(*stages, strict=True), strict=True):
-        whole = _joined(shown, size)
+        whole = Image.new("RGB", size, in_pixels(style.colours.horizon))
+        for number, (pane, picture) in enumerate(zip(panes, shown, strict=True)):
+            row, column = divmod(number, columns)
+            whole.paste(picture, (wide * column, tall * row))
+            write(whole, (wide * (column + 0.5), tall * row + 0.6 * small), pane.caption, ink, small, "mt")
+        pen = ImageDraw.Draw(whole)
+        for column in range(1, columns):
+            pen.line([(wide * column, 0), (wide * column, size[1])], in_pixels(ink))
+        for row in range(1, rows):
+            pen.line([(0, tall * row), (size[0], tall * row)], in_pixels(ink))
         line = f"{title}  ·  {seconds:.2f} s" if title else f"{seconds:.2f} s"
-        _caption(whole, [pane.caption for pane in panes], line, style.colours.ink)
+        write(whole, (small, size[1] - 0.9 * small), line, ink, small, "ls")
         yield whole
 
 
-def _joined(shown: Sequence[Picture], size: tuple[int, int]) -> Picture:
-    """The panes in their columns and rows; what is left over is as the last one's edge."""
-    if len(shown) == 1:
-        return shown[0]
-    columns, rows = _shape(len(shown))
-    blank = [np.broadcast_to(shown[-1][:1, :1], shown[-1].shape)] * (columns * rows - len(shown))
-    cells = [*shown, *blank]
-    lines = [np.concatenate(cells[k : k + columns], axis=1) for k in range(0, len(cells), columns)]
-    whole = np.concatenate(lines)
-    missing = (size[1] - whole.shape[0], size[0] - whole.shape[1])
-    return np.pad(whole, ((0, missing[0]), (0, missing[1]), (0, 0)), mode="edge")
-
-
-def _caption(whole: Picture, captions: Sequence[str], line: str, ink: Colour) -> None:
-    """Writes each pane's caption over it, a line below all, and lines between the panes."""
-    height, small = len(whole), max(round(len(whole) / 48), 9)
-    (width, tall), (columns, rows) = _cell((whole.shape[1], height), len(captions)), _shape(len(captions))
-    for number, caption in enumerate(captions):
-        row, column = divmod(number, columns)
-        if caption:
-            label = words(caption, ink, small)
-            place = round(width * (column + 0.5) - label.shape[1] / 2), tall * row + small // 2
-            paste(whole, label, *place)
-    line_ink = [round(255 * c) for c in ink]
-    for column in range(1, columns):
-        whole[:, width * column, :3] = line_ink
-    for row in range(1, rows):
-        whole[tall * row, :, :3] = line_ink
-    paste(whole, words(line, ink, small), small, height - 2 * small)
-
-
-def _counted(pictures: Iterator[Picture], total: int, progress: Callable[[int, int], None] | None) -> Iterator[Picture]:
+def _counted(
+    pictures: Iterator[Image.Image], total: int, progress: Callable[[int, int], None] | None
+) -> Iterator[Image.Image]:
     for done, picture in enumerate(pictures, start=1):
         yield picture
         if progress is not None:
             progress(done, total)
 
 
-def _write_video(pictures: Iterator[Picture], path: Path, suffix: str, fps: float, size: tuple[int, int]) -> None:
+def _write_video(pictures: Iterator[Image.Image], path: Path, suffix: str, fps: float, size: tuple[int, int]) -> None:
     import av
 
     codec, options = _CODECS[suffix]
@@ -202,21 +182,13 @@ def _write_video(pictures: Iterator[Picture], path: Path, suffix: str, fps: floa
         stream.width, stream.height = size
         stream.pix_fmt = _PLANES
         for picture in pictures:
-            film.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgba").reformat(format=_PLANES)))
+            film.mux(stream.encode(av.VideoFrame.from_image(picture).reformat(format=_PLANES)))
         film.mux(stream.encode(None))
 
 
-def _write_gif(pictures: Iterator[Picture], path: Path, fps: float) -> None:
-    first = _opaque(next(pictures)).quantize(256, dither=Image.Dither.NONE)
-
-    def others() -> Iterator[Image.Image]:
-        for picture in pictures:
-            yield _opaque(picture).quantize(palette=first, dither=Image.Dither.NONE)
-
+def _write_gif(pictures: Iterator[Image.Image], path: Path, fps: float) -> None:
+    first = next(pictures).quantize(256, dither=Image.Dither.NONE)
+    others = (picture.quantize(palette=first, dither=Image.Dither.NONE) for picture in pictures)
     first.save(
-        path, format="GIF", save_all=True, append_images=others(), duration=round(1000 / fps), loop=0, optimize=False
+        path, format="GIF", save_all=True, append_images=others, duration=round(1000 / fps), loop=0, optimize=False
     )
-
-
-def _opaque(picture: Picture) -> Image.Image:
-    return Image.fromarray(picture).convert("RGB")

@@ -14,7 +14,7 @@ from motion.formats.files import replacing
 from motion.vectors import Array
 
 from .camera import Camera, cameras
-from .stage import Pane, Picture, Stage, Style, paste, words
+from .stage import Pane, Stage, Style, in_pixels, write
 
 SUFFIXES = (".png", ".pdf")
 MOMENTS = (1, 24)
@@ -83,10 +83,8 @@ def write_sheet(
     columns = min(len(times), _COLUMNS)
     tile = (width // columns, round(width / columns * _TALL))
     (views,) = cameras([motion], size=tile, times=times, view=view, around=0.0)
-    rows: list[Picture] = []
-    for first in range(0, len(times), columns):
-        part = slice(first, first + columns)
-        rows.append(_row(Stage(Pane(motion), style, tile), times[part], views[part], columns))
+    parts = [slice(first, first + columns) for first in range(0, len(times), columns)]
+    rows = [_row(Stage(Pane(motion), style, tile), times[part], views[part], columns) for part in parts]
     _save(rows, path, style, title)
     return path
 
@@ -113,48 +111,38 @@ def write_grid_sheet(
     tile = (WIDTH // _IN_ROW, round(WIDTH / _IN_ROW * _TALL))
     times = np.linspace(0.0, max((m.num_frames - 1) / m.fps for m in motions.values()), _IN_ROW)
     ways = cameras(list(motions.values()), size=tile, times=times, follow=False)
-    rows: list[Picture] = []
-    for (name, motion), views in zip(motions.items(), ways, strict=True):
-        rows += [_line([(0, name)], tile, _IN_ROW, style)]
-        rows += [_row(Stage(Pane(motion), style, tile), times, views, _IN_ROW)]
+    rows = [
+        _row(Stage(Pane(motion), style, tile), times, views, _IN_ROW, name)
+        for (name, motion), views in zip(motions.items(), ways, strict=True)
+    ]
     _save(rows, path, style, title)
     return path
 
 
-def _row(stage: Stage, times: Array, views: Sequence[Camera], columns: int) -> Picture:
-    """Pictures beside each other at moments in seconds, room for ``columns`` of them, the times below."""
-    (wide, tall), style = stage.size, stage.style
-    row = _blank(tall, wide * columns, style)
-    for column, picture in enumerate(stage.pictures(times, views)):
-        row[:, wide * column : wide * (column + 1)] = picture
-    below = [(wide * column, f"{seconds:.2f} s") for column, seconds in enumerate(times)]
-    return np.concatenate([row, _line(below, stage.size, columns, style)])
+def _row(stage: Stage, times: Array, views: Sequence[Camera], columns: int, name: str = "") -> Image.Image:
+    """Pictures beside each other at moments in seconds, room for ``columns`` of them, the times below, a name above."""
+    (wide, tall), small = stage.size, max(stage.size[0] // 16, 9)
+    top = 2 * small if name else 0
+    row, ink = _blank(wide * columns, top + tall + 2 * small, stage.style), stage.style.colours.ink
+    write(row, (small // 2, 1.4 * small), name, ink, small, "ls")
+    for column, (seconds, picture) in enumerate(zip(times, stage.pictures(times, views), strict=True)):
+        row.paste(picture, (wide * column, top))
+        write(row, (wide * column + small // 2, top + tall + 1.4 * small), f"{seconds:.2f} s", ink, small, "ls")
+    return row
 
 
-def _line(texts: Sequence[tuple[int, str]], tile: tuple[int, int], columns: int, style: Style) -> Picture:
-    """A line of texts, each with the pixel at which it begins, as wide as so many pictures."""
-    small = max(tile[0] // 16, 9)
-    line = _blank(2 * small, tile[0] * columns, style)
-    for x, text in texts:
-        paste(line, words(text, style.colours.ink, small), x + small // 2, small // 4)
-    return line
+def _blank(width: int, height: int, style: Style) -> Image.Image:
+    return Image.new("RGB", (width, height), in_pixels(style.colours.horizon))
 
 
-def _blank(height: int, width: int, style: Style) -> Picture:
-    picture = np.full((height, width, 4), 255, dtype=np.uint8)
-    picture[..., :3] = [round(255 * part) for part in style.colours.horizon]
-    return picture
-
-
-def _save(rows: list[Picture], path: Path, style: Style, title: str) -> None:
+def _save(rows: list[Image.Image], path: Path, style: Style, title: str) -> None:
     """Writes rows of one width under each other, a title above, as the path's suffix says."""
-    whole = np.concatenate(rows)
-    if title:
-        small = max(whole.shape[1] // 100, 9)
-        head = _blank(2 * small, whole.shape[1], style)
-        paste(head, words(title, style.colours.ink, small), small // 2, small // 4)
-        whole = np.concatenate([head, whole])
+    small = max(rows[0].width // 100, 9)
+    at = 2 * small if title else 0
+    whole = _blank(rows[0].width, at + sum(row.height for row in rows), style)
+    write(whole, (small // 2, 1.4 * small), title, style.colours.ink, small, "ls")
+    for row in rows:
+        whole.paste(row, (0, at))
+        at += row.height
     with replacing(path) as temporary:
-        Image.fromarray(whole).convert("RGB").save(
-            temporary, format=path.suffix[1:].upper(), resolution=_DPI, quality=95
-        )
+        whole.save(temporary, format=path.suffix[1:].upper(), resolution=_DPI, quality=95)

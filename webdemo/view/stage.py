@@ -26,8 +26,6 @@ from .camera import Camera, sampled
 from .theme import REACH, THEMES, Colour, Shadow, Theme, lit
 from .things import divided, hands_of, shadow_spots
 
-Picture = NDArray[np.uint8]
-
 LOOKS = ("bodies", "skeletons", "both")
 _GRID = 9
 _COARSE = 2
@@ -115,8 +113,8 @@ class Stage:
         things = motion.things if isinstance(motion, Duet) else ()
         self.things = tuple(replace(thing, mesh=divided(thing.mesh)) for thing in things)  # to be sorted by depth
 
-    def pictures(self, times: Array, cameras: Sequence[Camera]) -> Iterator[Picture]:
-        """The pictures (height, width, 4) at moments in seconds, without captions, each from its camera."""
+    def pictures(self, times: Array, cameras: Sequence[Camera]) -> Iterator[Image.Image]:
+        """The pictures at moments in seconds, without captions, each from its camera."""
         for start in range(0, len(times), _BLOCK):
             block = times[start : start + _BLOCK]
             poses = sampled(self.people, self.pane.motion.fps, block)
@@ -129,7 +127,7 @@ class Stage:
                 worn = [surface[i].astype(np.float64) for surface in surfaces]
                 yield self._draw(float(seconds), poses[:, i], worn, cameras[start + i])
 
-    def _draw(self, seconds: float, pose: Array, surfaces: Sequence[Array], camera: Camera) -> Picture:
+    def _draw(self, seconds: float, pose: Array, surfaces: Sequence[Array], camera: Camera) -> Image.Image:
         from matplotlib.backends.backend_agg import RendererAgg
 
         motion, theme = self.pane.motion, self.style.colours
@@ -161,11 +159,12 @@ class Stage:
             order = np.argsort(-pen.camera.project(pose[:, 0])[1])
             for person in order:
                 pen.skeleton(pose[person], limbs[person])
+        picture = Image.fromarray(canvas).convert("RGB")
         if self.style.names:
-            self._names(canvas, pose, camera, limbs=theme.people)
-        return canvas
+            self._names(picture, pose, camera, limbs=theme.people)
+        return picture
 
-    def _names(self, canvas: Picture, pose: Array, camera: Camera, *, limbs: Sequence) -> None:
+    def _names(self, picture: Image.Image, pose: Array, camera: Camera, *, limbs: Sequence) -> None:
         motion = self.pane.motion
         roles = motion.roles if isinstance(motion, Duet) else (motion.name or "a",)
         for person, points in enumerate(pose):
@@ -174,8 +173,7 @@ class Stage:
             if depth > 0:
                 role = roles[person]
                 label = _label(role.upper() if len(role) == 1 else role, limbs[person][0], self.size[1])
-                height, width = label.shape[:2]
-                paste(canvas, label, round(x - width / 2), round(max(y - height / 2, 2)))
+                picture.paste(label, (round(x - label.width / 2), round(max(y - label.height / 2, 2))), label)
 
 
 class _Pen:
@@ -274,7 +272,7 @@ class _Pen:
         return pixels * np.array([1.0, -1.0]) + np.array([0.0, self.height])
 
 
-def _ground(camera: Camera, theme: Theme, shadow: Shadow) -> Picture:
+def _ground(camera: Camera, theme: Theme, shadow: Shadow) -> NDArray[np.uint8]:
     """(height, width, 3) floor, horizon and sky with the shadow."""
     width, height = (-(-side // _COARSE) for side in camera.size)
     right, up, forward = camera.axes.astype(np.float32)
@@ -306,16 +304,6 @@ def _mixed(first: Colour, second: Colour, share: Array) -> Array:
     return one + share[..., None].astype(np.float32) * (other - one)
 
 
-def paste(canvas: Picture, label: Picture, x: int, y: int) -> None:
-    """Lays a label (h, w, 4) over a picture (H, W, 4) with its upper left corner at a pixel."""
-    height, width = label.shape[:2]
-    rows, columns = slice(max(y, 0), max(y + height, 0)), slice(max(x, 0), max(x + width, 0))
-    under = canvas[rows, columns, :3]
-    top = label[max(-y, 0) :, max(-x, 0) :][: under.shape[0], : under.shape[1]]
-    share = top[..., 3:] / np.float32(255)
-    under[:] = under + share * (top[..., :3] - under.astype(np.float32))
-
-
 @lru_cache(maxsize=64)
 def font(pixels: int) -> ImageFont.FreeTypeFont:
     """DejaVu Sans, which comes with matplotlib."""
@@ -325,7 +313,7 @@ def font(pixels: int) -> ImageFont.FreeTypeFont:
 
 
 @lru_cache(maxsize=64)
-def _label(text: str, colour: Colour, height: int) -> Picture:
+def _label(text: str, colour: Colour, height: int) -> Image.Image:
     """White text on a pill of a person's colour."""
     pixels = max(round(height / 50), 9)
     fine = 4
@@ -333,17 +321,16 @@ def _label(text: str, colour: Colour, height: int) -> Picture:
     size = (round(right - left + 1.4 * fine * pixels), round(1.8 * fine * pixels))
     pill = Image.new("RGBA", size, (0, 0, 0, 0))
     pen = ImageDraw.Draw(pill)
-    fill = tuple(round(255 * c) for c in colour)
-    pen.rounded_rectangle((0, 0, size[0] - 1, size[1] - 1), size[1] / 2, fill=fill)
+    pen.rounded_rectangle((0, 0, size[0] - 1, size[1] - 1), size[1] / 2, fill=in_pixels(colour))
     pen.text((size[0] / 2, size[1] / 2), text, font=font(fine * pixels), fill="white", anchor="mm")
-    return np.asarray(pill.resize((size[0] // fine, size[1] // fine), Image.Resampling.LANCZOS))
+    return pill.resize((size[0] // fine, size[1] // fine), Image.Resampling.LANCZOS)
 
 
-@lru_cache(maxsize=64)
-def words(text: str, colour: Colour, pixels: int) -> Picture:
-    """A line of text as a label."""
-    left, _, right, _ = font(pixels).getbbox(text)
-    line = Image.new("RGBA", (max(round(right - left), 1) + 2, round(1.4 * pixels)), (0, 0, 0, 0))
-    fill = tuple(round(255 * c) for c in colour)
-    ImageDraw.Draw(line).text((1 - left, 1.1 * pixels), text, font=font(pixels), fill=fill, anchor="ls")
-    return np.asarray(line)
+def write(picture: Image.Image, place: tuple[float, float], text: str, colour: Colour, pixels: int, at: str) -> None:
+    """Writes a line of text into a picture; ``at`` says which of its points is at the place, as Pillow's anchors do."""
+    ImageDraw.Draw(picture).text(place, text, font=font(pixels), fill=in_pixels(colour), anchor=at)
+
+
+def in_pixels(colour: Colour) -> tuple[int, ...]:
+    """A colour as three whole numbers up to 255."""
+    return tuple(round(255 * part) for part in colour)
