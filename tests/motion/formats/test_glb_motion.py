@@ -10,11 +10,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, Duet, InputError
+from motion.formats import read, write
 from motion.formats import glb_motion as reader
-from motion.formats import glb_nodes, read, write
 from motion.formats.glb_file import GlbFile, Stored
-from motion.formats.glb_motion import read_glb
-from motion.formats.glb_nodes import Channel
+from motion.formats.glb_motion import Channel, read_glb
 from motion.formats.importing import Imported, import_motion
 from motion.formats.recording import ImportChoices
 from motion.retarget import retarget
@@ -144,7 +143,7 @@ def test_other_files_are_one_sentence(data: bytes, says: str) -> None:
 def test_long_motions_are_refused_before_they_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InputError, match="more than the 600 s allowed"):
         read_glb(glb_motion(ROTATIONS[:4], ROOT[:4], fps=1 / 300), name="walk.glb")[0]
-    monkeypatch.setattr(glb_nodes, "MOST_KEYS", 100)
+    monkeypatch.setattr(reader, "MOST_KEYS", 100)
     with pytest.raises(InputError, match="key frames"):
         read_glb(WALK, name="walk.glb")[0]
     monkeypatch.undo()
