@@ -66,10 +66,7 @@ def read_kinect(data: bytes, label: str, choices: ImportChoices) -> Recording:
         )
     if any(np.abs(positions).max() > _FARTHEST for positions, _ in people):
         raise InputError(f"{label} holds joints more than {_FARTHEST:g} m away: is it of another kind?")
-    try:
-        return Recording(tuple(Clip(its, fps, skeleton, name=label, notes=notes) for its, notes in people))
-    except InputError as error:
-        raise InputError(f"{label}: {error}") from None
+    return Recording(tuple(Clip(its, fps, skeleton, name=label, notes=notes) for its, notes in people))
 
 
 def _lines(text: str, label: str) -> Iterator[tuple[int, str]]:

@@ -158,10 +158,7 @@ def _clip(joints: Mapping[str, Array], fps: float, label: str) -> Clip:
     positions = np.stack([places[name] for name in POINTS17.joint_names], axis=1)
     often = [name.replace("_", " ") for name, share in unseen.items() if share > _OFTEN_UNSEEN]
     note = f"Interpolated, as their markers were often not seen: {', '.join(often)}."
-    try:
-        return Clip(positions, fps, POINTS17, name=label, notes=(note,) if often else ())
-    except InputError as error:
-        raise InputError(f"{label}: {error}") from None
+    return Clip(positions, fps, POINTS17, name=label, notes=(note,) if often else ())
 
 
 # ---- marker trajectories as text, ``.trc`` ---------------------------------------------------------

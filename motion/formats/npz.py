@@ -166,17 +166,12 @@ def _recording(
     names = _names(named or {}, people.shape[-2])
     if names is None and people.shape[-2] in _SOMA:
         people, names = people[:, :, _SOMA[people.shape[-2]]], (tuple(_SOMA_JOINTS.split()), SMPL22.parents)
-    try:
-        if names is not None:
-            still = np.zeros((len(names[0]), 3))
-            return Recording(
-                tuple(RigMotion(*names, still, person, rate, name=label, notes=notes) for person in people)
-            )
-        skeleton, more = _skeleton(named or {}, people, label, choices.order)
-        people = people[:, :, : skeleton.num_joints]  # the hands of SMPL's 24 come last
-        return Recording(tuple(Clip(its, rate, skeleton, name=label, notes=(*notes, *more)) for its in people))
-    except InputError as error:
-        raise InputError(f"{label}: {str(error).removeprefix(f'{label} ')}") from None
+    if names is not None:
+        still = np.zeros((len(names[0]), 3))
+        return Recording(tuple(RigMotion(*names, still, person, rate, name=label, notes=notes) for person in people))
+    skeleton, more = _skeleton(named or {}, people, label, choices.order)
+    people = people[:, :, : skeleton.num_joints]  # the hands of SMPL's 24 come last
+    return Recording(tuple(Clip(its, rate, skeleton, name=label, notes=(*notes, *more)) for its in people))
 
 
 def _names(arrays: Mapping[str, Array], joints: int) -> tuple[tuple[str, ...], tuple[int, ...]] | None:
@@ -239,8 +234,8 @@ def _beside(arrays: dict[str, Array], found: Recording, label: str) -> dict[str,
             "grips": grips_of(grips) if "grips" in arrays else (),
             "looks": checked([str(look) for look in np.atleast_1d(arrays.get("looks", UNSAID))[:3]]),
         }
-    except InputError as error:
-        raise InputError(f"{label}: {error}") from None
+    except InputError:
+        raise
     except ValueError as error:
         raise InputError(f"{label}: a text in it {error}: save it again.") from None
 

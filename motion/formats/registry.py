@@ -111,7 +111,10 @@ def _recording(source: str | Path | bytes, name: str | None, choices: ImportChoi
         )
     remedy = "reduce its mesh or leave out its pictures" if suffix in GLBS else "cut the motion or lower its frame rate"
     data, label = read_bytes(source, name and Path(name).name, remedy=remedy)
-    return known.reader(data, label, choices)
+    try:
+        return known.reader(data, label, choices)
+    except InputError as error:
+        raise error if label in str(error) else InputError(f"{label}: {error}") from None
 
 
 def suffix_of(path: str | Path) -> str:

@@ -10,8 +10,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, Duet, InputError
-from motion.formats import read, write
 from motion.formats import glb_motion as reader
+from motion.formats import read, write
 from motion.formats.glb_file import GlbFile, Stored
 from motion.formats.glb_motion import Channel, read_glb
 from motion.formats.importing import Imported, import_motion
