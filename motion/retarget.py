@@ -122,10 +122,16 @@ def leg_scale(rig: RigMotion) -> float:
     return _LEG / length
 
 
-def metres_per_unit(rig: RigMotion) -> float:
-    """The unit of a rig's lengths: one of :data:`UNITS` in which its legs are a person's, or what makes them so."""
-    unit = unit_of(places_of(rig))
-    return UNITS[unit] if unit else leg_scale(rig)
+def in_metres(rigs: Sequence[RigMotion]) -> tuple[RigMotion, ...]:
+    """Rigs of one file in metres, whose places are changed as they are.
+
+    Its unit is the one of :data:`UNITS` in which the first one's legs are a person's, or what makes them so.
+    """
+    unit = unit_of(places_of(rigs[0]))
+    scale = UNITS[unit] if unit else leg_scale(rigs[0])
+    for rig in rigs:
+        rig.positions[:] *= scale
+    return tuple(replace(rig, offsets=scale * rig.offsets, metres_per_unit=scale) for rig in rigs)
 
 
 def unit_of(places: Places) -> str:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from motion.clip import Clip
 from motion.errors import InputError
-from motion.retarget import metres_per_unit
+from motion.retarget import in_metres
 from motion.rigs import RigMotion
 from motion.skeleton import SMPL22
 from motion.vectors import Array
@@ -98,22 +98,21 @@ def _placed(motion: Motion, every: int) -> tuple[RigMotion, ...]:
         _place(joints, values, positions[begun : begun + len(values)])
         done = begun + len(values)
     assert done == kept
-    rigs = [
-        RigMotion(
-            tuple(joint.name for joint in joints[first:stop]),
-            tuple(max(joint.parent - first, -1) for joint in joints[first:stop]),
-            np.array([joint.offset for joint in joints[first:stop]]),
-            positions[:, first:stop],
-            motion.fps / every,
-            name=label,
-            every=every,
-            y_up=True,
-        )
-        for first, stop in trees(joints, label)
-    ]
-    scale = metres_per_unit(rigs[0])
-    positions *= scale
-    return tuple(replace(rig, offsets=rig.offsets * scale, metres_per_unit=scale) for rig in rigs)
+    return in_metres(
+        [
+            RigMotion(
+                tuple(joint.name for joint in joints[first:stop]),
+                tuple(max(joint.parent - first, -1) for joint in joints[first:stop]),
+                np.array([joint.offset for joint in joints[first:stop]]),
+                positions[:, first:stop],
+                motion.fps / every,
+                name=label,
+                every=every,
+                y_up=True,
+            )
+            for first, stop in trees(joints, label)
+        ]
+    )
 
 
 def _every_nth(motion: Motion, every: int) -> Iterator[tuple[Array, int]]:

@@ -13,7 +13,7 @@ import scipy  # its parts are loaded with their first use
 
 from motion.errors import InputError
 from motion.kinematics import rotation_matrices
-from motion.retarget import metres_per_unit
+from motion.retarget import in_metres
 from motion.rigs import RigMotion, match_joints
 from motion.vectors import Array
 
@@ -52,12 +52,8 @@ def read_glb(
         moved = [channels(file, each, its) for each, its in zip(taken, nodes, strict=True)]
         moments, rate, every = _clock(file, moved, sum(len(person.nodes) for person in whole))
         places = [person.at(its, moments) for person, its in zip(whole, moved, strict=True)]
-        scale = np.float32(metres_per_unit(whole[0].motion(places[0], rate)))
-        for its in places:
-            its *= scale
-        return tuple(
-            person.motion(its, rate / every, float(scale), every) for person, its in zip(whole, places, strict=True)
-        ), animations
+        rigs = [person.motion(its, rate / every, every) for person, its in zip(whole, places, strict=True)]
+        return in_metres(rigs), animations
 
 
 def animations_in(source: str | Path | bytes) -> Animations:
@@ -98,7 +94,7 @@ class _Person:
         except InputError as error:
             self.problem = error
 
-    def motion(self, positions: Array, fps: float, scale: float = 1.0, every: int = 1) -> RigMotion:
+    def motion(self, positions: Array, fps: float, every: int = 1) -> RigMotion:
         """Its joints where they are (T, J, 3), with the pose of binding as their rest pose."""
         bound = bind_pose(self.file, self.rig)
         across = np.array([-1.0 if self.mirrored else 1.0, 1.0, 1.0])
@@ -110,8 +106,7 @@ class _Person:
             rest - np.where(above[:, None] < 0, 0.0, rest[np.maximum(above, 0)]),
             positions,
             fps,
-            scale,
-            self.file.label,
+            name=self.file.label,
             every=every,
             mirrored=self.mirrored,
         )
