@@ -61,11 +61,19 @@ def penetration(duet: Duet) -> Array:
     return 100 * depths(duet.a.positions, one, duet.b.positions, two)
 
 
+PHYSICAL = {
+    "foot_skate": ("foot skate", "cm/s"),
+    "jerk": ("jerk", "m/s³"),
+    "penetration": ("penetration", "cm"),
+    "bone_drift": ("bone drift", "%"),
+}
+"""Key → (label, unit) of each measure."""
+
+
 def physical(duets: Sequence[Duet]) -> dict[str, float]:
-    """The means over duets of foot skate (cm/s), jerk (m/s³), penetration (cm) and bone drift (%)."""
+    """The mean of each measure of :data:`PHYSICAL` over duets."""
     values = [(foot_skate(duet), jerk(duet), penetration(duet).mean(), bone_drift(duet)) for duet in duets]
-    keys = ("foot_skate", "jerk", "penetration", "bone_drift")
-    return {key: round(float(mean), 4) for key, mean in zip(keys, np.mean(values, axis=0), strict=True)}
+    return {key: round(float(mean), 4) for key, mean in zip(PHYSICAL, np.mean(values, axis=0), strict=True)}
 
 
 # ---- How planned a motion looks: feet, jolts, arms that mirror each other, limbs in the other's body
