@@ -141,7 +141,9 @@ def _place(joints: list[Joint], values: Array, positions: Array) -> None:
     for index, joint in enumerate(joints):
         its = values[:, column : column + len(joint.channels)]
         column += len(joint.channels)
-        place, axes, degrees = np.tile(joint.offset, (len(values), 1)), "", []
+        place: Array = np.tile(joint.offset, (len(values), 1))
+        axes = ""
+        degrees: list[Array] = []
         for (kind, axis), value in zip(joint.channels, its.T, strict=True):
             if kind == "rotation":
                 axes, degrees = axes + "XYZ"[axis], [*degrees, value]
@@ -212,7 +214,7 @@ def parse_hierarchy(text: str, label: str) -> list[Joint]:
                 opened[-1].channels = _channels(words[1:], where, opened[-1].name)
             elif keyword != "HIERARCHY":
                 raise InputError(f"{where}: {words[0][:40]!r} is not understood in the HIERARCHY part.")
-    if last := (opened or [pending])[-1]:
+    if last := opened[-1] if opened else pending:
         raise InputError(f"{label}: joint {last.name} (line {last.line}) is never closed by '}}'.")
     if not joints:
         raise InputError(f"{label} has no ROOT joint.")

@@ -61,4 +61,5 @@ def shape(kind: str, *, height: float | None = None, width: float | None = None)
             vertices[:, 1] += (vertices[:, 1] > _ON_FLOOR) * taller
         if kind == "table":  # a narrow one is less deep
             vertices[:, 2] += np.sign(vertices[:, 2]) * (min(0.75, 0.9 * (wide + wider)) - 0.75) / 2
+    assert isinstance(stored.visual, trimesh.visual.ColorVisuals)
     return Mesh(vertices, stored.faces, stored.visual.face_colors[:, :3])

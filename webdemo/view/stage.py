@@ -290,7 +290,7 @@ def _ground(camera: Camera, theme: Theme, shadow: Shadow) -> NDArray[np.uint8]:
         east = reach * (rows[first:, :1] + x * right[0]) + np.float32(camera.eye[0] - camera.target[0])
         south = reach * (rows[first:, 2:] + x * right[2]) + np.float32(camera.eye[2] - camera.target[2])
         away = np.sqrt(east * east + south * south)
-        picture[first:] = _mixed(theme.floor, theme.far, smoothstep(away, 0.0, np.float32(REACH)))
+        picture[first:] = _mixed(theme.floor, theme.far, smoothstep(away / np.float32(REACH)))
         dark, hidden = shadow.at(east + np.float32(camera.target[0]), south + np.float32(camera.target[2]))
         lost = (1 - np.array(theme.shade)).astype(np.float32)
         picture[first:].reshape(-1, 3)[hidden] *= 1 - dark[:, None].astype(np.float32) * lost
