@@ -88,22 +88,6 @@ def mirror(motion: Motion) -> Motion:
     )
 
 
-def tempo(motion: Motion, scale: Array) -> Motion:
-    """Scales how fast the root travels over the ground by ``scale`` (T,); feet are planted later."""
-    steps = np.diff(motion.root, axis=0)
-    steps[:, [0, 2]] *= np.asarray(scale)[:-1, None]
-    root = np.concatenate([motion.root[:1], motion.root[:1] + np.cumsum(steps, axis=0)])
-    return replace(motion, root=root)
-
-
-def turned(motion: Motion, angle: float) -> Motion:
-    """Turns the whole motion by ``angle`` radians about the world's vertical axis."""
-    matrix = heading_matrix(angle)
-    rotations = motion.rotations.copy()
-    rotations[:, 0] = matrix @ rotations[:, 0]
-    return replace(motion, rotations=rotations, root=motion.root @ matrix.T)
-
-
 def facing_at(motion: Motion, frame: int, *, window: int = 5) -> float:
     """Heading in radians around a frame; averaged over a stride where the person walks."""
     frame = frame % len(motion)
@@ -115,7 +99,7 @@ def facing_at(motion: Motion, frame: int, *, window: int = 5) -> float:
 
 def place(motion: Motion, x: float, z: float, angle: float, *, frame: int = 0) -> Motion:
     """Moves a motion so that at ``frame`` its root is at (x, z) and its hips look towards heading ``angle``."""
-    motion = turned(motion, angle - facing_at(motion, frame))
+    motion = steer(motion, np.full(len(motion), angle - facing_at(motion, frame)))
     shift = np.array([x - motion.root[frame, 0], 0.0, z - motion.root[frame, 2]])
     return replace(motion, root=motion.root + shift)
 
@@ -151,12 +135,18 @@ def join(first: Motion, second: Motion, *, blend: int = 12, turn: float = 0.0) -
     )
 
 
-def steer(motion: Motion, extra: Array) -> Motion:
-    """Bends the path: ``extra`` (T,) is how far, in radians, each frame is turned beyond the original."""
+def steer(motion: Motion, extra: Array, pace: Array | float = 1.0) -> Motion:
+    """Bends the path, and scales how fast the root travels over the ground; feet are planted later.
+
+    Args:
+        extra: (T,) radians by which each frame is turned beyond the original.
+        pace: times the speed, for all frames or (T,).
+    """
     matrices = heading_matrix(np.asarray(extra))
     rotations = motion.rotations.copy()
     rotations[:, 0] = matrices @ rotations[:, 0]
     steps = np.einsum("tij,tj->ti", matrices[:-1], np.diff(motion.root, axis=0))
+    steps[:, [0, 2]] *= np.broadcast_to(pace, len(motion))[:-1, None]
     root = np.concatenate([motion.root[:1], motion.root[:1] + np.cumsum(steps, axis=0)])
     return replace(motion, rotations=rotations, root=root)
 
@@ -178,23 +168,12 @@ def layer(base: Motion, over: Motion, *, start: int, joints: tuple[int, ...], bl
     return replace(base, rotations=rotations, sources=tuple(dict.fromkeys(base.sources + over.sources)))
 
 
-def lean(motion: Motion, angle: Array, *, towards: float = 0.0) -> Motion:
-    """Bends the spine by ``angle`` (T,) radians towards a heading against the body's own (0: forward)."""
-    axis = np.array([np.cos(towards), 0.0, -np.sin(towards)])
-    rotations = motion.rotations.copy()
-    bend = Rotation.from_rotvec(np.asarray(angle)[:, None] / 3 * axis).as_matrix()
-    for joint in ("spine1", "spine2", "spine3"):
-        rotations[:, SMPL22.index(joint)] = rotations[:, SMPL22.index(joint)] @ bend
-    return replace(motion, rotations=rotations)
-
-
 def look_at(motion: Motion, target: Array, *, amount: float = 0.8) -> Motion:
     """Turns neck and upper spine a little towards ``target`` (T, 3), up to 70°; nothing behind the back."""
     world = global_rotations(motion.rotations)
     forward = world[:, SMPL22.index("spine3")] @ np.array([0.0, 0.0, 1.0])
     wanted = target - motion.root
-    angle = np.arctan2(wanted[:, 0], wanted[:, 2]) - np.arctan2(forward[:, 0], forward[:, 2])
-    angle = wrapped(angle)
+    angle = wrapped(np.arctan2(wanted[:, 0], wanted[:, 2]) - np.arctan2(forward[:, 0], forward[:, 2]))
     seen = np.clip((np.radians(140) - np.abs(angle)) / np.radians(50), 0, 1)
     angle = gaussian_filter1d(np.clip(angle, -1.2, 1.2) * seen * amount, 5.0, mode="nearest")
     rotations = motion.rotations.copy()
@@ -218,7 +197,6 @@ def realise(motion: Motion) -> Array:
 def blend_for(first: Motion, second: Motion) -> int:
     """Frames over which to blend so that no joint has to hurry: 10 to 24, by how far the poses are apart."""
     ends = np.stack([first.rotations[-1], second.rotations[0]])
-    pose = forward_kinematics(ends * 1.0, np.zeros((2, 3)))
-    own = np.linalg.inv(ends[:, 0])
-    gap = np.linalg.norm(np.einsum("aij,akj->aki", own, pose)[0] - np.einsum("aij,akj->aki", own, pose)[1], axis=-1)
-    return int(np.clip(8 + 22 * gap.max(), 10, 24))
+    ends[:, 0] = np.eye(3)
+    one, other = forward_kinematics(ends, np.zeros((2, 3)))
+    return int(np.clip(8 + 22 * np.linalg.norm(one - other, axis=-1).max(), 10, 24))

@@ -13,11 +13,10 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
-from motion.limbs import limb_length, solve_two_bones
-from motion.skeleton import LEGS, SMPL22
+from motion.limbs import limb_length, over_planted_feet, solve_two_bones
+from motion.skeleton import SMPL22
 from motion.smoothing import minimum_jerk
-from motion.transforms import heading
-from motion.vectors import unit
+from motion.vectors import FLAT, left_of, unit
 
 from .compose import ARMS, FPS, Array
 
@@ -58,22 +57,19 @@ def impulse(frames: int, start: int, *, rise: int = 5, fall: int = 22) -> Array:
 
 def axes(positions: Array) -> tuple[Array, Array]:
     """(T, 3) unit vectors to the person's left and ahead, level, of the shoulder girdle."""
-    across = positions[:, ARMS["left"][1]] - positions[:, ARMS["right"][1]]
-    across = across * np.array([1.0, 0.0, 1.0])
-    left = across / np.maximum(np.linalg.norm(across, axis=-1, keepdims=True), 1e-6)
-    return left, np.stack([-left[:, 2], np.zeros(len(left)), left[:, 0]], axis=-1)
+    left = unit((positions[:, ARMS["left"][1]] - positions[:, ARMS["right"][1]]) * FLAT)
+    return left, -left_of(left)
 
 
-def on_body(positions: Array, joint: str, left: float, up: float, ahead: float) -> Array:
-    """(T, 3) a point fixed to a joint of a person: metres to their left, up and ahead of it."""
-    to_left, forward = axes(positions)
-    return positions[:, SMPL22.index(joint)] + left * to_left + up * UP + ahead * forward
+def on_body(positions: Array, joint: str, left: float | Array, up: float | Array, ahead: float | Array) -> Array:
+    """(T, 3) a point beside a joint of a person: metres, fixed or (T,), to their left, up and ahead of it."""
+    parts = zip((left, up, ahead), (axes(positions)[0], UP, axes(positions)[1]), strict=True)
+    return sum((np.reshape(metres, (-1, 1)) * way for metres, way in parts), positions[:, SMPL22.index(joint)])
 
 
 def towards(origin: Array, target: Array) -> Array:
     """(T, 3) level unit vector from one point to another."""
-    gap = (target - origin) * np.array([1.0, 0.0, 1.0])
-    return gap / np.maximum(np.linalg.norm(gap, axis=-1, keepdims=True), 1e-6)
+    return unit((target - origin) * FLAT)
 
 
 def meeting(a: Array, b: Array, side_a: str, side_b: str, *, height: float, apart: float = 0.08) -> tuple[Array, Array]:
@@ -112,32 +108,12 @@ def lean_to(positions: Array, direction: Array, angle: Array) -> Array:
 
 def nod(positions: Array, angle: Array) -> Array:
     """Bends the neck forward by ``angle`` (T,) radians."""
-    _, forward = axes(positions)
-    return bend(positions, np.cross(UP, forward) * angle[:, None], joints=(NECK,))
+    return bend(positions, np.cross(UP, axes(positions)[1]) * angle[:, None], joints=(NECK,))
 
 
 def shift_hips(positions: Array, offset: Array) -> Array:
-    """Moves the body by ``offset`` (T, 3) metres over feet that stay where they are.
-
-    The hips sink as far as a leg would otherwise be too short.
-    """
-    moved = positions + offset[:, None]
-    sink = np.zeros(len(positions))
-    for hip, knee, ankle, _ in LEGS:
-        longest = 0.998 * (SMPL22.bone_lengths[knee] + SMPL22.bone_lengths[ankle])
-        gap = moved[:, hip] - positions[:, ankle]
-        before = np.linalg.norm(positions[:, hip] - positions[:, ankle], axis=-1)
-        height = np.sqrt(np.maximum(np.maximum(longest, before) ** 2 - gap[:, 0] ** 2 - gap[:, 2] ** 2, 0.2))
-        sink = np.maximum(sink, gap[:, 1] - height)
-    moved[..., 1] -= gaussian_filter1d(sink, 2.0)[:, None]
-    angle = heading(positions)
-    forward = np.stack([np.sin(angle), np.zeros(len(angle)), np.cos(angle)], axis=-1)
-    for hip, knee, ankle, toe in LEGS:
-        moved[:, knee], moved[:, ankle] = solve_two_bones(
-            moved[:, hip], moved[:, knee], moved[:, ankle], positions[:, ankle], forward
-        )
-        moved[:, toe] = moved[:, ankle] + positions[:, toe] - positions[:, ankle]
-    return moved
+    """Moves the body by ``offset`` (T, 3) metres over feet that stay where they are."""
+    return over_planted_feet(positions, positions + offset[:, None])
 
 
 def reach(
@@ -230,7 +206,7 @@ def settle(
     weights: tuple[Array, Array],
     *,
     apart: float,
-    away: tuple[Array, Array] | None = None,
+    away: tuple[Array, Array] = (np.zeros(3), np.zeros(3)),
     elbow: tuple[float, float, float] = ELBOW_DOWN,
 ) -> tuple[Array, Array]:
     """Makes two hands meet where an arm has stopped short: both go to the point between the wrists.
@@ -241,15 +217,14 @@ def settle(
         apart: distance between the wrists in metres.
         away: (T, 3) each by which a wrist keeps off the meeting point for the moment.
     """
-    off = away if away is not None else (np.zeros(3), np.zeros(3))
-    ends = [body[:, ARMS[side][3]] - gap for body, side, gap in zip((a, b), sides, off, strict=True)]
+    ends = [body[:, ARMS[side][3]] - gap for body, side, gap in zip((a, b), sides, away, strict=True)]
     smooth = [gaussian_filter1d(end, 2.0, axis=0, mode="nearest") for end in ends]
     middle = (smooth[0] + smooth[1]) / 2
     line = towards(a[:, 0], b[:, 0]) * (apart / 2)
     both = np.minimum(*weights) ** 2
     return (
-        reach_arm(a, sides[0], middle - line + off[0], both, elbow=elbow),
-        reach_arm(b, sides[1], middle + line + off[1], both, elbow=elbow),
+        reach_arm(a, sides[0], middle - line + away[0], both, elbow=elbow),
+        reach_arm(b, sides[1], middle + line + away[1], both, elbow=elbow),
     )
 
 

@@ -93,7 +93,7 @@ def motion(positions: np.ndarray) -> compose.Motion:
 
 
 def test_join_goes_on_where_the_first_ended_without_a_jump() -> None:
-    first, second = motion(walk(120)), compose.turned(motion(gesture(90, "left")), 2.0)
+    first, second = motion(walk(120)), compose.steer(motion(gesture(90, "left")), np.full(90, 2.0))
     joined = compose.join(first, second, blend=12)
     positions = compose.realise(joined)
     assert len(joined) == 120 + 90 - 12

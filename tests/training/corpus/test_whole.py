@@ -7,8 +7,8 @@ import pytest
 
 from tests.training.corpus.test_beats import main, more, path, staged
 from tests.training.corpus.test_compose import clips, walk
+from training.corpus.beats.acts import ACTS
 from training.corpus.beats.script import opening
-from training.corpus.beats.whole import WHOLE
 from training.corpus.cues import STILL, SourceClip
 from training.corpus.library import Library
 
@@ -58,5 +58,5 @@ def test_clips_that_follow_each_other_are_mirrored_alike(library: Library, monke
 
     monkeypatch.setattr(library, "take", seen)
     for seed in range(8):
-        WHOLE["crouch>stand-up"].make(opening(np.random.default_rng(seed), library), 0)
+        ACTS["crouch>stand-up"].make(opening(np.random.default_rng(seed), library), 0)
     assert sides[::2] == sides[1::2] and set(sides) == {"left", "right"}

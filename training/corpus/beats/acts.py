@@ -1,52 +1,132 @@
-"""Acts of one person alone, at any place on the stage: gestures, jumps, sitting, falling, dancing."""
+"""What one person does alone, at any place on the stage: what recordings show, and gestures of people who stand."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from acts.staging.gestures import GESTURES, Stroke
 from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
 from motion.smoothing import smoothstep
+from motion.vectors import FLAT, unit
 
-from ..compose import ARMS, Array, Motion, drift, layer, lean
-from ..contact import UP, axes, bend, envelope, impulse, nod, on_body, reach_arm
+from ..compose import ARMS, FPS, Array, Motion, drift, join, layer
+from ..contact import UP, axes, bend, envelope, impulse, lean_to, nod, on_body, reach_arm, shift_hips
 from ..library import Library, Take, pick
-from ..touches import Touches
-from .play import Act, Done, Make, Play, Rng
-from .whole import WHOLE, part_of, perform, taken
+from ..touches import Touched
+from .play import Act, Done, Effect, Make, Play, Rng
 
 HEAD = SMPL22.index("head")
 UPPER = (*ARMS["left"], *ARMS["right"])
+SIDES = ("left", "right")
 
 
-def deepened(motion: Motion, drop: float) -> Motion:
-    """A bow whose head comes down by ``drop`` metres at least: the spine bends as much further as needed."""
-    height = forward_kinematics(motion.rotations, motion.root)[:, HEAD, 1]
-    fallen = height[: max(len(height) // 8, 1)].mean() - height
-    if fallen.max() < 0.04:
-        raise LookupError("a bow that is none")
-    if fallen.max() >= drop:
-        return motion
-    weight = smoothstep(fallen / fallen.max())
-    angle = 0.0
-    bent = motion
-    for _ in range(6):
-        lacking = drop - (height.max() - forward_kinematics(bent.rotations, bent.root)[:, HEAD, 1].min())
-        if lacking < 0.01:
-            break
-        angle = min(angle + lacking / 0.45, 1.25)
-        bent = lean(motion, angle * weight)
-        back = np.stack([np.sin(motion.headings), np.zeros(len(motion)), np.cos(motion.headings)], axis=-1)
-        bent = drift(bent, -0.09 * angle * weight[:, None] * back)
-    return bent
+def taken(action: str, frames: tuple[int, int] = (40, 100), *, side: str | None = None, one: bool = False) -> Make:
+    """An act that is one clip of the library; with ``one``, of one hand."""
+
+    def make(play: Play, i: int) -> Done:
+        person, rng = play.people[i], play.rng
+        own = side or (pick(rng, SIDES) if one else None)
+        styles = play.library.styles(action)
+        style = person.style if person.style in styles and rng.random() < 0.7 else pick(rng, styles)
+        length = (frames[0], max(frames[0] + 15, int(0.72 * frames[1]))) if play.brisk else frames
+        return person.perform(play.library.take(rng, action, side=own, style=style, frames=length))
+
+    return make
+
+
+@dataclass(frozen=True)
+class Part:
+    """A clip of a chain.
+
+    Attributes:
+        action: what it is a recording of.
+        skip, cut: frames that are left out at its beginning and at its end.
+        times: how often it is played, at least and at most, for a clip that ends as it begins.
+        lasts: seconds of a stretch of a clip that goes on and on; the person stays about where they began.
+        rests: seconds for which its last pose is held.
+    """
+
+    action: str
+    skip: int = 0
+    cut: int = 0
+    times: tuple[float, float] | None = None
+    lasts: tuple[float, float] | None = None
+    rests: tuple[float, float] | None = None
+
+    def drawn(self, play: Play, side: str | None) -> list[Motion]:
+        """A performance, and the rest after it."""
+        rng = play.rng
+        motion = play.library.take(rng, self.action, side=side, frames=(1, 10_000 if self.lasts else 400)).motion
+        motion = motion[self.skip : len(motion) - self.cut]
+        if self.times:
+            motion = _looped(motion, int(len(motion) * rng.uniform(*self.times)))
+        if self.lasts:
+            frames = play.seconds(*self.lasts)
+            motion = _looped(motion, frames)
+            at = int(rng.integers(0, len(motion) - frames + 1))
+            motion = motion[at : at + frames]
+            way = (motion.root[-1] - motion.root[0]) * FLAT
+            if np.linalg.norm(way) > 0.8:
+                motion = drift(motion, -np.linspace(0, 0.7, len(motion))[:, None] * way)
+        if not self.rests:
+            return [motion]
+        last = [len(motion) - 1] * play.seconds(*self.rests)
+        return [motion, Motion(motion.rotations[last], motion.root[last], motion.sources)]
+
+
+def _looped(motion: Motion, frames: int) -> Motion:
+    """At least ``frames`` frames of a clip, one performance after the other."""
+    longer = motion
+    while len(longer) < frames:
+        longer = join(longer, motion, blend=6)
+    return longer
+
+
+def chain(*parts: str | Part, blend: int = 12, one_sided: bool = False) -> Make:
+    """An act of clips after one another; ``one_sided``: all mirrored or none, so that legs go on."""
+
+    def make(play: Play, i: int) -> Done:
+        side = pick(play.rng, SIDES) if one_sided else None
+        first, *more = (m for p in parts for m in (Part(p) if isinstance(p, str) else p).drawn(play, side))
+        for motion in more:
+            first = join(first, motion, blend=blend)
+        return play.people[i].perform(Take(first, "", "normal"))
+
+    return make
+
+
+def chained(weight: float, *parts: str | Part, room: float = 0.9, **how: Any) -> Act:
+    """A :func:`chain` as an act that needs its clips."""
+    needs = tuple(part if isinstance(part, str) else part.action for part in parts)
+    return Act(chain(*parts, **how), needs, weight, room)
 
 
 def bow(play: Play, i: int) -> Done:
-    """Person i bows."""
-    take = play.library.take(play.rng, "bow", frames=(50, 72 if play.brisk else 100))
-    return perform(play, i, Take(deepened(take.motion, play.rng.uniform(0.27, 0.42)), "bow", take.style))
+    """Person i bows; where the recording hardly does, the spine bends as much further as needed."""
+    done = taken("bow", (50, 72 if play.brisk else 100))(play, i)
+    drop = play.rng.uniform(0.27, 0.42)
+
+    def effect(rng: Rng, own: Array, other: Array) -> Touched:
+        height = own[:, HEAD, 1]
+        fallen = height[: max(len(own) // 8, 1)].mean() - height
+        if fallen.max() < 0.04:
+            raise LookupError("a bow that is none")
+        weight, (_, ahead), angle, bent = smoothstep(fallen / fallen.max()), axes(own), 0.0, own
+        for _ in range(6):
+            lacking = drop - (height.max() - bent[:, HEAD, 1].min())
+            if lacking < 0.01:
+                break
+            angle = min(angle + lacking / 0.45, 1.25)
+            bent = lean_to(shift_hips(own, -0.09 * angle * weight[:, None] * ahead), ahead, angle * weight)
+        return bent, other, []
+
+    play.effect(done.start, done.stop, effect, i=i)
+    return done
 
 
 def spoken(play: Play) -> list[str]:
@@ -61,18 +141,14 @@ def talk(play: Play, i: int) -> Done:
 
 def dance(play: Play, i: int) -> Done:
     """Person i dances."""
-    rng = play.rng
-    action = pick(rng, [n for n in ("dance", "dance-show", "ballet") if play.library.has(n)])
-    clip = play.library.take(rng, action).motion
-    frames = min(play.seconds(2.5, 4.0), len(clip))
-    at = int(rng.integers(0, len(clip) - frames + 1))
-    motion = clip[at : at + frames]
-    if action != "dance":
-        way = (motion.root[-1] - motion.root[0]) * np.array([1.0, 0.0, 1.0])
-        if np.linalg.norm(way) > 0.8:  # it stays about where it began
-            motion = drift(motion, -np.linspace(0, 0.7, len(motion))[:, None] * way)
-    start, stop = play.people[i].perform(motion)
-    return Done(start, stop)
+    action = pick(play.rng, [n for n in ("dance", "dance-show", "ballet") if play.library.has(n)])
+    return chain(Part(action, lasts=(2.5, 4.0)))(play, i)
+
+
+def sit(play: Play, i: int) -> Done:
+    """Sits down, stays a while, gets up."""
+    still = pick(play.rng, [n for n in ("sitting", "sitting-talk") if play.library.has(n)])
+    return chain("sit-down", Part(still, lasts=(0.8, 2.0)), "stand-up")(play, i)
 
 
 def spin(play: Play, i: int) -> Done:
@@ -94,142 +170,16 @@ def look_around(play: Play, i: int) -> Done:
     return Done(start, len(person))
 
 
-# ---- acts that are laid over a person who stands ------------------------------------------------------------
+def wave(play: Play, i: int) -> Done:
+    """Person i waves with one hand, or goodbye as the recording has it."""
+    bye = play.library.has("bye") and play.rng.random() < 0.33
+    return taken("bye" if bye else "wave", (50, 100), one=not bye)(play, i)
 
 
-def _alone(change: Callable[[Array], Array]) -> Callable[[Array, Array], tuple[Array, Array, Touches]]:
-    return lambda own, other: (change(own), other, [])
-
-
-def _standing(play: Play, i: int, low: float, high: float) -> tuple[int, int]:
-    person = play.people[i]
-    start = len(person)
-    person.hold(play.seconds(low, high))
-    return start, len(person)
-
-
-def nodding(play: Play, i: int) -> Done:
-    """Person i nods."""
-    rng = play.rng
-    start, stop = _standing(play, i, 1.2, 2.0)
-    hertz, size = rng.uniform(1.1, 1.7), rng.uniform(0.25, 0.42)
-
-    def change(body: Array) -> Array:
-        time = np.arange(len(body)) / 30
-        weight = envelope(len(body), 0, 8, len(body) - 10, len(body) - 1)
-        return nod(body, weight * size * (0.5 - 0.5 * np.cos(2 * np.pi * hertz * time)))
-
-    play.effect(start, stop, _alone(change), i=i)
-    return Done(start, stop)
-
-
-def head_shake(play: Play, i: int) -> Done:
-    """Turns the head from side to side; the face shows in the shoulders' small counter-turn."""
-    rng = play.rng
-    start, stop = _standing(play, i, 1.3, 2.0)
-    hertz, size = rng.uniform(0.9, 1.4), rng.uniform(0.4, 0.6)
-
-    def change(body: Array) -> Array:
-        time = np.arange(len(body)) / 30
-        weight = envelope(len(body), 0, 8, len(body) - 12, len(body) - 1)
-        swing = (weight * size * np.sin(2 * np.pi * hertz * time))[:, None]
-        _, forward = axes(body)
-        body = bend(body, 0.3 * swing * UP)
-        return bend(body, swing * 0.35 * forward, joints=(SMPL22.index("neck"),))
-
-    play.effect(start, stop, _alone(change), i=i)
-    play.look(i, start, stop, 0.4)
-    return Done(start, stop)
-
-
-def clap(play: Play, i: int) -> Done:
-    """Person i claps."""
-    rng = play.rng
-    start, stop = _standing(play, i, 1.6, 2.6)
-    hertz, wide, height = rng.uniform(2.0, 3.0), rng.uniform(0.1, 0.16), rng.uniform(-0.02, 0.12)
-
-    def change(body: Array) -> Array:
-        time = np.arange(len(body)) / 30
-        weight = envelope(len(body), 0, 16, len(body) - 18, len(body) - 1)
-        gap = 0.035 + wide * (0.5 + 0.5 * np.cos(2 * np.pi * hertz * time))
-        left, _ = axes(body)
-        middle = on_body(body, "spine3", 0.0, height, 0.33)
-        for side, sign in (("left", 1.0), ("right", -1.0)):
-            body = reach_arm(body, side, middle + sign * gap[:, None] * left, weight, elbow=(0.9, -0.7, -0.1))
-        return body
-
-    play.effect(start, stop, _alone(change), i=i)
-    return Done(start, stop, "both")
-
-
-def _pose(targets: Callable[[Array, str], Array], low: float, high: float, *, both: bool = True) -> Make:
-    """An act of hands held at a place on the own body for a while."""
-
-    def make(play: Play, i: int) -> Done:
-        rng = play.rng
-        start, stop = _standing(play, i, low, high)
-        sides = ("left", "right") if both else (pick(rng, ("left", "right")),)
-
-        def change(body: Array) -> Array:
-            weight = envelope(len(body), 0, 18, len(body) - 20, len(body) - 1)
-            for side in sides:
-                body = reach_arm(body, side, targets(body, side), weight, elbow=(1.0, -0.4, -0.1))
-            return body
-
-        play.effect(start, stop, _alone(change), i=i)
-        return Done(start, stop, "both" if both else sides[0])
-
-    return make
-
-
-def _out(side: str) -> float:
-    return 1.0 if side == "left" else -1.0
-
-
-hands_on_hips = _pose(lambda body, side: on_body(body, "pelvis", 0.2 * _out(side), 0.12, 0.03), 1.5, 2.8)
-cover_face = _pose(lambda body, side: on_body(body, "head", 0.05 * _out(side), 0.0, 0.14), 1.4, 2.4)
-fold_arms = _pose(
-    lambda body, side: on_body(body, "spine2", -0.12 * _out(side), 0.1 + 0.03 * _out(side), 0.2), 1.6, 3.0
-)
-shrug = _pose(lambda body, side: on_body(body, f"{side}_shoulder", 0.26 * _out(side), -0.2, 0.22), 1.2, 1.8)
-stop_hand = _pose(lambda body, side: on_body(body, f"{side}_shoulder", 0.0, 0.02, 0.5), 1.2, 2.0, both=False)
-phone = _pose(lambda body, side: on_body(body, "head", 0.13 * _out(side), -0.02, 0.03), 1.8, 3.0, both=False)
-hand_on_chest = _pose(lambda body, side: on_body(body, "spine3", 0.03 * _out(side), 0.0, 0.13), 1.3, 2.2, both=False)
-open_arms = _pose(lambda body, side: on_body(body, f"{side}_shoulder", 0.38 * _out(side), -0.06, 0.24), 1.3, 2.2)
-
-
-def point(play: Play, i: int) -> Done:
-    """Points at the other."""
-    rng = play.rng
-    start, stop = _standing(play, i, 1.4, 2.4)
-    side = pick(rng, ("left", "right"))
-
-    def effect(own: Array, other: Array) -> tuple[Array, Array, Touches]:
-        weight = envelope(len(own), 0, 16, len(own) - 18, len(own) - 1)
-        shoulder = own[:, ARMS[side][1]]
-        way = other[:, 0] + np.array([0.0, 0.25, 0.0]) - shoulder
-        way = way / np.linalg.norm(way, axis=-1, keepdims=True)
-        return reach_arm(own, side, shoulder + 0.56 * way, weight), other, []
-
-    play.effect(start, stop, effect, i=i)
-    return Done(start, stop, side)
-
-
-def strike(action: str) -> Make:
-    """One or two blows in the air."""
-
-    def make(play: Play, i: int) -> Done:
-        take = blow(play.rng, play.library, action, most=2)
-        return perform(play, i, take, aim=take.aim)
-
-    return make
-
-
-def shadow_box(play: Play, i: int) -> Done:
-    """Punches the air: one or two blows, or a boxer's or a karateka's practice."""
-    if play.library.has("shadow-box") and play.rng.random() < 0.6:
-        return part_of("shadow-box", 1.8, 3.2)(play, i)
-    return strike("punch")(play, i)
+def raise_arm(play: Play, i: int) -> Done:
+    """Person i raises one hand or both."""
+    both = play.rng.random() < 0.38
+    return taken("raise-hand", (40, 80), side="both" if both else None, one=not both)(play, i)
 
 
 def arms_over(
@@ -240,46 +190,66 @@ def arms_over(
     return layer(base, take.motion, start=start, joints=UPPER, blend=10), take
 
 
-def wave(play: Play, i: int) -> Done:
-    """Person i waves with one hand, or goodbye as the recording has it."""
-    if play.library.has("bye") and play.rng.random() < 0.33:
-        return taken("bye", (50, 100))(play, i)
-    return taken("wave", (50, 100), one=True)(play, i)
+# ---- acts that are laid over a person who stands ------------------------------------------------------------
 
 
-def raise_arm(play: Play, i: int) -> Done:
-    """Person i raises one hand or both."""
-    both = play.rng.random() < 0.38
-    return taken("raise-hand", (40, 80), side="both" if both else None, one=not both)(play, i)
+Change = Callable[[Rng, Array, Array, Array, Sequence[str]], Array]
+"""A person's positions from (rng, own, other's, weight (T,), hands)."""
 
 
-ACTS: dict[str, Act] = {
-    "wave": Act(wave, ("wave",), 4.5),
-    "bow": Act(bow, ("bow",), 3.0),
-    "raise-arm": Act(raise_arm, ("raise-hand",), 3.2),
-    "beckon": Act(taken("call", (50, 100)), ("call",), 1.0),
-    "talk": Act(talk, ("guide",), 3.0),
-    "point": Act(point, ("idle",), 2.0),
-    "nod": Act(nodding, ("idle",), 2.0),
-    "shake-head": Act(head_shake, ("idle",), 1.5),
-    "clap": Act(clap, ("idle",), 2.0),
-    "hands-on-hips": Act(hands_on_hips, ("idle",), 1.0),
-    "cover-face": Act(cover_face, ("idle",), 1.0),
-    "fold-arms": Act(fold_arms, ("idle",), 1.2),
-    "shrug": Act(shrug, ("idle",), 1.2),
-    "stop-hand": Act(stop_hand, ("idle",), 1.0),
-    "phone": Act(phone, ("idle",), 1.0),
-    "hand-on-chest": Act(hand_on_chest, ("idle",), 0.7),
-    "arms-out": Act(open_arms, ("idle",), 1.0),
-    "dance": Act(dance, ("dance",), 1.6, room=1.4),
-    "spin": Act(spin, ("idle",), 1.5),
-    "look-around": Act(look_around, ("idle",), 1.0),
-    "shadow-box": Act(shadow_box, ("punch",), 1.4, room=1.7),
-    "kick-air:leg": Act(strike("kick"), ("kick",), 1.2, room=1.7),
-    "swing-sword": Act(strike("slash"), ("slash",), 0.6, room=1.9),
-    **WHOLE,
-}
-"""What one person does alone, by its cue."""
+def standing(change: Change, low: float, high: float, *, hands: int = 0) -> Make:
+    """An act of a person who stands for ``low`` to ``high`` seconds, with no hand, one or both."""
+
+    def make(play: Play, i: int) -> Done:
+        sides = SIDES if hands == 2 else (pick(play.rng, SIDES),)
+        person = play.people[i]
+        start = len(person)
+        person.hold(play.seconds(low, high))
+
+        def effect(rng: Rng, own: Array, other: Array) -> Touched:
+            weight = envelope(len(own), 0, 16, len(own) - 18, len(own) - 1)
+            return change(rng, own, other, weight, sides), other, []
+
+        play.effect(start, len(person), effect, i=i)
+        return Done(start, len(person), (None, sides[0], "both")[hands])
+
+    return make
+
+
+def _nods(rng: Rng, own: Array, other: Array, weight: Array, sides: Sequence[str]) -> Array:
+    phase = 2 * np.pi * rng.uniform(1.1, 1.7) * np.arange(len(own)) / FPS
+    return nod(own, weight * rng.uniform(0.25, 0.42) * (0.5 - 0.5 * np.cos(phase)))
+
+
+def _shakes_head(rng: Rng, own: Array, other: Array, weight: Array, sides: Sequence[str]) -> Array:
+    """The face shows in the shoulders' small counter-turn."""
+    phase = 2 * np.pi * rng.uniform(0.9, 1.4) * np.arange(len(own)) / FPS
+    swing = (weight * rng.uniform(0.4, 0.6) * np.sin(phase))[:, None]
+    own = bend(own, 0.3 * swing * UP)
+    return bend(own, swing * 0.35 * axes(own)[1], joints=(SMPL22.index("neck"),))
+
+
+def _moves_hands(stroke: Stroke, towards: float = 0.0) -> Change:
+    """The hands go along a stroke, and ``towards`` the other by metres."""
+
+    def change(rng: Rng, own: Array, other: Array, weight: Array, sides: Sequence[str]) -> Array:
+        seconds, off = np.arange(len(own)) / FPS * rng.uniform(0.85, 1.2), rng.normal(0, 0.015, 3)
+        for side in sides:
+            way = stroke.way(1.0 if side == "left" else -1.0, seconds) + off
+            goal = on_body(own, f"{side}_shoulder" if stroke.from_shoulder else "pelvis", *way.T)
+            goal = goal + towards * unit(other[:, 0] + 0.25 * UP - own[:, ARMS[side][1]])
+            own = reach_arm(own, side, goal, weight, elbow=stroke.pole)
+        return own
+
+    return change
+
+
+def gesture(name: str, low: float, high: float, *, hands: int = 1) -> Make:
+    """A gesture of :data:`acts.staging.gestures.GESTURES` by a person who stands."""
+    return standing(_moves_hands(GESTURES[name], 0.5 * (name == "points")), low, high, hands=hands)
+
+
+_SHRUG = Stroke(at=(0.26, -0.2, 0.22), from_shoulder=True)
 
 
 # ---- punches, kicks and sword cuts of recordings, and how a body gives way to them ---------------
@@ -297,6 +267,22 @@ def blow(rng: Rng, library: Library, action: str, *, most: int) -> Take:
     return take
 
 
+def strike(action: str) -> Make:
+    """One or two blows in the air."""
+
+    def make(play: Play, i: int) -> Done:
+        take = blow(play.rng, play.library, action, most=2)
+        return play.people[i].perform(take, aim=take.aim)
+
+    return make
+
+
+def shadow_box(play: Play, i: int) -> Done:
+    """Punches the air: one or two blows, or a boxer's or a karateka's practice."""
+    practice = play.library.has("shadow-box") and play.rng.random() < 0.6
+    return (chain(Part("shadow-box", lasts=(1.8, 3.2))) if practice else strike("punch"))(play, i)
+
+
 def reach(take: Take) -> float:
     """Reach of the blow at its first peak, in metres in front of the attacker's first place."""
     joint = SMPL22.index(f"{take.side}_{TIPS[take.action]}")
@@ -305,19 +291,91 @@ def reach(take: Take) -> float:
     return float(np.linalg.norm((tip - take.motion.root[0])[[0, 2]]))
 
 
-def recoil(rng: Rng, motion: Motion, frame: int) -> Motion:
-    """The upper body is thrown back at ``frame`` and comes forward again; the hips give way a little."""
-    shape = impulse(len(motion), frame, rise=int(rng.integers(5, 8)), fall=int(rng.integers(16, 26)))
-    motion = lean(motion, -shape * rng.uniform(0.5, 0.85), towards=float(rng.normal(0, 0.4)))
-    back = -np.stack([np.sin(motion.headings), np.zeros(len(motion)), np.cos(motion.headings)], axis=-1)
-    return drift(motion, back * shape[:, None] * rng.uniform(0.08, 0.16))
+def gives_way(frame: int, *, dodges: bool) -> Effect:
+    """The upper body of the other is thrown back at a frame, or leans out of the way around it, and comes back."""
+
+    def effect(rng: Rng, striker: Array, own: Array) -> Touched:
+        rise = 10 if dodges else int(rng.integers(5, 8))
+        shape = impulse(len(own), max(frame - rise * dodges, 0), rise=rise, fall=int(rng.integers(15, 25)))
+        angle = pick(rng, (-1, 1)) * rng.uniform(1.3, 2.3) if dodges else np.pi + rng.normal(0, 0.4)
+        left, ahead = axes(own)
+        way = np.cos(angle) * ahead + np.sin(angle) * left
+        own = shift_hips(own, way * shape[:, None] * rng.uniform(0.08, 0.16))
+        return striker, lean_to(own, way, shape * rng.uniform(0.45, 0.8)), []
+
+    return effect
 
 
-def dodge(rng: Rng, motion: Motion, frame: int) -> Motion:
-    """The upper body leans out of the way around ``frame``, to one side and back."""
-    shape = impulse(len(motion), max(frame - 10, 0), rise=10, fall=int(rng.integers(14, 22)))
-    towards = pick(rng, (-1, 1)) * rng.uniform(1.3, 2.3)
-    motion = lean(motion, shape * rng.uniform(0.45, 0.7), towards=towards)
-    angle = motion.headings + towards
-    aside = np.stack([np.sin(angle), np.zeros(len(motion)), np.cos(angle)], axis=-1)
-    return drift(motion, aside * shape[:, None] * rng.uniform(0.08, 0.16) - np.array([0, 0.05, 0]) * shape[:, None])
+ACTS: dict[str, Act] = {
+    "wave": Act(wave, ("wave",), 4.5),
+    "bow": Act(bow, ("bow",), 3.0),
+    "raise-arm": Act(raise_arm, ("raise-hand",), 3.2),
+    "beckon": Act(taken("call", (50, 100)), ("call",), 1.0),
+    "talk": Act(talk, ("guide",), 3.0),
+    "point": Act(gesture("points", 1.4, 2.4), ("idle",), 2.0),
+    "nod": Act(standing(_nods, 1.2, 2.0), ("idle",), 2.0),
+    "shake-head": Act(standing(_shakes_head, 1.3, 2.0), ("idle",), 1.5),
+    "clap": Act(gesture("claps", 1.6, 2.6, hands=2), ("idle",), 2.0),
+    "hands-on-hips": Act(gesture("hips", 1.5, 2.8, hands=2), ("idle",), 1.0),
+    "cover-face": Act(gesture("eyes", 1.4, 2.4, hands=2), ("idle",), 1.0),
+    "fold-arms": Act(gesture("crossed", 1.6, 3.0, hands=2), ("idle",), 1.2),
+    "shrug": Act(standing(_moves_hands(_SHRUG), 1.2, 1.8, hands=2), ("idle",), 1.2),
+    "stop-hand": Act(gesture("ahead", 1.2, 2.0), ("idle",), 1.0),
+    "phone": Act(gesture("phone", 1.8, 3.0), ("idle",), 1.0),
+    "hand-on-chest": Act(gesture("chest", 1.3, 2.2), ("idle",), 0.7),
+    "arms-out": Act(gesture("spread", 1.3, 2.2, hands=2), ("idle",), 1.0),
+    "dance": Act(dance, ("dance",), 1.6, room=1.4),
+    "spin": Act(spin, ("idle",), 1.5),
+    "look-around": Act(look_around, ("idle",), 1.0),
+    "shadow-box": Act(shadow_box, ("punch",), 1.4, room=1.7),
+    "kick-air:leg": Act(strike("kick"), ("kick",), 1.2, room=1.7),
+    "swing-sword": Act(strike("slash"), ("slash",), 0.6, room=1.9),
+    "jump": Act(taken("jump", (30, 110)), ("jump",), 2.0, room=1.6),
+    "jumping-jacks": chained(1.2, Part("jumping-jacks", times=(1.9, 3.2))),
+    "sit-down>stand-up": Act(sit, ("sit-down", "sitting", "stand-up"), 2.5),
+    "crouch>stand-up": chained(2.0, "crouch-down", "crouch-up", one_sided=True),
+    "lie-down>stand-up": chained(
+        1.2,
+        "crouch-down",
+        Part("crouch-to-lie", rests=(0.2, 0.6)),
+        "lie-to-crouch",
+        "crouch-up",
+        one_sided=True,
+        room=2.2,
+    ),
+    "kneel": Act(taken("kneel", (60, 110)), ("kneel",), 1.6),
+    "fall-down>stand-up": chained(1.5, Part("fall", rests=(0.3, 0.8)), "get-up-back", blend=18, room=1.4),
+    "lie-down>crawl>stand-up": chained(
+        1.0, Part("lie-down-front", cut=25), "crawl", "get-up-front", blend=14, room=2.6
+    ),
+    "lie-down>push-ups>stand-up": chained(
+        0.8,
+        Part("lie-down-front", cut=30),
+        Part("push-up", times=(1, 3)),
+        Part("get-up-front", skip=20),
+        blend=14,
+        room=2.0,
+    ),
+    "somersault": Act(taken("roll", (40, 110)), ("roll",), 1.0, room=2.2),
+    "cartwheel": Act(taken("cartwheel", (40, 110)), ("cartwheel",), 2.0, room=3.8),
+    "turn-around": Act(taken("turn-around", (50, 80)), ("turn-around",), 2.0, room=2.0),
+    "jump-ahead": Act(taken("jump-ahead", (45, 80)), ("jump-ahead",), 2.0, room=2.3),
+    "squats": Act(taken("squats", (70, 150)), ("squats",), 1.0),
+    "touch-toes": Act(taken("touch-toes", (60, 110)), ("touch-toes",), 1.0, room=1.2),
+    "stretch": Act(taken("stretch", (60, 100)), ("stretch",), 1.0),
+    "sway": chained(1.0, Part("sway", lasts=(2.0, 4.0))),
+    "swing-arms@both": Act(taken("swing-arms", (60, 110)), ("swing-arms",), 1.0),
+    "kick-ball": Act(taken("kick-ball", (45, 80)), ("kick-ball",), 3.5, room=3.2),
+    "shoot-hoop": Act(taken("shoot-hoop", (45, 80)), ("shoot-hoop",), 0.8),
+    "lift-thing": Act(taken("lift-box", (60, 120)), ("lift-box",), 1.2),
+    "put-down-thing": Act(taken("put-down-box", (40, 110)), ("put-down-box",), 1.2),
+    "pick-up-thing": Act(taken("pick-up", (60, 120)), ("pick-up",), 1.5),
+    "rage": chained(1.2, Part("rage", lasts=(1.5, 2.8))),
+    "scratch-head": Act(taken("scratch-head", (50, 100)), ("scratch-head",), 1.0),
+    "drink": Act(taken("drink", (60, 110)), ("drink",), 1.2),
+    "wave-off": Act(taken("reject", (50, 110)), ("reject",), 1.5),
+    "cheer": Act(taken("victory", (40, 90)), ("victory",), 1.2),
+    "make-fist": Act(taken("fist-pump", (40, 90)), ("fist-pump",), 1.0),
+    "block": Act(taken("guard", (25, 60)), ("guard",), 0.6),
+}
+"""What one person does alone, by its cue."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from motion.vectors import wrapped
 
-from ..compose import Array, ease, steer, tempo
+from ..compose import Array, ease, steer
 from ..cues import STILL
 from ..library import Take, pick, stride
 from .acts import ACTS, arms_over, spoken
@@ -31,10 +31,30 @@ def gait(play: Play, *, fast: float = 0.15) -> str:
     return "sneak" if play.library.has("sneak") and rng.random() < 0.05 else "walk"
 
 
+def off_from(play: Play, i: int) -> float:
+    """The heading of a person who goes away from the other."""
+    own = play.people[i]
+    return own.angle + (np.pi + play.rng.normal(0, 0.35) if abs(play.off(i)) < 1.2 else 0.0)
+
+
+def rounded(take: Take, radius: float) -> Array:
+    """(T,) radians by which a walk has turned that goes round a point: to the left for a radius above 0, in metres."""
+    steps = np.linalg.norm(np.diff(take.motion.root[:, [0, 2]], axis=0), axis=-1)
+    return np.concatenate([[0.0], np.cumsum(steps)]) / radius
+
+
+def sideways(play: Play, metres: float) -> tuple[Take, float]:
+    """Steps to a side, and the ``aim`` at which they are level with a person's front."""
+    side = pick(play.rng, ("left", "right"))
+    take = stride(play.rng, play.library, f"walk-{side}", metres, side=side)
+    step = take.motion.root[-1] - take.motion.root[0]
+    course = wrapped(float(np.arctan2(step[0], step[2]) - take.motion.headings.mean()))
+    return take, course - (1 if side == "left" else -1) * np.pi / 2
+
+
 def close_in(play: Play, i: int, distance: float, *, both: bool = False, action: str = "walk") -> Take | None:
     """The two come to stand ``distance`` metres apart, face to face; the walk of i, if any was needed."""
-    own, other = play.people[i], play.people[1 - i]
-    start = play.sync()
+    start, own, other = play.begin(i)
     gap, axis = play.gap, own.spot - other.spot
     axis = axis / max(float(np.linalg.norm(axis)), 1e-6)
     towards = bearing(-axis)
@@ -44,12 +64,11 @@ def close_in(play: Play, i: int, distance: float, *, both: bool = False, action:
         take = own.go(middle + axis * distance / 2, towards, action=action)
         other.go(middle - axis * distance / 2, towards + np.pi, action=action)
     else:
-        stay = other.spot
         if abs(distance - gap) > 0.08 or abs(play.off(i)) > 0.25:
-            take = own.go(stay + axis * distance, towards, action=action)
+            take = own.go(other.spot + axis * distance, towards, action=action)
         if abs(play.off(1 - i)) > 0.3:
             other.hold(max(min(len(own) - start - 40, 12), 0))
-            other.turn(wrapped(bearing(own.spot - other.spot) - other.angle))
+            other.turn(play.off(1 - i))
     play.sync()
     error = play.gap - distance
     if abs(error) > 0.06 or max(abs(play.off(0)), abs(play.off(1))) > 0.22:
@@ -62,227 +81,202 @@ def close_in(play: Play, i: int, distance: float, *, both: bool = False, action:
     return take
 
 
-def come(play: Play, i: int, distance: float) -> int:
-    """The two come within reach; the way there is a beat of its own if it is long enough."""
-    start = play.sync()
+def come(play: Play, i: int, distance: float, *, action: str = "walk", minor: bool | None = None) -> int:
+    """The two come to stand ``distance`` metres apart; a long way there is a beat of its own, often a ``minor`` one."""
+    start, rng = play.sync(), play.rng
     far = play.gap - distance
-    both = far > 1.6 and play.rng.random() < 0.3
-    take = close_in(play, i, distance, both=both)
+    both = far > 1.6 and rng.random() < 0.3
+    take = close_in(play, i, distance, both=both, action=action)
     if far > 0.5:
-        acts = ("walk-up", "walk-up") if both else ("walk-up", STILL)
-        style = take.style if take else "normal"
-        play.note(acts, start, i=i, styles=(style, "normal"), minor=bool(play.rng.random() < 0.4))
+        cue = "creep-up" if action == "sneak" else f"{action}-up"
+        known = {"minor": bool(rng.random() < 0.4) if minor is None else minor}
+        play.note(
+            (cue, cue if both else STILL), start, i=i, styles=(take.style if take else "normal", "normal"), **known
+        )
     return play.sync()
 
 
 def walk_up(play: Play, i: int) -> None:
     """i comes up to the other, who stands; or both do."""
-    rng = play.rng
-    start = play.sync()
-    action = gait(play, fast=0.25)
-    both = rng.random() < 0.25
-    take = close_in(play, i, rng.uniform(0.8, 1.3), both=both, action=action)
-    style = take.style if take else "normal"
-    acts = ("walk-up", "walk-up") if both else ("creep-up" if action == "sneak" else f"{action}-up", STILL)
-    play.note(acts, start, i=i, styles=(style, "normal"))
+    come(play, i, play.rng.uniform(0.8, 1.3), action=gait(play, fast=0.25), minor=False)
+
+
+_TO_LEAVING = (STILL, "wave", "wave", "beckon", "turn-away", "shake-head", "shrug", "point", STILL, *["follow"] * 3)
 
 
 def leave(play: Play, i: int) -> None:
-    """i turns and goes away; the other stays, with or without an answer."""
-    rng = play.rng
-    start = play.sync()
-    own = play.people[i]
-    action = gait(play)
-    way = own.angle + np.pi + rng.normal(0, 0.35) if abs(play.off(i)) < 1.2 else own.angle
-    answer = pick(rng, (STILL, STILL, "wave", "wave", "beckon", "turn-away", "shake-head", "shrug", "point"))
+    """i turns and goes away; the other stays, with or without an answer, or comes after."""
+    start, own, other = play.begin(i)
+    rng, action, way = play.rng, gait(play), off_from(play, i)
+    answer = pick(rng, _TO_LEAVING)
     if answer in ACTS and not play.library.has(*ACTS[answer].needs):
         answer = STILL
-    take = own.go(own.spot + rng.uniform(1.6, 3.0) * ahead(way), None, action=action, stop=rng.random() < 0.6)
+    stops = answer != "follow" and rng.random() < 0.6
+    take = own.go(own.spot + rng.uniform(1.6, 3.0) * ahead(way), None, action=action, stop=stops)
     side, style = None, "normal"
     if answer == "turn-away":
-        _turn_off(play, 1 - i, start)
+        turn_off(play, 1 - i, start + play.seconds(0.2, 0.6))
+    elif answer == "follow":
+        other.hold(play.seconds(0.1, 0.5))
+        other.go(own.spot - rng.uniform(0.9, 1.3) * ahead(way), None, action=action, stop=False)
+        answer = "chase" if action == "run" else "follow"
     elif answer != STILL:
-        play.people[1 - i].hold(play.seconds(0.3, 0.9))
+        other.hold(play.seconds(0.3, 0.9))
         done = ACTS[answer].make(play, 1 - i)
         side, style = done.side, done.style
     play.note((f"{action}-away", answer), start, i=i, styles=(take.style, style), sides=(None, side))
 
 
-def _turn_off(play: Play, i: int, start: int) -> None:
-    """i turns the back on the other."""
+def turn_off(play: Play, i: int, frame: int) -> None:
+    """Person i turns the back on the other from a frame on."""
     person = play.people[i]
-    person.hold(play.seconds(0.2, 0.6))
-    person.turn(pick(play.rng, (-1, 1)) * play.rng.uniform(2.3, 3.1))
-    play.look(i, start, len(person) + 60, 0.0)
+    person.hold_until(frame)
+    person.turn(pick(play.rng, (-1, 1)) * play.rng.uniform(2.2, 3.1))
+    play.look(i, frame, len(person) + 40, 0.0)
 
 
 def part(play: Play, i: int) -> None:
     """Both turn and go their ways."""
-    rng = play.rng
-    start = play.sync()
-    take = None
+    start, rng = play.sync(), play.rng
+    styles = []
     for k in (i, 1 - i):
         person = play.people[k]
-        way = person.angle + np.pi + rng.normal(0, 0.3)
-        if k != i:
-            person.hold(int(rng.integers(0, 15)))
-        take = person.go(person.spot + rng.uniform(1.6, 2.6) * ahead(way), None, stop=rng.random() < 0.5)
-    play.note(("part", "part"), start, i=i, styles=(take.style, take.style) if take else None)
+        person.hold(int(rng.integers(0, 15)) * (k != i))
+        far = rng.uniform(1.6, 2.6) * ahead(off_from(play, k))
+        styles.append(person.go(person.spot + far, None, stop=rng.random() < 0.5).style)
+    play.note(("part", "part"), start, i=i, styles=tuple(styles))
 
 
 def turn_away(play: Play, i: int) -> None:
     """A turns away from B."""
     start = play.sync()
-    _turn_off(play, i, start)
+    turn_off(play, i, start + play.seconds(0.2, 0.6))
     play.note(("turn-away", STILL), start, i=i)
 
 
 def turn_to(play: Play, i: int) -> None:
     """i, who looks elsewhere, turns round to the other."""
-    start = play.sync()
-    play.people[i].hold(6)
-    play.people[i].turn(play.off(i))
+    start, own, _ = play.begin(i)
+    own.hold(6)
+    own.turn(play.off(i))
     play.note(("turn-to", STILL), start, i=i)
 
 
 def step_back(play: Play, i: int) -> None:
     """i goes up a step and the other backs away; or i only steps back."""
-    rng = play.rng
-    start = play.sync()
+    start, rng = play.sync(), play.rng
     if play.gap < 1.6 or rng.random() < 0.5:
-        walk = stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.2))
-        play.people[i].perform(walk.motion)
-        play.note(("step-back", STILL), start, i=i, styles=(walk.style, "normal"))
+        play.note(("step-back", STILL), start, i=i, styles=(play.back_off(i, 0.5, 1.2).style, "normal"))
         return
     close_in(play, i, max(play.gap - rng.uniform(0.5, 0.8), 0.7))
-    walk = stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.2))
-    play.people[1 - i].perform(walk.motion)
-    play.note(("step-forward", "step-back"), start, i=i, relation="reply", styles=("normal", walk.style))
+    style = play.back_off(1 - i, 0.5, 1.2).style
+    play.note(("step-forward", "step-back"), start, i=i, relation="reply", styles=("normal", style))
 
 
 def step_aside(play: Play, i: int) -> None:
     """i steps to a side."""
-    rng = play.rng
-    start = play.sync()
-    side = pick(rng, ("left", "right"))
-    walk = stride(rng, play.library, f"walk-{side}", rng.uniform(0.6, 1.1), side=side)
-    step = walk.motion.root[-1] - walk.motion.root[0]
-    course = wrapped(float(np.arctan2(step[0], step[2]) - walk.motion.headings.mean()))
-    play.people[i].perform(walk.motion, aim=course - (1 if side == "left" else -1) * np.pi / 2)
-    play.note(("step-aside", STILL), start, i=i, sides=(side, None))
+    start, own, _ = play.begin(i)
+    take, aim = sideways(play, play.rng.uniform(0.6, 1.1))
+    own.perform(take, aim=aim)
+    play.note(("step-aside", STILL), start, i=i, sides=(take.side, None))
 
 
 def circle(play: Play, i: int) -> None:
     """i walks around the other, who stands or turns along."""
+    start, own, other = play.begin(i)
     rng = play.rng
-    start = play.sync()
-    own, other = play.people[i], play.people[1 - i]
     side = int(pick(rng, (-1, 1)))  # 1: the other is on the left hand
     radius = float(np.clip(play.gap, 0.85, 1.3))
     if abs(play.gap - radius) > 0.15:
         close_in(play, i, radius)
-    own.turn(wrapped(bearing(other.spot - own.spot) - side * np.pi / 2 - own.angle))
+    own.turn(wrapped(play.off(i) - side * np.pi / 2))
     arc = rng.uniform(0.55, 1.05) * 2 * np.pi
     take = stride(rng, play.library, "walk", radius * arc, style=own.style)
-    steps = np.linalg.norm(np.diff(take.motion.root[:, [0, 2]], axis=0), axis=-1)
-    own.append(steer(take.motion, side / radius * np.concatenate([[0.0], np.cumsum(steps)])))
+    own.append(steer(take.motion, rounded(take, side * radius)))
     follows = pick(rng, (False, True))
     if follows:
         other.hold_until(start + (len(own) - start) // 5)
         other.hold(int((len(own) - len(other)) * 0.9), turn=side * arc * 0.85)
-    direction = "counterclockwise" if side > 0 else "clockwise"
-    play.note(
-        ("walk-around", "turn-to" if follows else STILL), start, i=i, styles=(take.style, "normal"), direction=direction
-    )
+    known = {"direction": "counterclockwise" if side > 0 else "clockwise", "styles": (take.style, "normal")}
+    play.note(("walk-around", "turn-to" if follows else STILL), start, i=i, **known)
 
 
 def pace_about(play: Play, i: int) -> None:
     """i walks up and down while the other stands."""
-    rng = play.rng
-    start = play.sync()
-    person = play.people[i]
-    angle = play.people[i].angle + pick(rng, (-1, 1)) * np.pi / 2
-    home = person.spot
-    take = person.go(home + rng.uniform(1.0, 1.5) * ahead(angle), None, stop=False)
-    person.go(home, None, stop=True)
+    start, own, _ = play.begin(i)
+    home, way = own.spot, own.angle + pick(play.rng, (-1, 1)) * np.pi / 2
+    take = own.go(home + play.rng.uniform(1.0, 1.5) * ahead(way), None, stop=False)
+    own.go(home, None, stop=True)
     play.note(("pace", STILL), start, i=i, styles=(take.style, "normal"))
 
 
-def follow(play: Play, i: int) -> None:
-    """i goes off and the other comes after."""
-    rng = play.rng
+def go_past(play: Play, i: int, spot: Array, aside: float, *, action: str = "walk") -> Take:
+    """i goes past a spot, ``aside`` metres to the left of it, without stopping."""
+    way = bearing(spot - play.people[i].spot)
+    target = spot + aside * leftwards(way) + play.rng.uniform(0.3, 1.0) * ahead(way)
+    return play.people[i].go(target, None, action=action, stop=False)
+
+
+def walk_past(play: Play, i: int) -> None:
+    """Both go past each other without stopping, each on their own side."""
     start = play.sync()
-    own, other = play.people[i], play.people[1 - i]
-    runs = rng.random() < 0.25 and play.library.has("run")
-    action = "run" if runs else "walk"
-    way = own.angle + np.pi + rng.normal(0, 0.3) if abs(play.off(i)) < 1.2 else own.angle
-    far = rng.uniform(2.6, 4.0) if runs else rng.uniform(2.0, 3.0)
-    take = own.go(own.spot + far * ahead(way), None, action=action, stop=False)
-    other.hold(play.seconds(0.1, 0.5))
-    other.go(own.spot - rng.uniform(0.9, 1.3) * ahead(way), None, action=action, stop=False)
-    acts = ("run-away", "chase") if runs else ("walk-away", "follow")
-    play.note(acts, start, i=i, styles=(take.style, "normal"))
+    aside = pick(play.rng, (-1, 1)) * play.rng.uniform(0.8, 1.1)
+    spots = [person.spot for person in play.people]
+    styles = tuple(go_past(play, k, spots[1 - k], aside).style for k in (i, 1 - i))
+    play.note(("walk-past", "walk-past"), start, i=i, styles=styles)
 
 
-def side_by_side(play: Play, i: int, gap: float) -> tuple[float, int]:
-    """The other comes to i's side and both look the same way; that heading, and the side (1: left)."""
+def skip_past(play: Play, i: int) -> None:
+    """i skips past the other, who stands."""
+    start, _, other = play.begin(i)
+    go_past(play, i, other.spot, pick(play.rng, (-1, 1)) * play.rng.uniform(0.8, 1.1), action="skip")
+    play.note(("skip", STILL), start, i=i)
+
+
+def side_by_side(play: Play, i: int, gap: float) -> int:
+    """The other comes to i's side and both look the same way; the side (1: left)."""
+    _, own, other = play.begin(i)
     rng = play.rng
-    own, other = play.people[i], play.people[1 - i]
-    play.sync()
     way = own.angle + (pick(rng, (-1, 1)) * rng.uniform(0.5, 1.3) if abs(play.off(i)) < 1.2 else 0.0)
     side = 1 if np.dot(other.spot - own.spot, leftwards(way)) >= 0 else -1
     own.turn(wrapped(way - own.angle))
-    way = own.angle
-    other.go(own.spot + side * gap * leftwards(way), way)
-    play.sync()
-    other.hold(10, turn=wrapped(way - other.angle), shift=own.spot + side * gap * leftwards(way) - other.spot)
-    play.sync()
-    return way, side
+    play.settle(1 - i, own.spot + side * gap * leftwards(own.angle), own.angle, "join-side")
+    return side
 
 
-def abreast(play: Play, i: int, gap: float, length: tuple[float, float]) -> tuple[int, int, Take, int]:
-    """Both walk side by side, in step; (first frame, last frame, walk, side of the other: 1 left)."""
-    rng = play.rng
-    own, other = play.people[i], play.people[1 - i]
-    _, side = side_by_side(play, i, gap)
+def abreast(play: Play, i: int, gap: float, length: tuple[float, float]) -> tuple[int, Take, int]:
+    """Both walk side by side, in step; (first frame, walk, side of the other: 1 left)."""
+    rng, own, other = play.rng, play.people[i], play.people[1 - i]
+    side = side_by_side(play, i, gap)
     start = play.frames
     take = stride(rng, play.library, "walk", rng.uniform(*length), style=own.style)
-    frames = len(take.motion)
-    turn = (pick(rng, (-1, 1)) * rng.uniform(0.2, 1.4) if rng.random() < 0.5 else 0.0) * ease(frames)
-    steps = np.linalg.norm(np.diff(take.motion.root[:, [0, 2]], axis=0), axis=-1)
+    turn = (pick(rng, (-1, 1)) * rng.uniform(0.2, 1.4) if rng.random() < 0.5 else 0.0) * ease(len(take.motion))
+    steps = np.append(np.diff(rounded(take, 1.0)), 1.0)
     # Who walks outside goes the longer way.
-    scale = np.clip(1 + np.append(np.diff(turn), 0.0) * -side * gap / np.maximum(np.append(steps, 1.0), 0.01), 0.5, 1.5)
+    pace = np.clip(1 - np.append(np.diff(turn), 0.0) * side * gap / np.maximum(steps, 0.01), 0.5, 1.5)
     own.append(steer(take.motion, turn), blend=12)
-    other.append(steer(tempo(take.motion, scale), turn), blend=12)
-    return start, play.frames, take, side
+    other.append(steer(take.motion, turn, pace), blend=12)
+    return start, take, side
 
 
 def walk_together(play: Play, i: int) -> None:
     """Side by side, with or without talk; or one stops while the other goes on."""
-    rng = play.rng
-    begun = play.sync()
-    start, stop, take, _ = abreast(play, i, rng.uniform(0.65, 0.95), (2.2, 3.2 if play.brisk else 4.0))
-    own, other = play.people[i], play.people[1 - i]
-    style = (take.style, take.style)
-    if start - begun > 35:
-        play.note(("join-side", STILL), begun, end=start, i=1 - i, minor=True)
-    kind = rng.random()
+    rng, own, other = play.rng, play.people[i], play.people[1 - i]
+    start, take, _ = abreast(play, i, rng.uniform(0.65, 0.95), (2.2, 3.2 if play.brisk else 4.0))
+    stop, kind, acts = play.frames, rng.random(), ["walk-together", "walk-together"]
+    known = {"i": i, "styles": (take.style, take.style)}
     if kind < 0.3 and stop - start > 66:  # i stops, the other goes on
         cut = start + int((stop - start) * rng.uniform(0.4, 0.6))
         own.motion = own.motion[: cut + 8]
-        play.note(("walk-together", "walk-together"), start, end=cut, i=i, styles=style)
+        play.note(("walk-together", "walk-together"), start, end=cut, **known)
         own.hold_until(len(other))
-        play.note((STILL, "walk-ahead"), cut, i=i, styles=style)
-        return
-    if kind < 0.65 and play.library.has("guide"):  # talking while strolling
-        who = i if rng.random() < 0.6 else 1 - i
-        speaker = play.people[who]
+        start, acts = cut, [STILL, "walk-ahead"]
+    elif kind < 0.65 and play.library.has("guide"):  # talking while strolling
+        who = int(rng.random() < 0.4)
+        speaker = (own, other)[who]
         speaker.motion, _ = arms_over(play.library, rng, speaker.motion, pick(rng, spoken(play)), start + 12, None)
-        play.look(who, start, stop, 0.6)
-        acts = ("walk-together+talk", "walk-together") if who == i else ("walk-together", "walk-together+talk")
-        play.note(acts, start, i=i, styles=style)
-        return
-    play.note(("walk-together", "walk-together"), start, i=i, styles=style)
+        acts[who] += "+talk"
+    play.note((acts[0], acts[1]), start, **known)
 
 
 _SAID = {"wave": "wave", "bye": "wave", "raise-hand": "raise-arm"}
@@ -291,27 +285,19 @@ _SAID = {"wave": "wave", "bye": "wave", "raise-hand": "raise-arm"}
 
 def walk_and(play: Play, i: int) -> None:
     """i walks away or up and waves, talks or raises a hand meanwhile."""
+    start, own, other = play.begin(i)
     rng = play.rng
-    start = play.sync()
-    own, other = play.people[i], play.people[1 - i]
-    ways = [n for n in ("wave", "wave", "bye", "raise-hand") if play.library.has(n)]
-    over = pick(rng, ways)
+    over = pick(rng, [n for n in ("wave", "wave", "bye", "raise-hand") if play.library.has(n)])
     up = play.gap > 2.2
     side = pick(rng, ("left", "right")) if over != "bye" else None
     if up:
         axis = (own.spot - other.spot) / max(play.gap, 1e-6)
-        take = own.go(other.spot + rng.uniform(0.9, 1.3) * axis, bearing(-axis), stop=False)
+        style = own.go(other.spot + rng.uniform(0.9, 1.3) * axis, bearing(-axis), stop=False).style
     else:
-        take = stride(rng, play.library, "walk-back", rng.uniform(1.2, 1.9))
-        own.perform(take.motion)
+        style = play.back_off(i, 1.2, 1.9).style
     # The hand is up while the person walks, not only after it.
     length = len(own) - start
     own.hold(14)
     own.motion, gesture = arms_over(play.library, rng, own.motion, over, start, side, most=length)
-    play.note(
-        (f"{'walk-up' if up else 'step-back'}+{_SAID[over]}", STILL),
-        start,
-        i=i,
-        sides=(gesture.side, None),
-        styles=(take.style, "normal"),
-    )
+    cue = f"{'walk-up' if up else 'step-back'}+{_SAID[over]}"
+    play.note((cue, STILL), start, i=i, sides=(gesture.side, None), styles=(style, "normal"))

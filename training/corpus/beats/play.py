@@ -12,8 +12,8 @@ import numpy as np
 from motion.transforms import canonicalize
 from motion.vectors import wrapped
 
-from ..compose import FPS, Array, Motion, blend_for, drift, ease, facing_at, join, look_at, place, realise, steer, tempo
-from ..cues import Beat
+from ..compose import FPS, Array, Motion, blend_for, drift, ease, facing_at, join, look_at, place, realise, steer
+from ..cues import STILL, Beat
 from ..library import Library, Take, stride
 from ..touches import Touches
 
@@ -26,6 +26,22 @@ SHUFFLE = 0.45
 def bearing(vector: Array) -> float:
     """Heading of an (x, z) vector in radians."""
     return float(np.arctan2(vector[0], vector[1]))
+
+
+@dataclass(frozen=True)
+class Done:
+    """A performed act.
+
+    Attributes:
+        start, stop: its frames on the person's timeline.
+        side: the hand or foot that leads.
+        style: the actor's manner.
+    """
+
+    start: int
+    stop: int
+    side: str | None = None
+    style: str = "normal"
 
 
 class Performer:
@@ -138,22 +154,19 @@ class Performer:
     def _walk(self, gap: Array, angle: float | None, action: str) -> tuple[Take, Motion]:
         """A walk that ends ``gap`` from here: turned, bent and scaled a little until it does."""
         distance = float(np.linalg.norm(gap))
-        best: tuple[float, Take] | None = None
+        ratio, take = np.inf, None
         for _ in range(4):
-            take = stride(self.rng, self.library, action, distance, style=self.style)
-            length = float(np.linalg.norm((take.motion.root[-1] - take.motion.root[0])[[0, 2]]))
-            ratio = distance / max(length, 1e-3)
-            if best is None or abs(np.log(ratio)) < abs(np.log(best[0])):
-                best = (ratio, take)
-            if 0.85 < ratio < 1.18:
+            drawn = stride(self.rng, self.library, action, distance, style=self.style)
+            length = float(np.linalg.norm((drawn.motion.root[-1] - drawn.motion.root[0])[[0, 2]]))
+            own = distance / max(length, 1e-3)
+            if take is None or abs(np.log(own)) < abs(np.log(ratio)):
+                ratio, take = own, drawn
+            if 0.85 < own < 1.18:
                 break
-        assert best is not None
-        take = best[1]
-        walk = take.motion
-        here = self.angle
-        walk = place(walk, 0.0, 0.0, here)
+        assert take is not None
+        walk = place(take.motion, 0.0, 0.0, self.angle)
         frames = len(walk)
-        first = wrapped(bearing(gap) - here)
+        first = wrapped(bearing(gap) - self.angle)
         turning = int(np.clip(14 + 12 * abs(first), 14, frames * 0.7))
         rise = np.concatenate([ease(turning), np.ones(frames - turning)])
         slow = np.ones(frames)
@@ -165,7 +178,7 @@ class Performer:
             ending = min(18, frames // 2)
             fall[frames - ending :] = ease(ending)
             last = float(np.clip(wrapped(angle - bearing(gap)), -0.7, 0.7))
-        gain, bend = float(np.clip(best[0], 0.7, 1.4)), first
+        gain, bend = float(np.clip(ratio, 0.7, 1.4)), first
         steps = np.diff(walk.root[:, [0, 2]], axis=0)
         for _ in range(5):
             extra = bend * rise + last * fall
@@ -174,26 +187,18 @@ class Performer:
             end = np.array([(cos * way[0] + sin * way[1]).sum(), (cos * way[1] - sin * way[0]).sum()])
             bend += wrapped(bearing(gap) - bearing(end))
             gain = float(np.clip(gain * distance / max(np.linalg.norm(end), 1e-3), 0.6, 1.5))
-        return take, steer(tempo(walk, slow * gain), bend * rise + last * fall)
+        return take, steer(walk, bend * rise + last * fall, slow * gain)
 
-    def perform(self, motion: Motion, *, aim: float = 0.0) -> tuple[int, int]:
-        """Does something; ``aim`` turns it away from the person's front. (first, last) frame."""
-        start = self.append(motion, turn=-aim)
-        return start, len(self.motion)
+    def perform(self, take: Take, *, aim: float = 0.0) -> Done:
+        """Does what was drawn; ``aim`` turns it away from the person's front."""
+        return Done(self.append(take.motion, turn=-aim), len(self.motion), take.side, take.style)
 
 
 # ---- two performers on one stage ---------------------------------------------------------------------
 
 
-Effect = Callable[[Array, Array], tuple[Array, Array, Touches]]
-
-
-@dataclass
-class _Timed:
-    effect: Effect
-    start: int
-    stop: int
-    swap: bool
+Effect = Callable[[Rng, Array, Array], tuple[Array, Array, Touches]]
+"""A change of the positions of a person and the other (T, 22, 3), and where they touch then."""
 
 
 class Play:
@@ -215,7 +220,7 @@ class Play:
             Performer(rng, library, *spot, style=style) for spot, style in zip(spots, styles, strict=True)
         )
         self.beats: list[Beat] = []
-        self.effects: list[_Timed] = []
+        self.effects: list[tuple[Effect, Rng, slice, int]] = []
         self.looks: list[tuple[int, int, int, float]] = []
         self.brisk = False
 
@@ -246,6 +251,32 @@ class Play:
             person.hold_until(self.frames)
         return self.frames
 
+    def begin(self, i: int) -> tuple[int, Performer, Performer]:
+        """The common length once nobody is behind, person i and the other."""
+        return self.sync(), self.people[i], self.people[1 - i]
+
+    def hold(self, frames: int) -> None:
+        """Both stand for ``frames`` frames."""
+        for person in self.people:
+            person.hold(frames)
+
+    def settle(self, i: int, spot: Array, way: float, cue: str = "") -> int:
+        """Person i goes to a spot (x, z) and stands there, facing ``way``; the frame from which they do.
+
+        The way there is a beat of its own by its ``cue``, if it is long enough.
+        """
+        begun, own, _ = self.begin(i)
+        own.go(spot, way)
+        self.sync()
+        own.hold(10, turn=wrapped(way - own.angle), shift=spot - own.spot)
+        if cue and self.sync() - begun > 35:
+            self.note((cue, STILL), begun, i=i, minor=True)
+        return self.sync()
+
+    def back_off(self, i: int, low: float, high: float) -> Done:
+        """Person i goes some metres backwards."""
+        return self.people[i].perform(stride(self.rng, self.library, "walk-back", self.rng.uniform(low, high)))
+
     def note(self, acts: tuple[str, str], start: int, *, i: int = 0, end: int | None = None, **known: Any) -> None:
         """Writes a beat down that began at ``start``.
 
@@ -259,7 +290,8 @@ class Play:
 
     def effect(self, start: int, stop: int, effect: Effect, *, i: int = 0) -> None:
         """Has ``effect`` change the positions of (person i, the other) from ``start`` to ``stop``."""
-        self.effects.append(_Timed(effect, max(start, 0), stop, i == 1))
+        rng = np.random.default_rng(self.rng.integers(2**32))
+        self.effects.append((effect, rng, slice(max(start, 0), stop), i))
 
     def look(self, i: int, start: int, stop: int, amount: float) -> None:
         """Sets how much person ``i`` looks at the other between two frames (0.7 by default)."""
@@ -286,43 +318,20 @@ class Play:
                     amount[start:stop] = value
             bodies.append(realise(look_at(motion, heads[1 - i], amount=amount)))
         touches: list[dict[str, Any]] = []
-        for timed in self.effects:
-            window = slice(timed.start, min(timed.stop, frames))
+        for effect, rng, asked, i in self.effects:
+            window = slice(asked.start, min(asked.stop, frames))
             if window.stop - window.start < 8:
                 continue
-            order = (1, 0) if timed.swap else (0, 1)
-            one, other, found = timed.effect(*(bodies[k][window] for k in order))
-            for k, part in zip(order, (one, other), strict=True):
-                bodies[k] = bodies[k].copy()
+            *changed, found = effect(rng, bodies[i][window], bodies[1 - i][window])
+            for k, part in zip((i, 1 - i), changed, strict=True):
                 bodies[k][window] = part
-            for own, to, first, last in found:
+            for *joints, first, last in found:
                 first, last = first + window.start, min(last + window.start, most - 1, frames - 1)
                 if first <= last:
-                    names = (own, to) if not timed.swap else (to, own)
-                    touches.append({"a": names[0], "b": names[1], "start": int(first), "end": int(last)})
+                    touches.append({"a": joints[i], "b": joints[1 - i], "start": int(first), "end": int(last)})
         positions = canonicalize(np.stack(bodies)[:, :most])
         positions[..., 1] -= np.percentile(positions[..., 1].min(axis=2), 10, axis=1)[:, None, None]
         return positions, touches
-
-    def sources(self) -> tuple[str, ...]:
-        """Names of the clips that both people were made from."""
-        return tuple(sorted({source for person in self.people for source in person.motion.sources}))
-
-
-@dataclass(frozen=True)
-class Done:
-    """A performed act.
-
-    Attributes:
-        start, stop: its frames on the person's timeline.
-        side: the hand or foot that leads.
-        style: the actor's manner.
-    """
-
-    start: int
-    stop: int
-    side: str | None = None
-    style: str = "normal"
 
 
 Make = Callable[[Play, int], Done]
@@ -343,3 +352,26 @@ class Act:
     needs: tuple[str, ...]
     weight: float = 1.0
     room: float = 0.9
+
+
+@dataclass(frozen=True)
+class Option:
+    """A beat that may come next.
+
+    Attributes:
+        make: (play, who begins).
+        needs: source actions.
+        weight: how often it is drawn.
+        gap: metres between the two, at least and at most.
+        off: radians by which who begins is turned away from the other, at least and at most.
+    """
+
+    make: Callable[[Play, int], None]
+    needs: tuple[str, ...]
+    weight: float
+    gap: tuple[float, float] = (0.0, 4.5)
+    off: tuple[float, float] = (0.0, np.pi)
+
+    def fits(self, play: Play, i: int) -> bool:
+        """True if it makes sense where the two stand now."""
+        return self.gap[0] < play.gap < self.gap[1] and self.off[0] <= abs(play.off(i)) <= self.off[1]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,9 +10,9 @@ import numpy as np
 from ..cues import STILL, Scene
 from ..library import Library, pick
 from ..telling import describe
-from . import joined, moves
+from . import moves
 from .acts import ACTS
-from .play import Done, Play, Rng
+from .play import Done, Option, Play, Rng
 from .touching import TOUCH_BEATS
 
 MOST = 300
@@ -21,29 +20,6 @@ MOST = 300
 COUNTS = (1, 2, 3, 4)
 SHARES = (0.1, 0.3, 0.4, 0.2)
 """How many beats a scene is meant to have, and how often."""
-
-
-@dataclass(frozen=True)
-class Option:
-    """A beat that may come next.
-
-    Attributes:
-        make: (play, who begins).
-        needs: source actions.
-        weight: how often it is drawn.
-        gap: metres between the two, at least and at most.
-        off: radians by which who begins is turned away from the other, at least and at most.
-    """
-
-    make: Callable[[Play, int], None]
-    needs: tuple[str, ...]
-    weight: float
-    gap: tuple[float, float] = (0.0, 4.5)
-    off: tuple[float, float] = (0.0, np.pi)
-
-    def fits(self, play: Play, i: int) -> bool:
-        """True if it makes sense where the two stand now."""
-        return self.gap[0] < play.gap < self.gap[1] and self.off[0] <= abs(play.off(i)) <= self.off[1]
 
 
 FAR, CLOSE = (1.9, np.inf), (0.0, 2.4)
@@ -63,14 +39,8 @@ def solo(name: str) -> Callable[[Play, int], None]:
         start = _face(play, i)
         done = ACTS[name].make(play, i)
         answer, relation, second = _play_answer(play, 1 - i, _draw_answer(play, name), done)
-        play.note(
-            (name, answer),
-            start,
-            i=i,
-            relation=relation,
-            sides=(done.side, second.side if second else None),
-            styles=(done.style, second.style if second else "normal"),
-        )
+        sides, styles = (done.side, second.side), (done.style, second.style)
+        play.note((name, answer), start, i=i, relation=relation, sides=sides, styles=styles)
 
     return make
 
@@ -98,7 +68,7 @@ def _draw_answer(play: Play, name: str) -> str:
     return "turn-to" if draw < 0.72 else STILL
 
 
-def _play_answer(play: Play, i: int, answer: str, done: Done) -> tuple[str, str, Done | None]:
+def _play_answer(play: Play, i: int, answer: str, done: Done) -> tuple[str, str, Done]:
     """Person i answers what the other has ``done``: the act that came of it, its relation, how it was done.
 
     An answer that does not fit where the two stand becomes :data:`STILL`.
@@ -112,22 +82,20 @@ def _play_answer(play: Play, i: int, answer: str, done: Done) -> tuple[str, str,
         person.hold_until(wait)
         return answer, relation, ACTS[answer].make(play, i)
     if answer == "turn-away" and abs(play.off(i)) < 1.0:
-        person.hold_until(done.start + play.seconds(0.4, 1.0))
-        person.turn(pick(rng, (-1, 1)) * rng.uniform(2.2, 3.1))
-        play.look(i, done.start, len(person) + 30, 0.0)
-        return answer, "reply", None
+        moves.turn_off(play, i, done.start + play.seconds(0.4, 1.0))
+        return answer, "reply", Done(0, 0)
     if answer == "turn-to" and abs(play.off(i)) > 1.2:
         person.hold_until(done.start + play.seconds(0.2, 0.8))
         person.turn(play.off(i))
-        return answer, "reply", None
-    return STILL, "while", None
+        return answer, "reply", Done(0, 0)
+    return STILL, "while", Done(0, 0)
 
 
 MENU: dict[str, Option] = {
     **{name: Option(solo(name), act.needs, act.weight, (act.room, 5.0)) for name, act in ACTS.items()},
-    **{name: Option(make, needs, weight * 1.3) for name, (make, weight, needs) in TOUCH_BEATS.items()},
+    **TOUCH_BEATS,
     "walk-up": Option(moves.walk_up, ("walk",), 9.0, FAR),
-    "leave": Option(moves.leave, ("walk",), 8.0, CLOSE),
+    "leave": Option(moves.leave, ("walk",), 11.0, CLOSE),
     "part": Option(moves.part, ("walk",), 3.0, CLOSE),
     "turn-away": Option(moves.turn_away, ("idle",), 2.0, (0.0, np.inf), (0.0, 0.9)),
     "turn-to": Option(moves.turn_to, ("idle",), 9.0, (0.0, np.inf), (1.6, np.pi)),
@@ -135,36 +103,26 @@ MENU: dict[str, Option] = {
     "step-aside": Option(moves.step_aside, ("walk-left", "walk-right"), 1.5),
     "walk-around": Option(moves.circle, ("walk",), 3.0, CLOSE),
     "pace": Option(moves.pace_about, ("walk",), 1.2),
-    "follow": Option(moves.follow, ("walk",), 3.0, CLOSE),
     "walk-together": Option(moves.walk_together, ("walk",), 6.0),
     "walk-and": Option(moves.walk_and, ("walk", "walk-back", "wave"), 3.5),
-    "walk-past": Option(joined.walk_past, ("walk",), 2.5, FAR),
-    "skip": Option(joined.skip_past, ("skip",), 4.0, FAR),
+    "walk-past": Option(moves.walk_past, ("walk",), 2.5, FAR),
+    "skip": Option(moves.skip_past, ("skip",), 4.0, FAR),
 }
 
 
 def opening(rng: Rng, library: Library) -> Play:
     """Two people somewhere on the stage: face to face, far apart, one turned away, or side by side."""
-    kind = rng.random()
     styles = [pick(rng, library.styles("walk")) if rng.random() < 0.6 else "normal" for _ in range(2)]
     if rng.random() < 0.5:
         styles[1] = styles[0]
-    if kind < 0.45:
-        gap, turns = rng.uniform(0.9, 2.6), (0.0, np.pi)
-    elif kind < 0.8:
-        gap, turns = rng.uniform(2.4, 4.2), (0.0, np.pi)
-    elif kind < 0.92:
-        gap = rng.uniform(1.2, 2.6)
-        turned = int(rng.integers(2))
-        askew = rng.uniform(-0.4, 0.4)
-        turns = (np.pi + askew, np.pi) if turned == 0 else (0.0, askew)
-    else:
-        gap, turns = 0.0, (0.0, 0.0)
-    if gap:
-        spots = (((0.0, 0.0), turns[0]), ((float(rng.normal(0, 0.08)), gap), turns[1] + rng.normal(0, 0.08)))
-    else:
-        aside = pick(rng, (-1, 1)) * rng.uniform(0.6, 0.9)
-        spots = (((0.0, 0.0), 0.0), ((aside, 0.0), float(rng.normal(0, 0.08))))
+    kind, spot, turns = rng.random(), (float(rng.normal(0, 0.08)), rng.uniform(0.9, 2.6)), [0.0, np.pi]
+    if 0.45 <= kind < 0.8:
+        spot = (spot[0], rng.uniform(2.4, 4.2))
+    elif 0.8 <= kind < 0.92:
+        turns[int(rng.integers(2))] += np.pi + rng.uniform(-0.4, 0.4)
+    elif kind >= 0.92:
+        spot, turns = (pick(rng, (-1, 1)) * rng.uniform(0.6, 0.9), 0.0), [0.0, 0.0]
+    spots = (((0.0, 0.0), turns[0]), (spot, turns[1] + float(rng.normal(0, 0.08))))
     return Play(rng, library, spots, (styles[0], styles[1]))
 
 
@@ -178,8 +136,7 @@ def compose(rng: Rng, library: Library, *, first: str | None = None) -> Scene:
         LookupError: where nothing fits.
     """
     play = opening(rng, library)
-    for person in play.people:
-        person.hold(play.seconds(0.15, 0.5))
+    play.hold(play.seconds(0.15, 0.5))
     wanted = int(rng.choice(COUNTS, p=SHARES))
     play.brisk = wanted > 2
     who = int(rng.integers(2))
@@ -199,31 +156,26 @@ def compose(rng: Rng, library: Library, *, first: str | None = None) -> Scene:
                 break
     if not play.beats:
         raise LookupError("nothing fits")
-    for person in play.people:
-        person.hold(min(play.seconds(0.2, 0.5), MOST - play.frames))
+    play.hold(min(play.seconds(0.2, 0.5), MOST - play.sync()))
     return as_scene(rng, play)
 
 
 def draw_beat(rng: Rng, play: Play, i: int, used: list[str]) -> str | None:
     """The name of a beat that fits, or None."""
-    open_names = [
-        name
+    fitting = {
+        name: option.weight
         for name, option in MENU.items()
         if name not in used and play.library.has(*option.needs) and option.fits(play, i)
-    ]
-    if not open_names:
-        return None
-    weights = np.array([MENU[name].weight for name in open_names])
-    return open_names[int(rng.choice(len(open_names), p=weights / weights.sum()))]
+    }
+    weights = np.array([*fitting.values()])
+    return str(rng.choice([*fitting], p=weights / weights.sum())) if fitting else None
 
 
 def as_scene(rng: Rng, play: Play) -> Scene:
     """The finished scene with its captions."""
     positions, touches = play.finish(MOST)
-    frames = positions.shape[1]
-    beats = [beat for beat in play.beats if beat.start < frames - 5]
+    beats = [beat for beat in play.beats if beat.start < positions.shape[1] - 5]
     events: dict[str, Any] = {"contact": touches} if touches else {}
     family = f"beats-{min(sum(not beat.minor for beat in beats) or 1, 4)}"
-    return describe(
-        rng, Scene(positions.astype(np.float32), family, play.sources(), play.library.split, events, played=beats)
-    )
+    sources = tuple(sorted({source for person in play.people for source in person.motion.sources}))
+    return describe(rng, Scene(positions.astype(np.float32), family, sources, play.library.split, events, played=beats))

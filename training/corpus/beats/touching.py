@@ -1,25 +1,39 @@
-"""Beats in which one strikes, pushes or throws something to the other, in which the two touch face to face or from the
-side, and the list of all beats with touches."""
+"""Beats in which one strikes, pushes or throws something to the other, in which the two touch or go joined."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from motion.kinematics import project_to_skeleton
 from motion.vectors import wrapped
 
-from ..compose import Array
-from ..contact import UP, axes, envelope, impulse, lean_to, nod, on_body, reach, reach_arm, towards
+from ..compose import Array, steer
+from ..contact import ELBOW_DOWN, axes, envelope, impulse, lean_to, nod, on_body, reach, reach_arm, towards
 from ..cues import STILL
-from ..library import pick, stride
-from ..touches import TOUCHES, Touches, chosen_side, help_up, hug, pat_back, pats, whisper
-from .acts import ACTS, blow, dodge, recoil
+from ..library import pick
+from ..touches import (
+    HandOn,
+    Rng,
+    Slap,
+    Touch,
+    Touched,
+    arm_around,
+    both_hands,
+    chosen_side,
+    elbow_bump,
+    hand_over,
+    handshake,
+    help_up,
+    hug,
+    joined_hands,
+    opposite,
+    whisper,
+)
+from .acts import ACTS, blow, gives_way
 from .acts import reach as reach_of
-from .joined import arm_around_beat, carousel, hand_in_hand
-from .moves import ahead, close_in, come, leftwards
-from .play import Play
+from .moves import abreast, ahead, close_in, come, leftwards, rounded, side_by_side, sideways, turn_off
+from .play import Option, Play
 
 FALL = "fall-down>stand-up"
 
@@ -29,74 +43,79 @@ def push(play: Play, i: int) -> None:
     rng = play.rng
     start = come(play, i, rng.uniform(0.53, 0.62))
     hit = int(rng.integers(16, 22))
-    own, other = play.people[i], play.people[1 - i]
-    own.hold(hit + 34)
-    other.hold(hit + 6)
-    falls = play.library.has("fall", "get-up-back")
-    answer = pick(rng, ("stumble", "stumble", FALL)) if falls else "stumble"
-    if answer == FALL:
+    play.people[i].hold(hit + 34)
+    play.people[1 - i].hold(hit + 6)
+    falls = play.library.has("fall", "get-up-back") and rng.random() < 1 / 3
+    if falls:
         ACTS[FALL].make(play, 1 - i)
     else:
-        other.perform(stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.3)).motion)
-    depth, leaning = rng.uniform(0.25, 0.4) * (0.5 if answer == FALL else 1.0), rng.uniform(0.12, 0.25)
+        play.back_off(1 - i, 0.5, 1.3)
 
-    def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
-        frames = len(a)
-        line = towards(a[:, 0], b[:, 0])
-        give = impulse(frames, hit - 1, rise=7, fall=24) * depth
-        stood = b
+    def effect(rng: Rng, a: Array, b: Array) -> Touched:
+        frames, line = len(a), towards(a[:, 0], b[:, 0])
+        # The hands follow the chest as it was when they met it.
+        met = on_body(b, "spine3", 0.0, 0.02, 0.13) + 0.1 * line
+        met[hit + 2 :] = met[min(hit + 2, frames - 1)]
+        give = impulse(frames, hit - 1, rise=7, fall=24) * rng.uniform(0.25, 0.4) * (0.5 if falls else 1.0)
         b = nod(lean_to(b, line, give), give * 0.6)
-        weight = envelope(frames, hit - 15, hit - 1, hit + 4, hit + 24)
-        a = lean_to(a, line, envelope(frames, hit - 10, hit + 2, hit + 4, hit + 26) * leaning)
-        still = stood[min(hit + 2, frames - 1)][None].repeat(frames, axis=0)
-        seen = np.where((np.arange(frames) > hit + 2)[:, None, None], still, stood)
-        chest = {
-            side: on_body(seen, "spine3", 0.11 * sign, 0.02, 0.13) + 0.1 * line * give[:, None]
-            for side, sign in (("left", -1), ("right", 1))
-        }
+        a = lean_to(a, line, envelope(frames, hit - 10, hit + 2, hit + 4, hit + 26) * rng.uniform(0.12, 0.25))
         drawn = 1 - envelope(frames, hit - 10, hit, hit + 30, hit + 31)
-        chest = {side: point - 0.14 * line * drawn[:, None] for side, point in chest.items()}
-        a = reach(a, chest, weight, elbow=(0.8, -0.9, -0.2))
-        return a, b, [(f"{side}_wrist", "spine3", hit - 2, hit + 3) for side in ("left", "right")]
+        met = met - (0.14 * drawn + 0.1 * (1 - give))[:, None] * line
+        hands = {side: met + sign * 0.11 * axes(a)[0] for side, sign in (("left", 1.0), ("right", -1.0))}
+        a = reach(a, hands, envelope(frames, hit - 15, hit - 1, hit + 4, hit + 24), elbow=(0.8, -0.9, -0.2))
+        return a, b, [(f"{side}_wrist", "spine3", hit - 2, hit + 3) for side in hands]
 
     play.effect(start, start + hit + 36, effect, i=i)
-    play.note(("push", answer), start, i=i, relation="reply", sides=("both", None))
+    play.note(("push", FALL if falls else "stumble"), start, i=i, relation="reply", sides=("both", None))
 
 
-def blow_at(name: str) -> Callable[[Play, int], None]:
+def blow_at(name: str, *answers: str) -> Callable[[Play, int], None]:
     """A blow in the air in front of the other, who gives way: recoil, dodge or retreat."""
 
     def make(play: Play, i: int) -> None:
         rng = play.rng
         take = blow(rng, play.library, name, most=1)
-        start = play.sync()
-        answers = {"punch": ("dodge", "flinch", "step-back", FALL), "kick": ("step-back", "flinch", FALL)}
-        answer = pick(rng, answers[name])
+        answer = pick(rng, answers)
         if answer == FALL and not play.library.has("fall", "get-up-back"):
             answer = "flinch"
+        start, own, other = play.begin(i)
         far = play.gap
         close_in(play, i, reach_of(take) + rng.uniform(0.1, 0.25))
         begun = play.sync()
         if far - play.gap > 0.6:
             play.note(("walk-up", STILL), start, end=begun, i=i, minor=True)
-        own, other = play.people[i], play.people[1 - i]
-        first, _ = own.perform(take.motion, aim=take.aim)
-        hit = first + take.peaks[0]
+        hit = own.perform(take, aim=take.aim).start + take.peaks[0]
         if answer == "step-back":
-            other.hold_until(max(hit - 12, len(other)))
-            other.perform(stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.1)).motion)
+            other.hold_until(hit - 12)
+            play.back_off(1 - i, 0.5, 1.1)
         elif answer == FALL:
-            other.hold_until(max(hit - 2, len(other)))
+            other.hold_until(hit - 2)
             ACTS[FALL].make(play, 1 - i)
         else:
-            other.hold_until(max(len(own), hit + 34))
-            other.motion = (dodge if answer == "dodge" else recoil)(rng, other.motion, hit)
+            play.effect(hit - 12, hit + 44, gives_way(12, dodges=answer == "dodge"), i=i)
+            other.hold_until(hit + 34)
         play.note((name, answer), begun, i=i, relation="reply", sides=(take.side, None))
 
     return make
 
 
 # ---- offers and throws ---------------------------------------------------------------------------
+
+
+def _hands_at(
+    body: Array,
+    joint: str,
+    at: tuple[float, float, float],
+    sides: Sequence[str],
+    weight: Array,
+    drawn: Array | float = 0.0,
+) -> Array:
+    """Hands of a person beside a joint of theirs: metres outwards, up and ahead, where they are ``drawn`` in."""
+    out, up, front = at
+    for side in sides:
+        goal = on_body(body, joint.format(side=side), out if side == "left" else -out, up, front - 0.2 * drawn)
+        body = reach_arm(body, side, goal, weight, elbow=(0.6, -0.9, -0.1))
+    return body
 
 
 _OFFERS = {
@@ -106,237 +125,209 @@ _OFFERS = {
     "hug?": (0.95, (0.34, -0.06, 0.3)),
 }
 """Offers that can be refused: metres apart, and where the hand goes from its shoulder: out, up, ahead."""
-
-
-_REFUSALS = (STILL, "shake-head", "turn-away", "step-back", "fold-arms", "stop-hand")
+_REFUSALS = (STILL, "shake-head", "turn-away", "step-back", "fold-arms", "stop-hand", "wave-off")
 """Answers to an offer that leave it where it is."""
 
 
 def refused(play: Play, i: int) -> None:
     """i offers a hand, a high five, a thing or a hug, and the other does not take it."""
-    rng = play.rng
+    rng, other = play.rng, play.people[1 - i]
     offer = pick(rng, tuple(_OFFERS))
-    distance, (out, up, front) = _OFFERS[offer]
+    distance, at = _OFFERS[offer]
     start = come(play, i, rng.uniform(distance, distance + 0.15))
-    side = chosen_side(rng)
-    sides = ("left", "right") if offer == "hug?" else (side,)
-    answers = [*_REFUSALS, "wave-off"] if play.library.has("reject") else list(_REFUSALS)
-    answer = pick(rng, answers)
-    other = play.people[1 - i]
+    sides = ("left", "right") if offer == "hug?" else (chosen_side(rng),)
+    answer = pick(rng, _REFUSALS[: None if play.library.has("reject") else -1])
     other.hold(play.seconds(0.7, 1.2))
     if answer == "turn-away":
-        other.turn(pick(rng, (-1, 1)) * rng.uniform(2.0, 3.0))
-        play.look(1 - i, start + 20, len(other) + 40, 0.0)
+        turn_off(play, 1 - i, len(other))
     elif answer == "step-back":
-        other.perform(stride(rng, play.library, "walk-back", rng.uniform(0.4, 0.9)).motion)
+        play.back_off(1 - i, 0.4, 0.9)
     elif answer != STILL:
         ACTS[answer].make(play, 1 - i)
     play.people[i].hold_until(max(len(other) + 10, start + 66))
     stop = play.sync()
-    leave = stop - start - 26
 
-    def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
-        weight = envelope(len(a), 2, 20, leave, leave + 22)
-        for hand in sides:
-            sign = 1.0 if hand == "left" else -1.0
-            a = reach_arm(a, hand, on_body(a, f"{hand}_shoulder", sign * out, up, front), weight)
-        return a, b, []
+    def effect(rng: Rng, a: Array, b: Array) -> Touched:
+        leave = stop - start - 26
+        return _hands_at(a, "{side}_shoulder", at, sides, envelope(len(a), 2, 20, leave, leave + 22)), b, []
 
     play.effect(start, stop, effect, i=i)
-    play.note((offer, answer), start, i=i, relation="reply", sides=(None if len(sides) > 1 else side, None))
+    play.note((offer, answer), start, i=i, relation="reply", sides=(None if len(sides) > 1 else sides[0], None))
 
 
 def throw_catch(play: Play, i: int) -> None:
     """i throws something, the other catches it with both hands."""
-    rng = play.rng
-    start = play.sync()
-    if not 1.6 < play.gap < 4.0 or abs(play.off(i)) > 0.3 or abs(play.off(1 - i)) > 0.3:
-        close_in(play, i, float(np.clip(play.gap, 1.8, 3.0)))
-        start = play.sync()
-    take = play.library.take(rng, "throw", frames=(40, 90))
-    own = play.people[i]
-    first, last = own.perform(take.motion)
-    caught = first - start + int(0.62 * len(take.motion)) + int(8 * play.gap / 2)
-    play.people[1 - i].hold_until(max(last, start + caught + 40))
+    close_in(play, i, float(np.clip(play.gap, 1.8, 3.0)))
+    start, own, other = play.begin(i)
+    done = own.perform(play.library.take(play.rng, "throw", frames=(40, 90)))
+    caught = done.start - start + int(0.62 * (done.stop - done.start)) + int(8 * play.gap / 2)
+    other.hold_until(max(done.stop, start + caught + 40))
 
-    def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
+    def effect(rng: Rng, a: Array, b: Array) -> Touched:
         weight = envelope(len(b), max(caught - 20, 0), caught, caught + 6, caught + 34)
         drawn = envelope(len(b), caught, caught + 14, len(b), len(b) + 1)
-        for side, sign in (("left", 1.0), ("right", -1.0)):
-            goal = on_body(b, "spine3", 0.08 * sign, 0.0, 0.42) - 0.2 * axes(b)[1] * drawn[:, None]
-            b = reach_arm(b, side, goal, weight, elbow=(0.7, -0.8, 0.0))
-        return a, b, []
+        return a, _hands_at(b, "spine3", (0.08, 0.0, 0.42), ("left", "right"), weight, drawn), []
 
-    stop = play.sync()
-    play.effect(start, stop, effect, i=i)
-    play.note(("throw-ball", "catch-thing"), start, i=i, relation="reply", sides=(take.side, None))
+    play.effect(start, play.sync(), effect, i=i)
+    play.note(("throw-ball", "catch-thing"), start, i=i, relation="reply", sides=(done.side, None))
 
 
 # ---- touches -----------------------------------------------------------------------------------------
 
 
-AFTER = 34
-"""Frames for which hands may still be on their way back when a touch is over."""
-_CUES = {"handshake": "shake-hands", "pat-shoulder": "pat:shoulder", "hand-on-shoulder": "hand-on:shoulder"}
-"""The cues of touches that go by another name than their entry."""
+Place = Callable[[Play, int], tuple[int, str]]
+"""Brings the two to where they touch; the frame from which they stand there, and the hand that touches."""
 
 
-def face_to_face(name: str) -> Callable[[Play, int], None]:
-    """A beat of one of :data:`~training.corpus.touches.TOUCHES`."""
-
-    def make(play: Play, i: int) -> None:
-        rng = play.rng
-        both = name == "high-five" and rng.random() < 0.3
-        touch = TOUCHES["high-ten" if both else name]
-        start = come(play, i, rng.uniform(*touch.distance))
-        length = play.seconds(touch.hold[0], min(touch.hold[1], 2.4))
-        side = chosen_side(rng)
-        for person in play.people:
-            person.hold(length + 16)
-        own_rng = np.random.default_rng(rng.integers(2**32))
-        play.effect(start, start + length + AFTER + 16, lambda a, b: touch.make(own_rng, a, b, 2, length, side), i=i)
-        cue = _CUES.get(name, name)
-        answer = {"hand-over": "take-from", "pat-shoulder": STILL, "hand-on-shoulder": STILL}.get(name, cue)
-        sides = ("both",) * 2 if both else (side, side if answer == cue else None)
-        play.note((cue, answer), start, i=i, sides=sides)
-
-    return make
+def facing(low: float, high: float) -> Place:
+    """Face to face, so many metres apart."""
+    return lambda play, i: (come(play, i, play.rng.uniform(low, high)), chosen_side(play.rng))
 
 
-def _hug(play: Play, i: int) -> None:
-    rng = play.rng
-    start = come(play, i, rng.uniform(0.41, 0.46))
-    length = play.seconds(1.8, 2.6)
-    for person in play.people:
-        person.hold(length + 14)
-    over, own_rng = pick(rng, ("left", "right")), np.random.default_rng(rng.integers(2**32))
-    for k in (0, 1):
-        play.look(k, start, start + length + 20, 0.3)
-    play.effect(start - 6, start + length + 34, lambda a, b: hug(own_rng, a, b, 12, length, over), i=i)
-    play.note(("hug", "hug"), start, i=i)
-    if play.gap < 0.7:  # nobody stays that close
-        walk = stride(rng, play.library, "walk-back", rng.uniform(0.4, 0.7))
-        play.people[pick(rng, (i, 1 - i))].perform(walk.motion)
-        play.sync()
+def abeam(play: Play, i: int) -> tuple[int, str]:
+    """The other stands beside i, on the side of the hand."""
+    side = side_by_side(play, i, play.rng.uniform(0.43, 0.5))
+    return play.sync(), "left" if side > 0 else "right"
 
 
-def _from_the_side(make: Callable, name: str, answer: str) -> Callable[[Play, int], None]:
-    """i stands half beside the other, as for a pat on the back or a whisper."""
-
-    def beat(play: Play, i: int) -> None:
-        rng = play.rng
-        begun = play.sync()
-        own, other = play.people[i], play.people[1 - i]
-        side = chosen_side(rng)
-        sign = 1.0 if side == "right" else -1.0
-        # Where i must stand so that the other is ahead and a little to the other side, half turned away.
-        turn = sign * rng.uniform(1.0, 1.4)
-        way = other.angle + turn
-        spot = other.spot - rng.uniform(0.42, 0.5) * ahead(way) + sign * rng.uniform(0.1, 0.2) * leftwards(way)
-        near = float(np.linalg.norm(own.spot - spot)) < 0.6
-        own.go(spot, way)
-        play.sync()
-        own.hold(12, turn=wrapped(way - own.angle), shift=spot - own.spot)
-        start = play.sync()
-        if not near:
-            play.note(("walk-up", STILL), begun, end=start, i=i, minor=True)
-        length = play.seconds(1.6, 2.4)
-        for person in play.people:
-            person.hold(length + 22)
-        own_rng = np.random.default_rng(rng.integers(2**32))
-        play.effect(start, start + length + 40, lambda a, b: make(own_rng, a, b, 2, length, side), i=i)
-        play.look(1 - i, start, start + length, 0.3)
-        play.note((name, answer), start, i=i, sides=(side, None))
-
-    return beat
+def half_beside(play: Play, i: int) -> tuple[int, str]:
+    """i stands half beside the other, who is ahead and a little to the other side, half turned away."""
+    _, _, other = play.begin(i)
+    rng, side = play.rng, chosen_side(play.rng)
+    sign = 1.0 if side == "right" else -1.0
+    way = other.angle + sign * rng.uniform(1.0, 1.4)
+    spot = other.spot - rng.uniform(0.48, 0.56) * ahead(way) + sign * rng.uniform(0.1, 0.2) * leftwards(way)
+    return play.settle(i, spot, way, "walk-up"), side
 
 
-def _help_up(play: Play, i: int) -> None:
-    """The other crouches; i comes and helps."""
-    rng = play.rng
-    begun = play.sync()
-    close_in(play, i, rng.uniform(0.83, 0.94))
-    start = play.sync()
-    length = 100
-    for person in play.people:
-        person.hold(length)
-    side, own_rng = chosen_side(rng), np.random.default_rng(rng.integers(2**32))
-    down = max(begun, start - 45)
-
-    def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
-        helped = help_up(own_rng, a, b, start - down, start - down + length, side)
-        # The other goes down at first, if the scene has begun before.
-        rise = envelope(len(b), 0, 30, len(b), len(b) + 1)[:, None, None] if down > 0 else 1.0
-        mixed = b + (helped[1] - b) * rise
-        return helped[0], project_to_skeleton(mixed)[0], helped[2]
-
-    play.effect(down, start + length + 24, effect, i=i)
-    play.note(("help-up", "stand-up"), begun, i=i, relation="reply", sides=(side, None))
-
-
-def _tap_turn(play: Play, i: int) -> None:
-    """i taps the shoulder of the other, who looks away, and who turns round."""
-    rng = play.rng
-    begun = play.sync()
-    own, other = play.people[i], play.people[1 - i]
-    side = chosen_side(rng)
+def behind(play: Play, i: int) -> tuple[int, str]:
+    """i stands behind the other, who looks away."""
+    begun, _, other = play.begin(i)
+    rng, side = play.rng, chosen_side(play.rng)
     sign = 1.0 if side == "right" else -1.0
     if abs(play.off(1 - i)) < 2.0:  # the other turns away first
         other.turn(wrapped(np.pi - abs(play.off(1 - i))) * pick(rng, (-1, 1)))
     play.look(1 - i, begun, len(other) + 30, 0.0)
     way = other.angle
     spot = other.spot - rng.uniform(0.5, 0.58) * ahead(way) + sign * rng.uniform(0, 0.1) * leftwards(way)
-    own.go(spot, way)
-    play.sync()
-    own.hold(10, turn=wrapped(way - own.angle), shift=spot - own.spot)
-    start = play.sync()
-    if start - begun > 30:
-        play.note(("come-behind", STILL), begun, end=start, i=i, minor=True)
-    arrive = int(rng.integers(14, 20))
-    leave = arrive + int(rng.integers(14, 22))
-    own.hold(leave + 40)
-    other.hold(leave - 4)
-    other.turn(sign * -1.0 * (np.pi - 0.1))
-    own_rng = np.random.default_rng(rng.integers(2**32))
+    return play.settle(i, spot, way, "come-behind"), side
 
-    def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
-        weight = envelope(len(a), 0, arrive, leave, leave + 18)
-        hand = on_body(b, f"{side}_shoulder", 0.0, 0.06, -0.06)
-        hand[leave - 4 :] = hand[min(leave - 4, len(hand) - 1)]
-        hand = hand + UP * pats(own_rng, len(a), arrive, leave)[:, None]
-        a = reach(a, {side: hand}, weight, elbow=(0.6, -0.9, 0.0))
-        return a, b, [(f"{side}_wrist", f"{side}_shoulder", arrive, leave - 4)]
 
-    play.effect(start, start + leave + 24, effect, i=i)
+def touching(
+    make: Touch, place: Place, hold: tuple[float, float], cue: str, answer: str = STILL, *, side: str | None = "one"
+) -> Callable[[Play, int], None]:
+    """A beat of a touch.
+
+    Args:
+        make: the touch.
+        place: where the two stand.
+        hold: seconds for which they are within reach.
+        cue, answer: of who touches and of the other.
+        side: "one" where the hand counts, "both", or None.
+    """
+
+    def beat(play: Play, i: int) -> None:
+        start, hand = place(play, i)
+        length = play.seconds(*hold)
+        play.hold(length + 18)
+        play.effect(start, start + length + 44, lambda rng, a, b: make(rng, a, b, 2, length, hand), i=i)
+        told = hand if side == "one" else side
+        relation = "reply" if answer not in (STILL, cue) else "while"
+        play.note((cue, answer), start, i=i, relation=relation, sides=(told, told if answer == cue else None))
+        if play.gap < 0.46 and cue == "hug":  # nobody stays that close
+            play.back_off(pick(play.rng, (i, 1 - i)), 0.4, 0.7)
+            play.sync()
+
+    return beat
+
+
+def tap(play: Play, i: int) -> None:
+    """i taps the shoulder of the other, who looks away, and who turns round."""
+    start, side = behind(play, i)
+    own, other = play.people[i], play.people[1 - i]
+    length = play.seconds(0.9, 1.3)
+    own.hold(length + 60)
+    other.hold(length + 6)
+    other.turn((np.pi - 0.1) * (-1.0 if side == "right" else 1.0))
+    pat = HandOn("{side}_shoulder", (0.0, 0.06, -0.06), (1.0, 0.0))
+    play.effect(start, start + length + 30, lambda rng, a, b: pat(rng, a, b, 0, length, side), i=i)
     play.note(("pat:shoulder", "turn-to"), start, i=i, relation="reply", sides=(side, None))
 
 
-TOUCH_BEATS: dict[str, tuple[Callable[[Play, int], None], float, tuple[str, ...]]] = {
-    **{
-        _CUES.get(name, name): (face_to_face(name), weight, ("walk", "idle"))
-        for name, weight in (
-            ("handshake", 4.0),
-            ("high-five", 4.3),
-            ("low-five", 1.2),
-            ("fist-bump", 1.8),
-            ("elbow-bump", 1.0),
-            ("hand-over", 2.5),
-            ("pat-shoulder", 1.5),
-            ("hand-on-shoulder", 1.5),
-        )
-    },
-    "hug": (_hug, 4.0, ("walk", "idle", "walk-back")),
-    "pat:back": (_from_the_side(pat_back, "pat:back", STILL), 1.5, ("walk", "idle")),
-    "whisper": (_from_the_side(whisper, "whisper", "listen"), 1.5, ("walk", "idle")),
-    "arm-around": (arm_around_beat, 1.3, ("walk", "idle")),
-    "walk-hand-in-hand": (hand_in_hand, 3.0, ("walk", "idle")),
-    "ring": (carousel, 2.0, ("walk-left", "walk-right")),
-    "push": (push, 2.5, ("walk", "walk-back")),
-    "help-up": (_help_up, 1.5, ("walk", "idle")),
-    "tap": (_tap_turn, 1.8, ("walk", "idle")),
-    "refused": (refused, 5.0, ("walk", "walk-back")),
-    "throw-ball": (throw_catch, 1.5, ("throw",)),
-    "punch": (blow_at("punch"), 1.8, ("punch", "walk-back")),
-    "kick": (blow_at("kick"), 1.5, ("kick", "walk-back")),
+def hand_in_hand(play: Play, i: int) -> None:
+    """They take each other by the hand and walk on, or stand so."""
+    rng, begun = play.rng, play.sync()
+    gap = rng.uniform(0.55, 0.66)
+    if rng.random() < 0.25:
+        side, start, name = side_by_side(play, i, gap), play.sync(), "hold-hands"
+        play.hold(play.seconds(1.8, 3.0))
+    else:
+        start, _, side = abreast(play, i, gap, (2.0, 2.8 if play.brisk else 4.2))
+        name = "walk-hand-in-hand"
+    hand, stop, taken = "left" if side > 0 else "right", play.sync(), max(start - 14, begun)
+    make = joined_hands((hand, opposite(hand)), rng.uniform(0.78, 0.86))
+    play.effect(taken, stop + 22, lambda rng, a, b: make(rng, a, b, 0, stop - taken - 4, hand), i=i)
+    play.note((name, name), taken, i=i)
+    for k in (0, 1):
+        play.look(k, start, stop, float(rng.uniform(0, 0.5)))
+
+
+def carousel(play: Play, i: int) -> None:
+    """Face to face, hands joined, they go round each other."""
+    rng = play.rng
+    start = come(play, i, rng.uniform(0.72, 0.86))
+    radius = play.gap / 2
+    walk, aim = sideways(play, radius * rng.uniform(2.5, 5.5))
+    # Who steps to the left around a point ahead turns to the right.
+    turn = rounded(walk, radius if walk.side == "right" else -radius)
+    play.hold(16)
+    for person in play.people:
+        person.append(steer(walk.motion, turn), turn=-aim)
+    stop = play.sync()
+    play.hold(14)
+    play.effect(start, stop + 14, lambda rng, a, b: both_hands(rng, a, b, 0, stop - start - 6, ""), i=i)
+    play.note(("ring", "ring"), start, i=i)
+
+
+_SHOULDER = ("{far}_shoulder", (0.0, 0.06, 0.05))
+_FIST = Slap((1.1, 1.26), 0.5, elbow=(0.7, -1.0, -0.2), pause=(2, 9), apart=0.09)
+_LOW = Slap((0.9, 1.02), 1.0, approach=(0.2, 1.2), elbow=ELBOW_DOWN)
+_PAT_BACK = HandOn("spine3", (-0.04, 0.0, -0.14), (0.0, -1.0), (0.8, -0.7, -0.2))
+_MET = ("walk", "idle")
+_SHORT, _LONG = (1.3, 2.0), (1.6, 2.4)
+"""Seconds within reach."""
+TOUCH_BEATS: dict[str, Option] = {
+    "shake-hands": Option(touching(handshake, facing(0.82, 0.98), (1.5, 2.4), "shake-hands", "shake-hands"), _MET, 5.2),
+    "high-five": Option(
+        touching(Slap((1.48, 1.65), 0.5), facing(0.76, 0.92), _SHORT, "high-five", "high-five"), _MET, 3.9
+    ),
+    "high-ten": Option(
+        touching(
+            Slap((1.45, 1.6), 0.4, mirrored=True), facing(0.66, 0.8), _SHORT, "high-five", "high-five", side="both"
+        ),
+        _MET,
+        1.7,
+    ),
+    "low-five": Option(touching(_LOW, facing(0.68, 0.82), _SHORT, "low-five", "low-five"), _MET, 1.6),
+    "fist-bump": Option(touching(_FIST, facing(0.82, 0.98), _SHORT, "fist-bump", "fist-bump"), _MET, 2.3),
+    "elbow-bump": Option(touching(elbow_bump, facing(0.46, 0.54), _SHORT, "elbow-bump", "elbow-bump"), _MET, 1.3),
+    "hand-over": Option(touching(hand_over, facing(0.85, 1.02), (1.8, 2.4), "hand-over", "take-from"), _MET, 3.3),
+    "pat:shoulder": Option(
+        touching(HandOn(*_SHOULDER, (1.0, 0.0)), facing(0.58, 0.72), _LONG, "pat:shoulder"), _MET, 2.0
+    ),
+    "hand-on:shoulder": Option(touching(HandOn(*_SHOULDER), facing(0.58, 0.72), _LONG, "hand-on:shoulder"), _MET, 2.0),
+    "hug": Option(touching(hug, facing(0.41, 0.46), (1.8, 2.6), "hug", "hug", side=None), (*_MET, "walk-back"), 5.2),
+    "pat:back": Option(touching(_PAT_BACK, half_beside, _LONG, "pat:back"), _MET, 2.0),
+    "whisper": Option(touching(whisper, half_beside, _LONG, "whisper", "listen"), _MET, 2.0),
+    "arm-around": Option(touching(arm_around, abeam, (1.8, 3.0), "arm-around"), _MET, 1.7),
+    "help-up": Option(touching(help_up, facing(0.83, 0.94), (3.3, 3.4), "help-up", "stand-up"), _MET, 2.0),
+    "walk-hand-in-hand": Option(hand_in_hand, _MET, 3.9),
+    "ring": Option(carousel, ("walk-left", "walk-right"), 2.6),
+    "push": Option(push, ("walk", "walk-back"), 3.3),
+    "tap": Option(tap, _MET, 2.3),
+    "refused": Option(refused, ("walk", "walk-back"), 6.5),
+    "throw-ball": Option(throw_catch, ("throw",), 2.0),
+    "punch": Option(blow_at("punch", "dodge", "flinch", "step-back", FALL), ("punch", "walk-back"), 2.3),
+    "kick": Option(blow_at("kick", "step-back", "flinch", FALL), ("kick", "walk-back"), 2.0),
 }
-"""(beat, how often it is drawn, source actions it needs) by name."""
+"""Beats with touches, by name."""
