@@ -106,7 +106,7 @@ def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0, captio
         if captions and row["split"] == "train":
             lists = [row["captions"], *(row["alone"] or ())]
             row["captions"], *row["alone"] = [rng.sample(s, min(captions, len(s))) for s in lists]
-        row["label"] = Label.of_row(row["label"]).cut(frames).row() if row["label"] else None
+        row["label"] = Label.model_validate(row["label"]).cut(frames).row() if row["label"] else None
         row["beats"] = [b | {"end": min(b["end"], frames)} for b in row["beats"] or () if b["start"] < frames]
         if captions and row["split"] == "train":
             for beat in row["beats"]:

@@ -108,20 +108,12 @@ def save(scenes: Sequence[Scene], folder: Path) -> None:
         frames = int(scene.positions.shape[1])
         if scene.label is None and not scene.captions:
             raise ValueError(f"a scene of {scene.family} was not described")
-        index.append(
-            {
-                "start": start,
-                "frames": frames,
-                "family": scene.family,
-                "captions": scene.captions,
-                "sources": list(scene.sources),
-                "split": scene.split,
-                "events": scene.events,
-                "alone": list(scene.alone),
-                "beats": scene.beats,
-                "label": scene.label.row() if scene.label else None,
-            }
-        )
+        row = {
+            name: getattr(scene, name)
+            for name in ("family", "captions", "sources", "split", "events", "alone", "beats")
+        }
+        label = scene.label.row() if scene.label else None
+        index.append(row | {"start": start, "frames": frames, "label": label})
         start += frames
     with replacing(folder / "motions.npy") as temporary, temporary.open("wb") as file:
         header = {"descr": "<f4", "fortran_order": False, "shape": (start, 2, 22, 3)}

@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel
 
 from acts import Act, Plan, Relation
 from acts.lexicon import Entry, lexicon
-from acts.plan import plan_of
 from motion import InputError
 
 Array = NDArray[np.floating]
@@ -84,8 +84,7 @@ class Beat:
         )
 
 
-@dataclass(frozen=True)
-class Label:
+class Label(BaseModel, frozen=True):
     """The label of a scene.
 
     Attributes:
@@ -97,17 +96,12 @@ class Label:
 
     plan: Plan
     spans: dict[str, tuple[int, int]]
-    minor: frozenset[str] = frozenset()
+    minor: tuple[str, ...] = ()
     beats: tuple[tuple[str, ...], ...] = ()
 
     def row(self) -> dict[str, Any]:
         """The label as the index has it."""
-        return {
-            "plan": self.plan.model_dump(mode="json", exclude_defaults=True),
-            "spans": {act: list(span) for act, span in self.spans.items()},
-            "minor": sorted(self.minor),
-            "beats": [list(ids) for ids in self.beats],
-        }
+        return self.model_dump(mode="json", exclude_defaults=True)
 
     def cut(self, frames: int) -> Label:
         """The label of the scene's first ``frames`` frames: acts that begin later are left out."""
@@ -118,14 +112,11 @@ class Label:
             if act.id in spans
         ]
         beats = tuple(tuple(act for act in ids if act in spans) for ids in self.beats)
-        plan = self.plan.model_copy(update={"acts": tuple(acts)})
-        return replace(self, plan=plan, spans=spans, minor=self.minor & spans.keys(), beats=beats)
-
-    @classmethod
-    def of_row(cls, row: Mapping[str, Any]) -> Label:
-        """The label that a row of the index holds."""
-        spans = {act: (int(start), int(stop)) for act, (start, stop) in row["spans"].items()}
-        return cls(plan_of(row["plan"]), spans, frozenset(row["minor"]), tuple(map(tuple, row["beats"])))
+        plan, minor = (
+            self.plan.model_copy(update={"acts": tuple(acts)}),
+            tuple(act for act in self.minor if act in spans),
+        )
+        return Label(plan=plan, spans=spans, minor=minor, beats=beats)
 
 
 @cache
@@ -163,13 +154,9 @@ def _to_other(found: Entry) -> bool:
 def label(beats: Sequence[Beat], frames: int) -> Label:
     """The label of a scene of ``frames`` frames from its beats."""
     writer = _Writer(frames)
-    ids = []
-    for beat in beats:
-        begun = len(writer.acts)
-        writer.add(beat)
-        ids.append(tuple(act.id for act in writer.acts[begun:]))
-    plan = Plan(acts=tuple(writer.acts), reader="corpus")
-    return Label(plan, writer.spans, frozenset(writer.minor), tuple(ids))
+    ids = tuple(writer.add(beat) for beat in beats)
+    minor = tuple(act for beat, own in zip(beats, ids, strict=True) if beat.minor for act in own)
+    return Label(plan=Plan(acts=tuple(writer.acts), reader="corpus"), spans=writer.spans, minor=minor, beats=ids)
 
 
 class _Writer:
@@ -179,11 +166,10 @@ class _Writer:
         self.frames = frames
         self.acts: list[Act] = []
         self.spans: dict[str, tuple[int, int]] = {}
-        self.minor: set[str] = set()
         self.before: list[str] = []
 
-    def add(self, beat: Beat) -> None:
-        """Adds the acts of a beat behind those of the beats before."""
+    def add(self, beat: Beat) -> tuple[str, ...]:
+        """Adds the acts of a beat behind those of the beats before; their ids."""
         together = beat.relation == "while" or STILL in beat.acts  # nobody waits to stand still
         one, other = (steps(beat.acts[person]) for person in (beat.first, 1 - beat.first))
         shared: set[Step] = set()
@@ -193,63 +179,51 @@ class _Writer:
         begun = len(self.acts)
         ends = self._chain(beat, beat.first, one, shared, _after(self.before))
         beside = tuple(Relation(kind="while", act=act.id) for act in self.acts[begun : begun + 1])
-        order = beside if together else _after(ends)
         rest = tuple(tuple(step for step in group if step not in shared) for group in other)
-        self.before = ends + self._chain(beat, 1 - beat.first, rest, set(), order)
+        self.before = ends + self._chain(beat, 1 - beat.first, rest, set(), beside if together else _after(ends))
+        return tuple(act.id for act in self.acts[begun:])
 
     def _chain(
         self, beat: Beat, person: int, groups: Groups, shared: set[Step], order: tuple[Relation, ...]
     ) -> list[str]:
         """Adds what one person does, group after group; the acts that end it."""
         made: list[str] = []
+        length = min(beat.end, self.frames) - beat.start
         for k, group in enumerate(groups):
-            if made:
-                order = _after(made)
-            made = []
+            order, made = _after(made) if made else order, []
             for step in group:
                 people = (person, 1 - person) if step in shared else (person,)
+                act = _act(str(len(self.acts) + 1), beat, people, step)
                 beside = (Relation(kind="while", act=made[0]),) if made else order
-                made.append(self._add(beat, people, step, beside))
-                self.spans[made[-1]] = _part(beat, k, len(groups), self.frames)
+                self.acts.append(act.model_copy(update={"order": beside}))
+                part = (beat.start + length * j // len(groups) for j in (k, k + 1))
+                self.spans[act.id] = (int(next(part)), int(next(part)))
+                made.append(act.id)
         return made
 
-    def _add(self, beat: Beat, people: tuple[int, ...], step: Step, order: tuple[Relation, ...]) -> str:
-        name, part, side, offered = step
+
+def _act(made: str, beat: Beat, people: tuple[int, ...], step: Step) -> Act:
+    """The act of a step of a beat."""
+    name, part, side, offered = step
+    known: dict[str, Any] = {}
+    if name != STILL:
         style = beat.styles[people[0]] or "normal"
-        adverb = STYLES.get(style)
-        made = str(len(self.acts) + 1)
-        act = Act(
-            id=made,
-            act=name,
-            agents=tuple("ab"[person] for person in people),
-            patient="ab"[1 - people[0]] if len(people) == 1 and _to_other(entry(name)) else None,
-            part=part,
-            modality="offered" if offered else "told",
-            order=order,
-        )
-        if name != STILL:
-            act = act.model_copy(
-                update={
-                    "side": side or beat.sides[people[0]],
-                    "manner": () if adverb is None else (adverb,),
-                    "speed": SPEEDS.get(style, 1.0),
-                    "direction": beat.direction,
-                }
-            )
-        self.acts.append(act)
-        if beat.minor:
-            self.minor.add(made)
-        return made
+        manner = (STYLES[style],) if style in STYLES else ()
+        known = {"side": side or beat.sides[people[0]], "manner": manner, "speed": SPEEDS.get(style, 1.0)}
+    return Act(
+        id=made,
+        act=name,
+        agents=tuple("ab"[person] for person in people),
+        patient="ab"[1 - people[0]] if len(people) == 1 and _to_other(entry(name)) else None,
+        part=part,
+        modality="offered" if offered else "told",
+        direction=beat.direction if name != STILL else None,
+        **known,
+    )
 
 
 def _after(acts: Sequence[str]) -> tuple[Relation, ...]:
     return tuple(Relation(kind="after", act=act) for act in acts)
-
-
-def _part(beat: Beat, k: int, count: int, frames: int) -> tuple[int, int]:
-    """The ``k``-th of ``count`` equal parts of a beat, which ends with the scene."""
-    length = min(beat.end, frames) - beat.start
-    return int(beat.start + length * k // count), int(beat.start + length * (k + 1) // count)
 
 
 def class_of(row: Mapping[str, Any]) -> str:
@@ -267,7 +241,7 @@ def class_of(row: Mapping[str, Any]) -> str:
             f"A scene of {row.get('family', 'unknown origin')} has no label and so no class: build the corpus with "
             "`python -m training.corpus`."
         )
-    known = Label.of_row(row["label"])
+    known = Label.model_validate(row["label"])
     names = [act.act for act in known.plan.acts if act.act != STILL and act.id not in known.minor]
     return ", ".join(dict.fromkeys(names or [STILL])).replace("-", " ")
 

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import combinations_with_replacement
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -20,6 +21,7 @@ from .cues import SourceClip
 
 OTHER = {"left": "right", "right": "left", "both": "both", None: None}
 ONE_HANDED = ("bye", "guide", "respond")
+UPWARDS = np.array([0.0, 1.0, 0.0])
 STRIKES = {"punch": ("wrist", 12, 14), "kick": ("ankle", 30, 30), "slash": ("wrist", 32, 26)}
 """Actions whose clips hold several blows: the joint that strikes, and frames kept before and after a blow."""
 
@@ -103,7 +105,7 @@ class Library:
         chosen = pick(rng, wanted)
         flip = chosen.side != side if side in ("left", "right") else bool(rng.random() < 0.5)
         motion = mirror(chosen.motion) if flip else chosen.motion
-        speed = float(np.clip(rng.normal(1.0, 0.07), 0.85, 1.15)) if warp else 1.0
+        speed = _tempo(rng) if warp else 1.0
         if not chosen.peaks and len(motion) / speed > frames[1]:
             motion = shorten(motion, int(frames[1] * speed))
         if warp:
@@ -140,11 +142,14 @@ class Library:
             elif action == "idle":
                 takes += [Take(part, action, "at ease" if hanging(part) else "busy") for part in calm(motion)]
             else:
-                side = clip.side
-                if side is None and action in ONE_HANDED:
-                    side = higher_hand(clip.positions)
+                side = higher_hand(clip.positions) if clip.side is None and action in ONE_HANDED else clip.side
                 takes.append(Take(motion, action, clip.style, side))
         return takes
+
+
+def _tempo(rng: np.random.Generator) -> float:
+    """How fast a clip is played."""
+    return float(np.clip(rng.normal(1.0, 0.07), 0.85, 1.15))
 
 
 def pick(rng: np.random.Generator, items):
@@ -201,22 +206,14 @@ def blows(motion: Motion, clip: SourceClip, *, most: int = 5) -> list[Take]:
         else:
             reach = np.linalg.norm(tip - clip.positions[:, SMPL22.index(f"{side}_shoulder")], axis=-1)
             peaks, _ = find_peaks(reach, height=0.42, prominence=0.12)
-        for first in range(len(peaks)):
-            for last in range(first, min(first + most, len(peaks))):
+        for first, last in combinations_with_replacement(range(len(peaks)), 2):
+            if last - first < most:
                 start = max(int(peaks[first]) - before, 0)
-                stop = min(int(peaks[last]) + after, len(motion))
+                part = motion[start : int(peaks[last]) + after]
                 reach = tip[peaks[first]] - clip.positions[peaks[first], 0]
-                aim = 0.0 if sword else float(np.arctan2(reach[0], reach[2]) - motion.headings[start])
-                takes.append(
-                    Take(
-                        motion[start:stop],
-                        clip.action,
-                        clip.style,
-                        None if sword else side,
-                        tuple(int(peak) - start for peak in peaks[first : last + 1]),
-                        wrapped(aim),
-                    )
-                )
+                aim = 0.0 if sword else wrapped(float(np.arctan2(reach[0], reach[2]) - motion.headings[start]))
+                own = tuple(int(peak) - start for peak in peaks[first : last + 1])
+                takes.append(Take(part, clip.action, clip.style, None if sword else side, own, aim))
     return takes
 
 
@@ -224,6 +221,12 @@ KEPT = 0.9
 """Share of a clip's furthest departure from its first pose that a shortened clip must keep."""
 QUICKEST = 1.5
 """How much faster a clip is played at most where its middle must not be cut."""
+
+
+def _moments(motion: Motion) -> np.ndarray:
+    """(T, F) poses and speeds of a person, by which two moments look alike; the height counts, the place does not."""
+    local = forward_kinematics(motion.rotations, motion.root * UPWARDS)
+    return np.concatenate([local, 4 * np.gradient(local, axis=0)], axis=-1).reshape(len(motion), -1)
 
 
 def shorten(motion: Motion, frames: int, *, blend: int = 10) -> Motion:
@@ -236,29 +239,20 @@ def shorten(motion: Motion, frames: int, *, blend: int = 10) -> Motion:
     surplus = len(motion) - frames
     if surplus <= 0 or frames < 40:
         return motion
-    local = forward_kinematics(motion.rotations, np.zeros_like(motion.root))
-    feature = np.concatenate(
-        [local.reshape(len(motion), -1), 4 * np.gradient(local, axis=0).reshape(len(motion), -1)], axis=-1
-    )
-    heights = local + motion.root[:, None] * np.array([0.0, 1.0, 0.0])
-    away = np.linalg.norm(heights - heights[0], axis=-1).max(axis=-1)
+    feature = _moments(motion)
+    poses = feature.reshape(len(motion), -1, 6)[..., :3]
+    away = np.linalg.norm(poses - poses[0], axis=-1).max(axis=-1)
     before, after = np.maximum.accumulate(away), np.maximum.accumulate(away[::-1])[::-1]
-    best: tuple[float, int, int] | None = None
+    best = (2.0, 0, 0)
     for skip in range(surplus, min(surplus + 20, len(motion) - 30)):
         low, high = 15, len(motion) - skip - 15
-        if high <= low:
-            break
         cost = np.linalg.norm(feature[low:high] - feature[low + skip : high + skip], axis=-1)
-        kept = np.maximum(before[low:high], after[low + skip : high + skip])
-        cost = np.where(kept >= KEPT * away.max(), cost, np.inf)
-        index = int(cost.argmin())
-        if np.isfinite(cost[index]) and (best is None or cost[index] < best[0]):
-            best = (float(cost[index]), low + index, low + index + skip)
-    if best is None or best[0] > 2.0:
-        return time_warp(motion, min(len(motion) / frames, QUICKEST))
+        kept = np.maximum(before[low:high], after[low + skip : high + skip]) >= KEPT * away.max()
+        best = min([best, *((float(cost[k]), low + k, low + k + skip) for k in np.flatnonzero(kept))])
     _, leave, enter = best
-    half = blend // 2
-    return join(motion[: leave + half], motion[enter - half :], blend=blend)
+    if not enter:
+        return time_warp(motion, min(len(motion) / frames, QUICKEST))
+    return join(motion[: leave + blend // 2], motion[enter - blend // 2 :], blend=blend)
 
 
 def feet_together(motion: Motion) -> np.ndarray:
@@ -273,19 +267,15 @@ def extend(motion: Motion, frames: int) -> Motion:
     """At least ``frames`` frames of a walk or run: its end leads back into an earlier, alike moment."""
     if len(motion) >= frames:
         return motion
-    local = forward_kinematics(motion.rotations, motion.root * np.array([0.0, 1.0, 0.0]))
-    feature = np.concatenate(
-        [local.reshape(len(motion), -1), 4 * np.gradient(local, axis=0).reshape(len(motion), -1)], axis=-1
-    )
-    half = min(5, len(motion) // 8)
+    feature, half = _moments(motion), min(5, len(motion) // 8)
     early = np.arange(half, max(len(motion) // 2, half + 1))
     late = np.arange(max(len(motion) - 12, len(motion) // 2 + half), len(motion) - half)
     cost = np.linalg.norm(feature[early][:, None] - feature[late][None], axis=-1)
     enter, leave = np.unravel_index(int(cost.argmin()), cost.shape)
-    enter, leave = int(early[enter]), int(late[leave])
-    longer = motion[: leave + half]
+    again = slice(int(early[enter]) - half, int(late[leave]) + half)
+    longer = motion[: again.stop]
     while len(longer) < frames:
-        longer = join(longer, motion[enter - half : leave + half], blend=2 * half)
+        longer = join(longer, motion[again], blend=2 * half)
     return longer
 
 
@@ -305,12 +295,10 @@ def stride(
     motion = extend(motion, int(distance / max(speed, 0.005)) + 45)
     passes = feet_together(motion)
     passes = passes[(passes > 6) & (passes < len(motion) - 7)]
-    warp = float(np.clip(rng.normal(1.0, 0.07), 0.85, 1.15))
-    if len(passes) < 2:
-        return Take(time_warp(motion, warp), action, take.style, take.side)
-    first = int(passes[rng.integers(min(3, len(passes)))])
-    travelled = np.linalg.norm((motion.root - motion.root[first])[:, [0, 2]], axis=-1)
-    later = passes[passes > first]
-    last = int(later[np.abs(travelled[later] - distance).argmin()]) if len(later) else len(motion) - 7
-    steps = time_warp(motion[first - 6 : last + 7], warp)
-    return Take(steps, action, take.style, take.side)
+    if len(passes) >= 2:
+        first = int(passes[rng.integers(min(3, len(passes)))])
+        travelled = np.linalg.norm((motion.root - motion.root[first])[:, [0, 2]], axis=-1)
+        later = passes[passes > first]
+        last = int(later[np.abs(travelled[later] - distance).argmin()]) if len(later) else len(motion) - 7
+        motion = motion[first - 6 : last + 7]
+    return replace(take, motion=time_warp(motion, _tempo(rng)))

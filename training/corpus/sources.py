@@ -17,7 +17,7 @@ import re
 import tarfile
 import tomllib
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
@@ -85,6 +85,15 @@ class Cut:
     style: str = "normal"
     backwards: bool = False
 
+    def described(self, dataset: str) -> Described:
+        """What it shows."""
+        return self.action, self.style, self.side, f"{dataset}_{self.clip.replace(' ', '-')}", dataset
+
+    def of(self, positions: Array, dataset: str) -> Array:
+        """The part of a whole file's positions (T, 22, 3)."""
+        positions = positions[round(self.start * FPS) : round(self.stop * FPS) or None][:: -1 if self.backwards else 1]
+        return humanly(positions) if dataset == ANIMATED else positions
+
 
 CUTS = {
     dataset: tuple(Cut(**cut) for cut in listed["cuts"])
@@ -117,7 +126,7 @@ def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -
 
 def _read(root: Path) -> list[SourceClip]:
     """All usable recordings below a data folder."""
-    read = sorted([*_named(root), *_cut(root)], key=lambda item: item[0][3])
+    read = sorted(_read_all(root), key=lambda item: item[0][3])
     if not read:
         raise InputError(f"No recording in {root} can be read: unpack its archives again.")
     splits = _splits([described for described, _ in read])
@@ -174,59 +183,49 @@ def unpacked(folder: Path, pattern: str | None = None) -> Iterator[list[Path]]:
         yield _files(there, pattern)
 
 
-def _named(root: Path) -> list[tuple[Described, Array]]:
-    """What the recordings of :data:`NAMED` show, and (T, 22, 3) metres of each."""
-    read, dropped = [], {}
-    for dataset in NAMED:
+def _read_all(root: Path) -> Iterator[tuple[Described, Array]]:
+    """What each recording shows that is there and can be read, and (T, 22, 3) metres of it.
+
+    Raises:
+        InputError: where most recordings of :data:`NAMED` are damaged.
+    """
+    read, dropped = 0, dict[str, InputError]()
+    for dataset in (*NAMED, *CUTS):
+        cuts = defaultdict[str, list[Cut]](list)
+        for cut in CUTS.get(dataset, ()):
+            cuts[cut.clip].append(cut)
         with unpacked(root / dataset) as files:
             for path in files:
                 try:
-                    positions = retarget(read_bvh(path)[0], fps=FPS).positions
-                    if len(positions) < 2:
-                        raise InputError("It has a single frame.")
-                    read.append((describe_source(path.name), positions))
+                    for clip, rig in _rigs(path, dataset, cuts):
+                        positions = retarget(rig, fps=FPS).positions.astype(np.float64)
+                        if len(positions) < 2:
+                            raise InputError("It has a single frame.")
+                        read += dataset in NAMED
+                        if dataset in NAMED:
+                            yield describe_source(path.name), positions
+                        for cut in cuts[clip]:
+                            yield cut.described(dataset), cut.of(positions, dataset)
                 except InputError as error:
-                    dropped[path.name] = error
+                    if dataset in NAMED:
+                        dropped[path.name] = error
     if dropped:
         first, reason = next(iter(dropped.items()))
-        said = f"{len(dropped)} of {len(dropped) + len(read)} recordings were left out, the first {first}: {reason}"
+        said = f"{len(dropped)} of {len(dropped) + read} recordings were left out, the first {first}: {reason}"
         logger.warning(said)
-        if len(dropped) > len(read):
+        if len(dropped) > read:
             raise InputError(f"{said} Unpack or download the data again.")
-    return read
 
 
-def _cut(root: Path) -> Iterator[tuple[Described, Array]]:
-    """What each cut whose file is there and can be read shows, and its (T, 22, 3) metres."""
-    for dataset, cuts in CUTS.items():
-        clips = _rigs(root / dataset, {cut.clip for cut in cuts})
-        for cut in cuts:
-            if cut.clip not in clips:
-                continue
-            positions = retarget(clips[cut.clip], fps=FPS).positions.astype(np.float64)
-            positions = positions[round(cut.start * FPS) : round(cut.stop * FPS) or None]
-            positions = positions[::-1] if cut.backwards else positions
-            positions = humanly(positions) if dataset == ANIMATED else positions
-            source = f"{dataset}_{cut.clip.replace(' ', '-')}"
-            yield (cut.action, cut.style, cut.side, source, dataset), positions
-
-
-def _rigs(folder: Path, wanted: set[str]) -> dict[str, RigMotion]:
-    """The rigs of a data set's files by clip, Y up; a file that cannot be read is as good as missing."""
-    found: dict[str, RigMotion] = {}
-    with unpacked(folder) as files:
-        for path in files:
-            try:
-                if folder.name == ANIMATED:
-                    for name in wanted & set(animations_in(path).names):
-                        found[name] = replace(read_glb(path, animation=name)[0][0], up="y")
-                elif path.stem in wanted and folder.name in FILES:
-                    found[path.stem] = read_deepmimic(path.read_bytes(), name=path.name)
-                elif path.stem in wanted:
-                    found[path.stem] = read_upright(path)
-            except InputError:
-                continue
-    return found
+def _rigs(path: Path, dataset: str, wanted: Collection[str]) -> Iterator[tuple[str, RigMotion]]:
+    """The clips of a file that are wanted, Y up; all of :data:`NAMED`."""
+    if dataset == ANIMATED:
+        for name in set(wanted) & set(animations_in(path).names):
+            yield name, replace(read_glb(path, animation=name)[0][0], up="y")
+    elif dataset in NAMED:
+        yield path.stem, read_bvh(path)[0]
+    elif path.stem in wanted:
+        yield path.stem, read_deepmimic(path.read_bytes(), name=path.name) if dataset in FILES else read_upright(path)
 
 
 def read_upright(path: Path) -> RigMotion:
@@ -260,11 +259,8 @@ def _splits(described: list[Described]) -> dict[str, str]:
     splits = {}
     for sources in groups.values():
         ranked = sorted(set(sources), key=lambda source: hashlib.sha256(source.encode()).hexdigest())
-        if len(ranked) < MIN_CLIPS_FOR_TEST:
-            splits |= dict.fromkeys(ranked, "both")
-            continue
-        held_out = max(1, round(TEST_SHARE * len(ranked)))
-        splits |= {source: "test" if rank < held_out else "train" for rank, source in enumerate(ranked)}
+        few, held_out = len(ranked) < MIN_CLIPS_FOR_TEST, max(1, round(TEST_SHARE * len(ranked)))
+        splits |= {s: "both" if few else "test" if rank < held_out else "train" for rank, s in enumerate(ranked)}
     return splits
 
 
@@ -322,13 +318,10 @@ def read_deepmimic(data: bytes, *, name: str = "", fps: float = 30.0) -> RigMoti
     grid = np.minimum(np.arange(0.0, times[-1] + 1e-6, 1 / fps), times[-1])
     root = np.stack([np.interp(grid, times, rows[:, column]) for column in (1, 2, 3)], axis=-1)
     turns, column = [], 4
-    for _, _, _, width in _JOINTS:
+    for *_, width in _JOINTS:
         part = rows[:, column : column + width]
-        turn = (
-            Rotation.from_rotvec(part * np.array([[0.0, 0.0, 1.0]]))
-            if width == 1
-            else Rotation.from_quat(part[:, [1, 2, 3, 0]])
-        )
+        bent, turned = part[:, :1] * np.array([[0.0, 0.0, 1.0]]), np.roll(part, -1, axis=1)
+        turn = Rotation.from_rotvec(bent) if width == 1 else Rotation.from_quat(turned)
         turns.append(Slerp(times, turn)(grid).as_matrix())
         column += width
     names, parents, offsets = zip(*(joint[:3] for joint in (*_JOINTS, *_ENDS)), strict=True)

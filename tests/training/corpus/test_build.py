@@ -44,7 +44,7 @@ def test_every_scene_has_a_plan_that_its_captions_tell(corpus: Path) -> None:
     assert {row["split"] for row in found} == {"train", "test"}
     captions = right = 0
     for row in found:
-        known = Label.of_row(row["label"])
+        known = Label.model_validate(row["label"])
         assert known.plan.acts and all(0 <= a < b <= row["frames"] for a, b in known.spans.values())
         acts = {act.act for act in known.plan.acts}
         assert len(set(row["captions"])) == len(row["captions"]) >= 3

@@ -52,7 +52,7 @@ def test_a_far_target_takes_the_trunk_along_but_not_the_feet():
     reached = reach(own, {"right": target}, envelope(FRAMES, 20, 40, 55, 75))
     assert np.linalg.norm(reached[45, ARMS["right"][3]] - target[45]) < 0.03
     assert reached[45, SMPL22.index("right_shoulder"), 2] > own[45, SMPL22.index("right_shoulder"), 2] + 0.05
-    for foot in ("left_foot", "right_foot", "left_ankle", "right_ankle"):
+    for foot in ("left_foot", "right_foot"):  # a heel may rise
         np.testing.assert_allclose(reached[:, SMPL22.index(foot)], own[:, SMPL22.index(foot)], atol=5e-3)
     assert bone_error(reached) < 1e-6
 

@@ -52,9 +52,9 @@ def test_clips_made_by_hand_are_read_from_glb_and_damaged_files_left_out(tmp_pat
     people = np.stack([marching(90)[0], marching(90, seed=1)[0]])
     (tmp_path / "mesh2motion").mkdir()
     (tmp_path / "mesh2motion" / "x-animations.glb").write_bytes(b"glTF" + bytes(40))
-    assert not list(sources._cut(tmp_path))
+    assert not list(sources._read_all(tmp_path))
     (tmp_path / "mesh2motion" / "y-animations.glb").write_bytes(glb_bytes(Duet.from_positions(people, fps=30.0)))
-    ((action, *_, source, dataset), positions), *others = sources._cut(tmp_path)
+    ((action, *_, source, dataset), positions), *others = sources._read_all(tmp_path)
     assert (action, source, dataset) == ("sit-down", "mesh2motion_duet", "mesh2motion") and not others
     assert len(positions) >= 85 and np.ptp(positions[:, 0, 2]) > 0.2
 

@@ -123,7 +123,7 @@ def test_scenes_are_canonical_and_told_on_several_levels() -> None:
         np.testing.assert_allclose(scene.positions[0, 0, 0, [0, 2]], 0, atol=1e-5)
         assert abs(float(heading(scene.positions[0])[0])) < 0.05
         assert scene.label is not None and scene.label.plan.acts
-        known = Label.of_row(scene.label.row())
+        known = Label.model_validate(scene.label.row())
         assert all(0 <= a < b <= scene.positions.shape[1] for a, b in known.spans.values())
         assert len(scene.captions) >= 3 and all(scene.alone)
         assert not any("waltz" in text for text in [*scene.captions, *scene.alone[0], *scene.alone[1]])

@@ -196,7 +196,7 @@ def half_beside(play: Play, i: int) -> tuple[int, str]:
     rng, side = play.rng, chosen_side(play.rng)
     sign = 1.0 if side == "right" else -1.0
     way = other.angle + sign * rng.uniform(1.0, 1.4)
-    spot = other.spot - rng.uniform(0.48, 0.56) * ahead(way) + sign * rng.uniform(0.1, 0.2) * leftwards(way)
+    spot = other.spot - rng.uniform(0.42, 0.5) * ahead(way) + sign * rng.uniform(0.1, 0.2) * leftwards(way)
     return play.settle(i, spot, way, "walk-up"), side
 
 
