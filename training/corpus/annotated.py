@@ -72,19 +72,26 @@ def read_annotated(data: Path, second_acts: Collection[str] = ()) -> Iterator[Sc
     splits = _splits(data)
     for source, files, text in motions_in(data):
         name = source.partition("/")[2]
-        try:
-            choices = ImportChoices(fps=FPS if files[0].suffix == ".npy" else None)
-            duet = read_pair(*(files[::-1] if name in second_acts else files), choices=choices)
-        except InputError as error:
-            print(f"left out: {name}: {error}", file=sys.stderr)
-            continue
-        people = np.stack(
-            [project_to_skeleton(resample(person.astype(np.float64), duet.fps, FPS))[0] for person in duet.positions]
-        )
-        lines = text.read_text(encoding="utf-8", errors="replace").splitlines() if text.is_file() else []
-        sentences = [line.strip() for line in lines if line.strip()][:_MOST_SENTENCES]
-        if sentences and people.shape[1] >= SHORTEST:
-            yield Scene(canonicalize(people), "annotated", (source,), splits.get(name, "train"), captions=sentences)
+        choices = ImportChoices(fps=FPS if files[0].suffix == ".npy" else None)
+        people = _people(files[::-1] if name in second_acts else files, choices)
+        sentences = [line.strip() for line in _lines(text) if line.strip()][:_MOST_SENTENCES]
+        if people and sentences and len(people[0]) >= SHORTEST:
+            scene = canonicalize(np.stack(people))
+            yield Scene(scene, "annotated", (source,), splits.get(name, "train"), captions=sentences)
+
+
+def _people(files: tuple[Path, Path], choices: ImportChoices | None = None) -> list[np.ndarray] | None:
+    """Two people (T, 22, 3) on SMPL22's own bones; None, and a line that says so, where a file cannot be read."""
+    try:
+        duet = read_pair(*files, choices=choices)
+    except InputError as error:
+        print(f"left out: {files[0].stem}: {error}", file=sys.stderr)
+        return None
+    return [project_to_skeleton(resample(person.astype(np.float64), duet.fps, FPS))[0] for person in duet.positions]
+
+
+def _lines(text: Path) -> list[str]:
+    return text.read_text(encoding="utf-8", errors="replace").splitlines() if text.is_file() else []
 
 
 _SOMEBODY = re.compile(r"((an?|the|this|one) )?(person|(wo)?man|figure|human|individual|guy|someone|s?he)\b", re.I)
@@ -113,15 +120,10 @@ def read_singles(data: Path) -> Iterator[Scene]:
         for first, second in zip(order, np.roll(order, 1), strict=True):
             files = paths[first], paths[second]
             told = [_told(data / "texts" / f"{path.stem}.txt", name) for path, name in zip(files, "AB", strict=True)]
-            if not all(told):
+            people = _people(files) if all(told) else None
+            if not people:
                 continue
-            try:
-                duet = read_pair(*files)
-            except InputError as error:
-                print(f"left out: {files[0].stem}: {error}", file=sys.stderr)
-                continue
-            people = [resample(person.astype(np.float64), duet.fps, FPS) for person in duet.positions]
-            a, b = (canonicalize(project_to_skeleton(person)[0]) for person in people)
+            a, b = map(canonicalize, people)
             scene = _apart(a, turn(b, np.pi + dice.uniform(-_OPEN, _OPEN)), dice.uniform(-_OPEN, _OPEN))
             if scene is not None and scene.shape[1] >= SHORTEST:
                 both = [f"{one}, and {other}" for one, other in zip(*told, strict=False)]
@@ -132,7 +134,7 @@ def read_singles(data: Path) -> Iterator[Scene]:
 def _told(text: Path, name: str) -> list[str]:
     """The sentences on all of a clip that begin with somebody, with the name of the person who does it here."""
     found = []
-    for line in text.read_text(encoding="utf-8", errors="replace").splitlines() if text.is_file() else []:
+    for line in _lines(text):
         words, *when = line.strip().split("#")
         somebody = _SOMEBODY.match(words)
         if somebody and set(when[1:]) <= _WHOLE:

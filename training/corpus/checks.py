@@ -7,13 +7,12 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.skeleton import SMPL22
+from motion.skeleton import FEET, SMPL22
 
 from .compose import FPS
 from .cues import Scene
 
 Array = NDArray[np.floating]
-FEET = tuple(tuple(SMPL22.index(f"{side}_{joint}") for joint in ("ankle", "foot")) for side in ("left", "right"))
 TRUNK = tuple(SMPL22.index(name) for name in ("pelvis", "spine1", "spine2", "spine3", "neck", "head"))
 _FLYING = (
     "run jump jumping dance spin crawl somersault cartwheel kick push fall cheer chase throw rage swing punch "
@@ -37,9 +36,8 @@ def foot_skate(positions: Array) -> float:
     In walking and standing at least one heel or toe rests at any time, so this is near 0 without sliding;
     frames in which no foot is low (flight) are left out.
     """
-    joints = [joint for foot in FEET for joint in foot]
-    speed = np.linalg.norm(np.diff(positions[:, joints][..., [0, 2]], axis=0), axis=-1) * FPS
-    low = positions[:-1][:, [FEET[0][1], FEET[1][1]], 1].min(axis=-1) < 0.06
+    speed = np.linalg.norm(np.diff(positions[:, list(FEET)][..., [0, 2]], axis=0), axis=-1) * FPS
+    low = positions[:-1][:, list(FEET[1::2]), 1].min(axis=-1) < 0.06
     return float(speed.min(axis=-1)[low].mean()) if low.any() else 0.0
 
 

@@ -105,11 +105,8 @@ def reads_back(name: str, phrase: str, *, both: bool) -> bool:
         direction="forward" if "{direction}" in phrase else None,
         side="left" if names_side(phrase) else None,
     )
-    if both:
-        text = f"A man jumps, and then they {spoken(act, phrase, 'each other', 'their', 'plural')}."
-    else:
-        text = f"A man jumps, and then he {spoken(act, phrase, 'the woman', 'his', 's')}."
-    acts = read(text).acts
+    who, *form = ("they", "each other", "their", "plural") if both else ("he", "the woman", "his", "s")
+    acts = read(f"A man jumps, and then {who} {spoken(act, phrase, *form)}.").acts
     return [one.act for one in acts] == ["jump", name] and acts[1].speed == 1.0
 
 
@@ -131,10 +128,7 @@ def fitting(act: Act, *, sided: bool) -> list[str]:
     if both and act.side != "both":  # "they wave with the left hand" has one hand of the two
         found = [text for text in found if "with {limb}" not in text and "{side}" not in text] or found
     with_side = [text for text in found if "{limb}" in text or ("{side}" in text and act.side != "both")]
-    if sided and with_side:
-        return with_side
-    plain = [text for text in found if "{limb}" not in text and "{side}" not in text]
-    return plain or found
+    return with_side if sided and with_side else [text for text in found if not names_side(text)] or found
 
 
 def spoken(act: Act, phrase: str, other: str, whose: str, form: str) -> str:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Sequence
-from functools import cached_property
 
 import numpy as np
 
@@ -48,8 +47,8 @@ def describe(rng: Rng, scene: Scene) -> Scene:
     frames = scene.positions.shape[1]
     scene.label = label(scene.played, frames)
     teller = Teller(rng, scene.label, scene.split)
-    scene.captions = teller.scene()
-    scene.alone = (teller.alone("a"), teller.alone("b"))
+    scene.captions = teller.tell(JOINT)
+    scene.alone = (teller.tell(ALONE, "a"), teller.tell(ALONE, "b"))
     if scene.family.startswith("beats"):
         scene.beats = [
             {
@@ -57,7 +56,7 @@ def describe(rng: Rng, scene: Scene) -> Scene:
                 "end": int(min(beat.end, frames)),
                 "acts": list(beat.acts),
                 "minor": beat.minor,
-                "captions": teller.beat(ids),
+                "captions": teller.tell(ONE_BEAT, only=ids),
             }
             for beat, ids in zip(scene.played, scene.label.beats, strict=True)
         ]
@@ -73,37 +72,25 @@ class Teller:
 
     def __init__(self, rng: Rng, label: Label, split: str) -> None:
         self.rng, self.label, self.split = rng, label, split
+        self._groups = label.plan.beats()
 
-    @cached_property
-    def _groups(self) -> list[list[Act]]:
-        return self.label.plan.beats()
+    def tell(self, count: int, people: str = "ab", only: Collection[str] | None = None) -> list[str]:
+        """Up to ``count`` different captions.
 
-    def scene(self, count: int = JOINT) -> list[str]:
-        """Up to ``count`` different captions of the whole scene."""
-        return self._collect(count, None, "ab")
-
-    def alone(self, who: str, count: int = ALONE) -> list[str]:
-        """Up to ``count`` different captions of what one person does."""
-        return self._collect(count, None, who)
-
-    def beat(self, acts: Collection[str], count: int = ONE_BEAT) -> list[str]:
-        """Up to ``count`` different captions of some of the acts, by their ids."""
-        return self._collect(count, acts, "ab")
-
-    def _collect(self, count: int, only: Collection[str] | None, people: str) -> list[str]:
+        Args:
+            people: "ab" for all that the two do, "a" or "b" for what one of them does.
+            only: the ids of the acts that are told.
+        """
         found: dict[str, None] = {}
         for _ in range(15 * count):
             groups = self._chosen(only, people)
-            if not groups:
+            if not groups or len(found) == count:
                 break
             cast = draw_cast(self.rng, joint=len(groups[0][0].agents) == 2)
             writer = _Writer(self.rng, cast, self.split, alone=len(people) == 1)
             text = writer.write(groups)
-            if writer.test != (self.split == "test") or len(text) > LONGEST or kept_out(text):
-                continue
-            found[text] = None
-            if len(found) == count:
-                break
+            if writer.test == (self.split == "test") and len(text) <= LONGEST and not kept_out(text):
+                found[text] = None
         return list(found)
 
     def _chosen(self, only: Collection[str] | None, people: str) -> list[list[Act]]:
@@ -187,16 +174,15 @@ class _Writer:
             return f"{link}{self._phrases(group, subjects[0])}", subjects
         parts = []
         for subject in subjects:
-            name = self.names.subject(subject)
-            parts.append(f"{name} {self._phrases([a for a in group if ''.join(sorted(a.agents)) == subject], subject)}")
+            own = [act for act in group if "".join(sorted(act.agents)) == subject]
+            parts.append(f"{self.names.subject(subject)} {self._phrases(own, subject)}")
         return " while ".join(parts), subjects
 
     def _phrases(self, acts: Sequence[Act], subject: str) -> str:
         """The verb phrases of acts of one subject at the same time."""
         both = len(subject) == 2
         form = ("are" if both else "is") if self.going else "plural" if both else "s"
-        first, *others = (self._phrase(act, form if k == 0 else "ing") for k, act in enumerate(acts))
-        return " while ".join([first, *others])
+        return " while ".join(self._phrase(act, "ing" if k else form) for k, act in enumerate(acts))
 
     def _phrase(self, act: Act, form: str) -> str:
         sided = act.side is not None and self.rng.random() < 0.5

@@ -82,7 +82,7 @@ def told(number: int, seed: int, split: str = "train") -> list[str]:
     """Captions of the scene with this number: of both people, of each, and of its first beat."""
     known = labelled(number)
     teller = Teller(np.random.default_rng(seed), known, split)
-    return [*teller.scene(3), *teller.alone("a", 1), *teller.alone("b", 1), *teller.beat(known.beats[0], 1)]
+    return [*teller.tell(3), *teller.tell(1, "a"), *teller.tell(1, "b"), *teller.tell(1, only=known.beats[0])]
 
 
 @cache
@@ -122,7 +122,7 @@ def test_captions_tell_acts_of_their_label_and_say_where_and_what_people_are_doi
     for number in range(150):
         known, pairs = labelled(number), beats_of(number)
         acts = {act.act for act in known.plan.acts}
-        for text in Teller(rng, known, "train").scene(1):
+        for text in Teller(rng, known, "train").tell(1):
             texts.append(text)
             found = [act.act for act in read(text).acts]
             right += bool(found) and set(found) <= acts and len(found) >= len(pairs) - 1

@@ -64,7 +64,7 @@ def captions_of(acts: tuple[str, str], split: str = "train") -> list[str]:
     rng = np.random.default_rng(zlib.crc32(f"{acts} {split}".encode()))
     sides = ("left", None) if rng.random() < 0.5 else (None, None)
     teller = Teller(rng, label([Beat(acts, 0, 60, relation="while", sides=sides)], 60), split)
-    return [*teller.scene(12), *teller.alone("a", 4)]
+    return [*teller.tell(12), *teller.tell(4, "a")]
 
 
 SETS = {
