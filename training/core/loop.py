@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import math
 import signal
 import threading
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import asdict, fields, is_dataclass, replace
 from pathlib import Path
 from queue import Queue
 from typing import Any, TypeVar
@@ -20,6 +21,7 @@ from torch import Tensor, nn
 from torch.utils.data import DataLoader, Dataset
 
 from models.compiled import has_bfloat16
+from models.weights_io import save_network
 
 from . import checkpoint
 from .checkpoint import Parts
@@ -47,11 +49,6 @@ def warm_cosine(peak: float, step: int, *, warmup: int, steps: int) -> float:
     return peak * warm * (0.51 + 0.49 * math.cos(math.pi * min(1.0, step / steps)))
 
 
-def adamw(parameters: Iterable[nn.Parameter], settings: Any) -> torch.optim.AdamW:
-    """The optimiser of most trainers, at the learning rate and weight decay of a run's settings."""
-    return torch.optim.AdamW(parameters, lr=settings.learning_rate, weight_decay=settings.weight_decay, fused=True)
-
-
 class Loop(ABC):
     """A run that counts its steps and can be stopped and saved after any of them.
 
@@ -75,6 +72,22 @@ class Loop(ABC):
     def checkpoint(self) -> Path:
         """Path of the run's checkpoint."""
         return self.out / "last.safetensors"
+
+    def start(self, model: nn.Module, device: str = "cpu") -> None:
+        """Takes a network with its average and its optimiser, as it is or as the run's checkpoint has it."""
+        self.model = model.to(device)
+        self.ema = copy.deepcopy(self.model).eval().requires_grad_(False)
+        self.optimizer = self.optimizer_of(self.model)
+        self.restore(asdict(self.settings))
+
+    def optimizer_of(self, model: nn.Module) -> torch.optim.Optimizer:
+        """AdamW at the learning rate and weight decay of the run's settings."""
+        s, learned = self.settings, [p for p in model.parameters() if p.requires_grad]
+        return torch.optim.AdamW(learned, lr=s.learning_rate, weight_decay=s.weight_decay, fused=True)
+
+    def export(self, folder: Path) -> None:
+        """Writes the averaged network as it is shipped."""
+        save_network(folder, self.ema, trained_steps=self.step)
 
     def parts(self) -> Parts:
         """The contents of a checkpoint, by name."""

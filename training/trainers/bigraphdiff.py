@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -23,13 +23,12 @@ from models.intergen.compact import Touch
 from models.intergen.losses import LossWeights
 from models.weights_io import save_network
 from motion import InputError
-from training.core.loop import adamw, mixed_precision
-from training.core.shell import add_options, add_run_options, chosen, exit_code
+from training.core.loop import mixed_precision
+from training.core.shell import train
 from training.corpus.cues import class_of
 from training.prepare import Scenes, load
 from training.trainers import intergen_data
-from training.trainers.intergen_data import Batch
-from training.trainers.scenes import DuetTrainer
+from training.trainers.scenes import Drawn, DuetTrainer
 from training.trainers.touch import touch_of
 
 SUMMARY = (
@@ -132,38 +131,31 @@ class Trainer(DuetTrainer):
         config = CompactBiGraphDiffConfig(
             data.names, data.touches, **{name: getattr(settings, name) for name in sizes}, layout=scenes.layout
         )
-        self.model, self.ema = (CompactBiGraphDiff(config).to(device) for _ in range(2))
-        self.model.mean.copy_(data.mean)
-        self.model.std.copy_(data.std)
-        self.ema.load_state_dict(self.model.state_dict())
-        self.ema.eval().requires_grad_(False)
-        self.optimizer = adamw(self.model.parameters(), settings)
-        self.restore(asdict(settings))
+        model = CompactBiGraphDiff(config)
+        model.mean.copy_(data.mean)
+        model.std.copy_(data.std)
+        self.start(model, device)
 
-    def terms(
-        self, batch: Batch, t: Tensor, noise: Tensor, hold: object = None, draft: object = None
-    ) -> dict[str, Tensor]:
-        """Every loss term of one batch, weighted."""
+    def terms(self, drawn: Drawn, noise: Tensor) -> dict[str, Tensor]:
+        """Every loss term of what was drawn, weighted."""
+        batch, t = drawn.batch, drawn.t
         xt = self.schedule.q_sample(batch.x0, t, noise)
         with mixed_precision(self.device):
             predicted = self.model.denoiser(xt, t, self.model.classes(batch.text) * batch.read[:, :1], batch.mask)
         return self.motion_terms(predicted.float(), batch.x0, t, batch)
 
+    def export(self, folder: Path) -> None:
+        """Writes the averaged network as it is shipped."""
+        save_network(folder, self.ema, card={"summary": SUMMARY}, trained_steps=self.step)
+
+
+def _begin(options: argparse.Namespace, settings: Settings) -> Trainer:
+    return Trainer(load(options.scenes), settings, options.out, device=options.device)
+
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    parser = argparse.ArgumentParser(description="Train the compact BiGraphDiff on prepared scenes.")
-    add_options(parser, "scenes", "device", "export")
-    add_run_options(parser, Settings, leave_out=("weights",))
-    options = parser.parse_args(argv)
-
-    def job() -> None:
-        trainer = Trainer(load(options.scenes), chosen(options, Settings), options.out, device=options.device)
-        trainer.run_logged(minutes=options.minutes)
-        if options.export:
-            save_network(options.export, trainer.ema, card={"summary": SUMMARY}, trained_steps=trainer.step)
-
-    return exit_code(job)
+    return train(argv, __doc__, Settings, _begin, "scenes", "device", "export", leave_out=("weights",))
 
 
 if __name__ == "__main__":

@@ -32,12 +32,11 @@ from torch import Tensor
 from models.interformer.compact import FPS, JOINTS_15, CompactInterFormer, CompactInterFormerConfig
 from models.interformer.network import JOINTS
 from models.intergen.losses import masked_mean
-from models.weights_io import save_network
 from motion import InputError
 from motion.skeleton import SBU15
 from motion.transforms import canonicalize, mirrored, resample, turn
-from training.core.loop import Loop, adamw
-from training.core.shell import add_options, add_run_options, chosen, exit_code
+from training.core.loop import Loop
+from training.core.shell import train
 from training.corpus.pairs import load_pairs
 from training.trainers.regennet import distance_loss
 
@@ -141,15 +140,12 @@ class Trainer(Loop):
         sizes = {k: v for k, v in asdict(settings).items() if k in names}
         self.model = CompactInterFormer(CompactInterFormerConfig(**sizes))
         self._normalize()
-        if not (out / "last.safetensors").exists():
+        if not self.checkpoint.exists():
             self._solve()
         self.model.linear.requires_grad_(False)
-        self.ema = CompactInterFormer(self.model.config).requires_grad_(False).eval()
-        self.ema.load_state_dict(self.model.state_dict())
-        self.optimizer = adamw((p for p in self.model.parameters() if p.requires_grad), settings)
         weights = [next((w for part, w in _IMPORTANCE.items() if part in name), 1.0) for name in SBU15.joint_names]
         self.importance = torch.tensor(weights) / np.mean(weights)
-        self.restore(asdict(settings))
+        self.start(self.model)
 
     def _normalize(self) -> None:
         """Means and deviations of what the network reads and makes, over the training pairs as recorded."""
@@ -269,22 +265,15 @@ class Trainer(Loop):
         return self.step_on(terms)
 
 
+def _begin(options: argparse.Namespace, settings: Settings) -> Trainer:
+    pairs = load_pairs(options.data, options.cache)
+    learned = [pair.positions for pair in pairs if not pair.test and pair.positions.shape[1] >= 2 * SHORTEST]
+    return Trainer(learned, settings, options.out)
+
+
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    parser = argparse.ArgumentParser(description="Train the compact InterFormer on SBU and K3HI.")
-    add_options(parser, "pairs", "cache", "export")
-    add_run_options(parser, Settings)
-    options = parser.parse_args(argv)
-
-    def job() -> None:
-        pairs = load_pairs(options.data, options.cache)
-        learned = [pair.positions for pair in pairs if not pair.test and pair.positions.shape[1] >= 2 * SHORTEST]
-        trainer = Trainer(learned, chosen(options, Settings), options.out)
-        trainer.run_logged(minutes=options.minutes)
-        if options.export:
-            save_network(options.export, trainer.ema, trained_steps=trainer.step)
-
-    return exit_code(job)
+    return train(argv, __doc__, Settings, _begin, "pairs", "cache", "export")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ the control points of :mod:`models.motion_tokens`; the regularisers see position
 from __future__ import annotations
 
 import argparse
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 import torch
@@ -17,29 +17,21 @@ from torch import Tensor
 from models.intergen.compact import CompactConfig, CompactInterGen, load_folder
 from models.known import Hold, Known
 from training.core import checkpoint
-from training.core.loop import adamw, mixed_precision
-from training.core.shell import add_options, add_run_options, chosen, exit_code
+from training.core.loop import mixed_precision
+from training.core.shell import train
 from training.prepare import Scenes, load
 from training.trainers.given import AS_PLACES, AS_STAGED, Held, drafted, known_parts
 from training.trainers.intergen_data import Batch, Data, Settings, seeded
 from training.trainers.scenes import Drawn, DuetTrainer, draw_timesteps
 
+SIZES = ("latent_dim", "ff_size", "num_layers", "num_heads", "cond_dim", "dropout", "words", "drafts")
+"""Settings that the network's configuration has as well."""
+
 
 def new_model(settings: Settings, data: Data) -> CompactInterGen:
     """An untrained network of the run's sizes that carries the data's normaliser."""
     model = CompactInterGen(
-        CompactConfig(
-            latent_dim=settings.latent_dim,
-            ff_size=settings.ff_size,
-            num_layers=settings.num_layers,
-            num_heads=settings.num_heads,
-            cond_dim=settings.cond_dim,
-            dropout=settings.dropout,
-            role_text=True,
-            words=settings.words,
-            drafts=settings.drafts,
-            layout=data.scenes.layout,
-        )
+        CompactConfig(**{name: getattr(settings, name) for name in SIZES}, role_text=True, layout=data.scenes.layout)
     )
     model.mean.copy_(data.mean)
     model.std.copy_(data.std)
@@ -81,16 +73,12 @@ class Trainer(DuetTrainer):
         out.mkdir(parents=True, exist_ok=True)
         torch.manual_seed(settings.seed)
         self.begin(settings, out, Data(scenes, settings, cache or out, device), device, workers)
-        self.model = new_model(settings, self.data).to(device)
-        if init is not None:
-            if init.is_dir():
-                self.model.grow_from(load_folder(init)[0])
-            else:
-                checkpoint.restore_part(init, "ema", self.model)
-        self.ema = new_model(settings, self.data).to(device).requires_grad_(False)
-        self.ema.load_state_dict(self.model.state_dict())
-        self.optimizer = adamw(self.model.parameters(), settings)
-        self.restore(asdict(settings))
+        model = new_model(settings, self.data)
+        if init is not None and init.is_dir():
+            model.grow_from(load_folder(init)[0])
+        elif init is not None:
+            checkpoint.restore_part(init, "ema", model)
+        self.start(model, device)
         self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
 
     def known(self, batch: Batch, generator: torch.Generator) -> Known | None:
@@ -121,10 +109,9 @@ class Trainer(DuetTrainer):
         draft = drafted(self.data.control(batch.x0), frames, layout, generator)
         return draft.features(layout, self.data.mean, self.data.std)
 
-    def terms(
-        self, batch: Batch, t: Tensor, noise: Tensor, hold: Hold | Held | None, draft: Tensor | None = None
-    ) -> dict[str, Tensor]:
-        """Every loss term of one batch, weighted."""
+    def terms(self, drawn: Drawn, noise: Tensor) -> dict[str, Tensor]:
+        """Every loss term of what was drawn, weighted."""
+        batch, t, hold, draft = drawn.batch, drawn.t, drawn.hold, drawn.draft
         xt = self.schedule.q_sample(batch.x0, t, noise)
         if hold is not None:
             xt = hold(xt)
@@ -138,31 +125,20 @@ class Trainer(DuetTrainer):
         return self.motion_terms(predicted, batch.x0, t, batch)
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Runs the command; returns its exit code."""
-    parser = argparse.ArgumentParser(description="Train the compact InterGen on prepared scenes.")
-    add_options(parser, "scenes", "threads", "device", "workers")
-    parser.add_argument("--init", type=Path, help="begin with another run's last.safetensors, or a shipped folder")
-    parser.add_argument("--compile", action="store_true", help="compile the network (needs a C++ compiler)")
-    add_run_options(parser, Settings, leave_out=("weights", "given"))
-    options = parser.parse_args(argv)
-    if options.threads:
-        torch.set_num_threads(options.threads)
-    return exit_code(lambda: _run(options))
-
-
-def _run(options: argparse.Namespace) -> None:
-    settings = chosen(options, Settings)
-    if settings.staged:
-        settings = replace(settings, given=AS_STAGED)
-    if settings.drafts:
-        settings = replace(settings, given=AS_PLACES)
-    trainer = Trainer(
-        load(options.scenes), settings, options.out, init=options.init, device=options.device, workers=options.workers
-    )
+def _begin(options: argparse.Namespace, settings: Settings) -> Trainer:
+    if settings.staged or settings.drafts:
+        settings = replace(settings, given=AS_PLACES if settings.drafts else AS_STAGED)
+    given = {name: getattr(options, name) for name in ("init", "device", "workers")}
+    trainer = Trainer(load(options.scenes), settings, options.out, **given)
     if options.compile:
         trainer.model.denoiser.compile(dynamic=True)
-    trainer.run_logged(minutes=options.minutes)
+    return trainer
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
+    names = ("scenes", "threads", "device", "workers", "init", "compile")
+    return train(argv, __doc__, Settings, _begin, *names, leave_out=("weights", "given"))
 
 
 if __name__ == "__main__":

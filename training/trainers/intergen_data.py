@@ -21,6 +21,7 @@ from motion import SMPL22, InputError
 from training.core import checkpoint
 from training.core.handedness import mirror_caption, mirrored
 from training.core.loop import moved
+from training.core.shell import at_least
 from training.core.text_features import CaptionFeatures, CaptionTokens
 from training.corpus.cues import STILL
 from training.prepare import Scenes, normalizer, sentence_lists
@@ -79,13 +80,8 @@ class Settings:
     )
 
     def __post_init__(self) -> None:
-        for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "cond_dim", "batch", "warmup"):
-            if getattr(self, name) < 1:
-                raise InputError(f"{name} is {getattr(self, name)}: give 1 or more.")
-        if self.latent_dim % self.num_heads:
-            raise InputError(
-                f"latent_dim {self.latent_dim} cannot be shared by {self.num_heads} heads: give a multiple."
-            )
+        sizes = ("latent_dim", "ff_size", "num_layers", "num_heads", "cond_dim", "batch", "warmup")
+        at_least(self, **dict.fromkeys(sizes, 1))
 
 
 def settings_of(path: Path) -> Settings:

@@ -9,7 +9,6 @@ what a CPU trains in an hour: ``LEAN`` below says what it changes.
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -30,8 +29,8 @@ from models.mawgan.losses import (
 from models.mawgan.network import Critic, MAWGANConfig, PredictiveMAWGAN, to_curves, to_positions, without_flicker
 from models.mawgan.srvf import exp_map, karcher_mean, log_map, to_srvf
 from motion import InputError
-from training.core.shell import exit_code
-from training.trainers.prediction import PredictionTrainer, add_predictor_options, train
+from training.core.shell import at_least
+from training.trainers.prediction import PredictionTrainer, train
 
 
 @dataclass(frozen=True)
@@ -70,10 +69,7 @@ class Settings:
     def __post_init__(self) -> None:
         if self.width % 8 or self.width < 32:
             raise InputError(f"width is {self.width}: give a multiple of 8, 32 or more.")
-        least = {"past": 2, "future": 2, "fc": 2, "batch": 2, "critic_steps": 1, "critic_stride": 1}
-        for name, number in least.items():
-            if getattr(self, name) < number:
-                raise InputError(f"{name} is {getattr(self, name)}: give {number} or more.")
+        at_least(self, past=2, future=2, fc=2, batch=2, critic_steps=1, critic_stride=1)
 
     def network(self, joints: int) -> MAWGANConfig:
         """The sizes of predictor and critic."""
@@ -127,28 +123,22 @@ class Trainer(PredictionTrainer):
     model: PredictiveMAWGAN
     ema: PredictiveMAWGAN
 
-    def build(self) -> None:
-        """Makes the network, its average and the optimizers."""
+    def network(self) -> nn.Module:
+        """The predictor as a run begins, with the means of the training data; makes the critic, too."""
         s = self.settings
         config = s.network(self.windows.joints)
-        self.model, self.ema = (PredictiveMAWGAN(config).to(self.device) for _ in range(2))
-        self.ema.eval()
-        self.critic = Critic(config).to(self.device)
+        model, self.critic = PredictiveMAWGAN(config).to(self.device), Critic(config).to(self.device)
+        self.critic_optimizer = self.optimizer_of(self.critic)
         if not self.checkpoint.exists():
-            self.measure()
-        self.ema.load_state_dict(self.model.state_dict())
-        self.ema.requires_grad_(False)
-        self.optimizer, self.critic_optimizer = (
-            torch.optim.AdamW(part.parameters(), lr=s.learning_rate, betas=(0.5, 0.9), weight_decay=0.0, fused=True)
-            for part in (self.model, self.critic)
-        )
+            past, future = self.curves(self.windows.batch(512, (s.seed, 0, 1)).to(self.device))
+            model.past_mean.copy_(karcher_mean(moving(past)))
+            model.future_mean.copy_(karcher_mean(moving(future)))
+        return model
 
-    def measure(self) -> None:
-        """Means of the training data."""
-        s, model = self.settings, self.model
-        past, future = self.curves(self.windows.batch(512, (s.seed, 0, 1)).to(self.device))
-        model.past_mean.copy_(karcher_mean(moving(past)))
-        model.future_mean.copy_(karcher_mean(moving(future)))
+    def optimizer_of(self, model: nn.Module) -> torch.optim.Optimizer:
+        """Adam, as in section 2.5.2."""
+        rate = self.settings.learning_rate
+        return torch.optim.AdamW(model.parameters(), lr=rate, betas=(0.5, 0.9), weight_decay=0.0, fused=True)
 
     def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
         """The contents of a checkpoint, by name."""
@@ -251,14 +241,7 @@ def moving(curves: Tensor) -> Tensor:
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    parser = argparse.ArgumentParser(description="Train PredictiveMA-WGAN.")
-    add_predictor_options(parser, Settings)
-    parser.add_argument("--lean", action="store_true", help="settings that one CPU core trains in an hour")
-    options = parser.parse_args(argv)
-    if options.lean:  # explicit options still override
-        parser.set_defaults(**LEAN)
-        options = parser.parse_args(argv)
-    return exit_code(lambda: train(Trainer, Settings, options))
+    return train(argv, __doc__, Settings, Trainer, lean=LEAN)
 
 
 if __name__ == "__main__":

@@ -7,17 +7,14 @@ a step is never far off.
 
 from __future__ import annotations
 
-import argparse
 from dataclasses import dataclass
 
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 
 from models.motion_mlp import MotionMLP, MotionMLPConfig
-from motion import InputError
-from training.core.loop import adamw
-from training.core.shell import exit_code
-from training.trainers.prediction import PredictionTrainer, add_predictor_options, train
+from training.core.shell import at_least
+from training.trainers.prediction import PredictionTrainer, train
 
 
 @dataclass(frozen=True)
@@ -45,9 +42,7 @@ class Settings:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        for name in ("past", "future", "width", "blocks", "batch", "warmup"):
-            if getattr(self, name) < 1:
-                raise InputError(f"{name} is {getattr(self, name)}: give 1 or more.")
+        at_least(self, **dict.fromkeys(("past", "future", "width", "blocks", "batch", "warmup"), 1))
 
 
 _BIN = 5
@@ -81,19 +76,16 @@ class Trainer(PredictionTrainer):
     model: MotionMLP
     ema: MotionMLP
 
-    def build(self) -> None:
-        """Makes the network, its average and the optimizers."""
+    def network(self) -> nn.Module:
+        """The network as a run begins, its linear part fitted."""
         s = self.settings
         sizes = (s.past, s.future, s.past_coefficients, s.future_coefficients, s.width, s.blocks, s.dropout)
-        config = MotionMLPConfig(self.windows.joints, *sizes)
-        self.model, self.ema = (MotionMLP(config).to(self.device) for _ in range(2))
-        self.ema.eval().requires_grad_(False)
+        model = MotionMLP(MotionMLPConfig(self.windows.joints, *sizes)).to(self.device)
         if not self.checkpoint.exists():
-            self.model.fit_linear(self.windows.batch(s.fit, (s.seed, 0, 1)).to(self.device))
-        self.ema.load_state_dict(self.model.state_dict())
-        self.optimizer = adamw(self.model.parameters(), s)
+            model.fit_linear(self.windows.batch(s.fit, (s.seed, 0, 1)).to(self.device))
         parents, children = zip(*self.windows.bones, strict=True)
         self.bones = list(parents), list(children)
+        return model
 
     def terms(self, window: Tensor) -> dict[str, Tensor]:
         """Weighted loss terms, in centimetres, of windows (B, past + future, J, 3) in metres."""
@@ -120,10 +112,7 @@ class Trainer(PredictionTrainer):
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    parser = argparse.ArgumentParser(description="Train the default predictor.")
-    add_predictor_options(parser, Settings)
-    options = parser.parse_args(argv)
-    return exit_code(lambda: train(Trainer, Settings, options))
+    return train(argv, __doc__, Settings, Trainer)
 
 
 if __name__ == "__main__":

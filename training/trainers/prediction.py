@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from abc import abstractmethod
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -11,13 +12,13 @@ from typing import Any
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from torch import Tensor
+from torch import Tensor, nn
 
 from models.weights_io import save_network
 from motion import SMPL22, InputError
 from motion.transforms import mirrored
+from training.core import shell
 from training.core.loop import Loop
-from training.core.shell import add_options, add_run_options, chosen
 from training.prepare import load_corpus
 from webdemo.inference.pipelines.predictor import to_last_pose
 
@@ -88,12 +89,11 @@ class PredictionTrainer(Loop):
     def __init__(self, windows: Windows, settings: Any, out: Path, *, device: str = "cpu") -> None:
         self.windows, self.settings, self.out, self.device = windows, settings, out, device
         torch.manual_seed(settings.seed)
-        self.build()
-        self.restore(asdict(settings))
+        self.start(self.network(), device)
 
     @abstractmethod
-    def build(self) -> None:
-        """Makes networks and optimisers; runs once, under the run's seed."""
+    def network(self) -> nn.Module:
+        """The network as a run begins, under the run's seed; a predictor with more parts makes them here."""
 
     def batch(self, part: int = 0) -> Tensor:
         """The windows (B, past + future, J, 3) of this step."""
@@ -106,18 +106,18 @@ class PredictionTrainer(Loop):
         save_network(folder, self.ema, kind=self.kind, fps=windows.fps, bones=windows.bones, training=training)
 
 
-def add_predictor_options(parser: argparse.ArgumentParser, settings: type) -> None:
-    """Options that every training of a predictor takes: data, folders, minutes and each setting."""
-    parser.add_argument("--data", type=Path, required=True, help="folder of the corpus")
-    add_options(parser, "device", "export")
-    add_run_options(parser, settings)
+def train(
+    argv: list[str] | None,
+    description: str,
+    settings: type,
+    trainer: Callable[..., PredictionTrainer],
+    *,
+    lean: Mapping[str, Any] | None = None,
+) -> int:
+    """The command of a predictor's trainer; see :func:`training.core.shell.train`."""
 
+    def begin(options: argparse.Namespace, asked: Any) -> PredictionTrainer:
+        windows = Windows(options.data, asked.past, asked.future)
+        return trainer(windows, asked, options.out, device=options.device)
 
-def train(trainer: type, settings: type, options: argparse.Namespace) -> None:
-    """Runs what :func:`add_predictor_options` understood."""
-    asked = chosen(options, settings)
-    windows = Windows(options.data, asked.past, asked.future)
-    run = trainer(windows, asked, options.out, device=options.device)
-    run.run_logged(minutes=options.minutes)
-    if options.export:
-        run.export(options.export)
+    return shell.train(argv, description, settings, begin, "corpus", "device", "export", lean=lean)

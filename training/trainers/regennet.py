@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import argparse
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import torch
@@ -27,14 +27,13 @@ from models.intergen.losses import bone_lengths, facing, joint_distances, masked
 from models.motion_tokens import FEATURES, NUM_CONTACTS
 from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, load_folder
 from models.weights_io import save_network
-from motion import InputError
 from motion.skeleton import FEET
-from training.core.loop import adamw, mixed_precision
-from training.core.shell import add_options, add_run_options, chosen, exit_code
+from training.core.loop import mixed_precision
+from training.core.shell import at_least, train
 from training.prepare import Scenes, load
 from training.trainers.intergen_data import Batch, seeded
 from training.trainers.regennet_data import Data, Past, knot_positions, make_past, plan, seen_rows
-from training.trainers.scenes import SceneTrainer
+from training.trainers.scenes import Drawn, SceneTrainer
 from training.trainers.touch import with_touches
 
 SUMMARY = (
@@ -100,15 +99,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         sizes = ("latent_dim", "ff_size", "num_layers", "num_heads", "window", "batch", "warmup")
-        for name in (*sizes, "own_growth", "rollout"):
-            if getattr(self, name) < 1:
-                raise InputError(f"{name} is {getattr(self, name)}: give 1 or more.")
-        if self.sampler < 2:
-            raise InputError(f"A past of one's own takes a sampler of 2 steps or more, not {self.sampler}.")
-        if self.latent_dim % self.num_heads:
-            raise InputError(
-                f"latent_dim {self.latent_dim} cannot be shared by {self.num_heads} heads: give a multiple."
-            )
+        at_least(self, **dict.fromkeys((*sizes, "own_growth", "rollout"), 1), sampler=2)
 
 
 def interaction_loss(predicted: Tensor, reactor: Tensor, actor: Tensor, mask: Tensor) -> Tensor:
@@ -207,22 +198,19 @@ class Trainer(SceneTrainer):
             frames_per_knot=scenes.layout.frames_per_knot,
         )
         self.data = Data(scenes, settings, out, device)
-        self.model = CompactReGenNet(self.config)
+        model = CompactReGenNet(self.config)
         if shipped is None:
-            self.model.conditioner.load_state_dict(conditioner.state_dict())
-            self.data.normalize(self.model)
+            model.conditioner.load_state_dict(conditioner.state_dict())
+            self.data.normalize(model)
         else:
             known = {k: v for k, v in shipped.state_dict().items() if not k.startswith("touch_reader.")}
-            Released(known, "ReGenNet").loaded(self.model)
-        self.model.to(device).conditioner.requires_grad_(False)
-        self.ema = CompactReGenNet(self.config).to(device).requires_grad_(False)
-        self.ema.load_state_dict(self.model.state_dict())
-        self.optimizer = adamw((p for p in self.model.parameters() if p.requires_grad), settings)
+            Released(known, "ReGenNet").loaded(model)
+        model.conditioner.requires_grad_(False)
         self.schedule = NoiseSchedule(device=device)
         self.weights = torch.ones(FEATURES, device=device)
         self.weights[:3] = settings.root_weight
         self.used = torch.zeros(())
-        self.restore(asdict(settings))
+        self.start(model, device)
 
     def own_share(self) -> float:
         """The share of online scenes whose past the network makes itself, at this step."""
@@ -273,11 +261,10 @@ class Trainer(SceneTrainer):
         noise, std = self.normal(x0, 8), self.model.std
         return make_past(predict, planned, x0, (xt, t), self.schedule, std, steps=s.sampler, noise=noise)
 
-    def terms(
-        self, batch: Batch, t: Tensor, noise: Tensor, hold: object = None, draft: object = None
-    ) -> dict[str, Tensor]:
-        """Every loss term of one batch, weighted; ``used`` becomes the share of scenes with a past of its own."""
+    def terms(self, drawn: Drawn, noise: Tensor) -> dict[str, Tensor]:
+        """Every loss term of what was drawn, weighted; ``used`` becomes the share of scenes with a past of its own."""
         s, model, generator = self.settings, self.model, seeded(self.settings.seed, 9, self.step)
+        batch, t = drawn.batch, drawn.t
         actor, reactor, mask = self.data.people(batch)
         x0 = (reactor - model.mean) / model.std
         causal = bool(torch.rand(1, generator=generator) >= s.offline)
@@ -303,34 +290,22 @@ class Trainer(SceneTrainer):
         """One optimiser step; returns the loss terms, and the share of scenes with a past of the network's own."""
         return super().train_step() | {"own": self.used.item()}
 
+    def export(self, folder: Path) -> None:
+        """Writes the averaged network as it is shipped, with a reader of touches."""
+        model, reads = with_touches(self.ema.cpu(), self.data.scenes)
+        print(f"touches read from test captions: {reads:.1%}")
+        save_network(folder, model, card={"summary": SUMMARY}, trained_steps=self.step)
+
+
+def _begin(options: argparse.Namespace, settings: Settings) -> Trainer:
+    given = {name: getattr(options, name) for name in ("words", "init", "device", "workers")}
+    return Trainer(load(options.scenes), settings, options.out, **given)
+
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    parser = argparse.ArgumentParser(description="Train the compact ReGenNet on prepared scenes.")
-    add_options(parser, "scenes", "threads", "device", "workers", "export")
-    parser.add_argument(
-        "--words",
-        type=Path,
-        default=Path("models/weights/intergen"),
-        help="a shipped InterGen, whose text conditioner is taken over",
-    )
-    parser.add_argument("--init", type=Path, help="begin with a shipped ReGenNet, its words and all")
-    add_run_options(parser, Settings)
-    options = parser.parse_args(argv)
-    if options.threads:
-        torch.set_num_threads(options.threads)
-
-    def job() -> None:
-        scenes, settings = load(options.scenes), chosen(options, Settings)
-        given = {name: getattr(options, name) for name in ("words", "init", "device", "workers")}
-        trainer = Trainer(scenes, settings, options.out, **given)
-        trainer.run_logged(minutes=options.minutes)
-        if options.export:
-            model, reads = with_touches(trainer.ema.cpu(), scenes)
-            print(f"touches read from test captions: {reads:.1%}")
-            save_network(options.export, model, card={"summary": SUMMARY}, trained_steps=trainer.step)
-
-    return exit_code(job)
+    names = ("scenes", "threads", "device", "workers", "export", "words", "init")
+    return train(argv, __doc__, Settings, _begin, *names)
 
 
 if __name__ == "__main__":

@@ -61,10 +61,8 @@ class SceneTrainer(Loop):
     _ahead: Iterator[Any] | None = None
 
     @abstractmethod
-    def terms(
-        self, batch: Batch, t: Tensor, noise: Tensor, hold: Hold | Held | None, draft: Tensor | None = None
-    ) -> dict[str, Tensor]:
-        """Every loss term of one batch, weighted."""
+    def terms(self, drawn: Drawn, noise: Tensor) -> dict[str, Tensor]:
+        """Every loss term of what was drawn, weighted."""
 
     def draw(self, step: int) -> Drawn:
         """All that a step draws, on the CPU; the same for the same seed and step."""
@@ -90,7 +88,7 @@ class SceneTrainer(Loop):
         drawn = self.next_draw()
         torch.manual_seed(seeded(self.settings.seed, 4, self.step).initial_seed())  # dropout
         self.model.train()
-        return self.step_on(self.terms(drawn.batch, drawn.t, self.normal(drawn.batch.x0), drawn.hold, drawn.draft))
+        return self.step_on(self.terms(drawn, self.normal(drawn.batch.x0)))
 
 
 class DuetTrainer(SceneTrainer):

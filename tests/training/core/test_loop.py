@@ -11,7 +11,7 @@ import pytest
 import torch
 from torch import nn
 
-from training.core.loop import Loop, adamw, warm_cosine
+from training.core.loop import Loop, warm_cosine
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -25,7 +25,7 @@ class Line(Loop):
         torch.manual_seed(0)
         self.model, self.ema = nn.Linear(1, 1), nn.Linear(1, 1).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
-        self.optimizer = adamw(self.model.parameters(), self.settings)
+        self.optimizer = self.optimizer_of(self.model)
         self.restore({"steps": 20})
 
     def train_step(self) -> dict[str, float]:

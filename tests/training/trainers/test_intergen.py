@@ -17,6 +17,7 @@ from tests.training.trainers.runs import SETTINGS, begin, prepared, take, write_
 from training import export, prepare
 from training.core import checkpoint
 from training.trainers import intergen
+from training.trainers.scenes import Drawn
 from webdemo.inference import GenerateRequest, Result
 from webdemo.inference.engine import Engine
 
@@ -168,6 +169,7 @@ def test_grown_from_a_shipped_network_the_first_loss_is_the_same(scenes: Path, t
     for run in (old_run, new_run):
         run.model.eval()
     found = [
-        {k: v.item() for k, v in run.terms(batch, t, noise, run.hold(known)).items()} for run in (old_run, new_run)
+        {k: v.item() for k, v in run.terms(Drawn(batch, t, run.hold(known)), noise).items()}
+        for run in (old_run, new_run)
     ]
     assert found[1] == pytest.approx(found[0], rel=0.02)  # in bfloat16
