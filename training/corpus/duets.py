@@ -59,11 +59,10 @@ def load_duets(root: str | Path, rejected: Counter[str]) -> list[Scene]:
     scenes = []
     for name, people in read_takes(Path(root)):
         for scene in windows(name, people):
-            why = fault(scene)
-            if why is None:
-                scenes.append(scene)
-            else:
+            if why := fault(scene):
                 rejected[f"salsa: {why}"] += 1
+            else:
+                scenes.append(scene)
     return scenes
 
 
@@ -84,13 +83,9 @@ def read_takes(root: Path) -> Iterator[tuple[str, Array]]:
 def windows(take: str, both: Array) -> Iterator[Scene]:
     """The scenes of a take of two people (2, T, 22, 3), of all lengths of :data:`SECONDS`, from when they dance."""
     first, last = danced(both)
-    held_out = take in HELD_OUT
-    tail = last if held_out else last - round(TAIL * (last - first))
-    parts = [(first, tail, "test" if held_out else "train")]
-    if tail < last:
-        parts.append((tail, last, "test"))
-    for begin, end, split in parts:
-        name = f"{SALSA}/{take}" if split == "train" or held_out else f"{SALSA}/{take}-end"
+    tail, own = last - round(TAIL * (last - first)), f"{SALSA}/{take}"
+    parts = [(first, tail, "train", own), (tail, last, "test", f"{own}-end")]
+    for begin, end, split, name in [(first, last, "test", own)] if take in HELD_OUT else parts:
         for seconds in SECONDS:
             length = round(seconds * FPS)
             for start in range(begin, end - length + 1, length // 2):
@@ -110,17 +105,14 @@ def danced(people: Array) -> tuple[int, int]:
 
 def dance_beats(people: Array) -> list[Beat]:
     """The beats of two who dance: a dance, and between its parts one who turns the other under a raised arm."""
-    beats, done, frames = [], 0, people.shape[1]
-    for patient, start, stop in twirls(people):
-        if start < done:
-            continue
-        if start - done >= BRIEF:
+    beats, done = list[Beat](), 0
+    for patient, start, stop in [*twirls(people), (None, people.shape[1], 0)]:
+        if start - done >= BRIEF or (patient is None and not beats):
             beats.append(Beat(("dance", "dance"), done, start, relation="while"))
-        acts = ("twirl", "") if patient else ("", "twirl")
-        beats.append(Beat(acts, start, stop, first=1 - patient, relation="while"))
-        done = stop
-    if frames - done >= BRIEF or not beats:
-        beats.append(Beat(("dance", "dance"), done, frames, relation="while"))
+        if patient is not None and start >= done:
+            acts = ("twirl", "") if patient else ("", "twirl")
+            beats.append(Beat(acts, start, stop, first=1 - patient, relation="while"))
+            done = stop
     return beats
 
 

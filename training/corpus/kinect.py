@@ -11,8 +11,9 @@ A Kinect's errors are corrected here: lean, sides, spikes, open trunks.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,7 @@ from motion.errors import InputError
 from motion.ik import body_scale, fit_skeleton
 from motion.kinematics import project_to_skeleton
 from motion.skeleton import K3HI15, SBU15, SMPL22, Skeleton
-from motion.transforms import heading_matrix, resample
+from motion.transforms import canonicalize, heading_matrix, resample
 from motion.vectors import wrapped
 
 from .sources import unpacked
@@ -77,23 +78,25 @@ RELEASES = {
 
 
 @dataclass(frozen=True, eq=False)
-class KinectPair:
-    """Two people as a Kinect recorded them.
+class Pair:
+    """A listed clip of two people, the actor first.
 
     Attributes:
-        positions: (2, T, 15, 3) metres in the camera's frame: X left in the image, Y up, Z away from the
-            camera (right-handed); the actor first.
-        family: the corpus' name of the class.
+        positions: (2, T, 22, 3) metres at 30 fps, canonical to the actor; as a Kinect recorded them (2, T, 15, 3) in
+            the camera's frame: X left in the image, Y up, Z away from the camera (right-handed).
+        family: the corpus' name of its class.
+        dataset: "sbu" or "k3hi".
         name: the clip's folder, e.g. "s01s02/01/001".
         test: True in the published test list, on which nothing is trained.
-        dataset: "sbu" or "k3hi".
+        error: metres between the fitted body and the Kinect's joints, at most.
     """
 
     positions: Array = field(repr=False)
     family: str
+    dataset: str
     name: str
     test: bool
-    dataset: str
+    error: float = 0.0
 
     @property
     def release(self) -> Release:
@@ -101,20 +104,15 @@ class KinectPair:
         return RELEASES[self.dataset]
 
 
-def read_pairs(data_dir: str | Path) -> list[KinectPair]:
-    """All listed clips of both sets, unrepaired, each set in the order of the clips' names.
+def read_release(data_dir: str | Path, dataset: str) -> list[Pair]:
+    """The listed clips of "sbu" or "k3hi", unrepaired, in the order of their names.
 
     Args:
-        data_dir: the folder that holds ``sbu`` and ``k3hi``, each unpacked or with its archive.
+        data_dir: holds the folder of the set, or is it; unpacked or with its archive.
 
     Raises:
-        InputError: if the data of a set are not there.
+        InputError: if the data are not there.
     """
-    return [pair for dataset in RELEASES for pair in read_release(data_dir, dataset)]
-
-
-def read_release(data_dir: str | Path, dataset: str) -> list[KinectPair]:
-    """The listed clips of "sbu" or "k3hi"; ``data_dir`` may also be the folder of the set itself."""
     release, folder = RELEASES[dataset], Path(data_dir)
     pairs = []
     with unpacked(folder / dataset if (folder / dataset).is_dir() else folder, "T*.txt") as lists:
@@ -124,7 +122,7 @@ def read_release(data_dir: str | Path, dataset: str) -> list[KinectPair]:
                 name = actor.parent.relative_to(path.parent / release.top)
                 family = next(release.classes[part] for part in name.parts if part in release.classes)
                 both = np.stack([_metres(actor), _metres(reactor)])
-                pairs.append(KinectPair(both, family, str(name), path.name == "Test.txt", dataset))
+                pairs.append(Pair(both, family, dataset, str(name), path.name == "Test.txt"))
     if not pairs:
         raise InputError(f"No {dataset} data in {folder}: give the folder that holds {release.top}, or its archive.")
     return sorted(pairs, key=lambda pair: pair.name)
@@ -147,31 +145,23 @@ _DEPTH_TRUST = 0.4  # a Kinect's depth is about this much less certain than its 
 _NOISE = 0.02  # metres; the tracker keeps many bones rigid, so bones alone would tell too little
 
 
-def fit_pair(pair: KinectPair) -> tuple[Array, float]:
-    """Two people on SMPL22 from a Kinect's joints: repaired, fitted, at 30 fps, feet at the floor.
-
-    Returns:
-        (2, T, 22, 3) metres in a level frame, and the larger of the two fit errors in metres.
-    """
-    skeleton, fps = pair.release.skeleton, pair.release.fps
-    repaired, weights = zip(*(_repair(pair, person) for person in (0, 1)), strict=True)
-    sizes = [body_scale(person, skeleton) for person in repaired]
-    scale = float(np.mean(sizes))
-    fits = [
-        fit_skeleton(person, skeleton, weights=weight, fps=fps, noise=_NOISE, scale=scale)
-        for person, weight in zip(repaired, weights, strict=True)
-    ]
-    people = [
-        project_to_skeleton(resample(fit.positions, fps, FPS))[0] if fps != FPS else fit.positions for fit in fits
-    ]
-    return np.stack(people), max(fit.error for fit in fits)
-
-
-def _repair(pair: KinectPair, person: int) -> tuple[Array, Array]:
-    """(T, 15, 3) level positions over the floor with sides and spikes mended, and (T, 15, 3) weights."""
+def fitted(pair: Pair) -> Pair:
+    """The same two people on SMPL22: repaired, fitted, at 30 fps, feet at the floor."""
     skeleton, fps = pair.release.skeleton, pair.release.fps
     level = upright(pair.positions, pair.release.pitch)
-    own, other = level[person], level[1 - person]
+    repaired = [_repaired(own, other, pair) for own, other in zip(level, level[::-1], strict=True)]
+    scale = float(np.mean([body_scale(person, skeleton) for person in repaired]))
+    weights = np.broadcast_to(np.array([1.0, 1.0, _DEPTH_TRUST]), level[0].shape)
+    known: dict[str, Any] = {"weights": weights, "fps": fps, "noise": _NOISE, "scale": scale}
+    fits = [fit_skeleton(person, skeleton, **known) for person in repaired]
+    people = np.stack([project_to_skeleton(resample(fit.positions, fps, FPS))[0] for fit in fits])
+    error = max(fit.error for fit in fits)
+    return replace(pair, positions=canonicalize(people).astype(np.float32), error=error)
+
+
+def _repaired(own: Array, other: Array, pair: Pair) -> Array:
+    """(T, 15, 3) positions over the floor with sides and spikes mended, of a person and the other one, level."""
+    skeleton, fps = pair.release.skeleton, pair.release.fps
     for parts in (("shoulder", "elbow", "wrist", "hip", "knee", "foot"), ("knee", "foot"), ("foot",)):
         own = unswap(own, skeleton, parts, fps)
     ahead = _ahead(own, other, pair)
@@ -182,12 +172,10 @@ def _repair(pair: KinectPair, person: int) -> tuple[Array, Array]:
     own = without_spikes(without_sideways_lean(own, skeleton), fps)
     feet = own[:, [skeleton.index("left_foot"), skeleton.index("right_foot")]]
     # Depth noise lifts and sinks feet; the lower fifth of heights is where they stand.
-    own = own - np.array([0.0, np.nanpercentile(feet[..., 1], 20) - ANKLE, 0.0])
-    weights = np.broadcast_to(np.array([1.0, 1.0, _DEPTH_TRUST]), own.shape)
-    return own, weights
+    return own - np.array([0.0, np.nanpercentile(feet[..., 1], 20) - ANKLE, 0.0])
 
 
-def _ahead(own: Array, other: Array, pair: KinectPair) -> Array | None:
+def _ahead(own: Array, other: Array, pair: Pair) -> Array | None:
     """(T, 2) where this person should face in XZ: forwards for a person who walks, and otherwise to the other.
 
     ``None`` where nothing can be expected: of a person who stands while the other leaves, or who points at something.
@@ -226,8 +214,7 @@ def _turned_trunk(own: Array, ahead: Array, skeleton: Skeleton) -> Array:
 def upright(positions: Array, pitch: float) -> Array:
     """Camera coordinates turned so that Y is vertical, for a camera that looks down by ``pitch`` degrees."""
     angle = np.radians(pitch)
-    cos, sin = np.cos(angle), np.sin(angle)
-    return positions @ np.array([[1, 0, 0], [0, cos, sin], [0, -sin, cos]]).T
+    return positions @ np.array([[1, 0, 0], [0, np.cos(angle), np.sin(angle)], [0, -np.sin(angle), np.cos(angle)]]).T
 
 
 def without_sideways_lean(positions: Array, skeleton: Skeleton) -> Array:
@@ -280,16 +267,13 @@ def unswap(positions: Array, skeleton: Skeleton, parts: Sequence[str], fps: floa
     cost = stretch / noise**2 + np.array([0.0, 0.5])[:, None]
     jump = np.sum((states[:, None, 1:] - states[None, :, :-1]) ** 2, axis=(-1, -2)) / stride**2
     total, back = cost[:, 0], []
-    for frame in range(1, len(positions)):
-        ways = jump[:, :, frame - 1] + total[None]
-        back.append(ways.argmin(axis=1))
-        total = ways.min(axis=1) + cost[:, frame]
+    for ways, own in zip(np.moveaxis(jump, -1, 0), cost[:, 1:].T, strict=True):
+        back.append((ways + total).argmin(axis=1))
+        total = (ways + total).min(axis=1) + own
     path = [int(total.argmin())]
     for choice in reversed(back):
-        path.append(int(choice[path[-1]]))
-    chosen = np.array(path[::-1])
-    if chosen.mean() > 0.5:
-        chosen = 1 - chosen
+        path.insert(0, int(choice[path[0]]))
+    chosen = np.array(path) ^ (np.mean(path) > 0.5)
     repaired = positions.copy()
     repaired[:, left + right] = states[chosen, np.arange(len(positions))]
     return repaired

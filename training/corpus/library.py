@@ -13,6 +13,7 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.signal import find_peaks
 
 from motion.kinematics import forward_kinematics
+from motion.placement import leading_wrist
 from motion.skeleton import LEGS, SMPL22
 from motion.vectors import wrapped
 
@@ -142,7 +143,7 @@ class Library:
             elif action == "idle":
                 takes += [Take(part, action, "at ease" if hanging(part) else "busy") for part in calm(motion)]
             else:
-                side = higher_hand(clip.positions) if clip.side is None and action in ONE_HANDED else clip.side
+                side = clip.side or (leading_wrist(clip.positions) if action in ONE_HANDED else None)
                 takes.append(Take(motion, action, clip.style, side))
         return takes
 
@@ -157,31 +158,12 @@ def pick(rng: np.random.Generator, items):
     return items[int(rng.integers(len(items)))]
 
 
-def higher_hand(positions) -> str | None:
-    """The hand that a gesture is made with: the one that is higher while raised; "both", or None if low."""
-    left, right = (positions[:, SMPL22.index(f"{side}_wrist"), 1] for side in ("left", "right"))
-    left, right = np.percentile(left, 80), np.percentile(right, 80)
-    if max(left, right) < 1.25:
-        return None
-    if abs(left - right) < 0.15:
-        return "both"
-    return "left" if left > right else "right"
-
-
-def calm(motion: Motion, *, radius: float = 0.35, shortest: int = 120) -> list[Motion]:
-    """The stretches of an idle clip in which the person stays within ``radius`` metres of one place."""
-    parts, start = [], 0
-    flat = motion.root[:, [0, 2]]
-    for frame in range(30, len(motion) + 1, 30):
-        inside = flat[start:frame]
-        turn = np.ptp(motion.headings[start:frame])
-        if np.linalg.norm(inside - inside.mean(0), axis=-1).max() > radius or turn > 0.7 or frame - start > 600:
-            if frame - 30 - start >= shortest:
-                parts.append(motion[start : frame - 30])
-            start = frame - 30
-    if len(motion) - start >= shortest:
-        parts.append(motion[start:])
-    return parts
+def calm(motion: Motion, *, radius: float = 0.35, frames: int = 300) -> list[Motion]:
+    """Pieces of an idle clip in which the person stays within ``radius`` metres of one place, and hardly turns."""
+    pieces = [motion[start : start + frames] for start in range(0, max(len(motion) - frames // 2, 1), frames // 2)]
+    flat = [piece.root[:, [0, 2]] - piece.root[:, [0, 2]].mean(axis=0) for piece in pieces]
+    far = [np.linalg.norm(own, axis=-1).max() > radius for own in flat]
+    return [one for one, away in zip(pieces, far, strict=True) if not away and np.ptp(one.headings) < 0.7]
 
 
 def hanging(motion: Motion) -> bool:

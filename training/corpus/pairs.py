@@ -5,7 +5,6 @@ from __future__ import annotations
 import zlib
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +22,7 @@ from .compose import ARMS
 from .contact import settle
 from .cues import STILL, Beat, Scene
 from .kept import kept
-from .kinect import FPS, KinectPair, fit_pair, read_pairs
+from .kinect import FPS, RELEASES, Pair, fitted, read_release
 from .telling import describe
 
 Array = NDArray[np.floating]
@@ -50,27 +49,6 @@ _NEAR = 0.12
 """Metres beyond the smallest gap between two hands up to which they are brought together."""
 
 
-@dataclass(frozen=True, eq=False)
-class Pair:
-    """A listed clip.
-
-    Attributes:
-        positions: (2, T, 22, 3) metres at 30 fps, the actor first, canonical to the actor.
-        family: its class, as :data:`training.corpus.kinect.RELEASES` names it.
-        dataset: "sbu" or "k3hi".
-        name: of the clip.
-        test: True in the published test list, on which nothing is trained.
-        error: metres between the fitted body and the Kinect's joints, at most.
-    """
-
-    positions: Array = field(repr=False)
-    family: str
-    dataset: str
-    name: str
-    test: bool
-    error: float
-
-
 def load_pairs(data: str | Path, cache: str | Path | None = None) -> list[Pair]:
     """All listed clips, fitted once (about five minutes) and then read from a cache.
 
@@ -81,12 +59,8 @@ def load_pairs(data: str | Path, cache: str | Path | None = None) -> list[Pair]:
     Raises:
         InputError: if the data are not there.
     """
-    return kept(Path(cache or data) / CACHE, Pair, lambda: [_fitted(clip) for clip in read_pairs(data)])
-
-
-def _fitted(clip: KinectPair) -> Pair:
-    people, error = fit_pair(clip)
-    return Pair(canonicalize(people).astype(np.float32), clip.family, clip.dataset, clip.name, clip.test, error)
+    path = Path(cache or data) / CACHE
+    return kept(path, Pair, lambda: [fitted(clip) for name in RELEASES for clip in read_release(data, name)])
 
 
 def scenes_of(pairs: Sequence[Pair], rejected: Counter[str]) -> list[Scene]:
@@ -143,9 +117,8 @@ def _scene(people: Array, pair: Pair) -> Scene:
     events = {}
     if family in _TOUCH:
         people, events = _meet(people, _TOUCH[family])
-    source = f"{pair.dataset}/{pair.name}"
-    scene = Scene(canonicalize(people).astype(np.float32), family, (source,), "train", events)
-    scene.played = [Beat(SHOWS[family], 0, people.shape[1], relation="while")]
+    source, beat = f"{pair.dataset}/{pair.name}", Beat(SHOWS[family], 0, people.shape[1], relation="while")
+    scene = Scene(canonicalize(people).astype(np.float32), family, (source,), "train", events, played=[beat])
     return describe(np.random.default_rng(zlib.crc32(source.encode())), scene)
 
 

@@ -121,7 +121,10 @@ def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -
     files = [path for folder in sets for path in _files(folder) or sorted(folder.glob("*.tar.xz"))]
     if not files:
         raise InputError(f"{root} holds no motion recordings: put {' or '.join(NAMED)} there, or their .tar.xz.")
-    return kept(_cache_path(root, files, cache_dir), SourceClip, lambda: _read(root))
+    cache = Path(cache_dir or Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "pas-de-deux")
+    state = [(path.relative_to(root).as_posix(), path.stat().st_size, path.stat().st_mtime_ns) for path in files]
+    digest = hashlib.sha256(json.dumps([_CACHE_VERSION, repr(CUTS), state]).encode()).hexdigest()[:16]
+    return kept(cache / f"sources-{digest}.npz", SourceClip, lambda: _read(root))
 
 
 def _read(root: Path) -> list[SourceClip]:
@@ -262,13 +265,6 @@ def _splits(described: list[Described]) -> dict[str, str]:
         few, held_out = len(ranked) < MIN_CLIPS_FOR_TEST, max(1, round(TEST_SHARE * len(ranked)))
         splits |= {s: "both" if few else "test" if rank < held_out else "train" for rank, s in enumerate(ranked)}
     return splits
-
-
-def _cache_path(root: Path, files: list[Path], cache_dir: str | Path | None) -> Path:
-    folder = Path(cache_dir or Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "pas-de-deux")
-    state = [(path.relative_to(root).as_posix(), path.stat().st_size, path.stat().st_mtime_ns) for path in files]
-    digest = hashlib.sha256(json.dumps([_CACHE_VERSION, repr(CUTS), state]).encode()).hexdigest()[:16]
-    return folder / f"sources-{digest}.npz"
 
 
 # ---- DeepMimic's clips (Peng et al. 2018): JSON rows of a root path and joint rotations ----------

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -87,23 +89,17 @@ def _looped(motion: Motion, frames: int) -> Motion:
     return longer
 
 
-def chain(*parts: str | Part, blend: int = 12, one_sided: bool = False) -> Make:
+def chain(*parts: Part, blend: int = 12, one_sided: bool = False) -> Make:
     """An act of clips after one another; ``one_sided``: all mirrored or none, so that legs go on."""
 
     def make(play: Play, i: int) -> Done:
         side = pick(play.rng, SIDES) if one_sided else None
-        first, *more = (m for p in parts for m in (Part(p) if isinstance(p, str) else p).drawn(play, side))
+        first, *more = (motion for part in parts for motion in part.drawn(play, side))
         for motion in more:
             first = join(first, motion, blend=blend)
         return play.people[i].perform(Take(first, "", "normal"))
 
     return make
-
-
-def chained(weight: float, *parts: str | Part, room: float = 0.9, **how: Any) -> Act:
-    """A :func:`chain` as an act that needs its clips."""
-    needs = tuple(part if isinstance(part, str) else part.action for part in parts)
-    return Act(chain(*parts, **how), needs, weight, room)
 
 
 def bow(play: Play, i: int) -> Done:
@@ -148,7 +144,7 @@ def dance(play: Play, i: int) -> Done:
 def sit(play: Play, i: int) -> Done:
     """Sits down, stays a while, gets up."""
     still = pick(play.rng, [n for n in ("sitting", "sitting-talk") if play.library.has(n)])
-    return chain("sit-down", Part(still, lasts=(0.8, 2.0)), "stand-up")(play, i)
+    return chain(Part("sit-down"), Part(still, lasts=(0.8, 2.0)), Part("stand-up"))(play, i)
 
 
 def spin(play: Play, i: int) -> Done:
@@ -306,76 +302,36 @@ def gives_way(frame: int, *, dodges: bool) -> Effect:
     return effect
 
 
+def listed(given: Mapping[str, Any]) -> Act:
+    """An act as ``acts.toml`` has it: of a clip, of a gesture or of a chain of clips."""
+    known = dict(given)
+    how = {name: known.pop(name) for name in ("weight", "room") if name in known}
+    if "gesture" in known:
+        return Act(gesture(known["gesture"], *known["seconds"], hands=known.get("hands", 1)), ("idle",), **how)
+    if "action" in known:
+        return Act(taken(known["action"], tuple(known["frames"])), (known["action"],), **how)
+    parts = [Part(**part) for part in known.pop("parts")]
+    return Act(chain(*parts, **known), tuple(part.action for part in parts), **how)
+
+
 ACTS: dict[str, Act] = {
     "wave": Act(wave, ("wave",), 4.5),
     "bow": Act(bow, ("bow",), 3.0),
     "raise-arm": Act(raise_arm, ("raise-hand",), 3.2),
-    "beckon": Act(taken("call", (50, 100)), ("call",), 1.0),
     "talk": Act(talk, ("guide",), 3.0),
-    "point": Act(gesture("points", 1.4, 2.4), ("idle",), 2.0),
     "nod": Act(standing(_nods, 1.2, 2.0), ("idle",), 2.0),
     "shake-head": Act(standing(_shakes_head, 1.3, 2.0), ("idle",), 1.5),
-    "clap": Act(gesture("claps", 1.6, 2.6, hands=2), ("idle",), 2.0),
-    "hands-on-hips": Act(gesture("hips", 1.5, 2.8, hands=2), ("idle",), 1.0),
-    "cover-face": Act(gesture("eyes", 1.4, 2.4, hands=2), ("idle",), 1.0),
-    "fold-arms": Act(gesture("crossed", 1.6, 3.0, hands=2), ("idle",), 1.2),
     "shrug": Act(standing(_moves_hands(_SHRUG), 1.2, 1.8, hands=2), ("idle",), 1.2),
-    "stop-hand": Act(gesture("ahead", 1.2, 2.0), ("idle",), 1.0),
-    "phone": Act(gesture("phone", 1.8, 3.0), ("idle",), 1.0),
-    "hand-on-chest": Act(gesture("chest", 1.3, 2.2), ("idle",), 0.7),
-    "arms-out": Act(gesture("spread", 1.3, 2.2, hands=2), ("idle",), 1.0),
     "dance": Act(dance, ("dance",), 1.6, room=1.4),
     "spin": Act(spin, ("idle",), 1.5),
     "look-around": Act(look_around, ("idle",), 1.0),
     "shadow-box": Act(shadow_box, ("punch",), 1.4, room=1.7),
     "kick-air:leg": Act(strike("kick"), ("kick",), 1.2, room=1.7),
     "swing-sword": Act(strike("slash"), ("slash",), 0.6, room=1.9),
-    "jump": Act(taken("jump", (30, 110)), ("jump",), 2.0, room=1.6),
-    "jumping-jacks": chained(1.2, Part("jumping-jacks", times=(1.9, 3.2))),
     "sit-down>stand-up": Act(sit, ("sit-down", "sitting", "stand-up"), 2.5),
-    "crouch>stand-up": chained(2.0, "crouch-down", "crouch-up", one_sided=True),
-    "lie-down>stand-up": chained(
-        1.2,
-        "crouch-down",
-        Part("crouch-to-lie", rests=(0.2, 0.6)),
-        "lie-to-crouch",
-        "crouch-up",
-        one_sided=True,
-        room=2.2,
-    ),
-    "kneel": Act(taken("kneel", (60, 110)), ("kneel",), 1.6),
-    "fall-down>stand-up": chained(1.5, Part("fall", rests=(0.3, 0.8)), "get-up-back", blend=18, room=1.4),
-    "lie-down>crawl>stand-up": chained(
-        1.0, Part("lie-down-front", cut=25), "crawl", "get-up-front", blend=14, room=2.6
-    ),
-    "lie-down>push-ups>stand-up": chained(
-        0.8,
-        Part("lie-down-front", cut=30),
-        Part("push-up", times=(1, 3)),
-        Part("get-up-front", skip=20),
-        blend=14,
-        room=2.0,
-    ),
-    "somersault": Act(taken("roll", (40, 110)), ("roll",), 1.0, room=2.2),
-    "cartwheel": Act(taken("cartwheel", (40, 110)), ("cartwheel",), 2.0, room=3.8),
-    "turn-around": Act(taken("turn-around", (50, 80)), ("turn-around",), 2.0, room=2.0),
-    "jump-ahead": Act(taken("jump-ahead", (45, 80)), ("jump-ahead",), 2.0, room=2.3),
-    "squats": Act(taken("squats", (70, 150)), ("squats",), 1.0),
-    "touch-toes": Act(taken("touch-toes", (60, 110)), ("touch-toes",), 1.0, room=1.2),
-    "stretch": Act(taken("stretch", (60, 100)), ("stretch",), 1.0),
-    "sway": chained(1.0, Part("sway", lasts=(2.0, 4.0))),
-    "swing-arms@both": Act(taken("swing-arms", (60, 110)), ("swing-arms",), 1.0),
-    "kick-ball": Act(taken("kick-ball", (45, 80)), ("kick-ball",), 3.5, room=3.2),
-    "shoot-hoop": Act(taken("shoot-hoop", (45, 80)), ("shoot-hoop",), 0.8),
-    "lift-thing": Act(taken("lift-box", (60, 120)), ("lift-box",), 1.2),
-    "put-down-thing": Act(taken("put-down-box", (40, 110)), ("put-down-box",), 1.2),
-    "pick-up-thing": Act(taken("pick-up", (60, 120)), ("pick-up",), 1.5),
-    "rage": chained(1.2, Part("rage", lasts=(1.5, 2.8))),
-    "scratch-head": Act(taken("scratch-head", (50, 100)), ("scratch-head",), 1.0),
-    "drink": Act(taken("drink", (60, 110)), ("drink",), 1.2),
-    "wave-off": Act(taken("reject", (50, 110)), ("reject",), 1.5),
-    "cheer": Act(taken("victory", (40, 90)), ("victory",), 1.2),
-    "make-fist": Act(taken("fist-pump", (40, 90)), ("fist-pump",), 1.0),
-    "block": Act(taken("guard", (25, 60)), ("guard",), 0.6),
+    **{
+        cue: listed(given)
+        for cue, given in tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")).items()
+    },
 }
 """What one person does alone, by its cue."""

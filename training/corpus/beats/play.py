@@ -116,10 +116,8 @@ class Performer:
         self.append(piece, blend=blend)
         self._calm = True
         if shift is not None:
-            path = np.zeros((len(self.motion), 3))
-            grown = ease(len(self.motion) - before)[:, None]
-            path[before:, [0, 2]] = grown * np.asarray(shift)
-            self.motion = drift(self.motion, path)
+            grown = np.append(np.zeros(before), ease(len(self.motion) - before))
+            self.motion = drift(self.motion, grown[:, None] * np.array([shift[0], 0.0, shift[1]]))
 
     def hold_until(self, frame: int) -> None:
         """Stands until the timeline has ``frame`` frames."""
@@ -136,7 +134,6 @@ class Performer:
         Returns:
             the walk as it was drawn.
         """
-        target = np.asarray(target, dtype=float)
         gap = target - self.spot
         distance = float(np.linalg.norm(gap))
         if distance < SHUFFLE:
@@ -179,15 +176,12 @@ class Performer:
             fall[frames - ending :] = ease(ending)
             last = float(np.clip(wrapped(angle - bearing(gap)), -0.7, 0.7))
         gain, bend = float(np.clip(ratio, 0.7, 1.4)), first
-        steps = np.diff(walk.root[:, [0, 2]], axis=0)
-        for _ in range(5):
-            extra = bend * rise + last * fall
-            cos, sin = np.cos(extra[:-1]), np.sin(extra[:-1])
-            way = (steps * (slow * gain)[:-1, None]).T
-            end = np.array([(cos * way[0] + sin * way[1]).sum(), (cos * way[1] - sin * way[0]).sum()])
+        for _ in range(6):
+            course = steer(walk, bend * rise + last * fall, slow * gain)
+            end = (course.root[-1] - course.root[0])[[0, 2]]
             bend += wrapped(bearing(gap) - bearing(end))
             gain = float(np.clip(gain * distance / max(np.linalg.norm(end), 1e-3), 0.6, 1.5))
-        return take, steer(walk, bend * rise + last * fall, slow * gain)
+        return take, course
 
     def perform(self, take: Take, *, aim: float = 0.0) -> Done:
         """Does what was drawn; ``aim`` turns it away from the person's front."""
