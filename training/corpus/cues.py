@@ -9,9 +9,11 @@ A cue says what one person does in a beat: the name of an entry (``wave``), with
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,25 +27,9 @@ from motion import InputError
 Array = NDArray[np.floating]
 STILL = "stand-still"
 """The entry of a person who does nothing."""
-STYLES = {
-    "active": "energetically",
-    "angry": "angrily",
-    "childish": "playfully",
-    "chimpira": "roughly",
-    "elderly": "stiffly",
-    "exhausted": "wearily",
-    "giant": "heavily",
-    "happy": "happily",
-    "musical": "rhythmically",
-    "not-confident": "shyly",
-    "old": "stiffly",
-    "proud": "proudly",
-    "sad": "sadly",
-    "tired": "tiredly",
-    "youthful": "youthfully",
-    "slow": "slowly",
-    "brisk": "briskly",
-}
+WORDS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("words.toml").read_text(encoding="utf-8"))
+"""Words of captions beside those of the lexicon's entries."""
+STYLES: dict[str, str] = WORDS["styles"]
 """The manner of a recording's style; other styles are told without one."""
 SPEEDS = {"slow": 0.7, "brisk": 1.2}
 """Speed of a style against the usual one."""

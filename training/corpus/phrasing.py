@@ -21,7 +21,7 @@ from acts.frames import PREPOSITIONS, Frame
 from acts.lexicon import Entry, lexicon
 from acts.reading import read
 
-from .cues import entry
+from .cues import WORDS, entry
 
 HELD_OUT = 6
 """Percentage of the phrases and names that are kept for captions of the test split."""
@@ -190,44 +190,14 @@ class Cast:
 
 OBJECTS = {"he": "him", "she": "her"}
 OWN = {"they": "their", "he": "his", "she": "her"}
-_PLAIN_CASTS = (
-    Cast(("one person", "the other person"), ("the first person", "the second person")),
-    Cast(("one person", "another person"), ("the first person", "the second person")),
-    Cast(("a person", "another person"), ("the first person", "the second person")),
-    Cast(("someone", "another person"), ("the first person", "the second person")),
-    Cast(("the first person", "the second person"), ("the first person", "the second person")),
-    Cast(("person A", "person B"), ("person A", "person B"), group="person A and person B"),
-    Cast(("person 1", "person 2"), ("person 1", "person 2"), group="person 1 and person 2"),
-    Cast(("a man", "another man"), ("the first man", "the second man"), ("he", "he"), "two men"),
-    Cast(("a woman", "another woman"), ("the first woman", "the second woman"), ("she", "she"), "two women"),
-    Cast(("one friend", "the other friend"), ("the first friend", "the second friend"), group="two friends"),
-    Cast(("one player", "the other player"), ("the first player", "the second player"), group="two players"),
-    Cast(("one dancer", "the other dancer"), ("the first dancer", "the second dancer"), group="two dancers"),
-)
-_LISTS = {
-    "he": (
-        "a man, a man, a boy, an old man, a young man, a waiter, a gentleman, a policeman, a father, a brother, a "
-        "husband, a grandfather, a king, a businessman, an actor, a guy"
-    ),
-    "she": (
-        "a woman, a woman, a girl, an old woman, a young woman, a waitress, a lady, an actress, a mother, a "
-        "sister, a wife, a grandmother, a queen, a businesswoman, a bride, a daughter"
-    ),
-    "they": (
-        "a stranger, a child, a teacher, a student, a dancer, a neighbour, a guest, a colleague, a doctor, a "
-        "player, a coach, a tourist, a customer, a guard, a soldier, a visitor, a boxer, a runner, a nurse, a "
-        "clown, a thief, a driver, a boss, a worker, a passenger, a patient, a toddler, a partner, an opponent, a "
-        "rival, an artist, a cook, a drunk, a commuter, a shopkeeper, a referee, a hiker, a monk, a pilot, a "
-        "farmer"
-    ),
-}
-_ROLES = {pronoun: names.split(", ") for pronoun, names in _LISTS.items()}
+_CASTS = [Cast(**{name: tuple(v) if name != "group" else v for name, v in cast.items()}) for cast in WORDS["casts"]]
+_ROLES = WORDS["roles"]
 
 
 def draw_cast(rng: Rng, *, joint: bool = False) -> Cast:
     """Three of five times plain words ("one person"), else roles; of two who begin together mostly plain words."""
     if rng.random() < (0.85 if joint else 0.6):
-        return _PLAIN_CASTS[int(rng.integers(len(_PLAIN_CASTS)))]
+        return _CASTS[int(rng.integers(len(_CASTS)))]
     pairs = (("he", "she"), ("she", "he"), ("he", "they"), ("they", "she"), ("they", "they"), ("she", "they"))
     pronouns = pairs[int(rng.integers(len(pairs)))]
     one, other = (_ROLES[p][int(rng.integers(len(_ROLES[p])))] for p in pronouns)

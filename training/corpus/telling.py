@@ -13,7 +13,7 @@ import numpy as np
 from acts import Act
 from motion.metrics.sentences import kept_out
 
-from .cues import STILL, Label, Scene, entry, label
+from .cues import STILL, WORDS, Label, Scene, entry, label
 from .phrasing import Cast, Names, draw_cast, fitting, held_out, spoken
 
 Rng = np.random.Generator
@@ -21,25 +21,6 @@ JOINT, ALONE, ONE_BEAT = 8, 3, 2
 """Numbers of captions of a scene, of each single person, and of each beat."""
 LONGEST = 320
 """Characters of a caption, at most."""
-_THEN = (
-    ", then {}",
-    ", and then {}",
-    " and then {}",
-    ". Then {}",
-    ". Then {}",
-    ". After that, {}",
-    ". Next, {}",
-    ". {}",
-)
-_PAIRS = ("After {}, {}", "First {}, then {}", "{} and then {}")
-"""How two clauses that follow each other may stand in one sentence."""
-_PLACES = (
-    "in a park, in the street, at a party, in a gym, on a stage, in an office, in a kitchen, in a school, outside "
-    "a shop, at the station, in a garden, in a hall, at home, on the beach, in a corridor, at night, in the "
-    "morning, one day, as usual, for no reason, without a word, in this scene, in this clip, here"
-)
-_WHERE = _PLACES.split(", ")
-"""Where and when it may happen, which the motion does not show."""
 
 
 def describe(rng: Rng, scene: Scene) -> Scene:
@@ -139,18 +120,18 @@ class _Writer:
         """The caption of acts in groups that follow each other."""
         self.going = len(groups) == 1 and self.rng.random() < 0.25
         pair = len(groups) == 2 and not self.alone and self.rng.random() < 0.4
-        link = self._one_of(_PAIRS) if pair else ""
+        link = self._one_of(WORDS["pairs"]) if pair else ""
         text = ""
         last: list[str] = []
         clauses: list[str] = []
         for group in groups:
             made, last = self._clause(group, [] if pair else last)
             clauses.append(made)
-            text += made if made[0] in ", " or not text or pair else self._one_of(_THEN).format(made)
+            text += made if made[0] in ", " or not text or pair else self._one_of(WORDS["then"]).format(made)
         if pair:
             text = link.format(*clauses)
         if self.rng.random() < 0.15:
-            text = f"{self._one_of(_WHERE)}, {text[:1].lower()}{text[1:]}"
+            text = f"{self._one_of(WORDS['places'])}, {text[:1].lower()}{text[1:]}"
         return finished(text)
 
     def _one_of(self, items: Sequence[str]) -> str:
