@@ -14,10 +14,10 @@ from typing import Any
 import torch
 
 from models.intergen.compact import CaptionBank, CompactInterGen, load_folder, save_folder
-from models.text import MiniLM
 from motion import InputError
 from training.core import checkpoint
 from training.core.shell import exit_code
+from training.core.text_features import encoded
 from training.prepare import Scenes, load
 from training.trainers.intergen import new_model
 from training.trainers.intergen_data import Data, settings_of
@@ -35,7 +35,6 @@ def caption_bank(scenes: Scenes) -> CaptionBank:
     ``far`` is set so that of the test split's captions, whose phrasings were not trained on, 2 % would be
     called far.
     """
-    encoder = MiniLM()
     chosen: dict[str, list[str]] = {}
     for row in scenes.split("train"):
         kinds = [(row["family"], row["captions"][:2], BANK_PER_FAMILY)]
@@ -47,14 +46,17 @@ def caption_bank(scenes: Scenes) -> CaptionBank:
     unseen = sorted({c for row in scenes.split("test") for c in row["captions"]})[:2000]
     if not captions or not unseen:
         raise InputError("The scenes hold no training or no test captions: build the corpus with both splits.")
-    vectors = encode(encoder, captions)
-    nearest = (encode(encoder, unseen) @ vectors.T).amax(1)
+    vectors = encode(captions)
+    nearest = (encode(unseen) @ vectors.T).amax(1)
     return CaptionBank(tuple(captions), vectors, round(float(nearest.quantile(FAR_QUANTILE)), 3))
 
 
-def encode(encoder: MiniLM, captions: list[str]) -> torch.Tensor:
+def encode(captions: list[str]) -> torch.Tensor:
     """Unit sentence vectors (N, 384)."""
-    return torch.cat([encoder(captions[i : i + 128]).pooled() for i in range(0, len(captions), 128)])
+    found = torch.empty(len(captions), 384)
+    for places, tokens in encoded(captions):
+        found[places] = tokens.pooled().float()
+    return found
 
 
 @torch.no_grad()

@@ -11,19 +11,17 @@ import argparse
 import json
 import random
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import torch
-from safetensors import SafetensorError, safe_open
-from safetensors.torch import save_file
 from torch import Tensor
 
 from models.motion_tokens import TokenLayout, encode, foot_contacts
 from motion import InputError
-from motion.formats.files import replacing
+from training.core.checkpoint import read_tensors, write_tensors
 from training.core.handedness import leading_hand
 from training.core.shell import exit_code
 from training.corpus.cues import Label
@@ -129,20 +127,15 @@ def joined(parts: Sequence[Scenes]) -> Scenes:
 
 def save(scenes: Scenes, path: Path) -> None:
     """Writes prepared scenes; an interrupted write leaves no file of that name."""
-    layout = {"frames_per_knot": scenes.layout.frames_per_knot, "knots_per_token": scenes.layout.knots_per_token}
-    metadata = {"rows": json.dumps(scenes.rows), "layout": json.dumps(layout)}
-    with replacing(path) as temporary:
-        save_file({"control": scenes.control}, temporary, metadata=metadata)
+    write_tensors(path, {"control": scenes.control}, rows=scenes.rows, layout=asdict(scenes.layout))
 
 
 def load(path: Path) -> Scenes:
     """Reads what :func:`save` wrote; raises InputError if it is missing or damaged."""
+    tensors, known = read_tensors(path, "run `python -m training.prepare`.")
     try:
-        with safe_open(path, framework="pt") as file:
-            metadata = file.metadata()
-            layout = TokenLayout(**json.loads(metadata["layout"]))
-            return Scenes(file.get_tensor("control"), json.loads(metadata["rows"]), layout)
-    except (OSError, SafetensorError, KeyError, TypeError, ValueError) as error:
+        return Scenes(tensors["control"], json.loads(known["rows"]), TokenLayout(**json.loads(known["layout"])))
+    except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{path} holds no prepared scenes ({error}): run `python -m training.prepare`.") from error
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
 import torch
 from safetensors import SafetensorError, safe_open
@@ -26,21 +28,29 @@ def _tensors(parts: Parts) -> dict[str, Tensor]:
     return {key: value.detach().contiguous().cpu().clone() for key, value in found.items()}
 
 
+def write_tensors(path: Path, tensors: dict[str, Tensor], **known: Any) -> None:
+    """Writes tensors and what is known of them, as JSON; an interrupted write leaves no file of that name."""
+    metadata = {name: value if isinstance(value, str) else json.dumps(value) for name, value in known.items()}
+    with replacing(path) as temporary:
+        save_file(tensors, temporary, metadata=metadata)
+
+
+def read_tensors(path: Path, otherwise: str) -> tuple[dict[str, Tensor], dict[str, str]]:
+    """Tensors and metadata of a file; raises InputError, which says what to do ``otherwise``, if it is damaged."""
+    try:
+        with safe_open(path, framework="pt") as file:
+            return {key: file.get_tensor(key) for key in file.keys()}, file.metadata() or {}  # noqa: SIM118
+    except (OSError, SafetensorError) as error:
+        raise InputError(f"{path} is missing or damaged ({error}): {otherwise}") from error
+
+
 def save(path: Path, parts: Parts, step: int, settings: str) -> None:
     """Writes modules and optimisers with the step number and the run's settings (JSON text)."""
-    with replacing(path) as temporary:
-        save_file(_tensors(parts), temporary, metadata={"step": str(step), "settings": settings})
+    write_tensors(path, _tensors(parts), step=step, settings=settings)
 
 
 def _read(path: Path) -> tuple[dict[str, Tensor], dict[str, str]]:
-    """Tensors and metadata of a checkpoint; raises InputError if it is missing or damaged."""
-    try:
-        with safe_open(path, framework="pt") as file:
-            metadata = file.metadata() or {}
-            tensors = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118
-    except (OSError, SafetensorError) as error:
-        raise InputError(f"{path} is missing or damaged ({error}): delete it to begin anew.") from error
-    return tensors, metadata
+    return read_tensors(path, "delete it to begin anew.")
 
 
 def _part(tensors: dict[str, Tensor], name: str) -> dict[str, Tensor]:

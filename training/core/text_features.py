@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import torch
@@ -12,7 +12,7 @@ from safetensors import SafetensorError
 from safetensors.torch import load_file, save_file
 from torch import Tensor
 
-from models.text import MiniLM
+from models.text import MiniLM, TokenFeatures
 from motion.formats.files import replacing
 from training.core.loop import mixed_precision
 
@@ -33,7 +33,7 @@ class CaptionFeatures:
         try:
             stored = load_file(path)
         except (OSError, SafetensorError):
-            stored = _encode(captions, device)
+            stored = _kept(captions, device)
             with replacing(path) as temporary:
                 save_file(stored, temporary)
         self.features, self.lengths = stored["features"], stored["lengths"]
@@ -80,15 +80,21 @@ class CaptionTokens:
 
 
 @torch.no_grad()
-def _encode(captions: Sequence[str], device: str) -> dict[str, Tensor]:
+def encoded(captions: Sequence[str], device: str = "cpu") -> Iterator[tuple[list[int], TokenFeatures]]:
+    """Places of captions of alike length, and their features by MiniLM, until all have had their turn."""
     encoder = MiniLM().to(device)
-    order = sorted(range(len(captions)), key=lambda row: len(captions[row]))
-    features: list[Tensor] = [torch.empty(0)] * len(captions)
-    for start in range(0, len(order), 256):
-        rows = order[start : start + 256]
+    order = sorted(range(len(captions)), key=lambda place: len(captions[place]))
+    for start in range(0, len(order), 128):
+        places = order[start : start + 128]
         with mixed_precision(device):
-            tokens = encoder([captions[row] for row in rows])
-        for row, one, mask in zip(rows, tokens.features, tokens.mask, strict=True):
-            features[row] = one[mask].half().cpu()
-    lengths = torch.tensor([len(one) for one in features])
-    return {"features": torch.cat(features), "lengths": lengths}
+            found = encoder([captions[place] for place in places])
+        yield places, found
+
+
+def _kept(captions: Sequence[str], device: str) -> dict[str, Tensor]:
+    """Features of captions end to end, in float16, and how many tokens each has."""
+    features: list[Tensor] = [torch.empty(0)] * len(captions)
+    for places, tokens in encoded(captions, device):
+        for place, one, mask in zip(places, tokens.features, tokens.mask, strict=True):
+            features[place] = one[mask].half().cpu()
+    return {"features": torch.cat(features), "lengths": torch.tensor([len(one) for one in features])}

@@ -19,7 +19,6 @@ import torch
 from numpy.typing import NDArray
 
 from models.motion_tokens import decode
-from models.text import MiniLM
 from motion import Duet, InputError
 from motion.metrics.generation import (
     diversity,
@@ -30,6 +29,7 @@ from motion.metrics.generation import (
     r_precision,
 )
 from training.core.shell import add_options, exit_code, write_scores
+from training.core.text_features import encoded
 from training.evaluate.extractor import Extractor, load_extractor
 from training.prepare import Scenes, load
 from webdemo.inference import Engine, GenerateRequest, Result
@@ -70,7 +70,7 @@ class Features:
     """Features of duets and captions by an extractor."""
 
     def __init__(self, extractor: Extractor) -> None:
-        self.extractor, self.encoder = extractor, MiniLM()
+        self.extractor = extractor
 
     def motion(self, duets: Sequence[Duet]) -> Array:
         """(N, D) float64."""
@@ -79,9 +79,10 @@ class Features:
 
     def text(self, captions: Sequence[str]) -> Array:
         """(N, D) float64."""
-        with torch.no_grad():
-            parts = [self.extractor.text(self.encoder(captions[i : i + 64])) for i in range(0, len(captions), 64)]
-        return torch.cat(parts).double().numpy()
+        found = torch.empty(len(captions), self.extractor.settings.features)
+        for places, tokens in encoded(captions):
+            found[places] = self.extractor.text(tokens).detach().float()
+        return found.double().numpy()
 
 
 def measure(

@@ -16,15 +16,13 @@ from pathlib import Path
 
 import torch
 import torch.nn.functional as F
-from safetensors import SafetensorError, safe_open
-from safetensors.torch import save_file
 from torch import Tensor, nn
 
 from models.layers import sinusoids
 from models.motion_tokens import FEATURES, TokenLayout, encode, foot_contacts, pack
 from models.text import TextConditioner, TextConditionerConfig, TokenFeatures
 from motion import InputError
-from motion.formats.files import replacing
+from training.core.checkpoint import read_tensors, write_tensors
 from training.core.loop import mixed_precision
 from training.core.shell import add_options, exit_code
 from training.prepare import Scenes, load
@@ -146,24 +144,19 @@ def fit(scenes: Scenes, settings: Settings, cache: Path, *, device: str = "cpu")
 
 def save(model: Extractor, path: Path) -> None:
     """Writes an extractor as float32 ``.safetensors``."""
-    layout = {name: getattr(model.layout, name) for name in ("frames_per_knot", "knots_per_token")}
-    metadata = {"settings": json.dumps(asdict(model.settings)), "layout": json.dumps(layout)}
-    with replacing(path) as temporary:
-        save_file({k: v.contiguous() for k, v in model.state_dict().items()}, temporary, metadata=metadata)
+    tensors = {name: value.contiguous() for name, value in model.state_dict().items()}
+    write_tensors(path, tensors, settings=asdict(model.settings), layout=asdict(model.layout))
 
 
 def load_extractor(path: Path) -> Extractor:
     """Reads what :func:`save` wrote; raises InputError if it is missing or damaged."""
+    command = "run `python -m training.evaluate.extractor`."
+    tensors, known = read_tensors(path, command)
     try:
-        with safe_open(path, framework="pt") as file:
-            meta = file.metadata()
-            layout = TokenLayout(**json.loads(meta["layout"]))
-            model = Extractor(Settings(**json.loads(meta["settings"])), layout)
-            model.load_state_dict({key: file.get_tensor(key) for key in file.keys()})  # noqa: SIM118
-    except (OSError, SafetensorError, KeyError, TypeError, ValueError, RuntimeError) as error:
-        raise InputError(
-            f"{path} holds no extractor ({error}): run `python -m training.evaluate.extractor`."
-        ) from error
+        model = Extractor(Settings(**json.loads(known["settings"])), TokenLayout(**json.loads(known["layout"])))
+        model.load_state_dict(tensors)
+    except (KeyError, TypeError, ValueError, RuntimeError) as error:
+        raise InputError(f"{path} holds no extractor ({error}): {command}") from error
     return model.eval().requires_grad_(False)
 
 

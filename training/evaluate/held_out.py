@@ -19,7 +19,6 @@ from models.diffusion import NoiseSchedule
 from models.intergen.compact import CompactInterGen, load_folder
 from models.intergen.losses import simple_loss
 from models.known import Hold
-from models.motion_tokens import FEATURES
 from motion import InputError
 from training.core import checkpoint
 from training.core.shell import add_options, exit_code
@@ -27,6 +26,7 @@ from training.prepare import Scenes, load
 from training.trainers.given import Shares, known_parts
 from training.trainers.intergen import condition, new_model
 from training.trainers.intergen_data import Data, Settings, seeded, settings_of
+from training.trainers.scenes import feature_weights
 
 TIMESTEPS = (200, 500, 800, 900, 950, 980, 999)
 NOTHING = Shares(person=0, past=0, span=0, poses=0, path=0, joints=0, more=0)
@@ -50,9 +50,7 @@ def errors(model: CompactInterGen, data: Data, kind: str, batches: int) -> Tenso
     """(timesteps,) mean errors; ``kind`` is a name of :data:`GIVEN`."""
     schedule, layout = NoiseSchedule(), data.scenes.layout
     data.mean, data.std = model.mean, model.std
-    weights = torch.ones(FEATURES)
-    weights[:3] = Settings().root_weight ** 0.5
-    weights = weights.repeat(layout.knots_per_token)
+    weights = feature_weights(Settings().root_weight, layout)
     total = torch.zeros(len(TIMESTEPS))
     for step in range(batches):
         batch = data.batch(step)

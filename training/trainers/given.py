@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import accumulate
 
 import torch
 from torch import Tensor
@@ -86,15 +87,11 @@ def known_parts(
     draw = Draw(generator)
     basis = layout.basis(control.shape[2] // layout.knots_per_token)
     known = Known.nothing(len(basis), len(control))
-    names = tuple(_KINDS)
-    weights = [getattr(shares, name) for name in names]
+    edges = dict(zip(_KINDS, accumulate(getattr(shares, name) for name in _KINDS), strict=True))
     for i, (count, before) in enumerate(zip(frames, past, strict=True)):
         known.mask[i, :, :before] = True
-        place, first = draw.uniform(), None
-        for name, weight in zip(names, weights, strict=True):
-            if 0 <= place < weight:
-                first = name
-            place -= weight
+        place = draw.uniform()
+        first = next((name for name, edge in edges.items() if place < edge), None)
         if first is None:
             continue
         chosen = {first}
@@ -146,9 +143,8 @@ def _path(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
 def _joints(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
     person, start = draw.integer(0, 1), draw.integer(0, frames - 1)
     stop = min(frames, start + draw.integer(1, frames))
-    mask[person, start:stop, :3] = True
-    for joint in draw.frames(draw.integer(1, 4), NUM_JOINTS - 1).tolist():
-        mask[person, start:stop, 3 + 3 * joint : 6 + 3 * joint] = True
+    joints = draw.frames(draw.integer(1, 4), NUM_JOINTS - 1) + 1
+    _kept(mask[person], torch.arange(start, stop), [0, *joints.tolist()])
 
 
 _HIPS = (1, 2)

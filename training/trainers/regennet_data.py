@@ -21,18 +21,22 @@ from training.trainers import intergen_data
 from training.trainers.intergen_data import Batch, balanced
 
 
+def at_knots(control: Tensor) -> Tensor:
+    """Control points (…, K, 70) → the pose's numbers at the knots (…, K − 2, 66)."""
+    knots = (control[..., :-2, :] + 4 * control[..., 1:-1, :] + control[..., 2:, :]) / 6
+    return knots[..., : FEATURES - NUM_CONTACTS]
+
+
 def knot_positions(control: Tensor) -> Tensor:
     """Control points (…, K, 70) → positions at the knots (…, K − 2, 22, 3)."""
-    knots = (control[..., :-2, :] + 4 * control[..., 1:-1, :] + control[..., 2:, :]) / 6
-    root, others, _ = knots.split([3, FEATURES - 3 - NUM_CONTACTS, NUM_CONTACTS], dim=-1)
-    others = others.unflatten(-1, (-1, 3)) + root[..., None, :]
-    return torch.cat([root[..., None, :], others], dim=-2)
+    joints = at_knots(control).unflatten(-1, (-1, 3))
+    root, others = joints[..., :1, :], joints[..., 1:, :]
+    return torch.cat([root, others + root], dim=-2)
 
 
 def seen_rows(control: Tensor) -> Tensor:
     """The actor as each row sees it, not normalised: control points (B, K, 70) → (B, K, 132)."""
-    knots = (control[..., :-2, :] + 4 * control[..., 1:-1, :] + control[..., 2:, :]) / 6
-    pose = knots[..., : FEATURES - NUM_CONTACTS]
+    pose = at_knots(control)
     place = torch.arange(control.shape[1]) - LEAD
     now, before = pose[:, place.clamp_min(0)], pose[:, (place - 1).clamp_min(0)]
     return torch.cat([now, now - before], dim=-1)

@@ -18,7 +18,7 @@ from torch import Tensor
 from models.diffusion import NoiseSchedule
 from models.intergen.losses import InterGenLoss, simple_loss
 from models.known import Hold
-from models.motion_tokens import FEATURES
+from models.motion_tokens import FEATURES, TokenLayout
 from training.core.loop import Loop, drawn_ahead, moved
 from training.trainers.given import Held
 from training.trainers.intergen_data import Batch, Data, seeded
@@ -34,6 +34,13 @@ def draw_timesteps(size: int, timesteps: int, noisiest: float, generator: torch.
     t = torch.randint(timesteps, (size,), generator=generator)
     late = timesteps - 1 - torch.randint(max(timesteps // 10, 1), (size,), generator=generator)
     return torch.where(torch.rand(size, generator=generator) < noisiest, late, t)
+
+
+def feature_weights(root_weight: float, layout: TokenLayout) -> Tensor:
+    """Factors of a token's numbers in the loss: the three of 70 that say where a person stands count more."""
+    weights = torch.ones(FEATURES)
+    weights[:3] = root_weight**0.5
+    return weights.repeat(layout.knots_per_token)
 
 
 @dataclass
@@ -105,10 +112,7 @@ class DuetTrainer(SceneTrainer):
         self.loss = InterGenLoss(
             settings.weights, t_bar=round(settings.t_bar * self.schedule.timesteps), near_by="truth"
         )
-        # Three of 70 numbers say where a person stands; they count more than their share.
-        self.feature_weights = torch.ones(FEATURES, device=device)
-        self.feature_weights[:3] = settings.root_weight**0.5
-        self.feature_weights = self.feature_weights.repeat(data.scenes.layout.knots_per_token)
+        self.feature_weights = feature_weights(settings.root_weight, data.scenes.layout).to(device)
 
     def motion_terms(self, made: Tensor, wanted: Tensor, t: Tensor, batch: Batch) -> dict[str, Tensor]:
         """The losses of clean motions (B, tokens, 2F) against those that are wanted, weighted and damped."""

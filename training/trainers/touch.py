@@ -16,9 +16,9 @@ from torch import Tensor, nn
 
 from models.intergen.compact import CompactInterGen, Touch
 from models.regennet.compact import CompactReGenNet
-from models.text import MiniLM
 from training.core.handedness import mirror_caption, mirrored
 from training.core.loop import mixed_precision
+from training.core.text_features import encoded
 from training.prepare import Scenes
 
 Network = TypeVar("Network", CompactInterGen, CompactReGenNet)
@@ -60,13 +60,11 @@ def examples(rows: list[dict[str, Any]]) -> list[tuple[str, Touch]]:
 @torch.no_grad()
 def conditions(conditioner: nn.Module, captions: list[str], *, device: str = "cpu") -> Tensor:
     """(N, cond_dim) condition vectors of captions, on the device, where the conditioner is too."""
-    encoder, parts = MiniLM().to(device), []
-    order = sorted(range(len(captions)), key=lambda i: len(captions[i]))
-    for start in range(0, len(order), 128):
+    found = torch.empty(len(captions), conditioner.config.latent_dim, device=device)
+    for places, tokens in encoded(captions, device):
         with mixed_precision(device):
-            tokens = encoder([captions[i] for i in order[start : start + 128]])
-            parts.append(conditioner(tokens.features.float(), tokens.mask).float())
-    return torch.cat(parts)[torch.tensor(order, device=device).argsort()]
+            found[places] = conditioner(tokens.features.float(), tokens.mask).float()
+    return found
 
 
 def with_touches(model: Network, scenes: Scenes) -> tuple[Network, float]:
