@@ -144,24 +144,18 @@ def reach(
     """
     arrived = np.flatnonzero(weight >= weight.max() - 1e-9)
     gaps = [target - positions[:, ARMS[side][1]] for side, target in targets.items()]
-    far = np.linalg.norm(gaps, axis=-1).sum(axis=0)[arrived]
-    full = int(arrived[np.argmax(far)])
-    still = slice(full, full + 1)
-    goals = {side: target[still] for side, target in targets.items()}
-    direction = towards(positions[still, 0], sum(goals.values()) / len(goals))
+    full = arrived[np.argmax(np.linalg.norm(gaps, axis=-1).sum(axis=0)[arrived])]
+    pose, goals = positions[[full]], {side: target[[full]] for side, target in targets.items()}
+    direction = towards(pose[:, 0], sum(goals.values()) / len(goals))
     turn = twist * {("left",): -1.0, ("right",): 1.0}.get(tuple(goals), 0.0)
-
-    def trunk(share: float) -> Array:
-        return np.cross(UP, direction[0]) * (lean * share) + UP * (turn * share)
-
+    trunk = np.cross(UP, direction) * lean + UP * turn
     shares = np.linspace(0, 1, 6)
-    missing = [_missing(bend(positions[still], trunk(share)[None]), goals) for share in shares]
+    missing = [_missing(bend(pose, share * trunk), goals) for share in shares]
     share = float(np.interp(0.0, -np.minimum.accumulate(missing), shares))
+    if share == 1 and missing[-1] > 0.004:
+        positions = shift_hips(positions, direction * min(1.2 * missing[-1], shift) * weight[:, None])
     if share > 0:
-        left_over = min(max(missing[-1], 0.0) * 1.2, shift)
-        if share == 1 and left_over > 0.005:
-            positions = shift_hips(positions, direction * left_over * weight[:, None])
-        positions = bend(positions, trunk(share)[None] * weight[:, None])
+        positions = bend(positions, share * trunk * weight[:, None])
     for side, target in targets.items():
         positions = reach_arm(positions, side, target, weight, elbow=elbow)
     return positions
@@ -231,8 +225,4 @@ def settle(
 def shaking(frames: int, start: int, stop: int, *, hertz: float, size: float) -> Array:
     """(frames,) metres up and down of a handshake: starts gently and dies away."""
     time = (np.arange(frames) - start) / FPS
-    length = max((stop - start) / FPS, 1e-3)
-    inside = (time >= 0) & (time <= length)
-    share = np.clip(time / length, 0, 1)
-    wave = np.sin(2 * np.pi * hertz * time) * np.sin(np.pi * share) * (1 - 0.4 * share)
-    return np.where(inside, size * wave, 0.0)
+    return size * np.sin(2 * np.pi * hertz * time) * envelope(frames, start, *[start + (stop - start) // 3] * 2, stop)

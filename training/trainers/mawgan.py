@@ -34,8 +34,8 @@ from training.trainers.prediction import PredictionTrainer, train
 
 
 @dataclass(frozen=True)
-class Settings:
-    """The settings of a run; a checkpoint of others is refused.
+class Settings(MAWGANLossWeights):
+    """The settings of a run, with the weights of its losses; a checkpoint of others is refused.
 
     width: channels of the predictor's first block (thesis: 512), halved in each further block; the critic's first
         has an eighth of it, halved likewise.
@@ -55,13 +55,6 @@ class Settings:
     learning_rate: float = 1e-4
     final_rate: float = 1.0
     ema: float = 0.99
-    adversarial: float = 1.0
-    reconstruction: float = 1.0
-    skeleton: float = 10.0
-    bone: float = 10.0
-    gradient_penalty: float = 10.0
-    position: float = 0.0
-    speed: float = 0.0
     linear: bool = False
     length: bool = False
     seed: int = 0
@@ -84,18 +77,6 @@ class Settings:
             critic_stride=self.critic_stride,
             linear=self.linear,
             length=self.length,
-        )
-
-    def weights(self) -> MAWGANLossWeights:
-        """The weights of the losses."""
-        return MAWGANLossWeights(
-            self.adversarial,
-            self.reconstruction,
-            self.skeleton,
-            self.bone,
-            self.gradient_penalty,
-            self.position,
-            self.speed,
         )
 
 
@@ -191,7 +172,7 @@ class Trainer(PredictionTrainer):
 
     def train_step(self) -> dict[str, float]:
         """Takes one optimizer step; returns each loss by name."""
-        weights = self.settings.weights()
+        weights = self.settings
         for optimizer in (self.optimizer, self.critic_optimizer):
             for group in optimizer.param_groups:
                 group["lr"] = self.settings.learning_rate * self.rate()

@@ -20,18 +20,23 @@ from ..compose import ARMS, FPS, Array, Motion, drift, join, layer
 from ..contact import UP, axes, bend, envelope, impulse, lean_to, nod, on_body, reach_arm, shift_hips
 from ..library import Library, Take, pick
 from ..touches import Touched
-from .play import Act, Done, Effect, Make, Play, Rng
+from .play import Done, Effect, Make, Option, Play, Rng
 
 HEAD = SMPL22.index("head")
 UPPER = (*ARMS["left"], *ARMS["right"])
 SIDES = ("left", "right")
 
 
-def taken(action: str, frames: tuple[int, int] = (40, 100), *, side: str | None = None, one: bool = False) -> Make:
-    """An act that is one clip of the library; with ``one``, of one hand."""
+def one_of(play: Play, actions: Sequence[str]) -> str:
+    """One of some source actions that are there."""
+    return pick(play.rng, [name for name in actions if play.library.has(name)])
+
+
+def taken(*actions: str, frames: tuple[int, int] = (50, 100), side: str | None = None, one: bool = False) -> Make:
+    """An act that is one clip of one of some actions; with ``one``, of one hand."""
 
     def make(play: Play, i: int) -> Done:
-        person, rng = play.people[i], play.rng
+        person, rng, action = play.people[i], play.rng, one_of(play, actions)
         own = side or (pick(rng, SIDES) if one else None)
         styles = play.library.styles(action)
         style = person.style if person.style in styles and rng.random() < 0.7 else pick(rng, styles)
@@ -46,7 +51,7 @@ class Part:
     """A clip of a chain.
 
     Attributes:
-        action: what it is a recording of.
+        action: what it is a recording of; of several, with spaces between them, one that is there.
         skip, cut: frames that are left out at its beginning and at its end.
         times: how often it is played, at least and at most, for a clip that ends as it begins.
         lasts: seconds of a stretch of a clip that goes on and on; the person stays about where they began.
@@ -62,8 +67,8 @@ class Part:
 
     def drawn(self, play: Play, side: str | None) -> list[Motion]:
         """A performance, and the rest after it."""
-        rng = play.rng
-        motion = play.library.take(rng, self.action, side=side, frames=(1, 10_000 if self.lasts else 400)).motion
+        rng, action = play.rng, one_of(play, self.action.split())
+        motion = play.library.take(rng, action, side=side, frames=(1, 10_000 if self.lasts else 400)).motion
         motion = motion[self.skip : len(motion) - self.cut]
         if self.times:
             motion = _looped(motion, int(len(motion) * rng.uniform(*self.times)))
@@ -104,7 +109,7 @@ def chain(*parts: Part, blend: int = 12, one_sided: bool = False) -> Make:
 
 def bow(play: Play, i: int) -> Done:
     """Person i bows; where the recording hardly does, the spine bends as much further as needed."""
-    done = taken("bow", (50, 72 if play.brisk else 100))(play, i)
+    done = taken("bow")(play, i)
     drop = play.rng.uniform(0.27, 0.42)
 
     def effect(rng: Rng, own: Array, other: Array) -> Touched:
@@ -125,26 +130,8 @@ def bow(play: Play, i: int) -> Done:
     return done
 
 
-def spoken(play: Play) -> list[str]:
-    """Source actions of people who talk with their hands."""
-    return [name for name in ("guide", "respond", "talking") if play.library.has(name)]
-
-
-def talk(play: Play, i: int) -> Done:
-    """Talks with the hands."""
-    return taken(pick(play.rng, spoken(play)), (50, 100))(play, i)
-
-
-def dance(play: Play, i: int) -> Done:
-    """Person i dances."""
-    action = pick(play.rng, [n for n in ("dance", "dance-show", "ballet") if play.library.has(n)])
-    return chain(Part(action, lasts=(2.5, 4.0)))(play, i)
-
-
-def sit(play: Play, i: int) -> Done:
-    """Sits down, stays a while, gets up."""
-    still = pick(play.rng, [n for n in ("sitting", "sitting-talk") if play.library.has(n)])
-    return chain(Part("sit-down"), Part(still, lasts=(0.8, 2.0)), Part("stand-up"))(play, i)
+SPOKEN = ("guide", "respond", "talking")
+"""Source actions of people who talk with their hands."""
 
 
 def spin(play: Play, i: int) -> Done:
@@ -169,13 +156,13 @@ def look_around(play: Play, i: int) -> Done:
 def wave(play: Play, i: int) -> Done:
     """Person i waves with one hand, or goodbye as the recording has it."""
     bye = play.library.has("bye") and play.rng.random() < 0.33
-    return taken("bye" if bye else "wave", (50, 100), one=not bye)(play, i)
+    return taken("bye" if bye else "wave", one=not bye)(play, i)
 
 
 def raise_arm(play: Play, i: int) -> Done:
     """Person i raises one hand or both."""
     both = play.rng.random() < 0.38
-    return taken("raise-hand", (40, 80), side="both" if both else None, one=not both)(play, i)
+    return taken("raise-hand", frames=(40, 80), side="both" if both else None, one=not both)(play, i)
 
 
 def arms_over(
@@ -302,33 +289,36 @@ def gives_way(frame: int, *, dodges: bool) -> Effect:
     return effect
 
 
-def listed(given: Mapping[str, Any]) -> Act:
+def _act(make: Make, needs: tuple[str, ...], weight: float, room: float = 0.9) -> Option:
+    """An act that needs so many metres free in front."""
+    return Option(make, needs, weight, (room, 5.0))
+
+
+def listed(given: Mapping[str, Any]) -> Option:
     """An act as ``acts.toml`` has it: of a clip, of a gesture or of a chain of clips."""
     known = dict(given)
     how = {name: known.pop(name) for name in ("weight", "room") if name in known}
     if "gesture" in known:
-        return Act(gesture(known["gesture"], *known["seconds"], hands=known.get("hands", 1)), ("idle",), **how)
+        return _act(gesture(known["gesture"], *known["seconds"], hands=known.get("hands", 1)), ("idle",), **how)
     if "action" in known:
-        return Act(taken(known["action"], tuple(known["frames"])), (known["action"],), **how)
+        actions = known["action"].split()
+        return _act(taken(*actions, frames=tuple(known["frames"])), (actions[0],), **how)
     parts = [Part(**part) for part in known.pop("parts")]
-    return Act(chain(*parts, **known), tuple(part.action for part in parts), **how)
+    return _act(chain(*parts, **known), tuple(part.action.split()[0] for part in parts), **how)
 
 
-ACTS: dict[str, Act] = {
-    "wave": Act(wave, ("wave",), 4.5),
-    "bow": Act(bow, ("bow",), 3.0),
-    "raise-arm": Act(raise_arm, ("raise-hand",), 3.2),
-    "talk": Act(talk, ("guide",), 3.0),
-    "nod": Act(standing(_nods, 1.2, 2.0), ("idle",), 2.0),
-    "shake-head": Act(standing(_shakes_head, 1.3, 2.0), ("idle",), 1.5),
-    "shrug": Act(standing(_moves_hands(_SHRUG), 1.2, 1.8, hands=2), ("idle",), 1.2),
-    "dance": Act(dance, ("dance",), 1.6, room=1.4),
-    "spin": Act(spin, ("idle",), 1.5),
-    "look-around": Act(look_around, ("idle",), 1.0),
-    "shadow-box": Act(shadow_box, ("punch",), 1.4, room=1.7),
-    "kick-air:leg": Act(strike("kick"), ("kick",), 1.2, room=1.7),
-    "swing-sword": Act(strike("slash"), ("slash",), 0.6, room=1.9),
-    "sit-down>stand-up": Act(sit, ("sit-down", "sitting", "stand-up"), 2.5),
+ACTS: dict[str, Option] = {
+    "wave": _act(wave, ("wave",), 4.5),
+    "bow": _act(bow, ("bow",), 3.0),
+    "raise-arm": _act(raise_arm, ("raise-hand",), 3.2),
+    "nod": _act(standing(_nods, 1.2, 2.0), ("idle",), 2.0),
+    "shake-head": _act(standing(_shakes_head, 1.3, 2.0), ("idle",), 1.5),
+    "shrug": _act(standing(_moves_hands(_SHRUG), 1.2, 1.8, hands=2), ("idle",), 1.2),
+    "spin": _act(spin, ("idle",), 1.5),
+    "look-around": _act(look_around, ("idle",), 1.0),
+    "shadow-box": _act(shadow_box, ("punch",), 1.4, 1.7),
+    "kick-air:leg": _act(strike("kick"), ("kick",), 1.2, 1.7),
+    "swing-sword": _act(strike("slash"), ("slash",), 0.6, 1.9),
     **{
         cue: listed(given)
         for cue, given in tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")).items()

@@ -9,7 +9,7 @@ from motion.vectors import wrapped
 from ..compose import Array, ease, steer
 from ..cues import STILL
 from ..library import Take, pick, stride
-from .acts import ACTS, arms_over, spoken
+from .acts import ACTS, SPOKEN, arms_over, one_of
 from .play import Play, bearing
 
 
@@ -274,7 +274,7 @@ def walk_together(play: Play, i: int) -> None:
     elif kind < 0.65 and play.library.has("guide"):  # talking while strolling
         who = int(rng.random() < 0.4)
         speaker = (own, other)[who]
-        speaker.motion, _ = arms_over(play.library, rng, speaker.motion, pick(rng, spoken(play)), start + 12, None)
+        speaker.motion, _ = arms_over(play.library, rng, speaker.motion, one_of(play, SPOKEN), start + 12, None)
         acts[who] += "+talk"
     play.note((acts[0], acts[1]), start, **known)
 
@@ -287,7 +287,7 @@ def walk_and(play: Play, i: int) -> None:
     """i walks away or up and waves, talks or raises a hand meanwhile."""
     start, own, other = play.begin(i)
     rng = play.rng
-    over = pick(rng, [n for n in ("wave", "wave", "bye", "raise-hand") if play.library.has(n)])
+    over = one_of(play, ("wave", "wave", "bye", "raise-hand"))
     up = play.gap > 2.2
     side = pick(rng, ("left", "right")) if over != "bye" else None
     if up:

@@ -332,37 +332,20 @@ Make = Callable[[Play, int], Done]
 
 
 @dataclass(frozen=True)
-class Act:
-    """One thing that a person can do.
-
-    Attributes:
-        make: (play, person) -> how it was done.
-        needs: source actions it is made of.
-        weight: how often it is drawn.
-        room: metres that must be free in front.
-    """
-
-    make: Make
-    needs: tuple[str, ...]
-    weight: float = 1.0
-    room: float = 0.9
-
-
-@dataclass(frozen=True)
 class Option:
-    """A beat that may come next.
+    """An act of one person that may be drawn, or a beat that may come next.
 
     Attributes:
-        make: (play, who begins).
+        make: (play, who acts or begins) -> for an act, how it was done.
         needs: source actions.
         weight: how often it is drawn.
         gap: metres between the two, at least and at most.
         off: radians by which who begins is turned away from the other, at least and at most.
     """
 
-    make: Callable[[Play, int], None]
+    make: Callable[[Play, int], Any]
     needs: tuple[str, ...]
-    weight: float
+    weight: float = 1.0
     gap: tuple[float, float] = (0.0, 4.5)
     off: tuple[float, float] = (0.0, np.pi)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -74,7 +75,7 @@ def _play_answer(play: Play, i: int, answer: str, done: Done) -> tuple[str, str,
     An answer that does not fit where the two stand becomes :data:`STILL`.
     """
     rng, person = play.rng, play.people[i]
-    if answer in ACTS and play.gap > ACTS[answer].room:
+    if answer in ACTS and ACTS[answer].fits(play, i):
         relation = pick(rng, ("while", "reply", "reply", "order"))
         wait = {"while": done.start - 4, "reply": done.start + play.seconds(0.5, 1.3), "order": done.stop - 4}[relation]
         if relation != "while" and abs(play.off(i)) > 0.9:
@@ -92,7 +93,7 @@ def _play_answer(play: Play, i: int, answer: str, done: Done) -> tuple[str, str,
 
 
 MENU: dict[str, Option] = {
-    **{name: Option(solo(name), act.needs, act.weight, (act.room, 5.0)) for name, act in ACTS.items()},
+    **{name: replace(act, make=solo(name)) for name, act in ACTS.items()},
     **TOUCH_BEATS,
     "walk-up": Option(moves.walk_up, ("walk",), 9.0, FAR),
     "leave": Option(moves.leave, ("walk",), 11.0, CLOSE),
