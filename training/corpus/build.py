@@ -1,7 +1,11 @@
-"""Builds the corpus: composes scenes of beats, adds the recorded duets, checks each scene and writes them."""
+"""Builds the corpus: ``python -m training.corpus --data DIR --out DIR``.
+
+Composes scenes of beats, adds the recorded duets, checks each scene and writes them.
+"""
 
 from __future__ import annotations
 
+import argparse
 import json
 import logging
 from collections import Counter, defaultdict
@@ -12,6 +16,7 @@ import numpy as np
 
 from motion import InputError
 from motion.formats.files import replacing, write_text
+from training.core.shell import add_options, exit_code
 
 from .beats.script import compose
 from .checks import fault
@@ -121,3 +126,21 @@ def save(scenes: Sequence[Scene], folder: Path) -> None:
         for scene in scenes:
             file.write(np.ascontiguousarray(scene.positions.swapaxes(0, 1), dtype="<f4").tobytes())
     write_text(folder / "index.json", json.dumps(index, default=np.generic.item))
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
+    parser = argparse.ArgumentParser(prog="python -m training.corpus", description=__doc__)
+    parser.add_argument("--data", type=Path, required=True, help="folder with the motion data sets")
+    parser.add_argument("--out", type=Path, required=True, help="folder for motions.npy and index.json")
+    parser.add_argument("--hours", type=float, default=5.0, help="hours of composed motion (5)")
+    add_options(parser, "seed", "cache")
+    options = parser.parse_args(arguments)
+    logging.basicConfig(level=logging.WARNING, format="%(message)s")
+
+    def job() -> None:
+        scenes, rejected = build(options.data, hours=options.hours, seed=options.seed, cache=options.cache)
+        save(scenes, options.out)
+        print(*counted(scenes, rejected), f"{len(scenes)} scenes -> {options.out}", sep="\n")
+
+    return exit_code(job)

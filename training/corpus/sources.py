@@ -95,10 +95,8 @@ class Cut:
         return humanly(positions) if dataset == ANIMATED else positions
 
 
-CUTS = {
-    dataset: tuple(Cut(**cut) for cut in listed["cuts"])
-    for dataset, listed in tomllib.loads(Path(__file__).with_name("cuts.toml").read_text(encoding="utf-8")).items()
-}
+_LISTED = tomllib.loads(Path(__file__).with_name("cuts.toml").read_text(encoding="utf-8"))
+CUTS = {dataset: tuple(Cut(**cut) for cut in listed["cuts"]) for dataset, listed in _LISTED.items()}
 
 
 def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -> list[SourceClip]:
@@ -269,31 +267,8 @@ def _splits(described: list[Described]) -> dict[str, str]:
 
 # ---- DeepMimic's clips (Peng et al. 2018): JSON rows of a root path and joint rotations ----------
 
-# Name, parent, offset in metres (X ahead, Y up, Z to the right) and width in numbers of each joint, in the
-# order of a row; sizes from the data set's own humanoid3d.txt.
-_JOINTS = (
-    ("Hips", -1, (0.0, 0.0, 0.0), 4),
-    ("Spine", 0, (0.0, 0.236151, 0.0), 4),
-    ("Neck", 1, (0.0, 0.223894, 0.0), 4),
-    ("RightUpLeg", 0, (0.0, 0.0, 0.084887), 4),
-    ("RightLeg", 3, (0.0, -0.421546, 0.0), 1),
-    ("RightFoot", 4, (0.0, -0.409870, 0.0), 4),
-    ("RightArm", 1, (-0.024050, 0.243500, 0.183110), 4),
-    ("RightForeArm", 6, (0.0, -0.274788, 0.0), 1),
-    ("LeftUpLeg", 0, (0.0, 0.0, -0.084887), 4),
-    ("LeftLeg", 8, (0.0, -0.421546, 0.0), 1),
-    ("LeftFoot", 9, (0.0, -0.409870, 0.0), 4),
-    ("LeftArm", 1, (-0.024050, 0.243500, -0.183110), 4),
-    ("LeftForeArm", 11, (0.0, -0.274788, 0.0), 1),
-)
-_ENDS = (
-    ("Head", 2, (0.0, 0.175, 0.0)),
-    ("RightHand", 7, (0.0, -0.258947, 0.0)),
-    ("LeftHand", 12, (0.0, -0.258947, 0.0)),
-    ("RightToeBase", 5, (0.12, -0.055, 0.0)),
-    ("LeftToeBase", 10, (0.12, -0.055, 0.0)),
-)
-WIDTH = 1 + 3 + sum(joint[3] for joint in _JOINTS)
+_JOINTS = _LISTED["deepmimic"]["joints"]
+WIDTH = 1 + 3 + sum(joint["width"] for joint in _JOINTS)
 
 
 def read_deepmimic(data: bytes, *, name: str = "", fps: float = 30.0) -> RigMotion:
@@ -313,16 +288,13 @@ def read_deepmimic(data: bytes, *, name: str = "", fps: float = 30.0) -> RigMoti
     times = np.concatenate([[0.0], np.cumsum(rows[:-1, 0])])
     grid = np.minimum(np.arange(0.0, times[-1] + 1e-6, 1 / fps), times[-1])
     root = np.stack([np.interp(grid, times, rows[:, column]) for column in (1, 2, 3)], axis=-1)
-    turns, column = [], 4
-    for *_, width in _JOINTS:
-        part = rows[:, column : column + width]
-        bent, turned = part[:, :1] * np.array([[0.0, 0.0, 1.0]]), np.roll(part, -1, axis=1)
-        turn = Rotation.from_rotvec(bent) if width == 1 else Rotation.from_quat(turned)
-        turns.append(Slerp(times, turn)(grid).as_matrix())
-        column += width
-    names, parents, offsets = zip(*(joint[:3] for joint in (*_JOINTS, *_ENDS)), strict=True)
-    body = Skeleton("deepmimic", names, parents, np.array(offsets))
+    names, parents, offsets, widths = (tuple(j[key] for j in _JOINTS) for key in ("name", "parent", "offset", "width"))
     rotations = np.tile(np.eye(3), (len(grid), len(names), 1, 1))
-    rotations[:, : len(turns)] = np.stack(turns, axis=1)
+    for joint, part in enumerate(np.split(rows[:, 4:], np.cumsum(widths)[:-1], axis=1)):
+        if widths[joint]:
+            bent, turned = part[:, :1] * np.array([[0.0, 0.0, 1.0]]), np.roll(part, -1, axis=1)
+            turn = Rotation.from_rotvec(bent) if widths[joint] == 1 else Rotation.from_quat(turned)
+            rotations[:, joint] = Slerp(times, turn)(grid).as_matrix()
+    body = Skeleton("deepmimic", names, parents, np.array(offsets))
     places = forward_kinematics(rotations, root, body)
     return RigMotion(names, parents, body.offsets, places, fps, name=name, up="y")
