@@ -28,6 +28,8 @@ ARMS = {
     side: tuple(SMPL22.index(f"{side}_{joint}") for joint in ("collar", "shoulder", "elbow", "wrist"))
     for side in ("left", "right")
 }
+OTHER = {"left": "right", "right": "left"}
+"""The other side."""
 GLIDES = 0.6
 """Metres a second of a foot that stands, at most."""
 _MIRROR = np.diag([-1.0, 1.0, 1.0])

@@ -215,13 +215,11 @@ def _after(acts: Sequence[str]) -> tuple[Relation, ...]:
 def class_of(row: Mapping[str, Any]) -> str:
     """The class of a scene by its row's label: "shake hands", or "punch, dodge" of two entries.
 
-    Transitions and people who stand still do not count. A recorded scene may name its class itself ("class").
+    Transitions and people who stand still do not count.
 
     Raises:
         InputError: if the row has no label, as those of InterHuman.
     """
-    if row.get("class"):
-        return str(row["class"])
     if not row.get("label"):
         raise InputError(
             f"A scene of {row.get('family', 'unknown origin')} has no label and so no class: build the corpus with "

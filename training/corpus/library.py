@@ -17,10 +17,9 @@ from motion.placement import leading_wrist
 from motion.skeleton import LEGS, SMPL22
 from motion.vectors import wrapped
 
-from .compose import Motion, join, mirror, motion_from_positions, time_warp
+from .compose import OTHER, Motion, join, mirror, motion_from_positions, time_warp
 from .cues import SourceClip
 
-OTHER = {"left": "right", "right": "left", "both": "both", None: None}
 ONE_HANDED = ("bye", "guide", "respond")
 UPWARDS = np.array([0.0, 1.0, 0.0])
 STRIKES = {"punch": ("wrist", 12, 14), "kick": ("ankle", 30, 30), "slash": ("wrist", 32, 26)}
@@ -98,7 +97,7 @@ class Library:
         """
         takes = self._load(action)
         if side is not None:
-            takes = [take for take in takes if take.side in (side, OTHER[side])]
+            takes = [take for take in takes if take.side in (side, OTHER.get(side, side))]
         if not takes:
             raise LookupError(f"The {self.split} sources hold no {action!r} with side {side!r}.")
         wanted = [take for take in takes if style is None or take.style == style] or takes
@@ -114,7 +113,7 @@ class Library:
         return replace(
             chosen,
             motion=motion,
-            side=OTHER[chosen.side] if flip else chosen.side,
+            side=OTHER.get(chosen.side, chosen.side) if flip else chosen.side,
             peaks=tuple(round(peak / speed) for peak in chosen.peaks),
             aim=-chosen.aim if flip else chosen.aim,
         )

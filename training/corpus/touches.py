@@ -15,7 +15,7 @@ import numpy as np
 from motion.skeleton import SMPL22
 from motion.vectors import FLAT, unit
 
-from .compose import ARMS, Array
+from .compose import ARMS, OTHER, Array
 from .contact import (
     ELBOW_DOWN,
     UP,
@@ -43,11 +43,6 @@ _WRIST = {side: chain[3] for side, chain in ARMS.items()}
 
 
 Touch = Callable[[Rng, Array, Array, int, int, str], Touched]
-
-
-def opposite(side: str) -> str:
-    """The other side: "left" for "right" and the other way around."""
-    return "left" if side == "right" else "right"
 
 
 def timing(rng: Rng, start: int, stop: int, *, last: int = 10) -> tuple[int, int, int]:
@@ -173,7 +168,7 @@ def elbow_bump(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -
 
 def hand_over(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> Touched:
     """A hands something to B."""
-    taking = side if rng.random() < 0.7 else opposite(side)
+    taking = side if rng.random() < 0.7 else OTHER[side]
     frames = len(a)
     offered = start + int(rng.integers(16, 24))
     grasp = offered + int(rng.integers(4, 16))
@@ -205,7 +200,7 @@ def hug(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> Touch
         way = towards(body[:, 0], other[:, 0]) + 0.35 * sign * axes(body)[0]
         leant.append(lean_to(body, way, weight * rng.uniform(0.08, 0.16)))
     # On the side where a's arm goes over, b's goes under it: one's right hand comes to the other's left.
-    under, solved = opposite(side), []
+    under, solved = OTHER[side], []
     for body, other, weight in zip(leant, leant[::-1], weights, strict=True):
         high = on_body(other, "spine3", 0.13 * sign, rng.uniform(0.06, 0.14), -rng.uniform(0.05, 0.1))
         low = on_body(other, "spine2", -0.15 * sign, rng.uniform(0.0, 0.06), -rng.uniform(0.02, 0.07))
@@ -242,7 +237,7 @@ class HandOn:
         """The touch of two people (T, 22, 3) from one frame to another, with the hand of a side."""
         arrive, leave, end = timing(rng, start, stop)
         weight = envelope(len(a), start, arrive, leave, end)
-        joint, (out, up, ahead) = self.joint.format(side=side, far=opposite(side)), self.at
+        joint, (out, up, ahead) = self.joint.format(side=side, far=OTHER[side]), self.at
         if self.lifted:
             lift = pats(rng, len(a), arrive, leave)
             up, ahead = up + lift * self.lifted[0], ahead + lift * self.lifted[1]

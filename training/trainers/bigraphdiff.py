@@ -77,7 +77,7 @@ def of_classes(scenes: Scenes) -> Scenes:
     rows = [
         row
         for row in scenes.rows
-        if (row.get("label") or row.get("class")) and sum(not beat["minor"] for beat in row.get("beats") or ()) <= 1
+        if row.get("label") and sum(not beat["minor"] for beat in row.get("beats") or ()) <= 1
     ]
     if not rows:
         raise InputError(

@@ -8,7 +8,7 @@ import numpy as np
 
 from motion.vectors import wrapped
 
-from ..compose import Array, steer
+from ..compose import OTHER, Array, steer
 from ..contact import ELBOW_DOWN, axes, envelope, impulse, lean_to, nod, on_body, reach, reach_arm, towards
 from ..cues import STILL
 from ..library import pick
@@ -27,7 +27,6 @@ from ..touches import (
     help_up,
     hug,
     joined_hands,
-    opposite,
     whisper,
 )
 from .acts import ACTS, blow, gives_way
@@ -190,35 +189,37 @@ def abeam(play: Play, i: int) -> tuple[int, str]:
     return play.sync(), "left" if side > 0 else "right"
 
 
-def half_beside(play: Play, i: int) -> tuple[int, str]:
-    """i stands half beside the other, who is ahead and a little to the other side, half turned away."""
+def at_back(
+    play: Play,
+    i: int,
+    cue: str = "walk-up",
+    turned: tuple[float, float] = (1.0, 1.4),
+    back: tuple[float, float] = (0.42, 0.5),
+    aside: tuple[float, float] = (0.1, 0.2),
+) -> tuple[int, str]:
+    """i stands half behind the other: ``turned`` by radians, ``back`` and a little ``aside`` by metres."""
     _, _, other = play.begin(i)
     rng, side = play.rng, chosen_side(play.rng)
     sign = 1.0 if side == "right" else -1.0
-    way = other.angle + sign * rng.uniform(1.0, 1.4)
-    spot = other.spot - rng.uniform(0.42, 0.5) * ahead(way) + sign * rng.uniform(0.1, 0.2) * leftwards(way)
-    return play.settle(i, spot, way, "walk-up"), side
-
-
-def behind(play: Play, i: int) -> tuple[int, str]:
-    """i stands behind the other, who looks away."""
-    begun, _, other = play.begin(i)
-    rng, side = play.rng, chosen_side(play.rng)
-    sign = 1.0 if side == "right" else -1.0
-    if abs(play.off(1 - i)) < 2.0:  # the other turns away first
-        other.turn(wrapped(np.pi - abs(play.off(1 - i))) * pick(rng, (-1, 1)))
-    play.look(1 - i, begun, len(other) + 30, 0.0)
-    way = other.angle
-    spot = other.spot - rng.uniform(0.5, 0.58) * ahead(way) + sign * rng.uniform(0, 0.1) * leftwards(way)
-    return play.settle(i, spot, way, "come-behind"), side
+    way = other.angle + sign * rng.uniform(*turned)
+    spot = other.spot - rng.uniform(*back) * ahead(way) + sign * rng.uniform(*aside) * leftwards(way)
+    return play.settle(i, spot, way, cue), side
 
 
 def touching(
-    make: Touch, place: Place, hold: tuple[float, float], cue: str, answer: str = STILL, *, side: str | None = "one"
-) -> Callable[[Play, int], None]:
+    weight: float,
+    make: Touch,
+    place: Place,
+    hold: tuple[float, float],
+    cue: str,
+    answer: str = STILL,
+    *,
+    side: str | None = "one",
+) -> Option:
     """A beat of a touch.
 
     Args:
+        weight: how often it is drawn.
         make: the touch.
         place: where the two stand.
         hold: seconds for which they are within reach.
@@ -234,17 +235,20 @@ def touching(
         told = hand if side == "one" else side
         relation = "reply" if answer not in (STILL, cue) else "while"
         play.note((cue, answer), start, i=i, relation=relation, sides=(told, told if answer == cue else None))
-        if play.gap < 0.46 and cue == "hug":  # nobody stays that close
+        if cue == "hug":  # nobody stays that close
             play.back_off(pick(play.rng, (i, 1 - i)), 0.4, 0.7)
             play.sync()
 
-    return beat
+    return Option(beat, ("walk", "idle", "walk-back") if cue == "hug" else ("walk", "idle"), weight)
 
 
 def tap(play: Play, i: int) -> None:
     """i taps the shoulder of the other, who looks away, and who turns round."""
-    start, side = behind(play, i)
-    own, other = play.people[i], play.people[1 - i]
+    begun, own, other = play.begin(i)
+    if abs(play.off(1 - i)) < 2.0:  # the other turns away first
+        other.turn(wrapped(np.pi - abs(play.off(1 - i))) * pick(play.rng, (-1, 1)))
+    play.look(1 - i, begun, len(other) + 30, 0.0)
+    start, side = at_back(play, i, "come-behind", (0.0, 0.0), (0.5, 0.58), (0.0, 0.1))
     length = play.seconds(0.9, 1.3)
     own.hold(length + 60)
     other.hold(length + 6)
@@ -265,7 +269,7 @@ def hand_in_hand(play: Play, i: int) -> None:
         start, _, side = abreast(play, i, gap, (2.0, 2.8 if play.brisk else 4.2))
         name = "walk-hand-in-hand"
     hand, stop, taken = "left" if side > 0 else "right", play.sync(), max(start - 14, begun)
-    make = joined_hands((hand, opposite(hand)), rng.uniform(0.78, 0.86))
+    make = joined_hands((hand, OTHER[hand]), rng.uniform(0.78, 0.86))
     play.effect(taken, stop + 22, lambda rng, a, b: make(rng, a, b, 0, stop - taken - 4, hand), i=i)
     play.note((name, name), taken, i=i)
     for k in (0, 1):
@@ -291,40 +295,30 @@ def carousel(play: Play, i: int) -> None:
 
 _SHOULDER = ("{far}_shoulder", (0.0, 0.06, 0.05))
 _FIST = Slap((1.1, 1.26), 0.5, elbow=(0.7, -1.0, -0.2), pause=(2, 9), apart=0.09)
+_TEN = Slap((1.45, 1.6), 0.4, mirrored=True)
 _LOW = Slap((0.9, 1.02), 1.0, approach=(0.2, 1.2), elbow=ELBOW_DOWN)
 _PAT_BACK = HandOn("spine3", (-0.04, 0.0, -0.14), (0.0, -1.0), (0.8, -0.7, -0.2))
-_MET = ("walk", "idle")
 _SHORT, _LONG = (1.3, 2.0), (1.6, 2.4)
 """Seconds within reach."""
 TOUCH_BEATS: dict[str, Option] = {
-    "shake-hands": Option(touching(handshake, facing(0.82, 0.98), (1.5, 2.4), "shake-hands", "shake-hands"), _MET, 5.2),
-    "high-five": Option(
-        touching(Slap((1.48, 1.65), 0.5), facing(0.76, 0.92), _SHORT, "high-five", "high-five"), _MET, 3.9
-    ),
-    "high-ten": Option(
-        touching(
-            Slap((1.45, 1.6), 0.4, mirrored=True), facing(0.66, 0.8), _SHORT, "high-five", "high-five", side="both"
-        ),
-        _MET,
-        1.7,
-    ),
-    "low-five": Option(touching(_LOW, facing(0.68, 0.82), _SHORT, "low-five", "low-five"), _MET, 1.6),
-    "fist-bump": Option(touching(_FIST, facing(0.82, 0.98), _SHORT, "fist-bump", "fist-bump"), _MET, 2.3),
-    "elbow-bump": Option(touching(elbow_bump, facing(0.46, 0.54), _SHORT, "elbow-bump", "elbow-bump"), _MET, 1.3),
-    "hand-over": Option(touching(hand_over, facing(0.85, 1.02), (1.8, 2.4), "hand-over", "take-from"), _MET, 3.3),
-    "pat:shoulder": Option(
-        touching(HandOn(*_SHOULDER, (1.0, 0.0)), facing(0.58, 0.72), _LONG, "pat:shoulder"), _MET, 2.0
-    ),
-    "hand-on:shoulder": Option(touching(HandOn(*_SHOULDER), facing(0.58, 0.72), _LONG, "hand-on:shoulder"), _MET, 2.0),
-    "hug": Option(touching(hug, facing(0.41, 0.46), (1.8, 2.6), "hug", "hug", side=None), (*_MET, "walk-back"), 5.2),
-    "pat:back": Option(touching(_PAT_BACK, half_beside, _LONG, "pat:back"), _MET, 2.0),
-    "whisper": Option(touching(whisper, half_beside, _LONG, "whisper", "listen"), _MET, 2.0),
-    "arm-around": Option(touching(arm_around, abeam, (1.8, 3.0), "arm-around"), _MET, 1.7),
-    "help-up": Option(touching(help_up, facing(0.83, 0.94), (3.3, 3.4), "help-up", "stand-up"), _MET, 2.0),
-    "walk-hand-in-hand": Option(hand_in_hand, _MET, 3.9),
+    "shake-hands": touching(5.2, handshake, facing(0.82, 0.98), (1.5, 2.4), "shake-hands", "shake-hands"),
+    "high-five": touching(3.9, Slap((1.48, 1.65), 0.5), facing(0.76, 0.92), _SHORT, "high-five", "high-five"),
+    "high-ten": touching(1.7, _TEN, facing(0.66, 0.8), _SHORT, "high-five", "high-five", side="both"),
+    "low-five": touching(1.6, _LOW, facing(0.68, 0.82), _SHORT, "low-five", "low-five"),
+    "fist-bump": touching(2.3, _FIST, facing(0.82, 0.98), _SHORT, "fist-bump", "fist-bump"),
+    "elbow-bump": touching(1.3, elbow_bump, facing(0.46, 0.54), _SHORT, "elbow-bump", "elbow-bump"),
+    "hand-over": touching(3.3, hand_over, facing(0.85, 1.02), (1.8, 2.4), "hand-over", "take-from"),
+    "pat:shoulder": touching(2.0, HandOn(*_SHOULDER, (1.0, 0.0)), facing(0.58, 0.72), _LONG, "pat:shoulder"),
+    "hand-on:shoulder": touching(2.0, HandOn(*_SHOULDER), facing(0.58, 0.72), _LONG, "hand-on:shoulder"),
+    "hug": touching(5.2, hug, facing(0.41, 0.46), (1.8, 2.6), "hug", "hug", side=None),
+    "pat:back": touching(2.0, _PAT_BACK, at_back, _LONG, "pat:back"),
+    "whisper": touching(2.0, whisper, at_back, _LONG, "whisper", "listen"),
+    "arm-around": touching(1.7, arm_around, abeam, (1.8, 3.0), "arm-around"),
+    "help-up": touching(2.0, help_up, facing(0.83, 0.94), (3.3, 3.4), "help-up", "stand-up"),
+    "walk-hand-in-hand": Option(hand_in_hand, ("walk", "idle"), 3.9),
     "ring": Option(carousel, ("walk-left", "walk-right"), 2.6),
     "push": Option(push, ("walk", "walk-back"), 3.3),
-    "tap": Option(tap, _MET, 2.3),
+    "tap": Option(tap, ("walk", "idle"), 2.3),
     "refused": Option(refused, ("walk", "walk-back"), 6.5),
     "throw-ball": Option(throw_catch, ("throw",), 2.0),
     "punch": Option(blow_at("punch", "dodge", "flinch", "step-back", FALL), ("punch", "walk-back"), 2.3),
