@@ -98,11 +98,6 @@ class Pair:
     test: bool
     error: float = 0.0
 
-    @property
-    def release(self) -> Release:
-        """The data set."""
-        return RELEASES[self.dataset]
-
 
 def read_release(data_dir: str | Path, dataset: str) -> list[Pair]:
     """The listed clips of "sbu" or "k3hi", unrepaired, in the order of their names.
@@ -147,8 +142,9 @@ _NOISE = 0.02  # metres; the tracker keeps many bones rigid, so bones alone woul
 
 def fitted(pair: Pair) -> Pair:
     """The same two people on SMPL22: repaired, fitted, at 30 fps, feet at the floor."""
-    skeleton, fps = pair.release.skeleton, pair.release.fps
-    level = upright(pair.positions, pair.release.pitch)
+    release = RELEASES[pair.dataset]
+    skeleton, fps = release.skeleton, release.fps
+    level = upright(pair.positions, release.pitch)
     repaired = [_repaired(own, other, pair) for own, other in zip(level, level[::-1], strict=True)]
     scale = float(np.mean([body_scale(person, skeleton) for person in repaired]))
     weights = np.broadcast_to(np.array([1.0, 1.0, _DEPTH_TRUST]), level[0].shape)
@@ -161,7 +157,7 @@ def fitted(pair: Pair) -> Pair:
 
 def _repaired(own: Array, other: Array, pair: Pair) -> Array:
     """(T, 15, 3) positions over the floor with sides and spikes mended, of a person and the other one, level."""
-    skeleton, fps = pair.release.skeleton, pair.release.fps
+    skeleton, fps = RELEASES[pair.dataset].skeleton, RELEASES[pair.dataset].fps
     for parts in (("shoulder", "elbow", "wrist", "hip", "knee", "foot"), ("knee", "foot"), ("foot",)):
         own = unswap(own, skeleton, parts, fps)
     ahead = _ahead(own, other, pair)
@@ -180,7 +176,7 @@ def _ahead(own: Array, other: Array, pair: Pair) -> Array | None:
 
     ``None`` where nothing can be expected: of a person who stands while the other leaves, or who points at something.
     """
-    torso = pair.release.skeleton.index("torso")
+    torso = RELEASES[pair.dataset].skeleton.index("torso")
     middle = own[:, torso][:, [0, 2]]
     walk = middle[-1] - middle[0]
     if pair.family in ("approach", "depart") and np.linalg.norm(walk) > 0.5:

@@ -8,27 +8,12 @@ import numpy as np
 
 from motion.vectors import wrapped
 
+from .. import touches
 from ..compose import OTHER, Array, steer
 from ..contact import ELBOW_DOWN, axes, envelope, impulse, lean_to, nod, on_body, reach, reach_arm, towards
 from ..cues import STILL
 from ..library import pick
-from ..touches import (
-    HandOn,
-    Rng,
-    Slap,
-    Touch,
-    Touched,
-    arm_around,
-    both_hands,
-    chosen_side,
-    elbow_bump,
-    hand_over,
-    handshake,
-    help_up,
-    hug,
-    joined_hands,
-    whisper,
-)
+from ..touches import HandOn, Rng, Slap, Touch, Touched, chosen_side
 from .acts import ACTS, blow, gives_way
 from .acts import reach as reach_of
 from .moves import abreast, ahead, close_in, come, leftwards, rounded, side_by_side, sideways, turn_off
@@ -129,7 +114,7 @@ _REFUSALS = (STILL, "shake-head", "turn-away", "step-back", "fold-arms", "stop-h
 
 
 def refused(play: Play, i: int) -> None:
-    """i offers a hand, a high five, a thing or a hug, and the other does not take it."""
+    """i offers a hand, a high five, a thing or a touches.hug, and the other does not take it."""
     rng, other = play.rng, play.people[1 - i]
     offer = pick(rng, tuple(_OFFERS))
     distance, at = _OFFERS[offer]
@@ -269,7 +254,7 @@ def hand_in_hand(play: Play, i: int) -> None:
         start, _, side = abreast(play, i, gap, (2.0, 2.8 if play.brisk else 4.2))
         name = "walk-hand-in-hand"
     hand, stop, taken = "left" if side > 0 else "right", play.sync(), max(start - 14, begun)
-    make = joined_hands((hand, OTHER[hand]), rng.uniform(0.78, 0.86))
+    make = touches.joined_hands((hand, OTHER[hand]), rng.uniform(0.78, 0.86))
     play.effect(taken, stop + 22, lambda rng, a, b: make(rng, a, b, 0, stop - taken - 4, hand), i=i)
     play.note((name, name), taken, i=i)
     for k in (0, 1):
@@ -289,7 +274,7 @@ def carousel(play: Play, i: int) -> None:
         person.append(steer(walk.motion, turn), turn=-aim)
     stop = play.sync()
     play.hold(14)
-    play.effect(start, stop + 14, lambda rng, a, b: both_hands(rng, a, b, 0, stop - start - 6, ""), i=i)
+    play.effect(start, stop + 14, lambda rng, a, b: touches.both_hands(rng, a, b, 0, stop - start - 6, ""), i=i)
     play.note(("ring", "ring"), start, i=i)
 
 
@@ -301,20 +286,20 @@ _PAT_BACK = HandOn("spine3", (-0.04, 0.0, -0.14), (0.0, -1.0), (0.8, -0.7, -0.2)
 _SHORT, _LONG = (1.3, 2.0), (1.6, 2.4)
 """Seconds within reach."""
 TOUCH_BEATS: dict[str, Option] = {
-    "shake-hands": touching(5.2, handshake, facing(0.82, 0.98), (1.5, 2.4), "shake-hands", "shake-hands"),
+    "shake-hands": touching(5.2, touches.handshake, facing(0.82, 0.98), (1.5, 2.4), "shake-hands", "shake-hands"),
     "high-five": touching(3.9, Slap((1.48, 1.65), 0.5), facing(0.76, 0.92), _SHORT, "high-five", "high-five"),
     "high-ten": touching(1.7, _TEN, facing(0.66, 0.8), _SHORT, "high-five", "high-five", side="both"),
     "low-five": touching(1.6, _LOW, facing(0.68, 0.82), _SHORT, "low-five", "low-five"),
     "fist-bump": touching(2.3, _FIST, facing(0.82, 0.98), _SHORT, "fist-bump", "fist-bump"),
-    "elbow-bump": touching(1.3, elbow_bump, facing(0.46, 0.54), _SHORT, "elbow-bump", "elbow-bump"),
-    "hand-over": touching(3.3, hand_over, facing(0.85, 1.02), (1.8, 2.4), "hand-over", "take-from"),
+    "elbow-bump": touching(1.3, touches.elbow_bump, facing(0.46, 0.54), _SHORT, "elbow-bump", "elbow-bump"),
+    "hand-over": touching(3.3, touches.hand_over, facing(0.85, 1.02), (1.8, 2.4), "hand-over", "take-from"),
     "pat:shoulder": touching(2.0, HandOn(*_SHOULDER, (1.0, 0.0)), facing(0.58, 0.72), _LONG, "pat:shoulder"),
     "hand-on:shoulder": touching(2.0, HandOn(*_SHOULDER), facing(0.58, 0.72), _LONG, "hand-on:shoulder"),
-    "hug": touching(5.2, hug, facing(0.41, 0.46), (1.8, 2.6), "hug", "hug", side=None),
+    "hug": touching(5.2, touches.hug, facing(0.41, 0.46), (1.8, 2.6), "hug", "hug", side=None),
     "pat:back": touching(2.0, _PAT_BACK, at_back, _LONG, "pat:back"),
-    "whisper": touching(2.0, whisper, at_back, _LONG, "whisper", "listen"),
-    "arm-around": touching(1.7, arm_around, abeam, (1.8, 3.0), "arm-around"),
-    "help-up": touching(2.0, help_up, facing(0.83, 0.94), (3.3, 3.4), "help-up", "stand-up"),
+    "whisper": touching(2.0, touches.whisper, at_back, _LONG, "whisper", "listen"),
+    "arm-around": touching(1.7, touches.arm_around, abeam, (1.8, 3.0), "arm-around"),
+    "help-up": touching(2.0, touches.help_up, facing(0.83, 0.94), (3.3, 3.4), "help-up", "stand-up"),
     "walk-hand-in-hand": Option(hand_in_hand, ("walk", "idle"), 3.9),
     "ring": Option(carousel, ("walk-left", "walk-right"), 2.6),
     "push": Option(push, ("walk", "walk-back"), 3.3),
