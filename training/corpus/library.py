@@ -82,6 +82,7 @@ class Library:
         style: str | None = None,
         side: str | None = None,
         frames: tuple[int, int] = (1, 10_000),
+        blows: int = 2,
         warp: bool = True,
     ) -> Take:
         """Draws a performance of an action, mirrored half of the time, played up to 15 % off its speed.
@@ -91,6 +92,7 @@ class Library:
             side: wanted hand, foot or turn; a clip of the other side is mirrored.
             frames: (at least, at most) so many frames; a longer clip is shortened, a shorter one not drawn
                 unless there is none else.
+            blows: at most so many, of an action that is one.
 
         Raises:
             LookupError: where the split has no such clip.
@@ -101,7 +103,7 @@ class Library:
         if not takes:
             raise LookupError(f"The {self.split} sources hold no {action!r} with side {side!r}.")
         wanted = [take for take in takes if style is None or take.style == style] or takes
-        wanted = [take for take in wanted if len(take) >= frames[0]] or wanted
+        wanted = [take for take in wanted if len(take) >= frames[0] and len(take.peaks) <= blows] or wanted
         chosen = pick(rng, wanted)
         flip = chosen.side != side if side in ("left", "right") else bool(rng.random() < 0.5)
         motion = mirror(chosen.motion) if flip else chosen.motion
@@ -138,7 +140,7 @@ class Library:
                 continue
             motion = motion_from_positions(clip.positions, sources=(clip.source,))
             if action in STRIKES:
-                takes += blows(motion, clip)
+                takes += blows_of(motion, clip)
             elif action == "idle":
                 takes += [Take(part, action, "at ease" if hanging(part) else "busy") for part in calm(motion)]
             else:
@@ -172,7 +174,7 @@ def hanging(motion: Motion) -> bool:
     return bool((wrists[..., 1] - positions[:, :1, 1]).max() < 0.12)
 
 
-def blows(motion: Motion, clip: SourceClip, *, most: int = 5) -> list[Take]:
+def blows_of(motion: Motion, clip: SourceClip, *, most: int = 2) -> list[Take]:
     """A clip of punches, kicks or sword cuts as takes of 1 to ``most`` blows in a row, with peaks and aim."""
     joint, before, after = STRIKES[clip.action]
     sword = clip.action == "slash"  # held with both hands; the right one tells

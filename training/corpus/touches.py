@@ -39,9 +39,6 @@ Touches = list[tuple[str, str, int, int]]
 Touched = tuple[Array, Array, Touches]
 
 HIGH_ELBOW = (0.6, -0.7, 0.2)
-_WRIST = {side: chain[3] for side, chain in ARMS.items()}
-
-
 Touch = Callable[[Rng, Array, Array, int, int, str], Touched]
 
 
@@ -295,30 +292,19 @@ def help_up(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> T
     return a, b, [(f"{side}_wrist", f"{side}_wrist", grasp, leave)]
 
 
-def joined_hands(sides: tuple[str, str], height: float) -> Touch:
-    """The hands of these sides hold each other, carried along between the two."""
+def joined_hands(*pairs: tuple[str, str], height: float, carried: bool = False) -> Touch:
+    """Hands that hold each other, pairs of a's and b's; ``carried`` along between two who walk."""
 
     def make(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> Touched:
         weight = envelope(len(a), start, start + 16, stop, stop + 22)
-        points = meeting(a, b, *sides, height=height, apart=0.07)
-        line = towards(points[0], points[1])
-        swing = 0.25 * (a[:, _WRIST[sides[0]]] - a[:, 0])
-        off = 0.05 * axes(a)[1] + swing * FLAT - line * np.sum(swing * line, axis=-1, keepdims=True)
-        a, b = (
-            reach(body, {own: point + off}, weight, twist=0.25, lean=0.1)
-            for body, own, point in zip((a, b), sides, points, strict=True)
-        )
-        return a, b, [(f"{sides[0]}_wrist", f"{sides[1]}_wrist", start + 16, stop)]
+        line, off = towards(a[:, 0], b[:, 0]), np.zeros(3)
+        if carried:
+            swing = 0.25 * FLAT * (a[:, ARMS[pairs[0][0]][3]] - a[:, 0])
+            off = 0.05 * axes(a)[1] + swing - line * np.sum(swing * line, axis=-1, keepdims=True)
+        a, b = meet_hands(a, b, pairs, (weight, weight), height=height, away=(off, off))
+        return a, b, [(f"{own}_wrist", f"{other}_wrist", start + 16, stop) for own, other in pairs]
 
     return make
-
-
-def both_hands(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> Touched:
-    """Face to face, both hands of each hold those of the other."""
-    weight = envelope(len(a), start, start + 18, stop, stop + 20)
-    pairs = (("left", "right"), ("right", "left"))
-    a, b = meet_hands(a, b, pairs, (weight, weight), height=rng.uniform(0.95, 1.1))
-    return a, b, [(f"{own}_wrist", f"{to}_wrist", start + 18, stop) for own, to in pairs]
 
 
 def chosen_side(rng: Rng) -> str:

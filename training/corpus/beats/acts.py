@@ -241,20 +241,11 @@ _SHRUG = Stroke(at=(0.26, -0.2, 0.22), from_shoulder=True)
 TIPS = {"punch": "wrist", "kick": "ankle"}
 
 
-def blow(rng: Rng, library: Library, action: str, *, most: int) -> Take:
-    """One to ``most`` blows in a row."""
-    for _ in range(40):
-        take = library.take(rng, action)
-        if 1 <= len(take.peaks) <= most:
-            break
-    return take
-
-
 def strike(action: str) -> Make:
     """One or two blows in the air."""
 
     def make(play: Play, i: int) -> Done:
-        take = blow(play.rng, play.library, action, most=2)
+        take = play.library.take(play.rng, action)
         return play.people[i].perform(take, aim=take.aim)
 
     return make

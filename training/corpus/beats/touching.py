@@ -14,7 +14,7 @@ from ..contact import ELBOW_DOWN, axes, envelope, impulse, lean_to, nod, on_body
 from ..cues import STILL
 from ..library import pick
 from ..touches import HandOn, Rng, Slap, Touch, Touched, chosen_side
-from .acts import ACTS, blow, gives_way
+from .acts import ACTS, gives_way
 from .acts import reach as reach_of
 from .moves import abreast, ahead, close_in, come, leftwards, rounded, side_by_side, sideways, turn_off
 from .play import Option, Play
@@ -58,7 +58,7 @@ def blow_at(name: str, *answers: str) -> Callable[[Play, int], None]:
 
     def make(play: Play, i: int) -> None:
         rng = play.rng
-        take = blow(rng, play.library, name, most=1)
+        take = play.library.take(rng, name, blows=1)
         answer = pick(rng, answers)
         if answer == FALL and not play.library.has("fall", "get-up-back"):
             answer = "flinch"
@@ -114,7 +114,7 @@ _REFUSALS = (STILL, "shake-head", "turn-away", "step-back", "fold-arms", "stop-h
 
 
 def refused(play: Play, i: int) -> None:
-    """i offers a hand, a high five, a thing or a touches.hug, and the other does not take it."""
+    """i offers a hand, a high five, a thing or a hug, and the other does not take it."""
     rng, other = play.rng, play.people[1 - i]
     offer = pick(rng, tuple(_OFFERS))
     distance, at = _OFFERS[offer]
@@ -254,7 +254,7 @@ def hand_in_hand(play: Play, i: int) -> None:
         start, _, side = abreast(play, i, gap, (2.0, 2.8 if play.brisk else 4.2))
         name = "walk-hand-in-hand"
     hand, stop, taken = "left" if side > 0 else "right", play.sync(), max(start - 14, begun)
-    make = touches.joined_hands((hand, OTHER[hand]), rng.uniform(0.78, 0.86))
+    make = touches.joined_hands((hand, OTHER[hand]), height=rng.uniform(0.78, 0.86), carried=True)
     play.effect(taken, stop + 22, lambda rng, a, b: make(rng, a, b, 0, stop - taken - 4, hand), i=i)
     play.note((name, name), taken, i=i)
     for k in (0, 1):
@@ -274,7 +274,8 @@ def carousel(play: Play, i: int) -> None:
         person.append(steer(walk.motion, turn), turn=-aim)
     stop = play.sync()
     play.hold(14)
-    play.effect(start, stop + 14, lambda rng, a, b: touches.both_hands(rng, a, b, 0, stop - start - 6, ""), i=i)
+    make = touches.joined_hands(("left", "right"), ("right", "left"), height=rng.uniform(0.95, 1.1))
+    play.effect(start, stop + 14, lambda rng, a, b: make(rng, a, b, 0, stop - start - 6, ""), i=i)
     play.note(("ring", "ring"), start, i=i)
 
 
