@@ -40,7 +40,7 @@ SPLITS = {"train.txt": "train", "val.txt": "validation", "test.txt": "test"}
 _MOST_SENTENCES = 20
 
 
-def motions_in(data: Path) -> Iterator[tuple[str, tuple[Path, Path], Path]]:
+def motions_in(data: Path) -> list[tuple[str, tuple[Path, Path], Path]]:
     """Each motion of a data set's folder: its source, such as "interhuman/7", the files of P1 and P2, and that of its
     sentences.
 
@@ -48,18 +48,19 @@ def motions_in(data: Path) -> Iterator[tuple[str, tuple[Path, Path], Path]]:
         InputError: if the folder holds no motions of two people.
     """
     human = data / "motions_processed" if (data / "motions_processed").is_dir() else data
-    first = sorted((human / "person1").glob("*.npy")) or sorted((data / "motions").glob("*/P1.npz"))
-    if not first:
+    found = [
+        (f"interhuman/{path.stem}", (path, human / "person2" / path.name), data / "annots" / f"{path.stem}.txt")
+        for path in sorted((human / "person1").glob("*.npy"))
+    ] or [
+        (f"interx/{path.name}", (path / "P1.npz", path / "P2.npz"), data / "texts" / f"{path.name}.txt")
+        for path in sorted(file.parent for file in (data / "motions").glob("*/P1.npz"))
+    ]
+    if not found:
         raise InputError(
             f"{data} holds no motions_processed/person1/*.npy, motions/*/P1.npz or new_joint_vecs/*.npy: give the "
             "folder of InterHuman, Inter-X or HumanML3D."
         )
-    for path in first:
-        if path.suffix == ".npy":
-            yield f"interhuman/{path.stem}", (path, human / "person2" / path.name), data / "annots" / f"{path.stem}.txt"
-        else:
-            name = path.parent.name
-            yield f"interx/{name}", (path, path.with_name("P2.npz")), data / "texts" / f"{name}.txt"
+    return found
 
 
 def read_annotated(data: Path, second_acts: Collection[str] = ()) -> Iterator[Scene]:

@@ -142,6 +142,23 @@ def spin(play: Play, i: int) -> Done:
     return Done(start, len(person))
 
 
+def turn_away(play: Play, i: int) -> Done:
+    """Turns the back on the other."""
+    person = play.people[i]
+    start = len(person)
+    person.turn(pick(play.rng, (-1, 1)) * play.rng.uniform(2.2, 3.1))
+    play.look(i, start, len(person) + 40, 0.0)
+    return Done(start, len(person))
+
+
+def turn_to(play: Play, i: int) -> Done:
+    """Turns to the other."""
+    person = play.people[i]
+    start = len(person)
+    person.turn(play.off(i))
+    return Done(start, len(person))
+
+
 def look_around(play: Play, i: int) -> Done:
     """Person i looks around."""
     person, rng = play.people[i], play.rng
@@ -306,6 +323,9 @@ ACTS: dict[str, Option] = {
     "shake-head": _act(standing(_shakes_head, 1.3, 2.0), ("idle",), 1.5),
     "shrug": _act(standing(_moves_hands(_SHRUG), 1.2, 1.8, hands=2), ("idle",), 1.2),
     "spin": _act(spin, ("idle",), 1.5),
+    "turn-away": Option(turn_away, ("idle",), 2.0, (0.0, np.inf), (0.0, 0.9)),
+    "turn-to": Option(turn_to, ("idle",), 9.0, (0.0, np.inf), (1.6, np.pi)),
+    "step-back": Option(lambda play, i: play.back_off(i, 0.4, 0.9), ("walk-back",), 2.5, (0.0, 2.4)),
     "look-around": _act(look_around, ("idle",), 1.0),
     "shadow-box": _act(shadow_box, ("punch",), 1.4, 1.7),
     "kick-air:leg": _act(strike("kick"), ("kick",), 1.2, 1.7),

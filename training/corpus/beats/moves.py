@@ -114,9 +114,7 @@ def leave(play: Play, i: int) -> None:
     stops = answer != "follow" and rng.random() < 0.6
     take = own.go(own.spot + rng.uniform(1.6, 3.0) * ahead(way), None, action=action, stop=stops)
     side, style = None, "normal"
-    if answer == "turn-away":
-        turn_off(play, 1 - i, start + play.seconds(0.2, 0.6))
-    elif answer == "follow":
+    if answer == "follow":
         other.hold(play.seconds(0.1, 0.5))
         other.go(own.spot - rng.uniform(0.9, 1.3) * ahead(way), None, action=action, stop=False)
         answer = "chase" if action == "run" else "follow"
@@ -125,14 +123,6 @@ def leave(play: Play, i: int) -> None:
         done = ACTS[answer].make(play, 1 - i)
         side, style = done.side, done.style
     play.note((f"{action}-away", answer), start, i=i, styles=(take.style, style), sides=(None, side))
-
-
-def turn_off(play: Play, i: int, frame: int) -> None:
-    """Person i turns the back on the other from a frame on."""
-    person = play.people[i]
-    person.hold_until(frame)
-    person.turn(pick(play.rng, (-1, 1)) * play.rng.uniform(2.2, 3.1))
-    play.look(i, frame, len(person) + 40, 0.0)
 
 
 def part(play: Play, i: int) -> None:
@@ -147,18 +137,11 @@ def part(play: Play, i: int) -> None:
     play.note(("part", "part"), start, i=i, styles=tuple(styles))
 
 
-def turn_away(play: Play, i: int) -> None:
-    """A turns away from B."""
-    start = play.sync()
-    turn_off(play, i, start + play.seconds(0.2, 0.6))
-    play.note(("turn-away", STILL), start, i=i)
-
-
-def turn_to(play: Play, i: int) -> None:
+def turn_round(play: Play, i: int) -> None:
     """i, who looks elsewhere, turns round to the other."""
     start, own, _ = play.begin(i)
     own.hold(6)
-    own.turn(play.off(i))
+    ACTS["turn-to"].make(play, i)
     play.note(("turn-to", STILL), start, i=i)
 
 

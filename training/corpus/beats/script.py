@@ -82,13 +82,6 @@ def _play_answer(play: Play, i: int, answer: str, done: Done) -> tuple[str, str,
             person.turn(play.off(i))
         person.hold_until(wait)
         return answer, relation, ACTS[answer].make(play, i)
-    if answer == "turn-away" and abs(play.off(i)) < 1.0:
-        moves.turn_off(play, i, done.start + play.seconds(0.4, 1.0))
-        return answer, "reply", Done(0, 0)
-    if answer == "turn-to" and abs(play.off(i)) > 1.2:
-        person.hold_until(done.start + play.seconds(0.2, 0.8))
-        person.turn(play.off(i))
-        return answer, "reply", Done(0, 0)
     return STILL, "while", Done(0, 0)
 
 
@@ -98,9 +91,8 @@ MENU: dict[str, Option] = {
     "walk-up": Option(moves.walk_up, ("walk",), 9.0, FAR),
     "leave": Option(moves.leave, ("walk",), 11.0, CLOSE),
     "part": Option(moves.part, ("walk",), 3.0, CLOSE),
-    "turn-away": Option(moves.turn_away, ("idle",), 2.0, (0.0, np.inf), (0.0, 0.9)),
-    "turn-to": Option(moves.turn_to, ("idle",), 9.0, (0.0, np.inf), (1.6, np.pi)),
-    "step-back": Option(moves.step_back, ("walk-back",), 2.5, CLOSE),
+    "turn-to": replace(ACTS["turn-to"], make=moves.turn_round),
+    "step-back": replace(ACTS["step-back"], make=moves.step_back),
     "step-aside": Option(moves.step_aside, ("walk-left", "walk-right"), 1.5),
     "walk-around": Option(moves.circle, ("walk",), 3.0, CLOSE),
     "pace": Option(moves.pace_about, ("walk",), 1.2),

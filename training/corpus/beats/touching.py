@@ -16,7 +16,7 @@ from ..library import pick
 from ..touches import HandOn, Rng, Slap, Touch, Touched, chosen_side
 from .acts import ACTS, gives_way
 from .acts import reach as reach_of
-from .moves import abreast, ahead, close_in, come, leftwards, rounded, side_by_side, sideways, turn_off
+from .moves import abreast, ahead, close_in, come, leftwards, rounded, side_by_side, sideways
 from .play import Option, Play
 
 FALL = "fall-down>stand-up"
@@ -122,11 +122,7 @@ def refused(play: Play, i: int) -> None:
     sides = ("left", "right") if offer == "hug?" else (chosen_side(rng),)
     answer = pick(rng, _REFUSALS[: None if play.library.has("reject") else -1])
     other.hold(play.seconds(0.7, 1.2))
-    if answer == "turn-away":
-        turn_off(play, 1 - i, len(other))
-    elif answer == "step-back":
-        play.back_off(1 - i, 0.4, 0.9)
-    elif answer != STILL:
+    if answer != STILL:
         ACTS[answer].make(play, 1 - i)
     play.people[i].hold_until(max(len(other) + 10, start + 66))
     stop = play.sync()
