@@ -124,12 +124,11 @@ def reach(
     elbow: tuple[float, float, float] = ELBOW_DOWN,
     lean: float = 0.3,
     twist: float = 0.55,
-    shift: float = 0.2,
 ) -> Array:
     """Brings one or both wrists to moving targets and back again.
 
     Where a target is farther than the arm, the trunk turns that shoulder forward and leans towards it,
-    then the hips move; no more than needed at the frame of the fullest reach, and as the arm's weight.
+    then the hips move by up to 20 cm; no more than needed at the frame of the fullest reach, and as the arm's weight.
 
     Args:
         positions: (T, 22, 3) the person.
@@ -137,7 +136,6 @@ def reach(
         weight: (T,) from 0, the arm as it was, to 1, the wrist at its target.
         elbow: which way the elbows point (outwards, up, forwards).
         lean, twist: most that the trunk may lean and turn, radians.
-        shift: most that the hips may move, metres.
 
     Returns:
         (T, 22, 3) with the same bone lengths.
@@ -153,7 +151,7 @@ def reach(
     missing = [_missing(bend(pose, share * trunk), goals) for share in shares]
     share = float(np.interp(0.0, -np.minimum.accumulate(missing), shares))
     if share == 1 and missing[-1] > 0.004:
-        positions = shift_hips(positions, direction * min(1.2 * missing[-1], shift) * weight[:, None])
+        positions = shift_hips(positions, direction * min(1.2 * missing[-1], 0.2) * weight[:, None])
     if share > 0:
         positions = bend(positions, share * trunk * weight[:, None])
     for side, target in targets.items():

@@ -133,10 +133,6 @@ def entry(name: str) -> Entry:
     return found
 
 
-def _to_other(found: Entry) -> bool:
-    return found.to == "other" or any("{b}" in caption for caption in found.caption[:1])
-
-
 def label(beats: Sequence[Beat], frames: int) -> Label:
     """The label of a scene of ``frames`` frames from its beats."""
     writer = _Writer(frames)
@@ -191,6 +187,8 @@ class _Writer:
 def _act(made: str, beat: Beat, people: tuple[int, ...], step: Step) -> Act:
     """The act of a step of a beat."""
     name, part, side, offered = step
+    found = entry(name)
+    at_other = found.to == "other" or any("{b}" in caption for caption in found.caption[:1])
     known: dict[str, Any] = {}
     if name != STILL:
         style = beat.styles[people[0]] or "normal"
@@ -200,7 +198,7 @@ def _act(made: str, beat: Beat, people: tuple[int, ...], step: Step) -> Act:
         id=made,
         act=name,
         agents=tuple("ab"[person] for person in people),
-        patient="ab"[1 - people[0]] if len(people) == 1 and _to_other(entry(name)) else None,
+        patient="ab"[1 - people[0]] if len(people) == 1 and at_other else None,
         part=part,
         modality="offered" if offered else "told",
         direction=beat.direction if name != STILL else None,

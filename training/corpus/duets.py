@@ -7,6 +7,7 @@ from __future__ import annotations
 import zlib
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -71,13 +72,10 @@ def read_takes(root: Path) -> Iterator[tuple[str, Array]]:
     with unpacked(root / SALSA) as files:
         for path in files:
             other = path.with_name(path.name.replace("_a.bvh", "_b.bvh"))
-            if other == path or other not in files:
-                continue
-            try:
-                people = retarget_together([read_upright(path), read_upright(other)], fps=FPS)
-            except InputError:
-                continue
-            yield path.stem.removesuffix("_a"), np.stack([person.positions for person in people]).astype(np.float64)
+            if other != path and other in files:
+                with suppress(InputError):
+                    people = retarget_together([read_upright(path), read_upright(other)], fps=FPS)
+                    yield path.stem.removesuffix("_a"), np.stack([one.positions for one in people]).astype(np.float64)
 
 
 def windows(take: str, both: Array) -> Iterator[Scene]:

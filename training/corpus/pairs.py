@@ -73,19 +73,14 @@ def scenes_of(pairs: Sequence[Pair], rejected: Counter[str]) -> list[Scene]:
     for pair in pairs:
         if pair.test:
             continue
-        people = np.stack([_planted(person) for person in pair.positions])
+        bodies = pair.positions.astype(np.float64)
+        people = np.stack([plant_feet(body, foot_contacts(body, FPS, speed=0.6)) for body in bodies])
         reason = _fault(people, pair)
         if reason:
             rejected[f"{pair.dataset} {pair.family}: {reason}"] += 1
         else:
             scenes.append(_scene(people, pair))
     return scenes
-
-
-def _planted(person: Array) -> Array:
-    """A person (T, 22, 3) whose feet stay where they stand."""
-    person = person.astype(np.float64)
-    return plant_feet(person, foot_contacts(person, FPS, speed=0.6))
 
 
 def _fault(people: Array, pair: Pair) -> str | None:

@@ -31,16 +31,9 @@ def describe(rng: Rng, scene: Scene) -> Scene:
     scene.captions = teller.tell(JOINT)
     scene.alone = (teller.tell(ALONE, "a"), teller.tell(ALONE, "b"))
     if scene.family.startswith("beats"):
-        scene.beats = [
-            {
-                "start": int(beat.start),
-                "end": int(min(beat.end, frames)),
-                "acts": list(beat.acts),
-                "minor": beat.minor,
-                "captions": teller.tell(ONE_BEAT, only=ids),
-            }
-            for beat, ids in zip(scene.played, scene.label.beats, strict=True)
-        ]
+        for beat, ids in zip(scene.played, scene.label.beats, strict=True):
+            known = {"start": int(beat.start), "end": int(min(beat.end, frames)), "acts": list(beat.acts)}
+            scene.beats.append(known | {"minor": beat.minor, "captions": teller.tell(ONE_BEAT, only=ids)})
     return scene
 
 

@@ -79,13 +79,11 @@ def meet_hands(
 
 def handshake(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> Touched:
     """Two people walk up to each other and shake hands."""
-    frames, lead = len(a), int(rng.integers(0, 12))
-    arrive = start + lead + int(rng.integers(16, 24))
-    leave = max(stop - int(rng.integers(8, 14)), arrive + 18)
-    end = leave + int(rng.integers(14, 22))
+    arrive, leave, end = timing(rng, start, stop)
+    frames, late = len(a), int(rng.integers(0, 10))
     weights = (
         envelope(frames, start, arrive - 2, leave, end),
-        envelope(frames, start + lead, arrive, leave, end + int(rng.integers(-3, 4))),
+        envelope(frames, start + late, arrive, leave, end + int(rng.integers(-3, 4))),
     )
     shake = shaking(frames, arrive, leave, hertz=rng.uniform(2.0, 3.0), size=rng.uniform(0.02, 0.045))
     height = rng.uniform(0.98, 1.1)

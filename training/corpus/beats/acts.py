@@ -117,14 +117,9 @@ def bow(play: Play, i: int) -> Done:
         fallen = height[: max(len(own) // 8, 1)].mean() - height
         if fallen.max() < 0.04:
             raise LookupError("a bow that is none")
-        weight, (_, ahead), angle, bent = smoothstep(fallen / fallen.max()), axes(own), 0.0, own
-        for _ in range(6):
-            lacking = drop - (height.max() - bent[:, HEAD, 1].min())
-            if lacking < 0.01:
-                break
-            angle = min(angle + lacking / 0.45, 1.25)
-            bent = lean_to(shift_hips(own, -0.09 * angle * weight[:, None] * ahead), ahead, angle * weight)
-        return bent, other, []
+        weight, (_, ahead) = smoothstep(fallen / fallen.max()), axes(own)
+        angle = float(np.clip((drop - fallen.max()) / 0.5, 0.0, 1.25)) * weight
+        return lean_to(shift_hips(own, -0.09 * angle[:, None] * ahead), ahead, angle), other, []
 
     play.effect(done.start, done.stop, effect, i=i)
     return done
