@@ -21,8 +21,8 @@ from .checks import foot_skate
 from .compose import ARMS
 from .contact import settle
 from .cues import STILL, Beat, Scene
-from .kept import kept
 from .kinect import FPS, RELEASES, Pair, fitted, read_release
+from .sources import kept
 from .telling import describe
 
 Array = NDArray[np.floating]

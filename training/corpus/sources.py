@@ -16,12 +16,14 @@ import os
 import re
 import tarfile
 import tomllib
+import zipfile
 from collections import defaultdict
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +33,7 @@ from scipy.spatial.transform import Rotation, Slerp
 from motion import InputError
 from motion.cleaning import foot_contacts, plant_feet
 from motion.formats.bvh import read_bvh
+from motion.formats.files import replacing
 from motion.formats.glb_motion import animations_in, read_glb
 from motion.kinematics import forward_kinematics, project_to_skeleton
 from motion.retarget import retarget
@@ -39,7 +42,6 @@ from motion.skeleton import SMPL22, Skeleton
 from motion.transforms import canonicalize, resample
 
 from .cues import SourceClip
-from .kept import kept
 
 Array = NDArray[np.floating]
 Described = tuple[str, str, str | None, str, str]
@@ -263,6 +265,33 @@ def _splits(described: list[Described]) -> dict[str, str]:
         few, held_out = len(ranked) < MIN_CLIPS_FOR_TEST, max(1, round(TEST_SHARE * len(ranked)))
         splits |= {s: "both" if few else "test" if rank < held_out else "train" for rank, s in enumerate(ranked)}
     return splits
+
+
+Clip = TypeVar("Clip")
+
+
+def kept(path: Path, kind: Callable[..., Clip], make: Callable[[], list[Any]]) -> list[Clip]:
+    """The clips that ``make`` gives, read from ``path`` where they were made before and the file is not damaged.
+
+    Args:
+        kind: their dataclass, with an array ``positions``; JSON can hold its other fields.
+    """
+    if path.exists():
+        try:
+            with np.load(path, allow_pickle=False) as stored:
+                rows = json.loads(str(stored["rows"]))
+                return [kind(positions=stored[str(number)], **row) for number, row in enumerate(rows)]
+        except (zipfile.BadZipFile, EOFError, OSError, ValueError, KeyError, TypeError):
+            logger.warning("%s is damaged; its clips are made again.", path)
+    made = make()
+    rows = [asdict(clip) for clip in made]
+    arrays = {str(number): row.pop("positions") for number, row in enumerate(rows)}
+    try:
+        with replacing(path) as temporary, open(temporary, "wb") as file:
+            np.savez(file, rows=np.array(json.dumps(rows)), **arrays)
+    except InputError as error:
+        logger.warning("The clips are made again next time: %s", error)
+    return made
 
 
 # ---- DeepMimic's clips (Peng et al. 2018): JSON rows of a root path and joint rotations ----------

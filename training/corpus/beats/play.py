@@ -151,16 +151,10 @@ class Performer:
     def _walk(self, gap: Array, angle: float | None, action: str) -> tuple[Take, Motion]:
         """A walk that ends ``gap`` from here: turned, bent and scaled a little until it does."""
         distance = float(np.linalg.norm(gap))
-        ratio, take = np.inf, None
-        for _ in range(4):
-            drawn = stride(self.rng, self.library, action, distance, style=self.style)
-            length = float(np.linalg.norm((drawn.motion.root[-1] - drawn.motion.root[0])[[0, 2]]))
-            own = distance / max(length, 1e-3)
-            if take is None or abs(np.log(own)) < abs(np.log(ratio)):
-                ratio, take = own, drawn
-            if 0.85 < own < 1.18:
-                break
-        assert take is not None
+        takes = [stride(self.rng, self.library, action, distance, style=self.style) for _ in range(3)]
+        ways = [drawn.motion.root[-1] - drawn.motion.root[0] for drawn in takes]
+        ratios = [distance / max(float(np.linalg.norm(way[[0, 2]])), 1e-3) for way in ways]
+        ratio, take = min(zip(ratios, takes, strict=True), key=lambda one: abs(np.log(one[0])))
         walk = place(take.motion, 0.0, 0.0, self.angle)
         frames = len(walk)
         first = wrapped(bearing(gap) - self.angle)
