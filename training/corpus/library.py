@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import combinations_with_replacement
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -59,7 +60,6 @@ class Library:
 
     def __init__(self, clips: Iterable[SourceClip], split: str) -> None:
         self.split = split
-        self._takes: dict[str, list[Take]] = defaultdict(list)
         self._clips: dict[str, list[SourceClip]] = defaultdict(list)
         for clip in clips:
             if clip.split in (split, "both"):
@@ -262,17 +262,9 @@ def extend(motion: Motion, frames: int) -> Motion:
     return longer
 
 
-def stride(
-    rng: np.random.Generator,
-    library: Library,
-    action: str,
-    distance: float,
-    *,
-    style: str | None = None,
-    side: str | None = None,
-) -> Take:
-    """A walk, run, … of about ``distance`` metres, cut where the feet pass each other."""
-    take = library.take(rng, action, style=style, side=side, warp=False)
+def stride(rng: np.random.Generator, library: Library, action: str, distance: float, **wanted: Any) -> Take:
+    """A walk, run, … of about ``distance`` metres, cut where the feet pass each other; ``wanted``: its style and side."""
+    take = library.take(rng, action, warp=False, **wanted)
     motion = take.motion
     speed = np.linalg.norm((motion.root[-1] - motion.root[0])[[0, 2]]) / max(len(motion) - 1, 1)
     motion = extend(motion, int(distance / max(speed, 0.005)) + 45)

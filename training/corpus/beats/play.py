@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +19,8 @@ from ..touches import Touches
 
 Rng = np.random.Generator
 
+Stand = tuple[tuple[float, float], float]
+"""x and z in metres, and a heading in radians."""
 SHUFFLE = 0.45
 """Metres up to which a person shifts by small steps on the spot instead of walking."""
 
@@ -50,27 +52,19 @@ class Performer:
     Args:
         rng: where choices come from.
         library: the recordings.
-        spot: (x, z) metres and ``angle`` radians: where the person stands at first.
+        stand: where the person stands at first.
         style: the manner of walking, or None for any.
 
     Attributes:
         motion: all that was done so far.
     """
 
-    def __init__(
-        self,
-        rng: Rng,
-        library: Library,
-        spot: tuple[float, float] = (0.0, 0.0),
-        angle: float = 0.0,
-        *,
-        style: str | None = None,
-    ) -> None:
+    def __init__(self, rng: Rng, library: Library, stand: Stand, style: str | None) -> None:
         self.rng, self.library, self.style = rng, library, style
         self._rest = library.idle(rng, 420)
         self._used = 4
         self._calm = True
-        self.motion = place(self._rest[:4], *spot, angle)
+        self.motion = place(self._rest[:4], *stand[0], stand[1])
 
     def __len__(self) -> int:
         return len(self.motion)
@@ -193,20 +187,14 @@ class Play:
     """A scene in the making.
 
     Args:
-        spots: ((x, z), heading) of a and b at first.
+        stands, styles: of a and b at first, and their manners of walking.
     """
 
     def __init__(
-        self,
-        rng: Rng,
-        library: Library,
-        spots: tuple[tuple[tuple[float, float], float], tuple[tuple[float, float], float]],
-        styles: tuple[str | None, str | None] = (None, None),
+        self, rng: Rng, library: Library, stands: Sequence[Stand], styles: Sequence[str | None] = (None, None)
     ) -> None:
         self.rng, self.library = rng, library
-        self.people = tuple(
-            Performer(rng, library, *spot, style=style) for spot, style in zip(spots, styles, strict=True)
-        )
+        self.people = tuple(Performer(rng, library, *own) for own in zip(stands, styles, strict=True))
         self.beats: list[Beat] = []
         self.effects: list[tuple[Effect, Rng, slice, int]] = []
         self.looks: list[tuple[int, int, int, float]] = []

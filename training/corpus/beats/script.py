@@ -26,11 +26,7 @@ SHARES = (0.1, 0.3, 0.4, 0.2)
 FAR, CLOSE = (1.9, np.inf), (0.0, 2.4)
 
 
-_ANSWERS = (
-    "nod clap wave shake-head shrug bow point fold-arms arms-out raise-arm talk hands-on-hips jump make-fist "
-    "cover-face wave-off rage dance hand-on-chest"
-)
-ANSWERS = _ANSWERS.split()
+ANSWERS = ["nod", "clap", "wave", "shake-head", "shrug", "bow", "point", "fold-arms", "arms-out", "raise-arm", "talk", "hands-on-hips", "jump", "make-fist", "cover-face", "wave-off", "rage", "dance", "hand-on-chest"]
 
 
 def solo(name: str) -> Callable[[Play, int], None]:
@@ -116,7 +112,7 @@ def opening(rng: Rng, library: Library) -> Play:
     elif kind >= 0.92:
         spot, turns = (pick(rng, (-1, 1)) * rng.uniform(0.6, 0.9), 0.0), [0.0, 0.0]
     spots = (((0.0, 0.0), turns[0]), (spot, turns[1] + float(rng.normal(0, 0.08))))
-    return Play(rng, library, spots, (styles[0], styles[1]))
+    return Play(rng, library, spots, styles)
 
 
 def compose(rng: Rng, library: Library, *, first: str | None = None) -> Scene:
