@@ -84,7 +84,9 @@ def build(
     for number, (split, share) in enumerate((("train", 1 - TEST_SHARE), ("test", TEST_SHARE))):
         rng = np.random.default_rng([seed, number])
         scenes += draw(rng, Library(clips, split), int(hours * share * 3600 * FPS), rejected)
-    scenes += load_duets(data_dir, rejected)
+    duets = [(scene, fault(scene)) for scene in load_duets(data_dir)]
+    rejected.update(f"salsa: {why}" for _, why in duets if why)
+    scenes += [scene for scene, why in duets if not why]
     try:
         scenes += scenes_of(load_pairs(data_dir, cache), rejected)
     except InputError as error:

@@ -14,7 +14,11 @@ from .cues import Scene
 
 Array = NDArray[np.floating]
 TRUNK = tuple(SMPL22.index(name) for name in ("pelvis", "spine1", "spine2", "spine3", "neck", "head"))
-FLYING = ["run", "jump", "jumping", "dance", "spin", "crawl", "somersault", "cartwheel", "kick", "push", "fall", "cheer", "chase", "throw", "rage", "swing", "punch", "shadow", "skip", "lie", "shoot", "squats"]
+_FLYING = (
+    "run jump jumping dance spin crawl somersault cartwheel kick push fall cheer chase throw rage swing punch "
+    "shadow skip lie shoot squats"
+)
+FLYING = frozenset(_FLYING.split())
 """First words of entries during which nobody stands on a foot, or pivots on it."""
 
 
@@ -23,7 +27,7 @@ def allowed_skate(scene: Scene) -> float:
     acts = {name.split("-")[0] for beat in scene.beats for cue in beat["acts"] for name in re.split("[>+]", cue)}
     if "run" in acts or "chase" in acts:
         return 0.8
-    return 0.3 if acts.intersection(FLYING) or scene.family == "salsa" else 0.15
+    return 0.3 if acts & FLYING or scene.family == "salsa" else 0.15
 
 
 def foot_skate(positions: Array) -> float:

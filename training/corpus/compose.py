@@ -153,11 +153,6 @@ def steer(motion: Motion, extra: Array, pace: Array | float = 1.0) -> Motion:
     return replace(motion, rotations=rotations, root=root)
 
 
-def drift(motion: Motion, offset: Array) -> Motion:
-    """Adds (T, 3) metres to the root path, e.g. a weight shift; feet that stand stay."""
-    return replace(motion, root=motion.root + offset)
-
-
 def layer(base: Motion, over: Motion, *, start: int, joints: tuple[int, ...], blend: int = 10) -> Motion:
     """Plays some joints of ``over`` on top of ``base`` from frame ``start`` on, fading in and out."""
     frames = min(len(over), len(base) - start)

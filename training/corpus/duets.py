@@ -5,7 +5,6 @@ windows. A turn under a raised arm is measured and told; the rest of a window is
 from __future__ import annotations
 
 import zlib
-from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -20,7 +19,6 @@ from motion.skeleton import SMPL22
 from motion.transforms import canonicalize, heading
 from motion.vectors import runs
 
-from .checks import fault
 from .compose import FPS
 from .cues import Beat, Scene
 from .sources import read_upright, unpacked
@@ -50,21 +48,13 @@ _NECK = SMPL22.index("neck")
 _SECOND = int(FPS)
 
 
-def load_duets(root: str | Path, rejected: Counter[str]) -> list[Scene]:
-    """All good windows of the duets below a data folder, described; none where there are no duets.
+def load_duets(root: str | Path) -> list[Scene]:
+    """All windows of the duets below a data folder, described; none where there are no duets.
 
     Args:
         root: holds the folder :data:`SALSA`, unpacked or as an archive.
-        rejected: counts windows that are turned away, by reason.
     """
-    scenes = []
-    for name, people in read_takes(Path(root)):
-        for scene in windows(name, people):
-            if why := fault(scene):
-                rejected[f"salsa: {why}"] += 1
-            else:
-                scenes.append(scene)
-    return scenes
+    return [scene for name, people in read_takes(Path(root)) for scene in windows(name, people)]
 
 
 def read_takes(root: Path) -> Iterator[tuple[str, Array]]:

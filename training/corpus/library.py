@@ -263,7 +263,7 @@ def extend(motion: Motion, frames: int) -> Motion:
 
 
 def stride(rng: np.random.Generator, library: Library, action: str, distance: float, **wanted: Any) -> Take:
-    """A walk, run, … of about ``distance`` metres, cut where the feet pass each other; ``wanted``: its style and side."""
+    """A walk, run, … of about ``distance`` metres, cut where the feet pass each other; in a ``wanted`` style."""
     take = library.take(rng, action, warp=False, **wanted)
     motion = take.motion
     speed = np.linalg.norm((motion.root[-1] - motion.root[0])[[0, 2]]) / max(len(motion) - 1, 1)

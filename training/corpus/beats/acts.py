@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from motion.skeleton import SMPL22
 from motion.smoothing import smoothstep
 from motion.vectors import FLAT, unit
 
-from ..compose import ARMS, FPS, Array, Motion, drift, join, layer
+from ..compose import ARMS, FPS, Array, Motion, join, layer
 from ..contact import UP, axes, bend, envelope, impulse, lean_to, nod, on_body, reach_arm, shift_hips
 from ..library import Library, Take, pick
 from ..touches import Touched
@@ -79,7 +79,7 @@ class Part:
             motion = motion[at : at + frames]
             way = (motion.root[-1] - motion.root[0]) * FLAT
             if np.linalg.norm(way) > 0.8:
-                motion = drift(motion, -np.linspace(0, 0.7, len(motion))[:, None] * way)
+                motion = replace(motion, root=motion.root - np.linspace(0, 0.7, len(motion))[:, None] * way)
         if not self.rests:
             return [motion]
         last = [len(motion) - 1] * play.seconds(*self.rests)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from motion.transforms import canonicalize
 from motion.vectors import wrapped
 
-from ..compose import FPS, Array, Motion, blend_for, drift, ease, facing_at, join, look_at, place, realise, steer
+from ..compose import FPS, Array, Motion, blend_for, ease, facing_at, join, look_at, place, realise, steer
 from ..cues import STILL, Beat
 from ..library import Library, Take, stride
 from ..touches import Touches
@@ -111,7 +111,8 @@ class Performer:
         self._calm = True
         if shift is not None:
             grown = np.append(np.zeros(before), ease(len(self.motion) - before))
-            self.motion = drift(self.motion, grown[:, None] * np.array([shift[0], 0.0, shift[1]]))
+            way = np.array([shift[0], 0.0, shift[1]])
+            self.motion = replace(self.motion, root=self.motion.root + grown[:, None] * way)
 
     def hold_until(self, frame: int) -> None:
         """Stands until the timeline has ``frame`` frames."""

@@ -26,7 +26,11 @@ SHARES = (0.1, 0.3, 0.4, 0.2)
 FAR, CLOSE = (1.9, np.inf), (0.0, 2.4)
 
 
-ANSWERS = ["nod", "clap", "wave", "shake-head", "shrug", "bow", "point", "fold-arms", "arms-out", "raise-arm", "talk", "hands-on-hips", "jump", "make-fist", "cover-face", "wave-off", "rage", "dance", "hand-on-chest"]
+_ANSWERS = (
+    "nod clap wave shake-head shrug bow point fold-arms arms-out raise-arm talk hands-on-hips jump make-fist "
+    "cover-face wave-off rage dance hand-on-chest"
+)
+ANSWERS = _ANSWERS.split()
 
 
 def solo(name: str) -> Callable[[Play, int], None]:
