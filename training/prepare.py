@@ -19,8 +19,8 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from models.motion_tokens import TokenLayout, encode, foot_contacts
-from motion import InputError
+from models.motion_tokens import TokenLayout, encode, foot_contacts, mirror_control
+from motion import SMPL22, InputError
 from training.core.checkpoint import read_tensors, write_tensors
 from training.core.handedness import leading_hand
 from training.core.shell import exit_code
@@ -139,19 +139,17 @@ def load(path: Path) -> Scenes:
         raise InputError(f"{path} holds no prepared scenes ({error}): run `python -m training.prepare`.") from error
 
 
-def normalizer(scenes: Scenes, joint_mirror: tuple[int, ...]) -> tuple[Tensor, Tensor]:
+def normalizer(scenes: Scenes) -> tuple[Tensor, Tensor]:
     """Mean and scale (70,) of the training control points and their mirror images.
 
     The scale is the standard deviation, but for the pelvis' place on the floor, which is held to
     ``ROOT_SCALE``: people who run metres would otherwise make the half metre between two who shake hands a
     trifle, in the loss and under the noise.
     """
-    from models.motion_tokens import mirror_control
-
     knots = scenes.layout.knots_per_token
     rows = [scenes.control[r["start"] : r["start"] + r["tokens"] * knots] for r in scenes.split("train")]
     control = torch.cat(rows).float().flatten(0, 1)
-    control = torch.cat([control, mirror_control(control, joint_mirror)])
+    control = torch.cat([control, mirror_control(control, SMPL22.mirror)])
     scale = control.std(0).clamp_min(0.01)
     scale[[0, 2]] = scale[[0, 2]].clamp_max(ROOT_SCALE)
     return control.mean(0), scale

@@ -23,17 +23,16 @@ class CaptionFeatures:
     Args:
         captions: unique sentences.
         cache: a folder; features of the same captions are read from it, and written to it otherwise.
-        device: where the encoder runs; the features stay on the CPU.
     """
 
-    def __init__(self, captions: Sequence[str], cache: Path, *, device: str = "cpu") -> None:
+    def __init__(self, captions: Sequence[str], cache: Path) -> None:
         self.index = {caption: row for row, caption in enumerate(captions)}
         key = hashlib.sha256("\n".join(captions).encode()).hexdigest()[:16]
         path = cache / f"captions_{key}.safetensors"
         try:
             stored = load_file(path)
         except (OSError, SafetensorError):
-            stored = _kept(captions, device)
+            stored = _kept(captions)
             with replacing(path) as temporary:
                 save_file(stored, temporary)
         self.features, self.lengths = stored["features"], stored["lengths"]
@@ -80,21 +79,21 @@ class CaptionTokens:
 
 
 @torch.no_grad()
-def encoded(captions: Sequence[str], device: str = "cpu") -> Iterator[tuple[list[int], TokenFeatures]]:
+def encoded(captions: Sequence[str]) -> Iterator[tuple[list[int], TokenFeatures]]:
     """Places of captions of alike length, and their features by MiniLM, until all have had their turn."""
-    encoder = MiniLM().to(device)
+    encoder = MiniLM()
     order = sorted(range(len(captions)), key=lambda place: len(captions[place]))
     for start in range(0, len(order), 128):
         places = order[start : start + 128]
-        with mixed_precision(device):
+        with mixed_precision("cpu"):
             found = encoder([captions[place] for place in places])
         yield places, found
 
 
-def _kept(captions: Sequence[str], device: str) -> dict[str, Tensor]:
+def _kept(captions: Sequence[str]) -> dict[str, Tensor]:
     """Features of captions end to end, in float16, and how many tokens each has."""
     features: list[Tensor] = [torch.empty(0)] * len(captions)
-    for places, tokens in encoded(captions, device):
+    for places, tokens in encoded(captions):
         for place, one, mask in zip(places, tokens.features, tokens.mask, strict=True):
-            features[place] = one[mask].half().cpu()
+            features[place] = one[mask].half()
     return {"features": torch.cat(features), "lengths": torch.tensor([len(one) for one in features])}

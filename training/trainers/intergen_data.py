@@ -196,7 +196,7 @@ class Data:
             known |= {mirror_caption(c) for c in known}
             on_cpu = torch.device(device).type == "cpu"
             self.captions = CaptionFeatures(sorted(known), cache) if on_cpu else CaptionTokens(device)
-        self.mean, self.std = normalizer(scenes, SMPL22.mirror)
+        self.mean, self.std = normalizer(scenes)
         self.tokens = torch.tensor([row["tokens"] for row in self.rows])
         self.batches_an_epoch = len(self.rows) // settings.batch
         self._epoch, self._order = -1, torch.empty(0)

@@ -12,10 +12,11 @@ from typing import Any, TypeVar
 
 import torch
 import torch.nn.functional as F
-from torch import Tensor, nn
+from torch import Tensor
 
 from models.intergen.compact import CompactInterGen, Touch
 from models.regennet.compact import CompactReGenNet
+from models.text import TextConditioner
 from training.core.handedness import mirror_caption, mirrored
 from training.core.loop import mixed_precision
 from training.core.text_features import encoded
@@ -58,11 +59,11 @@ def examples(rows: list[dict[str, Any]]) -> list[tuple[str, Touch]]:
 
 
 @torch.no_grad()
-def conditions(conditioner: nn.Module, captions: list[str], *, device: str = "cpu") -> Tensor:
-    """(N, cond_dim) condition vectors of captions, on the device, where the conditioner is too."""
-    found = torch.empty(len(captions), conditioner.config.latent_dim, device=device)
-    for places, tokens in encoded(captions, device):
-        with mixed_precision(device):
+def conditions(conditioner: TextConditioner, captions: list[str]) -> Tensor:
+    """(N, cond_dim) condition vectors of captions."""
+    found = torch.empty(len(captions), conditioner.config.latent_dim)
+    for places, tokens in encoded(captions):
+        with mixed_precision("cpu"):
             found[places] = conditioner(tokens.features.float(), tokens.mask).float()
     return found
 
