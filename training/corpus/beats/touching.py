@@ -296,7 +296,7 @@ TOUCH_BEATS: dict[str, Option] = {
     "pat:back": touching(2.0, _PAT_BACK, at_back, _LONG, "pat:back"),
     "whisper": touching(2.0, touches.whisper, at_back, _LONG, "whisper", "listen"),
     "arm-around": touching(1.7, touches.arm_around, abeam, (1.8, 3.0), "arm-around"),
-    "help-up": touching(2.0, touches.help_up, facing(0.83, 0.94), (3.3, 3.4), "help-up", "stand-up"),
+    "help-up": touching(2.0, touches.help_up, facing(0.83, 0.94), (3.8, 3.9), "help-up", "stand-up"),
     "walk-hand-in-hand": Option(hand_in_hand, ("walk", "idle"), 3.9),
     "ring": Option(carousel, ("walk-left", "walk-right"), 2.6),
     "push": Option(push, ("walk", "walk-back"), 3.3),
