@@ -169,6 +169,34 @@ class Loop(ABC):
                     terms = []
 
 
+def fit(
+    module: nn.Module, loss: Callable[[int], Tensor], steps: int, *, rate: float, weight_decay: float, every: int = 0
+) -> None:
+    """Lowers a loss in one go, for small networks: AdamW with a one-cycle learning rate (Smith and Topin 2019).
+
+    Args:
+        module: afterwards in eval mode, without gradients.
+        loss: of a step.
+        rate: the highest learning rate.
+        every: steps from one line of progress to the next; 0 prints none.
+    """
+    optimizer = torch.optim.AdamW(module.parameters(), lr=rate, weight_decay=weight_decay)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, rate, total_steps=steps, pct_start=0.1)
+    began = time.monotonic()
+    module.train()
+    for step in range(steps):
+        value = loss(step)
+        optimizer.zero_grad(set_to_none=True)
+        value.backward()
+        nn.utils.clip_grad_norm_(module.parameters(), 1.0)
+        optimizer.step()
+        schedule.step()
+        if every and (step + 1) % every == 0:
+            pace = (time.monotonic() - began) / (step + 1)
+            print(json.dumps({"step": step + 1, "pace": round(pace, 3), "loss": round(value.item(), 4)}), flush=True)
+    module.eval().requires_grad_(False)
+
+
 def mixed_precision(device: str) -> AbstractContextManager[object]:
     """Autocast to bfloat16 on a GPU, or on a CPU with AVX-512 BF16 or AMX.
 

@@ -19,6 +19,7 @@ from torch import Tensor, nn
 from torch.nn.utils.rnn import pack_padded_sequence, pad_packed_sequence
 
 from motion.metrics.generation import frechet_distance
+from training.core import loop
 
 Array = NDArray[np.floating]
 
@@ -77,22 +78,17 @@ def fit(clips: Sequence[Array], labels: Sequence[int], *, seed: int, epochs: int
     rng = np.random.default_rng(seed)
     counts = np.bincount(labels)
     network = DeepGRU(clips[0].shape[1], len(counts))
-    optimizer = torch.optim.AdamW(network.parameters(), lr=2e-3, weight_decay=1e-2)
-    rounds = -(-len(clips) // batch)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, 2e-3, total_steps=epochs * rounds)
     balance = torch.tensor(len(labels) / np.maximum(counts, 1) / len(counts)).float()
-    network.train()
-    for _ in range(epochs):
-        for rows in np.array_split(rng.permutation(len(clips)), rounds):
-            chosen = [_varied(clips[row], rng) for row in rows]
-            wanted = torch.tensor([labels[row] for row in rows])
-            loss = F.cross_entropy(network(*padded(chosen)), wanted, weight=balance, label_smoothing=0.05)
-            optimizer.zero_grad()
-            loss.backward()
-            nn.utils.clip_grad_norm_(network.parameters(), 1.0)
-            optimizer.step()
-            schedule.step()
-    return network.eval().requires_grad_(False)
+    rounds = -(-len(clips) // batch)
+    drawn = [rows for _ in range(epochs) for rows in np.array_split(rng.permutation(len(clips)), rounds)]
+
+    def loss(step: int) -> Tensor:
+        chosen = [_varied(clips[row], rng) for row in drawn[step]]
+        wanted = torch.tensor([labels[row] for row in drawn[step]])
+        return F.cross_entropy(network(*padded(chosen)), wanted, weight=balance, label_smoothing=0.05)
+
+    loop.fit(network, loss, len(drawn), rate=2e-3, weight_decay=1e-2)
+    return network
 
 
 def _varied(clip: Array, rng: np.random.Generator) -> Array:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -22,6 +21,7 @@ from models.layers import sinusoids
 from models.motion_tokens import FEATURES, TokenLayout, encode, foot_contacts, pack
 from models.text import TextConditioner, TextConditionerConfig, TokenFeatures
 from motion import InputError
+from training.core import loop
 from training.core.checkpoint import read_tensors, write_tensors
 from training.core.loop import mixed_precision
 from training.core.shell import add_options, exit_code
@@ -118,28 +118,18 @@ def fit(scenes: Scenes, settings: Settings, cache: Path, *, device: str = "cpu")
     model = Extractor(settings, scenes.layout).to(device)
     model.mean.copy_(data.mean)
     model.std.copy_(data.std)
-    optimizer = torch.optim.AdamW(model.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(
-        optimizer, settings.learning_rate, total_steps=settings.steps, pct_start=0.05
-    )
-    began, shown = time.monotonic(), 0.0
-    for step in range(settings.steps):
+
+    def loss(step: int) -> Tensor:
         batch = data.on_device(data.batch(step))
         with mixed_precision(device):
             motion = model.motion(batch.x0, batch.mask[..., 0].bool())
             text = model.text(TokenFeatures(batch.text, batch.text_mask))
         same = (batch.text[:, None] == batch.text[None]).flatten(2).all(-1)
-        loss = contrast(motion, text, model.temperature.exp().clamp_min(0.01), same)
-        optimizer.zero_grad(set_to_none=True)
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(model.parameters(), 1.0)
-        optimizer.step()
-        schedule.step()
-        shown = loss.item() if not step else 0.98 * shown + 0.02 * loss.item()
-        if (step + 1) % 100 == 0:
-            pace = (time.monotonic() - began) / (step + 1)
-            print(json.dumps({"step": step + 1, "pace": round(pace, 3), "loss": round(shown, 4)}), flush=True)
-    return model.eval().requires_grad_(False)
+        return contrast(motion, text, model.temperature.exp().clamp_min(0.01), same)
+
+    rates = {"rate": settings.learning_rate, "weight_decay": settings.weight_decay}
+    loop.fit(model, loss, settings.steps, every=100, **rates)
+    return model
 
 
 def save(model: Extractor, path: Path) -> None:

@@ -18,7 +18,7 @@ from models.intergen.compact import CompactInterGen, Touch
 from models.regennet.compact import CompactReGenNet
 from models.text import TextConditioner
 from training.core.handedness import mirror_caption, mirrored
-from training.core.loop import mixed_precision
+from training.core.loop import fit, mixed_precision
 from training.core.text_features import encoded
 from training.prepare import Scenes
 
@@ -90,19 +90,17 @@ def with_touches(model: Network, scenes: Scenes) -> tuple[Network, float]:
     chosen = [found[i] for i in torch.randperm(len(found), generator=generator)[:MOST].tolist()]
     inputs, labels = _tensors(result, chosen)
     torch.manual_seed(0)
-    optimizer = torch.optim.AdamW(reader.parameters(), lr=2e-3, weight_decay=1e-2)
-    for _ in range(STEPS):
+
+    def loss(step: int) -> Tensor:
         rows = torch.randint(len(inputs), (256,), generator=generator)
-        loss = F.cross_entropy(reader(inputs[rows]), labels[rows], label_smoothing=0.02)
-        optimizer.zero_grad(set_to_none=True)
-        loss.backward()
-        optimizer.step()
+        return F.cross_entropy(reader(inputs[rows]), labels[rows], label_smoothing=0.02)
+
+    fit(reader, loss, STEPS, rate=2e-3, weight_decay=1e-2)
     unseen = examples(scenes.split("test"))[:MOST]
     if not unseen:
         return result, float("nan")
-    inputs, labels = _tensors(result, unseen)
-    with torch.no_grad():
-        return result, float((reader(inputs).argmax(-1) == labels).float().mean())
+    seen, wanted = _tensors(result, unseen)
+    return result, float((reader(seen).argmax(-1) == wanted).float().mean())
 
 
 def _tensors(model: CompactInterGen | CompactReGenNet, found: list[tuple[str, Touch]]) -> tuple[Tensor, Tensor]:
