@@ -42,7 +42,7 @@ def staged(library: Library, *beats: tuple[str, str, str], heading: float = 0.0)
 
     b stands 2.6 m before the place where a stands with a ``heading`` (0: towards b).
     """
-    for seed in range(60):
+    for seed in range(200):
         rng = np.random.default_rng(seed)
         play = Play(rng, library, (((0.0, 0.0), heading), ((0.0, 2.6), np.pi)))
         for name, *_ in beats:
