@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -97,17 +97,8 @@ class CompactInterGen(DuetSpace):
     def __init__(self, config: CompactConfig) -> None:
         super().__init__(config.layout)
         self.config, self.reads_known, self.reads_drafts = config, config.words, config.drafts
-        sizes = InterGenConfig(
-            input_features=config.layout.token_features,
-            latent_dim=config.latent_dim,
-            ff_size=config.ff_size,
-            num_layers=config.num_layers,
-            num_heads=config.num_heads,
-            cond_dim=config.cond_dim,
-            dropout=config.dropout,
-            role_embedding=True,
-            role_text=config.role_text,
-        )
+        shared = {f.name: getattr(config, f.name) for f in fields(InterGenConfig) if hasattr(config, f.name)}
+        sizes = InterGenConfig(**shared, input_features=config.layout.token_features, role_embedding=True)
         self.denoiser: InterGenDenoiser = (
             WordDenoiser(sizes, KNOWN_FEATURES * config.layout.knots_per_token, drafts=config.drafts)
             if config.words

@@ -6,6 +6,7 @@ import hashlib
 import itertools
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +20,7 @@ from motion.placement import MEDIAN_START_DISTANCE, Placement
 from motion.transforms import heading, heading_matrix
 from webdemo.inference.method import SECONDS
 from webdemo.inference.requests.actor import ROLES
-from webdemo.inference.requests.paths import MOST_SPEED, FloorPath
+from webdemo.inference.requests.paths import MOST_SPEED, FloorPath, FloorPoint
 from webdemo.inference.requests.plans import WindowPlan
 from webdemo.inference.story.request import SceneRequest
 
@@ -175,11 +176,11 @@ def _anchor(request: SceneRequest) -> tuple[float, float, float] | None:
     return None
 
 
-def _direction(points: tuple[object, ...]) -> float:
+def _direction(points: Sequence[FloorPoint]) -> float:
     """The heading from the first point to the first one that is away from it; 0 if there is none."""
     first = points[0]
     for point in points[1:]:
-        dx, dz = point.x - first.x, point.z - first.z  # type: ignore[attr-defined]
+        dx, dz = point.x - first.x, point.z - first.z
         if math.hypot(dx, dz) > 0.3:
             return math.atan2(dx, dz)
     return 0.0
@@ -281,7 +282,7 @@ def _walked(
         walked, _ = _chased(walked[::-1], Fixed(0, after.place), after.frame - high, len(walked) - 1)
         walked = walked[::-1]
     behind = np.linalg.norm(walked[low - start :] - line, axis=1)
-    late = np.flatnonzero(np.linalg.norm(walked[low - start :] - line, axis=1) > 0.01)
+    late = np.flatnonzero(behind > 0.01)
     if start < low or len(late):
         until = low + (int(late[-1]) if len(late) else 0)
         frames |= {*range(start, until + 1, OFTEN), min(until + 1, high)}
