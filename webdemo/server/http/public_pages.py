@@ -12,7 +12,8 @@ from starlette.responses import FileResponse, HTMLResponse, Response
 
 from motion import InputError
 from webdemo.server.settings import Settings
-from webdemo.server.store.publishing import Publishing, Shown
+from webdemo.server.store.publishing import Publishing
+from webdemo.ui.history import Entry
 from webdemo.ui.public_html import FILES, Place, embed_html, payload_of, player_html
 from webdemo.ui.visitor import visitor_of
 from webdemo.view.payload import Payload
@@ -29,23 +30,24 @@ def public_routes(settings: Settings, publishing: Publishing) -> APIRouter:
     router = APIRouter()
     files = f"{settings.root_path}/shown/"
 
-    def read(key: str) -> tuple[Shown, Payload]:
-        """The state that a page shows, and its motion; raises Refused where it shows nothing."""
+    def read(key: str) -> tuple[Entry, Payload, float]:
+        """The run that a page shows, its motion, and when the page ends; raises Refused where it shows nothing."""
         try:
-            return publishing.shown(key), payload_of(publishing.open(key))
+            opened, until = publishing.open(key)
+            return opened.entry, payload_of(opened), until
         except InputError as error:
             raise Refused(404, str(error), "public") from None
 
     @router.get("/share/{key}")
     def share(key: str, request: Request) -> Response:
-        shown, payload = read(key)
+        entry, payload, until = read(key)
         place = Place(files=files, embed=f"{visitor_of(request).base}embed/{quote(key)}")
-        return _sent(player_html(shown.entry, payload, place, until=shown.until))
+        return _sent(player_html(entry, payload, place, until=until))
 
     @router.get("/embed/{key}")
     def embed(key: str) -> Response:
-        shown, payload = read(key)
-        return _sent(embed_html(shown.entry, payload, Place(files=files)))
+        entry, payload, _ = read(key)
+        return _sent(embed_html(entry, payload, Place(files=files)))
 
     @router.get("/shown/{name:path}")
     def file(name: str) -> Response:

@@ -6,7 +6,6 @@ import re
 import secrets
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, cast
 
 from sqlalchemy import CursorResult, delete, select
@@ -14,7 +13,7 @@ from sqlalchemy.orm import selectinload
 
 from motion import InputError
 from webdemo.server.audit import audit, fingerprint
-from webdemo.ui.history import Entry, Opened, PublicPage
+from webdemo.ui.history import Opened, PublicPage
 
 from .database import Database, Note, Published, Run, entry_of, is_removed, sentences
 from .history import DAY, History
@@ -22,19 +21,6 @@ from .history import DAY, History
 _KEY = re.compile(r"\A[A-Za-z0-9_-]{16,64}\Z")
 _ENDED = "There is no such page, or it has ended: ask the person who sent it to you."
 _OFF = "This lab makes no public pages: the person who runs it can set PASDEDEUX_PUBLISH_DAYS."
-
-
-@dataclass(frozen=True)
-class Shown:
-    """A public page as its visitors see it.
-
-    Attributes:
-        until: when it ends, in seconds since 1970.
-        entry: the result.
-    """
-
-    until: float
-    entry: Entry
 
 
 class Publishing:
@@ -102,31 +88,22 @@ class Publishing:
     # ---- for anybody -----------------------------------------------------------------------------
 
     @sentences()
-    def shown(self, key: str) -> Shown:
-        """A page by its key; raises one sentence for none, an ended one, and one whose result was removed."""
-        try:
-            page = self._found(key)
-        except InputError:
-            audit("page-opened", ok=False, page=fingerprint(key))
-            raise
-        audit("page-opened", page=fingerprint(key))
-        return Shown(page.until, entry_of(page.run))
+    def open(self, key: str) -> tuple[Opened, float]:
+        """A page's result, and when the page ends, in seconds since 1970.
 
-    def open(self, key: str) -> Opened:
-        """A page's result; raises InputError as :meth:`shown`."""
-        with sentences():
-            page = self._found(key)
-        return History.open(self.history, page.run_id, page.owner)  # the result alone, not what it was made from
-
-    def _found(self, key: str) -> Published:
-        """A page that has not ended, with its run."""
-        if not self.days or not _KEY.match(key):
+        Raises:
+            InputError: the same sentence for no page, an ended one, and one whose result was removed.
+        """
+        page = None
+        if self.days and _KEY.match(key):
+            with self.database.session() as session:
+                page = session.get(Published, key, options=[_WHOLE])
+        there = page is not None and page.until >= time.time() and not is_removed(page.run)
+        audit("page-opened", ok=there, page=fingerprint(key))
+        if page is None or not there:
             raise InputError(_ENDED)
-        with self.database.session() as session:
-            page = session.get(Published, key, options=[_WHOLE])
-        if page is None or page.until < time.time() or is_removed(page.run):
-            raise InputError(_ENDED)
-        return page
+        # The result alone, not what it was made from.
+        return History.open(self.history, page.run_id, page.owner), page.until
 
     def clean(self) -> None:
         """Deletes pages that have ended, where the clock can be trusted."""
