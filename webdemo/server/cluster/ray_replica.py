@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import asyncio
 import logging
 import os
+import queue
 import threading
-from collections.abc import AsyncIterator, Callable, Iterable
+from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
+
+from anyio.to_thread import run_sync
 
 from motion import InputError
 from webdemo.inference.requests import SamplingRequest
@@ -18,8 +20,6 @@ from webdemo.ui.lazy import LazyEngine
 
 log = logging.getLogger(__name__)
 Event = Progress | Result | Exception
-HEARTBEAT = 0.25
-"""Seconds without an event after which a stream sends a heartbeat."""
 
 
 class ReplicaError(Exception):
@@ -44,17 +44,30 @@ class ModelReplica:
             self._engine.warm_up()
 
     async def run(self, request: Any) -> AsyncIterator[tuple[Event, ...]]:
-        """Yields a request's events in tuples; an empty tuple is a heartbeat.
+        """Yields a request's events in tuples, each of what has come since the one before.
 
         The last event is a Result or the exception that ended the run. Closing the stream stops the run
         within one denoising step.
         """
-        token = CancelToken()
+        token, come = CancelToken(), queue.SimpleQueue[Event | None]()
+
+        def work() -> None:
+            try:
+                for event in self._engine.run(request, cancel=token):
+                    come.put(event)
+            except Exception as error:
+                come.put(portable(error))
+            come.put(None)
+
+        threading.Thread(target=work, name="run", daemon=True).start()
         try:
-            async for events in in_thread(lambda: self._engine.run(request, cancel=token)):
-                yield tuple(events)
-        except Exception as error:
-            yield (portable(error),)
+            while True:
+                events = [await run_sync(come.get, abandon_on_cancel=True)]
+                while not come.empty():
+                    events.append(come.get())
+                yield tuple(event for event in events if event is not None)
+                if events[-1] is None:
+                    return
         finally:
             token.cancel()
 
@@ -79,38 +92,3 @@ def portable(error: Exception) -> Exception:
             return kind(str(error))
     log.error("A run failed.", exc_info=error)
     return ReplicaError(f"{type(error).__name__} in process {os.getpid()} of Ray Serve; its log says more.")
-
-
-async def in_thread(items: Callable[[], Iterable[Any]]) -> AsyncIterator[list[Any]]:
-    """Yields lists of what a thread iterates over; an empty list after each :data:`HEARTBEAT` without items.
-
-    Raises:
-        Exception: what the thread raises.
-    """
-    loop, queue = asyncio.get_running_loop(), asyncio.Queue[tuple[Any, Exception | None]]()
-    end = object()
-
-    def work() -> None:
-        failure: Exception | None = None
-        try:
-            for item in items():
-                loop.call_soon_threadsafe(queue.put_nowait, (item, None))
-        except Exception as error:
-            failure = error
-        loop.call_soon_threadsafe(queue.put_nowait, (end, failure))
-
-    threading.Thread(target=work, name="run", daemon=True).start()
-    while True:
-        try:
-            found = [await asyncio.wait_for(queue.get(), HEARTBEAT)]
-        except TimeoutError:
-            yield []
-            continue
-        while not queue.empty():
-            found.append(queue.get_nowait())
-        yield [item for item, _ in found if item is not end]
-        last, failure = found[-1]
-        if failure is not None:
-            raise failure
-        if last is end:
-            return
