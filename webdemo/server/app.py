@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import gradio as gr
+import gradio.utils
 from fastapi import FastAPI, Request
 from gradio.routes import App
 from gradio.utils import get_upload_folder
@@ -136,6 +137,8 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
     keep_states_lean(mounted, page)
     keep_files_apart(mounted)
     move_files_in_threads()
+    # Its import of pyplot would hold up the event loop at the first event; nothing here draws by that.
+    gradio.utils.MatplotlibBackendMananger = contextlib.nullcontext  # type: ignore[assignment,misc]
 
 
 def _add_routes(app: FastAPI, lab: Lab) -> None:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import matplotlib
 import pytest
 from fastapi.testclient import TestClient
 from gradio import processing_utils
@@ -183,5 +184,10 @@ def test_files_of_an_event_are_copied_beside_the_event_loop(local: TestClient, m
         return move(data, *where, **options)
 
     monkeypatch.setattr(processing_utils, "move_files_to_cache", noted)
+
+    def imported(backend: str) -> None:
+        raise AssertionError("pyplot is imported on the event loop, which takes a second")
+
+    monkeypatch.setattr(matplotlib, "use", imported)
     assert "event: complete" in events_of(local, "generate", FIELDS)
     assert moved and all(moved)
