@@ -155,8 +155,14 @@ def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> boo
 
 
 def shown_caption(act: Act, entry: Entry) -> str:
-    """The caption in whose words the verdict on an act is given."""
-    return naming(act, entry, caption_of(act, entry))
+    """The caption in whose words the verdict on an act is given: one with the act's own verb where there is one."""
+    usual, own = naming(act, entry, caption_of(act, entry)), f"[{act.act.split('-')[0]}]"
+    alike = (text for text in entry.caption if own in text and _slots(text) == _slots(usual))
+    return usual if own in usual else next(alike, usual)
+
+
+def _slots(caption: str) -> list[str]:
+    return sorted(_SLOTS.findall(caption.replace("{a+b}", "{a}")))
 
 
 def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:

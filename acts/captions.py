@@ -20,7 +20,7 @@ from .things import kind_of
 
 _VERB = re.compile(r"\[([a-z-]+)\]")
 _SLOT = re.compile(r"\{([a-z_]+)\} ?")
-_BY_FOOT = re.compile(r"\[(?:kick|step|hop|walk|run|march|limp|stumble|stamp)\]")
+_BY_FOOT = re.compile(r"\[(?:kick|step|hop|walk|run|march|limp|stumble|stamp|turn|spin)\]")
 _NAMES = {"a": "person A", "b": "person B"}
 _COUNTS = {1: "once", 2: "twice", 3: "three times"}
 _PRONOUNS = frozenset(("it", "them", "something"))
@@ -71,6 +71,7 @@ def worded(act: Act, caption: str) -> str:
     other = act.patient or ("b" if act.agents[0] == "a" else "a")
     caption = caption.replace("{a+b}", "{a}")
     caption = caption if act.part else caption.replace(" on the {part}", "")
+    limb = act.part or ("foot" if _BY_FOOT.search(caption) else "hand")
     text = _VERB.sub(lambda m: ("are" if m[1] == "be" else m[1]) if both else singular(m[1]), caption)
     values = {
         "a": "they" if both else _NAMES[act.agents[0]],
@@ -79,9 +80,7 @@ def worded(act: Act, caption: str) -> str:
         "side": act.side if act.side in ("left", "right") else "",
         "thing": act.thing or "",
         "direction": act.direction or "",
-        "limb": f"both {_plural(act.part or 'hand')}"
-        if act.side == "both"
-        else f"the {act.side or ''} {act.part or 'hand'}",
+        "limb": f"both {_plural(limb)}" if act.side == "both" else f"the {act.side or ''} {limb}",
     }
 
     def fill(match: re.Match[str]) -> str:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from acts.frames import PREPOSITIONS
 
 from .people import A_NAME, B_NAME
+from .syntax import is_adverb
 from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
@@ -172,7 +173,9 @@ class Ellipsis:
         side = i + own + (self._lower(i + own) in closed("owners"))
         last = side + (self._lower(side) in _SIDES)
         more = noun and self._is_sided(last)
-        if last == side or self._lower(last + more) not in _ENDS | closed("clause begins") | {"again", "side"}:
+        behind = self._lower(last + more)
+        ends = behind in _ENDS | closed("clause begins") | {"again", "side"} or is_adverb(behind)
+        if last == side or not ends:
             return ""
         end = first - 1 - (self._lower(first - 1) in closed("owners"))
         before = self._lower(end)

@@ -171,7 +171,7 @@ class Reader:
         event = Event(lemma, subject, first=token.idx, last=token.idx + len(token.text))
         event.goes = wordnet.usual_kind(lemma) == "motion"
         kind, beside = self._joint(token, head)
-        if self._tree.is_main(token):
+        if self._tree.is_main(token, told=kind == "then"):
             self._tree.mains.append(token.i)
         event.ongoing = is_ongoing(token, lemma)
         self._polarity(token, head, event)

@@ -192,7 +192,7 @@ def _accompanies(first: Act, then: Act, known: Lexicon) -> bool:
     on_way = any(isinstance(shape, Go) and shape.way not in _ARRIVES for shape in one.stage)
     if is_fixture(first.thing) and then.thing == first.thing:
         return False  # "goes to the window and opens it"
-    if on_way and other.thing in ("lifts", "takes", "puts"):
+    if on_way and other.thing in ("lifts", "takes", "puts", "opens", "closes"):
         return False  # "walks forward and picks up a cup"
     jumps = shown == {"jump"} and "gesture" in later
     free = not later & shown and shown <= BESIDE  # whoever points can still laugh with the trunk

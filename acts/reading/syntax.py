@@ -156,7 +156,7 @@ def is_noun_or_side(token: Token) -> bool:
         leaves = leaves or (token.dep_ == "conj" and token.head.tag_ in ("VBD", "VBN"))
         return not leaves or before.pos_ == "VERB" or (token.i > 1 and token.nbor(-2).lower_ == "right")
     if word in ("level", "height"):
-        return bool(part(before.lemma_.lower()))
+        return before.lower_ in ("to", "at")  # "to chest level", of which only the level is left
     sided = before.lower_ in ("both", "left", "right") or before.tag_ == "PRP$"
     return sided and bool(part(token.lemma_.lower()))
 
@@ -319,8 +319,10 @@ class ClauseTree:
         later = [self.doc[i] for i in self.mains if head.i < i < token.i and self.doc[i].sent == token.sent]
         return next((t for t in reversed(later) if any(c.dep_ == "nsubj" for c in t.children)), head)
 
-    def is_main(self, token: Token) -> bool:
-        """True for a clause that stands by itself in the order of the text."""
+    def is_main(self, token: Token, told: bool = False) -> bool:
+        """True for a clause that stands by itself in the order of the text, as one does of which it is ``told``."""
+        if told:
+            self._main[token.i] = True
         passed: list[int] = []
         above: Token | None = token
         while above is not None and above.i not in self._main and above.dep_ != "ROOT" and may_be_main(above):
