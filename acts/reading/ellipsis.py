@@ -242,7 +242,9 @@ def _behind(preposition: Token) -> Absolute | None:
     at = preposition.i + 1
     before: Token | None = None
     while at < len(doc) and not words.part(doc[at].lemma_.lower()):
-        if at - preposition.i >= _BEFORE_PART or not (doc[at].pos_ in _WITHIN or doc[at].tag_ == "VBN"):
+        if at - preposition.i >= _BEFORE_PART or not (
+            doc[at].pos_ in _WITHIN or doc[at].tag_ == "VBN" or doc[at].lower_ == "both"
+        ):
             return None
         held = doc[at].tag_ == "VBN" and doc[at].lower_ not in words.directions
         before = doc[at] if held or doc[at].lower_ in _PARTICIPLES else before

@@ -75,6 +75,7 @@ def suspects(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[
         token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0])
         for token in doc
         if token.lower_ in forms
+        and token.lower_ not in vocabulary().directions
         and not is_noun_or_side(token)
         and not (token.dep_ == "conj" and part(token.lemma_.lower()) and part(token.head.lemma_.lower()))
         and forms[token.lower_][1] in ("", "s", "ed")

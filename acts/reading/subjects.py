@@ -31,9 +31,13 @@ def names_one(doc: Doc) -> bool:
     words = {t.lower_ for t in doc if not (_is_of_thing(t) or (t.lower_ == "second" and t.dep_ == "pobj"))}
     if not nouns:
         told = next((t for t in doc if t.pos_ in ("VERB", "NOUN")), None)  # "walks forward and sits"
-        part = told is not None and told.dep_ == "nsubj" and bool(words_of.part(told.lemma_.lower()))
-        acts = told is not None and (told.tag_ == "VBZ" or (told.tag_ == "NNS" and told.i == 0))
-        acts = acts or (told is not None and told.tag_ == "VBG" and told.lemma_ in words_of.verbs["goes"] - {"dance"})
+        if told is None:
+            return False
+        part = told.dep_ == "nsubj" and bool(words_of.part(told.lemma_.lower()))
+        acts = told.tag_ == "VBZ" or (told.tag_ == "NNS" and told.i == 0)
+        own = any(words_of.part(t.lemma_.lower()) for t in doc) and told.lemma_ not in closed("each other's")
+        goes = own or told.lemma_ in words_of.verbs["goes"] - {"dance"}
+        acts = acts or (told.tag_ == "VBG" and goes)
         others = closed("company") | closed("they") | words_of.both | PRONOUN_SEX.keys() | {"together", "one"}
         return (part or acts) and words.isdisjoint(others - {"his"}) and all(t.pos_ != "PROPN" for t in doc)
     if any(t.lower_ == "one" and words_of.part(t.nbor().lemma_) for t in doc[:-1]):

@@ -146,19 +146,22 @@ def is_adverb(text: str) -> bool:
 def is_noun_or_side(token: Token) -> bool:
     """True for what looks like a verb and is none: "leaning left", "then both hands", "to chest level"."""
     word = token.lower_
-    if not token.i or (token.tag_ != "NNS" and word not in ("left", "level", "height")):
+    if not token.i:
         return False
-    if any(c.dep_ in ("dobj", "nsubj") for c in token.children):
-        return False
-    before, part = token.nbor(-1), vocabulary().part
-    if word == "left":  # of "leave" only in a passive or a perfect, and behind another past: "hugged her and left"
-        leaves = any(c.dep_ in ("aux", "auxpass", "nsubjpass") for c in token.children)
-        leaves = leaves or (token.dep_ == "conj" and token.head.tag_ in ("VBD", "VBN"))
-        return not leaves or before.pos_ == "VERB" or (token.i > 1 and token.nbor(-2).lower_ == "right")
-    if word in ("level", "height"):
-        return before.lower_ in ("to", "at")  # "to chest level", of which only the level is left
+    before = token.nbor(-1)
+    behind = token.doc[token.i + 1].lower_ if token.i + 1 < len(token.doc) else ""
     sided = before.lower_ in ("both", "left", "right") or before.tag_ == "PRP$"
-    return sided and bool(part(token.lemma_.lower()))
+    sided = sided or behind in closed("laid") - {"over", "around"}  # "hands above his head"
+    if sided and token.tag_ in ("NNS", "VBZ") and vocabulary().part(token.lemma_.lower()):
+        return True
+    if word not in ("left", "level", "height") or any(c.dep_ in ("dobj", "nsubj") for c in token.children):
+        return False
+    if word != "left":
+        return before.lower_ in ("to", "at")  # "to chest level", of which only the level is left
+    # of "leave" only in a passive or a perfect, and behind another past: "hugged her and left"
+    leaves = any(c.dep_ in ("aux", "auxpass", "nsubjpass") for c in token.children)
+    leaves = leaves or (token.dep_ == "conj" and token.head.tag_ in ("VBD", "VBN"))
+    return not leaves or before.pos_ == "VERB" or (token.i > 1 and token.nbor(-2).lower_ == "right")
 
 
 def is_kept(token: Token) -> bool:

@@ -122,6 +122,11 @@ def test_slow_circles_are_done_and_nothing_slows() -> None:
     assert said("They do shake hands.") == ["ab shake-hands"]
 
 
+def test_what_comes_next_follows_what_then_brings() -> None:
+    acts = read("a man walks forward, then pivots on his foot and does a half turn, and claps.").acts
+    assert [[relation.act for relation in act.order] for act in acts] == [[], ["1"], ["2"], ["3"]]
+
+
 def test_steps_are_a_length_and_no_repetition() -> None:
     few = last("a person walks a few steps forward.")
     assert (few.times, few.distance) == (3, pytest.approx(2.1))
