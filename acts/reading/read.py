@@ -323,7 +323,8 @@ class _Planner:
             whose = match.agents if frame.of_agent() else patient or match.agents
             owner = whose if len(whose) == 1 else None
         part_side = _side_of_other(part, frame, match, patient, owner)
-        refs = [event.object, part, *(ref for _, ref in event.prepositions)]  # "with the left foot"
+        by = (r for word, r in event.prepositions if word not in closed("laid") or r.family in ("foot", "leg", "knee"))
+        refs = [event.object, part, *by]  # "with the left foot", but not "with a purse on the left arm"
         parts = [ref for ref in refs if ref is not None and ref.kind == "part" and ref.side]
         own = [ref.side for ref in parts if ref.who in ("", match.agents) and not (part_side and ref is part)]
         side = next(filter(None, (event.side, *own, *(ref.side for ref in parts if ref.side == "both"))), None)

@@ -127,6 +127,11 @@ def test_what_comes_next_follows_what_then_brings() -> None:
     assert [[relation.act for relation in act.order] for act in acts] == [[], ["1"], ["2"], ["3"]]
 
 
+def test_a_part_on_which_something_lies_is_not_what_acts() -> None:
+    assert last("a person is walking with a purse on their left arm.").side is None
+    assert last("a person hops on the left foot.").side == "left"
+
+
 def test_steps_are_a_length_and_no_repetition() -> None:
     few = last("a person walks a few steps forward.")
     assert (few.times, few.distance) == (3, pytest.approx(2.1))
