@@ -182,6 +182,10 @@ class Plan(_Model):
         return beats(self.acts)
 
 
+PlanFrames = tuple[Plan, int, int | None, int | None]
+"""A plan, its first and last frame (None for the end), and the number of its beat, where there are several."""
+
+
 def plan_of(values: Any) -> Plan:
     """A plan from JSON; a plan stays as it is.
 

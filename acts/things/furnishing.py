@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from acts.checking import rules_of
 from acts.lexicon import lexicon
-from acts.plan import Act, Plan
+from acts.plan import Act, Plan, PlanFrames
 from motion import SMPL22, Duet
 from motion.hands import MOST_GRIPS, SIDES, Grip
 from motion.metrics.bodies import point_segment_distance
@@ -29,8 +29,6 @@ from .courses import ThingCourse, courses
 from .furniture import fixtures, furniture
 from .uses import act_frames, uses_of
 
-PlanFrames = tuple[Plan, int, int | None, int | None]
-"""A plan, its first and last frame (None for the end), and the number of its beat, where there are several."""
 Row = dict[str, Any]
 """A thing as a manifest holds it: its kind, its name, and what is done with it."""
 

@@ -249,7 +249,7 @@ def test_who_is_far_away_comes_up_first_and_both_face_each_other(engine: Engine,
 def test_nobody_comes_up_who_is_there_or_has_a_way_of_their_own() -> None:
     reaching = Score(reaching={"b": 0.4})
     far = Standing(np.array([[0.0, 0.0], [0.0, 2.5]]), np.array([np.pi, np.pi]))
-    near = Standing(np.array([[0.0, 0.0], [0.0, 1.0]]), np.array([np.pi, np.pi]))
+    near = Standing(np.array([[0.0, 0.0], [0.0, 0.7]]), np.array([np.pi, np.pi]))
     assert [(m.person, m.way) for m in coming(reaching, far, ())] == [("b", "to"), ("a", "face")]
     assert [(m.person, m.way) for m in coming(reaching, far, (0,))] == [("b", "to")], "who lies does not turn"
     assert coming(reaching, near, ()) == ()

@@ -8,7 +8,7 @@ from typing import Any
 
 from acts.accounting import unread_words
 from acts.checking import NO_RULE, checked, describe
-from acts.things.furnishing import PlanFrames
+from acts.plan import PlanFrames
 from acts.things.judging import judge_things
 from motion import SMPL22, Clip, Duet
 from motion.metrics.sentences.joints import Motion

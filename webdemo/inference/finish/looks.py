@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acts import Plan
-from acts.things.furnishing import PlanFrames, furnish
+from acts.plan import PlanFrames
+from acts.things.furnishing import furnish
 from motion import SMPL22, Clip, Duet, stacked_positions
 from motion.looks import SIZES, UNSAID, grown_up, looks_of, size_of
 from motion.metrics import compare

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acts.captions import in_words
-from acts.plan import Plan, plan_of
-from acts.things.furnishing import PlanFrames
+from acts.plan import Plan, PlanFrames, plan_of
 from motion import Clip, InputError
 from webdemo.inference import methods
 from webdemo.inference.method import Method

@@ -13,11 +13,11 @@ import numpy as np
 
 from acts import Plan
 from acts.lexicon import lexicon
+from acts.plan import PlanFrames
 from acts.staging.score import Score
 from acts.staging.stage import scores_of
 from acts.staging.take import Take
 from acts.staging.window import AFTER, MOST_FRAMES, PAST, Window
-from acts.things.furnishing import PlanFrames
 from motion import FPS, Duet, InputError
 from webdemo.inference import methods
 from webdemo.inference.requests.limits import number
