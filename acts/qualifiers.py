@@ -50,7 +50,8 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     both = _BOTH.search(said) if act.side == "both" else None
     if both and "side" not in names and "'both'" not in rules and not names & _TWO_HANDED:
         yield "on both sides" if both[1] in ("feet", "legs", "knees") else "with both hands", ""
-    if act.direction is not None and act.direction not in words and "way" not in names:
+    comes = goes is not None and goes.way == "to" and act.direction == "up"  # "walks up to"
+    if act.direction is not None and act.direction not in words and "way" not in names and not comes:
         yield "which way", _goes_way(act, who) if goes else ""
     if abs(act.speed - 1.0) > 0.15:
         yield "how fast", _at_speed(act.speed, goes, who) if goes else ""

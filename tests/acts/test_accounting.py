@@ -58,6 +58,7 @@ def test_words_that_are_in_no_act_are_reported(sentence: str, unread: tuple[str,
         ("A kneels on both knees.", ("on both sides", "where on the body")),
         ("A tickles B with both hands.", ("with both hands",)),
         ("A points at B and then at himself.", ("“at himself”",)),
+        ("They walk up to each other.", ()),
     ],
 )
 def test_qualifiers_that_nothing_measures_are_named(sentence: str, kinds: tuple[str, ...]) -> None:
