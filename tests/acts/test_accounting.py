@@ -8,7 +8,7 @@ from acts import read
 from acts.accounting import account, unread_words
 from acts.checking import checked
 from tests.motion.metrics.test_sentence_shapes import duet, put
-from webdemo.inference.engine.tries import note
+from webdemo.inference.engine import note
 
 
 @pytest.mark.parametrize(

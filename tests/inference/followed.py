@@ -14,8 +14,7 @@ from acts.staging.poses import upright
 from acts.staging.window import KnownFrames, KnownPath
 from motion import FPS, Duet
 from motion.transforms import heading
-from webdemo.inference.pipelines.scene import SceneMaker
-from webdemo.inference.pipelines.window import Setting
+from webdemo.inference.pipelines.scene import SceneMaker, Setting
 from webdemo.inference.run import CancelToken, Result, StageTimer
 from webdemo.inference.story import SceneRequest
 

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from motion import InputError
-from webdemo.inference.requests.limits import MAX_PROMPT, number, prompt_of, whole
+from webdemo.inference.requests.sampling import MAX_PROMPT, number, prompt_of, whole
 
 
 @pytest.mark.parametrize("value", [1, 2.5, 4])

@@ -15,7 +15,7 @@ from acts.staging.window import KnownFrames, KnownPath
 from motion import InputError
 from motion.looks import UNSAID
 from webdemo.inference import Engine, GenerateRequest, ReactRequest, SceneRequest
-from webdemo.inference.pipelines import intergen, window
+from webdemo.inference.pipelines import intergen, scene
 from webdemo.inference.pipelines.scene import Parts
 from webdemo.inference.requests import replayed
 from webdemo.inference.requests.plans import KeptPlan, WindowPlan, kept_plan
@@ -69,13 +69,13 @@ def forgotten_reader(monkeypatch: pytest.MonkeyPatch) -> None:
 def changed_stage(monkeypatch: pytest.MonkeyPatch) -> None:
     """From now on every plan of acts is staged in another way."""
 
-    def elsewhere(asked: Any, of: Any, scene: Any, placement: Any, taken: Any) -> list[Any]:
+    def elsewhere(asked: Any, of: Any, made: Any, placement: Any, taken: Any) -> list[Any]:
         place = np.array([[1.5, 1.0]])
         return [KnownPath(person, [of.past + 20], place) for person in (0, 1) if person not in taken]
 
-    monkeypatch.setattr(window, "plan_parts", elsewhere)
-    monkeypatch.setattr(window, "wishes", lambda *_: ([], ["Not so."]))
-    monkeypatch.setattr(window, "_anchor", lambda _: (3.0, 3.0, 1.0))
+    monkeypatch.setattr(scene, "plan_parts", elsewhere)
+    monkeypatch.setattr(scene, "wishes", lambda *_: ([], ["Not so."]))
+    monkeypatch.setattr(scene, "_anchor", lambda _: (3.0, 3.0, 1.0))
     alone = ("One person falls.", "One person jumps.")
     monkeypatch.setattr(intergen, "of_each", lambda *_: alone)
     monkeypatch.setattr(request, "scores_of", lambda story: tuple(Score(alone=alone) for _ in story))

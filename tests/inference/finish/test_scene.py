@@ -8,8 +8,8 @@ import pytest
 from motion import SMPL22, Duet
 from motion.transforms import heading_matrix
 from webdemo.inference import SceneRequest
-from webdemo.inference.finish import scene as scene_finish
-from webdemo.inference.finish.scene import finished, finishes
+from webdemo.inference.finish import cleanup
+from webdemo.inference.finish.cleanup import finished, finishes
 from webdemo.inference.requests.plans import KeptPlan
 from webdemo.inference.story.beats import Beat
 
@@ -54,7 +54,7 @@ def test_hands_meet_in_the_beats_in_which_the_words_say_so(
         shares.append(share)
         return pair
 
-    monkeypatch.setattr(scene_finish, part, met)
+    monkeypatch.setattr(cleanup, part, met)
     beats = (Beat("They wave.", seconds=3.0), Beat(words, seconds=3.0))
     finished(SceneRequest(beats=beats), _still(), seed=1)
     assert not shares[0][:69].any() and (shares[0][90:] == 1).all()
@@ -68,7 +68,7 @@ def test_arms_swing_in_the_beats_in_which_they_have_nothing_to_do(monkeypatch: p
         shares.append(free)
         return person
 
-    monkeypatch.setattr(scene_finish, "swinging", swung)
+    monkeypatch.setattr(cleanup, "swinging", swung)
     beats = (Beat("Person A waves.", seconds=3.0), Beat("Person A walks away.", seconds=3.0))
     request = SceneRequest(beats=beats)
     finished(request, _still(), seed=1)

@@ -95,9 +95,9 @@ def test_the_hash_of_a_given_motion_is_that_of_what_is_kept() -> None:
 
 def test_paths_that_cross_at_one_time_are_noticed() -> None:
     there, back = path((0, -2, 0), (4, 2, 0)), path((0, 2, 0), (4, -2, 0), person="b")
-    found = meeting((there, back))
+    found = meeting(there, back)
     assert found is not None and found[0] == pytest.approx(2.0, abs=0.1) and found[1] < 0.2
-    assert meeting((there, path((0, 2, 1), (4, -2, 1), person="b"))) is None
+    assert meeting(there, path((0, 2, 1), (4, -2, 1), person="b")) is None
 
 
 def test_windows_cover_the_beats_and_see_the_end_of_the_last() -> None:

@@ -17,7 +17,7 @@ import gradio as gr
 from motion.formats import read, write
 from tests.ui.stub_engine import drift, walking
 from tests.ui.tab_events import built, changes
-from webdemo.inference.engine.engine import Engine
+from webdemo.inference.engine import Engine
 from webdemo.inference.methods import methods
 from webdemo.inference.requests.predict import PredictRequest, PredictResult
 from webdemo.ui.api import PredictEndpoint

@@ -22,8 +22,7 @@ from models.intergen.released import ReleasedInterGen, load_released
 from models.text import MiniLM
 from models.text.clip import find_vocabulary
 from motion import FPS, Clip, Duet, stacked_positions
-from webdemo.inference.finish.cleanup import clean_person
-from webdemo.inference.finish.scene import finish_of, in_touch
+from webdemo.inference.finish.cleanup import clean_person, finish_of, in_touch
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.requests.plans import BeatFinish, KeptPlan

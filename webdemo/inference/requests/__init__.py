@@ -3,9 +3,22 @@
 These dataclasses import no torch, so the page, the shell and the API build them before any network loads.
 """
 
-from .limits import DAMPING, GUIDANCE, MAX_PROMPT, MAX_SEED, SAMPLES, STEPS, STRICTNESS, TRIES
 from .predict import PredictRequest, PredictResult
-from .sampling import OWN_STEPS, GenerateRequest, ReactRequest, SamplingRequest, replayed
+from .sampling import (
+    DAMPING,
+    GUIDANCE,
+    MAX_PROMPT,
+    MAX_SEED,
+    OWN_STEPS,
+    SAMPLES,
+    STEPS,
+    STRICTNESS,
+    TRIES,
+    GenerateRequest,
+    ReactRequest,
+    SamplingRequest,
+    replayed,
+)
 
 __all__ = [
     "DAMPING",

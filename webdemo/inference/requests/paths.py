@@ -146,16 +146,13 @@ def timed_paths(paths: Sequence[FloorPath], total: float) -> tuple[FloorPath, ..
     return tuple(path.timed(total) for path in paths)
 
 
-def meeting(paths: Sequence[FloorPath]) -> tuple[float, float] | None:
-    """(seconds, metres) at which the two people's paths come too near each other; None if they do not."""
-    people = {path.person: path for path in paths}
-    if set(people) != {"a", "b"}:
-        return None
-    first = max(path.points[0].seconds or 0.0 for path in paths)
-    last = min(path.points[-1].seconds or 0.0 for path in paths)
+def meeting(one: FloorPath, other: FloorPath) -> tuple[float, float] | None:
+    """(seconds, metres) at which the two people's timed paths come too near each other; None if they do not."""
+    first = max(path.points[0].seconds or 0.0 for path in (one, other))
+    last = min(path.points[-1].seconds or 0.0 for path in (one, other))
     found: tuple[float, float] | None = None
     for seconds in np.arange(first, last + 1e-6, 0.1):
-        places = people["a"].place(seconds), people["b"].place(seconds)
+        places = one.place(seconds), other.place(seconds)
         if places[0] is None or places[1] is None:
             continue
         gap = math.dist(places[0], places[1])

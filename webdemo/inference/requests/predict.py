@@ -14,7 +14,7 @@ from webdemo.inference import methods
 from webdemo.inference.run import Result
 
 from .actor import at_30_fps, motion_facts
-from .limits import check_settings, number
+from .sampling import check_settings, number
 
 Array = NDArray[np.floating]
 

@@ -15,8 +15,8 @@ from acts.lexicon import lexicon
 from acts.plan import MOST_ACTS, Act, beats, plan_of, problem
 from acts.reading.wording import begins_with_subject
 from motion import FPS, InputError
-from webdemo.inference.requests.limits import MAX_PROMPT, MAX_SEED, number, whole
 from webdemo.inference.requests.plans import kept_plan, plan_of_words
+from webdemo.inference.requests.sampling import MAX_PROMPT, MAX_SEED, number, whole
 
 SHORTEST, LONGEST = 0.5, 30.0
 """Seconds of one beat."""

@@ -20,11 +20,10 @@ from acts.staging.take import Take
 from acts.staging.window import AFTER, MOST_FRAMES, PAST, Window
 from motion import FPS, Duet, InputError
 from webdemo.inference import methods
-from webdemo.inference.requests.limits import number
 from webdemo.inference.requests.paths import FloorPath, path_of, timed_paths
 from webdemo.inference.requests.plans import KeptPlan
 from webdemo.inference.requests.predict import check_motion
-from webdemo.inference.requests.sampling import SETTINGS, GenerateRequest, SamplingRequest
+from webdemo.inference.requests.sampling import SETTINGS, GenerateRequest, SamplingRequest, number
 from webdemo.inference.run import Progress
 
 from .beats import MOST_BEATS, SHORTEST, Beat, beat_of, filling, plan_of_beat, seconds_of_acts

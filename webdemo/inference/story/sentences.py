@@ -19,9 +19,9 @@ from acts.things import is_fixture
 from motion import FPS, InputError
 from webdemo.inference import methods
 from webdemo.inference.requests import GenerateRequest
-from webdemo.inference.requests.limits import MAX_PROMPT
 from webdemo.inference.requests.paths import FloorPath
 from webdemo.inference.requests.plans import plan_of_words
+from webdemo.inference.requests.sampling import MAX_PROMPT
 from webdemo.inference.run import CancelToken
 
 from .beats import MOST_BEATS, SHORTEST, Beat, beat_of, filling, plan_of_beat, seconds_of_acts
