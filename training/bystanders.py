@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from acts.staging.bystanders import RATE
+from acts.staging.poses import RATE
 from motion import SMPL22, InputError
 from motion.formats.files import replacing
 from motion.transforms import canonicalize

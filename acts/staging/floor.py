@@ -16,9 +16,8 @@ from motion import FPS
 from motion.vectors import wrapped
 
 from .holds import HOLDS, danced
-from .places import Standing, Way2D, bearing, direction, eased, smoothed
+from .places import EASE, MOST, Standing, Track, Way2D, bearing, direction, eased, sampled, smoothed
 from .score import Move, Way
-from .track import EASE, MOST, Track, sampled
 
 Array = NDArray[np.floating]
 

@@ -18,8 +18,7 @@ from motion.placement import Placement
 from motion.transforms import heading
 
 from .arms import hand_parts, outer_hand_parts
-from .beginnings import Room, beginning, going, roomy, starting
-from .bystanders import standing_by
+from .beginnings import Room, Take, beginning, going, roomy, starting
 from .figures import figure_parts, figure_poses
 from .floor import plan
 from .gaits import STEPS, low_gait_parts, step_parts
@@ -28,11 +27,10 @@ from .lifts import Carrying
 from .limbs import limb_parts
 from .moves import coming, meeting, towards_touched
 from .places import Standing, Way2D
-from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, standing, upright
+from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, standing, standing_by, upright
 from .postures import bow_parts, posture_parts, postures
 from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
-from .take import Take
 from .touches import touch_parts
 from .window import SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
 

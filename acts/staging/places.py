@@ -1,16 +1,20 @@
-"""Places and headings of people over the floor, and curves between them.
+"""Places and headings of people over the floor, curves between them, and the track of one person through a beat.
 
 The floor is seen from above, in metres of the scene's world; headings are radians from +Z towards +X.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+
+from motion import FPS
+from motion.vectors import wrapped
 
 Array = NDArray[np.floating]
 
@@ -117,3 +121,163 @@ def bearing(line: Array) -> float:
 def direction(heading: float) -> Array:
     """The unit vector (x, z) of a heading in radians from +Z towards +X."""
     return np.array([math.sin(heading), math.cos(heading)])
+
+
+# ---- tracks: the way of one person over the floor of a beat, laid out move by move --------------------
+HALT = 0.3
+"""Seconds of its speed that a walk takes to stop."""
+MOST = 2.6
+"""Metres a second of the fastest run that is planned."""
+TURNING = 0.9
+"""Seconds of a half turn."""
+EVENLY = 8
+"""Frames between two given places of a walk whose pace is given: at every other knot of the network."""
+EASE = 0.5
+"""Seconds in which a walk gets up its speed, and slows down again."""
+EVERY = 30
+"""Frames between two given places."""
+STEP = math.pi / 3
+"""Radians of a turn between two given headings."""
+
+
+@dataclass
+class Track:
+    """The planned way of one person, frame by frame.
+
+    Attributes:
+        place: (2,) x and z in metres where they are at ``frame``.
+        heading: radians that they face there.
+        places: (T, 2) metres, of the whole beat; NaN where they are free.
+        headings: (T,) radians; NaN where they may face anywhere.
+        frame: the first frame that is not laid out yet.
+        going: (2,) unit direction of a walk side by side that they are on; zero if there was none.
+        dense: frames whose places are given beside those of every way.
+    """
+
+    place: Array
+    heading: float
+    places: Array
+    headings: Array
+    frame: int = 0
+    going: Array = field(default_factory=lambda: np.zeros(2))
+    dense: set[int] = field(default_factory=set)
+
+    def walk(self, line: Array, seconds: float, *, heading: float | None = None, evenly: bool = False) -> None:
+        """Walks along points (N, 2) within some seconds; faces where it goes, or where ``heading`` says.
+
+        Places of a walk are given every second or so. Where it ends there, a network that is late would surge: a way
+        gone ``evenly`` has them every :data:`EVENLY` frames.
+        """
+        frames = max(1, min(round(seconds * FPS), len(self.places) - self.frame))
+        steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        time = np.arange(1, frames + 1) / frames
+        done = eased(time, EASE / max(seconds, 1e-6))
+        far = min(along[-1], MOST * frames / FPS)
+        at = np.stack([np.interp(done * far, along, line[:, axis]) for axis in (0, 1)], axis=1)
+        stop = self.frame + frames
+        self.places[self.frame : stop] = at
+        if evenly:
+            self.dense.update(range(self.frame + EVENLY, stop, EVENLY))
+        if heading is None:
+            ahead = np.diff(np.concatenate([self.place[None], at]), axis=0)
+            facing = np.arctan2(ahead[:, 0], ahead[:, 1])
+            still = np.linalg.norm(ahead, axis=1) < 1e-4
+            facing[still] = filled(facing, ~still, self.heading)[still]
+            facing = self._turned_into(np.unwrap(facing))
+        else:
+            facing = np.full(frames, self.heading + wrapped(heading - self.heading))
+        self.headings[self.frame : stop] = facing
+        self.place, self.heading, self.frame = at[-1], float(facing[-1]), stop
+
+    def follow(self, places: Array) -> None:
+        """Goes through places (N, 2), one a frame, and faces where it goes."""
+        stop = self.frame + len(places)
+        steps = np.diff(np.concatenate([self.place[None], places]), axis=0)
+        facing, moving = np.arctan2(steps[:, 0], steps[:, 1]), np.linalg.norm(steps, axis=1) > 2e-3
+        facing = filled(facing, moving, self.heading)
+        self.places[self.frame : stop] = places
+        self.headings[self.frame : stop] = self._turned_into(np.unwrap(facing))
+        self.place, self.heading, self.frame = places[-1], float(self.headings[stop - 1]), stop
+
+    def at(self, frame: int, start: Array) -> Array:
+        """The place (2,) that is planned for a frame or was before it; ``start`` before any plan."""
+        known = np.flatnonzero(np.isfinite(self.places[: frame + 1, 0]))
+        return self.places[known[-1]].copy() if len(known) else np.array(start, dtype=float)
+
+    def faces(self, frame: int, start: float) -> float:
+        """The heading that is planned for a frame or was before it; ``start`` before any plan."""
+        known = np.flatnonzero(np.isfinite(self.headings[: frame + 1]))
+        return float(self.headings[known[-1]]) if len(known) else float(start)
+
+    def _turned_into(self, facing: Array) -> Array:
+        """Headings that begin at the person's own and are turned at a body's pace."""
+        found, now, most = np.empty(len(facing)), self.heading, math.pi / TURNING / FPS
+        for i, wanted in enumerate(facing):
+            now += float(np.clip(wrapped(wanted - now), -most, most))
+            found[i] = now
+        return found
+
+    def turn(self, angle: float) -> None:
+        """Turns on the spot by so many radians."""
+        frames = max(1, min(round(abs(angle) / math.pi * TURNING * FPS), len(self.places) - self.frame))
+        stop = self.frame + frames
+        self.places[self.frame : stop] = self.place
+        self.headings[self.frame : stop] = self.heading + angle * eased(np.arange(1, frames + 1) / frames, 0.4)
+        self.heading, self.frame = self.heading + angle, stop
+
+    def watch(self, other: Track) -> None:
+        """Stays to the end of the beat, and turns to where the other goes."""
+        line = other.places[self.frame :] - self.place
+        bearings = np.arctan2(line[:, 0], line[:, 1])
+        bearings = filled(bearings, np.isfinite(bearings), self.heading)
+        self.headings[self.frame :] = self._turned_into(np.unwrap(bearings))
+        self.places[self.frame :] = self.place
+        self.heading, self.frame = float(self.headings[-1]), len(self.places)
+
+    def stay(self, seconds: float | None = None, *, facing: bool = False) -> None:
+        """Stays for some seconds, or to the end of the beat."""
+        stop = len(self.places) if seconds is None else min(len(self.places), self.frame + round(seconds * FPS))
+        self.places[self.frame : stop] = self.place
+        if facing:
+            self.headings[self.frame : stop] = self.heading
+        self.frame = max(stop, self.frame)
+
+    def halt(self, speed: Array) -> None:
+        """Takes a step to stop, for a person who was walking at a speed (2,) when the beat began."""
+        if not self.frame and np.linalg.norm(speed) > 0.3:
+            self.frame = min(round(2 * HALT * FPS), len(self.places) - 1)
+            self.place = self.place + HALT * speed
+
+    def left(self) -> float:
+        """Seconds until the beat ends."""
+        return (len(self.places) - self.frame) / FPS
+
+
+def sampled(who: int, track: Track, *, first: bool) -> Way2D | None:
+    """The way at every :data:`EVERY` frames and at the last one that is planned; also where it begins, if ``first``."""
+    known = np.flatnonzero(np.isfinite(track.places[:, 0]))
+    if not len(known):
+        return None
+    wanted = {
+        *known[known % EVERY == EVERY - 1].tolist(),
+        *(track.dense & set(known.tolist())),
+        int(known[-1]),
+        *([0] if first else []),
+    }
+    frames = [f for f in _with_turns(sorted(wanted), track.headings) if np.isfinite(track.places[f, 0])]
+    headings = track.headings[frames]
+    facing = np.isfinite(headings)
+    return Way2D(who, frames, track.places[frames], np.where(facing, headings, np.nan) if facing.any() else None)
+
+
+def _with_turns(frames: Sequence[int], headings: Array) -> list[int]:
+    """The frames, with more of them where somebody turns: a network that is free there turns them within a few."""
+    found = list(frames)
+    for first, last in itertools.pairwise([0, *frames]):
+        turned = abs(headings[last] - headings[first])
+        if turned > STEP:  # false where either heading is free
+            gone = np.abs(headings[first : last + 1] - headings[first])
+            each = turned / math.ceil(turned / STEP)
+            found += [first + int(np.argmax(gone >= share)) for share in np.arange(each, turned - 0.01, each)]
+    return sorted(set(found))

@@ -18,7 +18,7 @@ from motion.smoothing import minimum_jerk
 from motion.transforms import heading
 
 from .gaits import on_all_fours
-from .places import Standing
+from .places import HALT, Standing
 from .poses import (
     FLAT,
     HANDS,
@@ -45,7 +45,7 @@ from .poses import (
     upright,
 )
 from .score import Change, Score, at_start
-from .window import HALT, SETTLES, Part, Stretch, late_by
+from .window import SETTLES, Part, Stretch, late_by
 
 Array = NDArray[np.floating]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from motion.placement import Placement
 
-from .places import Course, Standing, Way2D
+from .places import HALT, Course, Standing, Way2D
 
 Array = NDArray[np.floating]
 Frames = NDArray[np.integer]
@@ -28,8 +28,6 @@ MOST_FRAMES = 300
 TAIL = 8
 """Frames that are made behind a window and thrown away where another follows: the network is least sure of the last
 ones, and its feet are fast there."""
-HALT = 0.3
-"""Seconds of its speed that a walk takes to stop."""
 OFTEN = 3
 """Frames between two poses of a body that moves: closer than the network's knots, of which others would waver."""
 SETTLES = 24

@@ -21,7 +21,7 @@ from typing import Any, cast
 from acts.accounting import unread_words
 from acts.checking import NO_RULE, checked, describe
 from acts.plan import PlanFrames
-from acts.things.judging import judge_things
+from acts.things.furnishing import judge_things
 from motion import SMPL22, Clip, Duet, InputError
 from motion.metrics.sentences.joints import Motion
 from webdemo.inference import methods

@@ -8,9 +8,8 @@ import pytest
 from acts.staging.beginnings import REACH, starting
 from acts.staging.floor import ABREAST, ACROSS, BEHIND, CLOSE, FARTHEST, LINKED, plan
 from acts.staging.holds import HOLDS
-from acts.staging.places import Standing, Way2D
+from acts.staging.places import EVENLY, EVERY, MOST, Standing, Way2D
 from acts.staging.score import Move
-from acts.staging.track import EVENLY, EVERY, MOST
 from motion import FPS
 
 from .staged_words import hold, moves

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acts.staging.bystanders import recordings, standing_by
+from acts.staging.poses import recordings, standing_by
 from motion import FPS, SMPL22
 from motion.transforms import heading
 

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from acts import lexicon, read
-from acts.staging.beginnings import beginning
+from acts.staging.beginnings import APART, OPEN, PACES, Take, beginning
 from acts.staging.score import Score
 from acts.staging.stage import score_of
-from acts.staging.take import APART, OPEN, PACE, Take
 
 TAKES = [Take.of(seed) for seed in range(40)]
 
@@ -34,7 +33,7 @@ def test_they_go_round_either_way_unless_it_is_told() -> None:
 def test_walks_are_faster_and_slower_unless_it_is_told() -> None:
     usual = score_of(read("A walks up to B.").acts).moves[0].speed
     speeds = np.array([score.moves[0].speed for score in scores("A walks up to B.")]) / usual
-    assert len(set(speeds)) == len(TAKES) and PACE[0] <= speeds.min() < 0.95 and 1.05 < speeds.max() <= PACE[1]
+    assert len(set(speeds)) == len(TAKES) and PACES[0] <= speeds.min() < 0.95 and 1.05 < speeds.max() <= PACES[1]
     assert len({score.moves[0].speed for score in scores("A walks up to B slowly.")}) == 1
 
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from acts.staging.track import MOST, TURNING, Track
+from acts.staging.places import MOST, TURNING, Track
 from motion import FPS
 
 

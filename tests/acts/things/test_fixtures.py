@@ -9,8 +9,7 @@ import pytest
 
 from acts import read
 from acts.checking import checked
-from acts.things.furnishing import furnish
-from acts.things.judging import judge_things
+from acts.things.furnishing import furnish, judge_things
 from motion import SMPL22, Duet
 from motion.metrics.sentences.joints import Motion
 from motion.things import Thing

@@ -14,9 +14,9 @@ import numpy as np
 from acts import Plan
 from acts.lexicon import lexicon
 from acts.plan import PlanFrames
+from acts.staging.beginnings import Take
 from acts.staging.score import Score
 from acts.staging.stage import scores_of
-from acts.staging.take import Take
 from acts.staging.window import AFTER, MOST_FRAMES, PAST, Window
 from motion import FPS, Duet, InputError
 from webdemo.inference import methods
