@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 
 from . import wordnet
 from .people import A_NAME, B_NAME
-from .repair import others
-from .spelling import Speller
+from .spelling import Speller, others
 from .syntax import parse
-from .text import Text
 from .vocabulary import closed, vocabulary
+from .wording import Text
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token

@@ -20,9 +20,8 @@ from .reader import Reader
 from .relations import related
 from .spelling import Speller, other_language, unknown
 from .syntax import spans
-from .text import Text
 from .vocabulary import closed, vocabulary
-from .wording import prepared
+from .wording import Text, prepared
 
 MOST_CHARACTERS = 2000
 """Characters of a text that is read at once."""

@@ -1,4 +1,4 @@
-"""Words that are misspelt, and the forms of verbs."""
+"""Words that are misspelt, the forms of verbs, and verbs that the parser took for nouns."""
 
 from __future__ import annotations
 
@@ -12,12 +12,20 @@ from acts.frames import PREPOSITIONS
 from acts.lexicon import Lexicon
 
 from . import wordnet
-from .repair import deeds_done, suspects, verbs_taken_for_nouns
 from .syntax import is_adverb, is_word
 from .vocabulary import closed, is_act, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from .people import A_NAME, B_NAME
+from .syntax import is_noun_or_side
+
+if TYPE_CHECKING:
+    from spacy.tokens import Doc, Token
 
 
 class Speller:
@@ -144,3 +152,270 @@ def other_language(text: str) -> str | None:
         if unknown >= 0.4 * len(words):
             return "This does not seem to be English: write in English."
     return None
+
+
+# ---- verbs that the parser took for nouns, found by where they stand ----------------------------------
+_SAFE = {
+    "s": ("admires", "arrives", "jumps"),
+    "ing": ("admiring", "arriving", "jumping"),
+    "ed": ("admired", "arrived", "jumped"),
+    "": ("admire", "arrive", "jump"),
+}
+"""Forms of a verb with and of two without an object that the parser hardly takes for anything else."""
+_SAFE_WITH_VERB = {"s": "starts", "ing": "starting", "ed": "started", "": "start"}
+"""The same before another verb: "mimes drinking"."""
+_DO = {"does": "makes", "do": "make", "did": "made"}
+"""Forms of "do", and of a verb in the same form that is no part of another."""
+_JOINS = frozenset(("and", "then", "but", ",", ";", "or"))
+_TAKEN_FOR = frozenset(("NOUN", "PROPN", "ADJ", "INTJ", "X"))
+"""Parts of speech for which the parser takes a verb of a list."""
+_TAGS = {"VBZ": "s", "VBD": "ed", "VBP": "", "VB": ""}
+"""Endings of finite verbs by their tags."""
+
+
+def others(safe: str) -> tuple[str, ...]:
+    """The other safe verbs in the same form, for where the parser takes one for something else after all."""
+    return next((tuple(word for word in verbs if word != safe) for verbs in _SAFE.values() if safe in verbs), ())
+
+
+def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[str, str]]:
+    """Verbs that were taken for something else: offset → (a safe verb in the same form, the true lemma).
+
+    Args:
+        doc: the text as it was parsed.
+        forms: the forms of verbs, as form → (lemma, ending).
+    """
+    found = {
+        token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0]) for token in _verbless(doc, forms)
+    }
+    last = ""  # the ending of the last finite verb of the sentence
+    for token in doc:
+        last = "" if token.is_sent_start else last
+        form = forms.get(token.lower_)
+        if (
+            form is not None
+            and not is_noun_or_side(token)
+            and (
+                (_is_other(token) and (_after_person(token, form[1]) or _opens(token, form[1])))
+                or _coordinated(token, form[1], last)
+                or _is_ordered(token, form[1])
+                or _is_kept(token, form[1])
+            )
+        ):
+            found[token.idx] = (_safe(token, form[1]), form[0])
+            last = form[1]
+        elif token.pos_ in ("VERB", "AUX") and token.tag_ in _TAGS:
+            last = _TAGS[token.tag_]
+    return found
+
+
+def suspects(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[str, str]]:
+    """Forms of verbs that the parser takes for something else, rightly or not: offset → (a safe verb, its lemma)."""
+    part = vocabulary().part
+    return {
+        token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0])
+        for token in doc
+        if token.lower_ in forms
+        and token.lower_ not in vocabulary().directions
+        and not is_noun_or_side(token)
+        and not (token.dep_ == "conj" and part(token.lemma_.lower()) and part(token.head.lemma_.lower()))
+        and forms[token.lower_][1] in ("", "s", "ed")
+        and (token.pos_ not in ("VERB", "AUX", "ADP", "ADV") or token.dep_ in ("compound", "amod", "nmod"))
+    }
+
+
+def deeds_done(doc: Doc, is_deed: Callable[[str], bool]) -> dict[int, tuple[str, str]]:
+    """Verbs "do" with a deed as their object that the parser took for a part of a verb: "does slow arm circles".
+
+    Args:
+        doc: the text as it was parsed.
+        is_deed: tells whether a noun, in the singular, stands for what somebody does.
+    """
+    return {
+        token.idx: (_DO[token.lower_], "do")
+        for token in doc
+        if token.lower_ in _DO
+        and token.dep_ == "aux"
+        and token.head.i == token.i + 1
+        and token.head.tag_ == "VB"
+        and all(c.dep_ != "neg" for c in token.head.children)
+        and any(
+            c.dep_ == "dobj" and is_deed(c.lemma_.lower()) and c.left_edge.i == token.i + 2 and _is_bare(c)
+            for c in token.head.children
+        )
+    }
+
+
+def _is_bare(noun: Token) -> bool:
+    return noun.pos_ == "NOUN" and all(c.dep_ not in ("det", "poss", "nummod") for c in noun.children)
+
+
+def _verbless(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> Iterator[Token]:
+    """The verb of each sentence that seems to have none: "The man in the hat waves."."""
+    for sentence in doc.sents:
+        if any(token.pos_ in ("VERB", "AUX") for token in sentence):
+            continue
+        known = [
+            token
+            for token in sentence
+            if token.i > sentence.start + 1
+            and token.pos_ in ("NOUN", "PROPN")
+            and _is_told(token, forms.get(token.lower_, ("", ""))[1])
+            and _ends_phrase(token)
+        ]
+        yield from known[-1:]
+
+
+def _is_told(token: Token, ending: str) -> bool:
+    """True for a form of a verb behind its subject: "the man in the hat waves"."""
+    return ending in ("s", "ed") and token.nbor(-1).pos_ in ("NOUN", "PROPN", "PRON")
+
+
+def _is_ordered(token: Token, ending: str) -> bool:
+    """True for "swing" in ", swing arms, …", which stands as a part of the noun."""
+    begins = token.is_sent_start or token.nbor(-1).text in (",", ";")
+    if ending != "" or not begins or token.dep_ != "compound":
+        return False
+    parts = token.head.tag_ == "NNS" and bool(vocabulary().part(token.head.lemma_.lower()))
+    return parts or token.tag_ in ("VB", "VBP")
+
+
+def _is_kept(token: Token, ending: str) -> bool:
+    """True for "clapping" in "keeps clapping", which the parser may take for an object."""
+    verbs = vocabulary().verbs
+    about = verbs["begins"] | verbs["ends"]
+    before = token.nbor(-1) if token.i else None
+    return (
+        ending == "ing"
+        and before is not None
+        and token.pos_ == "NOUN"
+        and before.lemma_.lower() in about - {"come", "go", "get"}
+    )
+
+
+def _is_other(token: Token) -> bool:
+    return token.pos_ in ("NOUN", "PROPN", "ADJ", "ADP", "X", "INTJ") or _swallowed(token)
+
+
+def _swallowed(token: Token) -> bool:
+    """True for a verb whose subject became a part of it, as in a compound."""
+    children = list(token.children)
+    return any(child.i == token.i - 1 and child.dep_ in ("compound", "nmod", "amod") for child in children) and all(
+        child.dep_ not in ("nsubj", "nsubjpass") for child in children
+    )
+
+
+def _next(token: Token) -> Token | None:
+    return token.nbor(1) if token.i + 1 < len(token.doc) else None
+
+
+def _safe(token: Token, ending: str) -> str:
+    following = _next(token)
+    if following is not None and following.tag_ == "VBG":
+        return _SAFE_WITH_VERB[ending]
+    has_object = (
+        following is not None
+        and following.pos_ in ("DET", "PRON", "PROPN", "NOUN", "ADJ", "NUM")
+        and following.lower_ not in PREPOSITIONS
+    )
+    return _SAFE[ending][not has_object]
+
+
+def _ends_phrase(token: Token) -> bool:
+    """True if what follows cannot be the head of a noun phrase that this word belongs to."""
+    following = _next(token)
+    return (
+        following is None
+        or following.pos_ in ("PUNCT", "ADP", "ADV", "PRON", "DET", "SCONJ", "CCONJ", "PART", "NUM")
+        or following.tag_ in ("VBG", "PRP$")
+        or following.text in (A_NAME, B_NAME)
+    )
+
+
+def _coordinated(token: Token, ending: str, last: str) -> bool:
+    """True for a bare noun behind "and" or a comma that has the form of the sentence's last finite verb.
+
+    "He yawns and stretches", "they clink glasses and drink" and "grab her and twirl her".
+    """
+    if token.pos_ not in _TAKEN_FOR or ending != last or not token.i or not _ends_phrase(token):
+        return False
+    if vocabulary().part(token.lemma_.lower()) and _is_absolute(token):
+        return False
+    before = token.nbor(-1)
+    if before.lower_ not in _JOINS or token.i < 2:
+        return False
+    earlier = token.nbor(-2)
+    if vocabulary().part(token.lemma_.lower()) and vocabulary().part(earlier.lemma_.lower()):
+        return False  # "on hands and knees"
+    if token.pos_ == "ADJ" and earlier.pos_ in ("ADJ", "ADV") and earlier.lower_ != "other":
+        return False  # "slow and smooth"
+    listed = (token.dep_ == "conj" and token.head.pos_ == "VERB") or _before_verb(token)
+    listed = listed or (earlier.pos_ == "VERB" and earlier.tag_ in _TAGS)  # "they meet, hug and part"
+    if before.text == "," and ending == "" and not listed:
+        return False
+    following = _next(token)
+    plural_list = earlier.tag_ == "NNS" and token.dep_ == "conj" and token.head == earlier
+    return not plural_list or following is None or following.lower_ not in ("of", "for")
+
+
+def _before_verb(token: Token) -> bool:
+    """True for the last but one of listed verbs: "run up, hug and then bow", "run up, hug, and bow"."""
+    behind = [t for t in token.doc[token.i + 1 : token.i + 6] if t.pos_ != "ADV" and t.text != ","]
+    return len(behind) > 1 and behind[0].pos_ == "CCONJ" and behind[1].tag_ in ("VB", "VBP")
+
+
+def _is_absolute(token: Token) -> bool:
+    """True for "hands flying to his face" and "hand in hand", which stand beside a clause."""
+    following = _next(token)
+    return following is not None and (following.tag_ in ("VBG", "VBN") or following.lower_ == "in")
+
+
+def _opens(token: Token, ending: str) -> bool:
+    """True for "Kneeling, …" and "March forward" at the beginning of a sentence, and for "…, kneeling, …" within it."""
+    following = _next(token)
+    if following is None:
+        return False
+    if ending == "ing":
+        return following.text == "," and (token.is_sent_start or token.nbor(-1).text == ",")
+    name = token.tag_ == "NNP" and token.dep_ not in ("nsubj", "nsubjpass", "compound", "poss")
+    told = bool(token.is_sent_start) and ending == "" and name and following.pos_ in ("ADV", "ADP")
+    return told and not vocabulary().is_person(token.lower_)  # "march forward", which is no month
+
+
+def _after_person(token: Token, ending: str) -> bool:
+    """True if a noun that might be a verb follows its subject."""
+    before = token.nbor(-1) if token.i else None
+    following = _next(token)
+    if before is None or ending == "ing" or (following is not None and following.pos_ == "AUX"):
+        return False
+    numbered = before.lower_ in ("first", "second", "former", "latter") and token.dep_ not in ("dobj", "pobj")
+    one = before.lower_ in ("one", "other", "both") or before.text in (A_NAME, B_NAME) or numbered
+    if ending == "" and (before.lower_ in ("one", "other") or token.pos_ == "ADP"):
+        return False  # "one knee", "follows A down the street"
+    if before.pos_ == "PRON" and not one:
+        return before.lower_ in {*closed("subjects"), "who"}
+    the_two = before.lower_ == "two" and before.i > 0 and before.nbor(-1).lower_ in ("the", "these", "those")
+    counted = any(c.dep_ == "nummod" and c.lower_ != "one" for c in before.children) or (
+        before.i > 0 and before.nbor(-1).lower_ in ("two", "both", "2")
+    )
+    many = before.tag_ in ("NNS", "NNPS") or before.lower_ in ("both", "people") or the_two or counted
+    many = many or (ending == "" and _is_paired(before))
+    if ending != "s" and not many and not one:
+        return False
+    if ending == "s" and many and before.lower_ not in ("second", "first"):
+        return False
+    return (
+        one
+        or the_two
+        or before.lower_ == "both"
+        or vocabulary().is_person(before.lemma_.lower())
+        or (many and before.lemma_ in vocabulary().both)
+    )
+
+
+def _is_paired(noun: Token) -> bool:
+    """True for the second of two people: "a father and his little daughter dance"."""
+    at = noun.i - 1
+    while at > noun.sent.start and noun.doc[at].pos_ in ("DET", "ADJ", "PRON"):
+        at -= 1
+    return noun.doc[at].lower_ == "and" and vocabulary().is_person(noun.doc[at - 1].lemma_.lower())
