@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from scipy.spatial.transform import Rotation
 
 from motion.smoothing import smoothstep
 from motion.vectors import FLAT, Array, square_frame, unit
@@ -121,7 +120,9 @@ class Course:
         speed = (goal - begin) / seconds + np.array([0.0, GRAVITY * seconds / 2, 0.0])
         way = begin + now[:, None] * speed - np.array([0.0, GRAVITY / 2, 0.0]) * now[:, None] ** 2
         axis = unit(np.cross(_UP, goal - begin))
-        spin = Rotation.from_rotvec(axis * (2 * np.pi * now / max(seconds, 0.8))[:, None]).as_matrix()
+        spin = scipy.spatial.transform.Rotation.from_rotvec(
+            axis * (2 * np.pi * now / max(seconds, 0.8))[:, None]
+        ).as_matrix()
         self.rotations[start : start + len(now)] = spin @ self.rotations[start]
         self.places[start : start + len(now)] = way
         self.places[start + len(now) :] = way[-1]
@@ -139,7 +140,9 @@ class Course:
         drop = np.maximum(begin[1] - radius - GRAVITY / 2 * now**2, 0.0)
         self.places[start:] = begin * FLAT + along[:, None] * ahead
         self.places[start:, 1] = radius + drop
-        spin = Rotation.from_rotvec(np.cross(_UP, ahead) * (along / radius)[:, None]).as_matrix()
+        spin = scipy.spatial.transform.Rotation.from_rotvec(
+            np.cross(_UP, ahead) * (along / radius)[:, None]
+        ).as_matrix()
         self.rotations[start:] = spin @ self.rotations[start]
 
     def bounce(self, under: Array, start: int, stop: int, radius: float) -> None:
@@ -187,8 +190,8 @@ class Course:
 
 def between(one: Array, other: Array, share: Array) -> Array:
     """(T, 3, 3) rotations ``share`` (T,) of the way from one track to another, along the shortest turn."""
-    turn = Rotation.from_matrix(np.swapaxes(one, 1, 2) @ other).as_rotvec()
-    return one @ Rotation.from_rotvec(share[:, None] * turn).as_matrix()
+    turn = scipy.spatial.transform.Rotation.from_matrix(np.swapaxes(one, 1, 2) @ other).as_rotvec()
+    return one @ scipy.spatial.transform.Rotation.from_rotvec(share[:, None] * turn).as_matrix()
 
 
 def at_rest(kind: str, mesh: Mesh, place: Array, ahead: Array, frames: int) -> Track:

@@ -1,6 +1,6 @@
 // Entry point: a panel that turns a video or the webcam's picture into landmarks for the server.
 
-import { detectorOf } from "./detector.js";
+import { detector } from "./detector.js";
 import { drawPerson } from "./drawing.js";
 import { close, FilmError, LONGEST, openFilm, seek, times } from "./film.js";
 import { Landmarks } from "./landmarks.js";
@@ -9,17 +9,20 @@ import { closeWebcam, countDown, openWebcam, record } from "./webcam.js";
 import { loadStyles } from "../player/loader.js";
 import { say } from "../texts.js";
 
-/** `element` holds camera.html; `send(text)` hands landmarks to the page's Python side. */
-export function mount(element, send, { folder }) {
+/** `element` holds camera.html; landmarks become the value of `props`, and `trigger` tells the page's Python side. */
+export function mount(element, props, watch, trigger) {
   loadStyles(new URL("camera.css", import.meta.url).href);
-  new CameraPanel(element.querySelector(".pdcam"), send, detectorOf(folder));
+  new CameraPanel(element.querySelector(".pdcam"), (text) => {
+    props.value = text;
+    trigger("submit");
+  });
 }
 
 class CameraPanel extends Panel {
-  constructor(root, send, detector) {
+  constructor(root, send) {
     super(root, ["choose", "record", "file", "count", "progress", "cancel"]);
     this.send = send;
-    this.detector = detector;
+    this.detector = detector();
     this.choose.onclick = () => this.file.click();
     this.file.onchange = () => {
       const [file] = this.file.files;

@@ -4,13 +4,11 @@ const LONGEST_SIDE = 960; // pixels of what is looked at: more costs time and fi
 
 let shared = null; // one for the page: it takes a second to load and 100 MB
 
-/** The page's detector with MediaPipe's files at an address. */
-export const detectorOf = (folder) => (shared ??= new Detector(folder));
+/** The page's detector. */
+export const detector = () => (shared ??= new Detector());
 
 class Detector {
-  /** `folder` is the address of MediaPipe's files, with a slash at its end. */
-  constructor(folder) {
-    this.folder = folder;
+  constructor() {
     this.waiting = new Map();
     this.number = 0;
     this.opened = null;
@@ -52,7 +50,7 @@ class Detector {
       else reject?.(new Error(data.error));
     };
     this.worker.onerror = () => this.close();
-    await this._ask({ job: "open", folder: this.folder });
+    await this._ask({ job: "open" });
   }
 
   _ask(message, transfer = []) {

@@ -14,8 +14,9 @@ let landmarker = null;
 let latest = 0; // milliseconds: the library wants every time to be later than the one before
 let offset = 0;
 
-async function open({ folder }) {
-  const { PoseLandmarker } = await import(`${folder}vision_bundle.mjs`);
+async function open() {
+  const { PoseLandmarker } = await import("./mediapipe/vision_bundle.mjs");
+  const folder = new URL("mediapipe/", import.meta.url).href;
   const fileset = {
     wasmLoaderPath: `${folder}vision_wasm_module_internal.js`,
     wasmBinaryPath: `${folder}vision_wasm_module_internal.wasm`,

@@ -1,19 +1,13 @@
 // The drawer of examples: scenes.json as cards that move. webdemo/ui/components/gallery.py takes the one that is pressed.
 
 import { play } from "../notebook/thumbnail.js";
-import { node } from "../player/node.js";
 
-const SIZE = 240; // pixels of a thumbnail
-
-/** A card for a scene; its words are set as text. */
-function card(scene, take) {
-  const item = node("li");
-  const button = node("button", "pdx-scene");
-  const canvas = Object.assign(node("canvas"), { width: SIZE, height: SIZE, ariaHidden: "true" });
-  button.append(canvas, scene.prompt);
+/** Fills a copy of the template with a scene; its words are set as text. */
+function card(item, scene, take) {
+  const button = item.querySelector("button");
+  button.append(scene.prompt);
   button.addEventListener("click", () => take(scene));
-  item.append(button);
-  play(canvas, scene.thumbnail);
+  play(item.querySelector("canvas"), scene.thumbnail);
   return item;
 }
 
@@ -22,6 +16,7 @@ export function mount(element, props, watch, trigger) {
   const dialog = element.querySelector("dialog");
   const list = element.querySelector("ul");
   const failed = element.querySelector(".pdx-failed");
+  const made = element.querySelector("template");
   const take = ({ prompt, seconds, seed }) => {
     dialog.close();
     props.value = { prompt, seconds, seed };
@@ -30,7 +25,7 @@ export function mount(element, props, watch, trigger) {
   const fill = async () => {
     try {
       const { scenes } = await (await fetch(new URL("scenes.json", import.meta.url))).json();
-      list.replaceChildren(...scenes.map((scene) => card(scene, take)));
+      list.replaceChildren(...scenes.map((scene) => card(made.content.firstElementChild.cloneNode(true), scene, take)));
     } catch {
       failed.hidden = false;
     }

@@ -8,9 +8,10 @@ const SLOWEST = 15000; // milliseconds for an answer; the networks may have to b
 export class LiveError extends Error {}
 
 export class Connection {
-  /** `address` is that of the page's live streams; `wanted` what is asked for: the partner. */
-  constructor(address, wanted) {
-    this.address = address;
+  /** `wanted` is what is asked for: the partner. */
+  constructor(wanted) {
+    const root = window.gradio_config?.root || new URL(".", document.baseURI).href;
+    this.address = `${root.replace(/[/]$/, "")}/live`;
     this.wanted = wanted;
     this.id = null;
     this.closed = false;

@@ -1,6 +1,6 @@
 // Entry point: a panel in which somebody moves and a partner answers at once.
 
-import { detectorOf } from "../camera/detector.js";
+import { detector } from "../camera/detector.js";
 import { drawPerson } from "../camera/drawing.js";
 import { FilmError } from "../camera/film.js";
 import { Panel } from "../camera/panel.js";
@@ -15,19 +15,19 @@ const WAITING = 8; // pictures that wait for the server; older ones are dropped
 const TOGETHER = 6; // pictures that are sent as one message
 const NAMES = { agent: "agent", regennet: "reactor" };
 
-/**
- * `element` holds live.html; `keep(text)` hands a stream to the page's Python side; `address` is that of the live
- * streams, `mediapipe` of the detector's files.
- */
-export function mount(element, keep, { address, mediapipe }) {
+/** `element` holds live.html; a stream to be kept becomes the value of `props`, and `trigger` tells the page's Python side. */
+export function mount(element, props, watch, trigger) {
   for (const name of ["../camera/camera.css", "live.css"]) loadStyles(new URL(name, import.meta.url).href);
-  new LivePanel(element, keep, address, mediapipe);
+  new LivePanel(element, (text) => {
+    props.value = text;
+    trigger("submit");
+  });
 }
 
 class LivePanel extends Panel {
-  constructor(element, hand, address, mediapipe) {
+  constructor(element, hand) {
     super(element.querySelector(".pdlive"), ["source", "partner", "keep", "belief", "text", "chances"]);
-    Object.assign(this, { element, hand, address, mediapipe, last: null });
+    Object.assign(this, { element, hand, last: null });
     this.begin.onclick = () => this.start();
     this.stop.onclick = () => this.rest(`${say("live.stopped")} ${say("live.again")}`);
     this.keep.onclick = () => this.handOver();
@@ -70,9 +70,9 @@ class LivePanel extends Panel {
     try {
       const { player } = this;
       if (!player) throw new FilmError(say("live.no_view"));
-      const source = this.source.value === "clip" ? new Person(player) : new Webcam(this.video, detectorOf(this.mediapipe));
+      const source = this.source.value === "clip" ? new Person(player) : new Webcam(this.video, detector());
       const partner = this.partner.value;
-      const connection = new Connection(this.address, { partner });
+      const connection = new Connection({ partner });
       this.live = { source, connection, stream: null };
       this.say(say(source.video ? "live.opening_both" : "live.opening"));
       await source.begin(); // takes seconds, in which nothing could be sent

@@ -75,54 +75,36 @@ export class Notebook {
     this.show();
   }
 
+  /** A copy of one of the templates. */
+  made(name) {
+    return this.find(`[data-made=${name}]`).content.cloneNode(true);
+  }
+
   card(entry) {
-    const card = node("li", "pdn-card");
+    const card = this.made("card").firstElementChild;
+    const part = (selector) => card.querySelector(selector);
     card.dataset.id = entry.id;
-    card.tabIndex = 0;
-    const box = Object.assign(node("input"), { type: "checkbox", ariaLabel: say("notebook.choose", { title: entry.title }) });
-    const pick = node("span", "pdn-pick"); // more to press than the box
-    pick.append(box);
-    const picture = Object.assign(node("canvas", "pdn-thumb"), { width: 88, height: 88 });
-    picture.setAttribute("aria-hidden", "true");
-    play(picture, entry.thumbnail);
-    const text = node("div", "pdn-text");
-    const title = node("p", "pdn-title");
-    title.append(`${entry.favourite ? "★ " : ""}${entry.title}`);
-    const facts = node("p", "pdn-facts", entry.facts);
-    const tags = node("p", "pdn-tags");
-    for (const tag of entry.tags) tags.append(node("span", "", `#${tag}`));
-    text.append(title, facts, tags);
-    if (entry.message) text.append(node("p", "pdn-message", entry.message));
-    if (entry.note) text.append(node("p", "pdn-note", entry.note));
-    const more = node("details", "pdn-details");
-    more.append(node("summary", "", say("notebook.details")));
+    part("input").ariaLabel = say("notebook.choose", { title: entry.title });
+    play(part("canvas"), entry.thumbnail);
+    part(".pdn-title").textContent = `${entry.favourite ? "★ " : ""}${entry.title}`;
+    for (const name of ["facts", "message", "note"]) part(`.pdn-${name}`).textContent = entry[name];
+    part(".pdn-tags").append(...entry.tags.map((tag) => node("span", "", `#${tag}`)));
+    const more = part("details");
     more.addEventListener("toggle", () => more.open && more.children.length === 1 && this.fill(more, entry));
-    text.append(more);
-    card.append(pick, picture, text);
     return card;
   }
 
   /** The rest of a card, made when it is opened. */
   fill(more, entry) {
-    const field = (label, name, value, tag = "input") => {
-      const line = node("label", "", label);
-      const input = Object.assign(node(tag), { value });
-      input.dataset.field = name;
-      line.append(input);
+    const rest = this.made("rest");
+    for (const field of rest.querySelectorAll("[data-field]")) field.value = [entry[field.dataset.field]].flat().join(" ");
+    rest.querySelector("[data-save]").dataset.save = entry.id;
+    rest.querySelector("dl").append(...entry.settings.map((pair) => {
+      const line = node("div");
+      line.append(...pair.map((text, i) => node(["dt", "dd"][i], "", text)));
       return line;
-    };
-    const form = node("div", "pdn-form");
-    form.append(field(say("notebook.name"), "title", entry.title), field(say("notebook.tags"), "tags", entry.tags.join(" ")), field(say("notebook.note"), "note", entry.note, "textarea"));
-    const save = node("button", "", say("notebook.save"));
-    save.dataset.save = entry.id;
-    form.append(save);
-    const list = node("dl", "pdn-settings");
-    for (const [name, value] of entry.settings) {
-      const pair = node("div");
-      pair.append(node("dt", "", name), node("dd", "", value));
-      list.append(pair);
-    }
-    more.append(form, list);
+    }));
+    more.append(rest);
   }
 
   press(event) {

@@ -5,6 +5,7 @@ import { loops, Player } from "./player.js";
 import { say } from "../texts.js";
 
 const players = new Set();
+const address = (path) => new URL(path, import.meta.url).href;
 
 /** What tests and curious people look at: the player in view that was made last. */
 const hooks = {
@@ -30,13 +31,16 @@ const hooks = {
   },
 };
 
+const OURS = { plotly: "../plotly/plotly-gl3d.min.js", styles: "player.css", empty: "player.empty" };
+
 /**
- * `element` holds player.html; `props` are the component's, watched by `watch`; `plotly` is the address of our
- * copy of it, `empty` the key of what is said while there is no motion, and `styles` the address of player.css where that is not
- * beside this module.
+ * `element` holds player.html; `props` are the component's, watched by `watch`. A page whose files lie elsewhere gives the
+ * addresses of `plotly` and of our `styles`, and `empty`, the key of what is said while there is no motion: on a second line
+ * what comes of it.
  * Safe to call again for an element that was hidden and shown.
  */
-export async function mount(element, props, watch, { plotly, empty, styles: address = null }) {
+export async function mount(element, props, watch, trigger, places = {}) {
+  const { plotly, styles, empty } = { ...OURS, ...places };
   const root = element.querySelector(".pdd");
   const player = new Player(root);
   root.player = player; // for what stands about it and follows its clock
@@ -61,9 +65,8 @@ export async function mount(element, props, watch, { plotly, empty, styles: addr
   sync();
   watch(["value", "busy", "progress"], sync);
   try {
-    const styles = loadStyles(address ?? new URL("player.css", import.meta.url).href);
-    const styled = styles.finally(() => root.classList.add("pdd-styled")); // the empty state is there at once
-    const [Plotly] = await Promise.all([loadPlotly(plotly), styled]);
+    const styled = loadStyles(address(styles)).finally(() => root.classList.add("pdd-styled")); // the empty state is there at once
+    const [Plotly] = await Promise.all([loadPlotly(address(plotly)), styled]);
     if (!root.isConnected) return;
     await player.open(Plotly);
   } catch (error) {

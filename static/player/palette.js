@@ -35,5 +35,13 @@ export const skyAt = (theme, angle) => mix(theme.horizon, theme.sky, smooth(Math
 
 export const css = (c) => `rgb(${c.slice(0, 3).map((v) => Math.round(255 * v)).join(",")})`;
 
+/** Makes a page of our own dark or light as it is `asked` for, or else as the system is. */
+export function follow(asked = null) {
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const paint = () => document.body.classList.toggle("dark", asked === "dark" || (asked !== "light" && dark.matches));
+  dark.addEventListener("change", paint);
+  paint();
+}
+
 /** Gradio marks its dark theme with a class on body. */
 export const themeName = () => (document.body.classList.contains("dark") ? "dark" : "light");

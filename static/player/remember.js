@@ -1,35 +1,28 @@
 // What outlasts a page: the figure that a visitor chose, and the moment and camera that a link names.
 
-/** Marks this tab as one that has made something, which a reload then brings back (ui/tabs/history.py). */
-export function remember() {
+/** Calls a method of the browser's storage of some kind; null where the browser keeps nothing. */
+function kept(kind, method, ...given) {
   try {
-    sessionStorage.setItem("pas-de-deux-made", "1");
+    return globalThis[kind][method](...given);
   } catch {
-    // a browser may keep nothing; a reload then begins anew
+    return null;
   }
 }
+
+/** Marks this tab as one that has made something, which a reload then brings back (ui/tabs/history.py). */
+export const remember = () => kept("sessionStorage", "setItem", "pas-de-deux-made", "1");
 
 export const FIGURES = ["both", "body", "skeleton"];
 const FIGURE = "pas-de-deux-figure";
 
 /** How people are drawn, one of FIGURES, as the visitor left it. */
 export function figureAtFirst() {
-  try {
-    const kept = localStorage.getItem(FIGURE);
-    return FIGURES.includes(kept) ? kept : FIGURES[0];
-  } catch {
-    return FIGURES[0];
-  }
+  const figure = kept("localStorage", "getItem", FIGURE);
+  return FIGURES.includes(figure) ? figure : FIGURES[0];
 }
 
 /** Keeps how people are drawn. */
-export function keepFigure(figure) {
-  try {
-    localStorage.setItem(FIGURE, figure);
-  } catch {
-    // a browser may keep nothing
-  }
-}
+export const keepFigure = (figure) => kept("localStorage", "setItem", FIGURE, figure);
 
 let used = false; // the first motion that is opened is the address' own
 

@@ -2,7 +2,7 @@
 
 import { Asking } from "./asking.js";
 import { Length } from "./length.js";
-import { people, pieces, spoken, summary, wordsOf } from "./marks.js";
+import { offers, people, pieces, spoken, summary, wordsOf } from "./marks.js";
 import { Paths } from "./paths.js";
 import * as edits from "./plan.js";
 import { node } from "../player/node.js";
@@ -248,6 +248,7 @@ class View {
     this.length.draw(plan ? this.shown.seconds : null, current ? this.asking.text : null);
     this.find(".pdr-beats").replaceChildren(...(plan ? this.shown.beats.map((beat) => this.beat(beat)) : []));
     const notes = plan ? this.shown.notes.filter((note) => !this.shown.whys.includes(note)) : [];
+    if (plan && !plan.acts.length) notes.push(say("reading.example"));
     const warnings = [error, this.note].filter(Boolean);
     this.find(".pdr-notes").replaceChildren(
       ...warnings.map((warning) => node("p", "pdr-error", warning)), ...notes.map((note) => node("p", "", note)),
@@ -305,14 +306,13 @@ class View {
   unread(part, number) {
     const row = node("li", "");
     row.append(node("q", "pdr-lost", wordsOf(this.shown.plan.sentence, part.words)), `: ${this.whyOf(number)}`);
-    const said = (name) => this.shown.nearest[name]?.said;
-    const near = part.nearest.filter((name, i, all) => said(name) && all.findIndex((each) => said(each) === said(name)) === i);
+    const near = offers(part.nearest, this.shown.nearest);
     if (near.length && this.editable) {
       const buttons = node("span", "pdr-near");
       buttons.append(`${say("reading.put_in")} `, ...near.map((name) => this.nearest(name, number)));
       row.append(buttons);
     } else if (near.length) {
-      row.append(` ${say("reading.nearest", { names: near.map(said).join(", ") })}`);
+      row.append(` ${say("reading.nearest", { names: near.map((name) => this.shown.nearest[name].said).join(", ") })}`);
     }
     return row;
   }

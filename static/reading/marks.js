@@ -39,6 +39,12 @@ export function wordsOf(sentence, span) {
   return words.length > MOST ? `${words.slice(0, MOST - 1).join("")}…` : words.join("");
 }
 
+/** The acts that are offered, by name: those that are known, one for each of the words in which `known` says them. */
+export function offers(names, known) {
+  const said = names.map((name) => known[name]?.said);
+  return names.filter((_, i) => said[i] && said.indexOf(said[i]) === i);
+}
+
 /** The people of an act as its chip shows them: "A", "A → B", "A + B". */
 export function people(act) {
   const agents = act.agents.map((who) => who.toUpperCase()).join(" + ");

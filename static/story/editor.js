@@ -13,7 +13,7 @@ const PIXELS = 16; // a second, at least
 const plain = (story) => JSON.stringify({ ...story, ahead: false });
 
 /** The editor of a story: it shows one and tells of each change. */
-export class Editor {
+class Editor {
   /** `kept` takes the story as the component's value; `changed` tells the server that the user changed it. */
   constructor(root, props, kept, changed) {
     this.root = root;
@@ -368,4 +368,18 @@ export class Editor {
     shown.style.left = `${(100 * span[0]) / this.total}%`;
     shown.style.width = `${(100 * (span[1] - span[0])) / this.total}%`;
   }
+}
+
+/** `element` holds story.html; `props` are the component's, watched by `watch`; `trigger` tells the server. */
+export function mount(element, props, watch, trigger) {
+  const root = element.querySelector(".pds");
+  root.editor = new Editor(root, props, (story) => (props.value = story), () => trigger("input"));
+  const sync = () => {
+    root.editor.load(props.value);
+    root.editor.lay(props.laid);
+    root.editor.measure(props.lengths);
+    root.editor.draw();
+  };
+  watch(["value", "laid", "lengths"], sync);
+  sync();
 }

@@ -1,6 +1,7 @@
 // A person votes: pairs come one after the other, and the keys 1, 2 and = answer (webdemo/server/http/study_pages.py).
 
 import { mount } from "../player/main.js";
+import { follow } from "../player/palette.js";
 import { say } from "../texts.js";
 
 const NARROW = 640; // pixels: below, the two stand above each other
@@ -11,10 +12,7 @@ const find = (selector) => main.querySelector(selector);
 const { here, plotly } = main.dataset;
 const buttons = [...main.querySelectorAll("[data-answer]")];
 
-const dark = matchMedia("(prefers-color-scheme: dark)");
-const paint = () => document.body.classList.toggle("dark", dark.matches);
-dark.addEventListener("change", paint);
-paint();
+follow();
 
 // What the player expects of the component that holds it in the lab's page.
 const props = { value: null, busy: say("vote.opening"), progress: null, live: null };
@@ -80,5 +78,5 @@ addEventListener("keydown", (event) => {
   button.click(); // does nothing while it is disabled
 }, true);
 
-mount(find(".pst-stage"), props, (names, changed) => watchers.push(changed), { plotly, empty: "" });
+mount(find(".pst-stage"), props, (names, changed) => watchers.push(changed), null, { plotly, empty: "" });
 go("next");

@@ -215,7 +215,7 @@ def _find(me: Newcomer) -> None:
     me.page.keyboard.press("Control+k")
     me.page.locator("#finder dialog input").fill("arm wrestl")
     me.typed += 1
-    expect(me.page.locator("#finder [aria-selected=true]")).to_contain_text("Act", timeout=SLOW)
+    until(me.page, "document.querySelector('#finder datalist option')")
     me.page.keyboard.press("Enter")
     until(me.page, "document.querySelector('#prompt :is(textarea, input)').value.includes('wrestl')")
 

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from urllib.parse import parse_qs, urlsplit
 
-from webdemo.ui.components.player import EMPTY_TEXT, PLAYER_FOLDER, PLOTLY_JS
+from webdemo.ui.components.player import PLAYER_FOLDER, PLOTLY_JS
 
 from .harness import UPDATES
 
@@ -19,6 +19,7 @@ PAGE = """<!doctype html>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>Player</title>
+<link rel="stylesheet" href="/colours.css">
 <style>
   body { margin: 0; padding: 16px; font-family: sans-serif; }
   body.dark { background: #12161e; color: #e5e9f0; }
@@ -38,7 +39,7 @@ PAGE = """<!doctype html>
     localStorage.clear();
     host.replaceChildren(document.getElementById("fresh").content.cloneNode(true));
     props = { value: null, busy: "", progress: null, live: null };
-    mount(host, props, (names, act) => (changed = act), { plotly: "/plotly.js", empty: %(empty)s });
+    mount(host, props, (names, act) => (changed = act), null, { plotly: "/plotly.js" });
   };
   for (const button of document.querySelectorAll("nav button")) {
     button.onclick = async () => {
@@ -76,7 +77,6 @@ class Handler(SimpleHTTPRequestHandler):
                 "theme": theme,
                 "player": (PLAYER_FOLDER / "player.html").read_text(encoding="utf-8"),
                 "buttons": "".join(f"<button>{name}</button>" for name in UPDATES),
-                "empty": json.dumps(EMPTY_TEXT),
             }
             self._send((PAGE % parts).encode(), "text/html; charset=utf-8")
         elif address.path == "/plotly.js":

@@ -19,8 +19,8 @@ from webdemo.inference.own.classes import method_of_class
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.ui.api import GenerateEndpoint
 from webdemo.ui.components.actors import react_choices
-from webdemo.ui.components.notebook import method_label
 from webdemo.ui.tabs.generate import generate_choices
+from webdemo.ui.text.words import method_label
 
 
 class Toy:

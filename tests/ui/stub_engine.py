@@ -211,7 +211,7 @@ class StubEngine:
                 time.sleep(self.pause)
                 if cancel is not None and cancel.cancelled:
                     raise Cancelled("The run was cancelled.")
-                so_far = Duet.from_positions(whole[:, :stop], fps=FPS)
+                so_far = Duet.from_positions(whole[:, :stop], fps=FPS, roles=("actor", "reactor"))
                 step = sample * len(request.beats) + beat + 1
                 yield SceneProgress(
                     stage="sample",

@@ -9,10 +9,11 @@ from typing import Any
 from unittest.mock import Mock
 
 from webdemo.inference.run import CancelToken, Progress, Result
+from webdemo.server.http.health import Health
 from webdemo.ui.components.exports import Shelf
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Found
-from webdemo.ui.runs import EngineLike, Loader
+from webdemo.ui.runs import EngineLike
 
 
 class StubRuns:
@@ -44,7 +45,7 @@ def stub_context(engine: EngineLike, files: Path | None = None) -> PageContext:
     return PageContext(
         engine=engine,
         runs=StubRuns(engine),
-        loader=Loader(engine),
+        health=Health(engine),
         shelf=Shelf(files or Path(tempfile.mkdtemp())),
         history=history,
         studies=studies,

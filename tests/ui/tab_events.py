@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
 import gradio as gr
 
 from webdemo.ui.tabs.job import JobTab
+from webdemo.ui.tabs.source import SourcePanel
 
 from .stub_engine import StubEngine
 from .stub_page import stub_context
@@ -28,3 +29,9 @@ def built(kind: type[Tab], files: Path) -> Tab:
 def changes(names: Iterable[str], updates: Iterable[Any]) -> dict[str, Any]:
     """Updates by the names of their outputs, without those that change nothing."""
     return {name: update for name, update in zip(names, updates, strict=True) if update != gr.skip()}
+
+
+def taken(panel: SourcePanel, updates: Mapping[Any, Any]) -> dict[str, Any]:
+    """Updates of a panel by the names of its parts, without those that change nothing."""
+    names = {id(part): name for name, part in vars(panel).items()} | {id(panel.results.player): "player"}
+    return {names[id(part)]: update for part, update in updates.items() if update != gr.skip()}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import Any
 
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from acts import Act, Plan, Span, Unread, read
 from motion import InputError
 from webdemo.ui.components.reading import checked, edited_plan, reread, shown
+from webdemo.ui.text.texts import say
 
 
 def of(text: Any) -> dict[str, Any]:
@@ -35,6 +37,12 @@ def test_what_is_near_to_words_that_were_not_read_is_said_in_few_words() -> None
     found = shown(plan)["nearest"]
     assert set(found) == {"walk-up"}, "an act that is gone is not offered"
     assert (found["walk-up"]["said"], found["walk-up"]["patient"]) == ("walks up", True)
+
+
+def test_the_example_under_what_cannot_be_shown_is_understood() -> None:
+    (example,) = re.findall("“(.+)”", say("reading.example"))
+    plan = of(example)["plan"]
+    assert plan["acts"] and not plan["unread"]
 
 
 def test_a_text_that_cannot_be_read_is_answered_by_a_sentence() -> None:

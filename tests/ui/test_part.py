@@ -1,6 +1,5 @@
 """What all parts of the page that scripts draw have in common."""
 
-import json
 from pathlib import Path
 
 import pytest
@@ -10,7 +9,7 @@ from webdemo.ui.components.finder import Finder
 from webdemo.ui.components.gallery import Gallery
 from webdemo.ui.components.live import LivePanel
 from webdemo.ui.components.notebook import NotebookView
-from webdemo.ui.components.part import MOUNT, Part, on_load, scoped
+from webdemo.ui.components.part import Part, scoped
 from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.components.reading import Reading
 from webdemo.ui.components.story import StoryLine
@@ -27,11 +26,9 @@ def test_values_pass_unchanged_and_the_template_is_constant(part: type[Part]) ->
     assert set(made.props) == set(part.declared)
 
 
-def test_values_of_a_script_become_json() -> None:
-    quoted = 'say "100 %s"'
-    script = on_load("start(%s, %s)", quoted, Path("a b") / "c.js")
-    assert script.endswith(f"start({json.dumps(quoted)}, {json.dumps('a b/c.js')})")
-    assert "element, props, watch, trigger" in on_load(MOUNT, Path("main.js"))
+def test_a_part_is_given_to_the_module_beside_its_template() -> None:
+    script = LivePanel(render=False).js_on_load
+    assert '/static/live/live.js";' in script and "mount(element, props, watch, trigger)" in script
 
 
 def test_every_rule_of_a_style_sheet_stays_inside_its_part(tmp_path: Path) -> None:

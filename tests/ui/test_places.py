@@ -1,4 +1,4 @@
-"""Places for reading: one a person, few for all, and whoever has used least goes first."""
+"""Places for reading: one a person, few for all, and whoever had none goes first."""
 
 from __future__ import annotations
 
@@ -42,5 +42,5 @@ def test_a_person_has_one_place_and_others_go_before_their_next(monkeypatch: pyt
         time.sleep(0.05)
     for thread in threads:
         thread.join(timeout=60)
-    assert order[2] in ("ann", "bob"), "they are one person, who has used least"
+    assert order[2] in ("ann", "bob"), "they are one person, who had none"
     assert order.count("eve") == 5 and len(order) == 8

@@ -10,7 +10,7 @@ import gradio as gr
 import pytest
 
 from motion import InputError
-from webdemo.ui.api import PROGRESS, Endpoint
+from webdemo.ui.api import PROGRESS, GenerateEndpoint
 
 
 def test_one_persons_files_are_read_one_after_the_other() -> None:
@@ -29,7 +29,7 @@ def test_one_persons_files_are_read_one_after_the_other() -> None:
 
     def ask() -> None:
         with pytest.raises(gr.Error, match="The file is empty"):
-            Endpoint(None)._answer(read, "x", PROGRESS, reads=True)  # type: ignore[arg-type]  # no run is begun
+            GenerateEndpoint(None)._answer(read, "x", PROGRESS, reads=True)  # type: ignore[arg-type]  # no run is begun
 
     threads = [threading.Thread(target=ask) for _ in range(20)]
     for thread in threads:

@@ -8,7 +8,7 @@ import pytest
 
 from motion.formats import read, write
 from webdemo.inference.story import sentences
-from webdemo.ui.scene_api import SceneEndpoint
+from webdemo.ui.api import SceneEndpoint
 
 from .stub_engine import StubEngine, walking
 from .stub_page import stub_context

@@ -1,6 +1,6 @@
 """Settings that follow a motion."""
 
-from webdemo.ui.components.settings import FittedSlider
+from webdemo.ui.components.fields import FittedSlider
 
 
 def test_a_value_that_was_on_its_way_when_the_motion_became_shorter_is_its_end() -> None:

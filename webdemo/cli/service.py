@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import json
 import sys
 from contextlib import closing
@@ -109,6 +110,7 @@ def serve(options: argparse.Namespace) -> dict[str, Any]:
         for name, value in settings.shown().items():
             print(f"{name} = {json.dumps(value)}  # {Settings.model_fields[name].description}")
         return settings.shown()
+    gc.disable()  # until the page is up: looking for garbage among all that is imported takes a second
     from webdemo.server.serve import serve as run
 
     run(settings)

@@ -21,7 +21,8 @@ from starlette.middleware.cors import CORSMiddleware
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Mount
 
-from acts.lexicon import lexicon
+from acts import read
+from motion import InputError
 from webdemo.server.accounts.login import login_routes
 from webdemo.server.accounts.visitors import Visitors
 from webdemo.server.http.admin_pages import admin_routes
@@ -39,7 +40,7 @@ from webdemo.ui.components.exports import Shelf
 from webdemo.ui.context import PageContext
 from webdemo.ui.page import build_page, launch_options, start_queue
 from webdemo.ui.places import READING
-from webdemo.ui.runs import EngineLike, Loader
+from webdemo.ui.runs import EngineLike
 from webdemo.ui.visitor import visitor
 
 from .process import give_back, watch
@@ -82,7 +83,7 @@ def create_app(settings: Settings, *, engine: EngineLike | None = None, scratch:
     page = build_page(
         PageContext(
             engine=engine,
-            loader=Loader(engine),
+            health=lab.health,
             runs=Recorder(lab.queue, lab.history),
             shelf=shelf,
             history=lab.history,
@@ -159,12 +160,13 @@ def _add_routes(app: FastAPI, lab: Lab) -> None:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     lab: Lab = app.state.lab
     gc.freeze()  # modules stay, so nobody looks for garbage among them
+    gc.enable()
     lost = await run_in_threadpool(lab.history.recover)
     if lost:
         log.warning("%d runs were interrupted when the server last stopped.", lost)
     tasks = [
         asyncio.create_task(_later(WARM_UP_AFTER, lab.health.probe)),
-        asyncio.create_task(_later(WARM_UP_AFTER, lexicon)),
+        asyncio.create_task(_later(2 * WARM_UP_AFTER, _read_first)),
         asyncio.create_task(_every(CLEAN_EVERY, lab.history.clean)),
         asyncio.create_task(_every(CLEAN_EVERY, lab.publishing.clean)),
         asyncio.create_task(_every(TIDY_EVERY, app.state.tidy)),
@@ -182,6 +184,14 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         if close := getattr(lab.queue.engine, "close", None):
             await run_in_threadpool(close)
         lab.database.close()
+
+
+def _read_first() -> None:
+    """Loads the parser, so that the first sentence that somebody types is read as fast as later ones."""
+    try:
+        read("They wave.")
+    except InputError as error:  # the page says so under what is typed
+        log.warning("Sentences cannot be read: %s", error)
 
 
 async def _later(seconds: float, job: Callable[[], Any]) -> None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from webdemo.inference.engine import Engine
 from webdemo.server.accounts.administration import Administration
 from webdemo.server.accounts.people import People
 from webdemo.server.accounts.quotas import Quotas
@@ -24,7 +25,6 @@ from webdemo.server.store.publishing import Publishing
 from webdemo.server.store.scratch import Scratch
 from webdemo.server.store.storage import Storage
 from webdemo.server.store.studies import Studies
-from webdemo.ui.lazy import LazyEngine
 from webdemo.ui.runs import EngineLike
 
 from .settings import Settings
@@ -98,7 +98,7 @@ def make_lab(settings: Settings, engine: EngineLike, scratch: Scratch | None = N
     health = Health(engine, wants, works=works, stuck_seconds=settings.stuck_seconds)
     limits = QueueLimits(running=settings.running, workers=getattr(engine, "parallel", 1), seconds=settings.run_seconds)
     queue = FairQueue(engine, limits, quotas.waiting, figures=figures, broken=health.broken)
-    partners: Any = engine if hasattr(engine, "partner") else LazyEngine()  # with an engine elsewhere, they run here
+    partners: Any = engine if hasattr(engine, "partner") else Engine()  # with an engine elsewhere, they run here
     streams = Streams(partners, quotas.live)
     figures.watch(
         waiting=lambda: queue.waiting,
@@ -144,4 +144,4 @@ def engine_of(settings: Settings) -> EngineLike:
         from webdemo.server.cluster.ray_engine import RayEngine
 
         return RayEngine(address=settings.ray_address, replicas=(1, settings.ray_replicas), cores=settings.ray_cores)
-    return LazyEngine()
+    return Engine()

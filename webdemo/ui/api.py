@@ -2,24 +2,37 @@
 
 from __future__ import annotations
 
+import inspect
 import uuid
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import gradio as gr
 
+import acts
 from motion import Clip, Duet, InputError
 from motion.formats import ImportChoices, read
+from motion.retarget import to_smpl
 from webdemo.inference.methods import AUTOMATIC, methods
 from webdemo.inference.requests import OWN_STEPS, GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.run import Cancelled, Result
-from webdemo.ui.components.exports import write_files
+from webdemo.inference.story import SceneRequest, in_time, read_words
+from webdemo.inference.story.request import MOST_SECONDS
+from webdemo.ui.components import film as films
+from webdemo.ui.components.exports import file_name, without_place, write_files
+from webdemo.ui.components.reading import READERS, READING_EVENTS
 from webdemo.ui.text.classes import class_method
 from webdemo.ui.text.words import error_line, progress_line
+from webdemo.view import film, plotly_figure
+from webdemo.view.camera import VIEWS
+from webdemo.view.sheet import SUFFIXES as SHEETS
+from webdemo.view.sheet import write_sheet
+from webdemo.view.stage import LOOKS, Pane, Style
 
 from .context import PageContext
 from .places import READING
@@ -35,13 +48,23 @@ PROGRESS = gr.Progress()
 """A default value that makes Gradio report a job's progress in ``job.status()``."""
 
 
-def reading_choices(animation: str = "", fps: float = 0.0, up: str = "", order: str = "") -> ImportChoices:
-    """Facts that a program gives of its file; empty texts and 0 leave a thing to be found."""
-    return ImportChoices(up or None, fps or None, order or None, animation or None)
+def file_facts(fps: str = "fps") -> Inputs:
+    """Inputs for the facts that a program may give of its file; ``fps`` is what its rate is called."""
+    return {
+        "animation": gr.Textbox("", label=WHICH),
+        fps: gr.Number(0, label=RATE),
+        "up": gr.Textbox("", label=UP),
+        "order": gr.Textbox("", label=ORDER),
+    }
 
 
-class Endpoint:
-    """A job for programs; a subclass publishes its inputs.
+def reading_choices(asked: Inputs) -> ImportChoices:
+    """Takes the values of :func:`file_facts` out of what was asked; empty texts and 0 leave a thing to be found."""
+    return ImportChoices(**{name: asked.pop(name, None) or None for name in ("up", "fps", "order", "animation")})
+
+
+class Endpoint(ABC):
+    """A job for programs: the method called like the endpoint, whose docstring programs read, and its inputs.
 
     The components of an endpoint are never shown. They are there because they, unlike ``gr.api``, hand files
     over to a client on another machine; their limits are the request's, so that every error is its sentence.
@@ -50,8 +73,37 @@ class Endpoint:
         page: what tabs and endpoints share.
     """
 
+    name: ClassVar[str]
+    returns: ClassVar[str] = (
+        "Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a two-person "
+        ".npz, two .bvh, two .smpl.npz, a .usda (and a .glb where the server writes them), a contact sheet .png, and a "
+        "manifest .json. "
+    )
+    """Follows the job's docstring in what programs read."""
+    options: ClassVar[dict[str, Any]] = {"concurrency_limit": None}
+    """Of its event: by default runs wait in the line that they share with the page's."""
+
     def __init__(self, page: PageContext) -> None:
         self.page = page
+
+    @abstractmethod
+    def inputs(self) -> Inputs:
+        """Makes the inputs, which the job gets by their names; one without a value is named in its signature."""
+
+    def outputs(self) -> list[gr.Component]:
+        """Makes the outputs."""
+        return [
+            gr.JSON(label="result: manifest, readouts, timings, notes, names of files"),
+            gr.File(label="the files", file_count="multiple"),
+        ]
+
+    def publish(self) -> None:
+        """Adds the endpoint to the page that is being built."""
+        with gr.Row(visible=False):
+            job, inputs = getattr(self, self.name), self.inputs()
+            said = f"{inspect.getdoc(job)} {self.returns}An error is one sentence that says what to change."
+            named: dict[str, Any] = {"api_name": self.name, "api_description": said}
+            gr.Button().click(job, inputs_kwargs=inputs, outputs=self.outputs(), **named, **self.options)
 
     @staticmethod
     def _sampling(guidance: float = SamplingRequest.guidance) -> Inputs:
@@ -64,21 +116,6 @@ class Endpoint:
             "damping": gr.Number(SamplingRequest.damping, label="damping threshold as a share of T, 0 to 1; 0 is none"),
             "sampler": gr.Textbox(SamplingRequest.sampler, label="ddim or dpm++"),
         }
-
-    @staticmethod
-    def _publish(job: Callable[..., Answer], name: str, inputs: Inputs) -> None:
-        """Publishes a job, which gets the inputs by their names; one without a value is named in its signature."""
-        outputs = [
-            gr.JSON(label="result: manifest, readouts, timings, notes, names of files"),
-            gr.File(label="the files", file_count="multiple"),
-        ]
-        gr.Button().click(
-            job,
-            inputs_kwargs=inputs,
-            outputs=outputs,
-            api_name=name,
-            concurrency_limit=None,  # runs wait in the line that they share with the page's
-        )
 
     def _answer(
         self,
@@ -94,7 +131,7 @@ class Endpoint:
         try:
             with READING.place() if reads else nullcontext():
                 request = make()
-            result = self._run(request, progress)
+            result = self._made(request, progress)
             files = write_files(result, self.page.shelf.folder(), prompt=title)
         except Cancelled:
             raise gr.Error("The run was cancelled: send the request again.", print_exception=False) from None
@@ -113,7 +150,7 @@ class Endpoint:
             }
         return answer, [str(path) for paths in files.values() for path in paths]
 
-    def _run(self, request: SamplingRequest | PredictRequest, progress: gr.Progress) -> Result:
+    def _made(self, request: SamplingRequest | PredictRequest, progress: gr.Progress) -> Result:
         for event in self.page.runs.run(f"api-{uuid.uuid4().hex}", request):
             if isinstance(event, Result):
                 return event
@@ -132,113 +169,83 @@ def reading_notes(request: Any) -> list[str]:
 class GenerateEndpoint(Endpoint):
     """``/generate``: text → motion files."""
 
-    def publish(self) -> None:
-        """Adds the endpoint to the page that is being built."""
+    name = "generate"
+
+    def inputs(self) -> Inputs:
+        """See :meth:`Endpoint.inputs`."""
         models = " or ".join(m.name for m in methods("generate") if "words" in m.takes)
         tries = "tries, 1 to 4: seeds to try until the motion shows all that is said; the best is kept"
-        with gr.Row(visible=False):
-            inputs: Inputs = {
-                "prompt": gr.Textbox(label="what the two people do, in English, up to 500 characters"),
-                "seconds": gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
-                **self._sampling(),
-                "model": gr.Textbox(GenerateRequest.model, label=models),
-                "tries": gr.Number(GenerateRequest.tries, label=tries),
-            }
-            self._publish(self.generate, "generate", inputs)
+        return {
+            "prompt": gr.Textbox(label="what the two people do, in English, up to 500 characters"),
+            "seconds": gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
+            **self._sampling(),
+            "model": gr.Textbox(GenerateRequest.model, label=models),
+            "tries": gr.Number(GenerateRequest.tries, label=tries),
+        }
 
     def generate(self, prompt: str, steps: int = OWN_STEPS, progress: gr.Progress = PROGRESS, **asked: Any) -> Answer:
-        """Two people from one sentence.
-
-        Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
-        two-person .npz, two .bvh, two .smpl.npz, a .usda (and a .glb where the server writes them), a contact sheet
-        .png, and a manifest .json. An error is one sentence that says what to change.
-        """
+        """Two people from one sentence."""
         return self._answer(lambda: GenerateRequest(prompt=prompt, steps=steps, **asked), prompt, progress)
 
 
 class ClassEndpoint(GenerateEndpoint):
     """``/generate_class``: a class → motion files."""
 
-    def publish(self) -> None:
-        """Adds the endpoint to the page that is being built."""
-        with gr.Row(visible=False):
-            inputs: Inputs = {
-                "name": gr.Textbox(label="name of a class, such as: shake hands"),
-                "seconds": gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
-                **self._sampling(class_method().default("guidance", GenerateRequest.guidance)),
-            }
-            self._publish(self.generate_class, "generate_class", inputs)
+    name = "generate_class"
+
+    def inputs(self) -> Inputs:
+        """See :meth:`Endpoint.inputs`."""
+        return {
+            "name": gr.Textbox(label="name of a class, such as: shake hands"),
+            "seconds": gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
+            **self._sampling(class_method().default("guidance", GenerateRequest.guidance)),
+        }
 
     def generate_class(
         self, name: str, steps: int = OWN_STEPS, progress: gr.Progress = PROGRESS, **asked: Any
     ) -> Answer:
-        """Two people from the name of a class, by BiGraphDiff; an unknown one is answered with all names.
-
-        Returns what /generate does.
-        """
+        """Two people from the name of a class, by BiGraphDiff; an unknown one is answered with all names."""
         return self.generate(name, steps, progress, model=class_method().name, **asked)
 
 
 class ReactEndpoint(Endpoint):
     """``/react``: one person → motion files of two."""
 
-    def publish(self) -> None:
-        """Adds the endpoint to the page that is being built."""
+    name = "react"
+
+    def inputs(self) -> Inputs:
+        """See :meth:`Endpoint.inputs`."""
         found = methods("react")
         streaming = " or ".join(m.name for m in found if "online" in m.modes)
         posed = " or ".join(m.name for m in found if "first pose" in m.takes)
         models = " or ".join([AUTOMATIC, *(m.name for m in found)])
-        with gr.Row(visible=False):
-            inputs: Inputs = {
-                "actor": gr.File(label="the given person: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
-                "prompt": gr.Textbox("", label="what the two people do, in English; may be empty"),
-                "person": gr.Textbox("", label="a to f, if the file holds several people"),
-                "start": gr.Number(0, label="start of the part to use, in seconds"),
-                "end": gr.Number(0, label="its end, in seconds; 0 is the end of the file"),
-                "role": gr.Textbox(ReactRequest.role, label="a: the given person acts first; b: they react"),
-                **self._sampling(),
-                "model": gr.Textbox(ReactRequest.model, label=models),
-                "mode": gr.Textbox(ReactRequest.mode, label=f"offline; or online ({streaming})"),
-                "keep_start": gr.Checkbox(
-                    False, label=f"start in the first pose of the other person in the file ({posed})"
-                ),
-                "animation": gr.Textbox("", label=WHICH),
-                "fps": gr.Number(0, label=RATE),
-                "up": gr.Textbox("", label=UP),
-                "order": gr.Textbox("", label=ORDER),
-            }
-            self._publish(self.react, "react", inputs)
+        return {
+            "actor": gr.File(label="the given person: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
+            "prompt": gr.Textbox("", label="what the two people do, in English; may be empty"),
+            "person": gr.Textbox("", label="a to f, if the file holds several people"),
+            "start": gr.Number(0, label="start of the part to use, in seconds"),
+            "end": gr.Number(0, label="its end, in seconds; 0 is the end of the file"),
+            "role": gr.Textbox(ReactRequest.role, label="a: the given person acts first; b: they react"),
+            **self._sampling(),
+            "model": gr.Textbox(ReactRequest.model, label=models),
+            "mode": gr.Textbox(ReactRequest.mode, label=f"offline; or online ({streaming})"),
+            "keep_start": gr.Checkbox(
+                False, label=f"start in the first pose of the other person in the file ({posed})"
+            ),
+            **file_facts(),
+        }
 
     def react(
-        self,
-        actor: str,
-        prompt: str,
-        person: str,
-        start: float,
-        end: float,
-        keep_start: bool,
-        animation: str,
-        fps: float,
-        up: str,
-        order: str,
-        steps: int = OWN_STEPS,
-        progress: gr.Progress = PROGRESS,
-        **asked: Any,
+        self, actor: str, prompt: str, steps: int = OWN_STEPS, progress: gr.Progress = PROGRESS, **asked: Any
     ) -> Answer:
-        """A second person for a given one, who stays exactly as they are (at 30 frames a second).
-
-        Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
-        two-person .npz, two .bvh, two .smpl.npz, a .usda (and a .glb where the server writes them), a contact sheet
-        .png, and a manifest .json. An error is one sentence that says what to change.
-        """
+        """A second person for a given one, who stays exactly as they are (at 30 frames a second)."""
 
         def request() -> ReactRequest:
             if not actor:
                 raise InputError("There is no actor: send a motion file, such as a .bvh.")
-            choices = reading_choices(animation, fps, up, order)
-            clip, pose = read_actor(
-                actor, person=person or None, start=start, end=end or None, keep_start=keep_start, choices=choices
-            )
+            part = {name: asked.pop(name) for name in ("person", "start", "end", "keep_start")}
+            part = {**part, "person": part["person"] or None, "end": part["end"] or None}
+            clip, pose = read_actor(actor, **part, choices=reading_choices(asked))
             return ReactRequest(actor=clip, first_pose=pose, prompt=prompt, steps=steps, **asked)
 
         title = prompt.strip() or f"Reaction to {Path(actor or '').stem}"
@@ -248,51 +255,179 @@ class ReactEndpoint(Endpoint):
 class PredictEndpoint(Endpoint):
     """``/predict``: a past → motion files that go on."""
 
-    def publish(self) -> None:
-        """Adds the endpoint to the page that is being built."""
-        with gr.Row(visible=False):
-            inputs: Inputs = {
-                "past": gr.File(label="the motion of one person or two: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
-                "marker": gr.Number(0, label="the second at which the past ends; 0 is the end of the file"),
-                "seconds": gr.Number(PredictRequest.seconds, label="how much to predict in seconds, 0.5 to 4"),
-                "model": gr.Textbox(PredictRequest.model, label=" or ".join(m.name for m in methods("predict"))),
-                "animation": gr.Textbox("", label=WHICH),
-                "fps": gr.Number(0, label=RATE),
-                "seed": gr.Number(0, precision=0, label="seed of a method that draws its futures"),
-                "up": gr.Textbox("", label=UP),
-                "order": gr.Textbox("", label=ORDER),
-            }
-            self._publish(self.predict, "predict", inputs)
+    name = "predict"
 
-    def predict(
-        self,
-        past: str,
-        marker: float,
-        seconds: float,
-        model: str,
-        animation: str = "",
-        fps: float = 0.0,
-        seed: int = 0,
-        up: str = "",
-        order: str = "",
-        progress: gr.Progress = PROGRESS,
-    ) -> Answer:
+    def inputs(self) -> Inputs:
+        """See :meth:`Endpoint.inputs`."""
+        return {
+            "past": gr.File(label="the motion of one person or two: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
+            "marker": gr.Number(0, label="the second at which the past ends; 0 is the end of the file"),
+            "seconds": gr.Number(PredictRequest.seconds, label="how much to predict in seconds, 0.5 to 4"),
+            "model": gr.Textbox(PredictRequest.model, label=" or ".join(m.name for m in methods("predict"))),
+            "seed": gr.Number(0, precision=0, label="seed of a method that draws its futures"),
+            **file_facts(),
+        }
+
+    def predict(self, past: str, marker: float, progress: gr.Progress = PROGRESS, **asked: Any) -> Answer:
         """Predicts what comes after the past of a motion, for one person or two.
 
-        Returns the manifest, timings, notes and file names, and under "prediction" the error (mm) and speed
-        (mm a frame) of every predicted frame; and the files, which hold the past and what is predicted. An
-        error is one sentence that says what to change.
+        The files hold both, and "prediction" the error (mm) and speed (mm a frame) of every predicted frame.
         """
 
         def request() -> PredictRequest:
             if not past:
                 raise InputError("There is no past: send a motion file, such as a .bvh.")
-            return PredictRequest(
-                motion=read(Path(past), choices=reading_choices(animation, fps, up, order), longest=LONGEST),
-                marker=marker or None,
-                seconds=seconds,
-                seed=seed,
-                model=model,
-            )
+            motion = read(Path(past), choices=reading_choices(asked), longest=LONGEST)
+            return PredictRequest(motion=motion, marker=marker or None, **asked)
 
         return self._answer(request, f"After {Path(past or '').stem}", progress, reads=True)
+
+
+class SceneEndpoint(Endpoint):
+    """``/scene``: a story, alone or as a part of a motion → motion files."""
+
+    name = "scene"
+
+    def inputs(self) -> Inputs:
+        """See :meth:`Endpoint.inputs`."""
+        return {
+            "story": gr.Textbox(label="the story: TOML (docs/scenes.md), or sentences, which are split into beats"),
+            "motion": gr.File(label="a motion of two people that the story goes on from, up to 50 MB; may be empty"),
+            "start": gr.Number(0, label="with a motion: the second at which the story begins; 0 is the motion's end"),
+            "end": gr.Number(0, label="with a motion: the second at which it goes on unchanged; 0: it does not"),
+            "samples": gr.Number(None, label="how many scenes or futures, 1 to 8; the story's own by default"),
+            "seed": gr.Number(None, label="seed; the story's own by default"),
+            **file_facts(),
+        }
+
+    def scene(
+        self,
+        story: str,
+        motion: str | None = None,
+        start: float = 0,
+        end: float = 0,
+        samples: float | None = None,
+        seed: float | None = None,
+        progress: gr.Progress = PROGRESS,
+        **facts: Any,
+    ) -> Answer:
+        """A scene of several beats, or a span or a continuation of a given motion."""
+
+        def request() -> SceneRequest:
+            fields = read_words(story, in_time())
+            fields |= {key: value for key, value in (("samples", samples), ("seed", seed)) if value is not None}
+            given = _two_people(motion, reading_choices(facts)) if motion else None
+            return SceneRequest(**fields, motion=given, start=start or None, end=end or None)
+
+        return self._answer(request, story.split("\n", 1)[0][:80] or "A scene", progress, reads=bool(motion))
+
+
+def _two_people(path: str, choices: ImportChoices) -> Duet:
+    found = read(Path(path), longest=MOST_SECONDS, choices=choices)
+    if not isinstance(found, Duet):
+        raise InputError(f"{Path(path).name} holds one person: a scene goes on from a motion of two.")
+    return to_smpl(found)
+
+
+class ReadEndpoint(Endpoint):
+    """``/read``: what is understood of a sentence; nothing is generated."""
+
+    name = "read"
+    returns = ""
+    options: ClassVar = {"concurrency_limit": READERS, "concurrency_id": READING_EVENTS}
+
+    def inputs(self) -> Inputs:
+        """See :meth:`Endpoint.inputs`."""
+        return {"text": gr.Textbox(label="English text, at most 2,000 characters")}
+
+    def outputs(self) -> list[gr.Component]:
+        """See :meth:`Endpoint.outputs`."""
+        return [gr.JSON(label="plan: people, things, acts, and what was not understood")]
+
+    def read(self, text: str | None) -> dict[str, Any]:
+        """The plan of a text: who does what to whom, in which order, and what was not understood (docs/acts.md)."""
+        try:
+            return acts.read(text or "").model_dump(mode="json")
+        except Exception as error:
+            raise gr.Error(error_line(error), print_exception=False) from None
+
+
+class RenderEndpoint(Endpoint):
+    """``/render``: a motion file → a film, a contact sheet or a plotly figure."""
+
+    name = "render"
+    returns = ""
+    options: ClassVar = {"concurrency_limit": 1, "concurrency_id": "film"}
+
+    def inputs(self) -> Inputs:
+        """See :meth:`Endpoint.inputs`."""
+        return {
+            "motion": gr.File(label="the motion of one person or two: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
+            "kind": gr.Textbox("mp4", label="film: mp4, webm, gif; contact sheet: png, pdf; plotly figure: html"),
+            "look": gr.Textbox(Style.look, label=" or ".join(LOOKS)),
+            "theme": gr.Textbox(Style.theme, label="light or dark"),
+            "view": gr.Textbox("threequarter", label=" or ".join(VIEWS)),
+            "fps": gr.Number(film.FPS, label="frames a second of a film, 1 to 60"),
+            "width": gr.Number(film.SIZE[0], label="width in pixels: even, 64 to 1920"),
+            "height": gr.Number(film.SIZE[1], label="height of a film in pixels: even, 64 to 1080"),
+            **file_facts(fps="file_fps"),
+        }
+
+    def outputs(self) -> list[gr.Component]:
+        """See :meth:`Endpoint.outputs`."""
+        return [gr.File(label="the film, sheet or figure")]
+
+    def render(
+        self,
+        motion: str,
+        kind: str,
+        look: str,
+        theme: str,
+        view: str,
+        fps: float,
+        width: float,
+        height: float,
+        file_fps: float = 0.0,
+        **facts: Any,
+    ) -> str:
+        """A film, a contact sheet or a plotly figure of a motion file."""
+        folder = self.page.shelf.folder()
+        try:
+            if not motion:
+                raise InputError("There is no motion: send a motion file, such as a .bvh.")
+            kind, look, theme = kind or "mp4", look or Style.look, theme or Style.theme
+            fps, width, height = (
+                given if given is not None else usual
+                for given, usual in zip((fps, width, height), (film.FPS, *film.SIZE), strict=True)
+            )
+            if width > 1920 or height > 1080:
+                raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
+            with READING.place():
+                found = read(Path(motion), choices=reading_choices(facts | {"fps": file_fps}), longest=films.LONGEST)
+            name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
+            out = folder / f"{file_name(name, {})}{suffix}"
+            style = Style(look=look, theme=theme, names=suffix not in SHEETS)
+            if suffix in SHEETS:
+                return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
+            if suffix == plotly_figure.SUFFIX:
+                return str(plotly_figure.write_figure(found, out, title=name, theme=theme))
+            size, hear = (int(width), int(height)), films.in_time()
+            return str(
+                film.write_film(
+                    [Pane(found)], out, fps=fps, size=size, style=style, view=view, title=name, progress=hear
+                )
+            )
+        except Exception as error:
+            raise gr.Error(error_line(without_place(error, folder)), print_exception=False) from None
+
+
+ENDPOINTS = (
+    PredictEndpoint,
+    GenerateEndpoint,
+    ClassEndpoint,
+    ReactEndpoint,
+    RenderEndpoint,
+    SceneEndpoint,
+    ReadEndpoint,
+)
+"""Gradio's client in the browser takes the page's first function for "/predict", so that one comes first."""

@@ -8,7 +8,7 @@ from webdemo.study import StudiesLike
 from webdemo.ui.components.exports import Shelf
 
 from .history import HistoryLike, SharingLike
-from .runs import EngineLike, Loader, RunsLike
+from .runs import EngineLike, HealthLike, RunsLike
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,7 +18,7 @@ class PageContext:
     Attributes:
         engine: answers requests.
         runs: every session's run, and the line they wait in.
-        loader: loads the networks in the background.
+        health: loads the networks in the background and tries them.
         shelf: where files for downloads are put.
         history: runs that can be found again.
         studies: blind studies of those runs.
@@ -27,7 +27,7 @@ class PageContext:
 
     engine: EngineLike
     runs: RunsLike
-    loader: Loader
+    health: HealthLike
     shelf: Shelf
     history: HistoryLike
     studies: StudiesLike

@@ -8,10 +8,8 @@ cannot put it, so it is added to the template.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from gradio.routes import templates
-from jinja2 import BaseLoader, Environment
+from jinja2 import ChoiceLoader, DictLoader
 
 PAGE = "frontend/index.html"
 SCRIPT = r"""<script>
@@ -23,19 +21,10 @@ SCRIPT = r"""<script>
 </script>"""
 
 
-class _WithScript(BaseLoader):
-    """Reads Gradio's templates and adds the script to the page's."""
-
-    def __init__(self, loader: BaseLoader) -> None:
-        self.loader = loader
-
-    def get_source(self, environment: Environment, template: str) -> tuple[str, str | None, Callable[[], bool] | None]:
-        source, name, fresh = self.loader.get_source(environment, template)
-        return (source.replace("<head>", f"<head>{SCRIPT}", 1) if template == PAGE else source), name, fresh
-
-
 def let_rest() -> None:
     """Adds the script to the pages that this process serves; a second call does nothing."""
     loader = templates.env.loader
-    if loader is not None and not isinstance(loader, _WithScript):
-        templates.env.loader = _WithScript(loader)
+    if loader is not None and not isinstance(loader, ChoiceLoader):
+        page, *_ = loader.get_source(templates.env, PAGE)
+        ours = DictLoader({PAGE: page.replace("<head>", f"<head>{SCRIPT}", 1)})
+        templates.env.loader = ChoiceLoader([ours, loader])

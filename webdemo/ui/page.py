@@ -25,29 +25,16 @@ from webdemo.ui.tabs.scene import SceneTab
 from webdemo.ui.text.panels import model_state
 from webdemo.ui.text.texts import say
 
-from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint
+from .api import ENDPOINTS
 from .context import PageContext
 from .frames import let_rest
 from .history import HistoryLike
-from .read_api import ReadEndpoint
-from .render_api import RenderEndpoint
-from .runs import Loader
-from .scene_api import SceneEndpoint
+from .runs import EngineLike, HealthLike
 from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
 TABS = (GenerateTab, SceneTab, ReactTab, PredictTab)
 """A class a job, with a ``label``, the key of its shown name, ``named``, and ``build(record)``."""
-ENDPOINTS = (
-    PredictEndpoint,
-    GenerateEndpoint,
-    ClassEndpoint,
-    ReactEndpoint,
-    RenderEndpoint,
-    SceneEndpoint,
-    ReadEndpoint,
-)
-"""Gradio's client in the browser takes the page's first function for "/predict", so that one comes first."""
 
 _WRITE = """() => {
   const tab = document.activeElement;
@@ -68,6 +55,21 @@ _LOOK = 0.02
 """Seconds between two looks at a queue of events in which nothing waits."""
 
 
+class _Page(gr.Blocks):
+    """Blocks that make their queue and their configuration once they are whole, see :func:`start_queue`.
+
+    Gradio would make two applications and four configurations before the one that is served.
+    """
+
+    def queue(self, *_: Any, **__: Any) -> _Page:
+        """Makes nothing: the blocks ask for it before anything is in them."""
+        return self
+
+    def get_config_file(self) -> Any:
+        """The configuration; empty while the blocks are built."""
+        return super().get_config_file() if self.exited else {}
+
+
 def build_page(page: PageContext) -> gr.Blocks:
     """Builds the page of what its parts share; launch it with :func:`launch_options`.
 
@@ -78,10 +80,10 @@ def build_page(page: PageContext) -> gr.Blocks:
         page.runs.cancel(str(request.session_hash))
 
     def loading() -> Iterator[str]:
-        yield from watch_loading(page.loader)
+        yield from watch_loading(page.engine, page.health)
 
     let_rest()
-    with gr.Blocks(title=TITLE, delete_cache=_CACHE, fill_width=True, analytics_enabled=False) as demo:
+    with _Page(title=TITLE, delete_cache=_CACHE, fill_width=True, analytics_enabled=False) as demo:
         for endpoint in ENDPOINTS:
             endpoint(page).publish()
         mark = _build_header(page.history)
@@ -106,7 +108,6 @@ def start_queue(page: gr.Blocks, make: Callable[..., Queue]) -> None:
     """Gives a page its queue of events, which is looked into less often than Gradio's own while nothing waits.
 
     Gradio looks every millisecond, and every ten for progress. An idle server then takes a tenth of a core.
-    ``page.queue()`` would make a whole application besides, which launching or mounting the page makes anew.
 
     Args:
         page: the page.
@@ -150,18 +151,17 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
             HistoryTab(page, jobs, tabs).build(demo, past, record)
 
 
-def watch_loading(loader: Loader, *, interval: float = 0.3) -> Iterator[str]:
-    """Starts to load the networks and yields the header's mark until they are there, or failed."""
-    loader.start()
+def watch_loading(engine: EngineLike, health: HealthLike, *, interval: float = 0.3) -> Iterator[str]:
+    """Has the networks loaded and yields the header's mark until they are there, or failed."""
+    health.probe()
     shown = None
-    while True:
-        state = loader.state
+    while shown in (None, "loading"):
+        state = "ready" if engine.ready else "failed" if health.error else "loading"
         if state != shown:
             shown = state
-            yield model_state(state, loader.error)
-        if state != "loading":
-            return
-        time.sleep(interval)
+            yield model_state(state, health.error)
+        else:
+            time.sleep(interval)
 
 
 def launch_options() -> dict[str, Any]:

@@ -12,11 +12,11 @@ from .visitor import visitor
 AT_ONCE = 2
 """Files that are read at a time, of all people together; so many times the memory of one is what they take."""
 _REMEMBERED = 60.0
-"""Seconds after which half of what somebody has used is forgotten."""
+"""Seconds after which it is forgotten that somebody had a place."""
 
 
 class Places:
-    """One place a person, and for all of them few: whoever has used the fewest seconds lately goes first.
+    """One place a person, and for all of them few: whoever had none lately, or the longest ago, goes first.
 
     Strangers who can throw their cookies away count by their address.
 
@@ -29,7 +29,7 @@ class Places:
         self._change = threading.Condition()
         self._inside: set[str] = set()
         self._waiting: list[str] = []
-        self._used: dict[str, tuple[float, float]] = {}
+        self._last: dict[str, float] = {}
 
     @contextmanager
     def place(self) -> Iterator[None]:
@@ -44,28 +44,21 @@ class Places:
             finally:
                 self._waiting.remove(person)
                 self._change.notify_all()
-        began = time.monotonic()
         try:
             yield
         finally:
             with self._change:
                 self._inside.discard(person)
                 now = time.monotonic()
-                self._used[person] = (self._seconds(person, now) + now - began, now)
-                self._used = {name: used for name, used in self._used.items() if self._seconds(name, now) > 0.01}
+                self._last = {name: at for name, at in self._last.items() if now - at < _REMEMBERED} | {person: now}
                 self._change.notify_all()
 
     def _next(self) -> str | None:
         """The person who takes the next place; None while there is none or nobody may."""
         if len(self._inside) >= self.at_once:
             return None
-        now = time.monotonic()
         able = [person for person in dict.fromkeys(self._waiting) if person not in self._inside]
-        return min(able, key=lambda person: self._seconds(person, now), default=None)
-
-    def _seconds(self, person: str, now: float) -> float:
-        used, when = self._used.get(person, (0.0, now))
-        return used * 0.5 ** ((now - when) / _REMEMBERED)
+        return min(able, key=lambda person: self._last.get(person, 0.0), default=None)
 
 
 READING = Places()

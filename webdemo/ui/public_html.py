@@ -7,11 +7,11 @@ is text in them, and the motion is data that no browser runs.
 from __future__ import annotations
 
 import html
-import json
-import re
 import time
 from dataclasses import dataclass
 from functools import cache
+
+from jinja2 import Environment, FileSystemLoader
 
 from webdemo.inference.methods import label_of
 from webdemo.inference.requests.predict import PredictResult
@@ -20,6 +20,7 @@ from webdemo.ui.components.prediction_view import prediction_payload
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.history import Entry, Opened
 from webdemo.ui.text.texts import TEXTS, TEXTS_JS, say
+from webdemo.ui.theme import COLOURS
 from webdemo.view.payload import Payload
 
 SHARE_FOLDER = PLAYER_FOLDER.parent / "share"
@@ -29,7 +30,7 @@ FILES = {
     "player/player.css": PLAYER_FOLDER / "player.css",
     **{f"player/{path.relative_to(PLAYER_FOLDER).as_posix()}": path for path in sorted(PLAYER_FOLDER.rglob("*.js"))},
     **{f"bodies/{path.name}": path for path in sorted(BODIES_FOLDER.glob("*.json"))},
-    **{path.name: path for path in (TEXTS_JS, TEXTS)},
+    **{path.name: path for path in (COLOURS, TEXTS_JS, TEXTS)},
 }
 """All that the pages load, by the names under which they do."""
 
@@ -64,62 +65,32 @@ def caption(entry: Entry) -> str:
 
 def player_html(entry: Entry, payload: Payload, place: Place, *, until: float) -> str:
     """A page with one result; ``until`` is when it ends, in seconds since 1970."""
-    body = (
-        f'<main><header><h1>{_text(entry.title)}</h1><p class="psh-facts">{_text(caption(entry))}</p></header>\n'
-        f"{_stage(payload)}\n{_embed_code(entry, place)}{_end(until)}</main>"
-    )
-    return _page("player", entry.title, body, place)
+    day = time.strftime("%d %B %Y", time.gmtime(until)).lstrip("0")
+    code = frame_code(place.embed, entry.title) if place.embed else ""
+    return _page(entry, payload, place, facts=caption(entry), code=code, day=day)
 
 
 def embed_html(entry: Entry, payload: Payload, place: Place) -> str:
     """The player alone, as large as the frame that holds it."""
-    return _page("embed", entry.title, _stage({**payload, "title": entry.title}), place)
+    return _page(entry, {**payload, "title": entry.title}, place)
 
 
 def frame_code(address: str, title: str) -> str:
     """The HTML by which another page shows the player alone."""
     return (
-        f'<iframe src="{_text(address)}" title="{_text(title)}" width="720" height="560" '
+        f'<iframe src="{html.escape(address)}" title="{html.escape(title)}" width="720" height="560" '
         'style="border:0;max-width:100%" allow="fullscreen" loading="lazy"></iframe>'
     )
 
 
-def _stage(payload: Payload) -> str:
-    # "<" in a script would begin or end a tag; in JSON it can only be inside a string
-    data = json.dumps(payload, separators=(",", ":")).replace("<", "\\u003c")
-    return f'<div class="psh-stage">{_markup()}</div>\n<script type="application/json" id="motion">{data}</script>'
-
-
-def _embed_code(entry: Entry, place: Place) -> str:
-    if not place.embed:
-        return ""
-    code = _text(frame_code(place.embed, entry.title))
-    return (
-        f'<details class="psh-more"><summary>{say("share.own_page")}</summary><textarea readonly rows="3" '
-        f'aria-label="{say("share.frame")}">{code}</textarea></details>\n'
-    )
-
-
-def _end(until: float) -> str:
-    day = time.strftime("%d %B %Y", time.gmtime(until)).lstrip("0")
-    return f'<p class="psh-end">Shown until {day}. Made with Pas de Deux.</p>\n'
-
-
-def _page(kind: str, heading: str, body: str, place: Place) -> str:
-    files = _text(place.files)
-    parts = {"kind": kind, "heading": _text(heading), "body": body, "files": files}
-    return re.sub(r"@(\w+)@", lambda found: parts[found[1]], _template())  # once: nothing in a part is replaced
+def _page(entry: Entry, payload: Payload, place: Place, **shown: str) -> str:
+    player = (PLAYER_FOLDER / "player.html").read_text(encoding="utf-8")
+    page = _templates().get_template("page.html")
+    return page.render(title=entry.title, motion=payload, player=player, files=place.files, say=say, **shown)
 
 
 @cache
-def _template() -> str:
-    return (SHARE_FOLDER / "page.html").read_text(encoding="utf-8")
-
-
-@cache
-def _markup() -> str:
-    return (PLAYER_FOLDER / "player.html").read_text(encoding="utf-8")
-
-
-def _text(value: str) -> str:
-    return html.escape(value, quote=True)
+def _templates() -> Environment:
+    made = Environment(loader=FileSystemLoader(SHARE_FOLDER), autoescape=True)
+    made.policies["json.dumps_kwargs"] = {"separators": (",", ":")}
+    return made

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-import logging
-import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from acts import read
-from motion import InputError
 from webdemo.inference.run import CancelToken, Progress, Result
-
-log = logging.getLogger(__name__)
 
 
 class EngineLike(Protocol):
@@ -58,47 +52,11 @@ class RunsLike(Protocol):
         """
 
 
-class Loader:
-    """Loads an engine's networks and the parser of sentences in a thread of its own, once, and reports the outcome."""
+class HealthLike(Protocol):
+    """Tries whether an engine works, for which its networks are loaded."""
 
-    def __init__(self, engine: EngineLike) -> None:
-        self.engine = engine
-        self._lock = threading.Lock()
-        self._thread: threading.Thread | None = None
-        self._reads = False
-        self.error: str | None = None
+    error: str
+    """What went wrong last, in a few words; "" for nothing."""
 
-    def start(self) -> None:
-        """Begins to load where nothing has begun yet; a load that failed is tried again."""
-        with self._lock:
-            if (self.engine.ready and self._reads) or (self._thread is not None and self._thread.is_alive()):
-                return
-            self.error = None
-            self._thread = threading.Thread(target=self._load, name="warm-up", daemon=True)
-            self._thread.start()
-
-    @property
-    def state(self) -> str:
-        """ "ready", "failed" or "loading"."""
-        if self.engine.ready:
-            return "ready"
-        return "failed" if self.error else "loading"
-
-    def _load(self) -> None:
-        if not self.engine.ready:
-            self._load_networks()
-        if not self._reads:
-            self._reads = True
-            try:  # so that the first sentence that somebody types is read as fast as later ones
-                read("They wave.")
-            except InputError as error:  # the page says so under what is typed
-                log.warning("Sentences cannot be read: %s", error)
-
-    def _load_networks(self) -> None:
-        try:
-            self.engine.warm_up()
-        except ValueError as error:  # InputError: a sentence for the user
-            self.error = str(error)
-        except Exception as error:
-            log.exception("Loading the model failed.")
-            self.error = f"The model could not be loaded ({type(error).__name__}): see the server's log."
+    def probe(self) -> None:
+        """Begins to try in a thread of its own, unless that goes on, has worked or has just failed."""

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import gradio as gr
 
-STYLE = Path(__file__).resolve().parents[2] / "static" / "ui.css"
+_STATIC = Path(__file__).resolve().parents[2] / "static"
+COLOURS = _STATIC / "colours.css"
+STYLE = _STATIC / "ui.css"
 
 _SANS = ("system-ui", "-apple-system", "Segoe UI", "Roboto", "Noto Sans", "Helvetica Neue", "Arial", "sans-serif")
 _MONO = ("ui-monospace", "SFMono-Regular", "Menlo", "Consolas", "DejaVu Sans Mono", "monospace")
@@ -121,4 +123,4 @@ def theme() -> gr.themes.Base:
 
 def style_sheet() -> str:
     """The page's own CSS, beside what the theme sets."""
-    return STYLE.read_text(encoding="utf-8")
+    return "".join(path.read_text(encoding="utf-8") for path in (COLOURS, STYLE))

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
@@ -154,7 +154,7 @@ def _reach(
         return np.tile(reach.max(axis=0), (len(times), 1)), np.full(len(times), depth.mean())
     # A moment may lie between two frames, which both count.
     frames = 2 * (int(np.ceil(around * motion.fps)) + 1) + 1
-    reach = maximum_filter1d(reach, frames, axis=0, mode="nearest")
+    reach = scipy.ndimage.maximum_filter1d(reach, frames, axis=0, mode="nearest")
     at = np.clip(np.rint(times * motion.fps).astype(int), 0, len(depth) - 1)
     return reach[at], depth[at]
 
@@ -175,7 +175,7 @@ def _smooth(values: Array, times: Array, around: float) -> Array:
     """(N, D) the means of values over so many seconds before and after each time."""
     if len(times) < 2 or around <= 0:
         return values
-    return uniform_filter1d(values, 2 * int(around / (times[1] - times[0])) + 1, axis=0, mode="nearest")
+    return scipy.ndimage.uniform_filter1d(values, 2 * int(around / (times[1] - times[0])) + 1, axis=0, mode="nearest")
 
 
 def sampled(positions: Array, fps: float, times: Array) -> Array:

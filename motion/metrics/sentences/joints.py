@@ -6,8 +6,8 @@ from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from motion import SMPL22
 from motion.metrics.interaction import palms
@@ -75,7 +75,9 @@ class Motion:
     @cached_property
     def roots(self) -> Array:
         """(2, T, 2) smoothed paths of the pelvises over the floor (X, Z)."""
-        return gaussian_filter1d(self.positions[:, :, 0][..., [0, 2]], _SMOOTH * self.fps, axis=1, mode="nearest")
+        return scipy.ndimage.gaussian_filter1d(
+            self.positions[:, :, 0][..., [0, 2]], _SMOOTH * self.fps, axis=1, mode="nearest"
+        )
 
     @cached_property
     def velocities(self) -> Array:
@@ -107,7 +109,7 @@ class Motion:
         """(2, T) headings in degrees, unwrapped and smoothed; they grow in a turn to the left."""
         forward = self.forward
         angles = np.unwrap(np.arctan2(forward[..., 0], forward[..., 1]), axis=1)
-        return np.degrees(gaussian_filter1d(angles, _SMOOTH * self.fps, axis=1, mode="nearest"))
+        return np.degrees(scipy.ndimage.gaussian_filter1d(angles, _SMOOTH * self.fps, axis=1, mode="nearest"))
 
     def off(self, who: int) -> Array:
         """(T,) degrees between where a person faces and where the other is, 0 to 180."""
@@ -129,7 +131,10 @@ class Motion:
         points = points - self.joint(who, "pelvis") * FLAT
         left = flat(points, self.left(who)) * (-1 if mirrored else 1)
         local = np.stack([left, points[..., 1], flat(points, self.forward[who])], axis=-1)
-        return gaussian_filter1d(np.gradient(local, axis=1), 0.1 * self.fps, axis=1).swapaxes(0, 1) * self.fps
+        return (
+            scipy.ndimage.gaussian_filter1d(np.gradient(local, axis=1), 0.1 * self.fps, axis=1).swapaxes(0, 1)
+            * self.fps
+        )
 
     # ---- heights ---------------------------------------------------------------------------------------
     def height(self, who: int) -> Array:

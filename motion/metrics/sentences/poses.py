@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from scipy.ndimage import gaussian_filter1d
 
 from .joints import SIDES, Array, Mask, Motion, keep, predicate
 
@@ -192,7 +191,7 @@ def holds_up(m: Motion, who: int, side: str = "any") -> Mask:
 
 def _still(m: Motion, who: int) -> Mask:
     """(2, T) whether the left and the right hand hardly move."""
-    return gaussian_filter1d(_wrist_speed(m, who), 0.1 * m.fps, axis=-1) < 0.4
+    return scipy.ndimage.gaussian_filter1d(_wrist_speed(m, who), 0.1 * m.fps, axis=-1) < 0.4
 
 
 def _held_before_other(m: Motion, who: int, hand: Mask) -> Mask:

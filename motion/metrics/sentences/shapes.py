@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from scipy.ndimage import gaussian_filter1d
 
 from .joints import Array, Mask, Motion, flat, keep, predicate
 from .poses import _lift, _of_side
@@ -174,7 +173,7 @@ def goes_ahead(m: Motion, who: int, metres: float = 0.5) -> Mask:
 def moves(m: Motion, who: int, speed: float = 0.35) -> Mask:
     """Is on the way, or moves a limb against the body, at ``speed`` m/s or more over a quarter of a second."""
     limbs = np.linalg.norm(m.limbs(who), axis=-1).max(axis=1)
-    return gaussian_filter1d(np.maximum(limbs, m.speeds[who]), 0.12 * m.fps) > speed
+    return scipy.ndimage.gaussian_filter1d(np.maximum(limbs, m.speeds[who]), 0.12 * m.fps) > speed
 
 
 # ---- Small movements -------------------------------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+import scipy  # its parts are loaded with their first use
 
 from .joints import SIDES, Array, Mask, Motion, keep, predicate
 
@@ -200,7 +200,7 @@ def alike(m: Motion, mirrored: bool = False, lag: float = 0.0, least: float = 0.
     first = np.roll(first, shift, axis=0)
 
     def over(values: Array) -> Array:
-        return gaussian_filter1d(values.sum(axis=(1, 2)), 0.3 * m.fps, mode="nearest")
+        return scipy.ndimage.gaussian_filter1d(values.sum(axis=(1, 2)), 0.3 * m.fps, mode="nearest")
 
     energies = over(first**2), over(second**2)
     cos = over(first * second) / np.sqrt(np.maximum(energies[0] * energies[1], 1e-12))

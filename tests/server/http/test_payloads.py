@@ -20,7 +20,6 @@ from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose
 from webdemo.server.http import payloads
 from webdemo.server.http.payloads import Payloads, check_value
 from webdemo.server.http.routes import Refused
-from webdemo.ui.components.gallery import Gallery
 from webdemo.ui.components.notebook import Action, NotebookView
 from webdemo.ui.components.reading import Reading
 from webdemo.ui.components.story import StoryLine, story_fields, story_value
@@ -58,7 +57,6 @@ TYPICAL: dict[type, Any] = {
     gr.File: FILE | {"orig_name": "x.glb", "size": 12, "url": "http://127.0.0.1/x", "is_stream": False},
     gr.UploadButton: [FILE],
     StoryLine: STORY,
-    Gallery: {"prompt": "They bow.", "seconds": 3, "seed": 1},
     Reading: {"text": "They bow.", "plan": "{}", "number": 3},
 }
 EVENTS: dict[type, tuple[Any, ...]] = {NotebookView: (ACTION, DESCRIBED)}

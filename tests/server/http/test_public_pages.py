@@ -31,7 +31,7 @@ def key(lab: Target) -> str:
 def test_a_page_is_shown_to_a_stranger(lab: Target, key: str) -> None:
     page = lab.ask("stranger", "GET", f"/share/{key}")
     assert page.status_code == 200 and page.headers["cache-control"] == "no-store"
-    assert HOSTILE not in page.text and "&quot;@body@&lt;/script&gt;" in page.text
+    assert HOSTILE not in page.text and "@body@&lt;/script&gt;" in page.text
     assert "set-cookie" not in page.headers
     assert (page.text.count("<script"), page.text.count("</script")) == (2, 2), "the motion, the module"
     payload = page.text.split('id="motion">')[1].split("</script>")[0]

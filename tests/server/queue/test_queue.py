@@ -12,6 +12,7 @@ import pytest
 
 from motion import InputError
 from webdemo.inference import run
+from webdemo.inference.engine import Engine
 from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.app import engine_of
@@ -20,7 +21,6 @@ from webdemo.server.queue import queue as line
 from webdemo.server.queue.queue import FairQueue
 from webdemo.server.queue.turns import QueueLimits
 from webdemo.server.settings import Settings
-from webdemo.ui.lazy import LazyEngine
 from webdemo.ui.runs import Waiting
 from webdemo.ui.visitor import Visitor
 
@@ -242,7 +242,7 @@ def test_several_workers_of_a_group(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_engine_that_settings_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert isinstance(engine_of(Settings()), LazyEngine)
+    assert isinstance(engine_of(Settings()), Engine)
     monkeypatch.setattr(ray_engine, "find_spec", lambda name: None)
     with pytest.raises(InputError, match="Ray is not installed"):
         engine_of(Settings(engine="ray"))

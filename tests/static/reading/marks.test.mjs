@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { people, pieces, spoken, summary, wordsOf } from "../../../static/reading/marks.js";
+import { offers, people, pieces, spoken, summary, wordsOf } from "../../../static/reading/marks.js";
 
 const act = (id, agents, start, stop, more = {}) => ({ id, agents, words: start === null ? null : { start, stop }, ...more });
 const lost = (start, stop) => ({ words: { start, stop }, why: "No act is known.", nearest: [] });
@@ -64,4 +64,9 @@ test("people of a chip, for the eye and for the ear", () => {
 test("a sentence on what was understood", () => {
   assert.equal(summary({ acts: [1], unread: [] }), "1 act is understood.");
   assert.equal(summary({ acts: [1, 2], unread: [1] }), "2 acts are understood, 1 part is not.");
+});
+
+test("acts that are said alike are offered once, and an unknown one never", () => {
+  const known = { hug: { said: "hugs" }, embrace: { said: "hugs" }, wave: { said: "waves" } };
+  assert.deepEqual(offers(["hug", "embrace", "gone", "wave"], known), ["hug", "wave"]);
 });

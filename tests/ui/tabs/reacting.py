@@ -9,11 +9,9 @@ from typing import Any
 os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
 
-from tests.ui.tab_events import changes
+from tests.ui.tab_events import changes, taken
 from webdemo.ui.tabs.react import ReactTab
 
-LOADED = ("source", "line", "player", "trim", "person", "start", "end", "found", "go")
-READ = (*LOADED, "up", "fps", "order", "animation")
 FIELDS = {
     "person": "a",
     "start": 0.0,
@@ -29,8 +27,8 @@ FIELDS = {
 
 
 def upload(tab: ReactTab, path: Path) -> list[dict[str, Any]]:
-    """What each update of an upload changes, by the names of :data:`LOADED`."""
-    return [changes(LOADED, updates) for updates in tab.actor.upload(str(path))]
+    """What each update of an upload changes."""
+    return [taken(tab.actor, updates) for updates in tab.actor.upload(str(path))]
 
 
 def run(tab: ReactTab, source: Any, **changed: Any) -> list[dict[str, Any]]:

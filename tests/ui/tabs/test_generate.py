@@ -16,9 +16,9 @@ from tests.ui.stub_page import stub_context
 from tests.ui.tab_events import built, changes
 from tests.ui.tabs.generating import FIELDS, result_of, run
 from webdemo.inference.requests import GenerateRequest
+from webdemo.server.http.health import Health
 from webdemo.ui.history import Entry, Kept, Opened
 from webdemo.ui.page import build_page, watch_loading
-from webdemo.ui.runs import Loader
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.ui.tabs.sampling import FAITHFUL, FAST
 
@@ -119,20 +119,23 @@ def test_an_empty_seed_is_drawn_and_shown(tab: GenerateTab) -> None:
 
 
 def test_loading_is_shown_until_it_is_done_or_failed() -> None:
-    marks = list(watch_loading(Loader(StubEngine(load=0.2)), interval=0.02))
+    engine = StubEngine(load=0.2)
+    marks = list(watch_loading(engine, Health(engine), interval=0.02))
     assert "Loading model" in marks[0]
     assert "Model ready" in marks[-1]
 
     class Broken(StubEngine):
         def warm_up(self) -> None:
-            raise ValueError("The weights file is missing: run the download again.")
+            raise InputError("The weights file is missing: run the download again.")
 
-    marks = list(watch_loading(Loader(Broken(load=1)), interval=0.02))
+    engine = Broken(load=1)
+    marks = list(watch_loading(engine, Health(engine), interval=0.02))
     assert "The weights file is missing" in marks[-1]
 
 
 def test_build_page_offers_an_endpoint_a_job(tmp_path: Path) -> None:
     demo = build_page(stub_context(StubEngine(), tmp_path))
+    demo.config = demo.get_config_file()  # as it is mounted
     assert list(demo.get_api_info()["named_endpoints"]) == [
         "/predict",
         "/generate",
@@ -148,7 +151,7 @@ def test_words_become_paths_unless_that_is_switched_off(tab: GenerateTab) -> Non
     for planned in (True, False):
         last = run(tab, planned=planned)[-1]
         assert last["record"].result.manifest["request"]["planned"] is planned
-        assert ("Plan from the words" in last["readouts"]) is not planned
+        assert f"Plan from the words</dt><dd>{'on' if planned else 'off'}<" in last["readouts"]
         assert ("fixes 60 %" if planned else "The network makes all") in last["laid"]
     assert [tab.asked_by(way)[2]["visible"] for way in ("intergen", "bigraphdiff")] == [True, False]
 

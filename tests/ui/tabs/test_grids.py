@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import gradio as gr
 import pytest
 from PIL import Image
 
@@ -106,6 +107,7 @@ def test_a_grid_is_made_shown_measured_and_written(tab: GenerateTab, tmp_path: P
     assert sample["cells"][0]["caption"] == "damping 0 · seed 1"
     assert (sample["columns"], sample["rows"]) == (["seed 1", "seed 2"], ["damping 0", "damping 0.7"])
     assert "4 results done" in last["line"]
+    assert last["reading"] == gr.update(checked={}), "the marks of an earlier result are none of these"
     record = last["record"]
     files = write_record(record, tmp_path)
     rows = list(csv.DictReader(files["csv"][0].open(encoding="utf-8")))
@@ -127,7 +129,7 @@ def test_predictions_by_several_methods_make_a_grid_with_their_pasts(tmp_path: P
     tab = built(PredictTab, tmp_path / "files")
     *_, loaded = tab.past.upload(str(write(walking(4.0), tmp_path / "walkers.npz")[0]))
     field, values = tab.presets()["Method beside method"]
-    fields = {"source": loaded[0], "marker": 2.0, "seconds": 1.0, "model": "motion-mlp"}
+    fields = {"source": loaded[tab.past.state], "marker": 2.0, "seconds": 1.0, "model": "motion-mlp"}
     last = [
         changes(tab.outputs, each) for each in tab.run("me", {**fields, "grid": [field, values, "marker", "1.5 2"]})
     ][-1]
@@ -157,6 +159,7 @@ def test_a_story_under_several_settings_makes_a_grid(tmp_path: Path) -> None:
         (0.7, 2, 1, 2),
     ]
     assert len(last["player"]["value"]["samples"][0]["cells"]) == 4
+    assert last["reading"] == gr.update(checked={})
     assert [beat["words"] for beat in last["story"]["value"]["beats"]] == [b.words for b in asked[0].beats]
 
 

@@ -14,10 +14,11 @@ import pytest
 from motion import SKELETONS, Clip, InputError
 from tests.ui.stub_engine import walking
 from webdemo.inference.run import Result
-from webdemo.ui.components.notebook import MOST_SHOWN, STEP, Action, facts, settings, shown
+from webdemo.ui.components.notebook import MOST_SHOWN, STEP, Action, facts, shown
 from webdemo.ui.history import Entry, Found, Opened, Search, Usage
 from webdemo.ui.tabs.history import EMPTY, NOTHING_FOUND, HistoryTab, compared
 from webdemo.ui.tabs.history_files import room_html
+from webdemo.ui.text.words import settings
 
 WHEN = time.strftime("%d %b %Y %H:%M", time.localtime(0))
 
@@ -83,8 +84,8 @@ def test_a_card_tells_everything_of_a_run() -> None:
         },
     )
     assert facts(run) == f"ReGenNet, online · seed 12345678 · {WHEN} · 2 links"
-    assert ["Given", "walker.bvh"] in settings(run) and ["The given person", "reacts"] in settings(run)
-    assert ["Seed", "12345678"] in settings(run) and ["Guidance", "4.5"] in settings(run)
+    assert ["Given", "walker.bvh"] in settings(run.request) and ["The given person", "reacts"] in settings(run.request)
+    assert ["Seed", "12345678"] in settings(run.request) and ["Guidance", "4.5"] in settings(run.request)
     (card,) = shown(Found([run], 1), empty="")["entries"]
     assert (card["favourite"], card["tags"], card["note"]) == (True, ["paper"], "Hands.")
     assert facts(replace(run, state="failed", links=0)).endswith("✕ failed")

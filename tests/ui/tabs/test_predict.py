@@ -16,7 +16,7 @@ import gradio as gr
 
 from motion.formats import read, write
 from tests.ui.stub_engine import drift, walking
-from tests.ui.tab_events import built, changes
+from tests.ui.tab_events import built, changes, taken
 from webdemo.inference.engine import Engine
 from webdemo.inference.methods import methods
 from webdemo.inference.requests.predict import PredictRequest, PredictResult
@@ -25,8 +25,6 @@ from webdemo.ui.components.exports import Record, write_files
 from webdemo.ui.components.prediction_view import error_lines, prediction_payload, still_error
 from webdemo.ui.tabs.predict import PredictTab, predict_choices
 from webdemo.view.payload import unpack_positions
-
-LOADED = ("source", "line", "player", "marker", "go")
 
 
 @pytest.fixture
@@ -40,7 +38,7 @@ def pair(tmp_path: Path) -> Path:
 
 
 def loaded(tab: PredictTab, path: Path) -> dict[str, Any]:
-    return [changes(LOADED, updates) for updates in tab.past.upload(str(path))][-1]
+    return [taken(tab.past, updates) for updates in tab.past.upload(str(path))][-1]
 
 
 def run(tab: PredictTab, fields: dict[str, Any]) -> dict[str, Any]:
@@ -51,19 +49,19 @@ def test_a_motion_is_shown_and_the_marker_leaves_two_seconds_behind_it(tab: Pred
     found = loaded(tab, pair)
     assert "two people, 4.0 s" in found["line"]
     assert found["marker"]["maximum"] == 4.0 and 1.0 <= found["marker"]["value"] <= 2.0
-    assert len(found["source"].people) == 2 and found["player"]["value"]["samples"][0]["frames"] == 120
+    assert len(found["state"].people) == 2 and found["player"]["value"]["samples"][0]["frames"] == 120
 
 
 def test_on_the_first_example_the_default_method_beats_the_last_pose_held(tab: PredictTab) -> None:
     found = loaded(tab, tab.past.examples[0][1])
-    fields = {"source": found["source"], "marker": found["marker"]["value"], "seconds": PredictRequest.seconds}
+    fields = {"source": found["state"], "marker": found["marker"]["value"], "seconds": PredictRequest.seconds}
     *_, result = Engine().run(tab.request({**fields, "model": PredictRequest.model}))
     assert isinstance(result, PredictResult)
     assert 2 * np.mean(result.error) < np.mean(still_error(result))
 
 
 def test_a_prediction_marks_the_past_and_shows_the_truth_as_a_ghost(tab: PredictTab, pair: Path) -> None:
-    source = loaded(tab, pair)["source"]
+    source = loaded(tab, pair)["state"]
     done = run(tab, {"source": source, "marker": 3.0, "seconds": 2.0, "model": "motion-mlp"})
     (sample,) = done["player"]["value"]["samples"]
     assert (sample["past_until"], sample["frames"]) == (90, 150)
@@ -78,15 +76,15 @@ def test_a_prediction_marks_the_past_and_shows_the_truth_as_a_ghost(tab: Predict
 
 
 def test_the_last_result_is_continued_from_its_end(tab: PredictTab, pair: Path) -> None:
-    source = loaded(tab, pair)["source"]
+    source = loaded(tab, pair)["state"]
     done = run(tab, {"source": source, "marker": 2.0, "seconds": 1.0, "model": "motion-mlp"})
-    taken = [changes(LOADED, updates) for updates in tab.past.take_result(done["record"])][-1]
-    assert taken["marker"]["value"] == 3.0 and taken["source"].seconds == 3.0
-    again = run(tab, {"source": taken["source"], "marker": 3.0, "seconds": 1.0, "model": "motion-mlp"})
+    took = [taken(tab.past, updates) for updates in tab.past.take_result(done["record"])][-1]
+    assert took["marker"]["value"] == 3.0 and took["state"].seconds == 3.0
+    again = run(tab, {"source": took["state"], "marker": 3.0, "seconds": 1.0, "model": "motion-mlp"})
     (sample,) = again["player"]["value"]["samples"]
     assert (sample["past_until"], sample["frames"], sample["ghost"]) == (90, 120, None)
     assert [curve["key"] for curve in sample["curves"]] == ["speed"]
-    (update,) = ([changes(LOADED, u) for u in tab.past.take_result(None)][-1],)
+    (update,) = ([taken(tab.past, u) for u in tab.past.take_result(None)][-1],)
     assert "There is no result yet" in update["line"]
 
 
@@ -99,7 +97,7 @@ def test_the_last_result_is_continued_from_its_end(tab: PredictTab, pair: Path) 
     ],
 )
 def test_errors_are_one_sentence(tab: PredictTab, pair: Path, fields: dict[str, Any], sentence: str) -> None:
-    source = loaded(tab, pair)["source"]
+    source = loaded(tab, pair)["state"]
     asked = {"source": source, "marker": 2.0, "seconds": 1.0, "model": "motion-mlp"} | fields
     assert sentence in run(tab, asked)["line"]
 
@@ -139,11 +137,11 @@ def test_methods_without_weights_are_not_offered(tmp_path: Path) -> None:
 
 def test_programs_get_the_files_and_the_curves(tab: PredictTab, pair: Path) -> None:
     endpoint = PredictEndpoint(tab.page)
-    answer, files = endpoint.predict(str(pair), 2.0, 1.0, "motion-mlp")
+    answer, files = endpoint.predict(str(pair), 2.0, seconds=1.0, model="motion-mlp")
     assert answer["prediction"]["past_frames"] == 60 and len(answer["prediction"]["error"]) == 30
     assert answer["manifest"]["request"]["kind"] == "predict"
     (motion,) = (read(file) for file in files if file.endswith(".npz") and ".smpl." not in file)
     assert motion.num_frames == 90
     for past, marker, sentence in ((str(pair), 0.3, "1 s or more is needed"), ("", 0, "There is no past")):
         with pytest.raises(gr.Error, match=sentence):
-            endpoint.predict(past, marker, 1.0, "motion-mlp")
+            endpoint.predict(past, marker, seconds=1.0, model="motion-mlp")

@@ -16,10 +16,10 @@ import gradio as gr
 from motion.skeleton import LAYOUTS
 from tests.motion.formats.characters import glb_motion
 from tests.ui.stub_engine import walking
-from tests.ui.tab_events import built, changes
+from tests.ui.tab_events import built, taken
 from webdemo.ui.tabs.react import ReactTab
 
-from .reacting import LOADED, READ, run, upload
+from .reacting import run, upload
 
 BOTH = [("Person A", "a"), ("Person B", "b")]
 
@@ -46,23 +46,23 @@ def test_two_people_in_a_file_are_a_choice_and_a_long_file_is_cut(tab: ReactTab,
     assert last["person"] == gr.update(choices=BOTH, visible=True, value="a")
     assert last["end"] == gr.update(maximum=12.0, value=10.0)
     assert last["player"]["value"]["samples"][0]["frames"] == 300
-    source = last["source"]
-    line, player = tab.actor.preview(source, "b", 2.0, 5.0)
-    assert "2.0 to 5.0 s of 12.0 s" in line
-    assert player["value"]["title"] == "walkers.npz, person B"
-    assert player["value"]["samples"][0]["frames"] == 90
-    assert "1 s or more" in tab.actor.preview(source, "a", 2.0, 2.5)[0]
-    assert (
-        "Choose InterFormer or Nearest recorded reaction, or take 10 s or less"
-        in tab.actor.preview(source, "a", 0.0, 12.0)[0]
-    )
-    assert 'role="alert"' in tab.actor.preview(source, "a", 5.0, 2.0)[0]
-    assert all(update == gr.skip() for update in tab.actor.preview(None, "a", 0, 1))
+    source = last["state"]
+    found = taken(tab.actor, tab.actor.preview(source, "b", 2.0, 5.0))
+    assert "2.0 to 5.0 s of 12.0 s" in found["line"]
+    assert found["player"]["value"]["title"] == "walkers.npz, person B"
+    assert found["player"]["value"]["samples"][0]["frames"] == 90
+    for start, end, says in (
+        (2.0, 2.5, "1 s or more"),
+        (0.0, 12.0, "Choose InterFormer or Nearest recorded reaction, or take 10 s or less"),
+        (5.0, 2.0, 'role="alert"'),
+    ):
+        assert says in tab.actor.preview(source, "a", start, end)[tab.actor.line]
+    assert taken(tab.actor, tab.actor.preview(None, "a", 0, 1)) == {}
 
 
 @pytest.mark.parametrize("role", ["a", "b"])
 def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(tab: ReactTab, walkers: Path, role: str) -> None:
-    source = upload(tab, walkers)[-1]["source"]
+    source = upload(tab, walkers)[-1]["state"]
     steps = run(tab, source, person="b", start=1.0, end=3.0, role=role)
     assert any("step" in step["line"] for step in steps[1:-1])
     last = steps[-1]
@@ -76,19 +76,19 @@ def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(tab: ReactTab, 
 
 @pytest.mark.parametrize("person", ["a", "b"])
 def test_a_person_of_the_last_result_is_taken(tab: ReactTab, walker: Path, person: str) -> None:
-    record = run(tab, upload(tab, walker)[-1]["source"])[-1]["record"]
-    reading, last = [changes(LOADED, updates) for updates in tab.actor.take_result(record)]
+    record = run(tab, upload(tab, walker)[-1]["state"])[-1]["record"]
+    reading, last = [taken(tab.actor, updates) for updates in tab.actor.take_result(record)]
     assert (reading["go"]["interactive"], last["go"]["interactive"]) == (False, True), "not before it is read"
     assert last["person"] == gr.update(choices=BOTH, visible=True, value="a")
-    again = run(tab, last["source"], person=person)[-1]["record"].result.duets[0]
+    again = run(tab, last["state"], person=person)[-1]["record"].result.duets[0]
     given = record.result.duets[0].people["ab".index(person)]
     assert again.a.positions.tobytes() == given.positions.tobytes()
 
 
 def test_a_cancelled_upload_changes_nothing_and_a_cleared_file_leaves_no_actor(tab: ReactTab) -> None:
     assert list(tab.actor.upload(None)) == []
-    left = changes(LOADED, tab.actor.forget())
-    assert left["source"] is None
+    left = taken(tab.actor, tab.actor.forget())
+    assert left["state"] is None
     assert left["player"]["value"] is None
     assert not left["trim"]["visible"]
 
@@ -116,7 +116,7 @@ def test_a_bad_file_is_one_sentence_and_leaves_no_actor(
     assert sentence in last["line"]
     assert 'role="alert"' in last["line"]
     assert last["player"]["busy"] == "" and last["player"]["value"] is None
-    assert last["source"] is None and not last["trim"]["visible"]
+    assert last["state"] is None and not last["trim"]["visible"]
 
 
 @pytest.mark.parametrize(
@@ -135,7 +135,7 @@ def test_a_bad_file_is_one_sentence_and_leaves_no_actor(
 def test_errors_are_one_sentence_and_the_next_run_works(
     tab: ReactTab, walker: Path, changed: dict[str, Any], sentence: str
 ) -> None:
-    source = upload(tab, walker)[-1]["source"]
+    source = upload(tab, walker)[-1]["state"]
     last = run(tab, **{"source": source, **changed})[-1]
     assert sentence in last["line"]
     assert 'role="alert"' in last["line"]
@@ -146,11 +146,11 @@ def test_errors_are_one_sentence_and_the_next_run_works(
 def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, walker: Path) -> None:
     last = upload(tab, walker)[-1]
     assert "22 joints matched, m, Y up, 30 frames a second" in last["found"]
-    *_, again = [changes(READ, u) for u in tab.actor.read_again(last["source"], "auto", 60, "auto", None)]
+    *_, again = [taken(tab.actor, u) for u in tab.actor.read_again(last["state"], "auto", 60, "auto", None)]
     assert "60 frames a second" in again["found"]
-    assert again["source"].seconds == pytest.approx(2.0, abs=0.1)
-    *_, wrong = [changes(READ, u) for u in tab.actor.read_again(again["source"], "auto", 5000, "auto", None)]
-    assert "not possible" in wrong["line"] and "source" not in wrong
+    assert again["state"].seconds == pytest.approx(2.0, abs=0.1)
+    *_, wrong = [taken(tab.actor, u) for u in tab.actor.read_again(again["state"], "auto", 5000, "auto", None)]
+    assert "not possible" in wrong["line"] and "state" not in wrong
     assert (wrong["up"], wrong["fps"]) == ("auto", 60), "the choices are again those that it was read with"
 
 
@@ -161,7 +161,7 @@ def test_one_of_more_than_two_people_is_chosen(tab: ReactTab, tmp_path: Path) ->
     last = upload(tab, path)[-1]
     assert [letter for _, letter in last["person"]["choices"]] == ["a", "b", "c"]
     assert "3 people" in last["found"]
-    result = run(tab, last["source"], person="c")[-1]["record"].result
+    result = run(tab, last["state"], person="c")[-1]["record"].result
     assert result.duets[0].a.positions.tobytes() == people[2].tobytes()
 
 
@@ -171,5 +171,5 @@ def test_the_order_of_fifteen_joints_is_found_and_can_be_set(tab: ReactTab, tmp_
     np.save(path, walking(3.0).a.positions[:, joints])
     last = upload(tab, path)[-1]
     assert "in the order of K3HI" in last["found"]
-    *_, again = [changes(READ, u) for u in tab.actor.read_again(last["source"], "auto", None, "sbu15", None)]
+    *_, again = [taken(tab.actor, u) for u in tab.actor.read_again(last["state"], "auto", None, "sbu15", None)]
     assert "in the order of SBU" in again["found"]

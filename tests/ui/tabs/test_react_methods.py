@@ -34,7 +34,7 @@ def tab(tmp_path: Path) -> ReactTab:
 def test_a_method_is_a_model_and_a_mode(
     tab: ReactTab, walker: Path, method: str, model: str, mode: str, steps: int
 ) -> None:
-    source = upload(tab, walker)[-1]["source"]
+    source = upload(tab, walker)[-1]["state"]
     run(tab, source, method=method)
     asked = tab.page.engine.requests[-1]
     assert (asked.model, asked.mode) == (model, mode)

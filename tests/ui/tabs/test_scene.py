@@ -44,8 +44,10 @@ def test_a_sentence_is_laid_out_and_made_beat_by_beat(tab: SceneTab) -> None:
     assert all(story["__type__"] == "update" for story in stories), "the page changes them in place"
     laid = stories[0]["value"]
     assert [beat["words"] for beat in laid["beats"]] == ["They meet.", "They hug."]
-    lengths = [u["player"]["value"]["samples"][0]["frames"] for u in updates if "value" in u.get("player", {})]
+    seen = [u["player"]["value"]["samples"][0] for u in updates if "value" in u.get("player", {})]
+    lengths = [sample["frames"] for sample in seen]
     assert lengths == sorted(lengths) and len(set(lengths)) == 2
+    assert {tuple(sample["roles"]) for sample in seen} == {("a", "b")}, "nobody is an actor in a scene"
     record = updates[-1]["record"]
     assert (record.prompt, record.result.manifest["request"]["seed"]) == ("They meet. They hug.", 3)
 

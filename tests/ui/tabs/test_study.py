@@ -80,6 +80,10 @@ def test_a_study_is_made_of_two_chosen_runs_and_its_link_is_shown(panel: StudyPa
     assert [pair.caption for pair in pairs] == ["They hug.", ""], "the cells of a grid are motions of their run"
 
 
+def test_a_study_whose_deletion_is_not_confirmed_stays(panel: StudyPanel) -> None:
+    assert list(panel.remove("")) == [panel.line], "for Gradio no update at all is an error"
+
+
 @pytest.mark.parametrize(("ids", "says"), [((), "not 0"), (("a",), "not 1"), (("a", "gone"), "There is no such run")])
 def test_what_cannot_be_studied_is_a_sentence(panel: StudyPanel, ids: tuple[str, ...], says: str) -> None:
     for said in (panel.choose(chosen(*ids)), panel.create(list(ids), QUESTION)):

@@ -13,10 +13,10 @@ from typing import Any
 from anyio.to_thread import run_sync
 
 from motion import InputError
+from webdemo.inference.engine import Engine
 from webdemo.inference.requests import SamplingRequest
 from webdemo.inference.run import Cancelled, CancelToken, Progress, Result
 from webdemo.server.logs import set_up_logs
-from webdemo.ui.lazy import LazyEngine
 
 log = logging.getLogger(__name__)
 Event = Progress | Result | Exception
@@ -39,7 +39,7 @@ class ModelReplica:
         set_up_logs("warning", content=False)
         if loopback:
             listen_on_loopback()
-        self._engine = LazyEngine(None if weights is None else Path(weights))
+        self._engine = Engine() if weights is None else Engine(Path(weights))
         if model == SamplingRequest.model:
             self._engine.warm_up()
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from motion import FPS, SMPL22, InputError
 from motion.things import Thing
@@ -183,7 +183,7 @@ class LiveStream:
 
 def _pose(thing: Thing) -> list[float]:
     """The place and the rotation, as x, y, z, w, of a thing that has one frame."""
-    turn = Rotation.from_matrix(thing.rotations[0].astype(np.float64)).as_quat()
+    turn = scipy.spatial.transform.Rotation.from_matrix(thing.rotations[0].astype(np.float64)).as_quat()
     return [round(float(value), 4) for value in (*thing.places[0], *turn)]
 
 

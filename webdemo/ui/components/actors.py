@@ -18,8 +18,8 @@ from webdemo.inference.run import Result
 from webdemo.ui.places import READING
 from webdemo.view.payload import Payload, player_payload
 
+from .fields import animation_labels, animation_list
 from .show import GIVEN
-from .upload import animation_labels, animation_list
 
 AUTO = "auto"
 ReadWith = tuple[str, float | None, str, int | None]

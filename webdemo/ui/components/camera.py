@@ -13,15 +13,9 @@ from motion.video import person_of, unpack_film
 
 from .accepts import Text
 from .actors import Source
-from .part import STATIC, Part, on_load
+from .part import STATIC, Part
 
 CAMERA_FOLDER = STATIC / "camera"
-
-_MOUNT = """
-const folder = file(%s);
-const send = (text) => { props.value = text; trigger("submit"); };
-import(folder + "/camera.js").then((camera) => camera.mount(element, send, { folder: folder + "/mediapipe/" }));
-"""
 
 
 class CameraPanel(Part):
@@ -33,7 +27,7 @@ class CameraPanel(Part):
 
     accepts = TypeAdapter(Text | None)
     template = CAMERA_FOLDER / "camera.html"
-    script = on_load(_MOUNT, CAMERA_FOLDER)
+    module = "camera.js"
 
 
 def film_source(text: str | None) -> Source:

@@ -5,13 +5,11 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
-import logging
 import os
 import re
 import shutil
 import tempfile
 import threading
-import time
 import unicodedata
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
@@ -26,11 +24,6 @@ from motion.formats.files import safe_cell
 from webdemo.inference.run import Result
 from webdemo.view.sheet import write_grid_sheet, write_sheet
 from webdemo.view.stage import Style
-
-log = logging.getLogger(__name__)
-
-MAX_AGE = 3600.0
-"""Seconds for which a run's files are kept."""
 
 _WRITING = threading.Lock()
 """Writing is work for Python, which does one thing at a time: several at once only hold up the page."""
@@ -98,7 +91,7 @@ class Shelf:
         self.root, self.owner, self.admit = root, owner, admit
 
     def folder(self, size: float = 0.0) -> Path:
-        """A new empty folder; those that are too old are removed.
+        """A new empty folder.
 
         Args:
             size: bytes that will be written there, as far as that is known.
@@ -110,18 +103,7 @@ class Shelf:
             self.admit(size)
         parent = self.root / self.owner() if self.owner else self.root
         parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        self.clean()
         return Path(tempfile.mkdtemp(prefix="run-", dir=parent))
-
-    def clean(self) -> None:
-        """Removes the folders of runs older than :data:`MAX_AGE`."""
-        oldest = time.time() - MAX_AGE
-        for folder in self.root.glob("*/run-*" if self.owner else "run-*"):
-            try:
-                if folder.stat().st_mtime < oldest:
-                    shutil.rmtree(folder)
-            except OSError as error:  # another process may be quicker
-                log.info("Could not remove %s: %s", folder, error)
 
 
 def offered(kind: str) -> bool:

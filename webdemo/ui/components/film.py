@@ -151,8 +151,7 @@ def number_of(state: Mapping[str, Any], key: str, low: float, high: float) -> fl
 
 
 _LIMITS = {"yaw": (-1000.0, 1000.0), "elevation": (-0.05, 1.5), "distance": (0.8, 40.0)}
-_LONGEST = 100_000
-"""Frames."""
+MOST_FRAMES = 100_000
 
 
 def link_address(base: str, key: str, shown: str) -> str:
@@ -167,7 +166,7 @@ def link_address(base: str, key: str, shown: str) -> str:
     asked: dict[str, Any] = {"run": key}
     for name in ("frame", "sample"):
         value = state.get(name)
-        if type(value) is int and 0 <= value < _LONGEST:
+        if type(value) is int and 0 <= value < MOST_FRAMES:
             asked[name] = value
     for name, (low, high) in _LIMITS.items():
         value = number_of(state, name, low, high)

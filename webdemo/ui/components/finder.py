@@ -6,14 +6,13 @@ from functools import cache
 from typing import Any, ClassVar
 
 import gradio as gr
-from pydantic import TypeAdapter
 
 from acts import Act, lexicon
 from acts.captions import short
 from webdemo.ui.history import HistoryLike, Search
 from webdemo.ui.visitor import visitor
 
-from .part import MOUNT, STATIC, Part, on_load, scoped
+from .part import STATIC, Part, scoped
 
 FINDER_FOLDER = STATIC / "finder"
 _RUNS = 200
@@ -27,9 +26,7 @@ class Finder(Part):
         elem_id: id of the element in the page.
     """
 
-    accepts = TypeAdapter(None)
     template = FINDER_FOLDER / "finder.html"
-    script = on_load(MOUNT, FINDER_FOLDER / "main.js")
     style = scoped(FINDER_FOLDER / "finder.css")
     declared: ClassVar = {"known": None}
 

@@ -8,10 +8,8 @@ from __future__ import annotations
 from typing import Any
 
 import gradio as gr
-from pydantic import TypeAdapter
 
-from .accepts import Finite, Sent, Text
-from .part import MOUNT, STATIC, Part, on_load, scoped
+from .part import STATIC, Part, scoped
 
 GALLERY_FOLDER = STATIC / "gallery"
 SCENES = GALLERY_FOLDER / "scenes.json"
@@ -19,24 +17,14 @@ SCENES = GALLERY_FOLDER / "scenes.json"
 _TAKEN = "(scene) => [scene.prompt, scene.seconds, scene.seed]"
 
 
-class SentScene(Sent):
-    """The scene that was pressed, as the browser sends it: its words, its length in seconds and its seed."""
-
-    prompt: Text
-    seconds: Finite
-    seed: Finite
-
-
 class Gallery(Part):
-    """A button and a drawer; its value is the scene that was pressed.
+    """A button and a drawer; its value is the scene that was pressed, which the browser keeps to itself.
 
     Args:
         elem_id: id of the element in the page.
     """
 
-    accepts = TypeAdapter(SentScene | None)
     template = GALLERY_FOLDER / "gallery.html"
-    script = on_load(MOUNT, GALLERY_FOLDER / "main.js")
     style = scoped(GALLERY_FOLDER / "gallery.css")
 
     def fill(self, prompt: gr.Textbox, seconds: gr.Slider, seed: gr.Number, run: gr.Button, **quiet: Any) -> None:

@@ -13,16 +13,10 @@ from motion import FPS, SMPL22, Clip, InputError
 from webdemo.inference.requests.live import LONGEST, LiveTake
 
 from .accepts import Text
-from .camera import CAMERA_FOLDER
-from .part import STATIC, Part, on_load
+from .part import STATIC, Part
 
 LIVE_FOLDER = STATIC / "live"
 
-_MOUNT = """
-const addresses = { address: root + "/live", mediapipe: file(%s) + "/mediapipe/" };
-const keep = (text) => { props.value = text; trigger("submit"); };
-import(file(%s) + "/live.js").then((live) => live.mount(element, keep, addresses));
-"""
 FARTHEST = 100.0
 """Metres from the origin: nobody in front of a camera walks further."""
 _BROKEN = "The live stream could not be kept, since its motion arrived damaged: press Keep again."
@@ -39,7 +33,7 @@ class LivePanel(Part):
 
     accepts = TypeAdapter(Text | None)
     template = LIVE_FOLDER / "live.html"
-    script = on_load(_MOUNT, CAMERA_FOLDER, LIVE_FOLDER)
+    module = "live.js"
 
 
 def take_of(text: str | None) -> LiveTake:

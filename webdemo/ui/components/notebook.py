@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
 from motion import InputError
-from webdemo.inference.methods import label_of, methods, variants
+from webdemo.inference.methods import label_of
 from webdemo.ui.history import Entry, Found, Search
+from webdemo.ui.text.words import method_label, settings
 
 from .accepts import Finite, Flag, Sent, Text
-from .part import MOUNT, STATIC, Part, on_load
+from .part import STATIC, Part
 
 NOTEBOOK_FOLDER = STATIC / "notebook"
 STEP = 60
@@ -35,21 +35,6 @@ ACTS = (
     "restore",
     "describe",
 )
-_SETTINGS = (
-    ("seconds", "Seconds"),
-    ("seed", "Seed"),
-    ("samples", "Samples"),
-    ("guidance", "Guidance"),
-    ("steps", "Steps"),
-    ("damping", "Damping"),
-    ("strictness", "Plan"),
-    ("sampler", "Sampler"),
-    ("marker", "Past ends at"),
-    ("cleanup", "Clean-up"),
-    ("tries", "Tries"),
-    ("planned", "Plan from the words"),
-)
-_ROLES = {"a": "acts first", "b": "reacts"}
 _MARKS = {"running": "⏳ running", "failed": "✕ failed", "cancelled": "✕ cancelled", "interrupted": "✕ interrupted"}
 
 
@@ -122,7 +107,7 @@ class NotebookView(Part):
 
     accepts_event = TypeAdapter(Action)
     template = NOTEBOOK_FOLDER / "notebook.html"
-    script = on_load(MOUNT, NOTEBOOK_FOLDER / "notebook.js")
+    module = "notebook.js"
 
 
 def shown(found: Found, *, empty: str, removed: int = 0, search: Search | None = None) -> dict[str, Any]:
@@ -160,7 +145,7 @@ def _card(entry: Entry) -> dict[str, Any]:
         "note": entry.note,
         "thumbnail": entry.thumbnail,
         "facts": facts(entry),
-        "settings": [list(pair) for pair in settings(entry)],
+        "settings": [list(pair) for pair in settings(entry.request)],
     }
 
 
@@ -174,32 +159,3 @@ def facts(entry: Entry) -> str:
     found += [_MARKS[entry.state]] if entry.state in _MARKS else []
     found += [f"{entry.links} link{'s' if entry.links > 1 else ''}"] if entry.links else []
     return " · ".join(found)
-
-
-def settings(entry: Entry) -> list[list[str]]:
-    """(name, value) of everything that a run was asked with."""
-    asked = entry.request
-    found = [["Method", method_label(asked) or label_of(str(asked.get("model", "")))]]
-    given = asked.get("actor") or asked.get("motion")
-    if isinstance(given, Mapping):
-        found.append(["Given", str(given.get("name", ""))])
-    if "actor" in asked:
-        found.append(["The given person", _ROLES.get(str(asked.get("role")), "")])
-    for key, name in _SETTINGS:
-        value = asked.get(key)
-        if value is not None:
-            if isinstance(value, bool):
-                value = "on" if value else "off"
-            found.append([name, f"{value:g}" if key != "seed" and not isinstance(value, str) else str(value)])
-    return [pair for pair in found if pair[1]]
-
-
-def method_label(asked: Mapping[str, Any]) -> str:
-    """The label of the method of a run; "" for the one that sentences go to by default."""
-    model, mode = str(asked.get("model", "")), asked.get("mode")
-    if asked.get("kind") == "generate" and model in ("", methods("generate")[0].name):
-        return ""
-    if asked.get("kind") == "react":
-        known = (v.label for v in variants("react").values() if (v.method.name, v.mode) == (model, mode))
-        return next(known, label_of(model))
-    return label_of(model)

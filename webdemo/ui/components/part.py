@@ -8,31 +8,19 @@ from __future__ import annotations
 import json
 from pathlib import Path
 from typing import Any, ClassVar
+from urllib.parse import quote
 
 import gradio as gr
 
 STATIC = Path(__file__).resolve().parents[3] / "static"
 
-MOUNT = "import(file(%s)).then((part) => part.mount(element, props, watch, trigger));"
-"""JavaScript that gives a part to its module; to be filled with the module's path."""
-
-_START = """
+_SCRIPT = """
 const config = window.gradio_config || {};
 const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
-const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
-const file = (path) => root + (config.api_prefix || "/gradio_api") + "/file=" + encode(path);
+const module = root + (config.api_prefix || "/gradio_api") + "/file=" + %s;
+import(module).then((part) => part.mount(element, props, watch, trigger));
 """
-
-
-def on_load(script: str, *values: Path | str) -> str:
-    """JavaScript for a part that appears.
-
-    Args:
-        script: with ``%s`` for each of the values, which become JSON. It knows ``element``, ``props``, ``watch`` and
-            ``trigger`` from Gradio, ``root``, the page's address, and ``file(path)``, the address of a file.
-        values: paths and texts.
-    """
-    return _START + script % tuple(json.dumps(v.as_posix() if isinstance(v, Path) else v) for v in values)
+"""JavaScript that gives a part that appears to its module; to be filled with the module's path."""
 
 
 class Part(gr.HTML):
@@ -49,8 +37,8 @@ class Part(gr.HTML):
 
     template: ClassVar[Path]
     """The HTML file; everything in its folder becomes reachable over the network."""
-    script: ClassVar[str] = ""
-    """What :func:`on_load` gives."""
+    module: ClassVar[str] = "main.js"
+    """The script in that folder whose ``mount`` gets the element, its props, ``watch`` and ``trigger``."""
     style: ClassVar[str] = ""
     """CSS that the page gets with the part, or none where the script loads it."""
     declared: ClassVar[dict[str, Any]] = {}
@@ -63,7 +51,7 @@ class Part(gr.HTML):
         kwargs = {
             "html_template": self.template.read_text(encoding="utf-8"),
             "css_template": self.style,
-            "js_on_load": self.script,
+            "js_on_load": _SCRIPT % json.dumps(quote((self.template.parent / self.module).as_posix())),
             "apply_default_css": False,
             **self.declared,
             **kwargs,

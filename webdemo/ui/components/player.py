@@ -12,21 +12,18 @@ from typing import Any, ClassVar
 import gradio as gr
 
 from webdemo.ui.text.texts import TEXTS, TEXTS_JS
+from webdemo.ui.theme import COLOURS
 from webdemo.view.payload import Payload
 
-from .part import STATIC, Part, on_load
+from .part import STATIC, Part
 
 PLAYER_FOLDER = STATIC / "player"
 BODIES_FOLDER = PLAYER_FOLDER.parent / "bodies"
 PLOTLY_JS = STATIC / "plotly" / "plotly-gl3d.min.js"
 """plotly.js with its 3D charts alone: a third of what the whole of it weighs."""
-EMPTY_TEXT = "player.empty"
-"""Key of the text that says what there is to do, and on a second line what comes of it."""
 
-# Only these become reachable over the network: the player's files, its bodies, plotly.js and the texts.
-gr.set_static_paths([BODIES_FOLDER, PLOTLY_JS, TEXTS_JS, TEXTS])
-
-_MOUNT = "import(file(%s)).then((player) => player.mount(element, props, watch, { plotly: file(%s), empty: %s }));"
+# Only these become reachable over the network: the player's files, its bodies, plotly.js, the colours and the texts.
+gr.set_static_paths([BODIES_FOLDER, PLOTLY_JS, COLOURS, TEXTS_JS, TEXTS])
 
 
 class MotionPlayer(Part):
@@ -42,7 +39,6 @@ class MotionPlayer(Part):
 
     template = PLAYER_FOLDER / "player.html"
     style = "& { min-height: 320px; } .pdd:not(.pdd-styled) { visibility: hidden; }"
-    script = on_load(_MOUNT, PLAYER_FOLDER / "main.js", PLOTLY_JS, EMPTY_TEXT)
     declared: ClassVar = {"busy": "", "progress": None}
 
 

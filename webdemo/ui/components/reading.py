@@ -23,7 +23,7 @@ from webdemo.inference.story.sentences import beats_of
 from webdemo.ui.text.words import error_line
 
 from .accepts import Finite, Sent, SentPaths, Text
-from .part import MOUNT, STATIC, Part, on_load, scoped
+from .part import STATIC, Part, scoped
 
 READING_FOLDER = STATIC / "reading"
 
@@ -78,7 +78,6 @@ class Reading(Part):
 
     accepts = TypeAdapter(SentReading | None)
     template = READING_FOLDER / "reading.html"
-    script = on_load(MOUNT, READING_FOLDER / "main.js")
     style = scoped(READING_FOLDER / "reading.css")
     declared: ClassVar = {"text": "", "shown": None, "checked": {}, "editable": False}
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import secrets
 from collections.abc import Mapping
 from dataclasses import replace
@@ -14,6 +13,7 @@ from webdemo.inference.run import Result
 from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest, in_time, split_sentence
 
 from .exports import Record
+from .film import MOST_FRAMES, number_of, read_player
 from .story import span_of, story_fields, story_value
 
 FUTURES = 3
@@ -23,11 +23,8 @@ FUTURE_SECONDS = 4.0
 
 def place_of(shown: str) -> dict[str, int]:
     """The frame and the sample that the player shows, as the browser reports them."""
-    try:
-        found = json.loads(shown)
-        return {key: max(0, int(found.get(key) or 0)) for key in ("frame", "sample")}
-    except (ValueError, TypeError, AttributeError, OverflowError):
-        return {"frame": 0, "sample": 0}
+    state = read_player(shown)
+    return {key: int(number_of(state, key, 0, MOST_FRAMES) or 0) for key in ("frame", "sample")}
 
 
 def part_request(fields: Mapping[str, Any]) -> SceneRequest:

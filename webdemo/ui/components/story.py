@@ -19,7 +19,7 @@ from webdemo.inference.story.beats import MOST_BEATS
 from webdemo.inference.story.request import beat_of, pose_of
 
 from .accepts import Finite, Flag, Sent, SentPaths, Text
-from .part import MOUNT, STATIC, Part, on_load, scoped
+from .part import STATIC, Part, scoped
 
 STORY_FOLDER = STATIC / "story"
 
@@ -68,7 +68,7 @@ class StoryLine(Part):
 
     accepts = TypeAdapter(SentStory | None)
     template = STORY_FOLDER / "story.html"
-    script = on_load(MOUNT, STORY_FOLDER / "main.js")
+    module = "editor.js"
     style = scoped(STORY_FOLDER / "story.css")
     declared: ClassVar = {"lengths": None, "laid": None}
 

@@ -12,7 +12,7 @@ from motion import InputError
 from motion.metrics import MEASURES
 from webdemo.inference.requests.predict import PredictResult
 from webdemo.inference.run import Result
-from webdemo.ui.text.panels import sides
+from webdemo.ui.text.panels import sides, table
 from webdemo.ui.text.words import number, text
 from webdemo.view.payload import Payload, build_payload, grid_sample
 
@@ -165,21 +165,17 @@ def grid_table(results: Mapping[str, Result]) -> str:
     if not measures:
         return ""
     done = {name: _acts_done(result) for name, result in results.items()}
-    heads = "".join(
+    heads = ["Acts done"] * any(done.values()) + [
         f'<th scope="col" title="{text(m.meaning)}">{text(m.label)} <small>{text(m.unit)}</small></th>'
         for m in measures
-    )
-    heads = '<th scope="col">Acts done</th>' * any(done.values()) + heads
+    ]
     rows = ""
     for name, cell in values.items():
         marked = "".join(_cell(m.key, m.digits, cell, list(values.values()), bool(m.better)) for m in measures)
         acts = f"<td><b>{done[name] or '–'}</b></td>" * any(done.values())
         rows += f'<tr><th scope="row">{text(name)}</th>{acts}{marked}</tr>'
-    return (
-        '<div class="pd-readouts"><div class="pd-table pd-grid-table"><table>'
-        f"<caption>Read-outs of the grid, the best in green and the worst in red</caption>"
-        f"<thead><tr><td></td>{heads}</tr></thead><tbody>{rows}</tbody></table></div></div>"
-    )
+    caption = "Read-outs of the grid, the best in green and the worst in red"
+    return f'<div class="pd-readouts">{table(caption, heads, rows, "pd-grid-table")}</div>'
 
 
 def _acts_done(result: Result) -> str:

@@ -13,14 +13,13 @@ from webdemo.inference.method import SECONDS
 from webdemo.inference.methods import methods
 from webdemo.inference.requests.actor import ROLES
 from webdemo.ui.components.actors import AUTO, Source, offered_animations
-from webdemo.ui.components.player import busy, show
-from webdemo.ui.components.settings import FittedSlider
+from webdemo.ui.components.fields import FittedSlider, slider
+from webdemo.ui.components.player import show
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import error_line
 
-from .results import QUIET, Updates
+from .results import QUIET, Parts, said
 from .source import SourcePanel
 
 _DETECTED = say("actor.detect")
@@ -45,11 +44,9 @@ class ActorPanel(SourcePanel):
                 visible=False,
             )
             with gr.Row(elem_classes="pd-trim"):
-                span: dict[str, Any] = {"minimum": 0, "maximum": SECONDS[1], "step": 0.1, "buttons": []}
-                self.begin = FittedSlider(
-                    value=0, label=say("react.start"), elem_id="react-start", elem_classes="pd-trim-start", **span
-                )
-                self.end = FittedSlider(value=SECONDS[1], label=say("react.end"), elem_id="react-end", **span)
+                span: dict[str, Any] = {"bounds": (0, SECONDS[1]), "step": 0.1, "kind": FittedSlider}
+                self.begin = slider("react.start", value=0, elem_id="react-start", elem_classes="pd-trim-start", **span)
+                self.end = slider("react.end", value=SECONDS[1], elem_id="react-end", **span)
             self._import_choices()
 
     def _import_choices(self) -> None:
@@ -99,33 +96,32 @@ class ActorPanel(SourcePanel):
         """The trim, the person, both ends and how the file was read."""
         return [self.trim, self.person, self.begin, self.end, self.found]
 
-    def gone(self) -> list[Any]:
-        """The trim is hidden."""
-        return [gr.update(visible=False), *[gr.skip()] * 4]
+    def gone(self) -> Parts:
+        """The trim is hidden as well."""
+        return super().gone() | {self.trim: gr.update(visible=False)}
 
-    def described(self, source: Source, *, at_end: bool) -> tuple[str, list[Any]]:
+    def described(self, source: Source, *, at_end: bool) -> Parts:
         """The line on the part that is used, and the updates of :meth:`more`."""
-        return self._part_line(source, 0.0, source.end), self._chosen(source, 0, round(source.end, 1))
+        return {self.line: self._part_line(source, 0.0, source.end), **self._chosen(source, 0, round(source.end, 1))}
 
-    def _chosen(self, source: Source, begin: float, end: float) -> list[Any]:
+    def _chosen(self, source: Source, begin: float, end: float) -> Parts:
         last = max(round(source.seconds, 1), _SHORTEST)
-        return [
-            gr.update(visible=True),
-            gr.update(choices=source.choices, visible=len(source.people) > 1, value=source.chosen),
-            gr.update(maximum=last, value=begin),
-            gr.update(maximum=last, value=min(end, last)),
-            status(source.found or "Taken from a result or the history, so there was nothing to detect."),
-        ]
+        found = source.found or "Taken from a result or the history, so there was nothing to detect."
+        return {
+            self.trim: gr.update(visible=True),
+            self.person: gr.update(choices=source.choices, visible=len(source.people) > 1, value=source.chosen),
+            self.begin: gr.update(maximum=last, value=begin),
+            self.end: gr.update(maximum=last, value=min(end, last)),
+            self.found: status(found),
+        }
 
-    def preview(self, source: Source | None, person: str, start: float, end: float) -> Updates:
+    @said
+    def preview(self, source: Source | None, person: str, start: float, end: float) -> Parts:
         """Shows the actor as trimmed."""
         if source is None:
-            return gr.skip(), gr.skip()
-        try:
-            payload = source.preview(person, start, end)
-        except Exception as error:
-            return status(error_line(error), tone="error"), busy("")
-        return self._part_line(source, start, end), show(payload)
+            return {self.line: gr.skip()}
+        player = show(source.preview(person, start, end))
+        return {self.line: self._part_line(source, start, end), self.results.player: player}
 
     @staticmethod
     def _part_line(source: Source, start: float, end: float) -> str:
@@ -140,7 +136,7 @@ class ActorPanel(SourcePanel):
             return status(f"{used} {advice} {longest:g} s or less.", tone="warning")
         return status(" ".join((used, *source.notes)), tone="warning" if source.notes else "quiet")
 
-    def opened(self, run: Opened) -> dict[Any, Any]:
+    def opened(self, run: Opened) -> Parts:
         """Updates by component: who of the people of the chosen file and which part; or the given person alone."""
         controls = run.kept.controls
         source = actor_source(run)
@@ -155,7 +151,7 @@ class ActorPanel(SourcePanel):
             self.state: source,
             self.animation: offered_animations(source),
             **dict(zip(self.known, source.read_with[:3], strict=True)),
-            **dict(zip(self.more(), self._chosen(source, begin, end), strict=True)),
+            **self._chosen(source, begin, end),
         }
 
 

@@ -15,13 +15,12 @@ from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.requests.paths import path_of
 from webdemo.inference.run import Result
 from webdemo.inference.story.beats import plans_of_result
+from webdemo.ui.components.fields import chip, looked_up, prompt_field, slider
 from webdemo.ui.components.gallery import Gallery
 from webdemo.ui.components.reading import Reading, checked, drawn_paths, edited_plan, shown
-from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.show import arrival_payload
 from webdemo.ui.components.story import path_value
 from webdemo.ui.components.sweep import Kind
-from webdemo.ui.components.upload import chip
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.classes import installed_classes, takes_class
@@ -157,15 +156,8 @@ class GenerateTab(JobTab):
             elem_classes="pd-way",
         )
         with gr.Column(min_width=0, elem_classes="pd-sentence") as self.by_sentence:
-            self.prompt = gr.Textbox(
-                label=say("generate.prompt"),
-                info=say("generate.prompt_info"),
-                placeholder=EXAMPLES[0][1],
-                lines=1,  # so that Enter generates; the style sheet gives it the height of three
-                max_lines=6,
-                elem_id="prompt",
-                autofocus=True,
-            )
+            info = say("generate.prompt_info")
+            self.prompt = prompt_field(say("generate.prompt"), EXAMPLES[0][1], "prompt", info=info, autofocus=True)
             with gr.Row(elem_classes="pd-chips"):
                 self.gallery = Gallery(elem_id="gallery", elem_classes="pd-gallery", min_width=0)
                 self.chips = [chip(name) for name, _ in EXAMPLES]
@@ -181,15 +173,7 @@ class GenerateTab(JobTab):
         self.build_go(say("generate.go"))
 
     def _settings(self) -> None:
-        self.seconds = gr.Slider(
-            *SECONDS,
-            value=GenerateRequest.seconds,
-            step=0.5,
-            label=say("generate.seconds"),
-            info=say("generate.seconds_info"),
-            elem_id="seconds",
-            buttons=[],
-        )
+        self.seconds = slider("generate.seconds", SECONDS, GenerateRequest.seconds, 0.5, elem_id="seconds")
         self.sampling.build(self._more)
 
     def _more(self) -> None:

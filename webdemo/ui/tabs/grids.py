@@ -11,8 +11,8 @@ import gradio as gr
 from motion import InputError
 from webdemo.inference.run import Result
 from webdemo.ui.components.exports import Record
+from webdemo.ui.components.fields import chip, looked_up
 from webdemo.ui.components.player import show
-from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.sweep import (
     BETWEEN_SENTENCES,
     MOST,
@@ -25,7 +25,6 @@ from webdemo.ui.components.sweep import (
     real,
     whole,
 )
-from webdemo.ui.components.upload import chip
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import notes_lines, status, total
 from webdemo.ui.text.texts import say
@@ -104,7 +103,7 @@ class Grids:
         swept = [values[part] for part in self.swept]
         yield from self.tab.run(str(request.session_hash), {**self.tab.fields(values), "grid": swept})
 
-    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
         """Runs every cell of a grid, one after another, and shows all."""
         tab = self.tab
         asked = {name: value for name, value in fields.items() if name != "grid"}
@@ -126,12 +125,12 @@ class Grids:
         title = f"{tab.title(wanted[0])} · grid of {len(wanted)}"
         spent = seconds(sum(map(total, made.values())))
         notes = {note: None for result in made.values() for note in notes_lines(result).splitlines() if note}
-        yield tab.updates(
+        yield {
             **grid_shown(grid, made, title) | tab.laid_out(made.values()) | tab.beside_grid(made, asked),
-            line=status(f"{len(wanted)} results done in {spent}.", tone="done") + "".join(notes),
-            under=gr.update(visible=True),
+            "line": status(f"{len(wanted)} results done in {spent}.", tone="done") + "".join(notes),
+            "under": gr.update(visible=True),
             **tab.results.fresh(),
-        )
+        }
 
     def opened(self, run: Opened) -> dict[str, Any]:
         """Updates that show a kept grid with the cells that are still there; none for a run that is no grid."""

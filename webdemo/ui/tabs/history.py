@@ -10,6 +10,7 @@ import gradio as gr
 
 from motion import InputError
 from webdemo.inference.run import Result
+from webdemo.ui.components.fields import address_field
 from webdemo.ui.components.notebook import UNKNOWN, Action, NotebookView, shown
 from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
@@ -22,7 +23,7 @@ from webdemo.ui.visitor import Visitor, visitor
 from .grids import grid_shown
 from .history_files import FilesPanel, room_html, runs_line
 from .job import JobTab
-from .results import QUIET, Parts, Updates
+from .results import QUIET, Parts, Updates, said
 from .sharing import SharingPanel
 from .study import StudyPanel
 
@@ -61,15 +62,13 @@ class HistoryTab:
         """
         with gr.Column(elem_classes="pd-panel pd-history", min_width=0):
             self.line = gr.HTML(status(), elem_id="history-status", elem_classes="pd-line")
-            self.address = gr.Textbox(
-                label=say("result.link"), interactive=False, visible=False, buttons=["copy"], elem_id="history-address"
-            )
+            self.address = address_field("result.link", "history-address", visible=False)
             self.saved = gr.DownloadButton(say("history.save"), visible=False, elem_id="history-saved", size="sm")
             self.view = NotebookView(elem_id="history-notebook")
             self.who = gr.HTML(elem_id="history-who")
             self.study = StudyPanel(self.page, self.line)
             self.study.build()
-            self.sharing = SharingPanel(self.page.sharing)
+            self.sharing = SharingPanel(self.page.sharing, self.line)
             self.sharing.build()
             self.files.build()
         self.removed = gr.State([])
@@ -159,24 +158,20 @@ class HistoryTab:
         key, until = self.history.link(run, owner)
         return f"{visitor().base}?run={key}", link_line(until)
 
+    @said
     def open(self, event: gr.EventData) -> Parts:
         """Shows a run in its tab, with all controls as they were."""
-        try:
-            return self._shown(self.history.open(Action.read(event._data).one, visitor().owner))
-        except Exception as error:
-            return self._not_shown(error_line(error))
+        return self._shown(self.history.open(Action.read(event._data).one, visitor().owner))
 
+    @said
     def compare(self, event: gr.EventData) -> Parts:
         """Shows the first sample of several runs as a grid, in the tab of the first."""
-        try:
-            action = Action.read(event._data)
-            runs = [self.history.open(run, visitor().owner) for run in action.ids[: MOST + 1]]
-            job = self.jobs.get(runs[0].entry.kind) if runs else None
-            if job is None:
-                raise InputError("Choose two to nine runs first.")
-            shown = compared(runs) | job.results.fresh() | job.laid_out(run.result for run in runs)
-        except Exception as error:
-            return self._not_shown(error_line(error))
+        action = Action.read(event._data)
+        runs = [self.history.open(run, visitor().owner) for run in action.ids[: MOST + 1]]
+        job = self.jobs.get(runs[0].entry.kind) if runs else None
+        if job is None:
+            raise InputError("Choose two to nine runs first.")
+        shown = compared(runs) | job.results.fresh() | job.laid_out(run.result for run in runs)
         return {
             self.tabs: gr.update(selected=runs[0].entry.kind),
             self.line: status(),
@@ -195,14 +190,9 @@ class HistoryTab:
                 return (gr.skip(),) * len(self.opened)
             return self._shown(self.history.open(run, visitor().owner))
         except Exception as error:
-            return self._not_shown(error_line(error), first=True)
+            return {next(iter(self.jobs.values())).line: status(error_line(error), tone="error")}
 
     # ---- what an opened run shows ----------------------------------------------------------------
-
-    def _not_shown(self, sentence: str, *, first: bool = False) -> Parts:
-        """The sentence under the list, or under the first tab's button where the page began with it."""
-        shown = next(iter(self.jobs.values())).line if first else self.line
-        return {shown: status(sentence, tone="error")}
 
     def _shown(self, opened: Opened) -> Parts:
         entry = opened.entry

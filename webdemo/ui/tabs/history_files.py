@@ -13,10 +13,10 @@ from webdemo.ui.history import HistoryLike, Usage
 from webdemo.ui.places import READING
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import error_line, text
+from webdemo.ui.text.words import text
 from webdemo.ui.visitor import visitor
 
-from .results import QUIET, Updates
+from .results import QUIET, Parts, Updates, said
 
 AT_ONCE = 4
 """Imports and exports of everything at a time; the rest of the tab does not wait for them."""
@@ -57,6 +57,7 @@ class FilesPanel:
             removed: the runs that were removed last.
         """
         slow: dict[str, Any] = {"concurrency_limit": AT_ONCE, "concurrency_id": "history files", **QUIET}
+        self.view, self.line, self.saved = view, line, saved
         self.everything.click(self.export_all, outputs=[line, saved], **slow)
         self.files.upload(self.take_in, inputs=[self.files, removed], outputs=[*view, line, self.files], **slow)
 
@@ -68,23 +69,22 @@ class FilesPanel:
         line = f"{runs_line(count).capitalize()} in one file of {file.stat().st_size / 2**20:.1f} MB."
         return status(line, tone="done"), gr.update(value=str(file), visible=True)
 
-    def export_all(self) -> Updates:
+    @said
+    def export_all(self) -> Parts:
         """Writes every finished run into one file."""
-        try:
-            return self.export(())
-        except Exception as error:
-            return status(error_line(error), tone="error"), gr.update(visible=False)
+        return dict(zip((self.line, self.saved), self.export(()), strict=True))
 
-    def take_in(self, files: Sequence[str] | None, removed: list[str]) -> Updates:
+    def take_in(self, files: Sequence[str] | None, removed: list[str]) -> Parts:
         """Adds results to the history."""
+        taken = self._take_in([Path(file) for file in files or ()])
+        return {**dict(zip(self.view, self.refresh(removed), strict=True)), **taken, self.files: None}
+
+    @said
+    def _take_in(self, files: Sequence[Path]) -> Parts:
         who = visitor()
-        try:
-            with READING.place():
-                count = self.history.take_in(who.owner, [Path(file) for file in files or ()], address=who.address)
-            line = status(f"Imported {runs_line(count)}.", tone="done")
-        except Exception as error:
-            line = status(error_line(error), tone="error")
-        return *self.refresh(removed), line, None
+        with READING.place():
+            count = self.history.take_in(who.owner, files, address=who.address)
+        return {self.line: status(f"Imported {runs_line(count)}.", tone="done")}
 
 
 def runs_line(count: int) -> str:

@@ -39,11 +39,11 @@ PACE = 0.5
 """Seconds between two updates of the page while a run goes on; each costs a browser about ten milliseconds."""
 MOST_BACK = 20
 """Runs of a tab that can be gone back to."""
-_ASKED = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role", "model")
-"""Fields of a request that a tab may have a control of the same name for."""
 _FORGIVEN = """() => document.querySelector("#%s .pd-error") ? "" : { __type__: "update" }"""
 """JavaScript that takes an error away once something else is asked; to be filled with the id of the line."""
-Watch = Callable[[Progress], dict[str, Any] | None]
+Named = dict[str, Any]
+"""Updates by the names of a tab's outputs."""
+Watch = Callable[[Progress], Named | None]
 
 
 class JobTab(ABC):
@@ -241,39 +241,38 @@ class JobTab(ABC):
             **{name: gr.update(interactive=False) for name in self.starts()},
         }
         motion: dict[str, Any] = {}
-        for updates in self._steps(session, fields):
-            shown = dict(zip(self.outputs, updates, strict=True)) | lasting
-            motion = {"value": shown["player"]["value"]} if "value" in shown["player"] else motion
-            yield self.updates(**shown | {"player": motion | shown["player"]})
+        for changed in self._steps(session, fields):
+            player = changed.get("player", gr.skip())
+            motion = {"value": player["value"]} if "value" in player else motion
+            yield self.updates(**{**changed, **lasting, "player": motion | player})
 
-    def _steps(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+    def _steps(self, session: str, fields: Mapping[str, Any]) -> Iterator[Named]:
         """The updates of a run, each with what it changes."""
         self._cancelled.discard(session)
-        yield self.updates(player=busy("Starting …"), line=status("Starting …", tone="busy"))
+        yield {"player": busy("Starting …"), "line": status("Starting …", tone="busy")}
         try:
             fields = self.settled(fields)
             if fields.get("seed", 0) is None:
                 fields = {**fields, "seed": secrets.randbelow(MAX_SEED + 1)}
             answer = self.grids.answer if fields.get("grid") else self.answer
-            for updates in answer(session, fields):
-                record = dict(zip(self.outputs, updates, strict=True))["record"]
-                if isinstance(record, Record):
-                    self._keep(record, fields)
-                yield updates
+            for changed in answer(session, fields):
+                if "record" in changed:
+                    self._keep(changed["record"], fields)
+                yield changed
         except Cancelled as stopped:
             yield self._stopped(str(stopped), "warning")
         except Exception as error:
             yield self._stopped(error_line(error), "error")
 
-    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Named]:
         """Runs what the fields ask for and shows it."""
         wanted = self.request(fields)
         result = yield from self.made(session, wanted)
-        yield self.updates(**self.shown(result, self.title(wanted)))
+        yield self.shown(result, self.title(wanted))
 
     def made(
         self, session: str, wanted: Any, *, label: str = "", watch: Watch | None = None
-    ) -> Generator[Updates, None, Result]:
+    ) -> Generator[Named, None, Result]:
         """Runs one request, yields the page's updates meanwhile and returns its result.
 
         Args:
@@ -298,20 +297,19 @@ class JobTab(ABC):
                 new_stage = last is None or event.stage != last.stage
                 last = event
                 if watch is not None and (seen := watch(event)) is not None:
-                    if seen:
-                        yield self.updates(**seen)
+                    yield seen
                     continue
                 if new_stage or time.monotonic() - shown_at >= PACE:
                     shown_at = time.monotonic()
                     line = label + progress_line(event)
                     share = event.step / max(event.total, 1) if event.stage == "sample" else None
-                    yield self.updates(player=busy(line, progress=share), line=status(line, tone="busy"))
+                    yield {"player": busy(line, progress=share), "line": status(line, tone="busy")}
         except Cancelled:
             raise Cancelled(cancelled_line(last)) from None
         raise Cancelled(cancelled_line(last))
 
-    def _stopped(self, line: str, tone: str) -> Updates:
-        return self.updates(player=busy(""), line=status(line, tone=tone))
+    def _stopped(self, line: str, tone: str) -> Named:
+        return {"player": busy(""), "line": status(line, tone=tone)}
 
     def rest(self, record: Record | None, trail: list[str]) -> Updates:
         """The buttons once a run is over, however it ended, and the runs of this tab that can be gone back to."""
@@ -370,8 +368,8 @@ class JobTab(ABC):
         made = time.strftime("%Y-%m-%d %H:%M", time.gmtime(run.entry.created))
         shown = self.shown(run.result, run.entry.title)
         shown["line"] = status(f"Made on {made} UTC.", tone="done") + notes_lines(run.result)
-        kept = {name: value for name, value in run.kept.controls.items() if name in self._knobs()}
-        values = {name: asked[name] for name in _ASKED if name in asked and name in self.controls} | kept
+        known = {**asked, **run.kept.controls}
+        values = {name: known[name] for name in self._knobs() if name in known}
         return {
             **{self.controls[name]: gr.update(value=value) for name, value in values.items()},
             **(self.sampling.opened(asked) if self.sampling else {}),

@@ -16,9 +16,9 @@ from webdemo.inference.methods import installed, method
 from webdemo.inference.requests.predict import LONGEST, PAST_SECONDS, PredictRequest, PredictResult
 from webdemo.inference.run import Result
 from webdemo.ui.components.actors import Source, offered_animations
+from webdemo.ui.components.fields import FittedSlider, looked_up, method_list, slider
 from webdemo.ui.components.player import show
 from webdemo.ui.components.prediction_view import error_lines, prediction_payload, without_name
-from webdemo.ui.components.settings import FittedSlider, looked_up
 from webdemo.ui.components.sweep import Kind, grid_table, real
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
@@ -28,7 +28,7 @@ from webdemo.view.payload import player_payload
 
 from .grids import methods_kind
 from .job import JobTab
-from .results import PRESS, QUIET, Results
+from .results import PRESS, QUIET, Parts, Results
 from .sampling import seed_field
 from .source import SourcePanel
 
@@ -74,20 +74,11 @@ class PastPanel(SourcePanel):
 
     named = "predict.file"
     take_at_end = True
-    marker: FittedSlider
+    marker: gr.Slider
 
     def build_marker(self) -> None:
         """The slider of the marker."""
-        self.marker = FittedSlider(
-            0,
-            10,
-            value=PAST_SECONDS,
-            step=0.1,
-            label=say("predict.marker"),
-            info=say("predict.marker_info"),
-            elem_id="predict-marker",
-            buttons=[],
-        )
+        self.marker = slider("predict.marker", (0, 10), PAST_SECONDS, 0.1, kind=FittedSlider, elem_id="predict-marker")
 
     def more(self) -> list[gr.components.Component]:
         """The marker."""
@@ -97,10 +88,11 @@ class PastPanel(SourcePanel):
         """All people of the motion."""
         return player_payload(without_name(motion_of(source)), title=source.name)
 
-    def described(self, source: Source, *, at_end: bool) -> tuple[str, list[Any]]:
+    def described(self, source: Source, *, at_end: bool) -> Parts:
         """The line on its people and its length; the marker."""
         last = _last_marker(source)
-        return _found_line(source), [self.marked(source, last if at_end else min(_liveliest(source), last))]
+        marker = self.marked(source, last if at_end else min(_liveliest(source), last))
+        return {self.line: _found_line(source), self.marker: marker}
 
     @staticmethod
     def marked(source: Source, value: float) -> Any:
@@ -185,23 +177,9 @@ class PredictTab(JobTab):
 
     def _settings(self) -> None:
         self.past.build_marker()
-        self.seconds = gr.Slider(
-            *method(PredictRequest.model).seconds,
-            value=PredictRequest.seconds,
-            step=0.5,
-            label=say("predict.seconds"),
-            elem_id="predict-seconds",
-            buttons=[],
-        )
-        with gr.Row(elem_classes="pd-rows"):
-            self.model = gr.Dropdown(
-                predict_choices(),
-                value=PredictRequest.model,
-                label=say("react.method"),
-                elem_id="predict-method",
-                min_width=0,
-                filterable=False,
-            )
+        bounds = method(PredictRequest.model).seconds
+        self.seconds = slider("predict.seconds", bounds, PredictRequest.seconds, 0.5, elem_id="predict-seconds")
+        self.model = method_list(predict_choices(), PredictRequest.model, "predict-method")
         about, _ = self._of_method(PredictRequest.model)
         self.about = gr.HTML(about, elem_id="predict-about")
         self.seed = seed_field(self.prefix, "predict.seed_info", visible="hidden")

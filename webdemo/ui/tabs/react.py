@@ -11,8 +11,8 @@ from webdemo.inference.methods import AUTOMATIC, variants
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.live import PARTNERS
 from webdemo.ui.components.actors import chosen_actor, react_choices, reactor, with_method
+from webdemo.ui.components.fields import looked_up, method_list, prompt_field
 from webdemo.ui.components.live import LivePanel, take_of
-from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.sweep import Kind
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
@@ -22,7 +22,7 @@ from webdemo.ui.text.words import seconds
 
 from .actor import ActorPanel
 from .grids import SENTENCES, methods_kind
-from .job import JobTab
+from .job import JobTab, Named
 from .results import QUIET, Updates
 from .sampling import Sampling
 
@@ -106,13 +106,7 @@ class ReactTab(JobTab):
     def _ask(self) -> None:
         self.actor.build(self._live)
         self.actor.build_trim()
-        self.prompt = gr.Textbox(
-            label=_WORDS,
-            placeholder="One person waves and the other waves back.",
-            lines=1,  # so that Enter generates; the style sheet gives it the height of three
-            max_lines=6,
-            elem_id="react-prompt",
-        )
+        self.prompt = prompt_field(_WORDS, "One person waves and the other waves back.", "react-prompt")
         self.build_go(say("react.go"), self._stream)
         with gr.Accordion(say("react.advanced"), open=False, elem_id="react-advanced", elem_classes="pd-advanced"):
             self._advanced()
@@ -126,15 +120,7 @@ class ReactTab(JobTab):
 
     def _advanced(self) -> None:
         """The method, and what the given person does in the reaction."""
-        with gr.Row(elem_classes="pd-rows"):
-            self.method = gr.Dropdown(
-                [(label, key) for label, key in react_choices()],
-                value=AUTOMATIC,
-                label=say("react.method"),
-                elem_id="react-method",
-                min_width=0,
-                filterable=False,
-            )
+        self.method = method_list(react_choices(), AUTOMATIC, "react-method")
         self.about = gr.HTML(method_line(_AUTOMATIC), elem_id="react-about")
         self.role = gr.Radio(
             [(say("react.acts_first"), "a"), (say("react.reacts"), "b")],
@@ -174,7 +160,7 @@ class ReactTab(JobTab):
         taken = {"source": None, "live": values[self.live]}
         yield from self.run(str(request.session_hash), {**self.fields(values), **taken})
 
-    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Named]:
         """Runs a method, or shows a live stream that is kept as a result."""
         if "live" not in fields:
             yield from super().answer(session, fields)
@@ -182,7 +168,7 @@ class ReactTab(JobTab):
         take = take_of(fields["live"])
         result = yield from self.made(session, take)
         said = status(f"Kept: {seconds(take.actor.seconds)} live.", tone="done")
-        yield self.updates(**self.shown(result, take.title) | {"line": said + notes_lines(result)})
+        yield self.shown(result, take.title) | {"line": said + notes_lines(result)}
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the method with what it lets be set, and the given person."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
-from functools import partial
+from functools import partial, wraps
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from webdemo.ui.components.exports import (
     without_place,
     write_record,
 )
+from webdemo.ui.components.fields import address_field
 from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film
 from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.context import PageContext
@@ -64,6 +65,19 @@ DRAWN = {"result.film": make_film, "result.figure": make_figure}
 Updates = tuple[Any, ...]
 Parts = dict[Any, Any]
 """Updates by the components that they change; the others stay."""
+
+
+def said(event: Callable[..., Parts]) -> Callable[..., Parts]:
+    """A method that answers an event and whose failure becomes a sentence on its ``line``."""
+
+    @wraps(event)
+    def answer(self: Any, *given: Any) -> Parts:
+        try:
+            return event(self, *given)
+        except Exception as error:
+            return {self.line: status(error_line(error), tone="error")}
+
+    return answer
 
 
 class Results:
@@ -110,13 +124,7 @@ class Results:
                     compare()
                     self.share = self._button("result.share", "share")
                     self._export()
-                    self.address = gr.Textbox(
-                        label=say("result.link"),
-                        interactive=False,
-                        visible=False,
-                        buttons=["copy"],
-                        elem_id=self._id("address"),
-                    )
+                    self.address = address_field("result.link", self._id("address"), visible=False)
                 self.player = MotionPlayer(first, elem_id=self._id("player"))
             below()
 
@@ -166,6 +174,7 @@ class Results:
         opened = self.menu.expand(None, outputs=self.downloads, js=_NO_FILES % len(KINDS), **QUIET)
         opened.then(self.export, inputs=self.own, outputs=[line, *self.downloads], concurrency_limit=2, **QUIET)
         self.picture.click(None, js=_TAKE_PICTURE, **QUIET)
+        self.line = line
         self.share.click(self.make_link, outputs=[line, self.address], **shown, **QUIET)
 
     def draw(self, key: str, record: Record | None, shown: str) -> Iterator[Updates]:
@@ -191,16 +200,14 @@ class Results:
             return
         yield gr.skip(), gr.update(value=label), gr.update(value=path, interactive=True)
 
-    def make_link(self, record: Record | None, shown: str) -> Updates:
+    @said
+    def make_link(self, record: Record | None, shown: str) -> Parts:
         """Makes a link to the shown run, at the moment and from the side that the player shows."""
-        try:
-            if record is None or not record.result.run:
-                raise InputError("This motion is not in your history: make it once more.")
-            key, until = self.page.history.link(record.result.run, visitor().owner)
-        except Exception as error:
-            return status(error_line(error), tone="error"), gr.update(visible=False)
+        if record is None or not record.result.run:
+            raise InputError("This motion is not in your history: make it once more.")
+        key, until = self.page.history.link(record.result.run, visitor().owner)
         address = link_address(visitor().base, key, shown)
-        return status(link_line(until), tone="done"), gr.update(value=address, visible=True)
+        return {self.line: status(link_line(until), tone="done"), self.address: gr.update(value=address, visible=True)}
 
     def export(self, record: Record | None) -> Updates:
         """Writes the files of the result on the stage, once, and hands them to the download buttons."""

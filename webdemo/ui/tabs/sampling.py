@@ -18,6 +18,7 @@ from webdemo.inference.requests import (
     GenerateRequest,
     SamplingRequest,
 )
+from webdemo.ui.components.fields import slider
 from webdemo.ui.text.texts import say
 
 from .results import QUIET
@@ -58,23 +59,22 @@ class Sampling:
                 elem_classes="pd-way pd-pace",
             )
         usual = SamplingRequest
-        self.guidance = self._slider("sampling.guidance", "sampling.guidance_info", GUIDANCE, usual.guidance, 0.1)
-        self.steps = self._slider("sampling.steps", "sampling.steps_info", STEPS_SHOWN, DEFAULT_STEPS)
-        self.damping = self._slider("sampling.damping", "sampling.damping_info", DAMPING, usual.damping, 0.05)
+        self.guidance = self._slider("sampling.guidance", GUIDANCE, usual.guidance, 0.1)
+        self.steps = self._slider("sampling.steps", STEPS_SHOWN, DEFAULT_STEPS)
+        self.damping = self._slider("sampling.damping", DAMPING, usual.damping, 0.05)
         if self.sentences:
             usual_plan = GenerateRequest.strictness
-            self.strictness = self._slider("sampling.plan", "sampling.plan_info", STRICTNESS, usual_plan, 0.05)
+            self.strictness = self._slider("sampling.plan", STRICTNESS, usual_plan, 0.05)
         self.laid = gr.HTML(elem_id=f"{self.prefix}laid")
         with gr.Accordion(say("sampling.more"), open=False, elem_id=f"{self.prefix}more", elem_classes="pd-advanced"):
-            self.samples = self._slider("sampling.samples", "sampling.samples_info", SAMPLES, usual.samples)
+            self.samples = self._slider("sampling.samples", SAMPLES, usual.samples)
             self.seed = seed_field(self.prefix)
             if self.sentences:
-                self.tries = self._slider("sampling.tries", "sampling.tries_info", TRIES, usual.tries)
+                self.tries = self._slider("sampling.tries", TRIES, usual.tries)
             more()
 
-    def _slider(self, key: str, info: str, bounds: tuple[float, float], value: float, step: float = 1) -> gr.Slider:
-        name = self.prefix + key.split(".")[1]
-        return gr.Slider(*bounds, value=value, step=step, label=say(key), info=say(info), elem_id=name, buttons=[])
+    def _slider(self, key: str, bounds: tuple[float, float], value: float, step: float = 1) -> gr.Slider:
+        return slider(key, bounds, value, step, elem_id=self.prefix + key.split(".")[1])
 
     @property
     def controls(self) -> dict[str, gr.components.Component]:
@@ -98,15 +98,8 @@ class Sampling:
         drawn.then(None, js=f"() => document.getElementById({go.elem_id!r}).click()", **QUIET)
 
     def opened(self, request: Mapping[str, Any]) -> dict[Any, Any]:
-        """Updates that show the settings of a kept request; older ones have no tries."""
-        found: dict[Any, Any] = {}
-        if self.tries is not None:
-            found[self.tries] = gr.update(value=request.get("tries") or 1)
-        if self.strictness is not None:
-            found[self.strictness] = gr.update(value=request.get("strictness", GenerateRequest.strictness))
-        if self.pace is not None:
-            found[self.pace] = gr.update(value=pace_of(request.get("steps")))
-        return found
+        """Updates that show what a kept request says in other words."""
+        return {} if self.pace is None else {self.pace: gr.update(value=pace_of(request.get("steps")))}
 
 
 def seed_field(prefix: str, info: str = "sampling.seed_info", **options: Any) -> gr.Number:

@@ -13,38 +13,28 @@ from webdemo.inference.run import Progress, Result
 from webdemo.inference.story import SceneProgress, SceneRequest
 from webdemo.inference.story.beats import story_title
 from webdemo.ui.components.exports import Record
+from webdemo.ui.components.fields import chip, prompt_field
 from webdemo.ui.components.player import show
 from webdemo.ui.components.reading import Reading, checked
 from webdemo.ui.components.scene_parts import FUTURES, only_sample, part_request, place_of, shown_duet, went_on
+from webdemo.ui.components.show import with_shown_roles
 from webdemo.ui.components.story import StoryLine, story_fields, value_of
 from webdemo.ui.components.story_words import edited, lay_out, said_of, settled, story_text, written
-from webdemo.ui.components.upload import chip
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import error_line, tries_line
+from webdemo.ui.text.words import tries_line
 from webdemo.view.payload import player_payload
 
-from .job import JobTab
-from .results import QUIET, Parts, Updates
+from .job import JobTab, Named
+from .results import QUIET, Parts, Updates, said
 from .sampling import Sampling
 
 EXAMPLES = (
-    (
-        "A greeting with a walk",
-        "Two people walk up to each other, then they shake hands. After that they talk to each other. "
-        "Finally they turn around and walk away from each other.",
-    ),
-    (
-        "A quarrel and a making up",
-        "One person pushes the other. Then the other turns away. After that they bow to each other. Finally they hug.",
-    ),
-    (
-        "A dance of 40 s",
-        "Two people bow to each other. Then they dance together for ten seconds. Then they circle each other for ten "
-        "seconds. Then they dance together for ten seconds. Finally they bow to each other.",
-    ),
+    (say("scene.greeting"), say("scene.greeting_story")),
+    (say("scene.quarrel"), say("scene.quarrel_story")),
+    (say("scene.dance"), say("scene.dance_story")),
 )
 """(name, story) of the examples."""
 
@@ -100,9 +90,7 @@ class SceneTab(JobTab):
         self.reading.follow(self.prompt, **QUIET)
 
     def _ask(self) -> None:
-        self.prompt = gr.Textbox(
-            label=say("scene.prompt"), placeholder=EXAMPLES[0][1], lines=1, max_lines=8, elem_id=self._id("prompt")
-        )
+        self.prompt = prompt_field(say("scene.prompt"), EXAMPLES[0][1], self._id("prompt"))
         with gr.Row(elem_classes="pd-chips"):
             self.chips = [chip(name, elem_id=self._id(f"example-{i}")) for i, (name, _) in enumerate(EXAMPLES)]
             self.last = chip(say("scene.last"), elem_id=self._id("last"))
@@ -182,7 +170,7 @@ class SceneTab(JobTab):
         """Of a part also the whole story."""
         return {"story": fields["story"]} if fields.get("part") else {}
 
-    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Named]:
         """Runs the story; parts appear as they are finished and stay if the run is cancelled."""
         part = fields.get("part")
         if part is not None:
@@ -191,7 +179,7 @@ class SceneTab(JobTab):
             wanted = self.request(fields)
             laid = {"prompt": _changed(fields)}
             # Not the story itself: Gradio's page would change it in place into the update after it.
-            yield self.updates(**laid, story=gr.update(value=fields["story"]))
+            yield {**laid, "story": gr.update(value=fields["story"])}
         title = fields["record"].prompt if part is not None else self.title(wanted)
         result = yield from self.made(session, wanted, watch=partial(self._watch, title))
         verdicts = checked(str(fields["prompt"]), result.manifest) if part is None else {}
@@ -201,7 +189,7 @@ class SceneTab(JobTab):
             shown |= {"story": gr.update(value=story), "prompt": story_text(story_fields(story)["beats"])}
         elif part is None:  # again, as a browser may show only the last of several updates
             shown |= {"story": gr.update(value=fields["story"]), **laid}
-        yield self.updates(**shown)
+        yield shown
 
     def _starter(self, part: str) -> Callable[..., Iterator[Updates]]:
         """What makes a part of the motion: the selected "span" again, or "futures" from the player's frame on."""
@@ -218,14 +206,13 @@ class SceneTab(JobTab):
         if not isinstance(event, SceneProgress) or event.sample:
             return None
         line = f"{tries_line(event)}Beat {event.beat + 1} is there. Step {event.step} of {event.total}."
-        return {"player": show(player_payload(event.motion, title=title)), "line": status(line, tone="busy")}
+        shown = player_payload(with_shown_roles(event.motion, {}), title=title)
+        return {"player": show(shown), "line": status(line, tone="busy")}
 
+    @said
     def take_last(self, record: Record | None) -> Parts:
         """Shows the session's last result here, of whichever tab, so that parts of it can be made again."""
-        try:
-            shown_duet(record, 0)
-        except Exception as error:
-            return {self.line: status(error_line(error), tone="error")}
+        shown_duet(record, 0)
         assert record is not None
         shown = self.shown(record.result, record.prompt)
         shown["line"] = status("Select a span of it, or ask for continuations.")
@@ -233,13 +220,11 @@ class SceneTab(JobTab):
             self.outputs[name]: shown[name] for name in ("player", "line", "under", "readouts", "own", "spans", "take")
         }
 
+    @said
     def take_shown(self, record: Record | None, trail: list[str], shown: str) -> Parts:
         """Keeps one of several futures as the motion; the choice can be gone back to."""
-        try:
-            sample = place_of(shown)["sample"]
-            shown_duet(record, sample)
-        except Exception as error:
-            return {self.line: status(error_line(error), tone="error")}
+        sample = place_of(shown)["sample"]
+        shown_duet(record, sample)
         assert record is not None
         if len(record.result.duets) == 1:
             return {self.line: status("This is the motion already.")}

@@ -13,15 +13,15 @@ from motion import InputError
 from webdemo.ui.components.actors import Source, offered_animations, read_source, result_source
 from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.exports import Record
+from webdemo.ui.components.fields import animation_field, chip, file_field
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.show import ROUNDS
-from webdemo.ui.components.upload import animation_field, chip, file_field
 from webdemo.ui.text.examples import example_clips
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line
 
-from .results import QUIET, Results, Updates
+from .results import QUIET, Parts, Results
 
 
 class SourcePanel(ABC):
@@ -50,16 +50,16 @@ class SourcePanel(ABC):
         """The payload with which the player shows a source."""
 
     @abstractmethod
-    def described(self, source: Source, *, at_end: bool) -> tuple[str, list[Any]]:
-        """The line on a source, and the updates of :meth:`more`."""
+    def described(self, source: Source, *, at_end: bool) -> Parts:
+        """Updates of the line on a source, and of :meth:`more`."""
 
     @abstractmethod
     def more(self) -> list[gr.components.Component]:
         """Further components that follow from the source."""
 
-    def gone(self) -> list[Any]:
-        """The updates of :meth:`more` where there is no source."""
-        return [gr.skip() for _ in self.more()]
+    def gone(self) -> Parts:
+        """Updates where there is no source."""
+        return {self.state: None, self.results.player: show(None)}
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -82,9 +82,10 @@ class SourcePanel(ABC):
 
         While it is read, ``go``, which runs something on it, cannot be pressed.
         """
-        self.shown = [self.state, line, self.results.player, *self.more(), go]
+        self.line, self.go = line, go
+        shown = [self.state, line, self.results.player, *self.more(), go]
         self.load_options: dict[str, Any] = {
-            "outputs": self.shown,
+            "outputs": shown,
             "concurrency_limit": 2,
             "concurrency_id": f"{self.prefix}read",
             **QUIET,
@@ -98,7 +99,7 @@ class SourcePanel(ABC):
         others = [self.camera.submit, *(button.click for button in (*self.chips, self.take))]
         gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
         self.state.change(offered_animations, inputs=self.state, outputs=self.animation, queue=False, **QUIET)
-        self.file.clear(self.forget, outputs=self.shown, queue=False, **QUIET)
+        self.file.clear(self.forget, outputs=shown, queue=False, **QUIET)
         chosen = [*self.known, self.animation]
         changed = [part.blur if isinstance(part, gr.Number) else part.input for part in chosen]
         changed += [part.submit for part in self.known if isinstance(part, gr.Number)]
@@ -107,7 +108,7 @@ class SourcePanel(ABC):
             self.read_again,
             inputs=[self.state, *chosen],
             trigger_mode="always_last",
-            **{**load, "outputs": [*self.shown, *chosen]},
+            **{**load, "outputs": [*shown, *chosen]},
         )
 
     def wire_arrival(self, tab: gr.Tab, record: gr.State, kind: str) -> None:
@@ -117,28 +118,29 @@ class SourcePanel(ABC):
 
     # ---- events ----------------------------------------------------------------------------------
 
-    def arrive(self, kind: str, source: Source | None, record: Record | None) -> Updates:
+    def arrive(self, kind: str, source: Source | None, record: Record | None) -> Parts:
         """Shows the last result of another kind, or else the first example, which plays and then rests."""
         made = record is not None and record.result.manifest.get("request", {}).get("kind") == kind
         if source is not None or made or not (record or self.examples):
-            return (gr.skip(),) * len(self.shown)
+            return {self.state: gr.skip()}
         if record is not None:
             *_, taken = self.take_result(record)
             return taken
         name, path = self.examples[0]
-        *_, (state, line, player, *more) = self.load(partial(read_source, path, name))
-        return state, line, {**player, "value": {**player["value"], "rounds": ROUNDS}}, *more
+        *_, found = self.load(partial(read_source, path, name))
+        player = found[self.results.player]
+        return found | {self.results.player: {**player, "value": {**player["value"], "rounds": ROUNDS}}}
 
-    def upload(self, path: str | None) -> Iterator[Updates]:
+    def upload(self, path: str | None) -> Iterator[Parts]:
         """Reads an uploaded file and shows its motion; one that cannot be read leaves no motion."""
         if path is not None:
             yield from self.load(partial(read_source, path), fresh=True)
 
-    def read_film(self, landmarks: str | None) -> Iterator[Updates]:
+    def read_film(self, landmarks: str | None) -> Iterator[Parts]:
         """Takes the person of a film."""
         yield from self.load(partial(film_source, landmarks))
 
-    def take_result(self, record: Record | None) -> Iterator[Updates]:
+    def take_result(self, record: Record | None) -> Iterator[Parts]:
         """Takes the session's last result."""
 
         def read() -> Source:
@@ -148,35 +150,31 @@ class SourcePanel(ABC):
 
         yield from self.load(read, at_end=self.take_at_end)
 
-    def load(self, read: Callable[[], Source], *, at_end: bool = False, fresh: bool = False) -> Iterator[Updates]:
+    def load(self, read: Callable[[], Source], *, at_end: bool = False, fresh: bool = False) -> Iterator[Parts]:
         """Updates of the state, the line, the player, :meth:`more` and the button while a motion is read.
 
         Where it is ``fresh`` and cannot be read, an earlier motion is forgotten.
         """
-        rest = [gr.skip() for _ in self.more()]
-        wait, ready = gr.update(interactive=False), gr.update(interactive=True)
-        yield gr.skip(), status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *rest, wait
+        waiting, player = "Reading the motion …", self.results.player
+        yield {self.line: status(waiting, tone="busy"), player: busy(waiting), self.go: gr.update(interactive=False)}
         try:
             source = read()
-            payload = self.payload(source)
+            found = {self.state: source, player: show(self.payload(source)), **self.described(source, at_end=at_end)}
         except Exception as error:
-            note = status(error_line(error), tone="error")
-            yield (None, note, show(None), *self.gone(), ready) if fresh else (gr.skip(), note, busy(""), *rest, ready)
-            return
-        line, updates = self.described(source, at_end=at_end)
-        yield source, line, show(payload), *updates, ready
+            found = {player: busy(""), **(self.gone() if fresh else {})}
+            found[self.line] = status(error_line(error), tone="error")
+        yield {**found, self.go: gr.update(interactive=True)}
 
-    def forget(self) -> Updates:
+    def forget(self) -> Parts:
         """The tab without a motion; a result stays in the downloads."""
-        return None, status(), show(None), *self.gone(), gr.skip()
+        return {**self.gone(), self.line: status()}
 
-    def read_again(self, source: Source | None, *chosen: Any) -> Iterator[Updates]:
+    def read_again(self, source: Source | None, *chosen: Any) -> Iterator[Parts]:
         """Reads the source's file anew as its settings and its animation are, or takes those back where it cannot."""
         if source is None or source.path is None:
             return
         *known, animation = chosen
         read_with: Any = (*(known or source.read_with[:3]), animation)
-        back = (*source.read_with[: len(known)], offered_animations(source))
+        back = dict(zip(self.known, source.read_with, strict=False)) | {self.animation: offered_animations(source)}
         for updates in self.load(partial(read_source, source.path, source.name, read_with)):
-            failed = updates[0] == gr.skip() and "pd-error" in updates[1]
-            yield *updates, *(back if failed else [gr.skip()] * len(back))
+            yield updates | (back if "pd-error" in updates[self.line] else {})

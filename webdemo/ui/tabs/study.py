@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
-from functools import wraps
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,33 +12,19 @@ import gradio as gr
 from motion import InputError
 from motion.metrics.generation import share
 from webdemo.study import StudyEntry, paired
-from webdemo.ui.components.notebook import Action, settings
+from webdemo.ui.components.fields import address_field
+from webdemo.ui.components.notebook import Action
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
-from webdemo.ui.text.panels import status
+from webdemo.ui.text.panels import status, table
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import error_line, text
+from webdemo.ui.text.words import settings, text
 from webdemo.ui.visitor import visitor
 
-from .results import QUIET
+from .results import QUIET, Parts, said
 
 QUESTION = "Which does what the sentence says?"
-Parts = dict[Any, Any]
-"""New values of components, by the component."""
 _DELETE = f"(study) => confirm({json.dumps(say('study.delete_sure'))}) ? study : ''"
-
-
-def _said(event: Callable[..., Parts]) -> Callable[..., Parts]:
-    """An event whose failure becomes a line on the tab."""
-
-    @wraps(event)
-    def run(self: StudyPanel, *given: Any) -> Parts:
-        try:
-            return event(self, *given)
-        except Exception as error:
-            return {self.line: status(error_line(error), tone="error")}
-
-    return run
 
 
 class StudyPanel:
@@ -63,9 +48,7 @@ class StudyPanel:
                 self.make = gr.Button(say("study.make"), variant="primary", elem_id="study-make", **small)
             with gr.Column(visible=False, min_width=0, elem_classes="pd-study") as self.reading:
                 self.which = gr.Dropdown([], label=say("study.which"), elem_id="study-which")
-                self.link = gr.Textbox(
-                    label=say("study.link"), interactive=False, buttons=["copy"], elem_id="study-link"
-                )
+                self.link = address_field("study.link", "study-link")
                 self.result = gr.HTML(elem_id="study-result")
                 with gr.Row(elem_classes="pd-downloads"):
                     self.refresh = gr.Button(say("study.refresh"), elem_id="study-refresh", **small)
@@ -90,7 +73,7 @@ class StudyPanel:
 
     # ---- events ----------------------------------------------------------------------------------
 
-    @_said
+    @said
     def choose(self, event: gr.EventData) -> Parts:
         """Says what the two runs that are chosen in the notebook are called in a study."""
         ids = Action.read(event._data).ids
@@ -108,7 +91,7 @@ class StudyPanel:
         owner = visitor().owner
         return [self.history.open(run, owner) for run in ids]
 
-    @_said
+    @said
     def create(self, ids: list[str], question: str) -> Parts:
         """Makes a study of the motions of both runs and of the cells of their grids, and shows its link."""
         who, runs = visitor(), self._runs(ids)
@@ -117,7 +100,7 @@ class StudyPanel:
         line = f"The study has {count(study.pairs, 'pair')}. Send the link to the people who are to vote."
         return self._shown(study.id) | {self.line: status(line, tone="done"), self.making: gr.update(visible=False)}
 
-    @_said
+    @said
     def show(self, study: str | None) -> Parts:
         """A study's link and result; the newest where none is named."""
         return self._shown(study)
@@ -141,11 +124,11 @@ class StudyPanel:
             self.table: gr.update(value=file, interactive=bool(file)),
         }
 
-    @_said
+    @said
     def remove(self, study: str | None) -> Parts:
         """Deletes a study; nothing where that was not confirmed."""
         if not study:
-            return {}
+            return {self.line: status()}
         self.studies.delete(study, visitor().owner)
         return self._shown(None) | {self.line: status("Deleted the study and its votes.", tone="done")}
 
@@ -160,7 +143,7 @@ def names(runs: Sequence[Opened]) -> tuple[str, str]:
     """The difference between two runs: their titles, or for equal ones the settings that differ."""
     first, second = (run.entry.title for run in runs)
     if first == second:
-        ours, theirs = (dict(settings(run.entry)) for run in runs)
+        ours, theirs = (dict(settings(run.entry.request)) for run in runs)
         differ = [name for name in ours | theirs if ours.get(name) != theirs.get(name)]
         first, second = (", ".join(f"{name} {told.get(name, 'none')}" for name in differ) for told in (ours, theirs))
     return first or "First run", second or "Second run"
@@ -178,13 +161,10 @@ def result_html(study: StudyEntry) -> str:
     if not votes:
         return status(f"{line}Nobody has voted yet.")
     rows = [(name, wins, share(wins, sum(study.wins))) for name, wins in zip(study.runs, study.wins, strict=True)]
-    heads = '<td></td><th scope="col">Votes</th><th scope="col">Share (95 % interval)</th>'
     body = "".join(
         f'<tr><th scope="row">{text(name)}</th><td><b>{number}</b></td><td>{said}</td></tr>'
         for name, number, said in [*rows, ("No difference", study.ties, "")]
     )
-    return (
-        status(f"{line}{count(votes, 'vote')} of {count(study.voters, 'voter')}.")
-        + '<div class="pd-readouts"><div class="pd-table pd-votes"><table>'
-        f"<thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table></div></div>"
-    )
+    shown = table("", ["Votes", "Share (95 % interval)"], body, "pd-votes")
+    voted = status(f"{line}{count(votes, 'vote')} of {count(study.voters, 'voter')}.")
+    return f'{voted}<div class="pd-readouts">{shown}</div>'

@@ -7,11 +7,10 @@ from functools import cache
 from typing import Any
 
 from motion.metrics import MEASURES, Measure
-from webdemo.inference.methods import label_of
 from webdemo.inference.run import Result
 
 from .texts import say
-from .words import number, seconds, text
+from .words import number, seconds, settings, text
 
 Summary = Mapping[str, float]
 
@@ -128,30 +127,9 @@ def _measured(values: Mapping[str, Any]) -> Summary:
 
 
 def _asked(result: Result) -> str:
-    request = result.manifest.get("request", result.manifest)
-    shown = [
-        ("Method", _method(request)),
-        ("Actor", request.get("actor", {}).get("name")),
-        ("Seed", request.get("seed")),
-        ("Length", f"{result.duets[0].seconds:.1f} s" if result.duets else None),
-        ("Guidance", _plain(request.get("guidance"))),
-        ("Steps", request.get("steps")),
-        ("Damping", _plain(request.get("damping"))),
-        ("Plan", _plain(request.get("strictness"))),
-        ("Tries", tries if (tries := request.get("tries", 1)) != 1 else None),
-        ("Plan from the words", "off" if request.get("planned") is False else None),
-    ]
-    items = "".join(f"<div><dt>{label}</dt><dd>{text(value)}</dd></div>" for label, value in shown if value is not None)
+    asked = settings(result.manifest.get("request", result.manifest))
+    items = "".join(f"<div><dt>{name}</dt><dd>{text(value)}</dd></div>" for name, value in asked)
     return f'<dl class="pd-asked">{items}</dl>'
-
-
-def _method(request: Mapping[str, Any]) -> str | None:
-    """The method of a reaction, which may have been chosen by itself."""
-    return label_of(str(request.get("model"))) if request.get("kind") == "react" else None
-
-
-def _plain(value: Any) -> str | None:
-    return None if value is None else f"{value:g}"
 
 
 def _measures(caption: str, measures: Sequence[Measure], samples: Sequence[tuple[Summary | None, Summary]]) -> str:
@@ -161,7 +139,7 @@ def _measures(caption: str, measures: Sequence[Measure], samples: Sequence[tuple
         f"{_head(measure)}{''.join(_cell(measure, before or {}, after) for before, after in samples)}</tr>"
         for measure in measures
     )
-    return _table(caption, heads, rows)
+    return table(caption, heads, rows)
 
 
 def _cell(measure: Measure, before: Summary, after: Summary) -> str:
@@ -193,9 +171,11 @@ def _head(measure: Measure) -> str:
     return f'<tr title="{text(meaning)}"><th scope="row">{text(label)}{unit}</th>'
 
 
-def _table(caption: str, head: Sequence[str], rows: str) -> str:
-    cells = "".join(f'<th scope="col">{text(label)}</th>' for label in head)
+def table(caption: str, heads: Sequence[str], rows: str, kind: str = "") -> str:
+    """A table: HTML ``heads`` over the columns behind the first, ``rows`` with their tags; ``kind`` is a class."""
+    cells = "".join(head if head.startswith("<th") else f'<th scope="col">{head}</th>' for head in heads)
+    named = f"<caption>{text(caption)}</caption>" if caption else ""
     return (
-        f'<div class="pd-table"><table><caption>{text(caption)}</caption>'
-        f"<thead><tr><td></td>{cells}</tr></thead><tbody>{rows}</tbody></table></div>"
+        f'<div class="pd-table {kind}"><table>{named}<thead><tr><td></td>{cells}</tr></thead>'
+        f"<tbody>{rows}</tbody></table></div>"
     )

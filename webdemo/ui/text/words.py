@@ -1,4 +1,4 @@
-"""Sentences of the page on progress, errors and numbers."""
+"""Words of the page on progress, errors, numbers and what was asked."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ import errno
 import html
 import logging
 import time
+from collections.abc import Mapping
+from typing import Any
 
 from motion import InputError
+from webdemo.inference.methods import label_of, methods, variants
 from webdemo.inference.run import Progress
 from webdemo.ui.runs import Waiting
 from webdemo.ui.visitor import visitor
@@ -21,6 +24,21 @@ _STAGES = {
     "finish": "Finishing the motion …",
 }
 
+_SETTINGS = (
+    ("seconds", "Seconds"),
+    ("seed", "Seed"),
+    ("samples", "Samples"),
+    ("guidance", "Guidance"),
+    ("steps", "Steps"),
+    ("damping", "Damping"),
+    ("strictness", "Plan"),
+    ("sampler", "Sampler"),
+    ("marker", "Past ends at"),
+    ("cleanup", "Clean-up"),
+    ("tries", "Tries"),
+    ("planned", "Plan from the words"),
+)
+_ROLES = {"a": "acts first", "b": "reacts"}
 _PACE_STEPS = 3
 """Steps after which the pace is known, or a tenth of them all."""
 _SHORT = 3.0
@@ -114,3 +132,31 @@ def number(value: float, digits: int) -> str:
 def seconds(value: float) -> str:
     """A duration: "0.24 s", "3.1 s", "72 s"."""
     return f"{value:.2f} s" if value < 1 else f"{value:.1f} s" if value < 60 else f"{value:.0f} s"
+
+
+def settings(asked: Mapping[str, Any]) -> list[list[str]]:
+    """(name, value) of everything that a run was asked with."""
+    found = [["Method", method_label(asked) or label_of(str(asked.get("model", "")))]]
+    given = asked.get("actor") or asked.get("motion")
+    if isinstance(given, Mapping):
+        found.append(["Given", str(given.get("name", ""))])
+    if "actor" in asked:
+        found.append(["The given person", _ROLES.get(str(asked.get("role")), "")])
+    for key, name in _SETTINGS:
+        value = asked.get(key)
+        if value is not None:
+            if isinstance(value, bool):
+                value = "on" if value else "off"
+            found.append([name, f"{value:g}" if key != "seed" and not isinstance(value, str) else str(value)])
+    return [pair for pair in found if pair[1]]
+
+
+def method_label(asked: Mapping[str, Any]) -> str:
+    """The label of the method of a run; "" for the one that sentences go to by default."""
+    model, mode = str(asked.get("model", "")), asked.get("mode")
+    if asked.get("kind") == "generate" and model in ("", methods("generate")[0].name):
+        return ""
+    if asked.get("kind") == "react":
+        known = (v.label for v in variants("react").values() if (v.method.name, v.mode) == (model, mode))
+        return next(known, label_of(model))
+    return label_of(model)
