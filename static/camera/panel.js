@@ -16,7 +16,7 @@ export class Panel {
       if (body.hidden) this.rest();
     };
     root.closest(".pd-ask")?.addEventListener("click", ({ target }) => {
-      if (!body.contains(target) && this.line.dataset.tone === "error") this.say(""); // something else is asked
+      if (!body.contains(target) && !this.busy) this.say(""); // something else is asked
     });
     panels.add(this);
     this.open.disabled = false; // before, nobody would hear

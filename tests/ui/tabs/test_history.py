@@ -8,6 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import gradio as gr
 import numpy as np
 import pytest
 
@@ -140,8 +141,10 @@ def test_runs_are_kept_named_removed_and_brought_back() -> None:
 def test_an_export_says_what_is_in_it(tmp_path: Path) -> None:
     book = Book(entry("hug"))
     (tmp_path / "pas-de-deux-results.zip").write_bytes(b"x" * 2**20)
-    answer = press(tab(book, tmp_path), "export", "hug")
+    history = tab(book, tmp_path)
+    answer = press(history, "export", "hug")
     assert "2 runs in one file of 1.0 MB." in answer.line and answer.saved["visible"]
+    assert press(history, "search").saved == gr.skip() and not press(history, "favour", "hug").saved["visible"]
 
 
 @pytest.mark.parametrize(

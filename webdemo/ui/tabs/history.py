@@ -109,7 +109,7 @@ class HistoryTab:
 
     def act(self, removed: list[str], event: gr.EventData) -> Updates:
         """Does what was pressed in the notebook, and shows the list as it is then."""
-        line, address, saved = gr.skip(), gr.update(visible=False), gr.skip()
+        line, address, saved = gr.skip(), gr.update(visible=False), gr.update(visible=False)
         search = Search()
         try:
             action = Action.read(event._data)
@@ -127,7 +127,9 @@ class HistoryTab:
             elif action.act == "restore":
                 count, removed = self.history.restore(removed, owner), []
                 line = status(f"Brought {runs_line(count)} back.", tone="done")
-            elif action.act != "search":
+            elif action.act == "search":
+                saved = gr.skip()
+            else:
                 line = status(self._one(action, owner), tone="done")
         except Exception as error:
             line = status(error_line(error), tone="error")
