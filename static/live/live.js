@@ -45,7 +45,7 @@ class LivePanel extends Panel {
     this.begin.hidden = name !== "idle";
     this.stop.hidden = name === "idle";
     for (const input of [this.source, this.partner]) input.disabled = name !== "idle";
-    this.keep.hidden = !this.last?.long;
+    this.keep.hidden = !(this.last?.long && this.last.shown);
   }
 
   /** Ends the stream and lets go of camera and film. */

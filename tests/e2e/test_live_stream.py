@@ -86,11 +86,17 @@ def test_a_recorded_person_is_answered_as_they_move(lab: str, open_page: Callabl
 
     keep_it(page)
     page.get_by_role("button", name="Push").click()
+    expect(line).to_be_empty()  # what was kept is no longer on the stage
     page.wait_for_function("window.__pasdedeux?.positions?.length === 1", timeout=SLOW)
     page.route("**/live/*", lambda route: route.abort())
     page.click("#react-stream")
     expect(line).to_contain_text("The server cannot be reached", timeout=SLOW)
     page.unroute("**/live/*")
+    start(page, "clip")
+    two_people(page)
+    page.get_by_role("button", name="Push").click()
+    expect(line).to_contain_text("something else is shown now", timeout=SLOW)
+    expect(page.locator(f"{PANEL} .pdlive-keep")).to_be_hidden()
     start(page, "clip")
     two_people(page)
     opened = page.evaluate("fetch('live', {method: 'POST', body: '{\"partner\": \"agent\"}'}).then((a) => a.status)")
