@@ -29,18 +29,18 @@ LONGEST = 60.0
 DRAWN_IN = 600.0
 """Seconds in which a film must be drawn, as others' films wait for it."""
 
-READ_PLAYER = """(record, _) => {
+READ_PLAYER = """(...values) => {
   const player = window.__pasdedeux?.player;
-  if (!player) return [record, "{}"];
-  const { orbit, show } = player;
-  return [record, JSON.stringify({
+  const { orbit, show } = player ?? {};
+  const state = player && {
     yaw: orbit.yaw, elevation: orbit.elevation, view: player.framing.preset, follow: orbit.following,
     frame: Math.round(player.clock.shown), distance: orbit.distance,
     theme: player.themeName, sample: player.sampleIndex,
     look: { both: "both", body: "bodies", skeleton: "skeletons" }[show.figure],
-  })];
+  };
+  return [...values.slice(0, -1), JSON.stringify(state ?? {})];
 }"""
-"""JavaScript that tells how the player shows the motion: what :func:`make_film` takes."""
+"""JavaScript that tells how the player shows the motion, as :func:`make_film` takes it: the last of the inputs."""
 
 
 def suffix() -> str:

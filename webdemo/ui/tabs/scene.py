@@ -14,6 +14,7 @@ from webdemo.inference.story import SceneProgress, SceneRequest
 from webdemo.inference.story.beats import story_title
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.fields import chip, prompt_field
+from webdemo.ui.components.film import READ_PLAYER
 from webdemo.ui.components.player import show
 from webdemo.ui.components.reading import Reading, checked
 from webdemo.ui.components.scene_parts import FUTURES, only_sample, part_request, place_of, shown_duet, went_on
@@ -157,14 +158,14 @@ class SceneTab(JobTab):
         self.prompt.blur(written, inputs=[self.prompt, self.line_up], **last)
         changed = [*self.outputs.values(), self.trail]
         shown = [self.results.own, self.trail, self.shown_at]
-        self.take.click(self.take_shown, inputs=shown, js=_READ_PLACE, outputs=changed, **QUIET)
+        self.take.click(self.take_shown, inputs=shown, js=READ_PLAYER, outputs=changed, **QUIET)
         self.last.click(self.take_last, inputs=self.record, outputs=changed, **QUIET)
 
     def _wire_parts(self) -> None:
         kept = self.remake.click(None, js=_KEEP_POSE, **QUIET).then
         for trigger, part in ((kept, "span"), (self.futures.click, "futures")):
             more = [self.words, self.results.own, self.shown_at]
-            self.wire_start(self._starter(part), trigger, more=more, first=_READ_PLACE)
+            self.wire_start(self._starter(part), trigger, more=more, first=READ_PLAYER)
 
     def kept_more(self, fields: Mapping[str, Any]) -> dict[str, Any]:
         """Of a part also the whole story."""
@@ -261,11 +262,5 @@ _TYPED = """(story) => ({
   __type__: "update", ...(story?.ahead ? { value: { ...story, ahead: false } } : {}),
 })"""
 """JavaScript that tells the line that the words over it are newer than its beats."""
-_READ_PLACE = """(...values) => {
-  const player = window.__pasdedeux?.player;
-  const place = { frame: Math.round(player?.frameShown ?? 0), sample: player?.sampleIndex ?? 0 };
-  return [...values.slice(0, -1), JSON.stringify(place)];
-}"""
-"""JavaScript that tells which frame of which sample the player shows; that comes last of the inputs."""
 _KEEP_POSE = "() => window.__pasdedeux?.player?.directing.posing?.keep()"
 """JavaScript that keeps a pose that is being pulled at: it is a part of what is made again."""
