@@ -63,5 +63,5 @@ def test_a_result_is_published_framed_and_ended(server: SimpleNamespace, open_pa
             frame.wait_for_function(READY, timeout=SLOW)
 
     page.locator("#sharing-end").click()
-    expect(page.locator("#sharing-status")).to_contain_text("has ended")
+    expect(page.locator("#history-status")).to_contain_text("has ended")
     assert httpx.get(address).status_code == 404
