@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from motion import InputError
 
 from .captions import caption_of, naming, with_thing
-from .lexicon import Entry, Lexicon, lexicon
+from .lexicon import Entry, Lexicon, kind_of, lexicon
 from .plan import FROM_BEHIND, Act, Plan
 from .reading import wordnet
 from .reading.parses import Parse, parses
@@ -26,7 +26,6 @@ from .reading.syntax import is_likeness, seems
 from .reading.vocabulary import closed, vocabulary
 from .reading.wording import prepared
 from .shapes import Go
-from .things import kind_of
 
 if TYPE_CHECKING:
     from spacy.tokens import Token

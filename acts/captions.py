@@ -14,9 +14,8 @@ from itertools import pairwise
 from acts.plan import other_of
 
 from .frames import Frame
-from .lexicon import Entry, Lexicon, lexicon
+from .lexicon import Entry, Lexicon, kind_of, lexicon
 from .plan import Act, Plan
-from .things import kind_of
 
 _VERB = re.compile(r"\[([a-z-]+)\]")
 _SLOT = re.compile(r"\{([a-z_]+)\} ?")

@@ -1,4 +1,4 @@
-"""The lexicon: one entry an act, in TOML files grouped by kind.
+"""The lexicon: one entry an act, in TOML files grouped by kind, and the nouns of things that have a shape.
 
 An entry gives everything about its act: how it is said, the words on which the network was trained, how long it takes,
 how it is staged, the rule that checks it, and examples that are its tests. ``python -m acts check FOLDER`` says what is
@@ -20,11 +20,11 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from motion import InputError
+from motion.things import FIXTURES
 
 from .frames import Frame
-from .plan import problem
+from .plan import Act, problem
 from .shapes import Shape
-from .things import Does, Prop
 
 OURS = Path(__file__).with_name("lexicon")
 FOLDERS = "PASDEDEUX_ACTS"
@@ -35,6 +35,15 @@ MOST_BYTES = 1_000_000
 _NAME = re.compile(r"[a-z0-9-]{1,60}")
 
 Sentence = Annotated[str, Field(min_length=1, max_length=300)]
+_Passed = Literal["gives", "takes", "throws", "catches", "rolls", "kicks", "bounces"]
+_Held = Literal["carries", "holds", "lifts", "puts", "drops", "plays", "fights", "uses"]
+_Stands = Literal["sits", "passes", "faces", "opens", "closes"]
+Does = Literal["", _Passed, _Held, _Stands]
+"""What is done with a thing: the values that an entry's ``thing`` may have."""
+SEATS = ("chair", "bench", "bed")
+"""Kinds of things on which people sit."""
+Prop = Literal["", "ball", "book", "cup", "guitar", "phone", "ring", "stick", "sword"]
+"""Kinds of things that go without saying: the values that an entry's ``prop`` may have."""
 
 
 class Entry(BaseModel):
@@ -52,7 +61,7 @@ class Entry(BaseModel):
             ``whom`` for the patient.
         shown: False for what no body shows ("falls in love", "turns on the lamp"): it is known, and stays unread.
         to: "other" for what is done to the other person even where the words do not name them, as a salute.
-        thing: what it does with the thing that its words name, see :mod:`acts.things`; a person who "sits" has a seat
+        thing: what it does with the thing that its words name, one of :data:`Does`; a person who "sits" has a seat
             even where they name none.
         prop: the kind of thing with which it is done where they name none: a cup for "drinks".
         hand: the shape of the fingers while it is done (:mod:`motion.hands`); "" where none is special.
@@ -200,3 +209,62 @@ def _line(text: str, name: str) -> int:
         if line.strip().strip("[]").strip('"') == name:
             return number
     return 1
+
+
+# ---- nouns: the kinds of things that have a shape ---------------------------------------------------------------
+NOUNS = Path(__file__).parent / "things" / "nouns.toml"
+_WORD = re.compile(r"[a-z]+(?:'s)?")
+
+
+@lru_cache(maxsize=1)
+def _tables() -> tuple[dict[str, str], frozenset[str]]:
+    found = tomllib.loads(NOUNS.read_text(encoding="utf-8"))
+    kinds = {noun: kind for kind, nouns in found["nouns"].items() for noun in nouns}
+    return kinds, frozenset(found["places"]["floor"])
+
+
+def kind_of(noun: str) -> str:
+    """The kind of thing that a noun names, such as "cup" for "a mug" or "mugs"; "" if it has no shape."""
+    for word, kind in reversed(nouns_in(noun)):  # "paper bag" is a bag
+        if word:
+            return kind
+    return ""
+
+
+def nouns_in(text: str) -> list[tuple[str, str]]:
+    """The nouns of a text that have a shape, in order, each with its kind."""
+    kinds, _ = _tables()
+    return [(word, kinds[word]) for word in map(_singular, _WORD.findall(text.lower())) if word in kinds]
+
+
+def on_floor(text: str) -> bool:
+    """True if a text names the floor or something like it."""
+    _, floor = _tables()
+    return any(_singular(word) in floor for word in _WORD.findall(text.lower()))
+
+
+def is_fixture(noun: str | None) -> bool:
+    """True for a noun of what stands where it is, such as a window, so that people go to it and face it."""
+    return bool(noun) and kind_of(noun or "") in FIXTURES
+
+
+def thing_of(act: Act, words: str) -> tuple[str, str]:
+    """The thing of an act, as its noun and its kind; ("", "") where the words name nothing that has a shape.
+
+    Args:
+        act: of a plan.
+        words: the text that it was read from.
+    """
+    if act.thing:
+        kind = kind_of(act.thing)
+        return (act.thing, kind) if kind else ("", "")
+    return next(iter(nouns_in(words)), ("", ""))
+
+
+def _singular(word: str) -> str:
+    kinds, floor = _tables()
+    word = word.removesuffix("'s")
+    for end, instead in (("", ""), ("ves", "fe"), ("ies", "y"), ("es", ""), ("s", "")):
+        if word.endswith(end) and (bare := word[: len(word) - len(end)] + instead) in kinds.keys() | floor:
+            return bare
+    return word

@@ -7,10 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from acts.frames import Event, Frame, Match, Ref
-from acts.lexicon import Lexicon, lexicon
+from acts.lexicon import SEATS, Lexicon, is_fixture, kind_of, lexicon
 from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread, other_of
 from acts.shapes import Go
-from acts.things import SEATS, is_fixture, kind_of
 from motion import InputError
 
 from .completion import completed, formations, held, is_next_to, noun_acts, of_the_last, repeated, seated

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 
 from acts.frames import Event
-from acts.lexicon import Lexicon
+from acts.lexicon import Lexicon, is_fixture
 from acts.plan import Act, Relation
 from acts.shapes import Gesture, Go, Hold, Shape, Strike
-from acts.things import is_fixture
 
 BESIDE = frozenset(("gesture", "limb", "words"))
 """Shapes of what a person can do on their way."""

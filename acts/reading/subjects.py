@@ -7,9 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref, best
-from acts.lexicon import Lexicon
+from acts.lexicon import Lexicon, is_fixture
 from acts.plan import other_of
-from acts.things import is_fixture
 
 from .people import A_NAME, ANYONE, B_NAME, PRONOUN_SEX, Cast, begins_clause
 from .syntax import ClauseTree, is_finite

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 
 from acts import shapes
-from acts.lexicon import Entry, Lexicon
+from acts.lexicon import Entry, Lexicon, is_fixture
 from acts.plan import Act, other_of
 from acts.reading.vocabulary import vocabulary
-from acts.things import is_fixture
 
 from .gestures import GESTURES
 from .score import LOW, SIDES, Move, Strike

@@ -14,9 +14,8 @@ from itertools import pairwise
 
 from acts import shapes
 from acts.captions import of_each
-from acts.lexicon import Lexicon, lexicon
+from acts.lexicon import Lexicon, is_fixture, kind_of, lexicon
 from acts.plan import FROM_BEHIND, Act, beats, other_of
-from acts.things import is_fixture, kind_of
 
 from .act_kinds import (
     figure_of,

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acts.checking import Verdict, rules_of
-from acts.lexicon import lexicon
+from acts.lexicon import kind_of, lexicon
 from acts.plan import Act, Plan, PlanFrames
 from motion import SMPL22, Duet
 from motion.hands import MOST_GRIPS, SIDES, Grip
@@ -29,7 +29,6 @@ from motion.things.sight import looked_at
 
 from .courses import ThingCourse, courses
 from .furniture import BODIES, LEAVES, TAKES, fixtures, furniture
-from .nouns import kind_of
 from .uses import act_frames, uses_of
 
 Array = NDArray[np.floating]

@@ -10,10 +10,9 @@ from itertools import pairwise
 import numpy as np
 
 from acts import Act, Plan, lexicon
+from acts.lexicon import SEATS, Does, is_fixture, kind_of, nouns_in, on_floor, thing_of
 from acts.staging.strikes import BOUTS
 from motion.things import HELD
-
-from .nouns import SEATS, Does, is_fixture, kind_of, nouns_in, on_floor, thing_of
 
 TABLES = ("computer", "table")
 """Furniture at which people sit."""

@@ -13,10 +13,9 @@ from motion import SMPL22, Clip, Duet, InputError, stacked_positions
 from motion.kinematics import forward_kinematics
 from motion.metrics import compare
 from motion.transforms import heading_matrix
-from webdemo.inference.live.partner import Belief
 from webdemo.inference.methods import method
 from webdemo.inference.requests import GenerateRequest, ReactRequest
-from webdemo.inference.requests.live import LiveTake
+from webdemo.inference.requests.live import Belief, LiveTake
 from webdemo.inference.requests.predict import PredictRequest, PredictResult, with_people
 from webdemo.inference.run import Cancelled, Progress, Result, StageTimer
 from webdemo.inference.story import SceneProgress, SceneRequest

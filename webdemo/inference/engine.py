@@ -27,11 +27,10 @@ from motion.metrics.sentences.joints import Motion
 from webdemo.inference import methods
 from webdemo.inference.finish.cleanup import standing_clear
 from webdemo.inference.finish.looks import as_given, enlarged, furnished, lengths_of
-from webdemo.inference.live.partner import LivePartner
 from webdemo.inference.method import Pipeline
 from webdemo.inference.methods import WEIGHTS
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
-from webdemo.inference.requests.live import PARTNERS, LiveFrame, LiveTake
+from webdemo.inference.requests.live import PARTNERS, LiveFrame, LivePartner, LiveTake
 from webdemo.inference.requests.predict import PredictRequest
 from webdemo.inference.requests.sampling import MAX_SEED
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
@@ -132,7 +131,7 @@ class Engine:
         return pipeline.live(request)
 
     def partner(self, name: str, *, seed: int = 0) -> LivePartner:
-        """A partner who answers a stream of poses, one of :data:`webdemo.inference.live.partner.PARTNERS`.
+        """A partner who answers a stream of poses, one of :data:`webdemo.inference.requests.live.PARTNERS`.
 
         Raises:
             InputError: if there is no such partner, or its weights are missing or altered.

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from acts import Act
-from acts.lexicon import lexicon
-from acts.things import kind_of, on_floor, thing_of
+from acts.lexicon import kind_of, lexicon, on_floor, thing_of
 from motion.things import KINDS
 
 
@@ -30,7 +29,7 @@ def test_nouns_name_kinds(noun, kind):
 
 
 def test_every_kind_in_the_table_has_a_shape_and_every_shape_a_noun():
-    from acts.things.nouns import _tables
+    from acts.lexicon import _tables
 
     assert set(_tables()[0].values()) == set(KINDS)
 

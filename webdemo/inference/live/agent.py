@@ -23,8 +23,8 @@ from motion.things import Thing
 from motion.transforms import facing
 from motion.video.following import Gaze
 from webdemo.inference.pipelines.agent import BETWEEN, FIRST, Decision, Eye, Look
+from webdemo.inference.requests.live import Belief
 
-from .partner import Belief
 from .partner_pipeline import ReactingPartner
 from .room import Errand, Room, complaint
 
@@ -84,7 +84,7 @@ class LiveAgent:
         self.belief = Belief("watches", "The agent watches.")
 
     def step(self, pose: Array) -> Array:
-        """See :class:`webdemo.inference.live.partner.LivePartner`."""
+        """See :class:`webdemo.inference.requests.live.LivePartner`."""
         self.frame += 1
         self._seen.append(np.asarray(pose, dtype=np.float64))
         self.partner.goal = self._goal(self._seen[-1])
@@ -103,7 +103,7 @@ class LiveAgent:
 
     @property
     def things(self) -> tuple[Thing, ...]:
-        """See :class:`webdemo.inference.live.partner.LivePartner`."""
+        """See :class:`webdemo.inference.requests.live.LivePartner`."""
         return () if self._room is None else self._room.things()
 
     def _is_asked(self) -> bool:

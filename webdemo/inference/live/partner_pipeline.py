@@ -29,8 +29,7 @@ from webdemo.inference.finish.cleanup import FollowingCleanup
 from webdemo.inference.pipelines.given import settle
 from webdemo.inference.pipelines.regennet import ReGenNetPipeline
 from webdemo.inference.requests import ReactRequest
-
-from .partner import Belief, LivePartner
+from webdemo.inference.requests.live import Belief, LivePartner
 
 Array = NDArray[np.floating]
 
@@ -102,7 +101,7 @@ class ReactingPartner:
 
     Attributes:
         goal: where the partner turns and goes by itself, beside what the network has it do; None for nowhere.
-        gaze: see :class:`webdemo.inference.live.partner.LivePartner`; this partner reacts to bodies alone.
+        gaze: see :class:`webdemo.inference.requests.live.LivePartner`; this partner reacts to bodies alone.
     """
 
     belief = Belief("follows", "")
@@ -137,7 +136,7 @@ class ReactingPartner:
         self.condition = self._conditions[prompt]
 
     def step(self, pose: Array) -> Array:
-        """See :class:`webdemo.inference.live.partner.LivePartner`."""
+        """See :class:`webdemo.inference.requests.live.LivePartner`."""
         take_threads(plain_denoiser=False)  # a stream's messages come to any of several threads
         pose = np.asarray(pose, dtype=np.float64)
         if self._shown and np.linalg.norm((pose[0] - self._shown[-1][0]) * FLAT) > FARTHEST:

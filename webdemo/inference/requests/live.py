@@ -1,4 +1,4 @@
-"""A frame of an online reaction, and a live stream that somebody keeps.
+"""A frame of an online reaction, a live stream that somebody keeps, and a partner in one.
 
 This module does not import torch: the page uses it before any network is loaded.
 """
@@ -7,13 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion import Clip, Duet, InputError
 from motion.metrics import compare
+from motion.things import Thing
+from motion.video.following import Gaze
 from webdemo.inference.run import Progress, Result, StageTimer
 
 from .actor import motion_facts
@@ -94,3 +96,41 @@ class LiveTake:
 def live_title(model: str) -> str:
     """The name of a kept live stream, by its partner."""
     return f"Live with {PARTNERS.get(model, model)}"
+
+
+# ---- a partner who answers a stream of poses whose end is not known -----------------------------------
+@dataclass(frozen=True)
+class Belief:
+    """A partner's view of the person at this moment.
+
+    Attributes:
+        state: "follows" for a partner who does not recognise anything; otherwise "watches", "answers",
+            "ignored" or "left".
+        text: a sentence about it.
+        chances: the likeliest gestures with their probabilities, the likeliest first.
+    """
+
+    state: str
+    text: str
+    chances: tuple[tuple[str, float], ...] = ()
+
+
+class LivePartner(Protocol):
+    """Answers one person. Each pose is computed before the next one of the person is known.
+
+    Attributes:
+        gaze: where the person's face points now, set before a step; None where it is not known, as without a camera.
+    """
+
+    gaze: Gaze | None
+
+    @property
+    def things(self) -> tuple[Thing, ...]:
+        """The things about the partner as they are now, each with a track of one frame, always in the same order."""
+
+    @property
+    def belief(self) -> Belief:
+        """The partner's view of the person now."""
+
+    def step(self, pose: Array) -> Array:
+        """The partner's pose (22, 3) for the person's pose (22, 3), both in metres at 30 fps, floor at 0."""

@@ -11,11 +11,10 @@ import numpy as np
 
 from acts import Act, Plan
 from acts.captions import sentence
-from acts.lexicon import Entry, Lexicon, lexicon
+from acts.lexicon import Entry, Lexicon, is_fixture, lexicon
 from acts.staging.act_kinds import hits, reaches_low
 from acts.staging.score import LOWERED, Score
 from acts.staging.stage import score_of
-from acts.things import is_fixture
 from motion import FPS, InputError
 from webdemo.inference import methods
 from webdemo.inference.requests import GenerateRequest

@@ -20,7 +20,7 @@ from motion.things import Thing
 from motion.video import Landmarks
 from motion.video.following import FollowedPerson
 from motion.video.landmarks import landmarks_of
-from webdemo.inference.live.partner import Belief, LivePartner
+from webdemo.inference.requests.live import Belief, LivePartner
 from webdemo.view.payload import pack_positions
 from webdemo.view.things import thing_payload
 

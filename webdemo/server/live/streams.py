@@ -21,8 +21,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
 
 from motion import FPS, SMPL22, Clip, InputError
-from webdemo.inference.live.partner import LivePartner
-from webdemo.inference.requests.live import PARTNERS
+from webdemo.inference.requests.live import PARTNERS, LivePartner
 from webdemo.server.accounts.quotas import OverQuota, Quota
 from webdemo.ui.visitor import Visitor, visitor_of
 from webdemo.view.payload import player_payload
