@@ -38,10 +38,6 @@ class Speller:
         self._deeds = deeds(known)
         self._mendable = {*self.forms, *vocabulary().directions, "person", "something", "circle", "position"}
 
-    def is_form(self, word: str) -> bool:
-        """True for a form of a verb of the lexicon."""
-        return word in self.forms
-
     def is_deed(self, noun: str) -> bool:
         """True for a noun, in the singular, that stands for what somebody does, as "lunge" and "high-five"."""
         return noun in self._deeds
@@ -192,15 +188,10 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
     for token in doc:
         last = "" if token.is_sent_start else last
         form = forms.get(token.lower_)
-        if (
-            form is not None
-            and not is_noun_or_side(token)
-            and (
-                (_is_other(token) and (_after_person(token, form[1]) or _opens(token, form[1])))
-                or _coordinated(token, form[1], last)
-                or _is_ordered(token, form[1])
-                or _is_kept(token, form[1])
-            )
+        if form is not None and (
+            (_is_other(token) and (_after_person(token, form[1]) or _opens(token, form[1])))
+            or _coordinated(token, form[1], last)
+            or _is_ordered(token, form[1])
         ):
             found[token.idx] = (_safe(token, form[1]), form[0])
             last = form[1]
@@ -216,11 +207,10 @@ def suspects(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[
         token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0])
         for token in doc
         if token.lower_ in forms
-        and token.lower_ not in vocabulary().directions
         and not is_noun_or_side(token)
         and not (token.dep_ == "conj" and part(token.lemma_.lower()) and part(token.head.lemma_.lower()))
         and forms[token.lower_][1] in ("", "s", "ed")
-        and (token.pos_ not in ("VERB", "AUX", "ADP", "ADV") or token.dep_ in ("compound", "amod", "nmod"))
+        and (token.pos_ not in ("VERB", "AUX") or token.dep_ == "compound")
     }
 
 
@@ -237,17 +227,8 @@ def deeds_done(doc: Doc, is_deed: Callable[[str], bool]) -> dict[int, tuple[str,
         if token.lower_ in _DO
         and token.dep_ == "aux"
         and token.head.i == token.i + 1
-        and token.head.tag_ == "VB"
-        and all(c.dep_ != "neg" for c in token.head.children)
-        and any(
-            c.dep_ == "dobj" and is_deed(c.lemma_.lower()) and c.left_edge.i == token.i + 2 and _is_bare(c)
-            for c in token.head.children
-        )
+        and any(is_deed(c.lemma_.lower()) and c.left_edge.i == token.i + 2 for c in token.head.children)
     }
-
-
-def _is_bare(noun: Token) -> bool:
-    return noun.pos_ == "NOUN" and all(c.dep_ not in ("det", "poss", "nummod") for c in noun.children)
 
 
 def _verbless(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> Iterator[Token]:
@@ -259,16 +240,10 @@ def _verbless(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> Iterator[Token]
             token
             for token in sentence
             if token.i > sentence.start + 1
-            and token.pos_ in ("NOUN", "PROPN")
-            and _is_told(token, forms.get(token.lower_, ("", ""))[1])
-            and _ends_phrase(token)
+            and forms.get(token.lower_, ("", ""))[1] == "s"
+            and token.nbor(-1).pos_ == "NOUN"
         ]
         yield from known[-1:]
-
-
-def _is_told(token: Token, ending: str) -> bool:
-    """True for a form of a verb behind its subject: "the man in the hat waves"."""
-    return ending in ("s", "ed") and token.nbor(-1).pos_ in ("NOUN", "PROPN", "PRON")
 
 
 def _is_ordered(token: Token, ending: str) -> bool:
@@ -278,19 +253,6 @@ def _is_ordered(token: Token, ending: str) -> bool:
         return False
     parts = token.head.tag_ == "NNS" and bool(vocabulary().part(token.head.lemma_.lower()))
     return parts or token.tag_ in ("VB", "VBP")
-
-
-def _is_kept(token: Token, ending: str) -> bool:
-    """True for "clapping" in "keeps clapping", which the parser may take for an object."""
-    verbs = vocabulary().verbs
-    about = verbs["begins"] | verbs["ends"]
-    before = token.nbor(-1) if token.i else None
-    return (
-        ending == "ing"
-        and before is not None
-        and token.pos_ == "NOUN"
-        and before.lemma_.lower() in about - {"come", "go", "get"}
-    )
 
 
 def _is_other(token: Token) -> bool:

@@ -16,7 +16,7 @@ from motion.skeleton import ARMS
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading_matrix
 
-from .poses import BOTH_SIDES, HANDS, SOLE, STANDS, TOES, Turns, about, all_but, poses_of, standing
+from .poses import HANDS, SOLE, STANDS, TOES, Turns, about, all_but, poses_of, standing, turns_of
 from .score import Score
 from .window import OFTEN, SETTLES, Part, Stretch
 
@@ -70,12 +70,7 @@ def _standing_once(limbs: Sequence[Limb]) -> Sequence[Limb]:
 
 def _posed(angles: Mapping[str, Array], count: int, angle: float) -> Array:
     """Poses (N, 22, 3) around the origin of a standing person, with further rotations of joints."""
-    turns: Turns = {"pelvis": heading_matrix(angle)}
-    for side, sign in BOTH_SIDES:
-        turns[f"{side}_shoulder"] = about(2, -sign * STANDS["shoulder"])
-        turns[f"{side}_elbow"] = heading_matrix(-sign * STANDS["elbow"])
-        turns[f"{side}_hip"] = about(2, -sign * 0.02) @ about(0, STANDS["hip"])
-        turns |= {f"{side}_{joint}": about(0, STANDS[joint]) for joint in ("knee", "ankle")}
+    turns = turns_of(angle, STANDS)
     for joint, turn in angles.items():
         stands = turns.get(joint, np.eye(3))
         turns[joint] = turn @ stands if "shoulder" in joint else stands @ turn

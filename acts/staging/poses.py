@@ -270,14 +270,19 @@ def bowed(poses: Array, angle: float, seconds: Array, length: float, times: int 
 
 
 def _pose_of(angle: float, left: Mapping[str, float], right: Mapping[str, float] | None = None) -> Array:
-    """A pose (22, 3) around the origin by angles in radians: flexed hips are negative, flexed knees positive."""
+    """A pose (22, 3) around the origin by angles in radians, as :func:`turns_of` takes them."""
+    return poses_of(turns_of(angle, left, right))[0]
+
+
+def turns_of(angle: float, left: Mapping[str, float], right: Mapping[str, float] | None = None) -> Turns:
+    """The rotations of joints by angles in radians: flexed hips are negative, flexed knees positive."""
     turns: Turns = {"pelvis": about(1, angle), "spine1": about(0, left["spine"]), "spine2": about(0, left["spine"])}
     for (side, sign), angles in zip(BOTH_SIDES, (left, right or left), strict=True):
         turns[f"{side}_shoulder"] = about(2, -sign * angles["shoulder"])
         turns[f"{side}_elbow"] = about(1, -sign * angles["elbow"])
         turns[f"{side}_hip"] = about(2, -sign * 0.02) @ about(0, angles["hip"])
         turns |= {f"{side}_{joint}": about(0, angles[joint]) for joint in ("knee", "ankle")}
-    return poses_of(turns)[0]
+    return turns
 
 
 def poses_of(turns: Turns, count: int = 1) -> Array:
