@@ -26,7 +26,6 @@ from .reading.people import A_NAME, ANYONE, B_NAME
 from .reading.spelling import Speller
 from .reading.syntax import is_likeness, seems
 from .reading.vocabulary import closed, vocabulary
-from .reading.wording import prepared
 from .shapes import Go
 
 if TYPE_CHECKING:
@@ -85,7 +84,7 @@ def _account(plan: Plan, known: Lexicon) -> Account:
     if not any(start == 0 and stop >= len(plan.sentence.rstrip()) for start, stop in whole):
         speller = Speller(known)
         try:
-            parsed = next(parses(prepared(plan.sentence, speller), speller))
+            parsed = next(parses(plan.sentence, speller))
         except InputError:  # no parser is installed, where a kept plan is shown
             return Account(_quoted(left, plan.sentence))
         spans = {t.i: parsed.text.span(t.idx, t.idx + len(t)) for t in parsed.doc}

@@ -11,7 +11,7 @@ from .people import A_NAME, B_NAME
 from .spelling import Speller, others
 from .syntax import parse
 from .vocabulary import closed, vocabulary
-from .wording import Text
+from .wording import Text, prepared
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
@@ -62,10 +62,11 @@ def _is_verb(token: Token) -> bool:
     return token.pos_ == "VERB" and token.dep_ != "aux"
 
 
-def parses(written: Text, speller: Speller) -> Iterator[Parse]:
-    """The parses of a text, the likeliest first."""
+def parses(text: str, speller: Speller) -> Iterator[Parse]:
+    """The parses of a text as it was written, the likeliest first."""
+    written = prepared(text, speller)
     whole = written.ended()
-    left = max(min(_MOST, _MOST_CHARACTERS // max(len(written.original), 1)) - 1, 0)
+    left = max(min(_MOST, _MOST_CHARACTERS // max(len(text), 1)) - 1, 0)
     first = _stopped(whole or written, speller)
     yield first
     if whole is not None and left > 0:

@@ -20,7 +20,7 @@ from .relations import related
 from .spelling import Speller, other_language, unknown
 from .syntax import spans
 from .vocabulary import closed, vocabulary
-from .wording import Text, prepared
+from .wording import Text
 
 MOST_CHARACTERS = 2000
 """Characters of a text that is read at once."""
@@ -65,7 +65,7 @@ def _doubts(plan: Plan, others: Sequence[Plan]) -> Iterator[Unread]:
 def _attempts(text: str, known: Lexicon) -> Iterator[tuple[float, Plan]]:
     """Plans of several parses of a text, with the cost of what each leaves over, until one leaves nothing."""
     speller = Speller(known)
-    for parsed in parses(prepared(text, speller), speller):
+    for parsed in parses(text, speller):
         reader = Reader(parsed.doc, known, parsed.lemmas, speller.forms)
         events = reader.read()
         planner = _Planner(text, parsed.text, known, events, spans(parsed.doc, events), reader)

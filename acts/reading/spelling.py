@@ -61,8 +61,17 @@ class Speller:
         return verbs_taken_for_nouns(doc, self.forms) | deeds_done(doc, self.is_deed)
 
     def suspects(self, doc: Doc) -> dict[int, tuple[str, str]]:
-        """Forms of verbs that were taken for something else, rightly or not, in the same form."""
-        return suspects(doc, self.forms)
+        """Forms of verbs that were taken for something else, rightly or not: offset → (a safe verb, its lemma)."""
+        part, forms = vocabulary().part, self.forms
+        return {
+            token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0])
+            for token in doc
+            if token.lower_ in forms
+            and not is_noun_or_side(token)
+            and not (token.dep_ == "conj" and part(token.lemma_.lower()) and part(token.head.lemma_.lower()))
+            and forms[token.lower_][1] in ("", "s", "ed")
+            and (token.pos_ not in ("VERB", "AUX") or token.dep_ == "compound")
+        }
 
 
 @lru_cache(maxsize=4)
@@ -198,20 +207,6 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
         elif token.pos_ in ("VERB", "AUX") and token.tag_ in _TAGS:
             last = _TAGS[token.tag_]
     return found
-
-
-def suspects(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[str, str]]:
-    """Forms of verbs that the parser takes for something else, rightly or not: offset → (a safe verb, its lemma)."""
-    part = vocabulary().part
-    return {
-        token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0])
-        for token in doc
-        if token.lower_ in forms
-        and not is_noun_or_side(token)
-        and not (token.dep_ == "conj" and part(token.lemma_.lower()) and part(token.head.lemma_.lower()))
-        and forms[token.lower_][1] in ("", "s", "ed")
-        and (token.pos_ not in ("VERB", "AUX") or token.dep_ == "compound")
-    }
 
 
 def deeds_done(doc: Doc, is_deed: Callable[[str], bool]) -> dict[int, tuple[str, str]]:
