@@ -1,19 +1,22 @@
-"""The entry of the lexicon that an event means: by its frames, or by those of a verb of like meaning."""
+"""The act that an event means: by its frames, by those of a verb of like meaning, or with what other words say of it."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 from acts.frames import Event, Frame, Match, Ref, best
 from acts.lexicon import Lexicon
-from acts.plan import other_of
+from acts.plan import Act, other_of
 
 from . import wordnet
 from .ellipsis import PERFORM
-from .vocabulary import is_act, vocabulary
+from .relations import BESIDE
+from .spelling import deeds
+from .vocabulary import closed, is_act, vocabulary
 
 LEAST_SCORE = -1.0
 """What a frame must score to be taken at all: more beside it than in it is another sentence."""
@@ -149,3 +152,279 @@ def _as(event: Event, verb: str) -> Event:
 def matcher(known: Lexicon) -> Matcher:
     """The matcher of a lexicon, made once."""
     return Matcher(known)
+
+
+# ---- what other words say of a clause: an object, whom it is done to, acts beside a verb --------------
+_SHARING = frozenset(("conj", "after", "with"))
+"""Joints of clauses that may share an object."""
+
+
+def completed(
+    number: int, event: Event, events: Sequence[Event], acts: Sequence[Act], known: Lexicon, alone: bool
+) -> Iterator[tuple[Event, float]]:
+    """The event with what other words say of it, as the object of "he reads and tears up the letter", and the cost.
+
+    Args:
+        number: of the event.
+        event: that no act fits as it is.
+        events: of the text.
+        acts: before it.
+        known: the lexicon.
+        alone: whether the text names a single person.
+    """
+    if event.subject is not None and event.subject.kind == "part" and event.object is None:
+        above = events[event.beside].subject if event.beside is not None else None
+        whose = event.subject.who or (above.who if above is not None and above.kind == "person" else "")
+        if len(whose) == 1:  # "an arm hooked around his waist": who hooks it there
+            yield replace(event, subject=Ref("person", whose), object=event.subject, state=True), 0.0
+    if (limb := event.subject) is not None and limb.kind == "part" and limb.family in closed("limbs"):
+        whose = limb.who or ("".join(acts[-1].agents) if acts else "a")
+        by = ("with", replace(limb, who=""))  # "his right hand picks it up": with it, he does
+        yield replace(event, subject=Ref("person", whose), prepositions=[*event.prepositions, by]), 0.0
+    if event.object is not None and _is_implied(event.subject):  # "is frozen" needs nobody who freezes him
+        yield replace(event, subject=event.object, object=None), 0.0
+    if event.object is not None or event.dative is not None:
+        return
+    beside = events[event.beside] if event.beside is not None and event.joint in _SHARING else None
+    after = [other for other in events if other.beside == number and other.joint in _SHARING]
+    for other in (beside, *after):
+        if other is not None and other.object is not None and other.subject == event.subject:
+            yield replace(event, object=other.object), 0.0
+    if (patient := _meant(event, acts, known)) is not None:  # "leans in, but does not kiss"
+        yield replace(event, object=Ref("person", patient)), 0.0
+    bare = not alone and event.lemma in known.frames and not event.particles and event.joint != "comp"
+    bare = bare and event.lemma not in vocabulary().verbs["vague"]  # "leads with arm circles"
+    bare = bare and all(ref.kind == "thing" for _, ref in event.prepositions)
+    inner = any(other.beside == number and other.joint == "comp" for other in events)
+    if event.subject is not None and bare and not inner and (whom := other_of(event.subject.who)):
+        yield replace(event, object=Ref("person", whom)), 1.0  # "one pushes and the other falls"
+
+
+def of_the_last(event: Event, acts: Sequence[Act]) -> Event | None:
+    """The event about the other's body, where what is done to it follows what was done to them.
+
+    As in "walks up to the other and covers his eyes", where nothing says whose.
+    """
+    part, who = event.object, event.subject.who if event.subject is not None else ""
+    if part is None or part.kind != "part" or part.who:
+        return None
+    last = next((act for act in reversed(acts) if "".join(act.agents) == who), None)
+    if last is None or last.patient is None:
+        return None
+    handles = not part.bare or (last.part is not None and part.definite)
+    return replace(event, object=replace(part, who=last.patient)) if handles else None
+
+
+def _meant(event: Event, acts: Sequence[Act], known: Lexicon) -> str | None:
+    """The other person, where a verb without an object follows what was done to them."""
+    last, subject = next(reversed(acts), None), event.subject
+    if event.lemma in vocabulary().verbs["sees"] and subject is not None:
+        return other_of(subject.who) or None
+    if last is None or subject is None or subject.who != "".join(last.agents):
+        return None
+    bare = not event.particles and not event.prepositions and event.lemma in known.frames
+    return last.patient if bare else None
+
+
+def _is_implied(subject: Ref | None) -> bool:
+    """True for the agent of a passive that the words leave out."""
+    return subject is not None and subject.kind == "person" and not subject.last
+
+
+# ---- repeats -------------------------------------------------------------------------------------------
+_MIRRORED = {"left": "right", "right": "left"}
+
+
+def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[str, Any] | None:
+    """Fields by which an event does the last act once more; None where it says something else.
+
+    Args:
+        event: whose verb may repeat or refuse an act.
+        last: the act before it.
+        has_inner: whether a clause depends on the event, as in "mirrors it facing you".
+        known: the lexicon, whose acts may be named: "shows a squat".
+    """
+    verbs, subject, ref = vocabulary().verbs, event.subject, event.object
+    repeats = event.lemma in verbs["repeats"]
+    named = ref is None or ref.lemma in closed("same") or ref.kind == "person"
+    named = named or (ref is not None and ref.lemma == "thing" and "same" in event.words)
+    named = named or (repeats and ref is not None and (ref.kind == "part" or ref.lemma in closed("movements")))
+    named = named or (repeats and ref is not None and ref.lemma in known.frames)
+    if subject is None or subject.kind != "person" or not named:
+        return None
+    if has_inner and not (repeats and ref is not None and ref.lemma in closed("same")):
+        return None
+    declines = event.lemma in verbs["not"] | verbs["wished"]
+    if event.lemma != "do" and not repeats and not declines:
+        return None
+    if declines and (
+        (ref is not None and ref.lemma not in closed("same")) or not (event.denied or event.lemma in verbs["not"])
+    ):
+        return None
+    agents, other = tuple(subject.who), other_of(subject.who) or "a"
+    if len(last.agents) > 1 or (len(agents) > 1 and event.lemma != "do"):
+        return None
+    both = len(agents) > 1 or last.patient is None
+    return {
+        "agents": agents,
+        "patient": None if both else (last.patient if agents == last.agents else other),
+        "polarity": "not" if declines or event.denied else "done",
+        "modality": "told",
+        "order": (),
+        "already": False,
+        "times": event.times or last.times,
+        "part_of": agents[0] if last.part_of in last.agents else last.part_of,
+        "side": event.side or (_MIRRORED.get(last.side or "", last.side) if event.lemma == "mirror" else last.side),
+    }
+
+
+# ---- acts beside a verb --------------------------------------------------------------------------------
+Find = Callable[[Event], Found | None]
+
+_OWN = {
+    "back": frozenset(("sit", "kneel", "lie", "lean")),
+    "unison": frozenset(("dance", "move", "act", "perform")),
+    "canon": frozenset(("dance", "move", "act", "perform", "do")),
+}
+"""Verbs that a formation goes with as one act: "they sit back to back"."""
+_EACH = Ref("each", "ab", "other")
+
+
+def seated(event: Event, found: Found, known: Lexicon, told: Iterable[str]) -> Event | None:
+    """The event that somebody sits where a phrase says so: "reads in his armchair".
+
+    Args:
+        event, found: the verb and its act.
+        known: the lexicon.
+        told: people of whom the text has told something before.
+    """
+    seats = vocabulary().seats
+    seat = next((ref for word, ref in event.prepositions if word in ("in", "on") and ref.lemma in seats), None)
+    if seat is None:
+        return None
+    shown = {shape.do for shape in known.entries[found[0]].stage}
+    who, other = event.subject, event.object
+    if found[2].patient and other is not None and other.kind == "person" and other.last <= seat.first:
+        who = other  # "pushes an old man in a wheelchair"
+    elif not shown <= BESIDE | {"stay"}:
+        return None
+    if who is None or set(told) & set(who.who):
+        return None
+    return Event("sit", who, first=event.first, last=event.last, ongoing=True, state=True)
+
+
+def formations(event: Event, names: Iterable[str]) -> Iterator[Event]:
+    """The ways to stand or move together that stand beside a verb, as events: "face each" for "face to face"."""
+    if event.distance is not None and event.times is None and "apart" in event.words:
+        names = (*names, "keep apart")
+    who = event.subject if event.subject is not None and len(event.subject.who) == 2 else Ref("person", "ab")
+    if event.denied:  # "they never touch, always two metres apart"
+        names = [name for name in names if name == "keep apart"]
+    for name in dict.fromkeys(names):
+        verb, _, noun = name.partition(" ")
+        verb = event.lemma if event.lemma in _OWN.get(noun, ()) else verb
+        ongoing = event.ongoing and verb == event.lemma
+        formed = Event(verb, who, first=event.first, last=event.last, ongoing=ongoing)
+        formed.distance = event.distance if noun == "apart" else None
+        if verb == "follow":
+            formed.subject, formed.object = Ref("person", "b"), Ref("person", "a")
+        elif noun in ("apart", "close", "back"):
+            formed.words = ["back", "to", "back"] if noun == "back" else [noun]
+        elif noun in ("each", "line"):
+            formed.object = _EACH if noun == "each" else Ref("thing", lemma=noun)
+        else:
+            formed.prepositions = [("in", Ref("thing", lemma=noun))]
+        yield formed
+
+
+def is_next_to(event: Event, found: Found, known: Lexicon) -> bool:
+    """True for what is done beside the other: "lies down next to her"."""
+    shown = {shape.do for shape in known.entries[found[0]].stage}
+    near = (p for p, ref in event.prepositions if ref.kind == "person")
+    beside = any(p in ("beside", "alongside") or (p == "to" and "next" in event.words) for p in near)
+    return bool(found[2].patient) and "posture" in shown and beside
+
+
+def held(event: Event, found: Found, known: Lexicon, find: Find) -> Iterator[tuple[Event, Found]]:
+    """The postures that phrases beside an act name: "begs on his knees", but not "leans on his knees"."""
+    agents = found[2].agents
+    elements = (each for _, frame in known.frames.get(event.lemma, ()) for each in frame.elements)
+    rests = event.lemma != "be" and any("on" in each.prepositions and each.slot != "place" for each in elements)
+    rests = rests or any(shape.do == "posture" for shape in known.entries[found[0]].stage)
+    rest = [event.prepositions[i] for i in found[2].rest if not (rests and event.prepositions[i][0] == "on")]
+    for preposition, ref in rest:
+        open_ = not ref.who and (preposition == "with" or (_carries(ref) and ref.family != "knee"))
+        if ref.kind != "part" or not (open_ or ref.who == agents) or (preposition == "on" and not _carries(ref)):
+            continue
+        walks = event.lemma in vocabulary().verbs["goes"] | vocabulary().gaits.keys()
+        if walks and ref.family in ("leg", "foot"):  # "limps on the left foot"
+            continue
+        words = [word for word in event.words if word in closed("arms held")]
+        if preposition in ("to", "from") or (preposition == "with" and not words):  # "from foot to foot" rises to none
+            continue
+        posture = replace(
+            event,
+            lemma="stand",
+            subject=Ref("person", agents),
+            object=None,
+            dative=None,
+            words=words,
+            particles=[],
+            noun=None,
+            times=None,
+            prepositions=[(preposition, ref)],
+            side=None,
+            direction=None,
+            adverbs=[],
+        )
+        posed = find(posture)
+        if posed is not None and posed[0] != found[0] and not posed[2].rest and posed[2].score > 1.5:
+            yield posture, posed
+
+
+def _carries(part: Ref) -> bool:
+    """True for what one kneels or stands on: "on his knees", "on one leg"."""
+    return part.family == "knee" or (part.family in ("leg", "foot") and part.side != "both")
+
+
+def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tuple[str, Event]]:
+    """The acts that nouns beside a verb stand for, with their prepositions: "pulls her into a hug" has a hug.
+
+    Args:
+        event: of the verb.
+        known: the lexicon.
+        rest: numbers of the event's prepositions that its own act leaves over.
+    """
+    for i in rest:
+        preposition, ref = event.prepositions[i]
+        if (
+            preposition not in closed("before deeds")
+            or ref.kind != "thing"
+            or ref.lemma not in deeds(known)
+            or (ref.place and preposition != "with")
+            or ref.bare
+        ):
+            continue
+        own = any(vocabulary().part(word) for word in event.words)  # "with slow arm circles"
+        bodily = is_act(ref.lemma) or own or (preposition == "in" and event.lemma in closed("is there"))
+        hurries = event.lemma in closed("is there") and ref.lemma in vocabulary().gaits  # "is in a hurry"
+        if not bodily or hurries or ref.lemma in vocabulary().verbs["no_nouns"]:
+            continue
+        others = [each for j, each in enumerate(event.prepositions) if j != i and j in rest]
+        person = event.object if event.object is not None and event.object.kind in ("person", "each") else None
+        done = replace(
+            event,
+            lemma=ref.lemma,
+            object=person or event.dative,
+            dative=None,
+            words=[],
+            particles=[],
+            prepositions=others,
+            noun=None,
+            direction=None,
+        )
+        words = [word for word in event.words if word not in event.particles]
+        performed = replace(done, lemma=PERFORM, object=ref, dative=done.object, words=words, noun=done)
+        yield preposition, done if ref.lemma in known.frames and not own else performed
+        if done.object is None:
+            yield preposition, performed

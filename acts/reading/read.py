@@ -12,8 +12,7 @@ from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread, other_of
 from acts.shapes import Go
 from motion import InputError
 
-from .completion import completed, formations, held, is_next_to, noun_acts, of_the_last, repeated, seated
-from .matching import Found, matcher
+from .matching import Found, completed, formations, held, is_next_to, matcher, noun_acts, of_the_last, repeated, seated
 from .parses import parses
 from .reader import Reader
 from .relations import related
