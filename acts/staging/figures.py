@@ -83,10 +83,6 @@ class Keys:
     again: tuple[Array, Array]
     out: tuple[Array, Array]
 
-    def least(self) -> float:
-        """Seconds that it takes at its fastest."""
-        return FASTEST * sum(float(part[0].sum()) for part in (self.into, self.again, self.out))
-
 
 @lru_cache(maxsize=1)
 def figures() -> Mapping[str, Keys]:

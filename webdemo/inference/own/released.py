@@ -174,10 +174,10 @@ def _check_memory(name: str, loading: float, free: float) -> None:
         )
 
 
-def free_memory(meminfo: Path = Path("/proc/meminfo")) -> float:
+def free_memory() -> float:
     """Bytes that programs can still take; all of the machine's where the system does not say what is free."""
     try:
-        for line in meminfo.read_text().splitlines():
+        for line in Path("/proc/meminfo").read_text().splitlines():
             if line.startswith("MemAvailable:"):
                 return 1024.0 * int(line.split()[1])
     except (OSError, ValueError, IndexError):
