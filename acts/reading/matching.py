@@ -1,4 +1,4 @@
-"""The act that an event means: by its frames, by those of a verb of like meaning, or with what other words say of it."""
+"""The act that an event means: by its frames, by verbs of like meaning, or with what other words say of it."""
 
 from __future__ import annotations
 
