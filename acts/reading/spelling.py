@@ -67,10 +67,11 @@ class Speller:
             token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0])
             for token in doc
             if token.lower_ in forms
+            and token.lower_ not in vocabulary().directions
             and not is_noun_or_side(token)
             and not (token.dep_ == "conj" and part(token.lemma_.lower()) and part(token.head.lemma_.lower()))
             and forms[token.lower_][1] in ("", "s", "ed")
-            and (token.pos_ not in ("VERB", "AUX") or token.dep_ == "compound")
+            and (token.pos_ not in ("VERB", "AUX", "ADP", "ADV") or token.dep_ in ("compound", "amod", "nmod"))
         }
 
 
@@ -235,8 +236,10 @@ def _verbless(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> Iterator[Token]
             token
             for token in sentence
             if token.i > sentence.start + 1
-            and forms.get(token.lower_, ("", ""))[1] == "s"
-            and token.nbor(-1).pos_ == "NOUN"
+            and token.pos_ in ("NOUN", "PROPN")
+            and forms.get(token.lower_, ("", ""))[1] in ("s", "ed")
+            and token.nbor(-1).pos_ in ("NOUN", "PROPN", "PRON")  # "the man in the hat waves"
+            and _ends_phrase(token)
         ]
         yield from known[-1:]
 
