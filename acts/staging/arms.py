@@ -10,22 +10,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acts.shapes import Gesture
 from motion import FPS, SMPL22
 from motion.limbs import solve_two_bones
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading, heading_matrix
-from motion.vectors import unit
+from motion.vectors import Array, unit
 
 from .gestures import GESTURES, hands_of, wrist
 from .places import Way2D
 from .poses import JOINT, UPRIGHT, upright
 from .score import SIDES, Move, Score
 from .window import Frames, KnownFrames, Stretch, late_by
-
-Array = NDArray[np.floating]
 
 BEGINS, RISES = 0.25, 0.8
 """Seconds after which an arm begins to rise, and those that it takes."""

@@ -9,13 +9,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acts import shapes
 from acts.lexicon import Lexicon
 from acts.plan import Act, other_of
 from motion import FPS, SMPL22
 from motion.placement import Placement
+from motion.vectors import Array
 
 from .floor import ABREAST, BEHIND, CLOSE, LINKED
 from .holds import TWIRL
@@ -25,8 +25,6 @@ from .poses import JOINT, Pose, grounded, seated, upright
 from .score import Lift, Move, Score, goes
 from .strikes import BOUTS
 from .window import Part, Window, known_paths
-
-Array = NDArray[np.floating]
 
 BACKS = 0.34
 """Metres between the pelvises of two people who stand or sit back to back: the backs touch."""

@@ -10,17 +10,15 @@ from collections.abc import Mapping
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
 from motion import FPS
 from motion.limbs import solve_two_bones
 from motion.skeleton import ARMS, LEGS
 from motion.smoothing import minimum_jerk
 from motion.transforms import facing, heading_matrix
+from motion.vectors import Array
 
 from .poses import BOTH_SIDES, JOINT, SOLE, STANCE, TOES, Turns, about, poses_of
-
-Array = NDArray[np.floating]
 
 _CLEAR = {
     "foot": SOLE,

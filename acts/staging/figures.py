@@ -20,14 +20,13 @@ from numpy.typing import NDArray
 from acts.shapes import Figure
 from motion import FPS
 from motion.smoothing import smoothstep
+from motion.vectors import Array
 
 from .figure_floor import grounded_poses
 from .poses import ALL, Pose
 from .postures import RISING, posture_joints, postures
 from .score import Change, Score
 from .window import OFTEN, SETTLES, Part, Stretch, late_by
-
-Array = NDArray[np.floating]
 
 SINGLE = ("pitch", "roll", "yaw", "spine", "lean", "twist", "neck", "look", "tilt")
 """Degrees by which the pelvis is pitched forward, rolled to the left and turned to the left, by which the trunk is bent

@@ -10,16 +10,13 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import FPS
-from motion.vectors import wrapped
+from motion.vectors import Array, wrapped
 
 from .holds import HOLDS, danced
 from .places import EASE, MOST, Standing, Track, Way2D, bearing, direction, eased, sampled, smoothed
 from .score import Move, Way
-
-Array = NDArray[np.floating]
 
 _DENSE = 4
 """Frames from one place to the next that are given to a couple who dance in hold."""

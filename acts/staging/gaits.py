@@ -13,19 +13,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
 from motion import FPS, SMPL22
 from motion.limbs import solve_two_bones
 from motion.skeleton import LEGS
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading_matrix
+from motion.vectors import Array
 
 from .poses import BOTH_SIDES, HANDS, JOINT, SOLE, STANDS, Turns, about, all_but, poses_of
 from .score import Score
 from .window import OFTEN, SETTLES, Part, Stretch
-
-Array = NDArray[np.floating]
 
 GETS_DOWN = 40
 """Frames in which somebody gets down on hands and knees."""

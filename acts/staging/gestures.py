@@ -10,14 +10,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acts.shapes import Gesture
+from motion.vectors import Array
 
 from .poses import JOINT, upright
 from .score import SIDES
 
-Array = NDArray[np.floating]
 Place = tuple[float, float, float]
 
 

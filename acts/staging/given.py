@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import FPS
 from motion.placement import Placement
 from motion.transforms import heading
+from motion.vectors import Array
 
 from .arms import hand_parts, outer_hand_parts
 from .beginnings import Room, Take, beginning, going, roomy, starting
@@ -33,8 +33,6 @@ from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
 from .touches import touch_parts
 from .window import SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
-
-Array = NDArray[np.floating]
 
 _POSED = 4
 """Frames between two poses of a statue: as many as between the network's knots, of which others would waver."""

@@ -9,12 +9,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from motion.vectors import Array
 
 from .poses import JOINT, TRUNK, UPRIGHT, Pose, bending, upright
 from .window import KnownFrames, Stretch
-
-Array = NDArray[np.floating]
 
 
 @dataclass(frozen=True)

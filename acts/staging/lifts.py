@@ -18,14 +18,13 @@ from motion import FPS
 from motion.limbs import bent_towards
 from motion.steering import STRIDE, Steps
 from motion.transforms import heading_matrix
+from motion.vectors import Array
 
 from .gestures import hands_of, wrist
 from .places import Course, Way2D, eased
 from .poses import BOTH_SIDES, JOINT, LOWER, TRUNK, Turns, about, all_but, bending, poses_of, upright
 from .score import Lift
 from .window import KnownFrames, Stretch
-
-Array = NDArray[np.floating]
 
 _BESIDE = {"up": (0.0, 0.38, 0.3), "arms": (0.0, 0.2, 0.29), "back": (0.0, 0.22, -0.2), "drags": (0.0, -0.83, 1.0)}
 """Metres from the pelvis of the carrier, who faces +Z, to that of the person carried."""

@@ -8,19 +8,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acts.shapes import Limb
 from motion import FPS
 from motion.skeleton import ARMS
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading_matrix
+from motion.vectors import Array
 
 from .poses import HANDS, SOLE, STANDS, TOES, Turns, about, all_but, poses_of, standing, turns_of
 from .score import Score
 from .window import OFTEN, SETTLES, Part, Stretch
-
-Array = NDArray[np.floating]
 
 RAMP = 0.7
 """Seconds in which a limb gets to its place, and back."""

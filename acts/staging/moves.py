@@ -6,9 +6,9 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acts.plan import other_of
+from motion.vectors import Array
 
 from .floor import ABEAM
 from .holds import HOLDS, TWIRL
@@ -18,8 +18,6 @@ from .poses import upright
 from .score import Lift, Move, Score, Strike, Touch, Way
 from .strikes import BOUTS
 from .touches import LOWEST, beside, kneels, middle, reach
-
-Array = NDArray[np.floating]
 
 _GOING = {"away", "past", "around", "along", "to", "behind"}
 """Ways on which somebody can be followed."""

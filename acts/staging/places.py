@@ -11,12 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import FPS
-from motion.vectors import wrapped
-
-Array = NDArray[np.floating]
+from motion.vectors import Array, wrapped
 
 
 @dataclass(frozen=True)

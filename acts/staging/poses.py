@@ -15,8 +15,7 @@ from motion.kinematics import forward_kinematics
 from motion.limbs import bent_towards
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading, heading_matrix
-
-Array = NDArray[np.floating]
+from motion.vectors import Array
 
 Turns = dict[str, Array]
 """Rotations (3, 3) or (N, 3, 3) of joints by name."""

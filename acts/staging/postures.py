@@ -10,12 +10,12 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acts.shapes import Bow, Jump
 from motion import FPS
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading
+from motion.vectors import Array
 
 from .gaits import on_all_fours
 from .places import HALT, Standing
@@ -46,8 +46,6 @@ from .poses import (
 )
 from .score import Change, Score, at_start
 from .window import SETTLES, Part, Stretch, late_by
-
-Array = NDArray[np.floating]
 
 HELD = 4
 """Frames between two poses of a person who keeps a posture: as many as between the network's knots."""

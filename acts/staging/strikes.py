@@ -11,10 +11,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import FPS
 from motion.transforms import heading_matrix
+from motion.vectors import Array
 
 from .places import Course
 from .poses import HANDS, JOINT, TRUNK, bending, standing, upright
@@ -22,7 +22,6 @@ from .postures import DUCKING
 from .score import SIDES, Score, Strike
 from .window import KnownFrames, Stretch
 
-Array = NDArray[np.floating]
 Place = tuple[float, float, float]
 _Given = tuple[int, tuple[str, ...], tuple[tuple[int, ...], Array]]
 """A person, their hands, and frames with the poses at them."""

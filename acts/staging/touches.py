@@ -10,18 +10,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import FPS
 from motion.transforms import heading, heading_matrix
-from motion.vectors import unit
+from motion.vectors import Array, unit
 
 from .places import Course
 from .poses import JOINT, LOWER, TRUNK, about, kneeling, leaning, upright
 from .score import SIDES, Touch
 from .window import KnownFrames, Stretch
-
-Array = NDArray[np.floating]
 
 _JOINTS = {
     "head": "head",

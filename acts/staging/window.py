@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.placement import Placement
+from motion.vectors import Array
 
 from .places import HALT, Course, Standing, Way2D
 
-Array = NDArray[np.floating]
 Frames = NDArray[np.integer]
 
 PAST = 48

@@ -26,12 +26,12 @@ from motion.metrics.sentences.language import mask_of, masks
 from motion.things import MOST_THINGS, Thing
 from motion.things.hands import Hands
 from motion.things.sight import looked_at
+from motion.vectors import Array
 
 from .courses import ThingCourse, courses
 from .furniture import BODIES, LEAVES, TAKES, fixtures, furniture
 from .uses import act_frames, uses_of
 
-Array = NDArray[np.floating]
 Row = dict[str, Any]
 """A thing as a manifest holds it: its kind, its name, and what is done with it."""
 

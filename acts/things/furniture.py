@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import SMPL22
 from motion.metrics.sentences.joints import stretches
@@ -17,11 +16,9 @@ from motion.smoothing import smoothstep
 from motion.things import FIXTURES, Thing, kinds, shape
 from motion.things.hands import Hands, level, smoothed, yaw_of
 from motion.transforms import heading_matrix
-from motion.vectors import FLAT
+from motion.vectors import FLAT, Array
 
 from .uses import Use
-
-Array = NDArray[np.floating]
 
 UNDER_HIP = 0.095
 """Metres from the joints of the hips down to the seat, of a person who sits."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acts.staging.score import Score
 from motion import FPS, SMPL22, Duet
@@ -22,13 +21,12 @@ from motion.touch.apart import bodies_apart, out_of_the_way
 from motion.touch.arms import arms_apart, embraced
 from motion.touch.hands import backs_straight, hands_clasped, palms_met
 from motion.transforms import facing
+from motion.vectors import Array
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.plans import BeatFinish
 from webdemo.inference.run import Result
 from webdemo.inference.story.request import SceneRequest
-
-Array = NDArray[np.floating]
 
 _CALM = 0.3
 """Weight of what a network made against least jerk: what is slower than 4 Hz stays."""

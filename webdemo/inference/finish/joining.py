@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from motion import FPS, SMPL22
 from motion.cleaning import foot_contacts, plant_feet
 from motion.kinematics import followed_rotations, rotation_matrices
+from motion.vectors import Array
 
-Array = NDArray[np.floating]
 Frames = NDArray[np.integer]
 
 REACH = 15

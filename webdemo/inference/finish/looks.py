@@ -14,7 +14,6 @@ from dataclasses import replace
 from typing import Any, TypeGuard
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acts import Plan
 from acts.plan import PlanFrames
@@ -24,13 +23,12 @@ from motion.looks import SIZES, UNSAID, grown_up, looks_of, size_of
 from motion.metrics import compare
 from motion.sizes import at_sizes, bones_of, floor_scale, of_adults
 from motion.smoothing import smoothstep
+from motion.vectors import Array
 from webdemo.inference.requests.paths import FloorPath
 from webdemo.inference.requests.predict import PredictRequest, PredictResult, predicted
 from webdemo.inference.run import Result
 from webdemo.inference.story.poses import Pose
 from webdemo.inference.story.request import SceneRequest
-
-Array = NDArray[np.floating]
 
 _ALIKE = 0.02
 """Share of an adult's thigh by which a child's bones may differ from those of a child's body."""

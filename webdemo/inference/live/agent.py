@@ -14,21 +14,19 @@ from __future__ import annotations
 from collections import deque
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.agent.recogniser import OBSERVED
 from motion import FPS
 from motion.steering import Goal
 from motion.things import Thing
 from motion.transforms import facing
+from motion.vectors import Array
 from motion.video.following import Gaze
 from webdemo.inference.pipelines.agent import BETWEEN, FIRST, Decision, Eye, Look
 from webdemo.inference.requests.live import Belief
 
 from .partner_pipeline import ReactingPartner
 from .room import Errand, Room, complaint
-
-Array = NDArray[np.floating]
 
 MEMORY = 6
 """Looks that count together: the last three seconds."""

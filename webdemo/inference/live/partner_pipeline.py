@@ -12,7 +12,6 @@ from collections import deque
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor
 
 from models.compiled import take_threads
@@ -23,15 +22,13 @@ from motion.placement import Placement
 from motion.steering import Goal, Steering
 from motion.things import Thing
 from motion.transforms import turn
-from motion.vectors import FLAT
+from motion.vectors import FLAT, Array
 from motion.video.following import Gaze
 from webdemo.inference.finish.cleanup import FollowingCleanup
 from webdemo.inference.pipelines.given import settle
 from webdemo.inference.pipelines.regennet import ReGenNetPipeline
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.live import Belief, LivePartner
-
-Array = NDArray[np.floating]
 
 SEGMENT = 600
 """Frames of a segment, its replay included: training saw streams of about 25 s."""

@@ -23,9 +23,7 @@ from motion.smoothing import smoothstep
 from motion.steering import Goal
 from motion.things import Thing, shape
 from motion.transforms import facing
-from motion.vectors import FLAT, unit
-
-Array = NDArray[np.floating]
+from motion.vectors import FLAT, Array, unit
 
 PLACES = {"window": (0.0, 2.2), "hi-fi": (2.0, 0.9)}
 """Metres from where the agent first stands, to its left and behind it, as seen by a person facing it."""

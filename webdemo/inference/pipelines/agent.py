@@ -18,13 +18,13 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 
 from acts.staging.window import KnownFrames
 from models.agent.recogniser import OBSERVED, PREDICTED, load_folder, sampled
 from models.known import Hold, Known
 from motion import FPS, SMPL22, Clip, Duet
 from motion.placement import MEDIAN_START_DISTANCE, Placement
+from motion.vectors import Array
 from webdemo.inference.finish.joining import joined
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.plans import KeptPlan, plan_of_words
@@ -33,8 +33,6 @@ from webdemo.inference.run import CancelToken, Progress, Result, StageTimer, unt
 from .given import NAMES, Finish, Reaction, hold_of, settle
 from .intergen import InterGenPipeline
 from .predictor import PredictorPipeline, to_last_pose
-
-Array = NDArray[np.floating]
 
 SURE = 0.9
 """The agent responds to a gesture from this probability on."""

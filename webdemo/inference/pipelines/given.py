@@ -20,11 +20,11 @@ from motion.metrics import compare
 from motion.placement import Placement
 from motion.representation import NUM_FEATURES
 from motion.smoothing import minimum_jerk, smoothstep
+from motion.vectors import Array
 from webdemo.inference.finish.joining import PASSING, joined, passing
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.run import Result
 
-Array = NDArray[np.floating]
 Finish = Callable[[Array], Array]
 NAMES = ("actor", "reactor")
 SETTLE = 0.5

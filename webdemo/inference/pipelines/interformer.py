@@ -13,7 +13,6 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor
 
 from models.diffusion import sample_noise
@@ -25,14 +24,13 @@ from motion import FPS, SMPL22, Clip
 from motion.ik import fit_skeleton
 from motion.placement import Placement
 from motion.transforms import heading_matrix, resample
+from motion.vectors import Array
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .given import reacted, settle
-
-Array = NDArray[np.floating]
 
 RECORDED_START_DISTANCE = 1.05
 """Metres between the two people of the median recorded pair at its first frame."""

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import scipy.ndimage
 import torch
-from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from acts import Plan, lexicon
@@ -22,6 +21,7 @@ from models.intergen.released import ReleasedInterGen, load_released
 from models.text import MiniLM
 from models.text.clip import find_vocabulary
 from motion import FPS, Clip, Duet, stacked_positions
+from motion.vectors import Array
 from webdemo.inference.finish.cleanup import clean_person, finish_of, in_touch
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
@@ -38,7 +38,6 @@ from .predictor import PredictorPipeline
 from .scene import SceneMaker
 from .two_person import Conditioning, TwoPersonPipeline
 
-Array = NDArray[np.floating]
 SMOOTHING = 1.0
 """Frames: σ of the Gaussian by which InterGen's release smooths its positions."""
 _FAR = (

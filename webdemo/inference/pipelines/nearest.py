@@ -22,14 +22,13 @@ from motion import FPS, SMPL22, Clip, Duet, InputError
 from motion.formats import read
 from motion.placement import Placement
 from motion.transforms import resample
+from motion.vectors import Array
 from webdemo.inference.built_in import REACTIONS_VARIABLE
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .given import reacted, settle
-
-Array = NDArray[np.floating]
 
 MOMENTS = 16
 """At which actors are compared, over their whole length."""

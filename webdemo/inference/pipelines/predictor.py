@@ -7,17 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 
 from models.predictors import Predictor, load_predictor
 from motion import FPS, SMPL22, stacked_positions
 from motion.cleaning import foot_contacts, plant_feet
 from motion.transforms import heading, heading_matrix
-from motion.vectors import unit
+from motion.vectors import Array, unit
 from webdemo.inference.requests.predict import PredictRequest, mean_steps, predicted
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
-
-Array = NDArray[np.floating]
 
 _STILL = 1e-3
 """Metres: if no joint of a past, or of a future, moves farther than this, the person stands still."""

@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor
 
 from models.diffusion import SamplingStep, make_scheduler, sample_noise, sample_steps
@@ -26,6 +25,7 @@ from models.regennet.released import ROWS, decode, encode, load_released
 from models.text import MiniLM
 from motion import FPS, Clip, InputError
 from motion.placement import Placement
+from motion.vectors import Array
 from webdemo.inference.finish.cleanup import FollowingCleanup, clean_person
 from webdemo.inference.finish.damping import Beside, Damping
 from webdemo.inference.own.entries import Entry
@@ -35,7 +35,6 @@ from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .given import reacted, settle
 
-Array = NDArray[np.floating]
 Answer = Callable[[Array], tuple[Array, Array]]
 CONVERTED = (
     "The given person's 22 joints became rotations of SMPL-X's 55: jaw, eyes and fingers are at rest, and twists about "

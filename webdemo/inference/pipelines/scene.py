@@ -16,7 +16,6 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acts import Plan
 from acts.staging.given import Story, plan_parts
@@ -26,6 +25,7 @@ from motion import FPS, Duet, InputError
 from motion.metrics import compare
 from motion.placement import MEDIAN_START_DISTANCE, Placement
 from motion.transforms import heading, heading_matrix
+from motion.vectors import Array
 from webdemo.inference.finish.cleanup import finished, finishes
 from webdemo.inference.finish.joining import closed
 from webdemo.inference.method import SECONDS
@@ -38,8 +38,6 @@ from webdemo.inference.story.request import SceneProgress, SceneRequest, window_
 from .given import NAMES, Directed, directed
 from .two_person import Conditioning, TwoPersonPipeline
 from .wishes import wishes
-
-Array = NDArray[np.floating]
 
 KEPT = 400
 """Windows that are kept; one of five seconds takes 160 kB."""

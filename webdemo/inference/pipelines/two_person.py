@@ -9,7 +9,6 @@ from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor
 
 from acts.staging.window import KnownFrames
@@ -24,6 +23,7 @@ from models.weights_io import WeightsFolder
 from motion import FPS, Duet, InputError
 from motion.metrics import compare
 from motion.placement import Placement
+from motion.vectors import Array
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.damping import Damping
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
@@ -32,7 +32,6 @@ from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .given import Finish, Given, Reaction, Scene, hold_of
 
-Array = NDArray[np.floating]
 Network = TypeVar("Network", CompactInterGen, CompactBiGraphDiff, ReleasedInterGen)
 
 

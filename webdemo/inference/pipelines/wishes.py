@@ -7,16 +7,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acts.staging.window import KnownFrames, Part, Window, known_paths
 from motion import FPS, InputError
 from motion.placement import MEDIAN_START_DISTANCE, Placement
+from motion.vectors import Array
 from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.paths import MOST_SPEED, FloorPath
 from webdemo.inference.story.request import SceneRequest
 
-Array = NDArray[np.floating]
 CATCHING_UP = 3.0
 """Metres a second of people who run to a path that begins elsewhere, where the path itself is no faster."""
 ACCELERATION = 4.0

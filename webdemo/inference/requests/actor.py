@@ -13,16 +13,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import FPS, SMPL22, Clip, Duet, InputError, stacked_positions
 from motion.formats import ImportChoices
 from motion.formats.importing import import_motion
 from motion.retarget import to_smpl
 from motion.transforms import resample
+from motion.vectors import Array
 from webdemo.inference.method import SECONDS
-
-Array = NDArray[np.floating]
 
 ROLES = ("a", "b")
 LETTERS = "abcdef"

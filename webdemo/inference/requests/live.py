@@ -9,18 +9,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from motion import Clip, Duet, InputError
 from motion.metrics import compare
 from motion.things import Thing
+from motion.vectors import Array
 from motion.video.following import Gaze
 from webdemo.inference.run import Progress, Result, StageTimer
 
 from .actor import motion_facts
-
-Array = NDArray[np.floating]
 
 PARTNERS: Mapping[str, str] = {"regennet": "ReGenNet, online", "agent": "Virtual agent"}
 """Live partners by name, with their labels."""

@@ -16,7 +16,6 @@ from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, PlainSerializer, PlainValidator, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 
@@ -24,8 +23,7 @@ from acts import read
 from acts.plan import Plan, plan_of, problem
 from acts.staging.window import KnownFrames, KnownPath, Part
 from motion import SMPL22, InputError
-
-Array = NDArray[np.floating]
+from motion.vectors import Array
 
 MOST_WINDOWS = 1024
 """Windows of all samples of a result: eight samples of sixty beats make fewer."""

@@ -7,16 +7,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import FPS, SMPL22, Clip, Duet, InputError, stacked_positions
+from motion.vectors import Array
 from webdemo.inference import methods
 from webdemo.inference.run import Result
 
 from .actor import at_30_fps, motion_facts
 from .sampling import check_settings, number
-
-Array = NDArray[np.floating]
 
 PAST_SECONDS = 1.0
 """Seconds of past that a prediction needs; only the last so many are used."""

@@ -12,15 +12,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import FPS, SMPL22, InputError
 from motion.kinematics import swing
-from motion.vectors import unit
+from motion.vectors import Array, unit
 from webdemo.inference.requests.actor import ROLES, check_pose
 from webdemo.inference.requests.paths import FLOOR, MOST_SPEED, FloorPath
-
-Array = NDArray[np.floating]
 
 MOST_POSES = 40
 _FOLDED = 3.07
