@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -95,15 +95,10 @@ def checked(plan: Plan, motion: Duet | Motion) -> tuple[Verdict, ...]:
             raise ValueError("Acts are checked on SMPL's 22 joints: bring the motion there first (to_smpl).")
         motion = Motion(motion.positions, motion.fps)
     found: dict[str, Verdict] = {}
-    for act in _in_order(plan):
-        found[act.id] = _verdict(act, plan, motion, known, found)
-    return tuple(found[act.id] for act in plan.acts)
-
-
-def _in_order(plan: Plan) -> Iterator[Act]:
-    """Acts after those that they come after."""
     for group in plan.beats():
-        yield from group
+        for act in group:
+            found[act.id] = _verdict(act, plan, motion, known, found)
+    return tuple(found[act.id] for act in plan.acts)
 
 
 def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mapping[str, Verdict]) -> Verdict:

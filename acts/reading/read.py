@@ -13,13 +13,12 @@ from acts.shapes import Go
 from motion import InputError
 
 from .matching import Found, completed, formations, held, is_next_to, matcher, noun_acts, of_the_last, repeated, seated
-from .parses import parses
+from .parses import Parse, parses
 from .reader import Reader
 from .relations import related
 from .spelling import Speller, other_language, unknown
 from .syntax import spans
 from .vocabulary import closed, vocabulary
-from .wording import Text
 
 MOST_CHARACTERS = 2000
 """Characters of a text that is read at once."""
@@ -65,9 +64,7 @@ def _attempts(text: str, known: Lexicon) -> Iterator[tuple[float, Plan]]:
     """Plans of several parses of a text, with the cost of what each leaves over, until one leaves nothing."""
     speller = Speller(known)
     for parsed in parses(text, speller):
-        reader = Reader(parsed.doc, known, parsed.lemmas, speller.forms)
-        events = reader.read()
-        planner = _Planner(text, parsed.text, known, events, spans(parsed.doc, events), reader)
+        planner = _Planner(text, parsed, known, speller)
         plan = planner.plan()
         yield planner.cost + parsed.cost, plan
         if planner.cost == 0:
@@ -77,23 +74,17 @@ def _attempts(text: str, known: Lexicon) -> Iterator[tuple[float, Plan]]:
 class _Planner:
     """Turns events into acts."""
 
-    def __init__(
-        self,
-        text: str,
-        prepared_text: Text,
-        known: Lexicon,
-        events: Sequence[Event],
-        clauses: Iterable[tuple[int, int]],
-        reader: Reader,
-    ) -> None:
-        self._text, self._prepared, self._known = text, prepared_text, known
-        self._events, self._clauses, self._reader = events, list(clauses), reader
+    def __init__(self, text: str, parsed: Parse, known: Lexicon, speller: Speller) -> None:
+        self._text, self._prepared, self._known = text, parsed.text, known
+        self._reader = reader = Reader(parsed.doc, known, parsed.lemmas, speller.forms)
+        self._events = reader.read()
+        self._clauses = list(spans(parsed.doc, self._events))
         self._matcher = matcher(known)
         self._acts: list[Act] = []
         self._unread: list[Unread] = []
         self._of: dict[int, str] = {}
         self._taken: set[int] = set()
-        self._nonsense = list(unknown(reader.doc, Speller(known).knows))
+        self._nonsense = list(unknown(parsed.doc, speller.knows))
         self._beside: dict[str, Relation] = {}
         """Relations of acts that stand beside a verb's own."""
         self._in_turns: set[int] = set()

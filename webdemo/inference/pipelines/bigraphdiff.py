@@ -24,11 +24,11 @@ from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
+from .given import NAMES
 from .two_person import Conditioning, TwoPersonPipeline
 
 LINEAR_BETAS = (1e-4, 0.02)
 """First and last noise variance of the linear schedule, Ho et al. 2020, as in MotionDiffuse."""
-ROLES = ("actor", "reactor")
 
 
 class BiGraphDiffPipeline(TwoPersonPipeline[CompactBiGraphDiff]):
@@ -90,7 +90,7 @@ class ReleasedBiGraphDiffPipeline:
         people = (x * self.std + self.mean).double().numpy().reshape(len(x), frames, 2, JOINTS, 3)
         if not np.isfinite(people).all():
             raise InputError("The motion diverged: take more steps.")
-        kinect = [Duet.from_positions(np.moveaxis(pair, 1, 0), fps=FPS, skeleton=NTU25, roles=ROLES) for pair in people]
+        kinect = [Duet.from_positions(np.moveaxis(pair, 1, 0), fps=FPS, skeleton=NTU25, roles=NAMES) for pair in people]
         fitted = [to_smpl(duet) for duet in kinect]
         finish = clean_person if request.cleanup else np.asarray
         shown = [duet.with_positions([finish(p.positions) for p in duet.people]) for duet in fitted]
