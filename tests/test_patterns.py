@@ -22,7 +22,7 @@ from typing import Any
 
 import pytest
 
-from webdemo.inference.requests import MAX_PROMPT
+from webdemo.inference.requests.sampling import MAX_PROMPT
 from webdemo.inference.story.sentences import LONGEST_READ, MOST_WORDS
 
 ROOT = Path(__file__).parents[1]

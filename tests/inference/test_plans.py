@@ -17,8 +17,8 @@ from motion.looks import UNSAID
 from webdemo.inference import Engine, GenerateRequest, ReactRequest, SceneRequest
 from webdemo.inference.pipelines import intergen, scene
 from webdemo.inference.pipelines.scene import Parts
-from webdemo.inference.requests import replayed
 from webdemo.inference.requests.plans import KeptPlan, WindowPlan, kept_plan
+from webdemo.inference.requests.sampling import replayed
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, request, sentences
 
 from .people import waver

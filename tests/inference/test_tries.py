@@ -14,7 +14,7 @@ from motion import Duet, InputError
 from tests.motion.metrics.test_sentence_shapes import duet, put, shift, spin
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Progress, Result, SceneRequest
 from webdemo.inference.engine import judged, note, run_tries
-from webdemo.inference.requests import MAX_SEED, replayed
+from webdemo.inference.requests.sampling import MAX_SEED, replayed
 from webdemo.inference.story import Beat
 
 SENTENCE = "A raises the left arm and turns around."

@@ -17,9 +17,10 @@ from motion import Clip, Duet, InputError
 from motion.formats import ImportChoices, read
 from motion.retarget import to_smpl
 from webdemo.inference.methods import AUTOMATIC, methods
-from webdemo.inference.requests import OWN_STEPS, GenerateRequest, ReactRequest, SamplingRequest
+from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
+from webdemo.inference.requests.sampling import OWN_STEPS
 from webdemo.inference.run import Cancelled, Result
 from webdemo.inference.story import SceneRequest, in_time, read_words
 from webdemo.inference.story.request import MOST_SECONDS

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from motion import FPS, Duet, InputError
-from webdemo.inference.requests import MAX_SEED
+from webdemo.inference.requests.sampling import MAX_SEED
 from webdemo.inference.run import Result
 from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest, in_time, split_sentence
 

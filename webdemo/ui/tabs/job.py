@@ -17,7 +17,7 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from webdemo.inference.requests import MAX_SEED
+from webdemo.inference.requests.sampling import MAX_SEED
 from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show

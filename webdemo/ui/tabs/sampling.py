@@ -8,16 +8,8 @@ from typing import Any
 import gradio as gr
 
 from webdemo.inference.method import DEFAULT_STEPS
-from webdemo.inference.requests import (
-    DAMPING,
-    GUIDANCE,
-    MAX_SEED,
-    SAMPLES,
-    STRICTNESS,
-    TRIES,
-    GenerateRequest,
-    SamplingRequest,
-)
+from webdemo.inference.requests import GenerateRequest, SamplingRequest
+from webdemo.inference.requests.sampling import DAMPING, GUIDANCE, MAX_SEED, SAMPLES, STRICTNESS, TRIES
 from webdemo.ui.components.fields import slider
 from webdemo.ui.text.texts import say
 
