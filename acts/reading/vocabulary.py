@@ -14,12 +14,16 @@ FORMATION = "together"
 """The adverb as which the parser gets a formation."""
 
 
+def _sets(table: Mapping[str, str]) -> dict[str, frozenset[str]]:
+    """The words of each line of a table."""
+    return {name: frozenset(words.split()) for name, words in table.items()}
+
+
 class Vocabulary:
     """The words of ``words.toml``, and WordNet's nouns of people."""
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
-        people = {key: frozenset(text.split()) for key, text in tables["people"].items()}
-        self._people = people
+        self._people = _sets(tables["people"])
         self.shorthand: dict[str, str] = dict(tables["shorthand"])
         self.places = frozenset(tables["places"]["nouns"].split())
         self.seats = frozenset(tables["places"]["seats"].split())
@@ -40,10 +44,10 @@ class Vocabulary:
         """Factors of speed that a verb brings along, beside a walk."""
         self.likeness = {w: adverb for adverb, text in tables["likeness"].items() for w in text.split()}
         """How somebody moves who moves like one of these."""
-        self.verbs = {kind: frozenset(text.split()) for kind, text in tables["verbs"].items()}
+        self.verbs = _sets(tables["verbs"])
         self.light: tuple[str, ...] = tuple(tables["verbs"]["light"].split())
         """Verbs that mean what their object names, in the order in which they are tried."""
-        self.adjectives = {kind: frozenset(text.split()) for kind, text in tables["adjectives"].items()}
+        self.adjectives = _sets(tables["adjectives"])
         """Adjectives that say of what follows that it is not done, or only wished."""
         joined: dict[str, str] = dict(tables["phrases"])
         self.formations = {
@@ -58,18 +62,15 @@ class Vocabulary:
             self.phrases.setdefault(words[0], []).append((words, joined[phrase]))
         self.requests = sorted((tuple(text.split()) for text in tables["requests"]["phrases"]), key=len, reverse=True)
         """What asks for a motion before it says which, the longest first."""
-        self.limits: dict[str, frozenset[str]] = {
-            note: frozenset(words.split()) for note, words in tables["limits"].items()
-        }
+        self.limits = _sets(tables["limits"])
         """What the stage cannot do, as a sentence, by the words that ask for it."""
-        self.classes = {name: frozenset(text.split()) for name, text in tables["classes"].items()}
-        self.modals = {kind: frozenset(text.split()) for kind, text in tables["modals"].items()}
+        self.classes = _sets(tables["classes"])
+        self.modals = _sets(tables["modals"])
 
     def is_person(self, lemma: str) -> bool:
         """True for the lemma of a noun that names a person."""
-        if lemma in self._people["not"] or lemma in self._parts:
-            return False
-        return lemma in wordnet.people() or any(lemma in self._people[k] for k in ("m", "f", "child", "more"))
+        known = lemma in wordnet.people() or self.is_usual_person(lemma)
+        return known and lemma not in self._people["not"] and lemma not in self._parts
 
     def is_usual_person(self, lemma: str) -> bool:
         """True for the nouns of people that stand in ``words.toml``, and not for WordNet's rarer ones."""
@@ -81,18 +82,12 @@ class Vocabulary:
 
     def sex(self, lemma: str) -> str:
         """ "m", "f" or "" for a noun of a person."""
-        for sex in "mf":
-            if lemma in self._people[sex]:
-                return sex
-        known = wordnet.people().get(lemma)
-        return known.sex if known else ""
+        usual = next((sex for sex in "mf" if lemma in self._people[sex]), None)
+        return usual or wordnet.people().get(lemma, "")
 
     def age(self, lemma: str) -> str:
         """ "child", "old" or "" for a noun of a person."""
-        for age in ("child", "old"):
-            if lemma in self._people[age]:
-                return age
-        return ""
+        return next((age for age in ("child", "old") if lemma in self._people[age]), "")
 
     def state(self, preposition: str, lemma: str) -> str:
         """The verb that a phrase of place implies for its person ("on the bench": sit); "" for other phrases."""

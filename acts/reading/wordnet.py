@@ -39,13 +39,6 @@ class _Verbs(NamedTuple):
     above: dict[str, tuple[str, ...]]
 
 
-class PersonNoun(NamedTuple):
-    """The sex ("m", "f" or "") and age ("child", "old" or "") that a noun gives a person."""
-
-    sex: str
-    age: str
-
-
 @cache
 def _verbs() -> _Verbs:
     senses: dict[str, tuple[str, ...]] = {}
@@ -57,13 +50,10 @@ def _verbs() -> _Verbs:
 
 
 @cache
-def people() -> dict[str, PersonNoun]:
-    """Nouns whose most frequent sense is a person."""
-    found = {}
-    for line in PEOPLE.read_text(encoding="utf-8").splitlines():
-        noun, sex, age = line.split("\t")
-        found[noun] = PersonNoun(sex, age)
-    return found
+def people() -> dict[str, str]:
+    """Nouns whose most frequent sense is a person, with the sex that each gives them: "m", "f" or ""."""
+    rows = (line.split("\t") for line in PEOPLE.read_text(encoding="utf-8").splitlines())
+    return {noun: sex for noun, sex, _ in rows}
 
 
 @cache

@@ -14,7 +14,9 @@ from pathlib import Path
 from motion import InputError
 from webdemo.inference.built_in import BUILT_IN, REACTIONS_VARIABLE
 from webdemo.inference.method import WEIGHTS, Method, Task, Variant
-from webdemo.inference.own import method_of, read_entries
+from webdemo.inference.own.classes import class_method
+from webdemo.inference.own.entries import read_entries
+from webdemo.inference.own.released import released_method
 
 log = logging.getLogger(__name__)
 
@@ -113,7 +115,7 @@ def register_settings() -> None:
         entries, failures = read_entries()
         for name, entry in entries.items():
             try:
-                register(method_of(entry))
+                register(class_method(entry) if entry.pipeline else released_method(entry))
             except Exception as error:
                 log.debug("%s cannot be used.", name, exc_info=True)
                 reason = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}."
