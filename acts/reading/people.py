@@ -206,10 +206,8 @@ class Cast:
     def _as(self, who: str, word: str) -> str:
         known = self._known.setdefault(who, _Known())
         known.words.append(word)
-        if not known.sex:
-            known.sex = self._words.sex(word)
-        if not known.age:
-            known.age = self._words.age(word)
+        known.sex = known.sex or self._words.sex(word)
+        known.age = known.age or self._words.age(word)
         self.last = who
         return who
 

@@ -261,13 +261,9 @@ class Damping:
         self.moved: Tensor | None = None
         """(B,) metres by which the correction at the last timestep moved the joints, on average; None without one."""
 
-    def due(self, timestep: int) -> bool:
-        """True if anything is corrected at a timestep of the sampler."""
-        return self.shares[timestep] > 0
-
     def __call__(self, x0: Tensor, timestep: int) -> Tensor:
         """The corrected prediction, (B, tokens, F) as given; the same object if nothing is due."""
-        if not self.due(timestep):
+        if not self.shares[timestep]:
             return x0
         scale, before = self.space.scale, x0
         for _ in range(LAST_STEPS if timestep == self.last else GRADIENT_STEPS):
